@@ -1,0 +1,47 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "model/pose.h"
+#include "model/result.h"
+
+namespace palpate {
+
+enum class DeviceState : std::uint8_t { kClosed, kOpening, kLoading, kHoming, kReady, kFault };
+
+/// What a device can sense and exert; axes in the order x y z rx ry rz.
+struct DeviceCapabilities {
+  std::array<bool, 6> sensed{};
+  std::array<bool, 6> actuated{};
+  double max_force_n = 0;
+  double max_torque_nm = 0;
+  double max_stiffness_n_per_m = 0;   ///< 0: not stated
+  double rate_hz = 1000;
+};
+
+/// What the device reports at a tick.
+struct DeviceSample {
+  Pose pose;                       ///< world from tool
+  std::int64_t time_ns = 0;        ///< when it was sensed: steady clock, or virtual time
+  std::uint32_t buttons = 0;
+  DeviceState state = DeviceState::kClosed;
+  int stage = 0;                   ///< of the recorded or simulated path, 0: none
+};
+
+/// A haptic device. Implement it to plug in a device with a closed SDK (docs/examples).
+/// open and close may take their time; read and write are called once a tick by one thread and never allocate, lock, throw or wait
+/// longer than the tick allows. A device that fails reports kFault in its sample and ignores wrenches.
+class HapticDevice {
+ public:
+  virtual ~HapticDevice() = default;
+  virtual std::string name() const = 0;
+  virtual DeviceCapabilities capabilities() const = 0;
+  virtual Result<void> open() = 0;
+  virtual void close() noexcept = 0;                      ///< forces zero, then closed
+  virtual DeviceSample read() noexcept = 0;
+  /// Force and torque on the hand's tool, world frame, torque about the centre of mass gc given in world metres.
+  virtual void write(const Wrench& wrench, const Vec3& gc) noexcept = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "model/contacts.h"
+#include "model/lattice.h"
+#include "model/plan.h"
+#include "model/result.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+
+/// Told about long work; returns false to cancel it. `done` in [0, 1].
+using Progress = std::function<bool(const char* what, double done)>;
+
+/// Finds contacts. prepare() once, off the loops; query() each frame, by one thread at a time.
+/// Two implementations answer every query with identical integers: compute (Vulkan) and cpu_ref.
+class CollisionBackend {
+ public:
+  virtual ~CollisionBackend() = default;
+
+  /// Builds the voxel partition and whatever else a query needs. `geometry` must outlive the back end.
+  /// Allocates; takes as long as it takes. A second call replaces the first scene.
+  virtual Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) = 0;
+
+  /// Answers one pose. `held` may be null (a lone query). Writes `out` whole, reusing its memory.
+  /// An error means that the back end itself failed (device lost): the caller sends zero force.
+  virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
+
+  /// The mock-up's partition (`tool` = false) or the tool's (refined only), for export and comparison.
+  virtual Result<VoxelPartition> partition(bool tool) const = 0;
+
+  virtual bool has_internal_voxels() const = 0;   ///< the mock-up has V_int voxels
+  virtual std::string name() const = 0;           ///< "gpu" or "cpu"
+  virtual std::string device() const = 0;         ///< "llvmpipe (LLVM 15.0.6, 256 bits)", "CPU reference"
+  virtual std::uint64_t memory_bytes() const = 0; ///< kept for the prepared scene
+};
+
+}  // namespace palpate

@@ -1,0 +1,58 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/mesh.h"
+#include "model/vector.h"
+
+namespace palpate {
+
+/// What became of a triangle on the lattice.
+enum TriangleFlag : std::uint8_t {
+  kTriangleCollapsed = 1,   ///< no area on the lattice; in no set, keeps its number
+  kTriangleSheet = 2,       ///< of a part with winding 0 on both sides
+  kTriangleTurned = 4,      ///< of a part that was inside out; vertices 1 and 2 are exchanged
+};
+
+/// One neighbour across a shared edge (the same two lattice vertices): neighbour id · 2 + (1 if the edge is smooth).
+using EdgeNeighbour = std::uint32_t;
+
+/// A body snapped to the lattice, welded and oriented; made once at load on the host and read by both back ends.
+struct LatticeMesh {
+  std::vector<Int3> vertices;                             ///< distinct points, |c| ≤ kLatticeReach
+  std::vector<std::array<std::uint32_t, 3>> triangles;    ///< vertex indices, counter-clockwise seen from outside
+  std::vector<std::uint8_t> flags;                        ///< TriangleFlag bits, one a triangle
+  std::vector<Int3> unit_normal_q30;                      ///< outward n̂, Q30, rounded to nearest; 0 if collapsed
+  std::vector<std::uint32_t> sample_weight_q30;           ///< 1/|n̂_axis| in [1, √3], Q30; 0 if collapsed
+  std::vector<std::uint8_t> sample_axis;                  ///< axis of the raw normal's largest component, ties: lowest
+  std::vector<std::uint32_t> neighbour_begin;             ///< CSR, triangles.size() + 1
+  std::vector<EdgeNeighbour> neighbours;                  ///< ascending in each triangle, each neighbour once
+                                                          ///< (smooth if any edge shared with it is smooth)
+  bool closed = false;                                    ///< every edge's signed incidence is 0
+  Int3 box_min{0}, box_max{0};                            ///< of all triangles that did not collapse
+
+  Int3 corner(std::uint32_t triangle, int k) const { return vertices[triangles[triangle][static_cast<std::size_t>(k)]]; }
+  bool collapsed(std::uint32_t triangle) const { return (flags[triangle] & kTriangleCollapsed) != 0; }
+};
+
+/// What import and snapping did to a body, for `info` and for the log.
+struct MeshReport {
+  struct Part {
+    std::string path;
+    std::uint32_t triangles = 0;
+    bool closed = false;
+    bool sheet = false;
+    bool turned = false;
+    bool orientable = true;
+    Vec3 box_min_m{0}, box_max_m{0};
+  };
+  std::vector<Part> parts;
+  std::uint32_t triangles = 0, vertices = 0, collapsed = 0, duplicate = 0;
+  std::uint32_t open_edges = 0, nonmanifold_edges = 0;
+  double largest_gap_m = 0;           ///< longest boundary loop's bounding-box diagonal; 0 when closed
+  std::vector<std::string> notes;     ///< sentences: what was dropped, turned round, found open
+};
+
+}  // namespace palpate

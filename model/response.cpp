@@ -1,0 +1,135 @@
+#include "model/response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+constexpr double kQ30 = 1073741824.0;   // 2^30
+
+double to_double(const WideSum& sum) { return static_cast<double>(sum.high) * 4294967296.0 + static_cast<double>(sum.low); }
+
+Vec3 to_metres(const Lattice& lattice, const Vec3& steps) { return lattice.origin_m + lattice.step_m * steps; }
+
+/// Silences all but the shallowest area of every group connected by piercing (EXACTNESS section 7).
+void silence_pierced(const Contacts& contacts, std::vector<AreaResponse>& areas) {
+  std::vector<std::size_t> group(areas.size());
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  const auto root = [&](std::size_t i) {
+    while (group[i] != i) i = group[i] = group[group[i]];
+    return i;
+  };
+  for (std::size_t a = 0; a < areas.size(); ++a)
+    for (const std::uint32_t b : contacts.areas[a].pierces) group[root(a)] = root(b);
+
+  std::vector<std::size_t> size(areas.size(), 0), shallowest(areas.size(), SIZE_MAX);
+  for (std::size_t a = 0; a < areas.size(); ++a) {
+    const std::size_t g = root(a);
+    ++size[g];
+    // Areas come in the order of their ids, so `<` leaves a tie with the smallest id. Areas that gave no height
+    // can't be the shallowest: their depth is unknown, not zero.
+    if (contacts.areas[a].rays > 0 && (shallowest[g] == SIZE_MAX || areas[a].depth < areas[shallowest[g]].depth))
+      shallowest[g] = a;
+  }
+  for (std::size_t a = 0; a < areas.size(); ++a) {
+    const std::size_t g = root(a);
+    if (size[g] < 2) continue;
+    areas[a].flags |= kFlagPierced;
+    if (a != shallowest[g]) areas[a].force = areas[a].torque = Vec3(0);
+  }
+}
+
+}  // namespace
+
+void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeometry& geometry, Profile profile,
+             double stiffness, ContactResponse& out) {
+  const Lattice& lattice = geometry.lattice;
+  // gc follows the lattice pose, not the pose asked for: the wrench belongs to what was judged.
+  Vec3 gc_steps(0);
+  const Vec3 gc_tool = (geometry.tool_gc_m - geometry.tool_centre_m) / lattice.step_m;
+  for (int r = 0; r < 3; ++r)
+    gc_steps[r] = (pose.rotation_q30[r][0] * gc_tool.x + pose.rotation_q30[r][1] * gc_tool.y +
+                   pose.rotation_q30[r][2] * gc_tool.z) / kQ30 + pose.translation[r];
+  out.gc = to_metres(lattice, gc_steps);
+  out.wrench = {};
+  out.flags = contacts.flags;
+  out.contact = contacts.contact;
+  out.areas.clear();
+  if (contacts.truncated || !contacts.contact) return;
+
+  for (const ContactArea& area : contacts.areas) {
+    AreaResponse response;
+    response.id = area.id;
+    response.flags = area.flags;
+    const Vec3 direction(area.direction);
+    const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y + direction.z * direction.z);
+    if (length > 0) response.normal = direction / length;
+    response.point = out.gc;
+    if (area.rays > 0 && area.weight_sum > 0 && length > 0) {
+      const double metres_per_height = length * lattice.step_m;
+      response.depth = metres_per_height * (static_cast<double>(area.height_sum) / static_cast<double>(area.weight_sum));
+      response.max_depth = metres_per_height * (static_cast<double>(area.max_height) / kQ30);
+      if (profile == Profile::kPaper) {
+        if (area.voxel_count > 0)
+          response.point = to_metres(lattice, Vec3(area.voxel_sum[0], area.voxel_sum[1], area.voxel_sum[2]) /
+                                                  static_cast<double>(area.voxel_count));
+      } else if (area.height_sum > 0) {
+        response.point = to_metres(lattice, Vec3(to_double(area.moment[0]), to_double(area.moment[1]), to_double(area.moment[2])) /
+                                                static_cast<double>(area.height_sum));
+      }
+      response.force = stiffness * response.depth * response.normal;   // eq. 3
+      response.torque = glm::cross(response.point - out.gc, response.force);
+    }
+    out.areas.push_back(response);
+  }
+  silence_pierced(contacts, out.areas);
+
+  if (contacts.flags & kFlagSwallowed && contacts.swallowed_height > 0) {
+    AreaResponse response;
+    response.id = 0xFFFFFFFFu;
+    response.flags = contacts.flags;
+    const Vec3 direction(contacts.swallowed_direction);
+    const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y + direction.z * direction.z);
+    if (length > 0) {
+      response.normal = direction / length;
+      response.depth = length * lattice.step_m * (static_cast<double>(contacts.swallowed_height) / kQ30);
+      response.max_depth = response.depth;
+      response.point = out.gc;
+      response.force = stiffness * response.depth * response.normal;
+      out.areas.push_back(response);
+    }
+  }
+  for (const AreaResponse& area : out.areas) {
+    out.flags |= area.flags;
+    out.wrench.force += area.force;
+    out.wrench.torque += area.torque;
+  }
+}
+
+void remember(const Contacts& contacts, const ContactResponse& response, Held& held) {
+  if (contacts.truncated) return;   // nothing was learnt: keep what there was
+  held.areas.clear();
+  if (!contacts.contact) {
+    held.last_direction = Int3(0);
+    return;
+  }
+  double deepest = 0;
+  Int3 last(0);
+  for (std::size_t a = 0; a < contacts.areas.size(); ++a) {
+    const ContactArea& area = contacts.areas[a];
+    if (area.direction != Int3(0)) {
+      held.areas.push_back({area.static_ids, area.direction, area.sheet_sign});
+      if (response.areas[a].depth > deepest) {
+        deepest = response.areas[a].depth;
+        last = area.direction;
+      }
+    }
+  }
+  if (contacts.flags & kFlagSwallowed) last = contacts.swallowed_direction;
+  if (last != Int3(0)) held.last_direction = last;
+}
+
+}  // namespace palpate

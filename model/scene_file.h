@@ -1,0 +1,17 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "model/collision_backend.h"
+#include "model/scene.h"
+
+namespace palpate {
+
+/// Reads and checks a scene file; meshes are not opened yet. Errors name file, place in it, value and what is allowed;
+/// an unknown key names the nearest known one.
+Result<Scene> read_scene(const std::string& path);
+
+/// Imports or generates the meshes of a scene and builds its geometry. Reports progress; may be cancelled.
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress);
+
+}  // namespace palpate

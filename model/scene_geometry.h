@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+
+#include "model/lattice.h"
+#include "model/lattice_mesh.h"
+#include "model/smooth_angle.h"
+#include "model/voxel_grid.h"
+
+namespace palpate {
+
+/// Everything a back end needs to know of a scene's shape: integers only, the same for every back end.
+struct SceneGeometry {
+  Lattice lattice;
+  LatticeMesh mockup;                 ///< world lattice frame
+  LatticeMesh tool;                   ///< tool lattice frame: origin at the tool's box centre
+  Vec3 tool_centre_m{0};              ///< tool frame of the file: where the tool's lattice origin lies
+  Vec3 tool_gc_m{0};                  ///< tool frame of the file: centre of mass
+  Int3 tool_gc{0};                    ///< the same in the tool's lattice frame, rounded to nearest
+  std::int32_t tool_radius = 0;       ///< steps: ≥ |v| of every tool vertex + 2, Euclidean
+  VoxelGrid mockup_grid;
+  VoxelGrid tool_grid;                ///< in the tool's lattice frame, same voxel size
+  std::int32_t sample_spacing = 0;    ///< steps, ≥ 1, ≥ voxel size / 64
+  SmoothAngle smooth_angle;
+  MeshReport mockup_report, tool_report;
+};
+
+}  // namespace palpate

@@ -1,0 +1,1 @@
+# Installation and packaging: `cmake --install` gives the library, `cpack` the bundle.

@@ -1,0 +1,53 @@
+# How every target of ours is compiled, in one place.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+find_package(Threads REQUIRED)
+
+# Warnings are errors on our own targets. -ffp-contract=off: what both back ends compute on the host must not
+# depend on whether the compiler found a fused multiply-add.
+function(palpate_compile_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+    -Wnon-virtual-dtor -Woverloaded-virtual -Werror -ffp-contract=off)
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
+  # A warning inside a library's template is not ours to mend.
+  target_compile_definitions(${target} PRIVATE GLM_FORCE_EXPLICIT_CTOR GLM_ENABLE_EXPERIMENTAL)
+  if(PALPATE_SANITIZE)
+    string(REPLACE ";" "," sanitizers "${PALPATE_SANITIZE}")
+    target_compile_options(${target} PRIVATE -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(${target} PRIVATE -fsanitize=${sanitizers})
+  endif()
+endfunction()
+
+# palpate_library(model a.cpp b.cpp): the static library palpate_model, known as palpate::model.
+function(palpate_library name)
+  add_library(palpate_${name} STATIC ${ARGN})
+  add_library(palpate::${name} ALIAS palpate_${name})
+  set_target_properties(palpate_${name} PROPERTIES EXPORT_NAME ${name})
+  palpate_compile_options(palpate_${name})
+  target_include_directories(palpate_${name} PUBLIC
+    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/palpate>")
+endfunction()
+
+# palpate_test(lattice_test LABEL quick SOURCES lattice_test.cpp LIBS palpate::model [ENV "A=1;B=2"] [TIMEOUT 60])
+function(palpate_test name)
+  cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LIBS;ENV" ${ARGN})
+  if(NOT arg_LABEL)
+    set(arg_LABEL quick)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${arg_SOURCES})
+  palpate_compile_options(${name})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABEL}" TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${arg_ENV}")
+endfunction()
