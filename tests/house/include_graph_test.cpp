@@ -1,0 +1,96 @@
+// Walks every #include of the project and holds it against the architecture (docs/ARCHITECTURE.md).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+namespace fs = std::filesystem;
+
+const fs::path kRoot = PALPATE_SOURCE_DIR;
+
+struct Include {
+  std::string file;   // relative to the root
+  std::string target; // as written
+  bool quoted;
+};
+
+std::vector<Include> includes_below(const std::string& folder) {
+  static const std::regex line_pattern(R"(^\s*#\s*include\s*(["<])([^">]+)[">])");
+  std::vector<Include> found;
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+    const auto extension = entry.path().extension();
+    if (extension != ".h" && extension != ".cpp" && extension != ".comp" && extension != ".glsl") continue;
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);) {
+      std::smatch match;
+      if (std::regex_search(line, match, line_pattern))
+        found.push_back({fs::relative(entry.path(), kRoot).string(), match[2], match[1] == "\""});
+    }
+  }
+  return found;
+}
+
+bool starts_with_any(const std::string& text, const std::vector<std::string>& prefixes) {
+  for (const auto& prefix : prefixes)
+    if (text.rfind(prefix, 0) == 0) return true;
+  return false;
+}
+
+// Which of our folders each folder may include. `generated/` is what the build makes of shaders and assets.
+const std::map<std::string, std::vector<std::string>> kAllowed = {
+    {"model", {"model/"}},
+    {"shaders", {"shaders/"}},
+    {"compute", {"compute/", "model/", "shaders/shared/", "generated/"}},
+    {"cpu_ref", {"cpu_ref/", "model/"}},
+    {"driver", {"driver/", "model/"}},
+    {"service", {"service/", "model/", "driver/haptic_device.h", "driver/safe_device.h", "generated/"}},
+};
+
+TEST(IncludeGraph, EveryFolderIncludesOnlyWhatItMay) {
+  for (const auto& [folder, allowed] : kAllowed) {
+    const auto found = includes_below(folder);
+    for (const auto& include : found) {
+      if (!include.quoted || include.file == "service/main.cpp") continue;
+      EXPECT_TRUE(starts_with_any(include.target, allowed)) << include.file << " includes " << include.target;
+    }
+  }
+}
+
+TEST(IncludeGraph, TheWalkSeesTheTree) {
+  // Guards the test above: a wrong root or pattern would find nothing and pass.
+  EXPECT_GT(includes_below("model").size(), 20u);
+}
+
+TEST(IncludeGraph, NothingIncludesTestsOrBench) {
+  for (const auto& [folder, allowed] : kAllowed)
+    for (const auto& include : includes_below(folder))
+      EXPECT_FALSE(starts_with_any(include.target, {"tests/", "bench/"})) << include.file;
+}
+
+TEST(IncludeGraph, ALibraryStaysInTheFolderThatUsesIt) {
+  const std::map<std::string, std::vector<std::string>> only_in = {
+      {"vulkan/", {"compute"}}, {"embree3/", {"cpu_ref"}}, {"libusb", {"driver"}}, {"assimp/", {"model"}}, {"CLI/", {"service"}}};
+  for (const auto& [folder, allowed] : kAllowed)
+    for (const auto& include : includes_below(folder))
+      for (const auto& [prefix, homes] : only_in)
+        if (include.target.rfind(prefix, 0) == 0) {
+          EXPECT_THAT(homes, testing::Contains(folder)) << include.file << " includes " << include.target;
+        }
+}
+
+TEST(IncludeGraph, PublicHeadersNameNoLibraryButGlm) {
+  // What `cmake --install` hands out must compile without Vulkan, Embree, assimp or JSON headers.
+  for (const std::string file : {"compute/gpu_backend.h", "cpu_ref/cpu_backend.h", "driver/haptic_device.h"})
+    for (const auto& include : includes_below(fs::path(file).parent_path().string()))
+      if (include.file == file && !include.quoted) {
+        EXPECT_EQ(include.target.find_first_of("/."), std::string::npos) << file << " includes " << include.target;
+      }
+}
+
+}  // namespace
