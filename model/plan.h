@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,21 +11,51 @@ enum class Profile : std::uint8_t { kPaper, kRefined };
 /// Which stages a scene, tool, device and profile need. Leaving one out never changes what the others answer.
 struct Plan {
   Profile profile = Profile::kRefined;
-  bool transform_rotates = true;   ///< false: the tool only translates
+  bool transform_rotates = true;   ///< false: the tool's rotation is the identity at every pose
   bool imt = true;                 ///< mock-up has V_int voxels
   bool est = true;                 ///< refined
   bool zones = true;               ///< some edge is not smooth
   bool contact_point = true;
   bool torque = true;
   bool telemetry = true;
+
+  bool operator==(const Plan&) const = default;
 };
 
 /// One line of `palpate plan`.
 struct PlanStage {
   std::string stage;       ///< transform, cull, pairs, imt, bmt, bst, est, areas, zones, rays, contact_point, torque, telemetry
   bool kept = true;
-  std::string reason;
-  std::uint64_t memory_bytes = 0;
+  std::string reason;      ///< why it is kept, left out, or simpler than it could be: a clause without a full stop
+  std::uint64_t memory_bytes = 0;   ///< what this stage keeps for the prepared scene; 0 when left out
 };
+
+struct SceneGeometry;
+struct Scene;
+
+/// What a plan is worked out from. Only facts: none is measured, so the plan is the same on every machine.
+struct PlanFacts {
+  Profile profile = Profile::kRefined;
+  bool full = false;                       ///< `--plan full`: keep all that the profile defines
+  bool rough_edges = true;                 ///< some mock-up edge is not smooth
+  bool tool_rotates = true;                ///< some pose may have a rotation that is not the identity
+  bool torque_wanted = true;               ///< the device has torque axes, or the answer is a query's
+  bool subscribers = false;                ///< somebody listens to telemetry
+  std::optional<bool> internal_voxels;     ///< mock-up has V_int voxels; empty before the back end has prepared
+};
+
+struct PlanDecision {
+  Plan plan;
+  std::vector<PlanStage> stages;           ///< the thirteen stages, in the order of a frame
+};
+
+/// Facts of a `query`: it answers any pose, reports torque always, and has no subscriber.
+PlanFacts query_facts(const Scene& scene, const SceneGeometry& geometry);
+
+/// Facts of a `run`: what the scene's device can exert and where its path takes the tool. `subscribers`: telemetry has a listener.
+PlanFacts session_facts(const Scene& scene, const SceneGeometry& geometry, bool subscribers);
+
+/// The plan for these facts, with the reason for every stage. Pure; leaves `memory_bytes` 0.
+PlanDecision decide_plan(const PlanFacts& facts);
 
 }  // namespace palpate

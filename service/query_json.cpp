@@ -1,0 +1,154 @@
+#include "service/query_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <span>
+
+namespace palpate {
+namespace {
+
+/// Writes JSON with fmt, whose shortest form of a double reads back to the same bits.
+class Writer {
+ public:
+  explicit Writer(std::string& out) : out_(out) {}
+
+  void open(char bracket) {
+    separate();
+    out_.push_back(bracket);
+    first_ = true;
+  }
+  void close(char bracket) {
+    out_.push_back(bracket);
+    first_ = false;
+  }
+  /// Keys and strings here are names of ours: nothing in them needs escaping.
+  void key(std::string_view name) {
+    separate();
+    fmt::format_to(std::back_inserter(out_), "\"{}\":", name);
+    first_ = true;
+  }
+  void text(std::string_view value) {
+    separate();
+    fmt::format_to(std::back_inserter(out_), "\"{}\"", value);
+  }
+  void boolean(bool value) {
+    separate();
+    out_ += value ? "true" : "false";
+  }
+  void number(double value) {
+    separate();
+    if (std::isfinite(value))
+      fmt::format_to(std::back_inserter(out_), "{}", value);
+    else
+      out_ += "null";
+  }
+  template <class Integer>
+  void integer(Integer value) {
+    separate();
+    fmt::format_to(std::back_inserter(out_), "{}", value);
+  }
+  void vector(std::string_view name, const Vec3& v) {
+    key(name);
+    open('[');
+    for (int i = 0; i < 3; ++i) number(v[i]);
+    close(']');
+  }
+  void ids(std::span<const std::uint32_t> list) {
+    open('[');
+    for (const std::uint32_t id : list) integer(id);
+    close(']');
+  }
+  void ids(std::string_view name, std::span<const std::uint32_t> list) {
+    key(name);
+    ids(list);
+  }
+  void flags(std::uint32_t bits) {
+    key("flags");
+    open('[');
+    for (std::size_t i = 0; i < flag_names.size(); ++i)
+      if (bits >> i & 1u) text(flag_names[i]);
+    close(']');
+  }
+
+ private:
+  void separate() {
+    if (!first_) out_.push_back(',');
+    first_ = false;
+  }
+
+  std::string& out_;
+  bool first_ = true;
+};
+
+void write_area(Writer& json, const ContactArea& area, const AreaResponse& response) {
+  json.open('{');
+  json.key("id");
+  json.integer(area.id);
+  json.key("zones");
+  json.open('[');
+  for (const auto& zone : area.zones) json.ids(zone);
+  json.close(']');
+  json.ids("static", area.static_ids);
+  json.ids("mobile", area.mobile_ids);
+  json.vector("normal", response.normal);
+  json.key("depth");
+  json.number(response.depth);
+  json.vector("point", response.point);
+  json.vector("force", response.force);
+  json.vector("torque", response.torque);
+  json.flags(response.flags);
+  json.close('}');
+}
+
+}  // namespace
+
+void append_query_line(const QueryLine& line, const Contacts& contacts, const ContactResponse& response, std::string& out) {
+  Writer json(out);
+  json.open('{');
+  json.key("pose");
+  json.integer(line.pose);
+  json.key("contact");
+  json.boolean(contacts.contact);
+  json.key("pairs");
+  json.integer(contacts.pairs);
+  json.ids("cst", contacts.cst);
+  json.ids("bst", contacts.bst);
+  json.ids("cmt", contacts.cmt);
+  json.ids("bmt", contacts.bmt);
+  json.ids("imt", contacts.imt);
+  json.ids("est", contacts.est);
+  json.key("areas");
+  json.open('[');
+  // A swallowed tool adds a response that belongs to no area of triangles; a truncated frame has no response at all.
+  for (std::size_t i = 0; i < contacts.areas.size(); ++i)
+    write_area(json, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{});
+  json.close(']');
+  json.vector("force", response.wrench.force);
+  json.vector("torque", response.wrench.torque);
+  json.flags(response.flags);
+  json.key("truncated");
+  json.boolean(contacts.truncated);
+  json.key("time_us");
+  json.open('{');
+  json.key("total");
+  json.number(line.total_us);
+  for (const Contacts::StageTime& time : contacts.times) {
+    json.key(time.stage);
+    json.number(time.us);
+  }
+  json.close('}');
+  if (line.batch) {
+    json.key("batch");
+    json.integer(*line.batch);
+  }
+  if (line.tick) {
+    json.key("tick");
+    json.integer(*line.tick);
+  }
+  json.close('}');
+  out.push_back('\n');
+}
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "model/contacts.h"
+#include "model/response.h"
+
+namespace palpate {
+
+/// What a line says beside the contacts and the response.
+struct QueryLine {
+  std::uint64_t pose = 0;               ///< index from 0
+  double total_us = 0;                  ///< wall time from pose in to wrench and id lists out, µs
+  std::optional<std::uint64_t> batch;   ///< `--batch N`: times are the pose's share
+  std::optional<std::int64_t> tick;     ///< frames.jsonl: the tick whose pose was judged
+};
+
+/// Appends one JSON object and a line feed to `out`: the fields of `palpate query` in the contract's order (`tick` last).
+/// Numbers in the shortest form that reads back to the same double; one that is not finite becomes null.
+/// Allocates only when `out` has to grow. Not for the 1 kHz thread.
+void append_query_line(const QueryLine& line, const Contacts& contacts, const ContactResponse& response, std::string& out);
+
+}  // namespace palpate
