@@ -1,1 +1,51 @@
-# Installation and packaging: `cmake --install` gives the library, `cpack` the bundle.
+# `cmake --install BUILD --prefix P` gives the library (find_package(palpate)) and the program;
+# `cpack` gives a bundle of the program with its shared libraries inside, for other x86-64 Linux machines.
+include(CMakePackageConfigHelpers)
+include(InstallRequiredSystemLibraries)
+
+set(palpate_libraries)
+foreach(name model compute cpu_ref driver service)
+  if(TARGET palpate_${name})
+    list(APPEND palpate_libraries palpate_${name})
+  endif()
+endforeach()
+
+install(TARGETS ${palpate_libraries} EXPORT palpateTargets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
+
+# Headers keep their folders, so that "model/pose.h" means the same here and there.
+install(DIRECTORY model driver service DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT library
+  FILES_MATCHING PATTERN "*.h")
+install(FILES compute/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute COMPONENT library)
+install(FILES cpu_ref/cpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/cpu_ref COMPONENT library)
+
+configure_package_config_file(scripts/cmake/palpateConfig.cmake.in "${PROJECT_BINARY_DIR}/palpateConfig.cmake"
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/palpateConfig.cmake" "${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake"
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
+
+if(TARGET palpate)
+  # DT_RPATH, not DT_RUNPATH: it also serves the libraries that our libraries need, which carry no path of their own.
+  target_link_options(palpate PRIVATE -Wl,--disable-new-dtags)
+  set_target_properties(palpate PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/palpate")
+  install(TARGETS palpate RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bundle)
+  # The C library and the loader belong to the machine; everything else travels, the Vulkan loader too (drivers do not).
+  install(RUNTIME_DEPENDENCY_SET palpate_runtime COMPONENT bundle DESTINATION lib/palpate
+    PRE_EXCLUDE_REGEXES "^ld-linux" "^libc\\.so" "^libm\\.so" "^libpthread" "^libdl\\.so" "^librt\\.so"
+    POST_EXCLUDE_REGEXES "/ld-linux" "/libc\\.so" "/libm\\.so")
+  install(DIRECTORY scenes DESTINATION share/palpate COMPONENT bundle)
+  install(FILES README.md LICENSE CHANGELOG.md DESTINATION share/palpate COMPONENT bundle)
+endif()
+
+set(CPACK_GENERATOR TGZ)
+set(CPACK_PACKAGE_NAME palpate)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_SYSTEM_NAME "linux-${CMAKE_SYSTEM_PROCESSOR}")
+set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL bundle)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
+set(CPACK_VERBATIM_VARIABLES ON)
+include(CPack)
