@@ -1,0 +1,64 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "driver/haptic_device.h"
+#include "model/collision_backend.h"
+#include "model/result.h"
+#include "model/scene.h"
+#include "service/run_record.h"
+
+namespace palpate {
+
+enum class Pace : std::uint8_t {
+  kRealtime,   ///< 1 kHz by the clock, collision worker on a thread of its own
+  kAsap,       ///< virtual time: one thread, no clock in anything that decides, the same bytes every time
+};
+
+struct SessionOptions {
+  Pace pace = Pace::kRealtime;
+  std::optional<double> duration_s;           ///< empty: to the end of the device's path; without a path: until stop
+                                              ///< in real time, one second in virtual time
+  const std::atomic<bool>* stop = nullptr;    ///< set it (also from a signal handler) to end the run with zero force
+};
+
+/// Percentiles of a fixed-memory histogram, exact to 2 % (max is exact).
+struct Percentiles {
+  double p50 = 0, p99 = 0, p999 = 0, max = 0;
+};
+
+/// What summary.json tells, with the names it has there, and a few more.
+struct SessionSummary {
+  std::uint64_t static_triangles = 0, tool_triangles = 0;   ///< of the scene's meshes
+  std::string backend, device;               ///< "gpu" or "cpu"; the back end's own device
+  std::string haptic_device;
+  std::string profile;                       ///< "paper" or "refined"
+  std::string law;                           ///< "printed" or "corrected"
+  std::uint64_t ticks = 0, missed_ticks = 0;
+  Percentiles lateness_us;                   ///< real time only: wake-up after the scheduled time
+  Percentiles result_age_ticks;              ///< over ticks that had a result
+  Percentiles frame_us;                      ///< wall time a query, pose in to wrench out
+  std::vector<int> stages_reached;           ///< ascending
+  std::uint32_t areas_max = 0;               ///< most areas with a force in one frame
+  double force_max_N = 0, torque_max_Nm = 0; ///< sent to the device
+  std::uint64_t frames = 0;
+  std::uint64_t watchdog_ticks = 0;          ///< ticks without a fresh result for longer than the watchdog
+  std::uint64_t saturated_ticks = 0;         ///< ticks where a device limit shortened force or torque
+  std::uint64_t dropped_ticks = 0, dropped_frames = 0;   ///< not recorded because the recording thread fell behind
+  bool stopped = false;                      ///< ended by `stop`, before its duration
+  std::vector<std::string> notes;            ///< one sentence each: no real-time priority, watchdog, truncation, …
+};
+
+/// Runs the 1 kHz loop on `device` and `backend` (which has been prepared for scene.geometry) and returns when the
+/// run is over. Profile, K, law, n, delays and fades come from scene.scene. Opens the device, wraps it in
+/// SafeDevice, and on every way out sends zero force and closes it.
+/// `observer` may be null. Errors: kNoDevice (open failed), kBadValue (a setting), kInternal (back end, device
+/// fault, exception, recording); each one sentence.
+Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& backend, HapticDevice& device,
+                                   const SessionOptions& options, RunObserver* observer);
+
+}  // namespace palpate
