@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kMaxAreas = 256;   ///< areas in one frame; more 
 enum ContactFlag : std::uint32_t {
   kFlagNeedle = 1u << 0,        ///< CST but no sample inside: depth from segment mid-points and tool vertices
   kFlagSwallowed = 1u << 1,     ///< the tool touches V_int voxels alone
-  kFlagPierced = 1u << 2,       ///< one of several areas of one pierced plate; those not the shallowest give no force
+  kFlagPierced = 1u << 2,       ///< one of several areas of one pierced plate; only one of them gives force
   kFlagCancelled = 1u << 3,     ///< normals of the primary rule cancelled; another rule gave n_c
   kFlagHeld = 1u << 4,          ///< n_c (or a sheet's side) held from the frame before
   kFlagNearestExternal = 1u << 5,  ///< n_c points to the nearest V_ext voxel
@@ -70,6 +70,7 @@ struct HeldArea {
   std::vector<std::uint32_t> static_ids;   ///< ascending
   Int3 direction{0};
   std::int8_t sheet_sign = 0;
+  bool silent = false;                     ///< pierced, and another area gave the force
 };
 struct Held {
   std::vector<HeldArea> areas;             ///< in the order of their ids

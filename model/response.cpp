@@ -14,8 +14,35 @@ double to_double(const WideSum& sum) { return static_cast<double>(sum.high) * 42
 
 Vec3 to_metres(const Lattice& lattice, const Vec3& steps) { return lattice.origin_m + lattice.step_m * steps; }
 
-/// Silences all but the shallowest area of every group connected by piercing (EXACTNESS section 7).
-void silence_pierced(const Contacts& contacts, std::vector<AreaResponse>& areas) {
+/// What an area was in the frame before.
+enum class Before { kGaveForce, kUnknown, kSilent };
+
+/// Of the held area with most static ids in common, at least one; tie: the earliest (EXACTNESS section 6).
+Before before(const ContactArea& area, const Held* held) {
+  if (held == nullptr) return Before::kUnknown;
+  std::size_t most = 0;
+  Before result = Before::kUnknown;
+  for (const HeldArea& candidate : held->areas) {
+    std::size_t common = 0;
+    auto a = area.static_ids.begin();
+    auto b = candidate.static_ids.begin();
+    while (a != area.static_ids.end() && b != candidate.static_ids.end()) {
+      if (*a == *b) ++common;
+      const bool step_a = *a <= *b, step_b = *b <= *a;
+      a += step_a ? 1 : 0;
+      b += step_b ? 1 : 0;
+    }
+    if (common > most) {
+      most = common;
+      result = candidate.silent ? Before::kSilent : Before::kGaveForce;
+    }
+  }
+  return result;
+}
+
+/// Lets one area of every pierced plate give force, with the smallest depth of its group (EXACTNESS section 7).
+void silence_pierced(const Contacts& contacts, const Held* held, double stiffness, const Vec3& gc,
+                     std::vector<AreaResponse>& areas) {
   std::vector<std::size_t> group(areas.size());
   std::iota(group.begin(), group.end(), std::size_t{0});
   const auto root = [&](std::size_t i) {
@@ -25,27 +52,49 @@ void silence_pierced(const Contacts& contacts, std::vector<AreaResponse>& areas)
   for (std::size_t a = 0; a < areas.size(); ++a)
     for (const std::uint32_t b : contacts.areas[a].pierces) group[root(a)] = root(b);
 
-  std::vector<std::size_t> size(areas.size(), 0), shallowest(areas.size(), SIZE_MAX);
+  std::vector<Before> was(areas.size());
+  bool some_gave_force = false;
+  for (std::size_t a = 0; a < areas.size(); ++a) {
+    was[a] = before(contacts.areas[a], held);
+    some_gave_force = some_gave_force || was[a] == Before::kGaveForce;
+  }
+
+  // Areas come in the order of their ids, so `<` leaves a tie with the smallest id. Areas that gave no height
+  // can't be chosen: their depth is unknown, not zero.
+  constexpr std::size_t kNone = SIZE_MAX;
+  std::vector<std::size_t> size(areas.size(), 0), chosen(areas.size(), kNone);
+  std::vector<double> smallest(areas.size(), 0);
   for (std::size_t a = 0; a < areas.size(); ++a) {
     const std::size_t g = root(a);
     ++size[g];
-    // Areas come in the order of their ids, so `<` leaves a tie with the smallest id. Areas that gave no height
-    // can't be the shallowest: their depth is unknown, not zero.
-    if (contacts.areas[a].rays > 0 && (shallowest[g] == SIZE_MAX || areas[a].depth < areas[shallowest[g]].depth))
-      shallowest[g] = a;
+    if (contacts.areas[a].rays == 0) continue;
+    if (chosen[g] == kNone || areas[a].depth < smallest[g]) smallest[g] = areas[a].depth;
+    if (chosen[g] == kNone || was[a] < was[chosen[g]] ||
+        (was[a] == was[chosen[g]] && areas[a].depth < areas[chosen[g]].depth))
+      chosen[g] = a;
   }
   for (std::size_t a = 0; a < areas.size(); ++a) {
     const std::size_t g = root(a);
-    if (size[g] < 2) continue;
-    areas[a].flags |= kFlagPierced;
-    if (a != shallowest[g]) areas[a].force = areas[a].torque = Vec3(0);
+    AreaResponse& area = areas[a];
+    if (size[g] < 2) {
+      area.silent = was[a] == Before::kSilent && !some_gave_force;
+    } else {
+      area.flags |= kFlagPierced;
+      area.silent = a != chosen[g];
+      if (!area.silent) {
+        area.depth = smallest[g];
+        area.force = stiffness * area.depth * area.normal;
+        area.torque = glm::cross(area.point - gc, area.force);
+      }
+    }
+    if (area.silent) area.force = area.torque = Vec3(0);
   }
 }
 
 }  // namespace
 
 void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeometry& geometry, Profile profile,
-             double stiffness, ContactResponse& out) {
+             double stiffness, ContactResponse& out, const Held* held) {
   const Lattice& lattice = geometry.lattice;
   // gc follows the lattice pose, not the pose asked for: the wrench belongs to what was judged.
   Vec3 gc_steps(0);
@@ -85,7 +134,7 @@ void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeome
     }
     out.areas.push_back(response);
   }
-  silence_pierced(contacts, out.areas);
+  silence_pierced(contacts, held, stiffness, out.gc, out.areas);
 
   if (contacts.flags & kFlagSwallowed && contacts.swallowed_height > 0) {
     AreaResponse response;
@@ -121,8 +170,8 @@ void remember(const Contacts& contacts, const ContactResponse& response, Held& h
   for (std::size_t a = 0; a < contacts.areas.size(); ++a) {
     const ContactArea& area = contacts.areas[a];
     if (area.direction != Int3(0)) {
-      held.areas.push_back({area.static_ids, area.direction, area.sheet_sign});
-      if (response.areas[a].depth > deepest) {
+      held.areas.push_back({area.static_ids, area.direction, area.sheet_sign, response.areas[a].silent});
+      if (!response.areas[a].silent && response.areas[a].depth > deepest) {
         deepest = response.areas[a].depth;
         last = area.direction;
       }

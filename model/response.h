@@ -14,12 +14,13 @@ namespace palpate {
 struct AreaResponse {
   std::uint32_t id = 0;
   Vec3 normal{0};            ///< n_c, unit, out of the mock-up; 0 if there is no direction
-  double depth = 0;          ///< d, m, ≥ 0
+  double depth = 0;          ///< d, m, ≥ 0; of the area that gives force for a pierced plate: the smallest of its group
   double max_depth = 0;      ///< largest height, m; depth / max_depth estimates ∂d/∂h for κ
   Vec3 point{0};             ///< cp, m
   Vec3 force{0};             ///< K d n_c, N; 0 for an area silenced by piercing
   Vec3 torque{0};            ///< (cp − gc) × F, N·m
   std::uint32_t flags = 0;   ///< ContactFlag bits
+  bool silent = false;       ///< gives no force because another area of the same pierced plate does
 };
 
 struct ContactResponse {
@@ -31,9 +32,10 @@ struct ContactResponse {
 };
 
 /// Turns integer sums into d, n_c, cp, F, T. One function for both back ends: equal sums give equal bits.
-/// `stiffness` K in N/m, finite and ≥ 0. A truncated frame gives zero force. Writes `out` whole, reusing its memory.
+/// `stiffness` K in N/m, finite and ≥ 0. `held`: what query() was given, so that a pierced plate keeps its side; may be null.
+/// A truncated frame gives zero force. Writes `out` whole, reusing its memory.
 void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeometry& geometry, Profile profile,
-             double stiffness, ContactResponse& out);
+             double stiffness, ContactResponse& out, const Held* held = nullptr);
 
 /// What the next frame may hold on to.
 void remember(const Contacts& contacts, const ContactResponse& response, Held& held);
