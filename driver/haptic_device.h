@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -7,6 +8,9 @@
 #include "model/result.h"
 
 namespace palpate {
+
+/// Period of the control loop and of every device's tick, s.
+inline constexpr double kTickSeconds = 1e-3;
 
 enum class DeviceState : std::uint8_t { kClosed, kOpening, kLoading, kHoming, kReady, kFault };
 
@@ -40,8 +44,22 @@ class HapticDevice {
   virtual Result<void> open() = 0;
   virtual void close() noexcept = 0;                      ///< forces zero, then closed
   virtual DeviceSample read() noexcept = 0;
+  /// The part of a wrench that the motors can exert at the pose last read; what they can't is left out before limits
+  /// apply, so that it doesn't use them up. As given: the actuated axes of the world. A device whose axes are its
+  /// own (a guide, a tilted base) overrides it. Called like write().
+  virtual Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept;
   /// Force and torque on the hand's tool, world frame, torque about the centre of mass gc given in world metres.
   virtual void write(const Wrench& wrench, const Vec3& gc) noexcept = 0;
 };
+
+inline Wrench HapticDevice::exertable(const Wrench& wrench, const Vec3& /*gc*/) const noexcept {
+  const DeviceCapabilities can = capabilities();
+  Wrench left;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (can.actuated[static_cast<std::size_t>(axis)]) left.force[axis] = wrench.force[axis];
+    if (can.actuated[static_cast<std::size_t>(axis) + 3]) left.torque[axis] = wrench.torque[axis];
+  }
+  return left;
+}
 
 }  // namespace palpate

@@ -1,0 +1,28 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "driver/haptic_device.h"
+#include "model/result.h"
+#include "model/scene.h"
+
+namespace palpate {
+
+/// A kind of haptic device, for `palpate devices`.
+struct HapticDeviceInfo {
+  std::string name;      ///< as `--device` and the scene's `device.driver` spell it
+  std::string what;      ///< a few words
+  bool usable = false;
+  std::string reason;    ///< why it can't be used, one sentence; empty when usable
+};
+
+std::vector<HapticDeviceInfo> list_haptic_devices();
+
+/// Makes a device by name, closed. `settings` and `start` serve the simulated one; `tool_gc_m` is the tool's centre of mass
+/// in the tool frame. Errors: kUsage for a name nobody knows (lists the known), kNoDevice for one that this version
+/// can't drive, kBadValue for settings.
+Result<std::unique_ptr<HapticDevice>> make_haptic_device(const std::string& name, const DeviceSettings& settings,
+                                                         const Pose& start, const Vec3& tool_gc_m);
+
+}  // namespace palpate

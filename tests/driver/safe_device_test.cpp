@@ -1,0 +1,206 @@
+#include "driver/safe_device.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "driver/limits.h"
+
+namespace palpate {
+namespace {
+
+/// A device that remembers what reached it.
+class FakeDevice : public HapticDevice {
+ public:
+  std::string name() const override { return "fake"; }
+  DeviceCapabilities capabilities() const override { return can; }
+  Result<void> open() override { return {}; }
+  void close() noexcept override { closed_after = last; }
+  DeviceSample read() noexcept override { return {.pose = pose, .state = state}; }
+  void write(const Wrench& wrench, const Vec3&) noexcept override { last = wrench, ++writes; }
+
+  DeviceCapabilities can{.actuated = {true, true, true, true, true, true}, .max_force_n = 10, .max_torque_nm = 1};
+  Pose pose;
+  DeviceState state = DeviceState::kReady;
+  Wrench last{Vec3(99), Vec3(99)}, closed_after{Vec3(99), Vec3(99)};
+  int writes = 0;
+};
+
+constexpr SafetySettings kAtOnce{.fade_in_ticks = 0, .watchdog_ticks = 0};
+const Wrench kPush{Vec3(1, 2, 2), Vec3(0.1, 0, 0)};
+
+void tick(SafeDevice& safe, const Wrench& wrench) {
+  safe.read();
+  safe.fresh();
+  safe.write(wrench, Vec3(0));
+}
+
+TEST(SafeDevice, LetsASafeWrenchThroughUnchanged) {
+  FakeDevice device;
+  SafeDevice safe(device, kAtOnce);
+  ASSERT_TRUE(safe.open());
+  tick(safe, kPush);
+  EXPECT_EQ(device.last.force, kPush.force);
+  EXPECT_EQ(device.last.torque, kPush.torque);
+}
+
+TEST(SafeDevice, ShortensToTheLimitsKeepingDirection) {
+  FakeDevice device;
+  SafeDevice safe(device, kAtOnce);
+  ASSERT_TRUE(safe.open());
+  tick(safe, {Vec3(30, 0, 40), Vec3(0, 3, 4)});
+  EXPECT_NEAR(length(device.last.force - Vec3(6, 0, 8)), 0, 1e-14);
+  EXPECT_NEAR(length(device.last.torque - Vec3(0, 0.6, 0.8)), 0, 1e-15);
+  EXPECT_EQ(safe.saturated_ticks(), 1u);
+  tick(safe, {Vec3(1e308, 1e308, 0), Vec3(0)});
+  EXPECT_NEAR(length(device.last.force), 10, 1e-9) << "a length beyond the largest double is no way round the limit";
+}
+
+TEST(SafeDevice, SendsOnlyActuatedAxesAndLeavesTheirLimitToThem) {
+  FakeDevice device;
+  device.can.actuated = {true, false, false, false, false, true};
+  SafeDevice safe(device, kAtOnce);
+  ASSERT_TRUE(safe.open());
+  tick(safe, {Vec3(5, 100, 0), Vec3(3, 0, 0.5)});
+  EXPECT_EQ(device.last.force, Vec3(5, 0, 0));
+  EXPECT_EQ(device.last.torque, Vec3(0, 0, 0.5));
+}
+
+TEST(SafeDevice, GivesNoForceToADeviceThatStatesNoLimit) {
+  FakeDevice device;
+  device.can.max_force_n = 0, device.can.max_torque_nm = NAN;
+  SafeDevice safe(device, kAtOnce);
+  ASSERT_TRUE(safe.open());
+  tick(safe, kPush);
+  EXPECT_EQ(device.last.force, Vec3(0));
+  EXPECT_EQ(device.last.torque, Vec3(0));
+}
+
+TEST(SafeDevice, SendsZeroUntilTheDeviceIsReadyAndFadesInAfterwards) {
+  FakeDevice device;
+  SafeDevice safe(device, {.fade_in_ticks = 4, .watchdog_ticks = 0});
+  ASSERT_TRUE(safe.open());
+  for (const DeviceState state : {DeviceState::kOpening, DeviceState::kLoading, DeviceState::kHoming}) {
+    device.state = state;
+    for (int i = 0; i < 10; ++i) tick(safe, kPush);
+    EXPECT_EQ(device.last.force, Vec3(0));
+  }
+  device.state = DeviceState::kReady;
+  for (int i = 1; i <= 4; ++i) {
+    tick(safe, kPush);
+    EXPECT_NEAR(device.last.force.x, 0.25 * i, 1e-15);
+  }
+  tick(safe, kPush);
+  EXPECT_EQ(device.last.force, kPush.force);
+  device.state = DeviceState::kHoming;   // homed anew: zero at once, then from the start
+  tick(safe, kPush);
+  EXPECT_EQ(device.last.force, Vec3(0));
+  device.state = DeviceState::kReady;
+  tick(safe, kPush);
+  EXPECT_NEAR(device.last.force.x, 0.25, 1e-15);
+}
+
+TEST(SafeDevice, LatchesAWrenchThatIsNotFiniteAsAFault) {
+  for (const Wrench& bad : {Wrench{Vec3(NAN, 0, 0), Vec3(0)}, Wrench{Vec3(0), Vec3(0, 0, INFINITY)}}) {
+    FakeDevice device;
+    SafeDevice safe(device, kAtOnce);
+    ASSERT_TRUE(safe.open());
+    tick(safe, kPush);
+    tick(safe, bad);
+    EXPECT_EQ(device.last.force, Vec3(0));
+    EXPECT_TRUE(safe.faulted());
+    tick(safe, kPush);
+    EXPECT_EQ(device.last.force, Vec3(0)) << "a fault stays";
+    EXPECT_EQ(safe.read().state, DeviceState::kFault);
+    ASSERT_TRUE(safe.open());
+    tick(safe, kPush);
+    EXPECT_EQ(device.last.force, kPush.force) << "until the device is opened anew";
+  }
+}
+
+TEST(SafeDevice, LatchesAPoseThatIsNoneAndReportsTheLastSoundOne) {
+  FakeDevice device;
+  device.pose.position = Vec3(1, 2, 3);
+  SafeDevice safe(device, kAtOnce);
+  ASSERT_TRUE(safe.open());
+  tick(safe, kPush);
+  device.pose.position.y = NAN;
+  const DeviceSample sample = safe.read();
+  EXPECT_EQ(sample.state, DeviceState::kFault);
+  EXPECT_EQ(sample.pose.position, Vec3(1, 2, 3));
+  safe.write(kPush, Vec3(0));
+  EXPECT_EQ(device.last.force, Vec3(0));
+  EXPECT_THAT(safe.fault(), testing::HasSubstr("pose"));
+}
+
+TEST(SafeDevice, LatchesTheDevicesOwnFault) {
+  FakeDevice device;
+  SafeDevice safe(device, kAtOnce);
+  ASSERT_TRUE(safe.open());
+  device.state = DeviceState::kFault;
+  tick(safe, kPush);
+  device.state = DeviceState::kReady;
+  tick(safe, kPush);
+  EXPECT_EQ(device.last.force, Vec3(0));
+  EXPECT_TRUE(safe.faulted());
+}
+
+TEST(SafeDevice, FadesToZeroWithoutFreshResultsAndBackInWithThem) {
+  FakeDevice device;
+  SafeDevice safe(device, {.fade_in_ticks = 2, .watchdog_ticks = 5, .fade_out_ticks = 4});
+  ASSERT_TRUE(safe.open());
+  for (int i = 0; i < 10; ++i) tick(safe, kPush);
+  EXPECT_EQ(safe.gain(), 1);
+  double before = 1;
+  const auto stale = [&] { safe.read(), safe.write(kPush, Vec3(0)); };
+  for (int i = 0; i < 4; ++i) stale();   // the last fresh() still covers 5 writes, one is used
+  EXPECT_EQ(safe.gain(), 1);
+  for (int i = 0; i < 4; ++i) {
+    stale();
+    EXPECT_LT(safe.gain(), before);
+    before = safe.gain();
+  }
+  EXPECT_EQ(device.last.force, Vec3(0));
+  EXPECT_EQ(safe.watchdog_ticks(), 4u);
+  tick(safe, kPush);
+  EXPECT_EQ(safe.gain(), 0.5);
+}
+
+TEST(SafeDevice, WritesZeroBeforeItClosesTheDevice) {
+  FakeDevice device;
+  {
+    SafeDevice safe(device, kAtOnce);
+    ASSERT_TRUE(safe.open());
+    tick(safe, kPush);
+    safe.close();
+    EXPECT_EQ(device.closed_after.force, Vec3(0));
+    const int writes = device.writes;
+    tick(safe, kPush);
+    EXPECT_EQ(device.writes, writes) << "a closed device is left alone";
+  }
+}
+
+TEST(SafeDevice, WritesZeroAndClosesWhenItGoesAway) {
+  FakeDevice device;
+  {
+    SafeDevice safe(device, kAtOnce);
+    ASSERT_TRUE(safe.open());
+    tick(safe, kPush);
+  }
+  EXPECT_EQ(device.closed_after.force, Vec3(0));
+  EXPECT_EQ(device.closed_after.torque, Vec3(0));
+}
+
+TEST(SafeDevice, StartsFromZeroAgainWhenTold) {
+  FakeDevice device;
+  SafeDevice safe(device, {.fade_in_ticks = 4, .watchdog_ticks = 0});
+  ASSERT_TRUE(safe.open());
+  for (int i = 0; i < 10; ++i) tick(safe, kPush);
+  safe.restart_fade();
+  tick(safe, kPush);
+  EXPECT_EQ(safe.gain(), 0.25);
+}
+
+}  // namespace
+}  // namespace palpate
