@@ -1,0 +1,27 @@
+#pragma once
+#include <memory>
+
+#include "compute/prepared_scene.h"
+#include "compute/vulkan_device.h"
+#include "model/contacts.h"
+#include "model/lattice.h"
+#include "model/plan.h"
+#include "model/result.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+
+/// One query at a time on a prepared scene: buffers, pipelines and the recorded commands of a frame.
+class Frame {
+ public:
+  virtual ~Frame() = default;
+  /// All arguments must outlive the frame.
+  static Result<std::unique_ptr<Frame>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
+                                               const Plan& plan);
+  /// As CollisionBackend::query.
+  virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
+  /// Bytes of device memory that the frame itself holds.
+  virtual std::uint64_t memory_bytes() const = 0;
+};
+
+}  // namespace palpate

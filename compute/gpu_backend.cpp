@@ -1,0 +1,63 @@
+#include "compute/gpu_backend.h"
+
+#include <optional>
+#include <utility>
+
+#include "compute/frame.h"
+#include "compute/prepared_scene.h"
+#include "compute/vulkan_device.h"
+
+namespace palpate {
+namespace {
+
+/// The Vulkan back end: a device, the scene on it, and the frame that answers queries.
+class GpuBackend final : public CollisionBackend {
+ public:
+  explicit GpuBackend(std::unique_ptr<VulkanDevice> device) : device_(std::move(device)) {}
+
+  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
+    frame_.reset();
+    scene_.reset();
+    auto scene = prepare_scene(*device_, geometry, plan, progress);
+    if (!scene) return scene.error();
+    scene_.emplace(std::move(*scene));
+    auto frame = Frame::create(*device_, geometry, *scene_, plan);
+    if (!frame) return frame.error();
+    frame_ = std::move(*frame);
+    return {};
+  }
+
+  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+    if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
+    return frame_->query(pose, held, out);
+  }
+
+  Result<VoxelPartition> partition(bool tool) const override {
+    if (!scene_) return Error{ErrorCode::kInternal, "partition before prepare"};
+    return read_partition(*device_, tool ? scene_->tool.partition : scene_->mockup.partition);
+  }
+
+  bool has_internal_voxels() const override { return scene_ && scene_->mockup.partition.has_internal; }
+  std::string name() const override { return "gpu"; }
+  std::string device() const override { return device_->name(); }
+  std::uint64_t memory_bytes() const override {
+    return (scene_ ? scene_->memory_bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0);
+  }
+
+ private:
+  std::unique_ptr<VulkanDevice> device_;
+  std::optional<PreparedScene> scene_;
+  std::unique_ptr<Frame> frame_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<CollisionBackend>> make_gpu_backend(const GpuOptions& options) {
+  auto device = VulkanDevice::create(options);
+  if (!device) return device.error();
+  return std::unique_ptr<CollisionBackend>(std::make_unique<GpuBackend>(std::move(*device)));
+}
+
+std::vector<VulkanDeviceInfo> list_vulkan_devices() { return VulkanDevice::list(); }
+
+}  // namespace palpate

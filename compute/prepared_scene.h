@@ -1,0 +1,58 @@
+#pragma once
+#include <cstdint>
+
+#include "compute/vulkan_buffer.h"
+#include "compute/vulkan_device.h"
+#include "model/collision_backend.h"
+#include "model/plan.h"
+#include "model/result.h"
+#include "model/scene_geometry.h"
+#include "shaders/shared/scene.h"
+
+namespace palpate {
+
+/// A voxel partition on the device (docs/EXACTNESS.md section 2); look-ups in shaders/lib/partition.glsl.
+struct PartitionBuffers {
+  gpu::GridConstants grid{};
+  VulkanBuffer brick_slot;        ///< uint32, one a brick: place in `bricks`, or kBrickExternal / kBrickInternal
+  VulkanBuffer bricks;            ///< gpu::Brick, one a mixed brick, ascending brick number
+  VulkanBuffer mixed_brick;       ///< uint32, one a mixed brick: its brick number
+  VulkanBuffer boundary_place;    ///< uint32, one a boundary voxel: slot · 512 + bit; ascending
+  VulkanBuffer list_begin;        ///< uint32, CSR over boundary voxels, + 1
+  VulkanBuffer list_triangles;    ///< uint32 ids, ascending in each voxel
+  bool has_internal = false;
+};
+
+/// One body on the device. Numbers of entries are in gpu::BodyConstants.
+struct BodyBuffers {
+  VulkanBuffer vertices;          ///< ivec3
+  VulkanBuffer triangles;         ///< uvec3, vertex indices
+  VulkanBuffer triangle_info;     ///< uint32: flags and sample axis (kInfo… in shaders/shared/scene.h)
+  VulkanBuffer unit_normal;       ///< ivec3, Q30
+  VulkanBuffer sample_weight;     ///< uint32, Q30
+  VulkanBuffer neighbour_begin;   ///< uint32, CSR over triangles, + 1; mock-up only
+  VulkanBuffer neighbours;        ///< uint32: id · 2 + smooth; mock-up only
+  VulkanBuffer seam_begin;        ///< uint32, CSR over triangles, + 1; mock-up in `refined` only, else one entry 0 … 0
+  VulkanBuffer seams;             ///< uint32 ids joined without a shared edge, ascending (always smooth)
+  std::uint32_t seam_entries = 0;
+  PartitionBuffers partition;     ///< empty for the tool in `paper`
+};
+
+/// What preparation leaves on the device, and every frame reads. Buffers without entries are 4 bytes, so that each can
+/// always be bound.
+struct PreparedScene {
+  gpu::SceneConstants constants{};
+  VulkanBuffer scene;             ///< constants, as a storage buffer
+  BodyBuffers mockup;
+  BodyBuffers tool;
+  std::uint64_t memory_bytes() const;
+};
+
+/// Builds both bodies and their partitions. Errors: memory (kBadValue, one sentence), cancelled, device lost.
+Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
+                                    const Progress& progress);
+
+/// Reads a partition back.
+Result<VoxelPartition> read_partition(VulkanDevice& device, const PartitionBuffers& partition);
+
+}  // namespace palpate

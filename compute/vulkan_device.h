@@ -1,0 +1,82 @@
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "compute/gpu_backend.h"
+#include "model/result.h"
+
+namespace palpate {
+
+/// The sentence for a Vulkan call that failed: "vkQueueSubmit2 failed: device lost".
+Error vulkan_error(const char* call, VkResult result);
+
+/// An instance, one device and its one compute queue. Owned by GpuBackend; everything made from it must die first.
+/// One thread at a time.
+class VulkanDevice {
+ public:
+  struct Limits {
+    std::uint64_t storage_range = 0;   ///< bytes that one binding may span
+    std::uint64_t allocation = 0;      ///< bytes of the largest buffer
+    std::uint64_t heap = 0;            ///< bytes of the device-local heap
+    std::uint32_t groups = 0;          ///< workgroups along x
+    double timestamp_ns = 0;           ///< nanoseconds a tick
+  };
+
+  /// Error (kNoDevice): one sentence with the reason for every device that was refused.
+  static Result<std::unique_ptr<VulkanDevice>> create(const GpuOptions& options);
+  /// All devices and why each can't be used; an empty list when there is no Vulkan at all.
+  static std::vector<VulkanDeviceInfo> list();
+  ~VulkanDevice();
+  VulkanDevice(const VulkanDevice&) = delete;
+  VulkanDevice& operator=(const VulkanDevice&) = delete;
+
+  VkDevice handle() const { return device_; }
+  VkQueue queue() const { return queue_; }
+  std::uint32_t queue_family() const { return queue_family_; }
+  const Limits& limits() const { return limits_; }
+  const std::string& name() const { return name_; }
+  /// Device memory is host memory (lavapipe, integrated GPUs): buffers are written in place, without staging.
+  bool unified() const { return unified_; }
+
+  /// Index of a memory type with all of `wanted`, preferring those that have `preferred` too; or −1.
+  int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags preferred) const;
+
+  /// vkCmdPushDescriptorSetKHR, an extension's function.
+  PFN_vkCmdPushDescriptorSetKHR push_descriptors = nullptr;
+
+  /// Success, or the first message of the validation layer since the last call of this.
+  Result<void> take_validation_error();
+
+  /// Bytes of device memory now held by buffers.
+  std::atomic<std::uint64_t> allocated{0};
+
+ private:
+  VulkanDevice() = default;
+  Result<void> make_instance(bool validation);
+  Result<void> choose(const std::string& wanted);
+  Result<void> make_device();
+  static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                   VkDebugUtilsMessageTypeFlagsEXT types,
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t queue_family_ = 0;
+  VkPhysicalDeviceMemoryProperties memory_{};
+  Limits limits_;
+  std::string name_;
+  bool unified_ = false;
+  std::mutex message_mutex_;
+  std::string message_;
+};
+
+}  // namespace palpate

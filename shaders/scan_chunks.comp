@@ -1,0 +1,18 @@
+// One invocation: a chunk of kScanChunk numbers. Reads values, writes the chunk's sum to sums.
+// Exclusive prefix sums, first step. Sums wrap at 2^32: the host checks totals that may reach it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/item.glsl"
+#include "shaders/shared/prepare.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Values { uint32_t values[]; };
+layout(scalar, set = 0, binding = 1) writeonly buffer Sums { uint32_t sums[]; };
+layout(push_constant, scalar) uniform Push { uint32_t count; };
+
+void main() {
+  uint32_t first = item_index() * kScanChunk;
+  if (first >= count) return;
+  uint32_t end = min(first + kScanChunk, count), sum = 0u;
+  for (uint32_t i = first; i < end; ++i) sum += values[i];
+  sums[item_index()] = sum;
+}

@@ -1,0 +1,71 @@
+// The prepared scene as every shader sees it. docs/EXACTNESS.md section 2 says what it means.
+#ifndef PALPATE_SHARED_SCENE_H
+#define PALPATE_SHARED_SCENE_H
+#include "shaders/shared/base.h"
+
+PALPATE_SHARED_BEGIN
+
+// Codes in brick_slot[]; any smaller value is the place of a mixed brick in bricks[].
+PALPATE_CONSTANT uint32_t kBrickExternal = 0xFFFFFFFFu;
+PALPATE_CONSTANT uint32_t kBrickInternal = 0xFFFFFFFEu;
+
+// Classes of a voxel, as VoxelClass of model/voxel_grid.h.
+PALPATE_CONSTANT uint32_t kVoxelExternal = 0u;
+PALPATE_CONSTANT uint32_t kVoxelBoundary = 1u;
+PALPATE_CONSTANT uint32_t kVoxelInternal = 2u;
+
+// triangle_info[]: bits 0–7 are TriangleFlag of model/lattice_mesh.h, bits 8–9 the sample axis.
+PALPATE_CONSTANT uint32_t kInfoCollapsed = 1u;
+PALPATE_CONSTANT uint32_t kInfoSheet = 2u;
+PALPATE_CONSTANT uint32_t kInfoAxisShift = 8u;
+
+// Not a boundary voxel (boundary_index() of lib/partition.glsl).
+PALPATE_CONSTANT uint32_t kNoVoxel = 0xFFFFFFFFu;
+
+// Steps by which a tool's voxel grows before it is asked what it touches.
+PALPATE_CONSTANT int32_t kToolVoxelGrowth = 3;
+
+// A grid of voxels: VoxelGrid of model/voxel_grid.h, and how much of it is detailed.
+struct GridConstants {
+  ivec3 origin;              // lattice steps
+  int32_t size;              // lattice steps
+  ivec3 bricks;              // along each axis; brick (x,y,z) is number x + bricks.x·(y + bricks.y·z)
+  uint32_t mixed_bricks;     // entries of bricks[]
+  uint32_t boundary_voxels;  // entries of list_begin[] − 1
+  uint32_t list_entries;     // entries of list_triangles[]
+};
+PALPATE_ASSERT_SIZE(GridConstants, 40);
+
+// A brick of 8³ voxels that is not all of one class but boundary. Voxel (x,y,z) in it is bit x + 8y + 64z: word
+// bit >> 5, bit & 31.
+struct Brick {
+  uint32_t boundary[16];     // set: V_bnd
+  uint32_t internal_[16];    // set: V_int; never both
+  uint32_t first[16];        // compact index of the word's first boundary voxel
+};
+PALPATE_ASSERT_SIZE(Brick, 192);
+
+// A body: mock-up (world lattice frame) or tool (tool lattice frame).
+struct BodyConstants {
+  uint32_t vertices;
+  uint32_t triangles;
+  uint32_t closed;           // 1: every edge's signed incidence is 0
+  uint32_t has_internal;     // 1: the partition has V_int voxels
+  GridConstants grid;        // all 0 when there is no partition (the tool's in `paper`)
+};
+PALPATE_ASSERT_SIZE(BodyConstants, 56);
+
+// Binding `scene` of every shader of a frame.
+struct SceneConstants {
+  BodyConstants mockup;
+  BodyConstants tool;
+  ivec3 tool_gc;             // tool lattice frame
+  int32_t tool_radius;       // steps
+  int32_t sample_spacing;    // steps
+  uint32_t refined;          // 1: profile `refined`, 0: `paper`
+};
+PALPATE_ASSERT_SIZE(SceneConstants, 136);
+PALPATE_ASSERT_OFFSET(SceneConstants, tool_gc, 112);
+
+PALPATE_SHARED_END
+#endif
