@@ -1,0 +1,210 @@
+#include "model/geometry_build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "model/edges.h"
+#include "model/lattice_build.h"
+#include "model/mass.h"
+#include "model/orientation.h"
+#include "model/triangle.h"
+#include "model/voxel_size.h"
+#include "model/weld.h"
+
+namespace palpate {
+namespace {
+
+double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+/// A centre of mass farther from the tool's box than this many half diagonals is a mistake in units (chosen).
+constexpr double kFarthestCentreOfMass = 16;
+
+void make_normals(LatticeMesh& mesh) {
+  const std::size_t count = mesh.triangles.size();
+  mesh.unit_normal_q30.assign(count, Int3(0));
+  mesh.sample_weight_q30.assign(count, 0);
+  mesh.sample_axis.assign(count, 0);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    if (mesh.collapsed(t)) continue;
+    const Long3 raw = raw_normal(mesh, t);
+    const int axis = dominant_axis(raw);
+    const Vec3 normal(raw);
+    const double size = length(normal);
+    for (int k = 0; k < 3; ++k) mesh.unit_normal_q30[t][k] = static_cast<std::int32_t>(std::nearbyint(normal[k] / size * 0x1p30));
+    mesh.sample_weight_q30[t] = static_cast<std::uint32_t>(std::nearbyint(size / std::abs(normal[axis]) * 0x1p30));
+    mesh.sample_axis[t] = static_cast<std::uint8_t>(axis);
+  }
+}
+
+/// The place in report.parts of every triangle; makes the parts. Triangles that no part covers are a part without a name.
+std::vector<std::uint32_t> list_parts(const Mesh& mesh, const LatticeMesh& built, const Lattice& lattice, MeshReport& report) {
+  std::vector<std::uint32_t> part_of(mesh.triangles.size(), 0xFFFFFFFFu);
+  report.parts.clear();
+  for (const MeshPart& part : mesh.parts) {
+    const std::size_t end = std::min(mesh.triangles.size(), std::size_t{part.first_triangle} + part.triangle_count);
+    for (std::size_t t = part.first_triangle; t < end; ++t) part_of[t] = static_cast<std::uint32_t>(report.parts.size());
+    report.parts.push_back({.path = part.path});
+  }
+  if (std::find(part_of.begin(), part_of.end(), 0xFFFFFFFFu) != part_of.end()) {
+    std::replace(part_of.begin(), part_of.end(), 0xFFFFFFFFu, static_cast<std::uint32_t>(report.parts.size()));
+    report.parts.emplace_back();
+  }
+  std::vector<std::uint8_t> has_box(report.parts.size(), 0);
+  for (std::uint32_t t = 0; t < part_of.size(); ++t) {
+    MeshReport::Part& part = report.parts[part_of[t]];
+    ++part.triangles;
+    if (built.collapsed(t)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 corner = lattice.origin_m + lattice.step_m * Vec3(built.corner(t, k));
+      std::uint8_t& has = has_box[part_of[t]];
+      part.box_min_m = has ? glm::min(part.box_min_m, corner) : corner;
+      part.box_max_m = has ? glm::max(part.box_max_m, corner) : corner;
+      has = 1;
+    }
+  }
+  return part_of;
+}
+
+void describe_shells(const Orientation& orientation, const std::vector<std::uint32_t>& part_of, const LatticeMesh& mesh,
+                     MeshReport& report) {
+  std::vector<std::uint32_t> judged(report.parts.size(), 0), sheets(report.parts.size(), 0);
+  for (std::uint32_t t = 0; t < part_of.size(); ++t) {
+    if (mesh.collapsed(t)) continue;
+    const Shell& shell = orientation.shells[orientation.shell_of[t]];
+    MeshReport::Part& part = report.parts[part_of[t]];
+    ++judged[part_of[t]];
+    if (shell.sheet) ++sheets[part_of[t]];
+    if (shell.turned) part.turned = true;
+    if (!shell.orientable) part.orientable = false;
+  }
+  for (std::size_t p = 0; p < judged.size(); ++p) report.parts[p].sheet = judged[p] > 0 && sheets[p] == judged[p];
+
+  std::size_t turned = 0, turned_triangles = 0, sheet = 0, sheet_triangles = 0, one_sided = 0, one_sided_triangles = 0;
+  std::size_t disagreeing = 0;
+  for (const Shell& shell : orientation.shells) {
+    if (shell.turned) ++turned, turned_triangles += shell.triangles;
+    if (shell.sheet) ++sheet, sheet_triangles += shell.triangles;
+    if (!shell.orientable) ++one_sided, one_sided_triangles += shell.triangles;
+    disagreeing += shell.disagreeing;
+  }
+  const std::size_t all = orientation.shells.size();
+  if (disagreeing) report.notes.push_back(fmt::format("{} triangles were turned to agree with their neighbours", disagreeing));
+  if (turned)
+    report.notes.push_back(fmt::format("{} of {} edge-connected parts were inside out and have been turned round ({} triangles)", turned,
+                                       all, turned_triangles));
+  if (sheet)
+    report.notes.push_back(fmt::format("{} of {} edge-connected parts have no inside and count as sheets ({} triangles)", sheet, all,
+                                       sheet_triangles));
+  if (one_sided)
+    report.notes.push_back(fmt::format("{} of {} edge-connected parts are one-sided surfaces and were left as given ({} triangles)",
+                                       one_sided, all, one_sided_triangles));
+}
+
+void describe_surface(MeshReport& report, const LatticeMesh& mesh) {
+  if (report.collapsed) report.notes.push_back(fmt::format("{} triangles have no area on the lattice and take no part", report.collapsed));
+  if (report.duplicate) report.notes.push_back(fmt::format("{} triangles repeat another's three corners", report.duplicate));
+  if (report.nonmanifold_edges) report.notes.push_back(fmt::format("{} edges carry more than two triangles", report.nonmanifold_edges));
+  if (!mesh.closed)
+    report.notes.push_back(fmt::format("the surface is open: {} edges carry one triangle, the largest gap is {:.3g} m across",
+                                       report.open_edges, report.largest_gap_m));
+}
+
+Result<Vec3> centre_of_mass(const std::optional<Vec3>& asked, const LatticeMesh& tool, const SurfaceMeasure& measure,
+                            const Lattice& tool_lattice, double half_diagonal, MeshReport& report) {
+  if (asked) {
+    if (!(length(*asked - tool_lattice.origin_m) <= kFarthestCentreOfMass * half_diagonal))
+      return bad_value(fmt::format("centre_of_mass ({}, {}, {}) m is not within {} m of the tool's centre", asked->x, asked->y, asked->z,
+                                   kFarthestCentreOfMass * half_diagonal));
+    return *asked;
+  }
+  const bool solid = tool.closed && measure.volume > 0;
+  if (!solid) report.notes.push_back("the tool encloses no volume: its centre of mass is taken as its area's centroid");
+  return tool_lattice.origin_m + tool_lattice.step_m * (solid ? measure.volume_centroid : measure.area_centroid);
+}
+
+}  // namespace
+
+Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice, const SmoothAngle& angle, MeshReport& report) {
+  Result<LatticeMesh> welded = snap_and_weld(mesh, lattice);
+  if (!welded) return welded.error();
+  LatticeMesh out = std::move(*welded);
+  report = {};
+  report.triangles = static_cast<std::uint32_t>(out.triangles.size());
+  report.vertices = static_cast<std::uint32_t>(out.vertices.size());
+  for (const std::uint8_t flags : out.flags) report.collapsed += flags & kTriangleCollapsed ? 1 : 0;
+
+  const EdgeTable edges(out);
+  const std::vector<std::uint32_t> part_of = list_parts(mesh, out, lattice, report);
+  describe_shells(orient(edges, part_of, out), part_of, out, report);
+  examine_edges(edges, lattice.step_m, part_of, out, report);
+  describe_surface(report, out);
+  make_normals(out);
+  if (const Result<void> found = find_neighbours(edges, angle, out); !found) return found.error();
+  return out;
+}
+
+Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings) {
+  SceneGeometry out;
+  const Result<SmoothAngle> angle = make_smooth_angle(settings.smooth_angle_deg);
+  if (!angle) return angle.error();
+  out.smooth_angle = *angle;
+
+  // The lattice, coarse enough for the tool, its centre of mass and the largest voxel that may be chosen.
+  const Result<Box> mockup_box = bounding_box(mockup, "mock-up");
+  if (!mockup_box) return mockup_box.error();
+  const Result<Box> tool_box = bounding_box(tool, "tool");
+  if (!tool_box) return tool_box.error();
+  const double half_diagonal = length(tool_box->size()) / 2;
+  const auto side = [](const Box& box) { return std::max({box.size().x, box.size().y, box.size().z}); };
+  double arm = half_diagonal, voxel = side(*tool_box) / kVoxelsPerTool;
+  const double largest_side = std::max(side(*mockup_box), side(*tool_box));
+  if (settings.centre_of_mass_m)   // clamped: whatever is beyond the limits is refused below, in its own words
+    arm = std::max(arm, std::min(length(*settings.centre_of_mass_m - tool_box->centre()), kFarthestCentreOfMass * half_diagonal));
+  if (settings.voxel_size_m) voxel = std::max(voxel, std::min(*settings.voxel_size_m, largest_side));
+  if (!std::isfinite(arm)) arm = half_diagonal;
+  const Result<Lattice> lattice = choose_lattice(*mockup_box, arm, voxel);
+  if (!lattice) return lattice.error();
+  out.lattice = *lattice;
+  // A multiple of the step too: a tool equal to the mock-up then snaps to the same points.
+  out.tool_centre_m = on_lattice(tool_box->centre(), out.lattice.step_m);
+  const Lattice tool_lattice{out.lattice.step_m, out.tool_centre_m};
+
+  // Both bodies.
+  const auto body = [&](const Mesh& mesh, const Lattice& frame, const char* what, MeshReport& report) -> Result<LatticeMesh> {
+    Result<LatticeMesh> built = build_lattice_mesh(mesh, frame, out.smooth_angle, report);
+    if (!built) return bad_value(fmt::format("{}: {}", what, built.error().sentence));
+    return built;
+  };
+  Result<LatticeMesh> mockup_mesh = body(mockup, out.lattice, "mock-up", out.mockup_report);
+  if (!mockup_mesh) return mockup_mesh.error();
+  out.mockup = std::move(*mockup_mesh);
+  Result<LatticeMesh> tool_mesh = body(tool, tool_lattice, "tool", out.tool_report);
+  if (!tool_mesh) return tool_mesh.error();
+  out.tool = std::move(*tool_mesh);
+
+  // The tool's mass and reach.
+  const SurfaceMeasure tool_measure = measure(out.tool);
+  const Result<Vec3> gc = centre_of_mass(settings.centre_of_mass_m, out.tool, tool_measure, tool_lattice, half_diagonal, out.tool_report);
+  if (!gc) return gc.error();
+  out.tool_gc_m = *gc;
+  double radius = 0;
+  for (const Int3& v : out.tool.vertices) radius = std::max(radius, length(Vec3(v)));
+  out.tool_radius = static_cast<std::int32_t>(std::ceil(radius)) + 3;
+  for (int k = 0; k < 3; ++k)
+    out.tool_gc[k] = static_cast<std::int32_t>(std::nearbyint((out.tool_gc_m[k] - out.tool_centre_m[k]) / out.lattice.step_m));
+
+  // The grids and the sampling.
+  const VoxelSubject mockup_subject{measure(out.mockup), out.mockup.box_min, out.mockup.box_max};
+  const VoxelSubject tool_subject{tool_measure, out.tool.box_min, out.tool.box_max};
+  const Result<std::int32_t> size = choose_voxel_size(mockup_subject, tool_subject, out.lattice.step_m, settings.voxel_size_m);
+  if (!size) return size.error();
+  out.mockup_grid = make_grid(out.mockup.box_min, out.mockup.box_max, *size);
+  out.tool_grid = make_grid(out.tool.box_min, out.tool.box_max, *size);
+  const Result<std::int32_t> spacing = choose_sample_spacing(*size, out.lattice.step_m, settings.sample_spacing_m);
+  if (!spacing) return spacing.error();
+  out.sample_spacing = *spacing;
+  return out;
+}
+
+}  // namespace palpate
