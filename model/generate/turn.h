@@ -42,4 +42,10 @@ inline Quat rotation_about(const Vec3& axis, double angle) {
   return Quat(half.cos, axis.x * half.sin, axis.y * half.sin, axis.z * half.sin);
 }
 
+/// Rotation by the vector's length (rad) about its direction.
+inline Quat rotation_about(const Vec3& vector) {
+  const double angle = std::sqrt(vector.x * vector.x + vector.y * vector.y + vector.z * vector.z);
+  return angle > 0 ? rotation_about(vector / angle, angle) : Quat(1, 0, 0, 0);
+}
+
 }  // namespace palpate
