@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+
+#include "model/response.h"
+#include "service/cli.h"
+#include "service/console.h"
+#include "service/export_geometry.h"
+#include "service/pose_input.h"
+#include "service/query_json.h"
+#include "service/scene_host.h"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Poses that are answered and thrown away, so that every pipeline has run once with a contact (chosen).
+constexpr std::size_t kWarmUpPoses = 32;
+
+struct Answer {
+  Contacts contacts;
+  ContactResponse response;
+  double total_us = 0;
+};
+
+class Answerer {
+ public:
+  explicit Answerer(PreparedScene& scene) : scene_(scene) {}
+
+  /// Pose in to wrench and id lists out. A lone query holds nothing from a frame before.
+  Result<void> answer(const Pose& pose, Answer& out) {
+    const auto start = Clock::now();
+    const SceneGeometry& geometry = scene_.loaded.geometry;
+    const Result<LatticePose> lattice = to_lattice(pose, geometry);
+    if (!lattice) return lattice.error();
+    if (auto done = scene_.backend->query(*lattice, nullptr, out.contacts); !done) return done;
+    const ResponseSettings& settings = scene_.loaded.scene.response;
+    respond(out.contacts, *lattice, geometry, settings.profile, settings.stiffness_n_per_m, out.response);
+    out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    return {};
+  }
+
+ private:
+  PreparedScene& scene_;
+};
+
+/// Gives every answer of a batch the mean of the batch's times.
+void share_times(std::vector<Answer>& batch) {
+  const double count = static_cast<double>(batch.size());
+  double total = 0;
+  std::vector<Contacts::StageTime> sums;
+  for (const Answer& answer : batch) {
+    total += answer.total_us;
+    for (const auto& time : answer.contacts.times) {
+      const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return std::string_view(sum.stage) == time.stage; });
+      if (found == sums.end())
+        sums.push_back(time);
+      else
+        found->us += time.us;
+    }
+  }
+  for (auto& sum : sums) sum.us /= count;
+  for (Answer& answer : batch) {
+    answer.total_us = total / count;
+    answer.contacts.times = sums;
+  }
+}
+
+Result<void> put(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
+  return Error{ErrorCode::kInternal, "standard output can't be written"};
+}
+
+}  // namespace
+
+Result<void> query_command(const QueryOptions& options, const Parts& parts) {
+  if (!options.pose && !options.poses)
+    return Error{ErrorCode::kUsage, "query needs --pose or --poses (see palpate query --help)"};
+  catch_interrupts();
+  Console console;
+  Result<std::unique_ptr<PreparedScene>> prepared = prepare_scene(options.common, Purpose::kQuery, parts, console);
+  if (!prepared) return prepared.error();
+  PreparedScene& scene = **prepared;
+
+  // All poses are read before the first answer: a bad line leaves standard output empty.
+  std::vector<InputPose> poses;
+  if (options.pose) {
+    const Result<InputPose> pose = parse_pose(*options.pose, scene.loaded.geometry);
+    if (!pose) return pose.error();
+    poses.push_back(*pose);
+  } else {
+    Result<std::vector<InputPose>> read = read_poses(*options.poses, scene.loaded.geometry);
+    if (!read) return read.error();
+    poses = std::move(*read);
+  }
+
+  if (!options.export_directory.empty()) {
+    std::vector<std::string> notes;
+    if (auto done = export_geometry(options.export_directory, scene.loaded.geometry, *scene.backend, poses, notes); !done) return done;
+    for (const std::string& note : notes) console.note(note);
+  }
+
+  Answerer answerer(scene);
+  std::vector<Answer> batch(std::min<std::uint64_t>(options.batch.value_or(1), poses.size()));
+  for (std::size_t i = 0; i < std::min(kWarmUpPoses, poses.size()); ++i) {
+    if (auto done = answerer.answer(poses[i].pose, batch.front()); !done) return done;
+    if (batch.front().contacts.contact) break;
+  }
+
+  std::string text;
+  std::size_t truncated = 0;
+  const char* capacity = "";
+  for (std::size_t first = 0; first < poses.size(); first += batch.size()) {
+    batch.resize(std::min(batch.size(), poses.size() - first));
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      if (auto done = answerer.answer(poses[first + i].pose, batch[i]); !done) return done;
+    if (options.batch) share_times(batch);
+    text.clear();
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      append_query_line({first + i, batch[i].total_us, options.batch, std::nullopt}, batch[i].contacts, batch[i].response, text);
+      if (!batch[i].contacts.truncated) continue;
+      ++truncated;
+      capacity = batch[i].contacts.truncated_capacity;
+    }
+    if (auto done = put(text); !done) return done;
+    if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + batch.size(), poses.size())};
+  }
+  if (truncated > 0) console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated, poses.size(), capacity));
+  return {};
+}
+
+}  // namespace palpate

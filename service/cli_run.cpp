@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "service/cli.h"
+#include "service/console.h"
+#include "service/recorder.h"
+#include "service/report.h"
+#include "service/run_summary.h"
+#include "service/scene_host.h"
+#include "service/session.h"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a run shows and keeps: files, the report's curves, the live line.
+class RunWatch : public RunObserver {
+ public:
+  RunWatch(Recorder& recorder, ReportSeries& series, Console& console, const Scene& scene)
+      : recorder_(recorder), series_(series), console_(console), scene_(scene) {}
+
+  Result<void> on_tick(const TickRecord& tick) override {
+    if (auto done = recorder_.on_tick(tick); !done) return done;
+    if (console_.wants_live())
+      console_.live(fmt::format("{:7.2f} s  {:5.2f} N  {:6.3f} N·m  {} areas  frame {:.2f} ms  result {} ticks old  {}", tick.time_s,
+                                glm::length(tick.sent.force), glm::length(tick.sent.torque), areas_, frame_us_ / 1000, tick.result_age_ticks,
+                                tick.stage > 0 ? "stage " + stage_text(tick.stage, scene_.stage_names) : ""));
+    return series_.on_tick(tick);
+  }
+
+  Result<void> on_frame(const FrameRecord& frame) override {
+    areas_ = frame.contacts.areas.size();
+    frame_us_ = frame.total_us;
+    if (auto done = recorder_.on_frame(frame); !done) return done;
+    return series_.on_frame(frame);
+  }
+
+ private:
+  Recorder& recorder_;
+  ReportSeries& series_;
+  Console& console_;
+  const Scene& scene_;
+  std::size_t areas_ = 0;
+  double frame_us_ = 0;
+};
+
+/// `wanted`, or a directory palpate-run-SCENE[-N] that did not exist before.
+Result<fs::path> output_directory(const std::string& wanted, const fs::path& scene) {
+  std::error_code error;
+  if (!wanted.empty()) {
+    fs::create_directories(wanted, error);
+    if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", wanted, error.message()));
+    return fs::path(wanted);
+  }
+  const std::string base = "palpate-run-" + scene.stem().string();
+  for (int n = 1; n < 10000; ++n) {
+    const fs::path candidate = n == 1 ? base : fmt::format("{}-{}", base, n);
+    if (fs::create_directory(candidate, error)) return candidate;
+    if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", candidate.string(), error.message()));
+  }
+  return bad_value(fmt::format("{}-N: there are 10,000 of them already; name one with --out", base));
+}
+
+Result<void> write_text(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.flush();
+  if (!out) return bad_value(fmt::format("{}: the file can't be written", path.string()));
+  return {};
+}
+
+Result<void> check_options(const RunOptions& options) {
+  if (options.duration_s && !(std::isfinite(*options.duration_s) && *options.duration_s > 0))
+    return bad_value(fmt::format("--duration {} is not a positive number of seconds", *options.duration_s));
+  if (!options.firmware.empty())
+    return Error{ErrorCode::kUsage, "--firmware is for a device that loads one, and this version drives none (see palpate devices)"};
+  return {};
+}
+
+}  // namespace
+
+Result<void> run_command(const RunOptions& options, const Parts& parts) {
+  if (auto done = check_options(options); !done) return done;
+  catch_interrupts();
+  Console console;
+  Result<std::unique_ptr<PreparedScene>> prepared = prepare_scene(options.common, Purpose::kSession, parts, console);
+  if (!prepared) return prepared.error();
+  LoadedScene& loaded = (*prepared)->loaded;
+  const std::string driver = options.device.empty() ? loaded.scene.device.driver : options.device;
+  if (options.asap && driver != "simulated")
+    return Error{ErrorCode::kUsage, fmt::format("--pace asap is virtual time, which the device '{}' can't keep: only simulated can", driver)};
+  Result<std::unique_ptr<HapticDevice>> device = parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m);
+  if (!device) return device.error();
+
+  const Result<fs::path> directory = output_directory(options.out, options.common.scene);
+  if (!directory) return directory.error();
+  Result<std::unique_ptr<Recorder>> recorder = Recorder::create(directory->string());
+  if (!recorder) return recorder.error();
+
+  // The run itself. Whatever ends it, the files are closed and whole.
+  SessionOptions session;
+  session.pace = options.asap ? Pace::kAsap : Pace::kRealtime;
+  session.duration_s = options.duration_s;
+  session.stop = &interrupt_flag();
+  ReportSeries series;
+  RunWatch watch(**recorder, series, console, loaded.scene);
+  const Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
+  console.finish();
+  const Result<void> recorded = (*recorder)->finish();
+  if (!summary) return summary.error();
+  if (!recorded) return recorded;
+
+  const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s};
+  if (auto done = write_text(*directory / "summary.json", summary_json(*summary)); !done) return done;
+  if (auto done = write_text(*directory / "report.html", report_page(*summary, loaded, facts, series)); !done) return done;
+  for (const std::string& note : summary->notes) console.note(note);
+  if (summary->stopped) console.note("stopped before the end, with zero force and complete files");
+  fmt::print("{}{:<14} {}\n", summary_text(*summary, loaded.scene.stage_names), "files", directory->string());
+  fmt::print("{:<14} {}\n", "report", (*directory / "report.html").string());
+  return {};
+}
+
+}  // namespace palpate

@@ -1,0 +1,49 @@
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <string_view>
+
+namespace palpate {
+
+/// Writes to standard error: sentences, a progress bar, a live line. On a terminal the bar and the live line are redrawn in place; elsewhere
+/// each step of the work is one plain line and the live line is not shown. One thread at a time.
+class Console {
+ public:
+  Console();
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  bool terminal() const { return terminal_; }
+
+  /// "palpate: <sentence>".
+  void note(std::string_view sentence);
+
+  /// Progress of a step, `done` in [0, 1]. Redraws at most 20 times a second. Returns false when the user asked to stop
+  /// (interrupted()), as `Progress` of model/collision_backend.h wants it.
+  bool progress(const char* what, double done);
+
+  /// Whether a live line would be seen now: on a terminal, at most 20 times a second.
+  bool wants_live() const;
+  /// One line of numbers, redrawn in place.
+  void live(std::string_view line);
+
+  /// Ends the bar or the live line, so that what follows starts on a line of its own.
+  void finish();
+
+ private:
+  void draw(std::string_view line);
+
+  bool terminal_ = false;
+  bool drawn_ = false;            ///< a bar or live line stands on the current line
+  std::string step_;              ///< of the last progress()
+  std::chrono::steady_clock::time_point last_draw_{};
+};
+
+/// From now on SIGINT and SIGTERM only raise a flag; a second one ends the process as usual.
+void catch_interrupts();
+bool interrupted() noexcept;
+const std::atomic<bool>& interrupt_flag() noexcept;
+
+}  // namespace palpate

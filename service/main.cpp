@@ -1,0 +1,36 @@
+// The program: the one place that knows every back end and driver by name.
+#include "compute/gpu_backend.h"
+#include "cpu_ref/cpu_backend.h"
+#include "driver/device_list.h"
+#include "service/cli.h"
+
+namespace {
+
+using namespace palpate;
+
+std::vector<DeviceLine> list_devices() {
+  std::vector<DeviceLine> lines;
+  for (const VulkanDeviceInfo& device : list_vulkan_devices())
+    lines.push_back({"vulkan", device.name, device.usable, device.usable ? device.driver : device.reason});
+  for (const HapticDeviceInfo& device : list_haptic_devices())
+    lines.push_back({"haptic", device.name, device.usable, device.usable ? device.what : device.reason});
+  return lines;
+}
+
+Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const Scene& scene, const Vec3& tool_gc_m) {
+  auto device = make_haptic_device(name, scene.device, scene.start, tool_gc_m);
+  if (!device && device.error().code == ErrorCode::kUsage) return bad_value(device.error().sentence);
+  return device;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const palpate::Parts parts{
+      .make_gpu = [] { return palpate::make_gpu_backend({}); },
+      .make_cpu = palpate::make_cpu_backend,
+      .make_device = make_device,
+      .list_devices = list_devices,
+  };
+  return palpate::command_line(argc, argv, parts);
+}

@@ -1,0 +1,13 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace palpate {
+
+/// 1234567 → "1,234,567".
+std::string count_text(std::uint64_t count);
+
+/// 0 → "–", 1536 → "1.5 KiB".
+std::string bytes_text(std::uint64_t bytes);
+
+}  // namespace palpate

@@ -1,0 +1,90 @@
+#include "service/pose_input.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <string_view>
+
+namespace palpate {
+namespace {
+
+constexpr std::array<const char*, 7> kFields = {"x", "y", "z", "qx", "qy", "qz", "qw"};
+constexpr std::string_view kHeader = "x,y,z,qx,qy,qz,qw";
+
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// Seven fields to a pose; the error says which field, without naming the file.
+Result<InputPose> to_pose(const std::vector<std::string_view>& fields, const SceneGeometry& geometry) {
+  if (fields.size() != kFields.size())
+    return bad_value(fmt::format("has {} values instead of 7 (x y z qx qy qz qw)", fields.size()));
+  std::array<double, 7> value{};
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    std::string_view field = trim(fields[i]);
+    if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);   // from_chars knows no plus sign
+    const char* end = field.data() + field.size();
+    const auto [stop, error] = std::from_chars(field.data(), end, value[i]);
+    if (error == std::errc::result_out_of_range && stop == end)
+      return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], field));
+    if (error != std::errc() || stop != end) return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], field));
+  }
+  InputPose pose;
+  pose.pose.position = Vec3(value[0], value[1], value[2]);
+  pose.pose.rotation = Quat(value[6], value[3], value[4], value[5]);
+  Result<LatticePose> lattice = to_lattice(pose.pose, geometry);
+  if (!lattice) return bad_value("is no pose: " + lattice.error().sentence);
+  pose.lattice = *lattice;
+  return pose;
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators, bool merge) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const auto end = text.find_first_of(separators);
+    const std::string_view field = text.substr(0, end);
+    if (!merge || !field.empty()) fields.push_back(field);
+    if (end == std::string_view::npos) return fields;
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+Result<InputPose> parse_pose(const std::string& text, const SceneGeometry& geometry) {
+  Result<InputPose> pose = to_pose(split(text, " ,\t\n\r", true), geometry);
+  if (!pose) return bad_value(fmt::format("--pose \"{}\" {}", text, pose.error().sentence));
+  return pose;
+}
+
+Result<std::vector<InputPose>> read_poses(const std::string& path, const SceneGeometry& geometry) {
+  std::ifstream in(path);
+  if (!in) return bad_value(fmt::format("{}: the poses file can't be opened", path));
+  std::string text;
+  if (!std::getline(in, text) || trim(text) != kHeader)
+    return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, trim(text), kHeader));
+
+  std::vector<InputPose> poses;
+  std::string first_error;
+  std::size_t bad_lines = 0;
+  for (std::size_t line = 2; std::getline(in, text); ++line) {
+    const std::string_view row = trim(text);
+    if (row.empty()) continue;
+    Result<InputPose> pose = to_pose(split(row, ",", false), geometry);
+    if (pose)
+      poses.push_back(*pose);
+    else if (bad_lines++ == 0)
+      first_error = fmt::format("{}, line {}: it {}", path, line, pose.error().sentence);
+  }
+  if (in.bad()) return bad_value(fmt::format("{}: reading the poses file failed", path));
+  if (bad_lines > 1) first_error += fmt::format(" ({} lines are bad)", bad_lines);
+  if (bad_lines > 0) return bad_value(std::move(first_error));
+  if (poses.empty()) return bad_value(fmt::format("{}: the poses file has no pose", path));
+  return poses;
+}
+
+}  // namespace palpate

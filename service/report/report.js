@@ -1,0 +1,176 @@
+'use strict';
+(() => {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const { summary, settings, curves } = data;
+  const byId = (id) => document.getElementById(id);
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+  const number = (value, digits = 3) =>
+    Math.abs(value) >= 10000 ? Math.round(value).toLocaleString('en') : String(Number(Number(value).toPrecision(digits)));
+  const count = (value) => Number(value).toLocaleString('en');
+
+  // ---- words and tables -------------------------------------------------------------------------------------------
+  document.title = 'palpate · ' + data.name;
+  byId('title').textContent = data.name;
+  byId('subtitle').textContent = data.subtitle;
+
+  const tile = (value, label) => {
+    const box = document.createElement('div');
+    box.className = 'tile';
+    const strong = document.createElement('b');
+    strong.textContent = value;
+    const span = document.createElement('span');
+    span.textContent = label;
+    box.append(strong, span);
+    byId('tiles').append(box);
+  };
+  tile(count(summary.static_triangles), 'triangles in the mock-up');
+  tile(count(summary.tool_triangles), 'triangles in the tool');
+  tile(number(summary.frame_us.p50 / 1000) + ' ms', 'a frame, median (p99 ' + number(summary.frame_us.p99 / 1000) + ' ms)');
+  tile(summary.areas_max, 'contact areas at once');
+  tile(number(summary.force_max_N) + ' N', 'largest force sent');
+  tile(number(summary.torque_max_Nm) + ' N·m', 'largest torque sent');
+  if (data.notes.length) {
+    byId('notes').hidden = false;
+    byId('notes').textContent = data.notes.join(' ');
+  }
+
+  const row = (table, cells, tag = 'td') => {
+    const tr = table.insertRow();
+    for (const cell of cells) {
+      const td = document.createElement(tag);
+      td.textContent = cell;
+      tr.append(td);
+    }
+  };
+  const stageTable = byId('stage-table');
+  row(stageTable, ['stage', 's', 'force N', 'torque N·m', 'areas', 'contact triangles', 'frame ms, mean', 'at most'], 'th');
+  for (const s of data.stage_figures)
+    row(stageTable, [s.name, number(s.seconds, 4), number(s.force_max), number(s.torque_max), s.areas_max, count(s.triangles_max),
+                     number(s.frame_us_mean / 1000), number(s.frame_us_max / 1000)]);
+  for (const [name, value] of data.summary_rows) row(byId('summary-table'), [name, value]);
+  for (const [name, value] of settings) row(byId('settings-table'), [name, value]);
+
+  // ---- charts -----------------------------------------------------------------------------------------------------
+  const charts = [];
+  const lines = (specs) => specs.filter((s) => s.points && s.points.length).map((s) => ({
+    label: s.label, data: s.points.map(([x, y]) => ({ x, y })), colourName: s.colour, fillName: s.fill ? s.colour : null,
+    borderWidth: s.width ?? 1.5, stepped: s.stepped ?? false, fill: s.fill ?? false, pointRadius: 0, pointHitRadius: 6,
+    borderJoinRound: true, order: s.order ?? 0, stack: s.stack,
+  }));
+
+  // Shades every second stage and names it where the chart is tall enough.
+  const stageBands = {
+    id: 'stageBands',
+    beforeDatasetsDraw(chart, _args, options) {
+      if (!options.stages) return;
+      const { ctx, chartArea: area, scales: { x } } = chart;
+      ctx.save();
+      ctx.font = '11px system-ui, sans-serif';
+      ctx.textBaseline = 'top';
+      data.stages.forEach((s) => {
+        if (s.stage <= 0) return;
+        const left = Math.max(x.getPixelForValue(s.begin), area.left);
+        const right = Math.min(x.getPixelForValue(s.end), area.right);
+        if (s.stage % 2 === 0) {
+          ctx.fillStyle = colour('band');
+          ctx.fillRect(left, area.top, right - left, area.bottom - area.top);
+        }
+        ctx.fillStyle = colour('band-edge');
+        ctx.fillRect(left, area.top, 1, area.bottom - area.top);
+        ctx.fillStyle = colour('soft');
+        let text = options.names ? s.name : String(s.stage);
+        const room = right - left - 8;
+        while (text.length > 1 && ctx.measureText(text).width > room) text = text.slice(0, -2) + '…';
+        if (text.length > 1 || ctx.measureText(text).width <= room) ctx.fillText(text, left + 4, area.top + 3);
+      });
+      ctx.restore();
+    },
+  };
+
+  const begin = data.stages.length ? data.stages[0].begin : 0;
+  const end = data.stages.length ? data.stages[data.stages.length - 1].end : 1;
+  const draw = (id, datasets, { range = [begin, end], stages = true, names = false, integers = false, stacked = false, headroom = 0 } = {}) => {
+    const chart = new Chart(byId(id), {
+      type: 'line',
+      data: { datasets },
+      plugins: [stageBands],
+      options: {
+        animation: false, parsing: false, normalized: true, responsive: true, maintainAspectRatio: false,
+        interaction: { mode: 'nearest', axis: 'x', intersect: false },
+        plugins: {
+          stageBands: { stages, names },
+          legend: { align: 'end', labels: { boxWidth: 14, boxHeight: 2, font: { size: 12 }, padding: 10 } },
+          tooltip: { callbacks: {
+            title: (items) => items.length ? number(items[0].parsed.x, 6) + ' s' : '',
+            label: (item) => ' ' + item.dataset.label + '  ' + number(item.parsed.y, 4),
+          } },
+        },
+        scales: {
+          x: { type: 'linear', min: range[0], max: range[1], ticks: { maxRotation: 0, callback: (v) => number(v, 6) + ' s' } },
+          y: { stacked, grace: headroom, beginAtZero: true, ticks: { maxTicksLimit: 6, precision: integers ? 0 : undefined },
+               afterFit: (scale) => { scale.width = 58; } },   // one width, so that the time axes line up
+        },
+      },
+    });
+    charts.push(chart);
+  };
+
+  const axes = (kind) => ['x', 'y', 'z'].map((a) => ({ label: a, colour: a, points: curves[kind + '_' + a] }));
+  draw('torque', lines(axes('response_torque')), { names: true, headroom: '12%' });
+  draw('force', lines(axes('response_force')), { headroom: '12%' });
+  draw('triangles', lines(['cst', 'bst', 'est', 'cmt', 'bmt', 'imt'].map((k) => ({ label: k.toUpperCase(), colour: k, points: curves[k], width: 1.3 }))),
+       { integers: true, headroom: '12%' });
+  draw('areas', lines([{ label: 'areas', colour: 'accent', points: curves.areas, stepped: true, width: 1.3 }]), { integers: true, headroom: '12%' });
+  const milliseconds = (points) => (points || []).map(([x, y]) => [x, y / 1000]);
+  const timed = Object.entries(data.stage_us);
+  draw('time', lines([
+    { label: 'frame', colour: 'soft', points: milliseconds(curves.frame_us), width: 0.8, order: 2, stack: 'frame' },
+    ...timed.map(([name, points], i) => ({ label: name.replaceAll('_', ' '), colour: 't' + (i % 10), points: milliseconds(points), width: 0.6,
+                                           fill: i === 0 ? 'origin' : '-1', order: 1, stack: 'stages' })),
+  ]), { headroom: '12%', stacked: timed.length > 0 });
+
+  // ---- with and without the law: the component that moves most, of torque and of force ------------------------------
+  const rows = data.highlight;   // time, response force xyz, torque xyz, sent force xyz, torque xyz
+  if (!rows.length) {
+    byId('control-lead').textContent = 'This run had no contact.';
+    byId('control').querySelector('.pair').hidden = true;
+  } else {
+    byId('control-lead').textContent = 'The ' + rows.length + ' ticks around the strongest contact. Without: the newest result of the collision response, held until the '
+      + 'next one. With: what the control law made of it and sent to the device each millisecond. (The chapter’s figure 13.)';
+    const range = (column) => rows.reduce((r, v) => [Math.min(r[0], v[column]), Math.max(r[1], v[column])], [Infinity, -Infinity]);
+    const extent = (column) => { const [low, high] = range(column); return high - low; };
+    const law = (id, kind, unit, response, sent) => {
+      // An axis that the device can't drive is sent nothing; another one then tells more.
+      const reach = (axis) => Math.max(...rows.map((v) => Math.abs(v[sent + axis])));
+      const best = [0, 1, 2].reduce((b, axis) => ((reach(axis) > 0) === (reach(b) > 0) ? extent(response + axis) > extent(response + b) : reach(axis) > 0) ? axis : b, 0);
+      byId(id + '-caption').innerHTML = kind + ' ' + 'xyz'[best] + ' <span>' + unit + '</span>';
+      draw(id, lines([
+        { label: 'without', colour: 'without', points: rows.map((v) => [v[0], v[response + best]]), stepped: true, width: 1.2 },
+        { label: 'with', colour: 'with', points: rows.map((v) => [v[0], v[sent + best]]), width: 2 },
+      ]), { range: [rows[0][0], rows[rows.length - 1][0]], stages: false });
+    };
+    law('law-torque', 'Torque', 'N·m', 4, 10);
+    law('law-force', 'Force', 'N', 1, 7);
+  }
+
+  // ---- colours follow the reader's light or dark setting ------------------------------------------------------------
+  const paint = () => {
+    for (const chart of charts) {
+      for (const set of chart.data.datasets) {
+        set.borderColor = colour(set.colourName);
+        set.backgroundColor = set.fillName ? colour(set.fillName) + '59' : colour(set.colourName);
+      }
+      const { scales, plugins } = chart.options;
+      for (const scale of [scales.x, scales.y]) {
+        scale.ticks.color = colour('soft');
+        scale.grid.color = colour('grid');
+        scale.grid.borderColor = colour('rule');
+      }
+      scales.x.grid.display = false;
+      plugins.legend.labels.color = colour('ink');
+      chart.update('none');
+    }
+  };
+  paint();
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', paint);
+})();

@@ -1,0 +1,82 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "service/run_record.h"
+
+namespace palpate {
+
+/// A long curve in bounded memory: while it fits every point is kept; then neighbouring points share a bin that keeps its
+/// smallest, largest and mean value, so no peak is lost. x must ascend.
+class Envelope {
+ public:
+  void push(double x, double y);
+
+  /// JSON `[[x,y],…]`: each bin's smallest and largest point, in the order of x.
+  void append_extremes(std::string& out) const;
+  /// JSON `[[x,mean],…]`.
+  void append_means(std::string& out) const;
+
+ private:
+  static constexpr std::size_t kBins = 800;   ///< about a bin a pixel of a wide screen (chosen)
+
+  struct Bin {
+    double first_x = 0, min_x = 0, max_x = 0, min = 0, max = 0, sum = 0;
+    std::uint32_t count = 0;
+  };
+  void merge_pairs();
+
+  std::vector<Bin> bins_;
+  std::uint32_t bin_size_ = 1;
+};
+
+/// The ticks around the strongest contact response of a run, at full rate.
+class Highlight {
+ public:
+  void push(const TickRecord& tick);
+  /// Empty if the run had no contact.
+  std::vector<TickRecord> ticks() const;
+
+ private:
+  static constexpr std::size_t kTicks = 200;   ///< the chapter's Fig. 13 shows frames 3450–3650
+
+  std::deque<TickRecord> recent_;
+  std::vector<TickRecord> best_;
+  double strongest_ = 0;                       ///< N, largest response force so far
+  std::size_t until_complete_ = 0;             ///< ticks still wanted after the strongest one; 0: nothing pending
+};
+
+/// What the report says of one stage of the path.
+struct StageFigures {
+  std::int64_t ticks = 0, frames = 0;
+  double force_max_n = 0, torque_max_nm = 0;   ///< of the response
+  std::size_t areas_max = 0, triangles_max = 0;
+  double frame_us_sum = 0, frame_us_max = 0;
+};
+
+/// Collects the report's curves during a run, in bounded memory.
+class ReportSeries : public RunObserver {
+ public:
+  Result<void> on_tick(const TickRecord& tick) override;
+  Result<void> on_frame(const FrameRecord& frame) override;
+
+  /// The members "curves", "highlight", "stages" and "stage_figures" of the report's data, without braces around.
+  std::string json(const std::vector<std::string>& stage_names) const;
+
+ private:
+  struct Section {
+    std::int32_t stage;
+    double begin_s, end_s;
+  };
+  std::map<std::string, Envelope> curves_;       ///< by name: "response_force_x", "cst", "frame_us", …
+  std::vector<std::string> time_stages_;         ///< in the order of a frame
+  std::map<std::string, Envelope> stage_us_;     ///< by the back end's name of the stage
+  std::vector<Section> sections_;
+  std::map<std::int32_t, StageFigures> figures_;
+  Highlight highlight_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "service/session.h"
+
+namespace palpate {
+
+/// summary.json: the contract's fields in its order, and nothing else.
+std::string summary_json(const SessionSummary& summary);
+
+/// The same for a person, as pairs of name and value. `stage_names`: stage i is stage_names[i − 1].
+std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSummary& summary, const std::vector<std::string>& stage_names);
+
+/// summary_lines in columns.
+std::string summary_text(const SessionSummary& summary, const std::vector<std::string>& stage_names);
+
+/// "3 inside the obstacle", or "3" where it has no name.
+std::string stage_text(int stage, const std::vector<std::string>& stage_names);
+
+}  // namespace palpate

@@ -1,0 +1,65 @@
+#include "service/scene_host.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "model/scene_file.h"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+PlanFacts facts_of(const LoadedScene& loaded, Purpose purpose, bool full) {
+  PlanFacts facts = purpose == Purpose::kQuery ? query_facts(loaded.scene, loaded.geometry)
+                                               : session_facts(loaded.scene, loaded.geometry, false);
+  facts.full = full;
+  return facts;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console) {
+  if (name == "cpu") return parts.make_cpu();
+  Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu();
+  if (gpu || name == "gpu") return gpu;
+  console.note("no usable Vulkan device, so the CPU reference answers: " + gpu.error().sentence);
+  return parts.make_cpu();
+}
+
+Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
+  auto prepared = std::make_unique<PreparedScene>();
+  Result<Scene> scene = read_scene(options.scene);
+  if (!scene) return scene.error();
+  if (options.profile) scene->response.profile = *options.profile;
+
+  // The back end comes before the meshes: their import may start threads.
+  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, console);
+  if (!backend) return backend.error();
+  prepared->backend = std::move(*backend);
+
+  const Progress progress = [&console](const char* what, double done) { return console.progress(what, done); };
+  const auto load_start = Clock::now();
+  Result<LoadedScene> loaded = load_scene(std::move(*scene), progress);
+  if (!loaded) return loaded.error();
+  prepared->loaded = std::move(*loaded);
+  prepared->load_s = seconds_since(load_start);
+  for (const std::string& warning : prepared->loaded.scene.warnings) console.note(warning);
+
+  const auto prepare_start = Clock::now();
+  PlanFacts facts = facts_of(prepared->loaded, purpose, options.full_plan);
+  prepared->plan = decide_plan(facts);
+  if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, progress); !done) return done.error();
+  // Whether there are V_int voxels is known only now.
+  facts.internal_voxels = prepared->backend->has_internal_voxels();
+  prepared->plan = decide_plan(facts);
+  prepared->prepare_s = seconds_since(prepare_start);
+  console.finish();
+  return prepared;
+}
+
+}  // namespace palpate
