@@ -13,7 +13,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kTickSeconds = 1e-3;
 constexpr std::array<char, 3> kAxes = {'x', 'y', 'z'};
 
 void append_point(double x, double y, std::string& out) {

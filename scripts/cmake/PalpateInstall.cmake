@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 include(InstallRequiredSystemLibraries)
 
 set(palpate_libraries)
-foreach(name model compute cpu_ref driver service)
+foreach(name model shaders compute cpu_ref driver service)
   if(TARGET palpate_${name})
     list(APPEND palpate_libraries palpate_${name})
   endif()
