@@ -68,6 +68,11 @@ class CommandRecorder {
     bind(pipeline, std::span(buffers.begin(), buffers.size()), &push, push_size<Push>());
     vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
   }
+  void dispatch_indirect_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
+                             std::uint32_t push_bytes, const VulkanBuffer& arguments, std::uint64_t offset) {
+    bind(pipeline, buffers, push, push_bytes);
+    vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
+  }
   void dispatch_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
                     std::uint32_t push_bytes, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 

@@ -1,0 +1,89 @@
+#include "compute/frame_recorder.h"
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+
+namespace palpate {
+namespace {
+
+// Words of SPIR-V that matter here (specification 2.3, 3.20, 3.32.3): a five-word header, then instructions that begin with
+// (length << 16 | opcode). OpDecorate target decoration literal.
+constexpr std::size_t kHeaderWords = 5;
+constexpr std::uint32_t kOpDecorate = 71;
+constexpr std::uint32_t kDecorationBinding = 33;
+
+/// Calls `f` with a reference to each binding number of a module.
+template <class F>
+void for_each_binding(std::span<std::uint32_t> words, F f) {
+  for (std::size_t i = kHeaderWords; i < words.size();) {
+    const std::uint32_t length = words[i] >> 16;
+    if ((words[i] & 0xFFFFu) == kOpDecorate && words[i + 2] == kDecorationBinding) f(words[i + 3]);
+    if (length == 0) return;
+    i += length;
+  }
+}
+
+}  // namespace
+
+Result<void> FrameBuffers::make(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes, BufferKind kind) {
+  auto buffer = VulkanBuffer::create(device, what, bytes, kind);
+  if (!buffer) return buffer.error();
+  owned_[at(binding)] = std::move(*buffer);
+  named_[at(binding)] = &owned_[at(binding)];
+  auto recorder = CommandRecorder::create(device);
+  if (!recorder) return recorder.error();
+  recorder->begin();
+  recorder->fill(owned_[at(binding)], 0);
+  return recorder->submit_and_wait();
+}
+
+const VulkanBuffer& FrameBuffers::operator[](std::int32_t binding) const {
+  assert(named_[at(binding)] != nullptr && "a shader uses a buffer that nobody made");
+  return *named_[at(binding)];
+}
+
+std::uint64_t FrameBuffers::owned_bytes() const {
+  std::uint64_t sum = 0;
+  for (const VulkanBuffer& buffer : owned_) sum += buffer ? buffer.bytes() : 0;
+  return sum;
+}
+
+Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& code, std::uint32_t push_bytes,
+                                      std::span<const SpecConstant> constants) {
+  FrameShader out;
+  std::vector<std::uint32_t> words(code.words, code.words + code.bytes / 4);
+  for_each_binding(words, [&](std::uint32_t& b) { out.bindings.push_back(static_cast<std::int32_t>(b)); });
+  std::sort(out.bindings.begin(), out.bindings.end());
+  out.bindings.erase(std::unique(out.bindings.begin(), out.bindings.end()), out.bindings.end());
+  for_each_binding(words, [&](std::uint32_t& b) {
+    const auto at = std::lower_bound(out.bindings.begin(), out.bindings.end(), static_cast<std::int32_t>(b));
+    b = static_cast<std::uint32_t>(at - out.bindings.begin());
+  });
+  auto pipeline = ComputePipeline::create(device, {code.name, words.data(), code.bytes},
+                                          static_cast<std::uint32_t>(out.bindings.size()), push_bytes, constants);
+  if (!pipeline) return pipeline.error();
+  out.pipeline = std::move(*pipeline);
+  return out;
+}
+
+std::span<const BufferView> FrameRecorder::bound(const FrameShader& shader) {
+  views_.clear();
+  for (const std::int32_t binding : shader.bindings) views_.emplace_back(buffers_[binding]);
+  return views_;
+}
+
+void FrameRecorder::indirect(const FrameShader& shader, std::int32_t binding, std::uint64_t offset, const void* push,
+                             std::uint32_t push_bytes) {
+  recorder_.dispatch_indirect_raw(shader.pipeline, bound(shader), push, push_bytes, buffers_[binding], offset);
+}
+
+void FrameRecorder::close(std::initializer_list<std::uint32_t> lists) {
+  std::uint32_t bits = 0;
+  for (const std::uint32_t list : lists) bits |= 1u << list;
+  recorder_.barrier();
+  run(list_close_, 1, bits);
+  recorder_.barrier();
+}
+
+}  // namespace palpate

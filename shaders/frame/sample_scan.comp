@@ -1,0 +1,76 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The grid samples of listed triangles in one voxel, and what the tool's partition says of them. An invocation a SampleChunk.
+// V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. With NO_INSIDE = 1 (a tool without
+// inside) all of them count and none is marked.
+#include "shaders/lib/frame.glsl"
+#include "shaders/lib/sample.glsl"
+
+layout(constant_id = 0) const uint32_t NO_INSIDE = 0u;
+
+READ_ONE(kBindScene, SceneConstants, scene);
+READ_ONE(kBindFrameInput, FrameInput, frame_input);
+READ(kBindMockupVertices, ivec3, mockup_vertices);
+READ(kBindMockupTriangles, uvec3, mockup_triangles);
+READ(kBindMockupInfo, uint32_t, mockup_info);
+READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
+READ(kBindToolBrickSlot, uint32_t, tool_brick_slot);
+READ(kBindToolBricks, Brick, tool_bricks);
+READ(kBindSampleChunks, SampleChunk, sample_chunks);
+EDIT(kBindStaticState, uint32_t, static_state);
+EDIT(kBindStaticSlot, uint32_t, static_slot);
+EDIT(kBindContactStatics, uint32_t, contact_statics);
+EDIT(kBindOpenSamples, FrameSample, open_samples);
+EDIT(kBindSamples, FrameSample, samples);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+
+#include "shaders/lib/pose.glsl"
+#include "shaders/lib/static_mark.glsl"
+#define PARTITION_GRID scene.tool.grid
+#define PARTITION_SLOTS tool_brick_slot
+#define PARTITION_BRICKS tool_bricks
+#define PARTITION(name) tool_##name
+#include "shaders/lib/partition.glsl"
+
+void take(ivec3 point, uint32_t id) {
+  const uint32_t voxel_class = NO_INSIDE != 0u ? kVoxelInternal : tool_class_of(tool_voxel_of(tool_from_world(point)));
+  if (voxel_class == kVoxelExternal) return;
+  if (voxel_class == kVoxelBoundary) {
+    const uint32_t at = atomicAdd(frame_lists[kListOpenSamples].count, 1u);
+    if (at < frame_lists[kListOpenSamples].capacity) open_samples[at] = FrameSample(point, id);
+    return;
+  }
+  if (NO_INSIDE == 0u) mark_static(id, kStaticSampled);
+  const uint32_t at = atomicAdd(frame_lists[kListSamples].count, 1u);
+  if (at < frame_lists[kListSamples].capacity) samples[at] = FrameSample(point, id);
+}
+
+void main() {
+  const uint32_t item = flat_invocation();
+  if (item >= frame_lists[kListSampleChunks].count) return;
+  const SampleChunk work = sample_chunks[item];
+  const int32_t spacing = scene.sample_spacing;
+  const ivec3 low = scene.mockup.grid.origin + scene.mockup.grid.size * work.voxel;
+  const ivec3 high = low + scene.mockup.grid.size - 1;   // the last lattice point of the half-open cube
+  for (uint32_t i = work.begin; i < work.end; ++i) {
+    const uint32_t id = mockup_list_triangles[i];
+    const uvec3 s = mockup_triangles[id];
+    SampledTriangle t;
+    t.a = mockup_vertices[s.x];
+    t.b = mockup_vertices[s.y];
+    t.c = mockup_vertices[s.z];
+    t.axis = int(mockup_info[id] >> kInfoAxisShift & 3u);
+    t.normal = raw_normal(t.a, t.b, t.c);
+    // Grid points of the voxel that lie in the triangle's box; at most 64 an axis, as a voxel is at most 64 spacings.
+    const ivec2 from = seen_along(t.axis, max(low, min(min(t.a, t.b), t.c)));
+    const ivec2 to = seen_along(t.axis, min(high, max(max(t.a, t.b), t.c)));
+    const ivec2 first = spacing * ivec2(-floor_div(-from.x, spacing), -floor_div(-from.y, spacing));
+    for (int32_t v = first.y; v <= to.y; v += spacing) {
+      for (int32_t u = first.x; u <= to.x; u += spacing) {
+        if (!grid_point_inside(t, ivec2(u, v))) continue;
+        const ivec3 point = sample_point(t, ivec2(u, v));
+        if (point[t.axis] >= low[t.axis] && point[t.axis] <= high[t.axis]) take(point, id);
+      }
+    }
+  }
+}

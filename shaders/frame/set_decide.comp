@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Is there contact, is the tool swallowed, and how many groups the response needs. A lone invocation.
+// Reads frame_lists, frame_state; writes dispatches. An overflow before this leaves the response out.
+#include "shaders/lib/frame.glsl"
+
+READ_ONE(kBindScene, SceneConstants, scene);
+READ_ONE(kBindFrameInput, FrameInput, frame_input);
+READ(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
+EDIT(kBindDispatches, DispatchArguments, dispatches);
+
+void main() {
+  if (gl_LocalInvocationIndex != 0u) return;
+  const uint32_t most = max(max(frame_lists[kListContactStatics].count, frame_lists[kListTouchedVoxels].count), frame_lists[kListPairCandidates].count);
+  dispatches[kDispatchReset] = groups_for((most + kGroupSize - 1u) / kGroupSize);
+  if ((frame_state.overflow | frame_state.overflow_other) != 0u) return;
+
+  if (frame_state.cst + frame_state.imt + frame_state.est != 0u) {
+    frame_state.contact = 1u;
+    const DispatchArguments one = DispatchArguments(1u, 1u, 1u);
+    dispatches[kDispatchContactOne] = one;
+    dispatches[kDispatchContactStatics] = frame_lists[kListContactStatics].items;
+    dispatches[kDispatchContactStaticGroups] = frame_lists[kListContactStatics].groups;
+    dispatches[kDispatchContactMobiles] = frame_lists[kListContactMobiles].items;
+    dispatches[kDispatchContactMobileGroups] = frame_lists[kListContactMobiles].groups;
+    dispatches[kDispatchSamples] = frame_lists[kListSamples].items;
+    dispatches[kDispatchSampleGroups] = frame_lists[kListSamples].groups;
+    dispatches[kDispatchPairs] = frame_lists[kListPairs].items;
+    dispatches[kDispatchPairGroups] = frame_lists[kListPairs].groups;
+    dispatches[kDispatchTouchedVoxels] = frame_lists[kListTouchedVoxels].items;
+    dispatches[kDispatchHeldStatics] = groups_for((frame_input.held_statics + kGroupSize - 1u) / kGroupSize);
+    if (scene.refined != 0u && frame_lists[kListContactStatics].count == 0u) {
+      frame_state.swallowed = 1u;
+      dispatches[kDispatchSwallowedOne] = one;
+      dispatches[kDispatchSwallowed] = frame_lists[kListTriangleBricks].groups;
+    }
+  }
+}

@@ -1,0 +1,30 @@
+// What every shader of a frame begins with: extensions, workgroup, how buffers are named, flat indices.
+#ifndef PALPATE_FRAME_GLSL
+#define PALPATE_FRAME_GLSL
+#include "shaders/shared/base.h"
+#include "shaders/shared/scene.h"
+#include "shaders/shared/frame.h"
+
+layout(local_size_x = kGroupSize) in;
+
+// An array of T behind `bind`, called `name`; and a single T.
+#define READ(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name[]; }
+#define EDIT(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name[]; }
+#define READ_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name; }
+#define EDIT_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name; }
+
+uint32_t flat_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+uint32_t flat_invocation() { return flat_group() * kGroupSize + gl_LocalInvocationIndex; }
+
+// Groups for n of them, along x first.
+DispatchArguments groups_for(uint32_t n) {
+  const uint32_t rows = (n + kMaxGroupsX - 1u) / kMaxGroupsX;
+  return DispatchArguments(min(n, kMaxGroupsX), rows, 1u);
+}
+
+// floor(a / b), b > 0.
+int32_t floor_div(int32_t a, int32_t b) {
+  const int32_t q = a / b;
+  return q - int32_t(a < q * b);
+}
+#endif

@@ -1,0 +1,11 @@
+// Sets a bit of a tool triangle's state; the first of kMobileSets enters it in C_m. The including file has mobile_state,
+// contact_mobiles and frame_lists.
+#ifndef PALPATE_MOBILE_MARK_GLSL
+#define PALPATE_MOBILE_MARK_GLSL
+void mark_mobile(uint32_t mobile, uint32_t bit) {
+  const uint32_t before = atomicOr(mobile_state[mobile], bit);
+  if ((before & kMobileSets) != 0u) return;
+  const uint32_t at = atomicAdd(frame_lists[kListContactMobiles].count, 1u);
+  if (at < frame_lists[kListContactMobiles].capacity) contact_mobiles[at] = mobile;
+}
+#endif

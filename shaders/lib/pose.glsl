@@ -1,0 +1,38 @@
+// The lattice pose, both ways; the file that includes this has `FrameInput frame_input`.
+#ifndef PALPATE_POSE_GLSL
+#define PALPATE_POSE_GLSL
+
+// World lattice point of tool lattice point v (model/lattice.h). |v| ≤ 2^28, |R| ≤ 2^30: sums within 3 · 2^58.
+ivec3 world_from_tool(ivec3 v) {
+  ivec3 p;
+  for (int r = 0; r < 3; ++r) {
+    const int64_t sum = int64_t(frame_input.rotation_q30[3 * r]) * int64_t(v.x) + int64_t(frame_input.rotation_q30[3 * r + 1]) * int64_t(v.y) +
+                        int64_t(frame_input.rotation_q30[3 * r + 2]) * int64_t(v.z) + (1l << 29);
+    p[r] = int32_t(sum >> 30) + frame_input.translation[r];
+  }
+  return p;
+}
+
+// Tool lattice point of world lattice point p (docs/EXACTNESS.md section 4). |p − translation| < 2^31: sums within 3 · 2^61.
+ivec3 tool_from_world(ivec3 p) {
+  const i64vec3 d = i64vec3(p) - i64vec3(frame_input.translation);
+  ivec3 q;
+  for (int c = 0; c < 3; ++c) {
+    const int64_t sum = int64_t(frame_input.rotation_q30[c]) * d.x + int64_t(frame_input.rotation_q30[3 + c]) * d.y +
+                        int64_t(frame_input.rotation_q30[6 + c]) * d.z + (1l << 29);
+    q[c] = int32_t(sum >> 30);
+  }
+  return q;
+}
+
+// How far, per tool axis, a world offset of at most `offset` steps an axis can move the tool lattice point: |R^T| · offset and rounding.
+ivec3 tool_reach(int32_t offset) {
+  ivec3 reach;
+  for (int c = 0; c < 3; ++c) {
+    const int64_t sum = abs(int64_t(frame_input.rotation_q30[c])) + abs(int64_t(frame_input.rotation_q30[3 + c])) +
+                        abs(int64_t(frame_input.rotation_q30[6 + c]));
+    reach[c] = int32_t((sum * int64_t(offset)) >> 30) + 2;
+  }
+  return reach;
+}
+#endif

@@ -1,0 +1,56 @@
+// The grid samples of a triangle (docs/EXACTNESS.md section 4), exact.
+#ifndef PALPATE_SAMPLE_GLSL
+#define PALPATE_SAMPLE_GLSL
+#include "shaders/lib/wide_integer.glsl"
+
+struct SampledTriangle {
+  ivec3 a, b, c;
+  int axis;        // k = sample_axis; u = k + 1, v = k + 2, modulo 3
+  i64vec3 normal;  // raw, N_k ≠ 0
+};
+
+// Side of the edge from p to q on which the grid point g, moved by (ε, ε²), lies. Differences within 2^29 + 1.
+int grid_side(ivec2 p, ivec2 q, ivec2 g) {
+  const int side = sign_of(mul_wide(q.x - p.x, g.y - p.y) - mul_wide(q.y - p.y, g.x - p.x));
+  if (side != 0) return side;
+  return q.y != p.y ? sign(p.y - q.y) : sign(q.x - p.x);
+}
+
+ivec2 seen_along(int axis, ivec3 p) {
+  return axis == 0 ? p.yz : (axis == 1 ? p.zx : p.xy);
+}
+
+// Whether the triangle has a sample at grid point g = (u, v).
+bool grid_point_inside(SampledTriangle t, ivec2 g) {
+  const ivec2 a = seen_along(t.axis, t.a), b = seen_along(t.axis, t.b), c = seen_along(t.axis, t.c);
+  const int facing = sign_of(t.normal[t.axis]);
+  return grid_side(a, b, g) == facing && grid_side(b, c, g) == facing && grid_side(c, a, g) == facing;
+}
+
+// floor(a_k − (N_u (g_u − a_u) + N_v (g_v − a_v)) / N_k), for g in the triangle's box.
+// |N_u|, |N_v| ≤ |N_k| < 2^60 and |g − a| ≤ 2^29 + 1. The estimate from the leading 31 bits of N_k is at most 4 off, so that
+// the exact remainder is within 5 · 2^59.2 and may be computed modulo 2^64.
+int32_t height_on_triangle(SampledTriangle t, ivec2 g) {
+  const ivec2 d = g - seen_along(t.axis, t.a);
+  const int64_t nk = t.normal[t.axis];
+  int64_t nu = t.normal[(t.axis + 1) % 3], nv = t.normal[(t.axis + 2) % 3];
+  const int64_t m = abs(nk);
+  if (nk > 0l) {
+    nu = -nu;
+    nv = -nv;
+  }
+  const uint32_t top = uint32_t(m >> 31);
+  const int shift = top != 0u ? findMSB(top) + 1 : 0;
+  int64_t q = ((nu >> shift) * int64_t(d.x) + (nv >> shift) * int64_t(d.y)) / (m >> shift);
+  const int64_t rest = nu * int64_t(d.x) + nv * int64_t(d.y) - q * m;
+  const int64_t more = rest / m;
+  q += more - int64_t(rest < more * m);
+  return t.a[t.axis] + int32_t(q);
+}
+
+// The sample at grid point g.
+ivec3 sample_point(SampledTriangle t, ivec2 g) {
+  const int32_t h = height_on_triangle(t, g);
+  return t.axis == 0 ? ivec3(h, g.x, g.y) : (t.axis == 1 ? ivec3(g.y, h, g.x) : ivec3(g.x, g.y, h));
+}
+#endif
