@@ -1,0 +1,137 @@
+#include "cpu_ref/cpu_backend.h"
+
+#include <chrono>
+#include <exception>
+
+#include "cpu_ref/areas.h"
+#include "cpu_ref/direction.h"
+#include "cpu_ref/frame.h"
+#include "cpu_ref/heights.h"
+#include "cpu_ref/sets.h"
+#include "cpu_ref/special_cases.h"
+
+namespace palpate {
+namespace {
+
+using namespace cpu_ref;
+
+/// Times one stage after the other.
+class StageClock {
+ public:
+  explicit StageClock(Contacts& out) : out_(out) {}
+  void done(const char* stage) {
+    const Clock::time_point now = Clock::now();
+    out_.times.push_back({stage, std::chrono::duration<double, std::micro>(now - begin_).count()});
+    begin_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Contacts& out_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+/// Tools grow their boundary by this many steps, for the rounding of transformed vertices (METHOD section 2).
+constexpr std::int32_t kToolGrow = 3;
+
+class CpuBackend final : public CollisionBackend {
+ public:
+  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
+    try {
+      auto scene = std::make_unique<Prepared>();
+      scene->geometry = &geometry;
+      scene->profile = plan.profile;   // the plan's other lines never change an answer: here everything runs
+      auto mockup = make_partition(geometry.mockup, geometry.mockup_grid, 0, progress);
+      if (!mockup) return mockup.error();
+      scene->mockup = std::move(*mockup);
+      if (scene->refined()) {
+        auto tool = make_partition(geometry.tool, geometry.tool_grid, kToolGrow, progress);
+        if (!tool) return tool.error();
+        scene->tool = std::move(*tool);
+        scene->tool_has_inside = geometry.tool.closed || scene->tool.has_internal;
+      }
+      std::vector<Box> boxes;
+      for (std::uint32_t s = 0; s < geometry.mockup.triangles.size(); ++s)
+        boxes.push_back(geometry.mockup.collapsed(s) ? Box() : triangle_of(geometry.mockup, s).box());
+      scene->mockup_tree.build(std::move(boxes));
+      scene_ = std::move(scene);
+      return {};
+    } catch (const std::exception& failure) {   // out of memory, or Embree
+      return Error{ErrorCode::kInternal, std::string("The CPU reference could not prepare the scene: ") + failure.what()};
+    }
+  }
+
+  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+    out = Contacts();
+    if (!scene_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
+    try {
+      if (!pose.beyond_lattice) answer(pose, held, out);
+      return {};
+    } catch (const std::exception& failure) {
+      out = Contacts();
+      return Error{ErrorCode::kInternal, std::string("The CPU reference failed: ") + failure.what()};
+    }
+  }
+
+  Result<VoxelPartition> partition(bool tool) const override {
+    if (!scene_ || (tool && !scene_->refined())) return Error{ErrorCode::kInternal, "There is no such partition."};
+    return tool ? scene_->tool.voxels : scene_->mockup.voxels;
+  }
+
+  bool has_internal_voxels() const override { return scene_ && scene_->mockup.has_internal; }
+  std::string name() const override { return "cpu"; }
+  std::string device() const override { return "CPU reference"; }
+  std::uint64_t memory_bytes() const override {
+    return scene_ ? scene_->mockup.memory_bytes() + scene_->tool.memory_bytes() + scene_->mockup_tree.memory_bytes() +
+                        tool_tree_.memory_bytes()
+                  : 0;
+  }
+
+ private:
+  void answer(const LatticePose& pose, const Held* held, Contacts& out) {
+    StageClock clock(out);
+    Frame frame{*scene_, pose, held, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    tool_tree_.build(transform_tool(frame));
+    clock.done("transform");
+    find_pairs(frame, out);
+    clock.done("pairs");
+    find_voxel_sets(frame, out);
+    clock.done("voxels");
+    find_samples(frame, out);
+    clock.done("est");
+    if (scene_->tool_open()) out.flags |= kFlagToolOpen;
+    if (!out.contact) return;
+
+    std::vector<Area> areas = find_areas(frame, out);
+    clock.done("areas");
+    if (areas.size() > kMaxAreas) {
+      out.truncated = true;
+      out.truncated_capacity = "areas";
+      return;
+    }
+    for (Area& area : areas) find_direction(frame, area);
+    clock.done("direction");
+    std::vector<std::optional<std::uint32_t>> heights;
+    for (std::size_t a = 0; a < areas.size(); ++a) {
+      measure_heights(frame, areas[a], heights);
+      if (scene_->refined()) {
+        find_pierced(frame, areas, a, heights);
+        measure_needle(frame, areas[a]);
+      } else {
+        sum_voxels(frame, areas[a]);
+      }
+    }
+    if (scene_->refined()) measure_swallowed(frame, out);
+    clock.done("rays");
+    for (Area& area : areas) out.areas.push_back(std::move(area.out));
+  }
+
+  std::unique_ptr<Prepared> scene_;
+  BoxTree tool_tree_;
+};
+
+}  // namespace
+
+std::unique_ptr<CollisionBackend> make_cpu_backend() { return std::make_unique<CpuBackend>(); }
+
+}  // namespace palpate
