@@ -50,14 +50,14 @@ class RunWatch : public RunObserver {
 };
 
 /// `wanted`, or a directory palpate-run-SCENE[-N] that did not exist before.
-Result<fs::path> output_directory(const std::string& wanted, const fs::path& scene) {
+Result<fs::path> output_directory(const std::string& wanted, const std::string& scene) {
   std::error_code error;
   if (!wanted.empty()) {
     fs::create_directories(wanted, error);
     if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", wanted, error.message()));
     return fs::path(wanted);
   }
-  const std::string base = "palpate-run-" + scene.stem().string();
+  const std::string base = "palpate-run-" + scene_name(scene);
   for (int n = 1; n < 10000; ++n) {
     const fs::path candidate = n == 1 ? base : fmt::format("{}-{}", base, n);
     if (fs::create_directory(candidate, error)) return candidate;

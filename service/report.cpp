@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -59,10 +58,10 @@ std::string script_safe(std::string json) {
 }  // namespace
 
 std::string report_page(const SessionSummary& summary, const LoadedScene& loaded, const ReportFacts& facts, const ReportSeries& series) {
-  const std::filesystem::path file = loaded.scene.file;
-  const std::string subtitle = fmt::format("{} on {}, {}, {} at {}", facts.pace == "asap" ? "Virtual time" : "Real time", summary.backend == "gpu" ? "Vulkan" : "the CPU reference",
-                                           summary.device, summary.haptic_device, fmt::format("{:.1f} s", static_cast<double>(summary.ticks) * 1e-3));
-  std::string data = "{\"name\":" + dump(file.stem().string());
+  const std::string subtitle =
+      fmt::format("{:.1f} s in {} with the {} device; contact found by {} on {}", static_cast<double>(summary.ticks) * 1e-3,
+                  facts.pace == "asap" ? "virtual time" : "real time", summary.haptic_device, summary.backend == "gpu" ? "Vulkan" : "the CPU", summary.device);
+  std::string data = "{\"name\":" + dump(scene_name(loaded.scene.file));
   data += ",\"subtitle\":" + dump(subtitle);
   data += ",\"notes\":" + dump(summary.notes);
   data += ",\"summary\":" + summary_json(summary);

@@ -100,6 +100,7 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
   if (sections_.empty() || sections_.back().stage != tick.stage) sections_.push_back({tick.stage, tick.time_s, tick.time_s});
   sections_.back().end_s = tick.time_s + kTickSeconds;
 
+  if (figures_.empty()) figures_[tick.stage] = early_;
   StageFigures& figures = figures_[tick.stage];
   ++figures.ticks;
   figures.force_max_n = std::max(figures.force_max_n, glm::length(tick.response.force));
@@ -126,8 +127,8 @@ Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
     curve->second.push(time_s, time.us);
   }
 
-  // A frame belongs to the stage of its tick; the record of that tick may still be on its way, so the newest stage stands in.
-  StageFigures& figures = figures_[sections_.empty() ? 0 : sections_.back().stage];
+  // A frame belongs to the stage of its tick, whose record may still be on its way: the newest stage stands in, the first one for now.
+  StageFigures& figures = sections_.empty() ? early_ : figures_[sections_.back().stage];
   ++figures.frames;
   figures.areas_max = std::max(figures.areas_max, static_cast<std::size_t>(with_force));
   figures.triangles_max = std::max(figures.triangles_max, contacts.cst.size() + contacts.bst.size() + contacts.est.size() + contacts.cmt.size() + contacts.bmt.size() + contacts.imt.size());

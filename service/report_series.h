@@ -76,6 +76,7 @@ class ReportSeries : public RunObserver {
   std::map<std::string, Envelope> stage_us_;     ///< by the back end's name of the stage
   std::vector<Section> sections_;
   std::map<std::int32_t, StageFigures> figures_;
+  StageFigures early_;                           ///< of frames before the first tick
   Highlight highlight_;
 };
 

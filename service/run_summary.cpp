@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "service/numbers.h"
@@ -28,6 +29,13 @@ std::string summary_json(const SessionSummary& summary) {
                      {"force_max_N", summary.force_max_N},
                      {"torque_max_Nm", summary.torque_max_Nm}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string scene_name(const std::string& file) {
+  const std::filesystem::path path = std::filesystem::absolute(file).lexically_normal();
+  const std::string stem = path.stem().string();
+  const std::string folder = path.parent_path().filename().string();
+  return stem == "scene" && !folder.empty() ? folder : stem;
 }
 
 std::string stage_text(int stage, const std::vector<std::string>& stage_names) {

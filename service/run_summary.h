@@ -16,6 +16,9 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
 /// summary_lines in columns.
 std::string summary_text(const SessionSummary& summary, const std::vector<std::string>& stage_names);
 
+/// What a run of this scene file is called: its name, or its folder's where it is just `scene.json`.
+std::string scene_name(const std::string& file);
+
 /// "3 inside the obstacle", or "3" where it has no name.
 std::string stage_text(int stage, const std::vector<std::string>& stage_names);
 
