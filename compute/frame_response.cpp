@@ -1,0 +1,175 @@
+#include "compute/frame_response.h"
+
+#include <algorithm>
+#include <array>
+
+#include "shaders/code.h"
+
+namespace palpate {
+namespace {
+
+using namespace gpu;
+
+/// One buffer of the response.
+struct BufferPlan {
+  std::int32_t binding;
+  const char* what;
+  std::uint64_t bytes;
+};
+
+}  // namespace
+
+Result<FrameResponse> FrameResponse::create(VulkanDevice& device, const Sizes& sizes, FrameBuffers& buffers) {
+  const std::uint64_t statics = sizes.statics, slot_boxes = (statics + kSlotBox - 1) / kSlotBox;
+  const std::uint64_t heights = sizes.refined ? sizes.samples : sizes.statics;
+  const std::uint64_t refined = sizes.refined ? 1 : 0;   // what `paper` leaves out gets the smallest buffer there is
+  for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
+           {kBindResponseState, "response state", sizeof(ResponseState)},
+           {kBindAreas, "contact areas", kMaxFrameAreas * sizeof(AreaWork)},
+           {kBindSlots, "slots of contact triangles", statics * sizeof(SlotWork)},
+           {kBindParents, "union-find of contact triangles", statics * 2 * sizeof(std::uint32_t)},
+           {kBindMobileWork, "tool triangles of areas", sizes.tool_triangles * sizeof(MobileWork)},
+           {kBindHeights, "heights", heights * sizeof(std::uint32_t)},
+           {kBindHeldOverlap, "overlaps with held areas", refined * kMaxFrameAreas * sizes.held_areas * sizeof(std::uint32_t)},
+           {kBindMobileTiles, "tiles of tool samples", refined * kCapacities[0].items * sizeof(MobileTile)},
+           {kBindSlotBoxes, "boxes of contact triangles", refined * slot_boxes * sizeof(LatticeBox)},
+           {kBindNeedleTable, "table of needle vertices", refined * kNeedleTable * sizeof(std::uint32_t)},
+           {kBindNeedleVertices, "needle vertices", refined * kCapacities[1].items * sizeof(NeedleVertex)},
+       })
+    if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes); !made) return made.error();
+
+  FrameResponse out;
+  out.refined_ = sizes.refined;
+  const std::array<SpecConstant, 2> constants = {{{0, sizes.refined ? 1u : 0u}, {1, 0u}}};
+  const std::array<SpecConstant, 2> numbering = {{{0, sizes.refined ? 1u : 0u}, {1, 1u}}};
+  struct ShaderPlan {
+    FrameShader& shader;
+    const ShaderCode& code;
+    bool only_refined = false, only_paper = false;
+  };
+  for (const ShaderPlan& plan : std::initializer_list<ShaderPlan>{
+           {out.begin_, spirv::response_begin},
+           {out.areas_begin_, spirv::areas_begin},
+           {out.areas_join_, spirv::areas_join},
+           {out.samples_count_, spirv::samples_count, true},
+           {out.areas_number_, spirv::areas_number},
+           {out.areas_gather_, spirv::areas_gather},
+           {out.held_count_, spirv::held_count, true},
+           {out.areas_associate_, spirv::areas_associate},
+           {out.areas_first_, spirv::areas_first},
+           {out.mobile_tiles_, spirv::mobile_tiles, true},
+           {out.mobile_samples_, spirv::mobile_samples, true},
+           {out.mobile_normals_, spirv::mobile_normals},
+           {out.areas_direct_, spirv::areas_direct},
+           {out.nearest_distance_, spirv::nearest_find, true},
+           {out.areas_settle_, spirv::areas_settle, true},
+           {out.heights_trace_, spirv::heights_trace},
+           {out.heights_sum_, spirv::heights_sum},
+           {out.areas_follow_, spirv::areas_follow, true},
+           {out.pierce_boxes_, spirv::pierce_boxes, true},
+           {out.pierce_find_, spirv::pierce_find, true},
+           {out.needle_pairs_, spirv::needle_pairs, true},
+           {out.needle_trace_, spirv::needle_trace, true},
+           {out.points_sum_, spirv::points_sum, false, true},
+           {out.swallow_march_, spirv::swallow_march, true},
+           {out.areas_result_, spirv::areas_result},
+       }) {
+    if (sizes.refined ? plan.only_paper : plan.only_refined) continue;
+    auto made = make_frame_shader(device, plan.code, 0, constants);
+    if (!made) return made.error();
+    plan.shader = std::move(*made);
+  }
+  if (sizes.refined) {
+    auto made = make_frame_shader(device, spirv::nearest_find, 0, numbering);
+    if (!made) return made.error();
+    out.nearest_number_ = std::move(*made);
+  }
+  return out;
+}
+
+// Areas, zones, boxes, sums of static normals, members.
+void FrameResponse::record_areas(FrameRecorder& recorder) const {
+  recorder.stage("areas");
+  recorder.run_dispatch(begin_, kDispatchContactOne);
+  recorder.run_dispatch(areas_begin_, kDispatchContactStatics);
+  recorder.barrier();
+  recorder.run_dispatch(areas_join_, kDispatchContactStatics);
+  if (refined_) recorder.run_dispatch(samples_count_, kDispatchSamples);
+  recorder.barrier();
+  recorder.run_dispatch(areas_number_, kDispatchContactStatics);
+  recorder.barrier();
+  recorder.run_dispatch(areas_gather_, kDispatchContactStatics);
+  recorder.barrier();
+  if (refined_) recorder.run_dispatch(held_count_, kDispatchHeldStatics);
+  recorder.run_dispatch(areas_associate_, kDispatchContactMobiles);
+  recorder.close({kListMembers});
+  recorder.stage("directions");
+  recorder.run_dispatch(areas_first_, kDispatchContactOne);
+  recorder.barrier();
+}
+
+void FrameResponse::record_refined(FrameRecorder& recorder) const {
+  // Normals of the tool, where an area's first rule needs them.
+  recorder.run_dispatch(mobile_tiles_, kDispatchMembers);
+  recorder.close({kListMobileTiles});
+  recorder.run_groups(mobile_samples_, kListMobileTiles);
+  recorder.barrier();
+  recorder.run_dispatch(mobile_normals_, kDispatchMembers);
+  recorder.barrier();
+  recorder.run_dispatch(areas_direct_, kDispatchContactOne);
+  recorder.barrier();
+  // Nearest V_ext voxels, where nothing else gave a direction.
+  recorder.run_dispatch(nearest_distance_, kDispatchNearest);
+  recorder.barrier();
+  recorder.run_dispatch(nearest_number_, kDispatchNearest);
+  recorder.barrier();
+  recorder.run_dispatch(areas_settle_, kDispatchNearestOne);
+  recorder.barrier();
+
+  recorder.stage("rays");
+  recorder.run_dispatch(swallow_march_, kDispatchSwallowed);
+  recorder.run_dispatch(heights_trace_, kDispatchSamples);
+  recorder.barrier();
+  recorder.run_dispatch(heights_sum_, kDispatchHeightRuns);
+  recorder.barrier();
+  recorder.stage("follow");
+  recorder.run_dispatch(areas_follow_, kDispatchContactOne);
+  recorder.barrier();
+  recorder.run_dispatch(needle_pairs_, kDispatchNeedlePairs);
+  recorder.run_dispatch(pierce_boxes_, kDispatchPierceBoxes);
+  recorder.close({kListNeedleVertices});
+  recorder.run_items(needle_trace_, kListNeedleVertices);
+  recorder.run_dispatch(pierce_find_, kDispatchPierce);
+  recorder.close({kListPierces});
+}
+
+void FrameResponse::record_paper(FrameRecorder& recorder) const {
+  recorder.run_dispatch(mobile_normals_, kDispatchMembers);
+  recorder.run_dispatch(points_sum_, kDispatchTouchedVoxels);
+  recorder.barrier();
+  recorder.run_dispatch(areas_direct_, kDispatchContactOne);
+  recorder.barrier();
+  recorder.stage("rays");
+  recorder.run_dispatch(heights_trace_, kDispatchContactStatics);
+  recorder.barrier();
+  recorder.run_dispatch(heights_sum_, kDispatchHeightRuns);
+  recorder.barrier();
+}
+
+void FrameResponse::record(FrameRecorder& recorder) const {
+  record_areas(recorder);
+  if (refined_) record_refined(recorder);
+  else record_paper(recorder);
+  recorder.run_dispatch(areas_result_, kDispatchContactOne);
+}
+
+const char* FrameResponse::overflow_name(std::uint32_t overflow, std::uint32_t overflow_other) {
+  if (overflow_other & kOverflowAreas) return "areas";
+  if (overflow & 1u << kListMembers) return "tool triangles of areas";
+  if (overflow & 1u << kListMobileTiles) return "tiles of tool samples";
+  if (overflow & 1u << kListPierces) return "pierced areas";
+  if (overflow & 1u << kListNeedleVertices || overflow_other & kOverflowNeedleTable) return "needle vertices";
+  return nullptr;
+}
+
+}  // namespace palpate

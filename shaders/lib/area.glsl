@@ -1,0 +1,17 @@
+// Helpers over `AreaWork areas[]`, which the including shader declares.
+#ifndef PALPATE_LIB_AREA
+#define PALPATE_LIB_AREA
+#include "shaders/lib/direction.glsl"
+
+// The sum of static normals, sheets with their side.
+i64vec3 static_sum(uint32_t area) {
+  return vector_of(areas[area].fixed_sum) +
+         (areas[area].sheet_sign < 0 ? vector_of(areas[area].sheet_minus) : vector_of(areas[area].sheet_plus));
+}
+
+// The sum over CST alone.
+i64vec3 bare_sum(uint32_t area) {
+  return vector_of(areas[area].bare_fixed) +
+         (areas[area].sheet_sign < 0 ? -vector_of(areas[area].bare_sheet) : vector_of(areas[area].bare_sheet));
+}
+#endif

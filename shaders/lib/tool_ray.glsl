@@ -1,0 +1,92 @@
+// The height of a ray through the transformed tool, docs/EXACTNESS.md section 7. The including shader declares
+//   cluster_boxes[], tool_order[], tool_triangles[], tool_world[], mobile_state[], scene, frame_state (writable).
+#ifndef PALPATE_LIB_TOOL_RAY
+#define PALPATE_LIB_TOOL_RAY
+#include "shaders/lib/ray.glsl"
+#include "shaders/lib/line_box.glsl"
+
+const uint32_t kLevels = 8u;   // distinct heights kept a sweep; more take another sweep (chosen: most rays have fewer)
+
+// Crossing heights of one sweep, ascending, equal ones merged.
+struct Levels {
+  uint32_t count;
+  bool more;                   // some did not fit: they are above the last
+  uint32_t height[kLevels];
+  int32_t sign_sum[kLevels];
+};
+
+uint32_t ray_budget = 0u;      // loop iterations of this invocation
+
+bool ray_spent(uint32_t steps) {
+  ray_budget += steps;
+  if (ray_budget < kLoopBudget) return false;
+  atomicOr(frame_state.overflow_other, kOverflowLoop);
+  return true;
+}
+
+void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossing) {
+  uint32_t at = 0u;
+  while (at < levels.count && levels.height[at] < height) ++at;
+  if (at < levels.count && levels.height[at] == height) {
+    levels.sign_sum[at] += sign_of_crossing;
+    return;
+  }
+  if (levels.count == kLevels) levels.more = true;
+  if (at == kLevels) return;
+  const uint32_t last = min(levels.count, kLevels - 1u);
+  for (uint32_t i = last; i > at; --i) {
+    levels.height[i] = levels.height[i - 1u];
+    levels.sign_sum[i] = levels.sign_sum[i - 1u];
+  }
+  levels.height[at] = height;
+  levels.sign_sum[at] = sign_of_crossing;
+  levels.count = last + 1u;
+}
+
+// All crossings of the ray with heights above `after`; `total` is the sum of the signs of all.
+Levels tool_sweep(ivec3 p, ivec3 d, int64_t after, out int32_t total) {
+  Levels levels;
+  levels.count = 0u;
+  levels.more = false;
+  total = 0;
+  const uint32_t triangles = scene.tool.triangles;
+  const uint32_t clusters = (triangles + kClusterSize - 1u) / kClusterSize;
+  for (uint32_t cluster = 0u; cluster < clusters && !ray_spent(1u); ++cluster) {
+    if (!ray_may_meet(p, d, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) continue;
+    const uint32_t end = min((cluster + 1u) * kClusterSize, triangles);
+    for (uint32_t i = cluster * kClusterSize; i < end && !ray_spent(1u); ++i) {
+      const uint32_t mobile = tool_order[i];
+      if ((mobile_state[mobile] & kMobileVoid) != 0u) continue;
+      const uvec3 corners = tool_triangles[mobile];
+      const ivec3 a = tool_world[corners.x], b = tool_world[corners.y], c = tool_world[corners.z];
+      if (!ray_may_meet(p, d, min(min(a, b), c), max(max(a, b), c))) continue;
+      const Crossing crossing = ray_crossing(p, d, a, b, c);
+      if (crossing.sign == 0) continue;
+      total += crossing.sign;
+      if (int64_t(crossing.height) <= after || ray_spent(2u * kLevels)) continue;
+      levels_insert(levels, crossing.height, crossing.sign);
+    }
+  }
+  return levels;
+}
+
+// The height of the sample p over the tool: `nearest`: the smallest crossing height; else the smallest one above which the
+// signs add up to 0. kNone: no crossing.
+uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
+  int64_t after = -1l;
+  int32_t passed = 0;   // sum of the signs at or below `after`
+  do {
+    int32_t total;
+    const Levels levels = tool_sweep(p, d, after, total);
+    if (levels.count == 0u) return kNone;
+    if (nearest) return levels.height[0];
+    for (uint32_t i = 0u; i < levels.count; ++i) {
+      passed += levels.sign_sum[i];
+      if (passed == total) return levels.height[i];
+    }
+    if (!levels.more) return kNone;   // only when the budget is spent: above the last crossing nothing is left
+    after = int64_t(levels.height[levels.count - 1u]);
+  } while (!ray_spent(1u));
+  return kNone;
+}
+#endif

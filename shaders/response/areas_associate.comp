@@ -1,0 +1,56 @@
+#version 460
+// One invocation: a tool triangle of C_m. Gives it to every area whose sphere holds its rounded centroid, else to the nearest.
+// Reads areas, transformed vertices. Writes members, mobile_work.
+// Before: areas_gather.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_response.h"
+
+EDIT(kBindFrameLists, FrameList, frame_lists);
+READ(kBindContactMobiles, uint32_t, contact_mobiles);
+READ(kBindToolTriangles, uvec3, tool_triangles);
+READ(kBindToolWorld, ivec3, tool_world);
+READ_ONE(kBindResponseState, ResponseState, response);
+READ(kBindAreas, AreaWork, areas);
+EDIT(kBindMobileWork, MobileWork, mobile_work);
+EDIT(kBindResultMembers, AreaMember, members);
+
+#include "shaders/lib/centroid.glsl"
+
+int64_t squared(ivec3 v) {
+  const i64vec3 w = i64vec3(v);
+  return w.x * w.x + w.y * w.y + w.z * w.z;
+}
+
+void append(uint32_t area, uint32_t mobile) {
+  const uint32_t i = atomicAdd(frame_lists[kListMembers].count, 1u);
+  if (i < frame_lists[kListMembers].capacity) members[i] = AreaMember(area, mobile);
+}
+
+void main() {
+  const uint32_t i = flat_invocation();
+  if (i >= frame_lists[kListContactMobiles].count) return;
+  const uint32_t mobile = contact_mobiles[i];
+  mobile_work[mobile] = MobileWork(0u, 0u);
+
+  const uvec3 corners = tool_triangles[mobile];
+  const ivec3 g = rounded_centroid(tool_world[corners.x], tool_world[corners.y], tool_world[corners.z]);
+  bool held_by_one = false;
+  uint32_t nearest = kNone;
+  int64_t nearest_distance = 0l;
+  const uint32_t count = min(response.areas, kMaxFrameAreas);
+  for (uint32_t area = 0u; area < count; ++area) {
+    const ivec3 low = areas[area].box_low, high = areas[area].box_high;
+    const int64_t distance = squared(2 * g - (low + high));   // components within 2^30: below 2^62
+    if (distance <= squared(high - low)) {
+      append(area, mobile);
+      held_by_one = true;
+    }
+    if (nearest == kNone || distance < nearest_distance ||
+        (distance == nearest_distance && areas[area].id < areas[nearest].id)) {
+      nearest = area;
+      nearest_distance = distance;
+    }
+  }
+  if (!held_by_one && nearest != kNone) append(nearest, mobile);
+}

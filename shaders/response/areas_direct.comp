@@ -1,0 +1,85 @@
+#version 460
+// One workgroup for all areas: n_c by the rules of docs/EXACTNESS.md section 6, or a request for the nearest V_ext voxel.
+// Reads areas, held areas. Writes areas[].direction and flags, requests, dispatches of what follows.
+// Before: areas_first, mobile_normals.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_response.h"
+
+layout(constant_id = 0) const bool REFINED = true;
+
+READ_ONE(kBindScene, SceneConstants, scene);
+READ(kBindFrameLists, FrameList, frame_lists);
+READ(kBindHeldAreas, HeldDirection, held_areas);
+EDIT(kBindDispatches, DispatchArguments, dispatches);
+EDIT_ONE(kBindResponseState, ResponseState, response);
+EDIT(kBindAreas, AreaWork, areas);
+
+#include "shaders/lib/area.glsl"
+
+void direct_refined(uint32_t area) {
+  if ((areas[area].state & kAreaProximity) != 0u) return;
+  uint32_t flags = areas[area].flags;
+  if (scene.tool.closed == 0u && scene.tool.has_internal == 0u) flags |= kAreaFlagToolOpen;
+
+  const bool several = areas[area].zones > 1u;
+  const i64vec3 from_static = static_sum(area), from_mobile = -vector_of(areas[area].mobile_sum);
+  const int64_t static_weight = areas[area].static_weight, mobile_weight = areas[area].mobile_weight;
+  const i64vec3 first = several ? from_mobile : from_static, second = several ? from_static : from_mobile;
+  const int64_t first_weight = several ? mobile_weight : static_weight;
+  const int64_t second_weight = several ? static_weight : mobile_weight;
+
+  i64vec3 chosen = i64vec3(0l);
+  if (usable(first, first_weight)) {
+    chosen = first;
+  } else {
+    if (first_weight > 0l) flags |= kAreaFlagCancelled;
+    if (usable(second, second_weight)) {
+      chosen = second;
+    } else {
+      if (second_weight > 0l) flags |= kAreaFlagCancelled;
+      const i64vec3 bare = bare_sum(area);
+      const uint32_t held = areas[area].held_area;
+      if (usable(bare, int64_t(areas[area].cst) << 30)) {
+        chosen = bare;
+      } else if (held != kNone && held_areas[held].direction != ivec3(0)) {
+        chosen = i64vec3(held_areas[held].direction);
+        flags |= kAreaFlagHeld;
+      } else {
+        const ivec3 centre = (areas[area].box_low + areas[area].box_high) >> 1;
+        response.request[atomicAdd(response.requests, 1u)] = NearestRequest(~0ul, ~0ul, centre, area);
+      }
+    }
+  }
+  if (chosen != i64vec3(0l)) areas[area].direction = normalise(chosen);
+  areas[area].flags = flags;
+}
+
+void direct_paper(uint32_t area) {
+  const i64vec3 sum = areas[area].zones > 1u ? -vector_of(areas[area].mobile_sum) : vector_of(areas[area].fixed_sum);
+  if (sum == i64vec3(0l)) areas[area].flags = kAreaFlagCancelled | kAreaFlagNoDirection;
+  else areas[area].direction = normalise(sum);
+}
+
+void main() {
+  const uint32_t count = min(response.areas, kMaxFrameAreas);
+  for (uint32_t area = gl_LocalInvocationIndex; area < count; area += kGroupSize) {
+    if (REFINED) direct_refined(area);
+    else direct_paper(area);
+  }
+  memoryBarrierBuffer();
+  barrier();
+  if (gl_LocalInvocationIndex != 0u) return;
+  const uint32_t samples = frame_lists[REFINED ? kListSamples : kListContactStatics].count;
+  const uint32_t runs = (samples + kHeightRun - 1u) / kHeightRun;
+  if (count > 0u) dispatches[kDispatchHeightRuns] = groups_for((runs + kGroupSize - 1u) / kGroupSize);
+  const uint32_t requests = atomicAdd(response.requests, 0u);
+  if (requests > 0u) {
+    const ivec3 bricks = scene.mockup.grid.bricks;
+    const uint32_t total = uint32_t(bricks.x) * uint32_t(bricks.y) * uint32_t(bricks.z);
+    DispatchArguments groups = groups_for((total + kGroupSize - 1u) / kGroupSize);
+    groups.z = requests;
+    dispatches[kDispatchNearest] = groups;
+    dispatches[kDispatchNearestOne] = DispatchArguments(1u, 1u, 1u);
+  }
+}

@@ -1,0 +1,87 @@
+#version 460
+// One invocation: an intersecting pair. If its static triangle's area is a needle: takes the middle of the intersection as a
+// sample, and lists the tool triangle's vertices.
+// Reads pairs, areas, both bodies. Writes sums of areas, needle table and vertices.
+// Before: areas_follow. Runs only if some area is a needle.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_response.h"
+
+READ_ONE(kBindScene, SceneConstants, scene);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
+READ(kBindPairs, ContactPair, pairs);
+READ(kBindStaticSlot, uint32_t, static_slot);
+READ(kBindMockupVertices, ivec3, mockup_vertices);
+READ(kBindMockupTriangles, uvec3, mockup_triangles);
+READ(kBindClusterBoxes, LatticeBox, cluster_boxes);
+READ(kBindToolOrder, uint32_t, tool_order);
+READ(kBindToolTriangles, uvec3, tool_triangles);
+READ(kBindToolWorld, ivec3, tool_world);
+READ(kBindMobileState, uint32_t, mobile_state);
+READ(kBindSlots, SlotWork, slots);
+EDIT(kBindAreas, AreaWork, areas);
+EDIT(kBindNeedleTable, uint32_t, needle_table);
+EDIT(kBindNeedleVertices, NeedleVertex, needle_vertices);
+
+#include "shaders/lib/edge_crossing.glsl"
+#include "shaders/lib/tool_ray.glsl"
+#include "shaders/lib/height_sum.glsl"
+
+struct Span {
+  bool any;
+  ivec3 low, high;
+};
+
+void take_edges(ivec3 from[3], ivec3 to[3], inout Span span) {
+  for (int k = 0; k < 3; ++k) {
+    ivec3 e;
+    if (!edge_crossing(from[k], from[(k + 1) % 3], to[0], to[1], to[2], e)) continue;
+    span.low = span.any ? min(span.low, e) : e;
+    span.high = span.any ? max(span.high, e) : e;
+    span.any = true;
+  }
+}
+
+// Lists (area, vertex) unless it is listed already: the key's place in the table decides.
+void list_vertex(uint32_t area, uint32_t vertex) {
+  const uint32_t key = (area << 24 | vertex) + 1u;   // 8 and 24 bits; 0 is an empty entry
+  uint32_t at = (key * 2654435761u >> 12) & (kNeedleTable - 1u);
+  for (uint32_t probe = 0u; probe < kNeedleProbes; ++probe) {
+    const uint32_t before = atomicCompSwap(needle_table[at], 0u, key);
+    if (before == key) return;
+    if (before == 0u) {
+      const uint32_t i = atomicAdd(frame_lists[kListNeedleVertices].count, 1u);
+      if (i < frame_lists[kListNeedleVertices].capacity) needle_vertices[i] = NeedleVertex(area, vertex, at);
+      return;
+    }
+    at = (at + 1u) & (kNeedleTable - 1u);
+  }
+  atomicOr(frame_state.overflow_other, kOverflowNeedleTable);
+}
+
+void main() {
+  const uint32_t i = flat_invocation();
+  if (i >= frame_lists[kListPairs].count) return;
+  const ContactPair pair = pairs[i];
+  const uint32_t area = slots[static_slot[pair.static_id]].area;
+  if (area == kNone || (areas[area].state & kAreaNeedle) == 0u) return;
+
+  const uvec3 sc = mockup_triangles[pair.static_id], mc = tool_triangles[pair.mobile];
+  const ivec3 s[3] = {mockup_vertices[sc.x], mockup_vertices[sc.y], mockup_vertices[sc.z]};
+  const ivec3 m[3] = {tool_world[mc.x], tool_world[mc.y], tool_world[mc.z]};
+  Span span = Span(false, ivec3(0), ivec3(0));
+  take_edges(s, m, span);
+  take_edges(m, s, span);
+  if (span.any) {
+    const ivec3 middle = (span.low + span.high) >> 1;
+    const bool nearest = scene.tool.closed == 0u && scene.tool.has_internal == 0u;
+    const uint32_t height = tool_height(middle, -areas[area].direction, nearest);
+    if (height != kNone) {
+      HeightSum sum = height_sum_empty();
+      height_sum_add(sum, middle, height, 1u << 30);
+      height_sum_flush(area, sum);
+    }
+  }
+  for (int k = 0; k < 3; ++k) list_vertex(area, mc[k]);
+}

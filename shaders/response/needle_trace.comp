@@ -1,0 +1,48 @@
+#version 460
+// One invocation: a tool vertex near a needle. How far along n_c does it leave the area's surface?
+// Reads needle vertices, C_s, areas. Writes sums of areas; empties the needle table.
+// Before: needle_pairs; its list is closed.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_response.h"
+
+READ(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
+READ(kBindContactStatics, uint32_t, contact_statics);
+READ(kBindStaticState, uint32_t, static_state);
+READ(kBindMockupVertices, ivec3, mockup_vertices);
+READ(kBindMockupTriangles, uvec3, mockup_triangles);
+READ(kBindMockupInfo, uint32_t, mockup_info);
+READ(kBindToolWorld, ivec3, tool_world);
+READ(kBindSlots, SlotWork, slots);
+EDIT(kBindAreas, AreaWork, areas);
+EDIT(kBindNeedleTable, uint32_t, needle_table);
+READ(kBindNeedleVertices, NeedleVertex, needle_vertices);
+
+#include "shaders/lib/ray.glsl"
+#include "shaders/lib/height_sum.glsl"
+
+void main() {
+  const uint32_t i = flat_invocation();
+  if (i >= frame_lists[kListNeedleVertices].count) return;
+  const NeedleVertex item = needle_vertices[i];
+  needle_table[item.entry] = 0u;
+
+  const ivec3 p = tool_world[item.vertex], d = areas[item.area].direction;
+  uint32_t height = kNone;
+  const uint32_t count = frame_lists[kListContactStatics].count;
+  if (count > kLoopBudget) atomicOr(frame_state.overflow_other, kOverflowLoop);
+  for (uint32_t slot = 0u; slot < min(count, kLoopBudget); ++slot) {
+    if (slots[slot].area != item.area) continue;
+    const uint32_t id = contact_statics[slot];
+    if ((static_state[id] & kStaticHit) == 0u) continue;
+    const uvec3 corners = mockup_triangles[id];
+    const Crossing crossing = ray_crossing(p, d, mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]);
+    const bool counts = crossing.sign > 0 || (crossing.sign < 0 && (mockup_info[id] & kInfoSheet) != 0u);
+    if (counts) height = min(height, crossing.height);
+  }
+  if (height == kNone) return;
+  HeightSum sum = height_sum_empty();
+  height_sum_add(sum, p + ivec3((i64vec3(d) * int64_t(height)) >> 30), height, 1u << 30);
+  height_sum_flush(item.area, sum);
+}
