@@ -6,8 +6,8 @@
 
 namespace palpate {
 
-/// Most triangles of one body: (neighbour id · 2 + 1) and 3 · triangles fit 32 bits with room to spare.
-inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
+/// Most triangles of one body (chosen: 33 million, some 3 GiB of corners before welding).
+inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 25;
 
 /// Snaps every corner to the nearest lattice point and welds equal points. Fills `vertices` (numbered in the order in
 /// which triangles first name them), `triangles`, `flags` (collapsed or 0) and the box; nothing else.

@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "model/import_checks.h"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kDeepestJson = 256;            ///< the importer's own JSON reader recurses (chosen)
+constexpr std::uint64_t kDeepestNode = 512;  ///< and so does its walk of the nodes (chosen)
+constexpr std::uint64_t kMostNodes = 1'000'000;      ///< instances counted (chosen)
+constexpr std::uint64_t kMostEntries = 1ull << 30;   ///< of an accessor without a buffer, which costs no bytes in the file
+
+std::uint64_t number(const Json& object, const char* key, std::uint64_t otherwise) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : otherwise;
+}
+
+const Json& list(const Json& object, const char* key) {
+  static const Json empty = Json::array();
+  const auto found = object.find(key);
+  return found != object.end() && found->is_array() ? *found : empty;
+}
+
+/// Nodes below each node, instances counted, and cycles.
+std::string distrust_nodes(const Json& nodes) {
+  enum State : std::uint8_t { kNew, kOpen, kDone };
+  struct Node { State state = kNew; std::uint64_t size = 1, depth = 1; };
+  std::vector<Node> seen(nodes.size());
+  for (std::size_t root = 0; root < nodes.size(); ++root) {
+    if (seen[root].state != kNew) continue;
+    std::vector<std::pair<std::size_t, std::size_t>> stack{{root, 0}};   // node, next child
+    seen[root].state = kOpen;
+    while (!stack.empty()) {
+      const auto [node, next] = stack.back();
+      const Json& children = nodes[node].is_object() ? list(nodes[node], "children") : list(Json::object(), "children");
+      if (next == children.size()) {
+        for (const Json& child : children) {
+          const Node& below = seen[child.get<std::size_t>()];
+          seen[node].size = std::min(kMostNodes + 1, seen[node].size + below.size);
+          seen[node].depth = std::max(seen[node].depth, below.depth + 1);
+        }
+        if (seen[node].size > kMostNodes) return fmt::format("has more than {} nodes, instances counted", kMostNodes);
+        if (seen[node].depth > kDeepestNode) return fmt::format("nests nodes more than {} deep", kDeepestNode);
+        seen[node].state = kDone;
+        stack.pop_back();
+        continue;
+      }
+      ++stack.back().second;
+      if (!children[next].is_number_unsigned() || children[next].get<std::uint64_t>() >= nodes.size())
+        return fmt::format("has a child of node {} that is not one of its {} nodes", node, nodes.size());
+      const auto child = children[next].get<std::size_t>();
+      if (seen[child].state == kOpen) return fmt::format("has a node that contains itself (node {})", child);
+      if (seen[child].state == kNew) {
+        seen[child].state = kOpen;
+        stack.emplace_back(child, 0);
+      }
+    }
+  }
+  return {};
+}
+
+std::uint64_t component_size(std::uint64_t type) { return type == 5120 || type == 5121 ? 1 : type == 5122 || type == 5123 ? 2 : 4; }
+
+std::uint64_t components(const Json& accessor) {
+  const auto type = accessor.find("type");
+  if (type == accessor.end() || !type->is_string()) return 1;
+  const std::string name = *type;
+  return name == "VEC2" ? 2 : name == "VEC3" ? 3 : name == "VEC4" || name == "MAT2" ? 4 : name == "MAT3" ? 9 : name == "MAT4" ? 16 : 1;
+}
+
+/// Bytes that a buffer can really have; what can't be told is left to the importer.
+std::uint64_t bytes_of_buffer(const Json& buffer, std::uint64_t file_size, const std::string& path) {
+  const auto uri = buffer.find("uri");
+  if (uri == buffer.end() || !uri->is_string()) return file_size;
+  const std::string name = *uri;
+  if (name.rfind("data:", 0) == 0) return name.size();
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(std::filesystem::path(path).parent_path() / name, error);
+  return error ? UINT64_MAX : size;
+}
+
+/// Buffers within their files, views within buffers, accessors within views.
+std::string distrust_buffers(const Json& root, std::uint64_t file_size, const std::string& path) {
+  const Json &buffers = list(root, "buffers"), &views = list(root, "bufferViews"), &accessors = list(root, "accessors");
+  for (std::size_t b = 0; b < buffers.size(); ++b) {
+    const std::uint64_t promised = number(buffers[b], "byteLength", 0), have = bytes_of_buffer(buffers[b], file_size, path);
+    if (promised > have) return fmt::format("is cut short: buffer {} promises {} bytes, there are {}", b, promised, have);
+  }
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const std::uint64_t buffer = number(views[v], "buffer", UINT64_MAX), offset = number(views[v], "byteOffset", 0),
+                        length = number(views[v], "byteLength", 0);
+    if (buffer >= buffers.size()) return fmt::format("has a buffer view {} of a buffer that does not exist", v);
+    const std::uint64_t size = number(buffers[buffer], "byteLength", 0);
+    if (offset > size || length > size - offset)
+      return fmt::format("has a buffer view {} of {} bytes from byte {}, beyond its buffer of {} bytes", v, length, offset, size);
+  }
+  for (std::size_t a = 0; a < accessors.size(); ++a) {
+    const std::uint64_t count = number(accessors[a], "count", 0), entry = component_size(number(accessors[a], "componentType", 5126)) * components(accessors[a]);
+    if (count > kMostEntries) return fmt::format("has an accessor {} of {} entries, the limit is {}", a, count, kMostEntries);
+    const std::uint64_t view = number(accessors[a], "bufferView", UINT64_MAX);
+    if (view == UINT64_MAX) {
+      // Without a view all entries are 0; only a sparse one may say so, and never with more entries than the file has bytes.
+      if (count > file_size) return fmt::format("has an accessor {} of {} entries without data", a, count);
+      continue;
+    }
+    if (view >= views.size()) return fmt::format("has an accessor {} of a buffer view that does not exist", a);
+    const std::uint64_t length = number(views[view], "byteLength", 0), offset = number(accessors[a], "byteOffset", 0),
+                        stride = std::max(entry, number(views[view], "byteStride", entry));
+    if (count > 0 && (offset > length || entry > length - offset || (count - 1) > (length - offset - entry) / stride))
+      return fmt::format("has an accessor {} of {} entries, beyond its buffer view of {} bytes", a, count, length);
+  }
+  return {};
+}
+
+std::string distrust_meshes(const Json& root) {
+  const Json &accessors = list(root, "accessors"), &meshes = list(root, "meshes");
+  for (std::size_t m = 0; m < meshes.size(); ++m)
+    for (const Json& primitive : list(meshes[m], "primitives")) {
+      if (!primitive.is_object() || !primitive.contains("attributes") || !primitive["attributes"].is_object()) continue;
+      for (const auto& [name, accessor] : primitive["attributes"].items()) {
+        if (!accessor.is_number_unsigned() || accessor.get<std::uint64_t>() >= accessors.size())
+          return fmt::format("has an attribute {} in mesh {} whose accessor does not exist", name, m);
+        const Json& data = accessors[accessor.get<std::size_t>()];
+        if (name == "POSITION" && (components(data) != 3 || number(data, "componentType", 0) != 5126))
+          return fmt::format("has positions in mesh {} that are not three floats", m);
+      }
+      if (primitive.contains("indices") && number(primitive, "indices", UINT64_MAX) >= accessors.size())
+        return fmt::format("has indices in mesh {} whose accessor does not exist", m);
+    }
+  return {};
+}
+
+/// The JSON of a .gltf, or of a .glb's first chunk.
+std::string find_json(std::string_view bytes, std::string_view& json) {
+  json = bytes;
+  if (bytes.substr(0, 4) != "glTF") return {};
+  if (bytes.size() < 20) return "is cut short: a GLB header has 20 bytes";
+  std::uint32_t header[5];   // magic, version, length, length of the first chunk, its type
+  std::memcpy(header, bytes.data(), sizeof header);
+  if (header[1] != 2) return fmt::format("has GLB version {}, only 2 can be read", header[1]);
+  if (header[2] > bytes.size()) return fmt::format("is cut short: it promises {} bytes and has {}", header[2], bytes.size());
+  if (header[3] > bytes.size() - 20) return fmt::format("is cut short: its JSON promises {} bytes", header[3]);
+  json = bytes.substr(20, header[3]);
+  return {};
+}
+
+}  // namespace
+
+std::string distrust_gltf(std::string_view bytes, const std::string& path) {
+  std::string_view text;
+  if (std::string wrong = find_json(bytes, text); !wrong.empty()) return wrong;
+  bool too_deep = false;
+  const auto watch = [&](int depth, Json::parse_event_t, Json&) { return !(too_deep |= depth > kDeepestJson); };
+  const Json root = Json::parse(text, watch, false);
+  if (too_deep) return fmt::format("nests its JSON more than {} deep", kDeepestJson);
+  if (root.is_discarded() || !root.is_object()) return "holds no valid JSON";
+  if (const auto nodes = root.find("nodes"); nodes != root.end() && !nodes->is_array()) return "is not glTF 2.0";
+  for (const char* key : {"buffers", "bufferViews", "accessors", "meshes", "nodes", "scenes"})
+    for (const Json& entry : list(root, key))
+      if (!entry.is_object()) return fmt::format("has an entry in '{}' that is not an object", key);
+  std::string wrong = distrust_nodes(list(root, "nodes"));
+  if (wrong.empty()) wrong = distrust_buffers(root, bytes.size(), path);
+  if (wrong.empty()) wrong = distrust_meshes(root);
+  return wrong;
+}
+
+}  // namespace palpate

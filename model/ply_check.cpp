@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "model/import_checks.h"
+
+namespace palpate {
+namespace {
+
+struct Property {
+  std::size_t size = 0;         ///< bytes of the value, or of a list's entry
+  std::size_t count_size = 0;   ///< bytes of a list's count; 0: no list
+};
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+struct Header {
+  std::string format;
+  std::vector<Element> elements;
+  std::size_t length = 0;   ///< bytes, with end_header and its line end
+};
+
+std::size_t size_of_type(const std::string& type) {
+  if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
+  if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
+  if (type == "int" || type == "uint" || type == "float" || type == "int32" || type == "uint32" || type == "float32") return 4;
+  if (type == "double" || type == "float64") return 8;
+  return 0;
+}
+
+/// Reads the header; false when it is not one.
+bool read_header(std::string_view bytes, Header& header) {
+  std::size_t at = 0;
+  for (int line_number = 0; line_number < 100000; ++line_number) {
+    const std::size_t end = bytes.find('\n', at);
+    if (end == std::string_view::npos) return false;
+    std::istringstream line{std::string(bytes.substr(at, std::min<std::size_t>(end - at, 1000)))};
+    at = end + 1;
+    std::string word, type;
+    line >> word;
+    if (line_number == 0) {
+      if (word != "ply") return false;
+    } else if (word == "format") {
+      line >> header.format;
+    } else if (word == "element") {
+      Element element;
+      if (!(line >> element.name >> element.count)) return false;
+      header.elements.push_back(element);
+    } else if (word == "property") {
+      Property property;
+      if (header.elements.empty() || !(line >> type)) return false;
+      if (type == "list") {
+        std::string count_type;
+        line >> count_type >> type;
+        property.count_size = size_of_type(count_type);
+        if (property.count_size == 0) return false;
+      }
+      property.size = size_of_type(type);
+      if (property.size == 0) return false;
+      header.elements.back().properties.push_back(property);
+    } else if (word == "end_header") {
+      header.length = at;
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string cut_short(const Element& element, std::uint64_t have) {
+  return fmt::format("is cut short: it promises {} elements '{}' and has {}", element.count, element.name, have);
+}
+
+std::uint64_t read_count(const char* data, std::size_t size, bool big_endian) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto byte = static_cast<std::uint64_t>(static_cast<unsigned char>(data[i]));
+    value |= byte << (8 * (big_endian ? size - 1 - i : i));
+  }
+  return value;
+}
+
+std::string distrust_binary(std::string_view body, const Header& header) {
+  const bool big_endian = header.format == "binary_big_endian";
+  std::uint64_t at = 0;
+  for (const Element& element : header.elements) {
+    std::uint64_t fixed = 0;
+    bool lists = false;
+    for (const Property& property : element.properties) {
+      fixed += property.count_size == 0 ? property.size : property.count_size;
+      lists |= property.count_size != 0;
+    }
+    if (fixed == 0) continue;
+    if (element.count > (body.size() - at) / fixed) return cut_short(element, (body.size() - at) / fixed);
+    if (!lists) {
+      at += element.count * fixed;
+      continue;
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i)
+      for (const Property& property : element.properties) {
+        const std::uint64_t head = property.count_size == 0 ? property.size : property.count_size;
+        if (head > body.size() - at) return cut_short(element, i);
+        const std::uint64_t entries = property.count_size == 0 ? 0 : read_count(body.data() + at, property.count_size, big_endian);
+        at += head;
+        if (entries > (body.size() - at) / property.size) return cut_short(element, i);
+        at += entries * property.size;
+      }
+  }
+  return {};
+}
+
+std::string distrust_ascii(std::string_view body, const Header& header) {
+  for (const Element& element : header.elements) {
+    if (element.count > body.size()) return cut_short(element, 0);
+    for (std::uint64_t i = 0; i < element.count;) {
+      if (body.empty()) return cut_short(element, i);
+      const std::size_t end = body.find('\n');
+      if (body.substr(0, end).find_first_not_of(" \t\r") != std::string_view::npos) ++i;
+      body.remove_prefix(end == std::string_view::npos ? body.size() : end + 1);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string distrust_ply(std::string_view bytes) {
+  Header header;
+  if (!read_header(bytes, header)) return "has no valid PLY header";
+  const std::string_view body = bytes.substr(header.length);
+  if (header.format == "ascii") return distrust_ascii(body, header);
+  if (header.format == "binary_little_endian" || header.format == "binary_big_endian") return distrust_binary(body, header);
+  return fmt::format("has PLY format '{}', which is unknown", header.format);
+}
+
+}  // namespace palpate
