@@ -1,9 +1,213 @@
 #include "compute/frame.h"
 
-namespace palpate {
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <utility>
+#include <vector>
 
-Result<std::unique_ptr<Frame>> Frame::create(VulkanDevice&, const SceneGeometry&, const PreparedScene&, const Plan&) {
-  return std::unique_ptr<Frame>();
+#include "compute/command_recorder.h"
+#include "compute/frame_decode.h"
+#include "compute/frame_detection.h"
+#include "compute/frame_recorder.h"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double us_since(Clock::time_point from) { return std::chrono::duration<double, std::micro>(Clock::now() - from).count(); }
+
+std::int32_t floor_div(std::int64_t a, std::int64_t b) {
+  const std::int64_t q = a / b;
+  return static_cast<std::int32_t>(a % b < 0 ? q - 1 : q);
+}
+
+/// Bricks of the mock-up that the tool may reach at a pose, and whether any of them is not V_ext.
+struct BrickRange {
+  Int3 first{0}, last{-1};
+};
+
+class RecordedFrame final : public Frame {
+ public:
+  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry) : device_(device), geometry_(geometry) {}
+
+  Result<void> make(const PreparedScene& scene, const Plan& plan);
+  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
+  std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
+
+ private:
+  void name_scene(const PreparedScene& scene);
+  Result<void> set_capacities();
+  Result<void> record();
+  BrickRange reach(const LatticePose& pose) const;
+  bool empty(const BrickRange& range) const;
+  bool write_input(const LatticePose& pose, const BrickRange& range, const Held* held);
+
+  VulkanDevice& device_;
+  const SceneGeometry& geometry_;
+  gpu::GridConstants grid_{};
+  std::vector<std::uint32_t> brick_slot_;   ///< the mock-up's, on the host: to leave out frames that can't touch
+  FrameBuffers buffers_;
+  std::unique_ptr<FrameDetection> detection_;
+  std::unique_ptr<CommandRecorder> commands_;
+  std::vector<CommandRecorder::StageTime> times_;
+  bool tables_clear_ = false;
+};
+
+void RecordedFrame::name_scene(const PreparedScene& scene) {
+  using namespace gpu;
+  const BodyBuffers &m = scene.mockup, &t = scene.tool;
+  const std::pair<std::int32_t, const VulkanBuffer*> all[] = {
+      {kBindScene, &scene.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
+      {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.sample_weight},
+      {kBindNeighbourBegin, &m.neighbour_begin}, {kBindNeighbours, &m.neighbours}, {kBindSeamBegin, &m.seam_begin},
+      {kBindSeams, &m.seams}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
+      {kBindMockupListBegin, &m.partition.list_begin}, {kBindMockupListTriangles, &m.partition.list_triangles},
+      {kBindMockupBoundaryPlace, &m.partition.boundary_place}, {kBindMockupMixedBrick, &m.partition.mixed_brick},
+      {kBindToolVertices, &t.vertices}, {kBindToolTriangles, &t.triangles}, {kBindToolInfo, &t.triangle_info},
+      {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.sample_weight}, {kBindToolBrickSlot, &t.partition.brick_slot},
+      {kBindToolBricks, &t.partition.bricks}};
+  for (const auto& [binding, buffer] : all)
+    if (*buffer) buffers_.name(binding, *buffer);   // `paper` has no partition of the tool
+}
+
+Result<void> RecordedFrame::make(const PreparedScene& scene, const Plan&) {
+  name_scene(scene);
+  grid_ = scene.constants.mockup.grid;
+  brick_slot_.resize(static_cast<std::size_t>(grid_.bricks.x) * static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(grid_.bricks.z));
+  if (auto r = download(device_, scene.mockup.partition.brick_slot, 0, brick_slot_.data(), brick_slot_.size() * 4); !r) return r;
+  auto detection = FrameDetection::create(device_, geometry_, scene, buffers_);
+  if (!detection) return detection.error();
+  detection_ = std::move(*detection);
+  if (auto r = set_capacities(); !r) return r;
+  return record();
+}
+
+Result<void> RecordedFrame::set_capacities() {
+  std::array<gpu::FrameList, gpu::kListCount> lists{};
+  for (std::size_t i = 0; i < lists.size(); ++i) lists[i].capacity = detection_->capacities()[i];
+  return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
+}
+
+Result<void> RecordedFrame::record() {
+  constexpr std::uint32_t kStages = 32;
+  auto commands = CommandRecorder::create(device_, kStages);
+  if (!commands) return commands.error();
+  commands_ = std::make_unique<CommandRecorder>(std::move(*commands));
+  times_.reserve(kStages);
+  commands_->begin();
+  FrameRecorder recorder(*commands_, buffers_, detection_->list_close());
+  detection_->record(recorder);
+  detection_->record_end(recorder);
+  return commands_->end();
+}
+
+BrickRange RecordedFrame::reach(const LatticePose& pose) const {
+  // The tool's inside reaches beyond its triangles by less than a grown voxel (EXACTNESS.md, section 2); rounding of the corners
+  // and of vertices adds two steps.
+  const std::int32_t margin = geometry_.tool_grid.size + 5;
+  Int3 low(INT32_MAX), high(INT32_MIN);
+  for (int corner = 0; corner < 8; ++corner) {
+    Int3 v;
+    for (int k = 0; k < 3; ++k) v[k] = (corner >> k & 1) != 0 ? geometry_.tool.box_max[k] + margin : geometry_.tool.box_min[k] - margin;
+    const Int3 p = transform(pose, v);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  BrickRange range;
+  const std::int64_t side = std::int64_t{8} * grid_.size;
+  for (int k = 0; k < 3; ++k) {
+    range.first[k] = std::max(floor_div(std::int64_t{low[k]} - 2 - grid_.origin[k] - 1, side), 0);
+    range.last[k] = std::min(floor_div(std::int64_t{high[k]} + 2 - grid_.origin[k], side), grid_.bricks[k] - 1);
+  }
+  return range;
+}
+
+bool RecordedFrame::empty(const BrickRange& range) const {
+  const auto nx = static_cast<std::size_t>(grid_.bricks.x), ny = static_cast<std::size_t>(grid_.bricks.y);
+  for (std::int32_t z = range.first.z; z <= range.last.z; ++z)
+    for (std::int32_t y = range.first.y; y <= range.last.y; ++y)
+      for (std::int32_t x = range.first.x; x <= range.last.x; ++x)
+        if (brick_slot_[static_cast<std::size_t>(x) + nx * (static_cast<std::size_t>(y) + ny * static_cast<std::size_t>(z))] != gpu::kBrickExternal)
+          return false;
+  return true;
+}
+
+bool RecordedFrame::write_input(const LatticePose& pose, const BrickRange& range, const Held* held) {
+  gpu::FrameInput input{};
+  for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
+  input.translation = pose.translation;
+  input.brick_first = range.first;
+  input.brick_last = range.last;
+  if (held != nullptr) {
+    input.last_direction = held->last_direction;
+    auto* statics = buffers_[gpu::kBindHeldStatics].as<gpu::HeldStatic>();
+    auto* areas = buffers_[gpu::kBindHeldAreas].as<gpu::HeldDirection>();
+    const std::uint64_t room = buffers_[gpu::kBindHeldStatics].bytes() / sizeof *statics;
+    for (const HeldArea& area : held->areas) {
+      if (input.held_areas == gpu::kMaxFrameAreas || input.held_statics + area.static_ids.size() > room) return false;
+      areas[input.held_areas] = {area.direction, area.sheet_sign};
+      for (const std::uint32_t id : area.static_ids) statics[input.held_statics++] = {id, input.held_areas};
+      ++input.held_areas;
+    }
+  }
+  std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
+  return true;
+}
+
+Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Contacts& out) {
+  const auto start = Clock::now();
+  out.times.clear();
+  clear(out);
+  const BrickRange range = pose.beyond_lattice ? BrickRange{} : reach(pose);
+  if (pose.beyond_lattice || empty(range)) {
+    out.times.push_back({"cull", us_since(start)});
+    return {};
+  }
+  if (!tables_clear_)
+    if (auto r = buffers_.clear_tables(device_); !r) return r;
+  tables_clear_ = false;   // until the frame has run to its end
+  if (!write_input(pose, range, held)) {
+    out.truncated = true;
+    out.truncated_capacity = "held triangles";
+    return {};
+  }
+  out.times.push_back({"upload", us_since(start)});
+
+  const auto submitted = Clock::now();
+  if (auto r = commands_->submit(); !r) return r;
+  if (auto r = commands_->wait(); !r) return r;
+  const double device_us = us_since(submitted);
+
+  const auto finished = Clock::now();
+  FrameOutput output;
+  output.result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
+  output.statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>();
+  output.mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>();
+  decode(output, out);
+  tables_clear_ = !out.truncated;
+
+  // Submission: what the wait cost beyond the stages themselves.
+  if (auto r = commands_->times(times_); !r) return r;
+  double stages_us = 0;
+  for (const auto& stage : times_) {
+    out.times.push_back({stage.name, stage.us});
+    stages_us += stage.us;
+  }
+  out.times.push_back({"submit", std::max(0.0, device_us - stages_us)});
+  out.times.push_back({"readback", us_since(finished)});
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Frame>> Frame::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
+                                             const Plan& plan) {
+  auto out = std::make_unique<RecordedFrame>(device, geometry);
+  if (auto r = out->make(scene, plan); !r) return r.error();
+  return std::unique_ptr<Frame>(std::move(out));
 }
 
 }  // namespace palpate

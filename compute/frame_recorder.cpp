@@ -31,10 +31,20 @@ Result<void> FrameBuffers::make(VulkanDevice& device, std::int32_t binding, cons
   if (!buffer) return buffer.error();
   owned_[at(binding)] = std::move(*buffer);
   named_[at(binding)] = &owned_[at(binding)];
+  return {};
+}
+
+Result<void> FrameBuffers::make_table(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes) {
+  if (auto r = make(device, binding, what, bytes); !r) return r;
+  tables_.push_back(binding);
+  return {};
+}
+
+Result<void> FrameBuffers::clear_tables(VulkanDevice& device) const {
   auto recorder = CommandRecorder::create(device);
   if (!recorder) return recorder.error();
   recorder->begin();
-  recorder->fill(owned_[at(binding)], 0);
+  for (const std::int32_t binding : tables_) recorder->fill((*this)[binding], 0);
   return recorder->submit_and_wait();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <span>
@@ -17,11 +19,20 @@ namespace palpate {
 /// The buffers of a frame by the binding numbers of shaders/shared/frame.h and frame_response.h.
 class FrameBuffers {
  public:
+  FrameBuffers() = default;
+  FrameBuffers(const FrameBuffers&) = delete;
+  FrameBuffers& operator=(const FrameBuffers&) = delete;
+
   /// Names a buffer that somebody else owns and that outlives this.
   void name(std::int32_t binding, const VulkanBuffer& buffer) { named_[at(binding)] = &buffer; }
-  /// Makes a buffer and owns it. `what` is for sentences ("pairs"). Filled with 0.
+  /// Makes a buffer and owns it. `what` is for sentences ("pairs"). Contents are undefined.
   Result<void> make(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes,
                     BufferKind kind = BufferKind::kDevice);
+  /// Makes a table: a buffer that is all 0 between frames. The frame empties the entries that it filled; after an overflow
+  /// clear_tables() does.
+  Result<void> make_table(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes);
+  /// Fills all tables with 0 and waits.
+  Result<void> clear_tables(VulkanDevice& device) const;
   /// The buffer behind a binding; there must be one.
   const VulkanBuffer& operator[](std::int32_t binding) const;
   /// Bytes of the buffers that this owns.
@@ -32,6 +43,7 @@ class FrameBuffers {
   static std::size_t at(std::int32_t binding) { return static_cast<std::size_t>(binding); }
   std::array<VulkanBuffer, kBindings> owned_;
   std::array<const VulkanBuffer*, kBindings> named_{};
+  std::vector<std::int32_t> tables_;
 };
 
 /// A shader of the frame. Its module names buffers by frame-wide numbers; the pipeline has them packed from 0.

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Is there contact, is the tool swallowed, and how many groups the response needs. A lone invocation.
-// Reads frame_lists, frame_state; writes dispatches. An overflow before this leaves the response out.
+// Reads frame_lists, frame_state; writes dispatches, starts result. An overflow before this leaves the response out.
 #include "shaders/lib/frame.glsl"
 
 READ_ONE(kBindScene, SceneConstants, scene);
@@ -9,11 +9,16 @@ READ_ONE(kBindFrameInput, FrameInput, frame_input);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 EDIT(kBindDispatches, DispatchArguments, dispatches);
+EDIT_ONE(kBindResult, FrameResult, result);
 
 void main() {
   if (gl_LocalInvocationIndex != 0u) return;
   const uint32_t most = max(max(frame_lists[kListContactStatics].count, frame_lists[kListTouchedVoxels].count), frame_lists[kListPairCandidates].count);
   dispatches[kDispatchReset] = groups_for((most + kGroupSize - 1u) / kGroupSize);
+  result.flags = 0u;   // what the response writes, when it runs
+  result.area_count = 0u;
+  result.swallowed_direction = ivec3(0);
+  result.swallowed_height = 0u;
   if ((frame_state.overflow | frame_state.overflow_other) != 0u) return;
 
   if (frame_state.cst + frame_state.imt + frame_state.est != 0u) {

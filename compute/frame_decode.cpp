@@ -1,0 +1,140 @@
+#include "compute/frame_decode.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <span>
+#include <tuple>
+
+namespace palpate {
+namespace {
+
+using namespace gpu;   // names of shaders/shared/frame.h
+
+/// What overflowed, for the person who reads the truncated answer.
+const char* overflow_name(const FrameState& state) {
+  static constexpr std::array<const char*, kListCount> lists = {
+      "bricks of clusters", "bricks of triangles", "voxels to touch", "touched voxels", "lists of touched voxels", "lists to pair",
+      "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
+      "samples near the tool's surface", "samples", "mobile triangles of areas", "pierced areas", "bricks with samples"};
+  if (state.overflow != 0) {
+    const char* name = lists[static_cast<std::size_t>(std::countr_zero(state.overflow))];
+    return name != nullptr ? name : "lists of the response";
+  }
+  switch (state.overflow_other & (~state.overflow_other + 1)) {
+    case kOverflowPairTable: return "pair table";
+    case kOverflowAreas: return "areas";
+    case kOverflowLoop: return "steps of one invocation";
+    default: return "tables of the response";
+  }
+}
+
+void sort_ids(std::vector<std::uint32_t>& ids) { std::sort(ids.begin(), ids.end()); }
+
+void decode_sets(const FrameOutput& output, Contacts& out) {
+  for (const StaticResult& s : std::span(output.statics, output.result->static_count)) {
+    if ((s.state & kStaticHit) != 0) {
+      out.cst.push_back(s.id);
+      continue;
+    }
+    if ((s.state & kStaticListed) != 0) out.bst.push_back(s.id);
+    if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
+  }
+  for (const MobileResult& m : std::span(output.mobiles, output.result->mobile_count))
+    ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
+  for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) sort_ids(*ids);
+}
+
+void decode_sums(const AreaResult& from, ContactArea& area) {
+  area.id = from.id;
+  area.flags = from.flags;
+  area.direction = from.direction;
+  area.sheet_sign = static_cast<std::int8_t>(from.sheet_sign);
+  area.rays = from.rays;
+  area.max_height = from.max_height;
+  area.weight_sum = from.weight_sum;
+  area.height_sum = from.height_sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    area.moment[k] = {from.moment_low[k], from.moment_high[k]};
+    area.voxel_sum[k] = from.voxel_sum[k];
+  }
+  area.voxel_count = from.voxel_count;
+}
+
+void decode_areas(const FrameOutput& output, Contacts& out) {
+  const FrameResult& result = *output.result;
+  const std::uint32_t count = std::min(result.area_count, kMaxFrameAreas);
+  std::array<std::uint32_t, kMaxFrameAreas> order{}, position{};
+  std::iota(order.begin(), order.begin() + count, 0u);
+  std::sort(order.begin(), order.begin() + count, [&](auto a, auto b) { return result.areas[a].id < result.areas[b].id; });
+  for (std::uint32_t i = 0; i < count; ++i) position[order[i]] = i;
+
+  out.areas.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ContactArea& area = out.areas[i];
+    decode_sums(result.areas[order[i]], area);
+    area.static_ids.clear();
+    area.mobile_ids.clear();
+    area.zones.clear();
+    area.pierces.clear();
+  }
+
+  // Static triangles by area, zone, id; a new zone begins where its label changes.
+  struct Place {
+    std::uint32_t area, zone, id;
+  };
+  std::vector<Place> places;
+  for (const StaticResult& s : std::span(output.statics, result.static_count))
+    if (s.area < count) places.push_back({position[s.area], s.zone, s.id});
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return std::tie(a.area, a.zone, a.id) < std::tie(b.area, b.zone, b.id); });
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    ContactArea& area = out.areas[places[i].area];
+    if (i == 0 || places[i - 1].area != places[i].area || places[i - 1].zone != places[i].zone) area.zones.emplace_back();
+    area.zones.back().push_back(places[i].id);
+    area.static_ids.push_back(places[i].id);
+  }
+
+  for (const AreaMember& m : std::span(output.members, result.member_count)) out.areas[position[m.area]].mobile_ids.push_back(m.mobile);
+  for (const AreaPierce& p : std::span(output.pierces, result.pierce_count)) out.areas[position[p.area]].pierces.push_back(position[p.pierced]);
+  for (ContactArea& area : out.areas) {
+    sort_ids(area.static_ids);
+    sort_ids(area.mobile_ids);
+    sort_ids(area.pierces);
+    std::sort(area.zones.begin(), area.zones.end(), [](const auto& a, const auto& b) { return a.front() < b.front(); });
+  }
+}
+
+}  // namespace
+
+void clear(Contacts& out) {
+  out.contact = false;
+  out.truncated = false;
+  out.truncated_capacity = "";
+  out.pairs = 0;
+  for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) ids->clear();
+  out.areas.clear();
+  out.flags = 0;
+  out.swallowed_direction = Int3(0);
+  out.swallowed_height = 0;
+}
+
+void decode(const FrameOutput& output, Contacts& out) {
+  clear(out);
+  const FrameResult& result = *output.result;
+  if ((result.state.overflow | result.state.overflow_other) != 0) {
+    out.truncated = true;
+    out.truncated_capacity = overflow_name(result.state);
+    return;
+  }
+  out.contact = result.state.contact != 0;
+  out.pairs = result.pair_count;
+  decode_sets(output, out);
+  if (!out.contact) return;
+  out.flags = result.flags;
+  out.swallowed_direction = result.swallowed_direction;
+  out.swallowed_height = result.swallowed_height;
+  decode_areas(output, out);
+}
+
+}  // namespace palpate

@@ -1,0 +1,46 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "compute/frame_recorder.h"
+#include "compute/prepared_scene.h"
+#include "compute/vulkan_device.h"
+#include "model/plan.h"
+#include "model/result.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+
+/// The first half of a frame: from the pose to the contact sets, pairs and counting samples (docs/EXACTNESS.md sections 3, 4),
+/// and the frame's last step, which empties what it filled. Makes its own buffers and pipelines.
+class FrameDetection {
+ public:
+  /// Makes the buffers of the lists and tables into `buffers`. `scene` and `buffers` outlive this.
+  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const SceneGeometry& geometry,
+                                                        const PreparedScene& scene, FrameBuffers& buffers);
+
+  /// From the pose to frame_state and the response's group counts.
+  void record(FrameRecorder& recorder) const;
+  /// After the response: counts to the host, tables back to 0.
+  void record_end(FrameRecorder& recorder) const;
+  /// Every list's capacity that was made here; 0 for others.
+  const std::array<std::uint32_t, gpu::kListCount>& capacities() const { return capacities_; }
+  const FrameShader& list_close() const { return list_close_; }
+
+ private:
+  FrameDetection() = default;
+  Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, FrameBuffers& buffers);
+  Result<void> make_shaders(VulkanDevice& device);
+  void record_samples(FrameRecorder& recorder) const;
+
+  bool refined_ = false;
+  bool tool_has_inside_ = false;
+  std::uint32_t tool_vertices_ = 0, tool_clusters_ = 0;
+  std::array<std::uint32_t, gpu::kListCount> capacities_{};
+  FrameShader list_close_, frame_begin_, tool_transform_, tool_clusters_find_, brick_triangles_, brick_voxels_, voxel_touch_,
+      pair_collect_, pair_test_, voxel_statics_, sample_bricks_, sample_voxels_, sample_touched_, sample_scan_, sample_winding_,
+      set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
+};
+
+}  // namespace palpate
