@@ -1,6 +1,53 @@
 #include "compute/prepared_scene.h"
 
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "compute/prepare_partition.h"
+#include "compute/prepare_seams.h"
+#include "compute/prepare_steps.h"
+
 namespace palpate {
+namespace {
+
+/// Puts a mesh on the device as it is; `neighbours` only for the mock-up.
+BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool neighbours) {
+  BodyBuffers out;
+  out.vertices = steps.filled("vertices", mesh.vertices);
+  out.triangles = steps.filled("triangles", mesh.triangles);
+  std::vector<std::uint32_t> info(mesh.triangles.size());
+  for (std::size_t i = 0; i < info.size(); ++i)
+    info[i] = mesh.flags[i] | static_cast<std::uint32_t>(mesh.sample_axis[i]) << gpu::kInfoAxisShift;
+  out.triangle_info = steps.filled("flags of triangles", info);
+  out.unit_normal = steps.filled("normals", mesh.unit_normal_q30);
+  out.sample_weight = steps.filled("weights of samples", mesh.sample_weight_q30);
+  static const std::vector<std::uint32_t> none{0};
+  out.neighbour_begin = steps.filled("neighbours", neighbours ? mesh.neighbour_begin : none);
+  out.neighbours = steps.filled("neighbours", neighbours ? mesh.neighbours : none);
+  return out;
+}
+
+gpu::BodyConstants constants_of(const LatticeMesh& mesh, const BodyBuffers& body) {
+  gpu::BodyConstants out{};
+  out.vertices = static_cast<std::uint32_t>(mesh.vertices.size());
+  out.triangles = static_cast<std::uint32_t>(mesh.triangles.size());
+  out.closed = mesh.closed ? 1 : 0;
+  out.has_internal = body.partition.has_internal ? 1 : 0;
+  out.grid = body.partition.grid;
+  return out;
+}
+
+/// Buffers of a partition that is not made: each can be bound.
+void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
+  for (VulkanBuffer* buffer :
+       {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) {
+    *buffer = steps.buffer("unused", 1);
+    if (steps.ok()) steps.fill(*buffer, 0);
+  }
+}
+
+}  // namespace
 
 std::uint64_t PreparedScene::memory_bytes() const {
   std::uint64_t sum = scene.bytes();
@@ -15,12 +62,37 @@ std::uint64_t PreparedScene::memory_bytes() const {
   return sum;
 }
 
-Result<PreparedScene> prepare_scene(VulkanDevice&, const SceneGeometry&, const Plan&, const Progress&) {
-  return Error{ErrorCode::kInternal, "preparation is not written yet"};
-}
+Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
+                                    const Progress& progress) {
+  const bool refined = plan.profile == Profile::kRefined;
+  PrepareSteps steps(device, progress);
+  PreparedScene out;
+  out.mockup = upload_body(steps, geometry.mockup, true);
+  out.tool = upload_body(steps, geometry.tool, false);
 
-Result<VoxelPartition> read_partition(VulkanDevice&, const PartitionBuffers&) {
-  return Error{ErrorCode::kInternal, "preparation is not written yet"};
+  const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
+  classify(steps, geometry.mockup, pairs, out.mockup);
+  find_seams(steps, geometry, refined, out.mockup);
+  if (refined) {
+    const VoxelPairs tool_pairs =
+        build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);
+    classify(steps, geometry.tool, tool_pairs, out.tool);
+  } else {
+    make_empty(steps, out.tool.partition);
+  }
+  out.tool.seam_begin = steps.buffer("unused", 1);
+  out.tool.seams = steps.buffer("unused", 1);
+
+  out.constants.mockup = constants_of(geometry.mockup, out.mockup);
+  out.constants.tool = constants_of(geometry.tool, out.tool);
+  out.constants.tool_gc = geometry.tool_gc;
+  out.constants.tool_radius = geometry.tool_radius;
+  out.constants.sample_spacing = geometry.sample_spacing;
+  out.constants.refined = refined ? 1 : 0;
+  out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
+  steps.progress("prepared", 1);
+  if (!steps.ok()) return steps.error();
+  return out;
 }
 
 }  // namespace palpate

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"
-#include "shaders/shared/prepare.h"
+#include "shaders/lib/scan.glsl"
 
 layout(scalar, set = 0, binding = 0) buffer Values { uint32_t values[]; };
 layout(scalar, set = 0, binding = 1) readonly buffer Bases { uint32_t bases[]; };
@@ -17,6 +17,6 @@ void main() {
   for (uint32_t i = first; i < end; ++i) {
     uint32_t value = values[i];
     values[i] = sum;
-    sum += value;
+    sum = add_saturated(sum, value);
   }
 }

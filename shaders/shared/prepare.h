@@ -1,11 +1,56 @@
-// Bounds of preparation, for its shaders and compute/.
+// Bounds and push constants of preparation, for its shaders and compute/.
 #ifndef PALPATE_SHARED_PREPARE_H
 #define PALPATE_SHARED_PREPARE_H
 #include "shaders/shared/base.h"
 
 PALPATE_SHARED_BEGIN
 
-PALPATE_CONSTANT uint32_t kScanChunk = 64u;   // numbers that one invocation of a prefix sum adds
+// Bounds on what one invocation does, so that it stays far below the 32,000 loop iterations that lavapipe runs.
+PALPATE_CONSTANT uint32_t kScanChunk = 64u;        // numbers that one invocation of a prefix sum adds
+PALPATE_CONSTANT uint32_t kSmallCells = 64u;       // bricks in the box of a triangle that is tested against them at once
+PALPATE_CONSTANT int32_t kTopCells = 8;            // cells along an axis at the coarsest level
+PALPATE_CONSTANT uint32_t kSortChunk = 64u;        // entries that one invocation sorts
+PALPATE_CONSTANT uint32_t kFindSteps = 256u;       // steps towards a root, before a union is left to the next run
+PALPATE_CONSTANT uint32_t kUnionTries = 16u;       // lost races of a union, before it is left to the next run
+PALPATE_CONSTANT int32_t kMostBricksAlong = 3500;  // bricks along an axis: a row is swept by one invocation, 9 steps a brick
+PALPATE_CONSTANT uint32_t kMostMixedBricks = 1u << 23;   // slot · 512 + bit fits 32 bits
+PALPATE_CONSTANT uint32_t kSeamSpan = 1024u;       // partners of a triangle in a voxel that one invocation tests
+
+// Values of triangle_expand.comp's constant SOURCE.
+PALPATE_CONSTANT uint32_t kSourceSmall = 0u;   // all triangles whose box holds at most kSmallCells bricks
+PALPATE_CONSTANT uint32_t kSourceLarge = 1u;   // all others
+PALPATE_CONSTANT uint32_t kSourceItems = 2u;   // items of the level above
+
+struct ExpandPush {
+  ivec3 origin;      // of the grid
+  int32_t side;      // of a child cell, steps
+  ivec3 cells;       // child cells along each axis
+  int32_t growth;    // steps by which a cell grows before it is asked what it touches
+  ivec3 parents;     // parent cells along each axis (items only)
+  uint32_t count;    // triangles or items
+  ivec3 bricks;      // along each axis
+  int32_t brick_side;
+};
+PALPATE_ASSERT_SIZE(ExpandPush, 64);
+
+struct VoxelPush {
+  ivec3 origin;
+  int32_t size;      // of a voxel
+  ivec3 bricks;
+  int32_t growth;
+  uint32_t count;    // items
+  uint32_t out_base; // first pair of this list
+};
+PALPATE_ASSERT_SIZE(VoxelPush, 40);
+
+struct GridPush {
+  ivec3 origin;
+  int32_t size;      // of a voxel
+  ivec3 bricks;
+  uint32_t count;    // items
+  uint32_t axis;     // or number of axes
+};
+PALPATE_ASSERT_SIZE(GridPush, 36);
 
 PALPATE_SHARED_END
 #endif

@@ -1,0 +1,13 @@
+#pragma once
+#include "compute/prepare_steps.h"
+#include "compute/prepared_scene.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+
+/// Seams of the mock-up (docs/EXACTNESS.md section 5): pairs of triangles that share no edge, make a smooth angle and touch
+/// in more than one common corner. Fills seam_begin, seams and seam_entries of `body`; none unless `refined`.
+/// Before: the partition's lists.
+void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool refined, BodyBuffers& body);
+
+}  // namespace palpate

@@ -1,0 +1,64 @@
+// One invocation: a mixed brick. Finds the components of its voxels that are not boundary, connected through faces inside
+// the brick, by flooding eight slices of 64 bits. Writes their number, and each voxel's component in bit planes: bit k
+// of the component of voxel `bit` is bit of labels[slot · 128 + k · 16 …]. Before: labels are 0.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/item.glsl"
+#include "shaders/shared/scene.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Bricks { Brick bricks[]; };
+layout(scalar, set = 0, binding = 1) buffer Labels { uint32_t labels[]; };
+layout(scalar, set = 0, binding = 2) writeonly buffer Counts { uint32_t counts[]; };
+layout(push_constant, scalar) uniform Push { uint32_t count; };
+
+const uint64_t kColumn0 = 0x0101010101010101ul;   // voxels with x = 0
+const uint64_t kColumn7 = 0x8080808080808080ul;
+
+void main() {
+  uint32_t slot = item_index();
+  if (slot >= count) return;
+  uint64_t open[8];   // voxels without a component yet
+  uint64_t left = 0ul;
+  for (int32_t z = 0; z < 8; ++z) {
+    open[z] = ~(uint64_t(bricks[slot].boundary[2 * z]) | uint64_t(bricks[slot].boundary[2 * z + 1]) << 32);
+    left |= open[z];
+  }
+  uint32_t components = 0u;
+  while (left != 0ul) {   // at most 256 times (a chequered brick)
+    uint64_t region[8];
+    bool seeded = false;
+    for (int32_t z = 0; z < 8; ++z) {
+      region[z] = seeded ? 0ul : open[z] & (~open[z] + 1ul);
+      seeded = seeded || open[z] != 0ul;
+    }
+    bool grown = true;
+    while (grown) {
+      grown = false;
+      for (int32_t z = 0; z < 8; ++z) {
+        uint64_t r = region[z];
+        if (z > 0) r |= region[z - 1];
+        if (z < 7) r |= region[z + 1];
+        r &= open[z];
+        r |= (r << 1 & ~kColumn0) | (r >> 1 & ~kColumn7) | r << 8 | r >> 8;
+        r &= open[z];
+        grown = grown || r != region[z];
+        region[z] = r;
+      }
+    }
+    left = 0ul;
+    for (int32_t z = 0; z < 8; ++z) {
+      open[z] &= ~region[z];
+      left |= open[z];
+    }
+    for (uint32_t plane = 0u; plane < 8u; ++plane) {
+      if ((components >> plane & 1u) == 0u) continue;
+      for (int32_t z = 0; z < 8; ++z) {
+        uint32_t word = slot * 128u + plane * 16u + 2u * uint32_t(z);
+        labels[word] |= uint32_t(region[z]);
+        labels[word + 1u] |= uint32_t(region[z] >> 32);
+      }
+    }
+    ++components;
+  }
+  counts[slot] = components;
+}

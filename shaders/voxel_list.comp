@@ -1,0 +1,65 @@
+// One invocation: an item (triangle, brick). Finds the brick's voxels that, closed and grown, touch the triangle.
+// EMIT 0: marks them as boundary and writes their number to counts. EMIT 1: reads counts, now prefix sums, writes pairs
+// (triangle, compact index of the voxel) and counts the triangles of each voxel. Before EMIT 1: first[] of every brick.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/cells.glsl"
+#include "shaders/lib/item.glsl"
+#include "shaders/lib/triangle_voxel.glsl"
+#include "shaders/shared/prepare.h"
+#include "shaders/shared/scene.h"
+
+layout(constant_id = 0) const uint32_t EMIT = 0u;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Vertices { ivec3 vertices[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Triangles { uvec3 triangles[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer ItemTriangle { uint32_t item_triangle[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer ItemCell { uint32_t item_cell[]; };
+layout(scalar, set = 0, binding = 4) readonly buffer BrickSlot { uint32_t brick_slot[]; };
+layout(scalar, set = 0, binding = 5) buffer Bricks { Brick bricks[]; };
+layout(scalar, set = 0, binding = 6) buffer Counts { uint32_t counts[]; };
+layout(scalar, set = 0, binding = 7) writeonly buffer PairTriangle { uint32_t pair_triangle[]; };
+layout(scalar, set = 0, binding = 8) writeonly buffer PairVoxel { uint32_t pair_voxel[]; };
+layout(scalar, set = 0, binding = 9) buffer ListCount { uint32_t list_count[]; };
+layout(push_constant, scalar) uniform Push { VoxelPush push; };
+
+void main() {
+  uint32_t item = item_index();
+  if (item >= push.count) return;
+  uint32_t t = item_triangle[item], brick = item_cell[item], slot = brick_slot[brick];
+  uvec3 corner = triangles[t];
+  ivec3 a = vertices[corner.x], b = vertices[corner.y], c = vertices[corner.z];
+  ivec3 base = cell_of_number(brick, push.bricks) * 8;
+  ivec3 first = max(first_cell(min(a, min(b, c)), push.origin, push.size, push.growth), base) - base;
+  ivec3 last = min(last_cell(max(a, max(b, c)), push.origin, push.size, push.growth, push.bricks * 8), base + 7) - base;
+  ivec3 corner_of_brick = push.origin + base * push.size;
+  i64vec3 n = raw_normal(a, b, c);
+  uint32_t at = EMIT != 0u ? push.out_base + counts[item] : 0u;
+  uint32_t found = 0u;
+  for (int32_t z = first.z; z <= last.z; ++z)
+    for (int32_t y = first.y; y <= last.y; ++y) {
+      uint32_t row = 0u;   // bits of this row's touched voxels
+      for (int32_t x = first.x; x <= last.x; ++x) {
+        ivec3 lo = corner_of_brick + ivec3(x, y, z) * push.size;
+        if (triangle_touches_box(a, b, c, n, lo - push.growth, lo + push.size + push.growth)) row |= 1u << x;
+      }
+      if (row == 0u) continue;
+      uint32_t bit = uint32_t(y) << 3 | uint32_t(z) << 6;   // of the row's first voxel
+      uint32_t word = bit >> 5, shift = bit & 31u;
+      if (EMIT == 0u) {
+        atomicOr(bricks[slot].boundary[word], row << shift);
+        found += uint32_t(bitCount(row));
+      } else {
+        uint32_t boundary = bricks[slot].boundary[word], index = bricks[slot].first[word];
+        for (uint32_t rest = row << shift; rest != 0u; rest &= rest - 1u) {
+          uint32_t below = (rest & (~rest + 1u)) - 1u;
+          uint32_t voxel = index + uint32_t(bitCount(boundary & below));
+          pair_triangle[at + found] = t;
+          pair_voxel[at + found] = voxel;
+          ++found;
+          atomicAdd(list_count[voxel], 1u);
+        }
+      }
+    }
+  if (EMIT == 0u) counts[item] = found;
+}
