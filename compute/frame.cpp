@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "compute/frame_decode.h"
 #include "compute/frame_detection.h"
 #include "compute/frame_recorder.h"
+#include "compute/frame_response.h"
 
 namespace palpate {
 namespace {
@@ -51,6 +53,7 @@ class RecordedFrame final : public Frame {
   std::vector<std::uint32_t> brick_slot_;   ///< the mock-up's, on the host: to leave out frames that can't touch
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
+  std::optional<FrameResponse> response_;
   std::unique_ptr<CommandRecorder> commands_;
   std::vector<CommandRecorder::StageTime> times_;
   bool tables_clear_ = false;
@@ -81,6 +84,15 @@ Result<void> RecordedFrame::make(const PreparedScene& scene, const Plan&) {
   auto detection = FrameDetection::create(device_, geometry_, scene, buffers_);
   if (!detection) return detection.error();
   detection_ = std::move(*detection);
+
+  FrameResponse::Sizes sizes;
+  sizes.refined = scene.constants.refined != 0;
+  sizes.tool_triangles = scene.constants.tool.triangles;
+  sizes.statics = detection_->capacities()[gpu::kListContactStatics];
+  sizes.samples = sizes.refined ? detection_->capacities()[gpu::kListSamples] : 0;
+  auto response = FrameResponse::create(device_, sizes, buffers_);
+  if (!response) return response.error();
+  response_.emplace(std::move(*response));
   if (auto r = set_capacities(); !r) return r;
   return record();
 }
@@ -88,11 +100,12 @@ Result<void> RecordedFrame::make(const PreparedScene& scene, const Plan&) {
 Result<void> RecordedFrame::set_capacities() {
   std::array<gpu::FrameList, gpu::kListCount> lists{};
   for (std::size_t i = 0; i < lists.size(); ++i) lists[i].capacity = detection_->capacities()[i];
+  for (const auto& list : FrameResponse::kCapacities) lists[list.list].capacity = list.items;
   return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
 }
 
 Result<void> RecordedFrame::record() {
-  constexpr std::uint32_t kStages = 32;
+  constexpr std::uint32_t kStages = 32;   // most calls of stage()
   auto commands = CommandRecorder::create(device_, kStages);
   if (!commands) return commands.error();
   commands_ = std::make_unique<CommandRecorder>(std::move(*commands));
@@ -100,6 +113,8 @@ Result<void> RecordedFrame::record() {
   commands_->begin();
   FrameRecorder recorder(*commands_, buffers_, detection_->list_close());
   detection_->record(recorder);
+  response_->record(recorder);
+  recorder.barrier();
   detection_->record_end(recorder);
   return commands_->end();
 }
@@ -186,6 +201,8 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   output.result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
   output.statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>();
   output.mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>();
+  output.members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>();
+  output.pierces = buffers_[gpu::kBindResultPierces].as<gpu::AreaPierce>();
   decode(output, out);
   tables_clear_ = !out.truncated;
 

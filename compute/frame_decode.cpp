@@ -7,6 +7,8 @@
 #include <span>
 #include <tuple>
 
+#include "compute/frame_response.h"
+
 namespace palpate {
 namespace {
 
@@ -14,20 +16,16 @@ using namespace gpu;   // names of shaders/shared/frame.h
 
 /// What overflowed, for the person who reads the truncated answer.
 const char* overflow_name(const FrameState& state) {
-  static constexpr std::array<const char*, kListCount> lists = {
+  static constexpr std::array<const char*, kListResponseFirst> lists = {
       "bricks of clusters", "bricks of triangles", "voxels to touch", "touched voxels", "lists of touched voxels", "lists to pair",
       "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
-      "samples near the tool's surface", "samples", "mobile triangles of areas", "pierced areas", "bricks with samples"};
-  if (state.overflow != 0) {
-    const char* name = lists[static_cast<std::size_t>(std::countr_zero(state.overflow))];
-    return name != nullptr ? name : "lists of the response";
-  }
-  switch (state.overflow_other & (~state.overflow_other + 1)) {
-    case kOverflowPairTable: return "pair table";
-    case kOverflowAreas: return "areas";
-    case kOverflowLoop: return "steps of one invocation";
-    default: return "tables of the response";
-  }
+      "samples near the tool's surface", "samples", "tool triangles of areas", "pierced areas", "bricks with samples"};
+  const auto first = static_cast<std::size_t>(std::countr_zero(state.overflow));   // 32 when none
+  if (first < lists.size()) return lists[first];
+  if ((state.overflow_other & kOverflowPairTable) != 0) return "pair table";
+  if ((state.overflow_other & kOverflowLoop) != 0) return "steps of one invocation";
+  const char* name = FrameResponse::overflow_name(state.overflow, state.overflow_other);
+  return name != nullptr ? name : "an unnamed list";
 }
 
 void sort_ids(std::vector<std::uint32_t>& ids) { std::sort(ids.begin(), ids.end()); }

@@ -66,9 +66,11 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kListSampleChunks, kBindSampleChunks, "lists with samples", capacity(refined_ ? voxels + entries / kSampleChunk : 1, kMostPairs), sizeof(SampleChunk)},
       {kListOpenSamples, kBindOpenSamples, "samples near the tool's surface", capacity(refined_ ? kLargeList : 1, kLargeList), sizeof(FrameSample)},
       {kListSamples, kBindSamples, "samples", capacity(refined_ ? kLargeList : 1, kLargeList), sizeof(FrameSample)},
+      {kListMembers, kBindResultMembers, "tool triangles of areas", capacity(std::max(kSmallList, 4 * std::uint64_t{tool.triangles}), kMostPairs), sizeof(AreaMember), BufferKind::kReadback},
+      {kListPierces, kBindResultPierces, "pierced areas", kMaxFrameAreas * kMaxFrameAreas, sizeof(AreaPierce), BufferKind::kReadback},
   };
   for (const List& l : lists) {
-    if (auto r = buffers.make(device, l.binding, l.what, l.capacity * l.item_bytes); !r) return r;
+    if (auto r = buffers.make(device, l.binding, l.what, l.capacity * l.item_bytes, l.kind); !r) return r;
     capacities_[l.list] = l.capacity;
   }
 

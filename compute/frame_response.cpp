@@ -15,6 +15,7 @@ struct BufferPlan {
   std::int32_t binding;
   const char* what;
   std::uint64_t bytes;
+  bool table = false;   // all 0 between frames
 };
 
 }  // namespace
@@ -30,13 +31,16 @@ Result<FrameResponse> FrameResponse::create(VulkanDevice& device, const Sizes& s
            {kBindParents, "union-find of contact triangles", statics * 2 * sizeof(std::uint32_t)},
            {kBindMobileWork, "tool triangles of areas", sizes.tool_triangles * sizeof(MobileWork)},
            {kBindHeights, "heights", heights * sizeof(std::uint32_t)},
-           {kBindHeldOverlap, "overlaps with held areas", refined * kMaxFrameAreas * sizes.held_areas * sizeof(std::uint32_t)},
+           {kBindHeldOverlap, "overlaps with held areas", refined * kMaxFrameAreas * sizes.held_areas * sizeof(std::uint32_t), true},
            {kBindMobileTiles, "tiles of tool samples", refined * kCapacities[0].items * sizeof(MobileTile)},
            {kBindSlotBoxes, "boxes of contact triangles", refined * slot_boxes * sizeof(LatticeBox)},
-           {kBindNeedleTable, "table of needle vertices", refined * kNeedleTable * sizeof(std::uint32_t)},
+           {kBindNeedleTable, "table of needle vertices", refined * kNeedleTable * sizeof(std::uint32_t), true},
            {kBindNeedleVertices, "needle vertices", refined * kCapacities[1].items * sizeof(NeedleVertex)},
        })
-    if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes); !made) return made.error();
+    if (auto made = plan.table ? buffers.make_table(device, plan.binding, plan.what, plan.bytes)
+                               : buffers.make(device, plan.binding, plan.what, plan.bytes);
+        !made)
+      return made.error();
 
   FrameResponse out;
   out.refined_ = sizes.refined;
