@@ -1,0 +1,166 @@
+"""`palpate query`: fields, answers that are known, both back ends, exported geometry."""
+from harness import *
+
+FIELDS = ['pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'truncated', 'time_us']
+AREA_FIELDS = ['id', 'zones', 'static', 'mobile', 'normal', 'depth', 'point', 'force', 'torque', 'flags']
+SETS = ['cst', 'bst', 'cmt', 'bmt', 'imt', 'est']
+HEADER = 'x,y,z,qx,qy,qz,qw\n'
+PRESSED = '0 0 0.018 0 0 0 1'   # the ball of 20 mm, 2 mm deep in the block
+
+
+
+def without_time(line):
+    return {key: value for key, value in line.items() if key != 'time_us'}
+
+
+def test_a_line_has_the_contracts_fields_in_its_order():
+    folder = Folder()
+    (line,) = lines_of(palpate('query', folder.save(), '--pose', PRESSED))
+    expect(list(line) == FIELDS, list(line))
+    expect(line['pose'] == 0 and line['contact'] is True and line['truncated'] is False, line)
+    (area,) = line['areas']
+    expect(list(area) == AREA_FIELDS, list(area))
+    expect(list(line['time_us'])[0] == 'total' and line['time_us']['total'] > 0, line['time_us'])
+    for name in SETS:
+        expect(line[name] == sorted(set(line[name])), f'{name} is not ascending')
+    expect(area['static'] == sorted(area['static']) and area['id'] == area['static'][0], area)
+    expect(sorted(i for zone in area['zones'] for i in zone) == area['static'], 'zones partition the area')
+
+
+def test_a_ball_pressed_into_a_block_is_pushed_out_with_k_times_d():
+    folder = Folder()
+    (line,) = lines_of(palpate('query', folder.save(), '--pose', PRESSED))
+    (area,) = line['areas']
+    h = 2e-3
+    mean = math.pi * h * h * (3 * 0.02 - h) / 3 / (math.pi * (2 * 0.02 * h - h * h))   # METHOD section 8
+    expect(abs(area['depth'] / mean - 1) < 0.10, f"d {area['depth']} m instead of {mean} m; 12 rows of facets and samples allow 10 %")
+    expect(area['normal'][2] > math.cos(math.radians(0.5)), area['normal'])
+    expect(abs(line['force'][2] - 2000 * area['depth'] * area['normal'][2]) < 1e-9, line['force'])   # rounding of a product
+
+
+def test_free_near_and_far():
+    folder = Folder()
+    folder.write('poses.csv', HEADER + '0,0,0.03,0,0,0,1\n1,0,0,0,0,0,1\n1e6,0,0,0,0,0,1\n-1e300,1e300,0,0.6,0,0,0.8\n')
+    lines = lines_of(palpate('query', folder.save(), '--poses', folder / 'poses.csv'))
+    expect(len(lines) == 4, len(lines))
+    for i, line in enumerate(lines):
+        expect(line['pose'] == i and line['contact'] is False and line['pairs'] == 0, line)
+        expect(line['areas'] == [] and line['force'] == [0, 0, 0] and line['torque'] == [0, 0, 0] and line['cst'] == [], line)
+
+
+def test_a_negative_number_may_come_first():
+    folder = Folder()
+    (line,) = lines_of(palpate('query', folder.save(), '--pose', '-0.01 0 0.018 0 0 0 1'))
+    expect(line['contact'], line)
+
+
+def test_a_tool_equal_to_the_mock_up_is_answered():
+    folder = Folder()
+    path = folder.save(tool={'mesh': 'block.stl', 'units': 'm'})
+    (line,) = lines_of(palpate('query', path, '--pose', '0 0 0 0 0 0 1'))
+    expect(line['contact'] and not line['truncated'], line)
+    expect(line['cst'] == list(range(12)) and line['cmt'] == list(range(12)), line)   # every face lies on its twin
+    expect(line['pairs'] >= 12, line['pairs'])
+    expect(all(math.isfinite(v) for v in line['force'] + line['torque']), line['force'])
+
+
+def test_batch_is_named_and_changes_only_times():
+    folder = Folder()
+    path = folder.save()
+    folder.write('poses.csv', HEADER + ''.join(f'0,0,{0.015 + 0.001 * i},0,0,0,1\n' for i in range(7)))
+    alone = lines_of(palpate('query', path, '--poses', folder / 'poses.csv'))
+    batch = lines_of(palpate('query', path, '--poses', folder / 'poses.csv', '--batch', '3'))
+    expect(all(line['batch'] == 3 for line in batch), batch[0])
+    for a, b in zip(alone, batch, strict=True):
+        b.pop('batch')
+        expect(without_time(a) == without_time(b), f"pose {a['pose']} differs")
+
+
+def test_profile_paper_has_no_est():
+    folder = Folder()
+    (line,) = lines_of(palpate('query', folder.save(), '--pose', PRESSED, '--profile', 'paper'))
+    expect(line['est'] == [] and line['contact'], line)
+
+
+def generated(folder):
+    outcome = palpate('generate', 'contacts', '--triangles', '2000', '--tool-triangles', '1000', '--out', folder / 'contacts')
+    expect(outcome.code == 0, outcome)
+    return folder / 'contacts' / 'scene.json'
+
+
+def test_both_back_ends_and_both_plans_answer_alike_to_the_bit():
+    folder = Folder()
+    folder.write('poses.csv', HEADER + ''.join(f'{0.001 * i},0.0007,{0.0205 - 0.0011 * i},{0.6 * (i % 2)},0,0,{1 - 0.2 * (i % 2)}\n' for i in range(12)))
+    scene = folder.save()
+    for profile in ('refined', 'paper'):
+        answers = {}
+        for backend in ('cpu', 'gpu'):
+            for plan in ('auto', 'full'):
+                outcome = palpate('query', scene, '--poses', folder / 'poses.csv', '--backend', backend, '--plan', plan, '--profile', profile)
+                if backend == 'gpu' and outcome.code == 4:
+                    raise AssertionError('no Vulkan device: install mesa-vulkan-drivers (scripts/packages.txt)')
+                answers[backend, plan] = [without_time(line) for line in lines_of(outcome)]
+        expect(any(line['contact'] for line in answers['cpu', 'full']), 'the poses should touch')
+        for key, lines in answers.items():
+            for reference, line in zip(answers['cpu', 'full'], lines, strict=True):
+                for field in reference:
+                    expect(line[field] == reference[field], f"{profile} {key}, pose {line['pose']}, {field}: {line[field]} instead of {reference[field]}")
+
+
+def test_both_back_ends_agree_along_a_generated_scenes_path():
+    folder = Folder()
+    scene = generated(folder)
+    run = palpate('run', scene, '--pace', 'asap', '--out', folder / 'run')
+    expect(run.code == 0, run)
+    rows = [row.split(',') for row in (folder / 'run' / 'trace.csv').read_text().splitlines()]
+    touching = [row for row in rows[1:] if row[rows[0].index('contact')] not in ('0', 'false')]
+    expect(len(touching) > 20, 'the path should touch')
+    chosen = touching[:: max(1, len(touching) // 8)]
+    folder.write('poses.csv', HEADER + ''.join(','.join(row[1:8]) + '\n' for row in chosen))
+    cpu = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--backend', 'cpu'))
+    gpu = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--backend', 'gpu'))
+    expect(any(line['areas'] for line in cpu), 'some pose should have an area')
+    for a, b in zip(cpu, gpu, strict=True):
+        for field in a:
+            expect(field == 'time_us' or a[field] == b[field], f"pose {a['pose']}, {field}: cpu {a[field]}, gpu {b[field]}")
+
+
+def test_exported_geometry_is_what_was_judged():
+    folder = Folder()
+    folder.write('poses.csv', HEADER + '0,0,0.018,0,0,0,1\n0.01,0,0.019,0.6,0,0,0.8\n1e9,0,0,0,0,0,1\n')
+    outcome = palpate('query', folder.save(), '--poses', folder / 'poses.csv', '--export-geometry', folder / 'judged')
+    expect(outcome.code == 0, outcome)
+    judged = folder / 'judged'
+    lattice = json.loads((judged / 'lattice.json').read_text())
+    expect(list(lattice) == ['step_m', 'origin_m'], lattice)
+    expect(math.frexp(lattice['step_m'])[0] == 0.5, 'the step is a power of two of a metre')
+
+    def metres(name):
+        words = (judged / name).read_bytes()
+        values = struct.unpack(f'<{len(words) // 4}i', words)
+        return [tuple(lattice['origin_m'][i % 3] + lattice['step_m'] * v for i, v in enumerate(values[k:k + 3])) for k in range(0, len(values), 3)]
+    block, ball = box((0.2, 0.2, 0.04), (0, 0, -0.02)), sphere(0.02)
+    # Corners: half a step of snapping an axis, once more for a pose, and float32 in the file (6e-9 of 0.1 m).
+    for name, triangles, shift in (('static.i32', block, (0, 0, 0)), ('tool_0.i32', ball, (0, 0, 0.018))):
+        seen = metres(name)
+        expect(len(seen) == 3 * len(triangles), f'{name}: {len(seen)} corners')
+        for corner, given in zip(seen, (c for t in triangles for c in t), strict=True):
+            expect(all(abs(corner[i] - given[i] - shift[i]) < 2 * lattice['step_m'] + 2e-8 for i in range(3)), f'{name}: {corner} {given}')
+    expect((judged / 'tool_1.i32').stat().st_size == 36 * len(ball), 'one file a pose')
+    expect(not (judged / 'tool_2.i32').exists() and 'pose 2' in outcome.err, 'a pose beyond the lattice has no coordinates')
+
+    voxels = json.loads((judged / 'voxels.json').read_text())
+    expect(list(voxels) == ['size', 'origin', 'counts'], voxels)
+    classes = (judged / 'voxels.u8').read_bytes()
+    nx, ny, nz = voxels['counts']
+    expect(len(classes) == nx * ny * nz and set(classes) == {0, 1, 2}, 'a block has all three classes')
+
+    def class_at(point):
+        i, j, k = (math.floor(((point[a] - lattice['origin_m'][a]) / lattice['step_m'] - voxels['origin'][a]) / voxels['size']) for a in range(3))
+        return classes[i + nx * (j + ny * k)]
+    expect(class_at((0.01, 0.02, -0.02)) == 2, 'the middle of the block is inside')
+    expect(class_at((0.0123, 0.0077, -1e-9)) == 1, 'its top is boundary')
+    expect(classes[0] == 0 and classes[-1] == 0, 'the corners of the grid are outside')
+
+
+main(globals())

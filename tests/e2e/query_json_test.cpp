@@ -1,0 +1,72 @@
+// One spelling of a frame for `query` and frames.jsonl.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "service/query_json.h"
+
+namespace palpate {
+namespace {
+
+TEST(QueryLine, HasTheContractsFieldsInItsOrder) {
+  Contacts contacts;
+  contacts.contact = true;
+  contacts.pairs = 3;
+  contacts.cst = {1, 2};
+  contacts.imt = {9};
+  contacts.times = {{"detect", 12.5}};
+  ContactArea area;
+  area.id = 1;
+  area.zones = {{1}, {2}};
+  area.static_ids = {1, 2};
+  area.mobile_ids = {9};
+  contacts.areas = {area};
+  ContactResponse response;
+  AreaResponse of_area;
+  of_area.normal = Vec3(0, 0, 1);
+  of_area.depth = 0.1;
+  of_area.flags = kFlagNeedle | kFlagHeld;
+  response.areas = {of_area};
+  response.wrench.force = Vec3(0, 0, 1.0 / 3);
+  response.flags = kFlagNeedle;
+  std::string out;
+  append_query_line({4, 20, std::nullopt, 12}, contacts, response, out);
+  EXPECT_EQ(out,
+            R"({"pose":4,"contact":true,"pairs":3,"cst":[1,2],"bst":[],"cmt":[],"bmt":[],"imt":[9],"est":[],)"
+            R"("areas":[{"id":1,"zones":[[1],[2]],"static":[1,2],"mobile":[9],"normal":[0,0,1],"depth":0.1,"point":[0,0,0],)"
+            R"("force":[0,0,0],"torque":[0,0,0],"flags":["needle","held"]}],)"
+            R"("force":[0,0,0.3333333333333333],"torque":[0,0,0],"flags":["needle"],"truncated":false,)"
+            R"("time_us":{"total":20,"detect":12.5},"tick":12})"
+            "\n");
+}
+
+TEST(QueryLine, ABatchIsNamed) {
+  std::string out;
+  append_query_line({0, 1, 64, std::nullopt}, Contacts{}, ContactResponse{}, out);
+  EXPECT_NE(out.find(R"("time_us":{"total":1},"batch":64})"), std::string::npos) << out;
+}
+
+TEST(QueryLine, ANumberThatIsNotFiniteIsNullSoThatTheLineStaysJson) {
+  ContactResponse response;
+  response.wrench.force.x = std::numeric_limits<double>::infinity();
+  response.wrench.force.y = std::numeric_limits<double>::quiet_NaN();
+  std::string out;
+  append_query_line({}, Contacts{}, response, out);
+  EXPECT_NE(out.find(R"("force":[null,null,0])"), std::string::npos) << out;
+}
+
+TEST(QueryLine, ASwallowedToolsResponseBelongsToNoArea) {
+  Contacts contacts;
+  contacts.contact = true;
+  contacts.flags = kFlagSwallowed;
+  ContactResponse response;
+  response.areas.resize(1);
+  response.flags = kFlagSwallowed;
+  std::string out;
+  append_query_line({}, contacts, response, out);
+  EXPECT_NE(out.find(R"("areas":[],)"), std::string::npos) << out;
+  EXPECT_NE(out.find(R"("flags":["swallowed"])"), std::string::npos) << out;
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,91 @@
+"""`palpate info`, `generate`, `devices` and `plan`."""
+from harness import *
+
+STAGES = ['transform', 'cull', 'pairs', 'imt', 'bmt', 'bst', 'est', 'areas', 'zones', 'rays', 'contact_point', 'torque', 'telemetry']
+
+
+def info(*meshes):
+    outcome = palpate('info', *meshes, '--json')
+    expect(outcome.code == 0, outcome)
+    return json.loads(outcome.out)['meshes']
+
+
+def test_info_tells_size_closedness_and_parts():
+    folder = Folder()
+    (block,) = info(folder / 'block.stl')
+    expect(block['triangles'] == 12 and block['vertices'] == 8 and block['closed'] and block['open_edges'] == 0, block)
+    expect(all(abs(a - b) < 1e-6 for a, b in zip(block['size'], (0.2, 0.2, 0.04))), block['size'])   # float32 in the file
+    expect(len(block['parts']) == 1 and block['parts'][0]['triangles'] == 12 and block['parts'][0]['orientation'] == 'outward', block['parts'])
+
+
+def test_info_finds_what_is_open_turned_degenerate_and_double():
+    folder = Folder()
+    cube = box((1, 1, 1))
+    folder.write('open.stl', stl(cube[:-1]))
+    folder.write('turned.stl', stl([(a, c, b) for a, b, c in cube]))
+    folder.write('double.stl', stl(cube + [cube[0]] + [(cube[0][0], cube[0][0], cube[0][1])]))
+    opened, turned, double = info(folder / 'open.stl', folder / 'turned.stl', folder / 'double.stl')
+    expect(not opened['closed'] and opened['open_edges'] == 3 and opened['largest_gap'] > 0.9, opened)
+    expect(turned['closed'] and turned['parts'][0]['orientation'] == 'turned', turned)
+    expect(double['degenerate'] == 1 and double['duplicate'] >= 1, double)
+
+
+def test_info_for_people_says_the_same():
+    folder = Folder()
+    outcome = palpate('info', folder / 'block.stl', folder / 'ball.stl')
+    expect(outcome.code == 0 and 'block.stl' in outcome.out and 'ball.stl' in outcome.out and '12' in outcome.out, outcome)
+
+
+def test_generate_makes_scenes_that_load():
+    folder = Folder()
+    for name in ('contacts', 'disassembly'):
+        outcome = palpate('generate', name, '--triangles', '4000', '--tool-triangles', '1000', '--out', folder / name)
+        expect(outcome.code == 0 and 'scene.json' in outcome.out, outcome)
+        plan = palpate('plan', folder / name / 'scene.json', '--json')
+        expect(plan.code == 0, plan)
+
+
+def test_generate_makes_the_same_bytes_twice():
+    folder = Folder()
+    for out in ('a', 'b'):
+        expect(palpate('generate', 'contacts', '--triangles', '3000', '--out', folder / out).code == 0, out)
+    names = sorted(p.name for p in (folder / 'a').iterdir())
+    expect(names == sorted(p.name for p in (folder / 'b').iterdir()) and names, names)
+    for name in names:
+        expect((folder / 'a' / name).read_bytes() == (folder / 'b' / name).read_bytes(), name)
+
+
+def test_devices_lists_both_kinds_with_reasons():
+    outcome = palpate('devices')
+    expect(outcome.code == 0 and outcome.err == '', outcome)
+    for word in ('Vulkan devices', 'Haptic devices', 'simulated', 'falcon', 'not usable'):
+        expect(word in outcome.out, f"no '{word}' in\n{outcome.out}")
+
+
+def test_plan_gives_a_reason_for_each_of_the_thirteen_stages():
+    folder = Folder()
+    outcome = palpate('plan', folder.save(), '--json')
+    expect(outcome.code == 0, outcome)
+    stages = json.loads(outcome.out)['stages']
+    expect([s['stage'] for s in stages] == STAGES, stages)
+    for s in stages:
+        expect(list(s) == ['stage', 'kept', 'reason', 'memory_bytes'] and s['reason'] and isinstance(s['kept'], bool), s)
+        expect(s['memory_bytes'] >= 0 and (s['kept'] or s['memory_bytes'] == 0), f'a stage left out costs nothing: {s}')
+    kept = {s['stage']: s['kept'] for s in stages}
+    expect(kept['imt'], 'a block is solid')
+    expect(kept['zones'], 'a block has sharp edges')
+    expect(not kept['telemetry'], 'nobody listens')
+
+
+def test_plan_leaves_out_what_the_scene_does_not_need():
+    folder = Folder()
+    # A smooth ball as mock-up has no sharp edge; an open sheet has no inside.
+    stages = json.loads(palpate('plan', folder.save(static=[{'mesh': 'ball.stl'}]), '--json').out)['stages']
+    expect(not {s['stage']: s['kept'] for s in stages}['zones'], stages)
+    folder.write('sheet.stl', stl(box((0.2, 0.2, 0.2))[:2]))
+    stages = json.loads(palpate('plan', folder.save(static=[{'mesh': 'sheet.stl'}]), '--json').out)['stages']
+    line = next(s for s in stages if s['stage'] == 'imt')
+    expect(not line['kept'] and 'V_int' in line['reason'], line)
+
+
+main(globals())

@@ -1,0 +1,63 @@
+"""Help, version and wrong usage (exit code 2)."""
+from harness import *
+
+
+def test_help_lists_every_command_and_the_exit_codes():
+    outcome = palpate('--help')
+    expect(outcome.code == 0 and outcome.err == '', outcome)
+    for word in ('run', 'query', 'plan', 'info', 'generate', 'devices', 'Exit codes', 'metres', 'unit quaternion'):
+        expect(word in outcome.out, f"help lacks '{word}'")
+    for word in ('tune', 'serve', 'bench'):
+        expect(f'  {word}' not in outcome.out, f'{word} is not in this version')
+
+
+def test_every_command_has_help_of_its_own():
+    for command in ('run', 'query', 'plan', 'info', 'generate', 'devices'):
+        outcome = palpate(command, '--help')
+        expect(outcome.code == 0 and outcome.err == '' and command in outcome.out, outcome)
+
+
+def test_version():
+    outcome = palpate('--version')
+    expect(outcome.code == 0 and outcome.out.startswith('palpate ') and outcome.out.count('\n') == 1, outcome)
+
+
+def test_no_command_is_wrong_usage():
+    outcome = palpate()
+    expect(outcome.code == 2 and outcome.out == '' and 'query' in outcome.err, outcome)
+
+
+def test_an_unknown_command_is_told_which_there_are():
+    expect_refused(palpate('qurey', 'x.json'), 2, "'qurey'", 'run, query, plan, info, generate, devices', "did you mean 'query'?")
+    expect_refused(palpate('serve'), 2, "'serve'", 'devices')
+
+
+def test_an_unknown_flag_is_wrong_usage():
+    expect_refused(palpate('query', 'x.json', '--frobnicate'), 2, '--frobnicate')
+    expect_refused(palpate('--frobnicate'), 2, '--frobnicate')
+
+
+def test_a_missing_scene_argument_is_wrong_usage():
+    for command in ('run', 'query', 'plan'):
+        expect_refused(palpate(command), 2, 'scene')
+
+
+def test_query_needs_exactly_one_source_of_poses():
+    expect_refused(palpate('query', 'x.json'), 2, '--pose')
+    expect_refused(palpate('query', 'x.json', '--pose', '0 0 0 0 0 0 1', '--poses', 'p.csv'), 2, '--pose')
+
+
+def test_a_flag_without_its_value_is_wrong_usage():
+    expect_refused(palpate('query', 'x.json', '--pose'), 2, '--pose')
+
+
+def test_a_bad_word_for_a_flag_is_a_bad_value():
+    expect_refused(palpate('query', 'x.json', '--pose', '0 0 0 0 0 0 1', '--backend', 'abacus'), 3, 'abacus')
+    expect_refused(palpate('query', 'x.json', '--pose', '0 0 0 0 0 0 1', '--profile', 'coarse'), 3, 'coarse')
+    expect_refused(palpate('run', 'x.json', '--pace', 'slow'), 3, 'slow')
+    expect_refused(palpate('run', 'x.json', '--duration', '-1'), 3, '-1')
+    expect_refused(palpate('run', 'x.json', '--duration', 'nan'), 3, 'nan')
+    expect_refused(palpate('query', 'x.json', '--pose', '0 0 0 0 0 0 1', '--batch', '0'), 3, '--batch')
+
+
+main(globals())
