@@ -111,12 +111,11 @@ class CpuBackend final : public CollisionBackend {
     }
     for (Area& area : areas) find_direction(frame, area);
     clock.done("direction");
-    std::vector<std::optional<std::uint32_t>> heights;
     for (std::size_t a = 0; a < areas.size(); ++a) {
-      measure_heights(frame, areas[a], heights);
+      measure_heights(frame, areas[a]);
       if (scene_->refined()) {
-        find_pierced(frame, areas, a, heights);
         measure_needle(frame, areas[a]);
+        find_pierced(frame, areas, a);
       } else {
         sum_voxels(frame, areas[a]);
       }

@@ -1,6 +1,7 @@
 #include "cpu_ref/direction.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "cpu_ref/samples.h"
@@ -110,20 +111,18 @@ void find_refined(const Frame& frame, Area& area) {
   }
   if (frame.scene.tool_open()) area.out.flags |= kFlagToolOpen;
 
-  const bool one_zone = area.out.zones.size() == 1;
-  const auto normals = [&](bool of_static) { return of_static ? static_normals(frame, area) : mobile_normals(frame, area); };
-  for (const bool of_static : {one_zone, !one_zone}) {
-    const NormalSum sum = normals(of_static);
+  // One zone: the surface itself tells, by its samples or, for a needle between them, by its triangles. Several zones: the
+  // tool tells (chapter 3.2).
+  using Rule = NormalSum (*)(const Frame&, const Area&);
+  constexpr std::array<Rule, 3> kSmoothRules{static_normals, bare_static_normals, mobile_normals};
+  constexpr std::array<Rule, 3> kEdgeRules{mobile_normals, static_normals, bare_static_normals};
+  for (const Rule rule : area.out.zones.size() == 1 ? kSmoothRules : kEdgeRules) {
+    const NormalSum sum = rule(frame, area);
     if (sum.is_usable()) {
       area.out.direction = normalise(sum.sum);
       return;
     }
-    if (sum.weight > 0) area.out.flags |= kFlagCancelled;
-  }
-  const NormalSum bare = bare_static_normals(frame, area);
-  if (bare.is_usable()) {
-    area.out.direction = normalise(bare.sum);
-    return;
+    if (sum.weight > 0 && rule != bare_static_normals) area.out.flags |= kFlagCancelled;
   }
   if (held != nullptr && held->direction != Int3(0)) {
     area.out.direction = held->direction;

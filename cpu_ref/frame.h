@@ -51,12 +51,19 @@ struct Frame {
   const LatticeMesh& tool_mesh() const { return scene.geometry->tool; }
 };
 
+/// A ray from a surface point along −D and the height it found.
+struct MeasuredRay {
+  Int3 from{0};
+  std::uint32_t height = 0;
+};
+
 /// One area on its way to `out`.
 struct Area {
   ContactArea out;
   Box box;                                        ///< of its triangles' corners
   std::vector<std::uint32_t> cst;                 ///< its CST, ascending
   std::vector<Sample> counting;                   ///< `refined`
+  std::vector<MeasuredRay> rays;                  ///< of its counting samples, or of its needle samples on pairs
 
   Int3 doubled_centre() const { return box.min + box.max; }
   /// Neither a crossing nor a sample inside: it gives nothing (`refined`).

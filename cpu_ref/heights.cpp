@@ -46,15 +46,16 @@ void add_height(Area& area, std::uint32_t height, std::uint32_t weight_q30, cons
   }
 }
 
-void measure_heights(const Frame& frame, Area& area, std::vector<std::optional<std::uint32_t>>& heights) {
-  heights.clear();
+void measure_heights(const Frame& frame, Area& area) {
   if (area.out.direction == Int3(0)) return;
   const Int3 down = -area.out.direction;
   const LatticeMesh& mesh = frame.mockup();
   if (frame.scene.refined()) {
     for (const Sample& sample : area.counting) {
-      heights.push_back(height(frame, sample.point, down));
-      if (heights.back()) add_height(area, *heights.back(), mesh.sample_weight_q30[sample.triangle], sample.point);
+      const auto found = height(frame, sample.point, down);
+      if (!found) continue;
+      area.rays.push_back({sample.point, *found});
+      add_height(area, *found, mesh.sample_weight_q30[sample.triangle], sample.point);
     }
     return;
   }

@@ -16,8 +16,8 @@ std::optional<std::uint32_t> height(const Frame& frame, const Int3& origin, cons
 /// Adds one height to the sums of an area.
 void add_height(Area& area, std::uint32_t height, std::uint32_t weight_q30, const Int3& sample);
 
-/// Sends the rays of an area whose direction is not 0. `refined`: `heights` gets one entry for each counting sample.
-void measure_heights(const Frame& frame, Area& area, std::vector<std::optional<std::uint32_t>>& heights);
+/// Sends the rays of an area, if it has a direction.
+void measure_heights(const Frame& frame, Area& area);
 
 /// `paper`: sum and count of the centres of the area's V_bnd voxels that the tool touches.
 void sum_voxels(const Frame& frame, Area& area);

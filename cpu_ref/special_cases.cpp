@@ -52,7 +52,10 @@ void measure_needle(const Frame& frame, Area& area) {
     if (ends.min.x > ends.max.x) continue;
     Int3 middle;
     for (int k = 0; k < 3; ++k) middle[k] = static_cast<std::int32_t>((std::int64_t{ends.min[k]} + ends.max[k]) >> 1);
-    if (const auto found = height(frame, middle, -up)) add_height(area, *found, kOneQ30, middle);
+    const auto found = height(frame, middle, -up);
+    if (!found) continue;
+    area.rays.push_back({middle, *found});
+    add_height(area, *found, kOneQ30, middle);
   }
 
   // (b) from each of the tool's vertices there, up to the surface
@@ -73,8 +76,7 @@ void measure_needle(const Frame& frame, Area& area) {
   }
 }
 
-void find_pierced(const Frame& frame, std::vector<Area>& areas, std::size_t a,
-                  const std::vector<std::optional<std::uint32_t>>& heights) {
+void find_pierced(const Frame& frame, std::vector<Area>& areas, std::size_t a) {
   if (areas.size() < 2) return;
   const auto area_of = [&](std::uint32_t s) {   // or areas.size() for triangles that are not in C_s
     for (std::size_t b = 0; b < areas.size(); ++b)
@@ -84,23 +86,20 @@ void find_pierced(const Frame& frame, std::vector<Area>& areas, std::size_t a,
   const Int3 down = -areas[a].out.direction;
   std::vector<bool> pierced(areas.size(), false);
   std::vector<std::uint32_t> candidates;
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    if (!heights[i]) continue;
+  for (const MeasuredRay& ray : areas[a].rays) {
     // The first crossing out through another area, before the ray leaves the tool.
     candidates.clear();
-    frame.scene.mockup_tree.along_ray(areas[a].counting[i].point, down, candidates);
-    std::uint32_t first = *heights[i];
+    frame.scene.mockup_tree.along_ray(ray.from, down, candidates);
+    std::uint32_t first = ray.height;
     std::vector<std::size_t> there;
     for (const std::uint32_t s : candidates) {
       const std::size_t b = area_of(s);
       if (b == a || b == areas.size()) continue;
-      const auto crossing = ray_crosses_at(areas[a].counting[i].point, down, triangle_of(frame.mockup(), s));
-      if (!crossing || crossing->sign < 0) continue;
-      if (crossing->height < first) {
-        first = crossing->height;
-        there.clear();
-      }
-      if (crossing->height == first && first < *heights[i]) there.push_back(b);
+      const auto crossing = ray_crosses_at(ray.from, down, triangle_of(frame.mockup(), s));
+      if (!crossing || crossing->sign < 0 || crossing->height >= ray.height || crossing->height > first) continue;
+      if (crossing->height < first) there.clear();
+      first = crossing->height;
+      there.push_back(b);
     }
     for (const std::size_t b : there) pierced[b] = true;
   }

@@ -9,9 +9,8 @@ namespace palpate::cpu_ref {
 /// Needle: CST, a direction, and no sample that gave a height. Adds heights and the flag (EXACTNESS section 7).
 void measure_needle(const Frame& frame, Area& area);
 
-/// Which areas the rays of area `a` pierce. `heights`: one entry for each of its counting samples. Fills `pierces`.
-void find_pierced(const Frame& frame, std::vector<Area>& areas, std::size_t a,
-                  const std::vector<std::optional<std::uint32_t>>& heights);
+/// Which areas the measured rays of area `a` pierce. Fills `pierces`.
+void find_pierced(const Frame& frame, std::vector<Area>& areas, std::size_t a);
 
 /// Swallowed: C_s empty, IMT not. Fills direction, height and flags of the frame.
 void measure_swallowed(const Frame& frame, Contacts& out);

@@ -53,10 +53,10 @@ void silence_pierced(const Contacts& contacts, const Held* held, double stiffnes
     for (const std::uint32_t b : contacts.areas[a].pierces) group[root(a)] = root(b);
 
   std::vector<Before> was(areas.size());
-  bool some_gave_force = false;
+  bool still_gives_force = false;   // an area that did before
   for (std::size_t a = 0; a < areas.size(); ++a) {
     was[a] = before(contacts.areas[a], held);
-    some_gave_force = some_gave_force || was[a] == Before::kGaveForce;
+    still_gives_force = still_gives_force || (was[a] == Before::kGaveForce && areas[a].depth > 0);
   }
 
   // Areas come in the order of their ids, so `<` leaves a tie with the smallest id. Areas that gave no height
@@ -77,7 +77,7 @@ void silence_pierced(const Contacts& contacts, const Held* held, double stiffnes
     const std::size_t g = root(a);
     AreaResponse& area = areas[a];
     if (size[g] < 2) {
-      area.silent = was[a] == Before::kSilent && !some_gave_force;
+      area.silent = was[a] == Before::kSilent && !still_gives_force;
     } else {
       area.flags |= kFlagPierced;
       area.silent = a != chosen[g];
