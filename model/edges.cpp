@@ -1,11 +1,10 @@
 #include "model/edges.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <numeric>
 
+#include "model/boundary.h"
 #include "model/triangle.h"
 
 namespace palpate {
@@ -34,47 +33,13 @@ std::uint32_t count_duplicates(const LatticeMesh& mesh, std::uint32_t low, std::
   return static_cast<std::uint32_t>(scratch.size()) - static_cast<std::uint32_t>(distinct);
 }
 
-/// Boundary edges gathered into loops: edges that share a vertex belong together.
-class Gaps {
- public:
-  void add(std::uint32_t low, std::uint32_t high) { edges_.push_back({low, high}); }
-
-  /// The largest diagonal of a loop's bounding box, in steps.
-  double largest(const LatticeMesh& mesh) const {
-    if (edges_.empty()) return 0;
-    std::vector<std::uint32_t> parent(mesh.vertices.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t v) {
-      while (parent[v] != v) v = parent[v] = parent[parent[v]];
-      return v;
-    };
-    for (const auto& [low, high] : edges_) parent[root(low)] = root(high);
-    std::vector<Int3> box_min(mesh.vertices.size(), Int3(std::numeric_limits<std::int32_t>::max()));
-    std::vector<Int3> box_max(mesh.vertices.size(), Int3(std::numeric_limits<std::int32_t>::min()));
-    double largest = 0;
-    for (const auto& edge : edges_) {
-      const std::uint32_t loop = root(edge[0]);
-      for (const std::uint32_t v : edge) {
-        box_min[loop] = glm::min(box_min[loop], mesh.vertices[v]);
-        box_max[loop] = glm::max(box_max[loop], mesh.vertices[v]);
-      }
-      const Vec3 size = Vec3(box_max[loop]) - Vec3(box_min[loop]);
-      largest = std::max(largest, std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z));
-    }
-    return largest;
-  }
-
- private:
-  std::vector<std::array<std::uint32_t, 2>> edges_;
-};
-
 }  // namespace
 
 EdgeTable::EdgeTable(const LatticeMesh& mesh) : begin_(mesh.vertices.size() + 1, 0) {
   const auto each_edge = [&](auto visit) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (mesh.collapsed(t)) continue;
       const auto& v = mesh.triangles[t];
+      if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
       for (std::size_t k = 0; k < 3; ++k) visit(std::minmax(v[k], v[(k + 1) % 3]), t);
     }
   };
@@ -101,14 +66,22 @@ Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, L
   std::uint64_t total = 0;
   std::size_t most = 0;
   Int3 most_at(0);
+  std::vector<std::uint32_t> solid;   // the triangles on an edge that did not collapse
+  const auto gather = [&](std::span<const EdgeUse> uses) {
+    solid.clear();
+    for (const EdgeUse& use : uses)
+      if (!mesh.collapsed(use.triangle)) solid.push_back(use.triangle);
+    return solid.size();
+  };
   edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> uses) {
-    if (uses.size() > most) {
-      most = uses.size();
+    const std::size_t n = gather(uses);
+    if (n > most) {
+      most = n;
       most_at = mesh.vertices[low];
     }
-    total += uses.size() * (uses.size() - 1);
-    if (uses.size() <= kMaxTrianglesOnEdge)
-      for (const EdgeUse& use : uses) length[use.triangle] += static_cast<std::uint32_t>(uses.size()) - 1;
+    if (n < 2 || n > kMaxTrianglesOnEdge) return;
+    total += n * (n - 1);
+    for (const std::uint32_t t : solid) length[t] += static_cast<std::uint32_t>(n) - 1;
   });
   if (most > kMaxTrianglesOnEdge)
     return bad_value(fmt::format("an edge at lattice point ({}, {}, {}) carries {} triangles, the limit is {}", most_at.x, most_at.y,
@@ -123,14 +96,14 @@ Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, L
   std::copy(mesh.neighbour_begin.begin(), mesh.neighbour_begin.end() - 1, next.begin());
   std::vector<Long3> normals;
   edges.for_each([&](std::uint32_t, std::span<const EdgeUse> uses) {
-    if (uses.size() < 2) return;
+    if (gather(uses) < 2) return;
     normals.clear();
-    for (const EdgeUse& use : uses) normals.push_back(raw_normal(mesh, use.triangle));
-    for (std::size_t i = 0; i < uses.size(); ++i)
-      for (std::size_t j = i + 1; j < uses.size(); ++j) {
+    for (const std::uint32_t t : solid) normals.push_back(raw_normal(mesh, t));
+    for (std::size_t i = 0; i < solid.size(); ++i)
+      for (std::size_t j = i + 1; j < solid.size(); ++j) {
         const std::uint32_t bit = smooth(normals[i], normals[j], angle) ? 1 : 0;
-        mesh.neighbours[next[uses[i].triangle]++] = uses[j].triangle * 2 + bit;
-        mesh.neighbours[next[uses[j].triangle]++] = uses[i].triangle * 2 + bit;
+        mesh.neighbours[next[solid[i]]++] = solid[j] * 2 + bit;
+        mesh.neighbours[next[solid[j]]++] = solid[i] * 2 + bit;
       }
   });
 
@@ -150,36 +123,37 @@ Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, L
 
 void examine_edges(const EdgeTable& edges, double step_m, std::span<const std::uint32_t> part_of, LatticeMesh& mesh,
                    MeshReport& report) {
-  mesh.closed = true;
-  for (auto& part : report.parts) part.closed = true;
-  Gaps gaps;
+  Boundary whole;
+  std::vector<Boundary> of_part(report.parts.size());
   std::vector<std::uint32_t> scratch;
-  std::vector<std::pair<std::uint32_t, int>> by_part;   // signed incidence of each part on this edge
-  edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> uses) {
-    const std::uint32_t high = uses.front().high_vertex;
-    int incidence = 0;
+  std::vector<EdgeUse> solid;
+  std::vector<std::pair<std::uint32_t, int>> by_part;   // each triangle's part and direction on this edge
+  edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> all_uses) {
+    const std::uint32_t high = all_uses.front().high_vertex;
+    solid.clear();
     by_part.clear();
-    for (const EdgeUse& use : uses) {
-      const int sign = edge_direction(mesh, use.triangle, low, high);
-      incidence += sign;
-      by_part.emplace_back(part_of[use.triangle], sign);
+    int incidence = 0;
+    for (const EdgeUse& use : all_uses) {
+      if (mesh.collapsed(use.triangle)) continue;
+      solid.push_back(use);
+      by_part.emplace_back(part_of[use.triangle], edge_direction(mesh, use.triangle, low, high));
+      incidence += by_part.back().second;
     }
+    if (incidence != 0) whole.add(mesh, low, high, incidence);
     std::sort(by_part.begin(), by_part.end());
     for (std::size_t i = 0; i < by_part.size();) {
       int sum = 0;
       const std::uint32_t part = by_part[i].first;
       for (; i < by_part.size() && by_part[i].first == part; ++i) sum += by_part[i].second;
-      if (sum != 0) report.parts[part].closed = false;
+      if (sum != 0) of_part[part].add(mesh, low, high, sum);
     }
-    if (incidence != 0) {
-      mesh.closed = false;
-      gaps.add(low, high);
-    }
-    if (uses.size() == 1) ++report.open_edges;
-    if (uses.size() > 2) ++report.nonmanifold_edges;
-    if (uses.size() > 1) report.duplicate += count_duplicates(mesh, low, uses, scratch);
+    if (solid.size() == 1) ++report.open_edges;
+    if (solid.size() > 2) ++report.nonmanifold_edges;
+    if (solid.size() > 1) report.duplicate += count_duplicates(mesh, low, solid, scratch);
   });
-  report.largest_gap_m = gaps.largest(mesh) * step_m;
+  mesh.closed = whole.cancels(mesh);
+  report.largest_gap_m = whole.largest_gap() * step_m;
+  for (std::size_t p = 0; p < of_part.size(); ++p) report.parts[p].closed = of_part[p].cancels(mesh);
 }
 
 }  // namespace palpate

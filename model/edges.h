@@ -18,8 +18,9 @@ struct EdgeUse {
   std::uint32_t triangle = 0;
 };
 
-/// All edges of the triangles that did not collapse, as flat arrays: uses sorted by lower vertex, higher vertex, triangle.
-/// Does not depend on how triangles are turned, so it survives orientation.
+/// All edges of the triangles with three distinct vertices, as flat arrays: uses sorted by lower vertex, higher vertex, triangle.
+/// Triangles that collapsed to a line are in it: they have no area, but they connect what lies at their long edge
+/// with what lies at the two short ones. Does not depend on how triangles are turned, so it survives orientation.
 class EdgeTable {
  public:
   explicit EdgeTable(const LatticeMesh& mesh);
@@ -44,11 +45,11 @@ class EdgeTable {
 /// Whether the triangle runs along the edge from `low` to `high` (+1) or from `high` to `low` (−1).
 int edge_direction(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_t low, std::uint32_t high);
 
-/// Fills `neighbours` and `neighbour_begin`. Error (kBadValue): an edge with more than kMaxTrianglesOnEdge triangles.
+/// Fills `neighbours` and `neighbour_begin`; collapsed triangles are nobody's neighbours. Error (kBadValue): an edge with more than kMaxTrianglesOnEdge triangles.
 Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, LatticeMesh& mesh);
 
 /// Fills `closed` of the mesh, and of the report open and non-manifold edges, duplicates, the largest gap and which
-/// parts are closed by themselves. `part_of` gives each triangle's place in report.parts.
+/// parts are closed by themselves; collapsed triangles are left out. `part_of` gives each triangle's place in report.parts.
 void examine_edges(const EdgeTable& edges, double step_m, std::span<const std::uint32_t> part_of, LatticeMesh& mesh,
                    MeshReport& report);
 

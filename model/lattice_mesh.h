@@ -30,7 +30,7 @@ struct LatticeMesh {
   std::vector<std::uint32_t> neighbour_begin;             ///< CSR, triangles.size() + 1
   std::vector<EdgeNeighbour> neighbours;                  ///< ascending in each triangle, each neighbour once
                                                           ///< (smooth if any edge shared with it is smooth)
-  bool closed = false;                                    ///< every edge's signed incidence is 0
+  bool closed = false;                                    ///< edges, each with its direction, cancel point for point
   Int3 box_min{0}, box_max{0};                            ///< of all triangles that did not collapse
 
   Int3 corner(std::uint32_t triangle, int k) const { return vertices[triangles[triangle][static_cast<std::size_t>(k)]]; }

@@ -76,7 +76,8 @@ Orientation make_shells(const EdgeTable& edges, std::span<const std::uint32_t> p
   Orientation out;
   out.shell_of.assign(count, kNoShell);
   for (std::uint32_t t = 0; t < count; ++t) {
-    if (mesh.collapsed(t)) continue;
+    const auto& v = mesh.triangles[t];
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
     const auto [root, differs] = agreement.find(t);
     if (root == t) {   // the smallest triangle of its shell, so it comes first
       out.shell_of[t] = static_cast<std::uint32_t>(out.shells.size());
@@ -85,7 +86,7 @@ Orientation make_shells(const EdgeTable& edges, std::span<const std::uint32_t> p
       out.shell_of[t] = out.shell_of[root];
     }
     Shell& shell = out.shells[out.shell_of[t]];
-    ++shell.triangles;
+    if (!mesh.collapsed(t)) ++shell.triangles;
     if (differs && shell.orientable) {
       turn(mesh, t);
       ++shell.disagreeing;
@@ -103,7 +104,7 @@ std::vector<Votes> vote(const Orientation& orientation, const LatticeMesh& mesh)
   std::vector<std::uint32_t> seen(orientation.shells.size(), 0), voters, shell_of_voter;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t s = orientation.shell_of[t];
-    if (s == kNoShell) continue;
+    if (s == kNoShell || mesh.collapsed(t)) continue;
     // Triangle number i of n votes when it is the first with its value of floor(i · rays / n).
     const std::uint64_t n = orientation.shells[s].triangles, rays = std::min<std::uint64_t>(n, kOrientationRays), i = seen[s]++;
     if (i > 0 && i * rays / n == (i - 1) * rays / n) continue;

@@ -12,7 +12,7 @@ namespace palpate {
 /// (two boxes back to back are two shells, though four triangles meet on the edges of their common face).
 struct Shell {
   std::uint32_t first_triangle = 0;
-  std::uint32_t triangles = 0;
+  std::uint32_t triangles = 0;     ///< that did not collapse
   std::uint32_t disagreeing = 0;   ///< triangles turned to agree with the first one
   bool orientable = true;          ///< false: no way of turning makes all its triangles agree; left as given
   bool sheet = false;              ///< winding 0 on both sides
@@ -22,7 +22,7 @@ struct Shell {
 inline constexpr std::uint32_t kNoShell = 0xFFFFFFFFu;
 
 struct Orientation {
-  std::vector<std::uint32_t> shell_of;   ///< a triangle's place in `shells`; kNoShell if it collapsed
+  std::vector<std::uint32_t> shell_of;   ///< a triangle's place in `shells`; kNoShell if two of its corners are one
   std::vector<Shell> shells;             ///< by first triangle, ascending
 };
 

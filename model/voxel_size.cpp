@@ -71,21 +71,21 @@ Result<std::int32_t> choose_voxel_size(const VoxelSubject& mockup, const VoxelSu
       if (!limit.empty()) return bad_value(fmt::format("voxel_size of {} m {}", *asked_m, limit));
     return v;
   }
-  // Every limit is kept from some size on. Sizes grow by a sixteenth of an octave: fine enough for a flat minimum.
+  // Every limit is kept from some size on. Sizes grow by a sixteenth: fine enough for a flat minimum.
   const std::int32_t upper = std::max(kSmallestVoxel, even(largest_side(tool) / kVoxelsPerTool - 1));
   std::int32_t best = 0;
   double least = HUGE_VAL;
-  for (int i = 0; i < 16 * 25; ++i) {
-    const std::int32_t v = even(kSmallestVoxel * std::exp2(i / 16.0));
-    if (v == best || !fits(v)) continue;
-    if (v > upper && best != 0) break;   // memory comes before resolution: beyond `upper` only if nothing smaller fits
+  const auto consider = [&](std::int32_t v) {
     const double work = cost(mockup.measure, tool.measure, v);
-    if (best == 0 || work < least) {
-      best = v;
-      least = work;
-    }
-    if (v > upper) break;
-  }
+    if (!fits(v) || (best != 0 && work >= least)) return;
+    best = v;
+    least = work;
+  };
+  std::int32_t v = kSmallestVoxel;
+  const auto grow = [&] { v += std::max(2, v / 32 * 2); };
+  for (; v < upper; grow()) consider(v);
+  consider(upper);
+  for (; v < kLatticeReach / 2 && best == 0; grow()) consider(v);   // memory comes before resolution
   if (best == 0) return bad_value("no voxel size fits the limits: the mock-up or the tool has too many triangles");
   return best;
 }
