@@ -1,0 +1,117 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "model/generate.h"
+#include "model/generate/solids.h"
+#include "model/mesh_import.h"
+#include "model/scene_file.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kLargestUsual = 100, kSmallestUsual = 1e-3;   ///< m; beyond, the units are probably not the right ones
+
+std::string source_name(const MeshSource& source) {
+  return source.file.empty() ? "the generated " + source.generate : source.file;
+}
+
+/// Short name of a body, to tell the parts of several apart.
+std::string prefix_of(const MeshSource& source) {
+  return source.file.empty() ? source.generate : std::filesystem::path(source.file).stem().string();
+}
+
+Result<Mesh> generate(const MeshSource& source) {
+  const auto slash = source.generate.find('/');
+  const bool tool = source.generate.substr(slash + 1) == "tool";
+  const auto asked = source.generate_parameters.find("triangles");
+  const auto triangles = asked == source.generate_parameters.end() ? 0 : static_cast<std::uint64_t>(asked->second);
+  constexpr std::uint64_t kUnused = 1'000;   // of the body that is not asked for
+  auto scene = generate_scene(source.generate.substr(0, slash), tool ? kUnused : triangles, tool ? triangles : kUnused);
+  if (!scene) return scene.error();
+  return tool ? std::move(scene->tool) : std::move(scene->mockup);
+}
+
+Result<Mesh> mesh_of(const MeshSource& source, std::vector<std::string>& warnings) {
+  ImportReport report;
+  Result<Mesh> mesh = source.file.empty() ? generate(source) : import_mesh(source.file, source.scale, report);
+  if (!mesh) return mesh;
+  for (const std::string& note : report.notes) warnings.push_back(source.file + ": " + note);
+  if (!source.part.empty()) mesh = take_part(*mesh, source.part, source_name(source));
+  if (mesh && !source.without.empty()) mesh = without_parts(*mesh, source.without, source_name(source));
+  if (mesh && mesh->triangles.empty()) return bad_value(source_name(source) + " has no triangle left after \"part\" and \"without\"");
+  return mesh;
+}
+
+/// Adds a placed body to the mock-up; its parts get `prefix` when there are several bodies.
+void place(const Mesh& body, const Pose& placement, const std::string& prefix, Mesh& mockup) {
+  const auto vertex = static_cast<std::uint32_t>(mockup.vertices.size());
+  const auto triangle = static_cast<std::uint32_t>(mockup.triangles.size());
+  for (const Vec3& v : body.vertices) mockup.vertices.push_back(placement.rotation * v + placement.position);
+  for (const auto& [a, b, c] : body.triangles) mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
+  for (const MeshPart& part : body.parts) {
+    const std::string path = prefix.empty() ? part.path : part.path.empty() ? prefix : prefix + "/" + part.path;
+    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count});
+  }
+}
+
+/// Longest side of the box of all vertices that a triangle uses.
+double extent(const Mesh& mesh) {
+  Vec3 low(INFINITY), high(-INFINITY);
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t i : triangle) {
+      low = glm::min(low, mesh.vertices[i]);
+      high = glm::max(high, mesh.vertices[i]);
+    }
+  const Vec3 size = high - low;
+  return std::fmax(size.x, std::fmax(size.y, size.z));
+}
+
+void warn_of_size(const char* what, const Mesh& mesh, std::vector<std::string>& warnings) {
+  const double size = extent(mesh);
+  if (size >= kSmallestUsual && size <= kLargestUsual) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "the %s is %.3g m long, %s; check \"units\"", what, size,
+                size > kLargestUsual ? "over 100 m" : "under 1 mm");
+  warnings.emplace_back(text);
+}
+
+}  // namespace
+
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress) {
+  const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
+  const auto tell = [&](const char* what, double done) { return !progress || progress(what, done); };
+  LoadedScene loaded;
+
+  const double bodies = static_cast<double>(scene.statics.size()) + 1;
+  for (std::size_t i = 0; i < scene.statics.size(); ++i) {
+    if (!tell("import", static_cast<double>(i) / bodies)) return cancelled;
+    const StaticBody& body = scene.statics[i];
+    const auto mesh = mesh_of(body.source, scene.warnings);
+    if (!mesh) return mesh.error();
+    place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", loaded.mockup);
+  }
+  if (!tell("import", (bodies - 1) / bodies)) return cancelled;
+  auto tool = mesh_of(scene.tool.source, scene.warnings);
+  if (!tool) return tool.error();
+  loaded.tool = std::move(*tool);
+  warn_of_size("mock-up", loaded.mockup, scene.warnings);
+  warn_of_size("tool", loaded.tool, scene.warnings);
+
+  if (!tell("geometry", 0)) return cancelled;
+  auto geometry = build_geometry(loaded.mockup, loaded.tool,
+                                 {scene.response.voxel_size_m, scene.response.sample_spacing_m, scene.response.smooth_angle_deg,
+                                  scene.tool.centre_of_mass_m});
+  if (!geometry) return Error{geometry.error().code, scene.file + ": " + geometry.error().sentence};
+  loaded.geometry = std::move(*geometry);
+  if (!tell("geometry", 1)) return cancelled;
+
+  if (!loaded.geometry.tool.closed && !scene.tool.centre_of_mass_m)
+    scene.warnings.push_back("the tool " + source_name(scene.tool.source) + " is open (" +
+                             std::to_string(loaded.geometry.tool_report.open_edges) +
+                             " open edges); its centre of mass is taken for the centroid of its area");
+  loaded.scene = std::move(scene);
+  return loaded;
+}
+
+}  // namespace palpate
