@@ -208,12 +208,12 @@ void ListBuilder::sort_lists(const VoxelPairs& pairs) {
     std::uint32_t count, voxels;
   } const lists{voxels, voxels}, entries{pairs.count, voxels};
   steps_.run_items(spirv::list_sort, {0u}, {p.list_begin, p.list_triangles, longest}, lists, voxels);
-  const std::uint32_t most = steps_.read(longest, 0);
-  if (most <= gpu::kSortChunk) return;
+  p.longest_list = steps_.read(longest, 0);
+  if (p.longest_list <= gpu::kSortChunk) return;
 
   steps_.run_items(spirv::list_sort, {1u}, {p.list_begin, p.list_triangles, longest}, entries, pairs.count);
   VulkanBuffer merged = steps_.buffer("voxels' lists", pairs.count);
-  for (std::uint64_t run = gpu::kSortChunk; run < most && steps_.ok(); run *= 2) {
+  for (std::uint64_t run = gpu::kSortChunk; run < p.longest_list && steps_.ok(); run *= 2) {
     struct {
       std::uint32_t count, voxels, run;
     } const push{pairs.count, voxels, static_cast<std::uint32_t>(run)};

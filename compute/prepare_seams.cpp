@@ -1,13 +1,83 @@
 #include "compute/prepare_seams.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 #include <vector>
 
-namespace palpate {
+#include "shaders/code.h"
+#include "shaders/shared/prepare.h"
 
-void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool, BodyBuffers& body) {
-  const std::vector<std::uint32_t> begin(geometry.mockup.triangles.size() + 1, 0);
+namespace palpate {
+namespace {
+
+using Pair = std::array<std::uint32_t, 2>;
+
+Long3 raw_normal(const LatticeMesh& mesh, std::uint32_t t) {
+  const Long3 a(mesh.corner(t, 0)), u = Long3(mesh.corner(t, 1)) - a, v = Long3(mesh.corner(t, 2)) - a;
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+/// Pairs of triangles that touch along a seam and whose unit normals don't rule a smooth angle out; each once, ascending.
+std::vector<Pair> candidates(PrepareSteps& steps, const SceneGeometry& geometry, BodyBuffers& body) {
+  const PartitionBuffers& p = body.partition;
+  gpu::SeamPush push{};
+  // Rounded unit normals err by less than 2^31 in their product, the cosine by less than 2^10: 2^34 is on the safe side.
+  const SmoothAngle& angle = geometry.smooth_angle;
+  const double cosine = std::sqrt(static_cast<double>(angle.cos2_numerator) / static_cast<double>(angle.cos2_denominator));
+  push.least_cosine = static_cast<std::int64_t>(std::ldexp(cosine, 60)) - (std::int64_t{1} << 34);
+  push.count = p.grid.list_entries;
+  push.voxels = p.grid.boundary_voxels;
+  push.capacity = 1u << 16;   // chosen; grown to what was found
+
+  const std::uint32_t rounds = (p.longest_list + gpu::kSeamSpan - 1) / gpu::kSeamSpan;
+  const VulkanBuffer found = steps.buffer("seams", 1);
+  while (steps.ok()) {
+    const VulkanBuffer pairs = steps.buffer("pairs of triangles at seams", push.capacity, sizeof(Pair));
+    if (!steps.ok()) break;
+    steps.fill(found, 0);
+    for (push.round = 0; push.round < rounds; ++push.round)
+      steps.run_items(spirv::seam_find, {},
+                      {body.vertices, body.triangles, body.unit_normal, p.list_begin, p.list_triangles, found, pairs}, push,
+                      push.count);
+    const std::uint32_t count = steps.read(found, 0);
+    if (count > push.capacity) {
+      push.capacity = count;
+      continue;
+    }
+    std::vector<Pair> out(count);
+    if (auto r = download(steps.device(), pairs, 0, out.data(), count * sizeof(Pair)); !r) steps.fail(r.error());
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+  return {};
+}
+
+}  // namespace
+
+void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool refined, BodyBuffers& body) {
+  const LatticeMesh& mesh = geometry.mockup;
+  std::vector<Pair> seams;
+  if (refined) {
+    for (const auto& [s, t] : candidates(steps, geometry, body))
+      if (smooth(raw_normal(mesh, s), raw_normal(mesh, t), geometry.smooth_angle)) {
+        seams.push_back({s, t});
+        seams.push_back({t, s});
+      }
+    std::sort(seams.begin(), seams.end());
+  }
+  std::vector<std::uint32_t> begin(mesh.triangles.size() + 1, 0), ids;
+  ids.reserve(seams.size());
+  for (const auto& [s, t] : seams) {
+    ++begin[s + 1];
+    ids.push_back(t);
+  }
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
   body.seam_begin = steps.filled("seams", begin);
-  body.seams = steps.buffer("seams", 1);
+  body.seams = steps.filled("seams", ids);
+  body.seam_entries = static_cast<std::uint32_t>(ids.size());
 }
 
 }  // namespace palpate

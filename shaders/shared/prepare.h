@@ -52,5 +52,14 @@ struct GridPush {
 };
 PALPATE_ASSERT_SIZE(GridPush, 36);
 
+struct SeamPush {
+  int64_t least_cosine;   // Q60; pairs below can't be smooth
+  uint32_t count;         // entries
+  uint32_t voxels;
+  uint32_t round;
+  uint32_t capacity;      // pairs
+};
+PALPATE_ASSERT_SIZE(SeamPush, 24);
+
 PALPATE_SHARED_END
 #endif
