@@ -21,7 +21,7 @@ enum class Pace : std::uint8_t {
 
 struct SessionOptions {
   Pace pace = Pace::kRealtime;
-  std::optional<double> duration_s;           ///< empty: to the end of the device's path; without a path: until stop
+  std::optional<double> duration_s{};         ///< empty: to the end of the device's path; without a path: until stop
                                               ///< in real time, one second in virtual time
   const std::atomic<bool>* stop = nullptr;    ///< set it (also from a signal handler) to end the run with zero force
 };

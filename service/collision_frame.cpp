@@ -1,0 +1,74 @@
+#include "service/collision_frame.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <string>
+
+namespace palpate {
+namespace {
+
+/// Free of contact, keeping the lists' memory.
+void clear(Contacts& contacts) {
+  contacts.contact = contacts.truncated = false;
+  contacts.truncated_capacity = "";
+  contacts.pairs = 0;
+  for (auto* list : {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est}) list->clear();
+  contacts.areas.clear();
+  contacts.flags = 0;
+  contacts.swallowed_direction = Int3(0);
+  contacts.swallowed_height = 0;
+  contacts.times.clear();
+}
+
+}  // namespace
+
+CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques)
+    : geometry_(geometry), backend_(backend), profile_(profile), stiffness_(stiffness), torques_(torques) {}
+
+Result<void> CollisionFrame::solve(FrameSlot& slot, LawResult& result) noexcept {
+  // A library's exception must not pass the control loop's thread, nor end the program with force on.
+  try {
+    return answer(slot, result);
+  } catch (const std::exception& error) {
+    return Error{ErrorCode::kInternal, std::string("the collision query failed: ") + error.what()};
+  } catch (...) {
+    return Error{ErrorCode::kInternal, "the collision query failed for an unknown reason"};
+  }
+}
+
+Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
+  const auto start = std::chrono::steady_clock::now();   // recorded, decides nothing
+  const auto lattice_pose = to_lattice(slot.sample.pose, geometry_);
+  if (!lattice_pose) return lattice_pose.error();
+  slot.lattice_pose = *lattice_pose;
+
+  if (slot.lattice_pose.beyond_lattice) {
+    clear(slot.contacts);
+  } else if (auto answered = backend_.query(slot.lattice_pose, &held_, slot.contacts); !answered) {
+    return answered;
+  }
+  respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response);
+  remember(slot.contacts, slot.response, held_);
+
+  result = {};
+  result.tick = slot.sample.tick;
+  result.rotation = slot.sample.pose.rotation;
+  result.gc = slot.sample.pose.position + slot.sample.pose.rotation * geometry_.tool_gc_m;
+  fill_law_result(slot.response, stiffness_, result);
+  if (!torques_) {
+    result.wrench.torque = Vec3(0);
+    for (ContactPlane& plane : result.planes) plane.lever = Vec3(0);
+  }
+
+  const auto taken = std::chrono::steady_clock::now() - start;
+  const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count();
+  slot.total_us = static_cast<double>(ns) / 1000;
+  frame_ns_.add(ns);
+  if (slot.contacts.truncated) ++truncated_frames_, truncated_capacity_ = slot.contacts.truncated_capacity;
+  areas_max_ = std::max(areas_max_, result.areas);
+  if (result.areas > kMaxLawPlanes) ++merged_frames_;
+  return {};
+}
+
+}  // namespace palpate

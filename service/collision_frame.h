@@ -1,0 +1,67 @@
+#pragma once
+#include <cstdint>
+
+#include "model/collision_backend.h"
+#include "model/plan.h"
+#include "model/response.h"
+#include "model/scene_geometry.h"
+#include "service/histogram.h"
+#include "service/law_result.h"
+#include "service/run_record.h"
+
+namespace palpate {
+
+/// A pose on its way from the control loop to the collision worker.
+struct PoseSample {
+  std::int64_t tick = -1;
+  Pose pose;
+};
+
+/// A query's pose and outcome; reused from frame to frame so that its lists keep their memory.
+struct FrameSlot {
+  PoseSample sample;
+  LatticePose lattice_pose;
+  Contacts contacts;
+  ContactResponse response;
+  double total_us = 0;
+
+  FrameRecord record() const {
+    return {sample.tick, sample.pose, lattice_pose, contacts, response, total_us};
+  }
+};
+
+/// Answers one pose after the other: query, respond, remember what is held, and what the force law needs of it.
+/// Used by one thread at a time. Allocates only as the back end and growing lists do.
+class CollisionFrame {
+ public:
+  /// All three outlive this. `torques`: the device has torque axes; without them the plan may have left out
+  /// contact points, so torques and levers are not used.
+  CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques);
+
+  /// Fills `slot` (its sample is set by the caller) and `result`. An error means that the back end failed, by
+  /// status or by exception, or that the pose isn't one: the caller sends zero force.
+  Result<void> solve(FrameSlot& slot, LawResult& result) noexcept;
+
+  const Histogram& frame_ns() const { return frame_ns_; }
+  std::uint64_t frames() const { return frame_ns_.total(); }
+  std::uint64_t truncated_frames() const { return truncated_frames_; }
+  const char* truncated_capacity() const { return truncated_capacity_; }   ///< of the last truncated frame
+  std::uint32_t areas_max() const { return areas_max_; }
+  std::uint64_t merged_frames() const { return merged_frames_; }           ///< more areas than the force law keeps apart
+
+ private:
+  Result<void> answer(FrameSlot& slot, LawResult& result);
+
+  const SceneGeometry& geometry_;
+  CollisionBackend& backend_;
+  Profile profile_;
+  double stiffness_;
+  bool torques_;
+  Held held_;
+  Histogram frame_ns_;
+  std::uint64_t truncated_frames_ = 0, merged_frames_ = 0;
+  const char* truncated_capacity_ = "";
+  std::uint32_t areas_max_ = 0;
+};
+
+}  // namespace palpate

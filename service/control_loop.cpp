@@ -1,0 +1,106 @@
+#include "service/control_loop.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "driver/limits.h"
+#include "service/collision_worker.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::int64_t kPeriodNs = 1'000'000;
+
+std::int64_t now_ns() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+void sleep_until(std::int64_t ns) noexcept {
+  const timespec t{.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace
+
+ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc)
+    : device_(device), law_(law), tool_gc_(tool_gc) {}
+
+PoseSample ControlTick::sense(std::int64_t tick) noexcept {
+  const DeviceSample sample = device_.read();
+  record_.tick = static_cast<std::int64_t>(ticks_);
+  record_.time_s = static_cast<double>(tick) / 1000;
+  record_.pose = sample.pose;
+  record_.stage = sample.stage;
+  if (sample.stage > 0 && static_cast<std::size_t>(sample.stage) < kMaxStages) stages_[static_cast<std::size_t>(sample.stage)] = true;
+  pose_ = {tick, sample.pose.position + sample.pose.rotation * tool_gc_, sample.pose.rotation};
+  return {tick, sample.pose};
+}
+
+const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
+  const Wrench wrench = law_.step(pose_, fresh);
+  if (law_.took_fresh()) {
+    device_.fresh();
+    result_tick_ = fresh->tick;
+    record_.response = fresh->wrench;
+    record_.contact = fresh->contact;
+  }
+  device_.write(wrench, pose_.gc);
+  record_.sent = device_.sent();
+  record_.result_age_ticks = result_tick_ < 0 ? -1 : static_cast<std::int32_t>(pose_.tick - result_tick_);
+
+  ++ticks_;
+  if (result_tick_ >= 0) result_age_.add(record_.result_age_ticks);
+  force_max_ = std::max(force_max_, length(record_.sent.force));
+  torque_max_ = std::max(torque_max_, length(record_.sent.torque));
+  return record_;
+}
+
+std::uint64_t run_realtime_loop(ControlTick& tick, SafeDevice& device, CollisionWorker& worker, std::uint64_t ticks, LoopSignals& signals,
+                                LoopTiming& timing, TickSink sink, void* sink_context) noexcept {
+  std::uint64_t dropped = 0;
+  std::int64_t period = 0;   // grid index of this tick
+  const std::int64_t start = now_ns();
+  while (tick.ticks() < ticks) {
+    if (signals.stop && signals.stop->load(std::memory_order_relaxed)) {
+      timing.stopped = true;
+      break;
+    }
+    if (signals.abort.load(std::memory_order_relaxed) || worker.failed() || tick.device_failed()) break;
+
+    worker.submit(tick.sense(period));
+    if (!sink(sink_context, tick.act(worker.take_result()))) ++dropped;
+
+    ++period;
+    sleep_until(start + period * kPeriodNs);
+    const std::int64_t late = std::max<std::int64_t>(now_ns() - (start + period * kPeriodNs), 0);
+    timing.lateness_ns.add(late);
+    if (const std::int64_t skipped = late / kPeriodNs; skipped > 0) {
+      timing.missed_ticks += static_cast<std::uint64_t>(skipped);
+      period += skipped;
+    }
+  }
+  device.close();   // zero force first
+  signals.done.store(true, std::memory_order_release);
+  return dropped;
+}
+
+RealtimeGrant make_realtime() {
+  RealtimeGrant grant;
+  const sched_param priority{.sched_priority = 80};   // above what a desktop uses, below the kernel's own threads (chosen)
+  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0)
+    grant.refused = std::string("no real-time priority (") + std::strerror(error) + "): ticks are as punctual as the ordinary scheduler makes them";
+  grant.locked = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
+  if (!grant.locked) grant.refused += std::string(grant.refused.empty() ? "" : "; ") + "memory isn't locked (" + std::strerror(errno) + ")";
+  return grant;
+}
+
+}  // namespace palpate

@@ -1,0 +1,84 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "driver/safe_device.h"
+#include "service/collision_frame.h"
+#include "service/force_law.h"
+#include "service/histogram.h"
+#include "service/run_record.h"
+
+namespace palpate {
+
+inline constexpr std::size_t kMaxStages = 256;   ///< stages that a run can tell apart
+
+/// One tick of control, the same in real and in virtual time: sense, then act on what is known. No clock, no
+/// allocation, no lock, no exception.
+class ControlTick {
+ public:
+  /// `device` outlives this. `tool_gc` in the tool's frame, m.
+  ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc);
+
+  /// Reads the device. `tick` counts 1 ms periods since the start, missed ones too.
+  PoseSample sense(std::int64_t tick) noexcept;
+  /// Force law, gate and limits, and out; `fresh` is the newest result, or null if there is no new one.
+  const TickRecord& act(const LawResult* fresh) noexcept;
+
+  bool device_failed() const noexcept { return device_.faulted(); }
+  std::uint64_t ticks() const { return ticks_; }
+  const Histogram& result_age() const { return result_age_; }
+  const std::array<bool, kMaxStages>& stages() const { return stages_; }
+  double force_max() const { return force_max_; }     ///< N, sent
+  double torque_max() const { return torque_max_; }   ///< N·m, sent
+
+ private:
+  SafeDevice& device_;
+  ForceLawState law_;
+  Vec3 tool_gc_;
+  LawPose pose_;
+  TickRecord record_;
+  std::int64_t result_tick_ = -1;
+  std::uint64_t ticks_ = 0;
+  Histogram result_age_;
+  std::array<bool, kMaxStages> stages_{};
+  double force_max_ = 0, torque_max_ = 0;
+};
+
+/// What the real-time loop and the session share. The loop's thread looks at `stop` and `abort` every tick.
+struct LoopSignals {
+  const std::atomic<bool>* stop = nullptr;   ///< from outside, may be null
+  std::atomic<bool> abort{false};            ///< another part of the session has failed
+  std::atomic<bool> done{false};             ///< set by the loop when the device is at zero force and closed
+};
+
+/// How a real-time loop kept its time.
+struct LoopTiming {
+  Histogram lateness_ns;            ///< wake-up after the scheduled time
+  std::uint64_t missed_ticks = 0;   ///< whole periods skipped because a tick came too late
+  bool stopped = false;             ///< by `stop`
+};
+
+class CollisionWorker;
+
+/// Where the loop's records go; false: full, the record is dropped. Wait-free.
+using TickSink = bool (*)(void* context, const TickRecord& record) noexcept;
+
+/// Runs the calling thread as the 1 kHz loop until `ticks` are done (executed ones), `stop` or `abort` is set, the worker or
+/// the device fails. Then, whatever the reason, sends zero force, closes the device and sets `done`.
+/// Sleeps to absolute times; a tick that comes a whole period late is skipped, never caught up in a burst.
+/// Returns how many records the sink refused.
+std::uint64_t run_realtime_loop(ControlTick& tick, SafeDevice& device, CollisionWorker& worker, std::uint64_t ticks, LoopSignals& signals,
+                                LoopTiming& timing, TickSink sink, void* sink_context) noexcept;
+
+struct RealtimeGrant {
+  bool locked = false;      ///< mlockall was granted; munlockall() takes it back
+  std::string refused;      ///< a sentence on what was refused; empty: nothing
+};
+
+/// Asks for SCHED_FIFO for the calling thread and for the process's present pages to stay in memory.
+RealtimeGrant make_realtime();
+
+}  // namespace palpate

@@ -1,0 +1,271 @@
+#include "service/session.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "driver/safe_device.h"
+#include "service/collision_frame.h"
+#include "service/collision_worker.h"
+#include "service/control_loop.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kMaxVirtualDelay = 1000;        ///< ticks; a result a second old is no use to anybody (chosen)
+constexpr double kMaxFadeMs = 60'000;         ///< chosen
+constexpr std::size_t kTickQueue = 16384;     ///< 16 s of ticks until a stalled disk costs a row (chosen)
+constexpr std::uint64_t kForever = std::numeric_limits<std::uint64_t>::max();
+
+std::string number(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+Result<void> check(const Scene& scene, const SessionOptions& options) {
+  const auto wrong = [&](const std::string& name, double value, const std::string& allowed) {
+    return bad_value(scene.file + ": " + name + " is " + number(value) + ", allowed is " + allowed);
+  };
+  const ControlSettings& control = scene.control;
+  const double stiffness = scene.response.stiffness_n_per_m;
+  if (!std::isfinite(stiffness) || stiffness < 0) return wrong("response.stiffness", stiffness, "a finite number of N/m from 0");
+  if (control.transitions && (*control.transitions < 1 || *control.transitions > kMaxTransitions))
+    return wrong("control.transitions", *control.transitions, "1 to " + std::to_string(kMaxTransitions) + " ticks, or auto");
+  if (control.virtual_delay_ticks < 1 || control.virtual_delay_ticks > kMaxVirtualDelay)
+    return wrong("control.virtual_delay_ticks", control.virtual_delay_ticks, "1 to " + std::to_string(kMaxVirtualDelay));
+  if (!(control.watchdog_ms >= 0 && control.watchdog_ms <= kMaxFadeMs)) return wrong("control.watchdog_ms", control.watchdog_ms, "0 to 60000");
+  if (!(control.fade_in_ms >= 0 && control.fade_in_ms <= kMaxFadeMs)) return wrong("control.fade_in_ms", control.fade_in_ms, "0 to 60000");
+  if (options.duration_s && !(*options.duration_s > 0 && *options.duration_s <= 1e9)) return bad_value("the duration is " + number(*options.duration_s) + " s, allowed is more than 0 to 1e9");
+  return {};
+}
+
+/// How many ticks a run takes. A path's last point, and its stage, are part of it.
+std::uint64_t tick_count(const Scene& scene, const HapticDevice& device, const SessionOptions& options) {
+  const auto ticks = [](double seconds) { return static_cast<std::uint64_t>(std::max(std::llround(seconds / kTickSeconds), 1LL)); };
+  if (options.duration_s) return ticks(*options.duration_s);
+  const auto& path = scene.device.path;
+  if (device.name() == "simulated" && !path.empty()) return ticks(path.back().time_s) + 1;
+  return options.pace == Pace::kAsap ? ticks(1) : kForever;
+}
+
+/// An observer behind a guard: null is fine, what it throws becomes an error, and after an error it is left alone.
+class GuardedObserver {
+ public:
+  explicit GuardedObserver(RunObserver* observer) : observer_(observer) {}
+
+  bool tick(const TickRecord& record) {
+    return call([&] { return observer_->on_tick(record); });
+  }
+  bool frame(const FrameRecord& record) {
+    return call([&] { return observer_->on_frame(record); });
+  }
+  const std::optional<Error>& error() const { return error_; }
+
+ private:
+  template <class Call>
+  bool call(Call call_observer) {
+    if (!observer_) return true;
+    if (error_) return false;
+    try {
+      if (auto done = call_observer(); !done) error_ = done.error();
+    } catch (const std::exception& thrown) {
+      error_ = Error{ErrorCode::kInternal, std::string("recording the run failed: ") + thrown.what()};
+    } catch (...) {
+      error_ = Error{ErrorCode::kInternal, "recording the run failed for an unknown reason"};
+    }
+    return !error_;
+  }
+
+  RunObserver* observer_;
+  std::optional<Error> error_;
+};
+
+/// Everything that both paces use.
+struct Run {
+  Run(const LoadedScene& loaded, CollisionBackend& backend, SafeDevice& safe, const SessionOptions& session_options, RunObserver* run_observer)
+      : scene(loaded.scene),
+        options(session_options),
+        device(safe),
+        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe)),
+        tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m),
+        observer(run_observer),
+        ticks(tick_count(loaded.scene, safe, session_options)) {}
+
+  static bool has_torques(const SafeDevice& safe) {
+    const auto can = safe.capabilities().actuated;
+    return can[3] || can[4] || can[5];
+  }
+  static ForceLawSettings law_settings(const Scene& scene) {
+    return {.kind = scene.control.law == ForceLaw::kPrinted ? LawKind::kPrinted : LawKind::kCorrected,
+            .stiffness_n_per_m = scene.response.stiffness_n_per_m,
+            .transitions = scene.control.transitions.value_or(0)};
+  }
+
+  const Scene& scene;
+  const SessionOptions& options;
+  SafeDevice& device;
+  CollisionFrame frame;
+  ControlTick tick;
+  GuardedObserver observer;
+  std::uint64_t ticks;
+  LoopTiming timing;
+  std::uint64_t dropped_ticks = 0, dropped_frames = 0;
+  std::string realtime_note;
+  std::optional<Error> error;
+};
+
+/// Virtual time: the answer to the pose of tick i arrives at tick i + delay, and then the next query starts.
+/// Nothing here asks a clock, so equal scenes give equal bytes.
+void run_asap(Run& run) {
+  const std::int64_t delay = run.scene.control.virtual_delay_ticks;
+  FrameSlot slot;
+  LawResult arrived, pending;
+  for (std::int64_t i = 0; static_cast<std::uint64_t>(i) < run.ticks; ++i) {
+    if (run.options.stop && run.options.stop->load(std::memory_order_relaxed)) {
+      run.timing.stopped = true;
+      return;
+    }
+    const PoseSample sample = run.tick.sense(i);
+    const LawResult* fresh = nullptr;
+    if (run.tick.device_failed()) return;
+    if (i % delay == 0) {
+      arrived = pending;
+      if (arrived.tick >= 0) fresh = &arrived;
+      slot.sample = sample;
+      if (auto solved = run.frame.solve(slot, pending); !solved) {
+        run.error = solved.error();
+        return;
+      }
+      if (!run.observer.frame(slot.record())) return;
+    }
+    if (!run.observer.tick(run.tick.act(fresh))) return;
+  }
+}
+
+/// Real time: the control loop and the collision worker on their own threads; this thread records.
+void run_realtime(Run& run) {
+  using TickQueue = boost::lockfree::spsc_queue<TickRecord, boost::lockfree::capacity<kTickQueue>>;
+  const auto records = std::make_unique<TickQueue>();
+  CollisionWorker worker(run.frame);
+  LoopSignals signals;
+  signals.stop = run.options.stop;
+  RealtimeGrant granted;
+  worker.start();
+  std::thread loop([&] {
+    granted = make_realtime();
+    const TickSink sink = [](void* queue, const TickRecord& record) noexcept { return static_cast<TickQueue*>(queue)->push(record); };
+    run.dropped_ticks = run_realtime_loop(run.tick, run.device, worker, run.ticks, signals, run.timing, sink, records.get());
+  });
+
+  const auto drain = [&] {
+    records->consume_all([&](const TickRecord& record) { run.observer.tick(record); });
+    while (FrameSlot* slot = worker.next_frame()) {
+      run.observer.frame(slot->record());
+      worker.release(slot);
+    }
+    if (run.observer.error()) signals.abort.store(true, std::memory_order_relaxed);
+  };
+  while (!signals.done.load(std::memory_order_acquire)) {
+    drain();
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  }
+  loop.join();      // the device is at zero force and closed
+  worker.stop();    // may take as long as a query
+  drain();
+  if (granted.locked) munlockall();
+  run.realtime_note = granted.refused;
+  run.dropped_frames = worker.dropped_frames();
+  if (worker.error()) run.error = worker.error();
+}
+
+Percentiles percentiles(const Histogram& histogram, double unit) {
+  return {histogram.percentile(0.5) / unit, histogram.percentile(0.99) / unit, histogram.percentile(0.999) / unit, histogram.max() / unit};
+}
+
+SessionSummary summarise(const Run& run, const LoadedScene& scene, const CollisionBackend& backend) {
+  SessionSummary out;
+  out.static_triangles = scene.mockup.triangles.size();
+  out.tool_triangles = scene.tool.triangles.size();
+  out.backend = backend.name();
+  out.device = backend.device();
+  out.haptic_device = run.device.name();
+  out.profile = run.scene.response.profile == Profile::kPaper ? "paper" : "refined";
+  out.law = run.scene.control.law == ForceLaw::kPrinted ? "printed" : "corrected";
+  out.ticks = run.tick.ticks();
+  out.missed_ticks = run.timing.missed_ticks;
+  out.lateness_us = percentiles(run.timing.lateness_ns, 1000);
+  out.result_age_ticks = percentiles(run.tick.result_age(), 1);
+  out.frame_us = percentiles(run.frame.frame_ns(), 1000);
+  for (std::size_t stage = 0; stage < kMaxStages; ++stage)
+    if (run.tick.stages()[stage]) out.stages_reached.push_back(static_cast<int>(stage));
+  out.areas_max = run.frame.areas_max();
+  out.force_max_N = run.tick.force_max();
+  out.torque_max_Nm = run.tick.torque_max();
+  out.frames = run.frame.frames();
+  out.watchdog_ticks = run.device.watchdog_ticks();
+  out.saturated_ticks = run.device.saturated_ticks();
+  out.dropped_ticks = run.dropped_ticks;
+  out.dropped_frames = run.dropped_frames;
+  out.stopped = run.timing.stopped;
+
+  const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
+  if (!run.realtime_note.empty()) note(run.realtime_note);
+  if (out.watchdog_ticks > 0)
+    note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " + std::to_string(out.watchdog_ticks) +
+         " ticks: the watchdog faded the force out");
+  if (out.missed_ticks > 0) note(std::to_string(out.missed_ticks) + " ticks were missed: the loop's thread did not get the processor in time");
+  if (run.frame.truncated_frames() > 0)
+    note(std::to_string(run.frame.truncated_frames()) + " frames gave no force because a capacity was too small: " + run.frame.truncated_capacity());
+  if (run.frame.merged_frames() > 0)
+    note(std::to_string(run.frame.merged_frames()) + " frames had more than " + std::to_string(kMaxLawPlanes) +
+         " areas with force: the smallest were extrapolated as one");
+  if (out.dropped_ticks > 0) note(std::to_string(out.dropped_ticks) + " ticks are missing from the recording: it fell behind");
+  if (out.dropped_frames > 0) note(std::to_string(out.dropped_frames) + " frames are missing from the recording: it fell behind");
+  return out;
+}
+
+}  // namespace
+
+Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& backend, HapticDevice& device,
+                                   const SessionOptions& options, RunObserver* observer) {
+  if (auto fine = check(scene.scene, options); !fine) return fine.error();
+  const ControlSettings& control = scene.scene.control;
+  const auto in_ticks = [](double ms) { return static_cast<int>(std::lround(ms / 1000 / kTickSeconds)); };
+  SafetySettings safety;
+  safety.fade_in_ticks = in_ticks(control.fade_in_ms);
+  safety.watchdog_ticks = in_ticks(control.watchdog_ms);
+  // From here on every way out passes SafeDevice's destructor: zero force, then closed.
+  SafeDevice safe(device, safety);
+  if (auto opened = safe.open(); !opened) return opened.error();
+
+  std::unique_ptr<Run> run;
+  try {
+    run = std::make_unique<Run>(scene, backend, safe, options, observer);
+    if (options.pace == Pace::kAsap) {
+      run_asap(*run);
+    } else {
+      run_realtime(*run);
+    }
+  } catch (const std::exception& error) {   // no memory, no thread
+    return Error{ErrorCode::kInternal, std::string("the session can't run: ") + error.what()};
+  }
+  safe.close();
+
+  if (run->error) return *run->error;
+  if (safe.faulted()) return Error{ErrorCode::kInternal, "haptic device '" + safe.name() + "': " + safe.fault() + "; the run has ended with zero force"};
+  if (run->observer.error()) return *run->observer.error();
+  return summarise(*run, scene, backend);
+}
+
+}  // namespace palpate

@@ -1,0 +1,368 @@
+#include "service/session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "driver/limits.h"
+#include "driver/simulated_device.h"
+#include "service/recorder.h"
+#include "tests/service/half_space.h"
+
+namespace palpate {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The simulated device, watched: what reached it last, and whether it was closed at zero.
+class WatchedDevice : public HapticDevice {
+ public:
+  explicit WatchedDevice(const LoadedScene& scene) {
+    auto made = make_simulated_device(scene.scene.device, scene.scene.start, Vec3(0));
+    if (made) device_ = std::move(made).value();
+  }
+  std::string name() const override { return "simulated"; }
+  DeviceCapabilities capabilities() const override { return device_->capabilities(); }
+  Result<void> open() override { return device_->open(); }
+  void close() noexcept override {
+    closed_at_zero = last.force == Vec3(0) && last.torque == Vec3(0);
+    device_->close();
+    closed.store(true);
+  }
+  DeviceSample read() noexcept override {
+    DeviceSample sample = device_->read();
+    if (writes >= fault_after) sample.state = DeviceState::kFault;
+    return sample;
+  }
+  void write(const Wrench& wrench, const Vec3& gc) noexcept override {
+    last = wrench;
+    strongest = std::max(strongest, length(wrench.force));
+    ++writes;
+    device_->write(wrench, gc);
+  }
+
+  Wrench last{Vec3(9), Vec3(9)};
+  double strongest = 0;
+  bool closed_at_zero = false;
+  std::atomic<bool> closed = false;
+  int writes = 0, fault_after = 1 << 30;
+
+ private:
+  std::unique_ptr<HapticDevice> device_;
+};
+
+/// Keeps every tick; may fail or throw at one.
+class Watcher : public RunObserver {
+ public:
+  Result<void> on_tick(const TickRecord& tick) override {
+    ticks.push_back(tick);
+    if (stop_in_contact && tick.contact) stop_in_contact->store(true);
+    if (static_cast<int>(ticks.size()) == fail_at) return Error{ErrorCode::kInternal, "the disk is full"};
+    if (static_cast<int>(ticks.size()) == throw_at) throw std::runtime_error("out of ink");
+    return {};
+  }
+  Result<void> on_frame(const FrameRecord& frame) override {
+    frame_ticks.push_back(frame.tick);
+    return {};
+  }
+  std::vector<TickRecord> ticks;
+  std::vector<std::int64_t> frame_ticks;
+  int fail_at = -1, throw_at = -1;
+  std::atomic<bool>* stop_in_contact = nullptr;
+};
+
+std::string slurp(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// --- Virtual time ---
+
+TEST(Session, PressesBackWithTheDepthOfTheContact) {
+  LoadedScene scene = half_space_scene();
+  add_dip(scene, 2);
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  Watcher watcher;
+  const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, &watcher);
+  ASSERT_TRUE(summary) << summary.error().sentence;
+  EXPECT_EQ(summary->ticks, 2001u) << "the path's last point is part of the run";
+  EXPECT_THAT(summary->stages_reached, ElementsAre(1, 2, 3));
+  EXPECT_EQ(summary->areas_max, 1u);
+  EXPECT_EQ(summary->result_age_ticks.p50, 4);   // 3, 4, 5 in turn
+  EXPECT_EQ(summary->result_age_ticks.max, 5);
+  EXPECT_EQ(summary->law, "corrected");
+  EXPECT_EQ(summary->missed_ticks, 0u);
+  EXPECT_EQ(summary->watchdog_ticks, 0u);
+  // Static balance of hand (135 N/m) and wall (1000 N/m) against a hand 10 mm deep is 1.19 N; the dip is slow enough for 20 %.
+  EXPECT_NEAR(summary->force_max_N, 0.01 * 135 * 1000 / 1135, 0.25);
+  for (const TickRecord& tick : watcher.ticks) {
+    ASSERT_GE(tick.sent.force.z, 0) << "never pulls";
+    // A wall's plane is exact, so apart from the ramp at touch and release the law knows the force of this very tick.
+    if (tick.contact && tick.pose.position.z < -1e-3) {
+      ASSERT_NEAR(tick.sent.force.z, -1000 * tick.pose.position.z, 0.02);
+    }
+  }
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
+TEST(Session, GivesResultsTheAgeThatTheSceneConfigures) {
+  LoadedScene scene = half_space_scene();
+  scene.scene.control.virtual_delay_ticks = 7;
+  add_dip(scene, 0.1);
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  Watcher watcher;
+  ASSERT_TRUE(run_session(scene, backend, device, {.pace = Pace::kAsap}, &watcher));
+  for (std::size_t i = 0; i < watcher.ticks.size(); ++i)
+    EXPECT_EQ(watcher.ticks[i].result_age_ticks, i < 7 ? -1 : 7 + static_cast<int>(i % 7)) << i;
+  ASSERT_GE(watcher.frame_ticks.size(), 3u);
+  EXPECT_EQ(watcher.frame_ticks[1], 7);
+  EXPECT_EQ(watcher.frame_ticks[2], 14);
+}
+
+TEST(Session, LeavesTheSameBytesEveryTimeInVirtualTime) {
+  const auto root = std::filesystem::path(testing::TempDir()) / "palpate_session_test";
+  std::vector<std::string> traces;
+  for (const char* name : {"a", "b"}) {
+    LoadedScene scene = half_space_scene();
+    add_dip(scene, 0.5);
+    HalfSpace backend;
+    // Slow at whim: no clock may show in the trace.
+    backend.on_query = [&](int n) {
+      if (n % 50 == 0 && *name == 'b') std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      return Result<void>();
+    };
+    WatchedDevice device(scene);
+    auto recorder = Recorder::create((root / name).string());
+    ASSERT_TRUE(recorder);
+    ASSERT_TRUE(run_session(scene, backend, device, {.pace = Pace::kAsap}, recorder->get()));
+    ASSERT_TRUE((*recorder)->finish());
+    traces.push_back(slurp(root / name / "trace.csv"));
+  }
+  EXPECT_EQ(traces[0], traces[1]);
+  EXPECT_EQ(std::count(traces[0].begin(), traces[0].end(), '\n'), 502);
+  EXPECT_THAT(traces[0], testing::StartsWith("time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
+                                             "response_force_x_N,response_force_y_N,response_force_z_N,response_torque_x_Nm,response_torque_y_Nm,"
+                                             "response_torque_z_Nm,result_age_ticks,contact,stage\n0,0,0,0.01,0,0,0,1,"));
+  const std::string frames = slurp(root / "a" / "frames.jsonl");
+  EXPECT_THAT(frames, HasSubstr("\"tick\":3"));
+  std::filesystem::remove_all(root);
+}
+
+TEST(Session, FadesItsForceInAtTheStart) {
+  LoadedScene scene = half_space_scene();
+  scene.scene.control.fade_in_ms = 100;
+  scene.scene.start.position.z = -0.005;   // parts of an assembly touch before anybody moves
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  Watcher watcher;
+  ASSERT_TRUE(run_session(scene, backend, device, {.pace = Pace::kAsap, .duration_s = 0.3}, &watcher));
+  for (std::size_t i = 0; i < 100; ++i) {
+    const double full = -1000 * watcher.ticks[i].pose.position.z;
+    EXPECT_LE(watcher.ticks[i].sent.force.z, full * static_cast<double>(i + 1) / 100 + 5e-4) << i;   // half a lattice step is 0.5 mN
+  }
+  EXPECT_EQ(watcher.ticks.size(), 300u);
+}
+
+// --- Every way out ends with zero force ---
+
+class SessionExit : public testing::TestWithParam<Pace> {
+ protected:
+  SessionExit() : scene(half_space_scene()) {
+    scene.scene.start.position.z = -0.005;
+    scene.scene.device.path.resize(1);
+    scene.scene.device.path[0].pose = scene.scene.start;
+  }
+  Result<SessionSummary> run(WatchedDevice& device, RunObserver* observer = nullptr, const std::atomic<bool>* stop = nullptr) {
+    return run_session(scene, backend, device, {.pace = GetParam(), .duration_s = duration_s, .stop = stop}, observer);
+  }
+  LoadedScene scene;
+  HalfSpace backend;
+  double duration_s = 60;   // of which a failing run uses a fraction
+};
+INSTANTIATE_TEST_SUITE_P(BothPaces, SessionExit, testing::Values(Pace::kRealtime, Pace::kAsap),
+                         [](const auto& tested) { return tested.param == Pace::kAsap ? "asap" : "realtime"; });
+
+TEST_P(SessionExit, IsAtZeroAfterTheLastTick) {
+  WatchedDevice device(scene);
+  duration_s = 0.1;
+  ASSERT_TRUE(run(device));
+  EXPECT_GT(device.strongest, 0.5);
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
+TEST_P(SessionExit, IsAtZeroWhenStopped) {
+  WatchedDevice device(scene);
+  std::atomic<bool> stop = false;
+  Watcher watcher;
+  watcher.stop_in_contact = &stop;
+  const auto summary = run(device, &watcher, &stop);
+  ASSERT_TRUE(summary);
+  EXPECT_TRUE(summary->stopped);
+  EXPECT_GT(device.writes, 0);
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
+TEST_P(SessionExit, IsAtZeroWhenTheBackEndFails) {
+  WatchedDevice device(scene);
+  backend.on_query = [](int n) { return n < 20 ? Result<void>() : Result<void>(Error{ErrorCode::kInternal, "the Vulkan device was lost"}); };
+  const auto summary = run(device);
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().sentence, "the Vulkan device was lost");
+  EXPECT_GT(device.strongest, 0.5);
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
+TEST_P(SessionExit, IsAtZeroWhenTheBackEndThrows) {
+  WatchedDevice device(scene);
+  backend.on_query = [](int n) -> Result<void> {
+    if (n == 20) throw std::runtime_error("bad shader");
+    return {};
+  };
+  const auto summary = run(device);
+  ASSERT_FALSE(summary);
+  EXPECT_THAT(summary.error().sentence, HasSubstr("bad shader"));
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
+TEST_P(SessionExit, IsAtZeroWhenTheDeviceFails) {
+  WatchedDevice device(scene);
+  device.fault_after = 50;
+  const auto summary = run(device);
+  ASSERT_FALSE(summary);
+  EXPECT_THAT(summary.error().sentence, HasSubstr("reported a fault"));
+  EXPECT_GT(device.strongest, 0.5);
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
+TEST_P(SessionExit, IsAtZeroWhenTheRecordingFails) {
+  for (const bool throws : {false, true}) {
+    WatchedDevice device(scene);
+    Watcher watcher;
+    (throws ? watcher.throw_at : watcher.fail_at) = 30;
+    const auto summary = run(device, &watcher);
+    ASSERT_FALSE(summary);
+    EXPECT_THAT(summary.error().sentence, HasSubstr(throws ? "out of ink" : "the disk is full"));
+    EXPECT_TRUE(device.closed_at_zero);
+  }
+}
+
+TEST_P(SessionExit, GivesNoForceForATruncatedFrame) {
+  WatchedDevice device(scene);
+  class Truncating : public HalfSpace {
+    Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+      auto done = HalfSpace::query(pose, held, out);
+      out.truncated = true, out.truncated_capacity = "pairs";
+      return done;
+    }
+  } truncating;
+  const auto summary = run_session(scene, truncating, device, {.pace = GetParam(), .duration_s = 0.05}, nullptr);
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(device.strongest, 0);
+  EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("pairs")));
+}
+
+TEST(Session, FadesToZeroWhileTheBackEndIsStuckAndKeepsTicking) {
+  LoadedScene scene = half_space_scene();
+  scene.scene.start.position.z = -0.005;
+  scene.scene.device.path.clear();
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  backend.on_query = [&](int n) {
+    while (n == 20 && !device.closed.load()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return Result<void>();
+  };
+  Watcher watcher;
+  const auto summary = run_session(scene, backend, device, {.duration_s = 0.25}, &watcher);
+  ASSERT_TRUE(summary);
+  EXPECT_GT(device.strongest, 0.5);
+  EXPECT_GT(summary->watchdog_ticks, 100u);
+  EXPECT_EQ(watcher.ticks.back().sent.force, Vec3(0)) << "long before the run ended the watchdog had taken the force away";
+  EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("watchdog")));
+}
+
+TEST(Session, RunsInRealTimeOnItsThreads) {
+  LoadedScene scene = half_space_scene();
+  add_dip(scene, 0.4);
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  Watcher watcher;
+  const auto summary = run_session(scene, backend, device, {}, &watcher);
+  ASSERT_TRUE(summary) << summary.error().sentence;
+  EXPECT_EQ(summary->ticks, 401u);
+  EXPECT_EQ(watcher.ticks.size() + summary->dropped_ticks, 401u);
+  EXPECT_EQ(watcher.frame_ticks.size() + summary->dropped_frames, summary->frames);
+  EXPECT_GT(summary->frames, 10u);
+  EXPECT_THAT(summary->stages_reached, ElementsAre(1, 2, 3));
+  EXPECT_GT(summary->lateness_us.max, 0);
+  for (const TickRecord& tick : watcher.ticks) ASSERT_GE(tick.sent.force.z, 0);
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
+TEST(Session, RefusesSettingsInOneSentenceBeforeTheDeviceIsTouched) {
+  const auto refusal = [](auto change) {
+    LoadedScene scene = half_space_scene();
+    change(scene.scene);
+    HalfSpace backend;
+    WatchedDevice device(scene);
+    const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, nullptr);
+    EXPECT_EQ(device.writes, 0);
+    return summary ? std::string("accepted") : summary.error().sentence;
+  };
+  EXPECT_THAT(refusal([](Scene& s) { s.control.transitions = 65; }), HasSubstr("control.transitions is 65"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.virtual_delay_ticks = 0; }), HasSubstr("control.virtual_delay_ticks is 0"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.watchdog_ms = NAN; }), HasSubstr("control.watchdog_ms is nan"));
+  EXPECT_THAT(refusal([](Scene& s) { s.response.stiffness_n_per_m = -1; }), HasSubstr("response.stiffness is -1"));
+}
+
+// --- Recorder ---
+
+TEST(Recorder, NamesADirectoryThatItCannotMake) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "palpate_not_a_directory";
+  std::ofstream(file) << "x";
+  const auto made = Recorder::create((file / "run").string());
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().sentence, HasSubstr("palpate_not_a_directory"));
+  std::filesystem::remove(file);
+}
+
+TEST(Recorder, SaysThatTheDiskIsFull) {
+  const auto root = std::filesystem::path(testing::TempDir()) / "palpate_full_disk";
+  std::filesystem::create_directories(root);
+  std::filesystem::remove(root / "trace.csv");
+  std::filesystem::create_symlink("/dev/full", root / "trace.csv");   // accepts an open, refuses every byte
+  auto recorder = Recorder::create(root.string());
+  ASSERT_TRUE(recorder);
+  Result<void> failed;
+  for (int i = 0; i < 10000 && failed; ++i) failed = (*recorder)->on_tick({});
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error().sentence, HasSubstr("No space left"));
+  std::filesystem::remove_all(root);
+}
+
+TEST(Recorder, SaysThatTheDiskIsFullAtTheLatestWhenItFinishes) {
+  const auto root = std::filesystem::path(testing::TempDir()) / "palpate_full_disk_2";
+  std::filesystem::create_directories(root);
+  std::filesystem::create_symlink("/dev/full", root / "frames.jsonl");
+  auto recorder = Recorder::create(root.string());
+  ASSERT_TRUE(recorder);
+  ASSERT_TRUE((*recorder)->on_frame({0, Pose{}, LatticePose{}, Contacts{}, ContactResponse{}, 0}));
+  const auto finished = (*recorder)->finish();
+  ASSERT_FALSE(finished);
+  EXPECT_THAT(finished.error().sentence, HasSubstr("frames.jsonl"));
+  std::filesystem::remove_all(root);
+}
+
+}  // namespace
+}  // namespace palpate
