@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 
+#include "model/lattice.h"
 #include "model/lattice_mesh.h"
 #include "model/vector.h"
 
