@@ -19,7 +19,7 @@ namespace palpate {
 namespace {
 
 constexpr double kCylinderRadius = 0.030, kCylinderTop = 0.200;
-constexpr double kBlockBottom = -0.060, kBlockTop = 0.120;
+constexpr double kBlockBottom = -0.080, kBlockTop = 0.120;
 constexpr double kEdgeX = 0.075;                              // of the blocks' edges
 constexpr double kPadRadius = 0.008, kPadX = 0.027;           // pads at (±kPadX, 0) of the tool
 constexpr double kBarFront = -0.060;                          // y of the bar's front face in the tool
@@ -78,15 +78,15 @@ std::vector<pieces::Piece> clamp() {
   };
 }
 
-/// Comes on along y, presses, twists about all three axes while pressing, and goes back.
-void collide(Motion& motion, double height, double push, double twist, int stage) {
+/// Comes on along y, presses, twists about all three axes while pressing (`yaw`: about z, `tilt`: about x and y), and goes back.
+void collide(Motion& motion, double height, double push, double yaw, double tilt, int stage) {
   const double away = touching_y() - 0.030, pressed = touching_y() + push;
   motion.go({0, away, height}, Vec3(0), 0.8, stage);
-  motion.go({0, pressed, height}, Vec3(0), 0.8, stage);
+  motion.go({0, pressed, height}, Vec3(0), 1.0, stage);
   motion.rest(0.3, stage);
-  for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
-    motion.turn_to(axis * twist, 0.3, stage);
-    motion.turn_to(axis * -twist, 0.5, stage);
+  for (const Vec3& turn : {Vec3(0, 0, yaw), Vec3(tilt, 0, 0), Vec3(0, tilt, 0)}) {
+    motion.turn_to(turn, 0.3, stage);
+    motion.turn_to(-turn, 0.5, stage);
     motion.turn_to(Vec3(0), 0.3, stage);
   }
   motion.go({0, away, height}, Vec3(0), 0.6, stage);
@@ -102,9 +102,9 @@ GeneratedScene generate_contacts(std::uint64_t triangles, std::uint64_t tool_tri
   // The hand pulls with 135 N/m (the default), the contact pushes back with 2000 N/m an area: 20 mm of intent give 1–3 mm of depth.
   Motion motion({0, touching_y() - 0.040, 0.160}, Vec3(0), 1);
   motion.rest(0.4, 1);
-  collide(motion, 0.160, 0.020, 0.06, 1);
-  collide(motion, -0.035, 0.020, 0.04, 2);
-  collide(motion, 0.060, 0.030, 0.03, 3);
+  collide(motion, 0.160, 0.020, 0.06, 0.25, 1);
+  collide(motion, -0.040, 0.020, 0.04, 0.20, 2);
+  collide(motion, 0.060, 0.030, 0.03, 0.12, 3);
   motion.rest(0.4, 3);
   scene.path = motion.take();
   scene.stage_names = {"two areas on the cylinder", "the corners of both blocks", "four areas at once"};

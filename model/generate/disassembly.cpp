@@ -5,7 +5,7 @@
 #include "model/generate/motion.h"
 #include "model/generate/pieces.h"
 
-// A pipe of 50 mm leaves a wall along x, bends left, up and away, and ends open to the clamp. Behind it: an engine's plates, casings,
+// A pipe of 44 mm leaves a wall along x, bends left, up and away, and ends open to the clamp. Behind it: an engine's plates, casings,
 // cylinders, bolts. All lengths in metres, all chosen. The clamp's frame is the guide's: x along the pipe, z where its ears are.
 namespace palpate {
 namespace {
@@ -14,11 +14,11 @@ using Outline = std::vector<std::pair<double, double>>;
 using pieces::GridPlace;
 using pieces::Piece;
 
-constexpr double kPipeRadius = 0.025, kBendRadius = 0.140;
-constexpr double kBore = 0.0285, kBand = 0.0075, kHalfWidth = 0.020;   // clamp: 3.5 mm of play on the pipe
+constexpr double kPipeRadius = 0.022, kBendRadius = 0.140;
+constexpr double kBore = 0.030, kBand = 0.0075, kHalfWidth = 0.022;     // clamp, unfastened: 8 mm of play on the pipe
 constexpr double kGap = 22.0 / 360;                                    // turns either side of z
 constexpr double kPortal = 0.200, kPortalThickness = 0.012;            // the first obstacle's front, along the pipe
-constexpr double kSlotHalf = 0.024, kEarTop = 0.064, kEarOutside = 0.015;
+constexpr double kSlotHalf = 0.024, kEarTop = 0.066, kEarOutside = 0.015;
 
 Centreline pipe_line() {
   Centreline line;
@@ -48,10 +48,10 @@ Piece pipe(const Centreline& line) {
 
 /// The first obstacle: a plate across the pipe with an opening for the clamp's band and a slot above it for its ears.
 Piece portal() {
-  const Outline opening{{0.046, -0.046}, {0.046, 0.0385}, {kSlotHalf, 0.0385}, {kSlotHalf, 0.070},
-                        {-kSlotHalf, 0.070}, {-kSlotHalf, 0.0385}, {-0.046, 0.0385}, {-0.046, -0.046}};
-  const Outline outside{{0.085, -0.150}, {0.085, 0.0385}, {0.085, 0.105}, {kSlotHalf, 0.105},
-                        {-kSlotHalf, 0.105}, {-0.085, 0.105}, {-0.085, 0.0385}, {-0.085, -0.150}};
+  const Outline opening{{0.046, -0.046}, {0.046, 0.041}, {kSlotHalf, 0.041}, {kSlotHalf, 0.074},
+                        {-kSlotHalf, 0.074}, {-kSlotHalf, 0.041}, {-0.046, 0.041}, {-0.046, -0.046}};
+  const Outline outside{{0.085, -0.150}, {0.085, 0.020}, {0.085, 0.105}, {0.045, 0.105},
+                        {-0.045, 0.105}, {-0.085, 0.105}, {-0.085, 0.020}, {-0.085, -0.150}};
   return pieces::framed_opening("portal", 0.5, opening, outside, false, kPortalThickness, {{kPortal, 0, 0}, Quat(1, 0, 0, 0)});
 }
 
@@ -106,7 +106,7 @@ std::vector<Piece> clamp() {
   std::vector<Piece> all{pieces::swept("band", 1, {{2 * kHalfWidth, 1}, {kBand, 1}, {2 * kHalfWidth, 1}, {kBand, 1}}, section,
                                        {{2 * kPi * kBore * (1 - 2 * kGap), 20}}, spine, kBand)};
   // Two ears with a hole each for the bolt that has been taken out.
-  constexpr double kHole = 0.0075, kEarBottom = 0.030, kEarThickness = 0.005, kHalfEar = 0.018;
+  constexpr double kHole = 0.0075, kEarBottom = 0.031, kEarThickness = 0.005, kHalfEar = 0.018;
   constexpr double kCentre = (kEarBottom + kEarTop) / 2, kHalfHeight = (kEarTop - kEarBottom) / 2;
   constexpr double kDiagonal = kHole * 0.70710678118654752;
   const Outline hole{{kDiagonal, -kDiagonal}, {kDiagonal, kDiagonal}, {-kDiagonal, kDiagonal}, {-kDiagonal, -kDiagonal}};
@@ -134,9 +134,9 @@ std::vector<PathPoint> path(const Centreline& line) {
   Motion motion(at(0.090), Vec3(0), 1);
   motion.rest(0.6, 1);
   // 2: turned by 30°, the right ear meets the plate beside the slot.
-  motion.turn_to({0.52, 0, 0}, 0.6, 2);
-  motion.go(at(kPortal - kHalfWidth + 0.017), {0.52, 0, 0}, 0.8, 2);
-  motion.rest(0.4, 2);
+  motion.turn_to({0.52, 0, 0}, 0.5, 2);
+  motion.go(at(kPortal - 0.018 + 0.014), {0.52, 0, 0}, 1.2, 2);
+  motion.rest(0.3, 2);
   motion.go(at(0.165), {0.52, 0, 0}, 0.4, 2);
   motion.turn_to(Vec3(0), 0.4, 2);
   // 3: between the walls of the slot, turned one way and the other.
@@ -148,18 +148,18 @@ std::vector<PathPoint> path(const Centreline& line) {
   motion.turn_to(Vec3(0), 0.4, 3);
   // 4: behind the first bend, tilted about z against the pipe.
   motion.go(at(first_bend_end + 0.070), Vec3(0), 1.0, 4);
-  motion.turn_to({0, 0, 0.28}, 0.5, 4);
-  motion.rest(0.3, 4);
+  motion.turn_to({0, 0, 0.42}, 0.6, 4);
+  motion.rest(0.2, 4);
   motion.turn_to(Vec3(0), 0.4, 4);
   // 5: in the middle of the second bend, turned about everything while it moves.
   motion.go(at(second_bend + 0.060), Vec3(0), 0.6, 5);
-  motion.go(at(second_bend + 0.070), {0.15, 0.20, -0.15}, 0.5, 5);
-  motion.go(at(second_bend + 0.085), {-0.15, -0.15, -0.20}, 0.7, 5);
+  motion.go(at(second_bend + 0.070), {0.15, 0.34, -0.20}, 0.6, 5);
+  motion.go(at(second_bend + 0.080), {-0.15, -0.30, -0.25}, 0.8, 5);
   motion.rest(0.2, 5);
   motion.turn_to(Vec3(0), 0.4, 5);
   // 6: round the last bend and off.
   motion.go(at(line.length() + 0.100), Vec3(0), 1.4, 6);
-  motion.rest(0.4, 6);
+  motion.rest(0.3, 6);
   return motion.take();
 }
 
