@@ -144,31 +144,30 @@ Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice,
   return out;
 }
 
-Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings) {
-  SceneGeometry out;
-  const Result<SmoothAngle> angle = make_smooth_angle(settings.smooth_angle_deg);
-  if (!angle) return angle.error();
-  out.smooth_angle = *angle;
+namespace {
 
-  // The lattice, coarse enough for the tool, its centre of mass and the largest voxel that may be chosen.
-  const Result<Box> mockup_box = bounding_box(mockup, "mock-up");
-  if (!mockup_box) return mockup_box.error();
-  const Result<Box> tool_box = bounding_box(tool, "tool");
-  if (!tool_box) return tool_box.error();
-  const double half_diagonal = length(tool_box->size()) / 2;
-  const auto side = [](const Box& box) { return std::max({box.size().x, box.size().y, box.size().z}); };
-  double arm = half_diagonal, voxel = side(*tool_box) / kVoxelsPerTool;
-  const double largest_side = std::max(side(*mockup_box), side(*tool_box));
-  if (settings.centre_of_mass_m)   // clamped: whatever is beyond the limits is refused below, in its own words
-    arm = std::max(arm, std::min(length(*settings.centre_of_mass_m - tool_box->centre()), kFarthestCentreOfMass * half_diagonal));
-  if (settings.voxel_size_m) voxel = std::max(voxel, std::min(*settings.voxel_size_m, largest_side));
-  if (!std::isfinite(arm)) arm = half_diagonal;
-  const Result<Lattice> lattice = choose_lattice(*mockup_box, arm, voxel);
-  if (!lattice) return lattice.error();
-  out.lattice = *lattice;
+/// Whether all that is asked of a predicate stays within kLatticeReach: both grids, and a tool whose sphere meets the mock-up's.
+bool within_reach(const SceneGeometry& geometry) {
+  std::int64_t reach = 0;
+  const auto grid_reach = [](const VoxelGrid& grid, int k) {
+    return std::max(-std::int64_t{grid.origin[k]}, grid.origin[k] + std::int64_t{grid.size} * kBrickSide * grid.bricks[k]);
+  };
+  const double gc = length(Vec3(geometry.tool_gc));
+  const std::int64_t arm = std::max(geometry.tool_radius, static_cast<std::int32_t>(std::ceil(gc)) + 3);
+  for (int k = 0; k < 3; ++k)
+    reach = std::max({reach, grid_reach(geometry.mockup_grid, k) + geometry.tool_radius + arm, grid_reach(geometry.tool_grid, k)});
+  return reach <= kLatticeReach;
+}
+
+/// build_geometry on a lattice that has been chosen.
+Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const Mesh& tool, const Box& tool_box,
+                               const GeometrySettings& settings, const SmoothAngle& angle) {
+  SceneGeometry out;
+  out.smooth_angle = angle;
+  out.lattice = lattice;
   // A multiple of the step too: a tool equal to the mock-up then snaps to the same points.
-  out.tool_centre_m = on_lattice(tool_box->centre(), out.lattice.step_m);
-  const Lattice tool_lattice{out.lattice.step_m, out.tool_centre_m};
+  out.tool_centre_m = on_lattice(tool_box.centre(), lattice.step_m);
+  const Lattice tool_lattice{lattice.step_m, out.tool_centre_m};
 
   // Both bodies.
   const auto body = [&](const Mesh& mesh, const Lattice& frame, const char* what, MeshReport& report) -> Result<LatticeMesh> {
@@ -185,7 +184,8 @@ Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const
 
   // The tool's mass and reach.
   const SurfaceMeasure tool_measure = measure(out.tool);
-  const Result<Vec3> gc = centre_of_mass(settings.centre_of_mass_m, out.tool, tool_measure, tool_lattice, half_diagonal, out.tool_report);
+  const Result<Vec3> gc = centre_of_mass(settings.centre_of_mass_m, out.tool, tool_measure, tool_lattice, length(tool_box.size()) / 2,
+                                         out.tool_report);
   if (!gc) return gc.error();
   out.tool_gc_m = *gc;
   double radius = 0;
@@ -205,6 +205,37 @@ Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const
   if (!spacing) return spacing.error();
   out.sample_spacing = *spacing;
   return out;
+}
+
+}  // namespace
+
+Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings) {
+  const Result<SmoothAngle> angle = make_smooth_angle(settings.smooth_angle_deg);
+  if (!angle) return angle.error();
+  const Result<Box> mockup_box = bounding_box(mockup, "mock-up");
+  if (!mockup_box) return mockup_box.error();
+  const Result<Box> tool_box = bounding_box(tool, "tool");
+  if (!tool_box) return tool_box.error();
+
+  // A lattice coarse enough for the tool, its centre of mass and the largest voxel that is likely. What is beyond a limit
+  // is clamped here, and refused later in its own words.
+  const auto side = [](const Box& box) { return std::max({box.size().x, box.size().y, box.size().z}); };
+  const double half_diagonal = length(tool_box->size()) / 2;
+  double arm = half_diagonal, voxel = side(*tool_box) / kVoxelsPerTool;
+  if (settings.centre_of_mass_m)
+    if (const double away = length(*settings.centre_of_mass_m - tool_box->centre()); away > arm)
+      arm = std::min(away, kFarthestCentreOfMass * half_diagonal);
+  if (settings.voxel_size_m && *settings.voxel_size_m > voxel)
+    voxel = std::min(*settings.voxel_size_m, std::max(side(*mockup_box), side(*tool_box)));
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    const Result<Lattice> lattice = choose_lattice(*mockup_box, arm, voxel);
+    if (!lattice) return lattice.error();
+    Result<SceneGeometry> built = build_on(*lattice, mockup, tool, *tool_box, settings, *angle);
+    if (!built || within_reach(*built)) return built;
+    // Memory asked for larger voxels than a 24th of the tool (a tiny tool in a vast mock-up): make room for them.
+    voxel = 1.25 * built->mockup_grid.size * lattice->step_m;
+  }
+  return bad_value("no lattice holds the mock-up, its grid and the tool: the tool is too small for a mock-up of this size");
 }
 
 }  // namespace palpate

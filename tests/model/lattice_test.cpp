@@ -140,6 +140,19 @@ TEST(VoxelSize, ALargeVoxelStillFitsTheLattice) {
   EXPECT_LE(reach_of(built->mockup_grid) + 2 * std::int64_t{built->tool_radius}, kLatticeReach);
 }
 
+TEST(VoxelSize, ATinyToolInAVastMockupStillFitsTheLattice) {
+  // Memory wants voxels of centimetres, a 24th of the tool is 42 µm: the lattice must make room for the former. Many sheets make
+  // the area, and so the voxels, large; the sizes are chosen so that the first lattice just fits.
+  for (const double size : {1.0, 1.2, 1.4, 1.6, 1.8, 1.99}) {
+    Mesh mockup;
+    for (int i = 0; i < 400; ++i) solids::append(mockup, solids::box(Vec3(0, 0, size * i / 400), Vec3(size, size, size * (i + 0.5) / 400)), "plate");
+    const auto built = build_geometry(mockup, solids::sphere(0.0005), {});
+    ASSERT_TRUE(built) << built.error().sentence;
+    EXPECT_GT(built->mockup_grid.size * built->lattice.step_m, 0.001);
+    EXPECT_LE(reach_of(built->mockup_grid) + 2 * std::int64_t{built->tool_radius}, kLatticeReach);
+  }
+}
+
 TEST(BuildGeometry, BadMeshesAreOneSentence) {
   const Mesh good = solids::box(Vec3(0), Vec3(1));
   Mesh nan = good, index = good, huge = good, point = triangle(Vec3(1), Vec3(1), Vec3(1)), empty;
