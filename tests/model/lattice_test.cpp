@@ -52,6 +52,19 @@ TEST(Lattice, ToolEqualToTheMockupSnapsToTheSamePoints) {
   EXPECT_EQ(built->tool.vertices, built->mockup.vertices);
 }
 
+TEST(Lattice, PointsSnapToTheNearest) {
+  const Mesh mesh = solids::sphere(0.7, 20, 12);
+  const Lattice lattice{0x1p-10, Vec3(0)};   // a coarse one, about a millimetre
+  MeshReport report;
+  const auto built = build_lattice_mesh(mesh, lattice, {}, report);
+  ASSERT_TRUE(built);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 off = lattice.step_m * Vec3(built->corner(t, k)) - mesh.vertices[mesh.triangles[t][static_cast<std::size_t>(k)]];
+      for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(off[axis]), 0.5 * lattice.step_m);
+    }
+}
+
 TEST(Weld, EqualLatticePointsBecomeOneVertex) {
   // A soup of 12 triangles with 36 corners is a box of 8.
   Mesh soup;

@@ -233,6 +233,25 @@ TEST(Orientation, WindingsAcrossATriangleOfAClosedMeshDifferByOne) {
   EXPECT_GE(deepest, 4);
 }
 
+TEST(Orientation, ACentroidOnAnotherPlaneIsMovedAlongItsTriangleFirst) {
+  // A triangle at z = 0 with its centroid in the origin, and a wedge whose top passes through the origin, along z = x or z = −x.
+  // (u, v) = (x, y), so the centroid moves by +ε along x: it dives below the first top and rises above the second.
+  for (const double slope : {1.0, -1.0}) {
+    Mesh wedge = solids::box(Vec3(-4, -4, -8), Vec3(4, 4, 0));
+    for (Vec3& v : wedge.vertices)
+      if (v.z == 0) v.z = slope * v.x;
+    Mesh mesh;
+    mesh.vertices = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    mesh.parts = {{"sheet", 0, 1}};
+    solids::append(mesh, wedge, "wedge");
+    const Built built = build(mesh);
+    const SideWinding w = side_windings(built.mesh, {0})[0];
+    EXPECT_EQ(w.normal_side, slope > 0 ? 1 : 0);
+    EXPECT_EQ(w.back_side, slope > 0 ? 1 : 0);
+  }
+}
+
 TEST(Neighbours, AreSymmetricAscendingAndCarryTheSmoothBit) {
   const Built built = build(solids::cylinder(1, 2, 48));
   const LatticeMesh& m = built.mesh;

@@ -96,6 +96,19 @@ TEST(Pose, BeyondTheLatticeIsFreeNotAnError) {
   }
 }
 
+TEST(Pose, IsFreeFromWhereTheToolsSphereMissesTheGrid) {
+  const SceneGeometry geometry = scene();
+  const VoxelGrid& grid = geometry.mockup_grid;
+  const Int3 top = grid.origin + grid.size * grid.voxels();
+  for (const int steps : {-1, 0, 1, 2}) {
+    const Vec3 at = geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(0, 0, top.z + geometry.tool_radius + steps);
+    EXPECT_EQ(to_lattice({at, Quat(1, 0, 0, 0)}, geometry)->beyond_lattice, steps > 0) << steps;
+  }
+  // Off a corner the sphere counts, not its box.
+  const Vec3 corner = geometry.lattice.origin_m + geometry.lattice.step_m * (Vec3(top) + 0.7 * geometry.tool_radius);
+  EXPECT_TRUE(to_lattice({corner, Quat(1, 0, 0, 0)}, geometry)->beyond_lattice);
+}
+
 TEST(Pose, WithinTheLatticeEveryVertexIsWithinReach) {
   std::mt19937 random(5);
   const SceneGeometry geometry = scene();
