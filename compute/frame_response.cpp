@@ -139,8 +139,9 @@ void FrameResponse::record_refined(FrameRecorder& recorder) const {
   recorder.stage("follow");
   recorder.run_dispatch(areas_follow_, kDispatchContactOne);
   recorder.barrier();
-  recorder.run_dispatch(needle_pairs_, kDispatchNeedlePairs);
   recorder.run_dispatch(pierce_boxes_, kDispatchPierceBoxes);
+  recorder.barrier();
+  recorder.run_dispatch(needle_pairs_, kDispatchNeedlePairs);
   recorder.close({kListNeedleVertices});
   recorder.run_items(needle_trace_, kListNeedleVertices);
   recorder.run_dispatch(pierce_find_, kDispatchPierce);

@@ -4,6 +4,7 @@
 #define PALPATE_LIB_TOOL_RAY
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/line_box.glsl"
+#include "shaders/lib/budget.glsl"
 
 const uint32_t kLevels = 8u;   // distinct heights kept a sweep; more take another sweep (chosen: most rays have fewer)
 
@@ -14,15 +15,6 @@ struct Levels {
   uint32_t height[kLevels];
   int32_t sign_sum[kLevels];
 };
-
-uint32_t ray_budget = 0u;      // loop iterations of this invocation
-
-bool ray_spent(uint32_t steps) {
-  ray_budget += steps;
-  if (ray_budget < kLoopBudget) return false;
-  atomicOr(frame_state.overflow_other, kOverflowLoop);
-  return true;
-}
 
 void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossing) {
   uint32_t at = 0u;
@@ -51,10 +43,10 @@ Levels tool_sweep(ivec3 p, ivec3 d, int64_t after, out int32_t total) {
   total = 0;
   const uint32_t triangles = scene.tool.triangles;
   const uint32_t clusters = (triangles + kClusterSize - 1u) / kClusterSize;
-  for (uint32_t cluster = 0u; cluster < clusters && !ray_spent(1u); ++cluster) {
+  for (uint32_t cluster = 0u; cluster < clusters && !spent(1u); ++cluster) {
     if (!ray_may_meet(p, d, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) continue;
     const uint32_t end = min((cluster + 1u) * kClusterSize, triangles);
-    for (uint32_t i = cluster * kClusterSize; i < end && !ray_spent(1u); ++i) {
+    for (uint32_t i = cluster * kClusterSize; i < end && !spent(1u); ++i) {
       const uint32_t mobile = tool_order[i];
       if ((mobile_state[mobile] & kMobileVoid) != 0u) continue;
       const uvec3 corners = tool_triangles[mobile];
@@ -63,7 +55,7 @@ Levels tool_sweep(ivec3 p, ivec3 d, int64_t after, out int32_t total) {
       const Crossing crossing = ray_crossing(p, d, a, b, c);
       if (crossing.sign == 0) continue;
       total += crossing.sign;
-      if (int64_t(crossing.height) <= after || ray_spent(2u * kLevels)) continue;
+      if (int64_t(crossing.height) <= after || spent(2u * kLevels)) continue;
       levels_insert(levels, crossing.height, crossing.sign);
     }
   }
@@ -86,7 +78,7 @@ uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
     }
     if (!levels.more) return kNone;   // only when the budget is spent: above the last crossing nothing is left
     after = int64_t(levels.height[levels.count - 1u]);
-  } while (!ray_spent(1u));
+  } while (!spent(1u));
   return kNone;
 }
 #endif

@@ -2,17 +2,10 @@
 //   coherent buffer uint32_t parents[], uint32_t contact_statics[], FrameState frame_state.
 // A root is only ever hooked to a root of a smaller static id, so parents never form a ring and a set's root is its smallest id.
 
-uint32_t union_budget = 0u;   // loop iterations of this invocation
-
-// Notes that the work was cut short; the frame is truncated.
-bool union_spent() {
-  if (++union_budget < kLoopBudget) return false;
-  atomicOr(frame_state.overflow_other, kOverflowLoop);
-  return true;
-}
+#include "shaders/lib/budget.glsl"
 
 uint32_t union_root(uint32_t node) {
-  while (!union_spent()) {
+  while (!spent(1u)) {
     const uint32_t parent = parents[node];
     if (parent == node) return node;
     const uint32_t above = parents[parent];
@@ -24,7 +17,7 @@ uint32_t union_root(uint32_t node) {
 }
 
 void union_join(uint32_t a, uint32_t b) {
-  while (!union_spent()) {
+  while (!spent(1u)) {
     a = union_root(a);
     b = union_root(b);
     if (a == b) return;

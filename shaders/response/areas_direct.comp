@@ -22,33 +22,25 @@ void direct_refined(uint32_t area) {
   uint32_t flags = areas[area].flags;
   if (scene.tool.closed == 0u && scene.tool.has_internal == 0u) flags |= kAreaFlagToolOpen;
 
+  // One zone: static, bare static, mobile; more: mobile, static, bare static. A sum of samples that has cancelled is told.
   const bool several = areas[area].zones > 1u;
-  const i64vec3 from_static = static_sum(area), from_mobile = -vector_of(areas[area].mobile_sum);
-  const int64_t static_weight = areas[area].static_weight, mobile_weight = areas[area].mobile_weight;
-  const i64vec3 first = several ? from_mobile : from_static, second = several ? from_static : from_mobile;
-  const int64_t first_weight = several ? mobile_weight : static_weight;
-  const int64_t second_weight = several ? static_weight : mobile_weight;
-
   i64vec3 chosen = i64vec3(0l);
-  if (usable(first, first_weight)) {
-    chosen = first;
-  } else {
-    if (first_weight > 0l) flags |= kAreaFlagCancelled;
-    if (usable(second, second_weight)) {
-      chosen = second;
+  for (uint32_t rule = 0u; rule < 3u && chosen == i64vec3(0l); ++rule) {
+    const uint32_t sum_of = (rule + (several ? 2u : 0u)) % 3u;   // 0 static, 1 bare static, 2 mobile
+    const i64vec3 sum = sum_of == 0u ? static_sum(area) : sum_of == 1u ? bare_sum(area) : -vector_of(areas[area].mobile_sum);
+    const int64_t weight = sum_of == 0u ? areas[area].static_weight
+                                        : sum_of == 1u ? int64_t(areas[area].cst) << 30 : areas[area].mobile_weight;
+    if (usable(sum, weight)) chosen = sum;
+    else if (sum_of != 1u && weight > 0l) flags |= kAreaFlagCancelled;
+  }
+  if (chosen == i64vec3(0l)) {
+    const uint32_t held = areas[area].held_area;
+    if (held != kNone && held_areas[held].direction != ivec3(0)) {
+      chosen = i64vec3(held_areas[held].direction);
+      flags |= kAreaFlagHeld;
     } else {
-      if (second_weight > 0l) flags |= kAreaFlagCancelled;
-      const i64vec3 bare = bare_sum(area);
-      const uint32_t held = areas[area].held_area;
-      if (usable(bare, int64_t(areas[area].cst) << 30)) {
-        chosen = bare;
-      } else if (held != kNone && held_areas[held].direction != ivec3(0)) {
-        chosen = i64vec3(held_areas[held].direction);
-        flags |= kAreaFlagHeld;
-      } else {
-        const ivec3 centre = (areas[area].box_low + areas[area].box_high) >> 1;
-        response.request[atomicAdd(response.requests, 1u)] = NearestRequest(~0ul, ~0ul, centre, area);
-      }
+      const ivec3 centre = (areas[area].box_low + areas[area].box_high) >> 1;
+      response.request[atomicAdd(response.requests, 1u)] = NearestRequest(~0ul, ~0ul, centre, area);
     }
   }
   if (chosen != i64vec3(0l)) areas[area].direction = normalise(chosen);

@@ -61,7 +61,7 @@ void main() {
         areas[area].state |= kAreaProximity;
         areas[area].flags = 0u;
         wants = false;
-      } else if (!usable(static_sum(area), areas[area].static_weight)) {
+      } else if (!usable(static_sum(area), areas[area].static_weight) && !usable(bare_sum(area), int64_t(areas[area].cst) << 30)) {
         wants = true;
       }
     }

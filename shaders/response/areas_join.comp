@@ -26,7 +26,7 @@ void main() {
   const uint32_t slot = flat_invocation();
   if (slot >= frame_lists[kListContactStatics].count) return;
   const uint32_t id = contact_statics[slot];
-  for (uint32_t e = neighbour_begin[id]; e < neighbour_begin[id + 1u] && !union_spent(); ++e) {
+  for (uint32_t e = neighbour_begin[id]; e < neighbour_begin[id + 1u] && !spent(1u); ++e) {
     const uint32_t other = neighbours[e] >> 1;
     if (other >= id) break;   // ascending: the rest joins from its own side
     if (static_state[other] == 0u) continue;
@@ -35,7 +35,7 @@ void main() {
     if ((neighbours[e] & 1u) != 0u) union_join(2u * slot + 1u, 2u * to + 1u);
   }
   if (!REFINED) return;
-  for (uint32_t e = seam_begin[id]; e < seam_begin[id + 1u] && !union_spent(); ++e) {
+  for (uint32_t e = seam_begin[id]; e < seam_begin[id + 1u] && !spent(1u); ++e) {
     const uint32_t other = seams[e];
     if (other >= id) break;
     if (static_state[other] == 0u) continue;

@@ -1,8 +1,8 @@
 #version 460
 // One invocation: an intersecting pair. If its static triangle's area is a needle: takes the middle of the intersection as a
-// sample, and lists the tool triangle's vertices.
-// Reads pairs, areas, both bodies. Writes sums of areas, needle table and vertices.
-// Before: areas_follow. Runs only if some area is a needle.
+// sample, looks whom it pierces, and lists the tool triangle's vertices.
+// Reads pairs, areas, both bodies, slot boxes. Writes sums of areas, pierces, needle table and vertices.
+// Before: areas_follow; pierce_boxes where there are several areas. Runs only if some area is a needle.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
@@ -20,6 +20,10 @@ READ(kBindToolTriangles, uvec3, tool_triangles);
 READ(kBindToolWorld, ivec3, tool_world);
 READ(kBindMobileState, uint32_t, mobile_state);
 READ(kBindSlots, SlotWork, slots);
+READ(kBindContactStatics, uint32_t, contact_statics);
+READ(kBindSlotBoxes, LatticeBox, slot_boxes);
+READ_ONE(kBindResponseState, ResponseState, response);
+EDIT(kBindResultPierces, AreaPierce, pierces);
 EDIT(kBindAreas, AreaWork, areas);
 EDIT(kBindNeedleTable, uint32_t, needle_table);
 EDIT(kBindNeedleVertices, NeedleVertex, needle_vertices);
@@ -27,6 +31,7 @@ EDIT(kBindNeedleVertices, NeedleVertex, needle_vertices);
 #include "shaders/lib/edge_crossing.glsl"
 #include "shaders/lib/tool_ray.glsl"
 #include "shaders/lib/height_sum.glsl"
+#include "shaders/lib/pierce.glsl"
 
 struct Span {
   bool any;
@@ -81,6 +86,7 @@ void main() {
       HeightSum sum = height_sum_empty();
       height_sum_add(sum, middle, height, 1u << 30);
       height_sum_flush(area, sum);
+      if (response.areas > 1u) find_pierced(area, middle, height);
     }
   }
   for (int k = 0; k < 3; ++k) list_vertex(area, mc[k]);

@@ -24,16 +24,13 @@ EDIT_ONE(kBindResponseState, ResponseState, response);
 #define PARTITION_BRICKS mockup_bricks
 #include "shaders/lib/partition.glsl"
 
-uint32_t budget = 0u;   // loop iterations of this invocation
+#include "shaders/lib/budget.glsl"
 
 // Smallest k ≥ 1 for which the voxel at centre + ((D·k·(V/2)) >> 29) is not V_int. |D·k·V/2| < 2^29 · 2^31.
 uint32_t steps_out(ivec3 centre, i64vec3 d) {
   const int64_t half_voxel = int64_t(scene.mockup.grid.size / 2);
   for (uint32_t k = 1u;; ++k) {
-    if (++budget >= kLoopBudget) {
-      atomicOr(frame_state.overflow_other, kOverflowLoop);
-      return k;
-    }
+    if (spent(1u)) return k;
     const ivec3 at = centre + ivec3((d * (int64_t(k) * half_voxel)) >> 29);
     if (mockup_class_of(mockup_voxel_of(at)) != kVoxelInternal) return k;
   }
