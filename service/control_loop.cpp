@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <glm/geometric.hpp>
 
-#include "driver/limits.h"
 #include "service/collision_worker.h"
 
 namespace palpate {
@@ -59,8 +59,8 @@ const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
 
   ++ticks_;
   if (result_tick_ >= 0) result_age_.add(record_.result_age_ticks);
-  force_max_ = std::max(force_max_, length(record_.sent.force));
-  torque_max_ = std::max(torque_max_, length(record_.sent.torque));
+  force_max_ = std::max(force_max_, glm::length(record_.sent.force));
+  torque_max_ = std::max(torque_max_, glm::length(record_.sent.torque));
   return record_;
 }
 

@@ -13,7 +13,9 @@
 
 #include "driver/limits.h"
 #include "driver/simulated_device.h"
+#include "service/control_loop.h"
 #include "service/recorder.h"
+#include "tests/driver/allocation_count.h"
 #include "tests/service/half_space.h"
 
 namespace palpate {
@@ -173,6 +175,23 @@ TEST(Session, FadesItsForceInAtTheStart) {
     EXPECT_LE(watcher.ticks[i].sent.force.z, full * static_cast<double>(i + 1) / 100 + 5e-4) << i;   // half a lattice step is 0.5 mN
   }
   EXPECT_EQ(watcher.ticks.size(), 300u);
+}
+
+TEST(ControlTick, DoesNotAllocate) {
+  LoadedScene scene = half_space_scene();
+  auto device = make_simulated_device(scene.scene.device, {}, Vec3(0));
+  ASSERT_TRUE(device);
+  SafeDevice safe(**device, {});
+  ASSERT_TRUE(safe.open());
+  const auto tick = std::make_unique<ControlTick>(safe, ForceLawSettings{}, Vec3(0));
+  LawResult result;
+  result.plane_count = 2;
+  const std::size_t before = allocations_of_this_thread();
+  for (int i = 0; i < 100; ++i) {
+    result.tick = tick->sense(i).tick;
+    tick->act(i % 3 == 0 ? &result : nullptr);
+  }
+  EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
 // --- Every way out ends with zero force ---
