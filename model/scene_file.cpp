@@ -231,7 +231,7 @@ Pose start_of(const Scene& scene) {
 
 }  // namespace
 
-Result<Scene> read_scene(const std::string& path) {
+Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile) {
   try {
     Scene scene;
     scene.file = path;
@@ -243,6 +243,7 @@ Result<Scene> read_scene(const std::string& path) {
     read_statics(root, scene);
     read_tool(root, scene);
     read_response(root, scene.response);
+    if (profile) scene.response.profile = *profile;
     read_control(root, scene.response.profile, scene.control);
     read_device(root, scene);
     scene.start = start_of(scene);

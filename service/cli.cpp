@@ -58,9 +58,12 @@ Examples:
   palpate query scene.json --pose "0.1 0 0.25 0 0 0 1"
   palpate query scene.json --poses poses.csv --backend cpu > cpu.jsonl)";
 
+/// A closed list of words; the help shows them as the option's type already.
+CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMember(words).description(""); }
+
 CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
   return app.add_option("--backend", options.backend, "gpu or cpu; without it gpu, else cpu with a sentence on standard error")
-      ->check(CLI::IsMember({"gpu", "cpu"}))
+      ->check(one_of({"gpu", "cpu"}))
       ->type_name("gpu|cpu");
 }
 
@@ -74,12 +77,12 @@ void add_method(CLI::App& app, SceneOptions& options) {
          "--profile",
          [&options](const std::string& word) { options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined; },
          "paper: the chapter to the letter; refined: its faults mended; in place of the scene's")
-      ->check(CLI::IsMember({"paper", "refined"}))
+      ->check(one_of({"paper", "refined"}))
       ->type_name("paper|refined");
   app.add_option_function<std::string>(
          "--plan", [&options](const std::string& word) { options.full_plan = word == "full"; },
          "auto: leave out the stages that the scene does not need; full: keep all; the answer is the same")
-      ->check(CLI::IsMember({"auto", "full"}))
+      ->check(one_of({"auto", "full"}))
       ->type_name("auto|full");
 }
 
@@ -127,7 +130,7 @@ int fail_parse(const CLI::ParseError& error, const CLI::App& app) {
 int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   CLI::App app(kAbout, "palpate");
   app.footer(kFooter);
-  app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  app.set_version_flag("--version", "palpate " PALPATE_VERSION, "tell the version");
   app.set_help_flag("-h,--help", "tell how to use it");
   app.get_formatter()->column_width(38);
 
@@ -139,13 +142,12 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   add_backend(*run_app, run.common);
   run_app->add_option_function<std::string>("--pace", [&](const std::string& word) { run.asap = word == "asap"; },
                                             "realtime: by the clock (default); asap: virtual time, reproducible")
-      ->check(CLI::IsMember({"realtime", "asap"}))
+      ->check(one_of({"realtime", "asap"}))
       ->type_name("realtime|asap");
   add_method(*run_app, run.common);
   run_app->add_option("--device", run.device, "haptic device by name, in place of the scene's (palpate devices lists them)")->type_name("NAME");
   run_app->add_option("--firmware", run.firmware, "firmware file for a device that needs one")->type_name("FILE");
   run_app->add_option("--duration", run.duration_s, "seconds; without it to the end of the path")
-      ->check(CLI::PositiveNumber)
       ->type_name("S");
   run_app->add_option("--out", run.out, "directory for the files; default a fresh palpate-run-…")->type_name("DIR");
   run_app->footer(kRunFooter);
@@ -161,7 +163,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   add_backend(*query_app, query.common);
   add_method(*query_app, query.common);
   query_app->add_option("--batch", query.batch, "time N poses together; time_us is then a pose's share")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
   query_app->footer(kQueryFooter);
@@ -208,7 +210,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const auto used = app.get_subcommands();
-    std::fputs((used.empty() ? app.help() : used.front()->help()).c_str(), stdout);
+    std::fputs((used.empty() ? app.help() : used.front()->help("palpate")).c_str(), stdout);
     return 0;
   } catch (const CLI::CallForVersion& version) {
     std::printf("%s\n", version.what());

@@ -33,9 +33,8 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
 
 Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
   auto prepared = std::make_unique<PreparedScene>();
-  Result<Scene> scene = read_scene(options.scene);
+  Result<Scene> scene = read_scene(options.scene, options.profile);
   if (!scene) return scene.error();
-  if (options.profile) scene->response.profile = *options.profile;
 
   // The back end comes before the meshes: their import may start threads.
   Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, console);

@@ -121,8 +121,9 @@ def main(cases):
             case()
             passed += 1
             print(f'ok      {name[5:]}  ({time.monotonic() - start:.1f} s)', flush=True)
-        except Exception:
+        except Exception as error:
             failed += 1
-            print(f'FAILED  {name[5:]}\n{traceback.format_exc()}', flush=True)
+            place = traceback.extract_tb(error.__traceback__)[1]
+            print(f'FAILED  {name[5:]}, line {place.lineno}: {type(error).__name__}: {error}', flush=True)
     print(f'{passed} passed, {failed} failed')
     sys.exit(1 if failed or not passed else 0)
