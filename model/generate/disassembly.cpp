@@ -43,7 +43,7 @@ Piece pipe(const Centreline& line) {
     const Centreline::Part& part = line.parts()[p.span];
     return line.frame(part.start + part.length * p.fraction());
   };
-  return pieces::swept("pipe", 0.6, {{2 * kPi * kPipeRadius, 12}}, circle, spine, frame, kPipeRadius);
+  return pieces::swept("pipe", 0.45, {{2 * kPi * kPipeRadius, 12}}, circle, spine, frame, kPipeRadius);
 }
 
 /// The first obstacle: a plate across the pipe with an opening for the clamp's band and a slot above it for its ears.
@@ -52,7 +52,7 @@ Piece portal() {
                         {-kSlotHalf, 0.074}, {-kSlotHalf, 0.041}, {-0.046, 0.041}, {-0.046, -0.046}};
   const Outline outside{{0.085, -0.150}, {0.085, 0.020}, {0.085, 0.105}, {0.045, 0.105},
                         {-0.045, 0.105}, {-0.085, 0.105}, {-0.085, 0.020}, {-0.085, -0.150}};
-  return pieces::framed_opening("portal", 0.5, opening, outside, false, kPortalThickness, {{kPortal, 0, 0}, Quat(1, 0, 0, 0)});
+  return pieces::framed_opening("portal", 1, opening, outside, false, kPortalThickness, {{kPortal, 0, 0}, Quat(1, 0, 0, 0)});
 }
 
 std::vector<Piece> mockup(const Centreline& line) {
