@@ -191,11 +191,12 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
   return pairs;
 }
 
-/// Scatters the pairs into their lists and sorts each: short lists by one invocation, long ones by merging.
+/// Scatters the pairs into their lists and sorts each: short lists by rank, long ones by merging ranked chunks.
 void ListBuilder::sort_lists(const VoxelPairs& pairs) {
   PartitionBuffers& p = body_.partition;
   const std::uint32_t voxels = p.grid.boundary_voxels;
   p.list_triangles = steps_.buffer("voxels' lists", pairs.count);
+  VulkanBuffer scattered = steps_.buffer("voxels' lists", pairs.count);
   VulkanBuffer cursors = steps_.buffer("cursors of voxels' lists", std::uint64_t{voxels} + 1);
   const VulkanBuffer longest = steps_.buffer("longest list", 1);
   if (!steps_.ok()) return;
@@ -203,22 +204,22 @@ void ListBuilder::sort_lists(const VoxelPairs& pairs) {
     r.copy(p.list_begin, 0, cursors, 0, cursors.bytes());
     r.fill(longest, 0);
   });
-  steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, p.list_triangles}, pairs.count, pairs.count);
+  steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, scattered}, pairs.count, pairs.count);
   struct {
     std::uint32_t count, voxels;
-  } const lists{voxels, voxels}, entries{pairs.count, voxels};
-  steps_.run_items(spirv::list_sort, {0u}, {p.list_begin, p.list_triangles, longest}, lists, voxels);
-  p.longest_list = steps_.read(longest, 0);
-  if (p.longest_list <= gpu::kSortChunk) return;
-
-  steps_.run_items(spirv::list_sort, {1u}, {p.list_begin, p.list_triangles, longest}, entries, pairs.count);
-  VulkanBuffer merged = steps_.buffer("voxels' lists", pairs.count);
-  for (std::uint64_t run = gpu::kSortChunk; run < p.longest_list && steps_.ok(); run *= 2) {
+  } const push{pairs.count, voxels};
+  for (const std::uint32_t chunks : {0u, 1u}) {
+    steps_.run_items(spirv::list_rank, {chunks},
+                     {pairs.triangle, pairs.voxel, p.list_begin, scattered, p.list_triangles, longest}, push, pairs.count);
+    p.longest_list = std::max(gpu::kRankSpan, steps_.read(longest, 0));
+    if (p.longest_list == gpu::kRankSpan) return;
+  }
+  for (std::uint64_t run = gpu::kRankSpan; run < p.longest_list && steps_.ok(); run *= 2) {
     struct {
       std::uint32_t count, voxels, run;
-    } const push{pairs.count, voxels, static_cast<std::uint32_t>(run)};
-    steps_.run_items(spirv::list_merge, {}, {p.list_begin, p.list_triangles, merged}, push, pairs.count);
-    std::swap(p.list_triangles, merged);
+    } const merge{pairs.count, voxels, static_cast<std::uint32_t>(run)};
+    steps_.run_items(spirv::list_merge, {}, {p.list_begin, p.list_triangles, scattered}, merge, pairs.count);
+    std::swap(p.list_triangles, scattered);
   }
 }
 

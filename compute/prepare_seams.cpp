@@ -19,7 +19,7 @@ Long3 raw_normal(const LatticeMesh& mesh, std::uint32_t t) {
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
 
-/// Pairs of triangles that touch along a seam and whose unit normals don't rule a smooth angle out; each once, ascending.
+/// Pairs of triangles that may touch along a seam and whose unit normals don't rule a smooth angle out; each once, ascending.
 std::vector<Pair> candidates(PrepareSteps& steps, const SceneGeometry& geometry, BodyBuffers& body) {
   const PartitionBuffers& p = body.partition;
   gpu::SeamPush push{};
@@ -29,9 +29,9 @@ std::vector<Pair> candidates(PrepareSteps& steps, const SceneGeometry& geometry,
   push.least_cosine = static_cast<std::int64_t>(std::ldexp(cosine, 60)) - (std::int64_t{1} << 34);
   push.count = p.grid.list_entries;
   push.voxels = p.grid.boundary_voxels;
-  push.capacity = 1u << 16;   // chosen; grown to what was found
+  push.capacity = 1u << 20;   // chosen; grown to what was found
 
-  const std::uint32_t rounds = (p.longest_list + gpu::kSeamSpan - 1) / gpu::kSeamSpan;
+  const std::uint32_t rounds = (p.longest_list + gpu::kRankSpan - 1) / gpu::kRankSpan;
   const VulkanBuffer found = steps.buffer("seams", 1);
   while (steps.ok()) {
     const VulkanBuffer pairs = steps.buffer("pairs of triangles at seams", push.capacity, sizeof(Pair));
@@ -55,13 +55,28 @@ std::vector<Pair> candidates(PrepareSteps& steps, const SceneGeometry& geometry,
   return {};
 }
 
+/// Those of the pairs that touch along a seam.
+std::vector<Pair> touching(PrepareSteps& steps, const std::vector<Pair>& pairs, const BodyBuffers& body) {
+  std::vector<Pair> out;
+  const VulkanBuffer in = steps.filled("pairs of triangles at seams", pairs);
+  const VulkanBuffer answers = steps.buffer("pairs of triangles at seams", pairs.size());
+  if (!steps.ok()) return out;
+  steps.run_items(spirv::seam_test, {}, {body.vertices, body.triangles, in, answers}, static_cast<std::uint32_t>(pairs.size()),
+                  pairs.size());
+  std::vector<std::uint32_t> touches(pairs.size());
+  if (auto r = download(steps.device(), answers, 0, touches.data(), touches.size() * 4); !r) steps.fail(r.error());
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (touches[i] != 0) out.push_back(pairs[i]);
+  return out;
+}
+
 }  // namespace
 
 void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool refined, BodyBuffers& body) {
   const LatticeMesh& mesh = geometry.mockup;
   std::vector<Pair> seams;
   if (refined) {
-    for (const auto& [s, t] : candidates(steps, geometry, body))
+    for (const auto& [s, t] : touching(steps, candidates(steps, geometry, body), body))
       if (smooth(raw_normal(mesh, s), raw_normal(mesh, t), geometry.smooth_angle)) {
         seams.push_back({s, t});
         seams.push_back({t, s});

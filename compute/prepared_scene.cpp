@@ -72,6 +72,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
 
   const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
+  steps.progress("seams", 0.9);
   find_seams(steps, geometry, refined, out.mockup);
   if (refined) {
     const VoxelPairs tool_pairs =

@@ -1,6 +1,7 @@
-// One invocation: an entry of a voxel's list and, behind it in the list, the kSeamSpan entries of round `round`. Appends the
-// pairs that touch along a seam and may be smooth: unit normals decide with a margin, the host decides exactly. A pair is
-// found once in each voxel that both touch. `found` counts all, written or not.
+// One invocation: an entry of a voxel's list and, behind it in the list, the kRankSpan entries of round `round`. Appends the
+// pairs that may touch along a seam under a smooth angle: boxes meet, no common edge, unit normals near enough (the host
+// decides exactly), and two with one common corner only where that is not easily seen to be all they share. A pair is found
+// once in each voxel that both touch. `found` counts all, written or not.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"
@@ -26,9 +27,9 @@ void main() {
   uint32_t entry = item_index();
   if (entry >= push.count) return;
   uint32_t end = list_begin[list_of_entry(entry, push.voxels) + 1u];
-  uint32_t first = entry + 1u + push.round * kSeamSpan;
+  uint32_t first = entry + 1u + push.round * kRankSpan;
   if (first >= end) return;
-  end = min(end, first + kSeamSpan);
+  end = min(end, first + kRankSpan);
   uint32_t s = list_triangles[entry];
   uvec3 of_s = triangles[s];
   Triangle at_s = load(of_s);
@@ -39,7 +40,7 @@ void main() {
     if (mul_wide(normal.x, other.x) + mul_wide(normal.y, other.y) + mul_wide(normal.z, other.z) < push.least_cosine) continue;
     uvec3 of_t = triangles[t];
     Triangle at_t = load(of_t);
-    if (!boxes_meet(at_s, at_t) || !touch_along_a_seam(at_s, at_t, of_s, of_t)) continue;
+    if (!boxes_meet(at_s, at_t) || share_an_edge(of_s, of_t) || meet_in_a_corner_alone(at_s, at_t, of_s, of_t)) continue;
     uint32_t at = atomicAdd(found, 1u);
     if (at < push.capacity) pairs[at] = uvec2(s, t);
   }

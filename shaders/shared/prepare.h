@@ -9,12 +9,11 @@ PALPATE_SHARED_BEGIN
 PALPATE_CONSTANT uint32_t kScanChunk = 64u;        // numbers that one invocation of a prefix sum adds
 PALPATE_CONSTANT uint32_t kSmallCells = 64u;       // bricks in the box of a triangle that is tested against them at once
 PALPATE_CONSTANT int32_t kTopCells = 8;            // cells along an axis at the coarsest level
-PALPATE_CONSTANT uint32_t kSortChunk = 64u;        // entries that one invocation sorts
+PALPATE_CONSTANT uint32_t kRankSpan = 1024u;       // entries of a list that one invocation looks at
 PALPATE_CONSTANT uint32_t kFindSteps = 256u;       // steps towards a root, before a union is left to the next run
 PALPATE_CONSTANT uint32_t kUnionTries = 16u;       // lost races of a union, before it is left to the next run
 PALPATE_CONSTANT int32_t kMostBricksAlong = 3500;  // bricks along an axis: a row is swept by one invocation, 9 steps a brick
 PALPATE_CONSTANT uint32_t kMostMixedBricks = 1u << 23;   // slot · 512 + bit fits 32 bits
-PALPATE_CONSTANT uint32_t kSeamSpan = 1024u;       // partners of a triangle in a voxel that one invocation tests
 
 // Values of triangle_expand.comp's constant SOURCE.
 PALPATE_CONSTANT uint32_t kSourceSmall = 0u;   // all triangles whose box holds at most kSmallCells bricks

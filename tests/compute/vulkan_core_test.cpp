@@ -1,0 +1,120 @@
+#include <cstdlib>
+#include <string>
+
+#include "tests/compute/code.h"
+#include "tests/compute/gpu_test.h"
+
+namespace palpate {
+namespace {
+
+class VulkanCore : public GpuTest {
+ protected:
+  VulkanBuffer buffer(std::uint64_t bytes) {
+    auto made = VulkanBuffer::create(device(), "test numbers", bytes, BufferKind::kDevice);
+    EXPECT_TRUE(made) << made.error().sentence;
+    return std::move(*made);
+  }
+  ComputePipeline increment() {
+    auto made = ComputePipeline::create(device(), spirv::probe_increment, 2, 4);
+    EXPECT_TRUE(made) << made.error().sentence;
+    return std::move(*made);
+  }
+  CommandRecorder recorder(std::uint32_t stages = 0) {
+    auto made = CommandRecorder::create(device(), stages);
+    EXPECT_TRUE(made) << made.error().sentence;
+    return std::move(*made);
+  }
+};
+
+TEST_F(VulkanCore, ARecordedSequenceCanBeSubmittedAgain) {
+  constexpr std::uint32_t kCount = 1000;
+  const VulkanBuffer a = buffer(kCount * 4), b = buffer(kCount * 4);
+  const ComputePipeline add = increment();
+  CommandRecorder commands = recorder(2);
+  commands.begin();
+  commands.stage("there");
+  commands.dispatch_items(add, {a, b}, kCount, kCount);
+  commands.barrier();
+  commands.stage("back");
+  commands.dispatch_items(add, {b, a}, kCount, kCount);
+  ASSERT_TRUE(commands.end());
+  const std::vector<std::uint32_t> zero(kCount, 0);
+  ASSERT_TRUE(upload(device(), a, zero.data(), kCount * 4));
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(commands.submit());
+    const auto done = commands.wait();
+    ASSERT_TRUE(done) << done.error().sentence;
+  }
+  std::vector<std::uint32_t> out(kCount);
+  ASSERT_TRUE(download(device(), a, 0, out.data(), kCount * 4));
+  EXPECT_EQ(out, std::vector<std::uint32_t>(kCount, 6));
+  std::vector<CommandRecorder::StageTime> times;
+  ASSERT_TRUE(commands.times(times));
+  ASSERT_EQ(times.size(), 2u);
+  EXPECT_STREQ(times[1].name, "back");
+  EXPECT_GE(times[0].us, 0);
+}
+
+TEST_F(VulkanCore, MoreItemsThanWorkgroupsAlongAnAxisAllRun) {
+  constexpr std::uint32_t kCount = 65535 * 64 + 100;
+  const VulkanBuffer a = buffer(kCount * 4), b = buffer(kCount * 4);
+  const ComputePipeline add = increment();
+  CommandRecorder commands = recorder();
+  commands.begin();
+  commands.fill(a, 41);
+  commands.fill(b, 0);
+  commands.barrier();
+  commands.dispatch_items(add, {a, b}, kCount, kCount);
+  const auto done = commands.submit_and_wait();
+  ASSERT_TRUE(done) << done.error().sentence;
+  std::vector<std::uint32_t> out(kCount);
+  ASSERT_TRUE(download(device(), b, 0, out.data(), out.size() * 4));
+  EXPECT_EQ(out, std::vector<std::uint32_t>(kCount, 42));
+}
+
+TEST_F(VulkanCore, AForgottenBarrierFailsTheCall) {
+  const VulkanBuffer a = buffer(256), b = buffer(256);
+  const ComputePipeline add = increment();
+  CommandRecorder commands = recorder();
+  commands.begin();
+  commands.fill(a, 0);
+  commands.fill(b, 0);
+  commands.barrier();
+  commands.dispatch_items(add, {a, b}, 64u, 64);
+  commands.dispatch_items(add, {b, a}, 64u, 64);   // reads what the first one writes
+  const auto done = commands.submit_and_wait();
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().sentence.find("SYNC-HAZARD"), std::string::npos) << done.error().sentence;
+  ASSERT_TRUE(device().take_validation_error());
+}
+
+TEST_F(VulkanCore, ABufferBeyondWhatAShaderMaySeeIsRefusedInOneSentence) {
+  const std::uint64_t before = device().allocated;
+  auto made = VulkanBuffer::create(device(), "voxels' lists", device().limits().storage_range + 4, BufferKind::kDevice);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kBadValue);
+  EXPECT_EQ(made.error().sentence.rfind("voxels' lists need ", 0), 0u) << made.error().sentence;
+  EXPECT_EQ(device().allocated, before);
+}
+
+TEST_F(VulkanCore, MemoryIsCountedWhileABufferLives) {
+  const std::uint64_t before = device().allocated;
+  {
+    const VulkanBuffer a = buffer(1000);
+    EXPECT_EQ(device().allocated, before + 1000);
+  }
+  EXPECT_EQ(device().allocated, before);
+}
+
+TEST_F(VulkanCore, TheEnvironmentIsAsTheUserSetIt) {
+  const char* value = std::getenv("LP_NUM_THREADS");
+  const std::string was = value != nullptr ? value : "unset";
+  GpuOptions options;
+  auto other = VulkanDevice::create(options);
+  ASSERT_TRUE(other);
+  value = std::getenv("LP_NUM_THREADS");
+  EXPECT_EQ(value != nullptr ? value : "unset", was);
+}
+
+}  // namespace
+}  // namespace palpate
