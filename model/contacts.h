@@ -13,7 +13,7 @@ inline constexpr std::uint32_t kMaxAreas = 256;   ///< areas in one frame; more 
 /// What a frame or an area wants to tell. `flag_names` lists the spellings of the query output in bit order.
 enum ContactFlag : std::uint32_t {
   kFlagNeedle = 1u << 0,        ///< CST but no sample inside: depth from segment mid-points and tool vertices
-  kFlagSwallowed = 1u << 1,     ///< the tool touches V_int voxels alone
+  kFlagSwallowed = 1u << 1,     ///< the tool is wholly inside: V_int touched, no crossing and no sample inside
   kFlagPierced = 1u << 2,       ///< one of several areas of one pierced plate; only one of them gives force
   kFlagCancelled = 1u << 3,     ///< normals of the primary rule cancelled; another rule gave n_c
   kFlagHeld = 1u << 4,          ///< n_c (or a sheet's side) held from the frame before
