@@ -57,6 +57,7 @@ class RecordedFrame final : public Frame {
   std::unique_ptr<CommandRecorder> commands_;
   std::vector<CommandRecorder::StageTime> times_;
   bool tables_clear_ = false;
+  std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
 };
 
 void RecordedFrame::name_scene(const PreparedScene& scene) {
@@ -79,6 +80,8 @@ void RecordedFrame::name_scene(const PreparedScene& scene) {
 Result<void> RecordedFrame::make(const PreparedScene& scene, const Plan&) {
   name_scene(scene);
   grid_ = scene.constants.mockup.grid;
+  const gpu::BodyConstants& tool = scene.constants.tool;
+  if (scene.constants.refined != 0 && tool.closed == 0 && tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
   brick_slot_.resize(static_cast<std::size_t>(grid_.bricks.x) * static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(grid_.bricks.z));
   if (auto r = download(device_, scene.mockup.partition.brick_slot, 0, brick_slot_.data(), brick_slot_.size() * 4); !r) return r;
   auto detection = FrameDetection::create(device_, geometry_, scene, buffers_);
@@ -176,6 +179,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   const auto start = Clock::now();
   out.times.clear();
   clear(out);
+  if (!pose.beyond_lattice) out.flags = frame_flags_;
   const BrickRange range = pose.beyond_lattice ? BrickRange{} : reach(pose);
   if (pose.beyond_lattice || empty(range)) {
     out.times.push_back({"cull", us_since(start)});
@@ -204,6 +208,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   output.members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>();
   output.pierces = buffers_[gpu::kBindResultPierces].as<gpu::AreaPierce>();
   decode(output, out);
+  out.flags |= frame_flags_;
   tables_clear_ = !out.truncated;
 
   // Submission: what the wait cost beyond the stages themselves.

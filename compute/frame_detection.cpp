@@ -52,7 +52,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   };
   const std::uint32_t statics = capacity(mockup.triangles, kLargeList);
   const List lists[] = {
-      {kListClusterBricks, kBindClusterBricks, "bricks of clusters", capacity(4 * tool.triangles, kLargeList), sizeof(ClusterBrick)},
+      {kListClusterBricks, kBindClusterBricks, "bricks of clusters", capacity(std::max(kSmallList, 4 * std::uint64_t{tool.triangles}), kLargeList), sizeof(ClusterBrick)},
       {kListTriangleBricks, kBindTriangleBricks, "bricks of triangles", capacity(std::max(kSmallList, 8 * std::uint64_t{tool.triangles}), kMostPairs), sizeof(TriangleBrick)},
       {kListTouchCandidates, kBindTouchCandidates, "voxels to touch", capacity(std::max(kLargeList, 32 * std::uint64_t{tool.triangles}), kMostPairs), sizeof(TouchCandidate)},
       {kListTouchedVoxels, kBindTouchedVoxels, "touched voxels", capacity(voxels, kLargeList), sizeof(FrameVoxel)},
@@ -87,6 +87,8 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
       {kBindToolWorld, "transformed tool", sizeof(ivec3) * std::uint64_t{tool.vertices}},
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * std::uint64_t{tool_clusters_}},
+      {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * std::uint64_t{tool_clusters_} * (kClusterSize / kRunSize)},
+      {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
       {kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
       {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
       {kBindToolOrder, "order of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
@@ -205,7 +207,7 @@ void FrameDetection::record_samples(FrameRecorder& recorder) const {
   recorder.close({kListSampleChunks});
   recorder.run_items(sample_scan_, kListSampleChunks);
   recorder.close({kListOpenSamples});
-  if (tool_has_inside_) recorder.run_groups(sample_winding_, kListOpenSamples);
+  if (tool_has_inside_) recorder.run_items(sample_winding_, kListOpenSamples);
 }
 
 void FrameDetection::record_end(FrameRecorder& recorder) const {

@@ -21,6 +21,7 @@ PALPATE_SHARED_BEGIN
 PALPATE_CONSTANT uint32_t kGroupSize = 64;                       // invocations of every workgroup (chosen: two warps, eight llvmpipe vectors)
 PALPATE_CONSTANT uint32_t kMaxGroupsX = 65535;                   // Vulkan's smallest maxComputeWorkGroupCount
 PALPATE_CONSTANT uint32_t kClusterSize = 64;                     // tool triangles in a cluster; the last one may be short
+PALPATE_CONSTANT uint32_t kRunSize = 8;                          // tool triangles in a run; 8 runs make a cluster
 PALPATE_CONSTANT uint32_t kMaxFrameAreas = 256;                  // kMaxAreas of model/contacts.h
 PALPATE_CONSTANT uint32_t kNone = 0xFFFFFFFFu;                   // no item
 
@@ -84,6 +85,8 @@ PALPATE_CONSTANT int32_t kBindResultMobiles = 60;                // MobileResult
 PALPATE_CONSTANT int32_t kBindResultMembers = 61;                // kListMembers: AreaMember; mapped
 PALPATE_CONSTANT int32_t kBindResultPierces = 62;                // kListPierces: AreaPierce; mapped
 PALPATE_CONSTANT int32_t kBindToolOrder = 63;                    // uint32_t[tool triangles]: ids in the order of clusters (cluster c: kClusterSize · c …)
+PALPATE_CONSTANT int32_t kBindToolCorners = 65;        // ToolCorners[tool triangles]: transformed, in the order of clusters
+PALPATE_CONSTANT int32_t kBindRunBoxes = 66;           // LatticeBox[runs]: of kRunSize triangles that follow each other in a cluster
 PALPATE_CONSTANT int32_t kBindSampleBricks = 64;                 // kListSampleBricks: uint32_t linear brick number
 PALPATE_CONSTANT int32_t kBindResponseFirst = 72;                // frame_response.h has this one and above
 
@@ -180,6 +183,11 @@ struct FrameState {
 
 struct LatticeBox {
   ivec3 low, high;                // closed; low > high: empty
+};
+
+// A tool triangle at this pose. A void one has all its corners in one place: no ray crosses it.
+struct ToolCorners {
+  ivec3 a, b, c;
 };
 
 // States of a static triangle. CST wins over BST when sets are named; EST may be in BST too.

@@ -1,0 +1,58 @@
+// Small bodies whose contacts are simple to see, also where points, edges and faces coincide.
+#include <gtest/gtest.h>
+
+#include "model/generate/solids.h"
+#include "tests/equivalence/equivalence_case.h"
+#include "tests/equivalence/touching_poses.h"
+
+namespace palpate {
+namespace {
+
+LatticePose near(const SceneGeometry& geometry, std::mt19937_64& random) { return random_touching_pose(geometry, 1.0, random); }
+LatticePose deep(const SceneGeometry& geometry, std::mt19937_64& random) { return random_touching_pose(geometry, 4.0, random); }
+
+Mesh big_box() { return solids::box({-0.05, -0.05, -0.02}, {0.05, 0.05, 0.0}); }
+Mesh small_box() { return solids::box({-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}); }
+Mesh ball() { return solids::sphere(0.02, 24, 12); }
+
+/// A mesh with some triangles taken out: open.
+Mesh without_every(Mesh mesh, std::size_t n) {
+  std::size_t i = 0;
+  std::erase_if(mesh.triangles, [&](const auto&) { return i++ % n == 0; });
+  mesh.parts[0].triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
+  return mesh;
+}
+
+Mesh square_sheet() {
+  Mesh mesh;
+  mesh.vertices = {{-0.03, -0.03, 0}, {0.03, -0.03, 0}, {0.03, 0.03, 0}, {-0.03, 0.03, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.parts = {{"sheet", 0, 2}};
+  return mesh;
+}
+
+class SolidsEquivalence : public testing::TestWithParam<EquivalenceCase> {};
+TEST_P(SolidsEquivalence, BothBackEndsGiveTheSameIntegers) { expect_equal_answers(GetParam()); }
+
+const GeometrySettings two_mm = {.voxel_size_m = 0.002, .sample_spacing_m = {}, .smooth_angle_deg = 30, .centre_of_mass_m = {}};
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SolidsEquivalence,
+    testing::Values(
+        EquivalenceCase{.name = "ball_on_block", .mockup = big_box, .tool = ball, .settings = two_mm, .pose = near},
+        EquivalenceCase{.name = "ball_deep_in_block", .mockup = big_box, .tool = ball, .settings = two_mm, .pose = deep},
+        EquivalenceCase{.name = "ball_on_block_paper", .mockup = big_box, .tool = ball, .settings = two_mm, .profile = Profile::kPaper, .pose = near},
+        EquivalenceCase{.name = "boxes_aligned", .mockup = big_box, .tool = small_box, .settings = two_mm, .pose = aligned_touching_pose},
+        EquivalenceCase{.name = "boxes_aligned_paper", .mockup = big_box, .tool = small_box, .settings = two_mm, .profile = Profile::kPaper, .pose = aligned_touching_pose},
+        EquivalenceCase{.name = "cells_aligned", .mockup = [] { return solids::box({-0.04, -0.04, -0.02}, {0.04, 0.04, 0.02}, {8, 8, 4}); },
+                        .tool = [] { return solids::box({-0.02, -0.02, -0.01}, {0.02, 0.02, 0.01}, {4, 4, 2}); }, .settings = two_mm, .pose = aligned_touching_pose},
+        EquivalenceCase{.name = "ball_held", .mockup = big_box, .tool = ball, .settings = two_mm, .held = true, .pose = near},
+        EquivalenceCase{.name = "box_held", .mockup = [] { return solids::torus(0.04, 0.01, 32, 16); }, .tool = small_box, .settings = two_mm, .held = true, .pose = near},
+        EquivalenceCase{.name = "open_ball", .mockup = big_box, .tool = [] { return without_every(ball(), 7); }, .settings = two_mm, .pose = near},
+        EquivalenceCase{.name = "sheet_tool", .mockup = big_box, .tool = square_sheet, .settings = two_mm, .pose = near},
+        EquivalenceCase{.name = "ball_on_sheet", .mockup = square_sheet, .tool = ball, .settings = two_mm, .held = true, .pose = near},
+        EquivalenceCase{.name = "ball_on_open_torus", .mockup = [] { return without_every(solids::torus(0.04, 0.01, 32, 16), 5); }, .tool = ball, .settings = two_mm, .pose = near}),
+    [](const auto& made) { return made.param.name; });
+
+}  // namespace
+}  // namespace palpate
