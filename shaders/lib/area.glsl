@@ -6,7 +6,7 @@
 // The sum of static normals, sheets with their side.
 i64vec3 static_sum(uint32_t area) {
   return vector_of(areas[area].fixed_sum) +
-         (areas[area].sheet_sign < 0 ? vector_of(areas[area].sheet_minus) : vector_of(areas[area].sheet_plus));
+         (areas[area].sheet_sign < 0 ? -vector_of(areas[area].sheet_sum) : vector_of(areas[area].sheet_sum));
 }
 
 // The sum over CST alone.

@@ -35,8 +35,8 @@ void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossin
   levels.count = last + 1u;
 }
 
-// All crossings of the ray with heights above `after`; `total` is the sum of the signs of all.
-Levels tool_sweep(ivec3 p, ivec3 d, int64_t after, out int32_t total) {
+// The lowest crossings of the ray with heights of at least `from`; `total` is the sum of the signs of all.
+Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   Levels levels;
   levels.count = 0u;
   levels.more = false;
@@ -55,7 +55,7 @@ Levels tool_sweep(ivec3 p, ivec3 d, int64_t after, out int32_t total) {
       const Crossing crossing = ray_crossing(p, d, a, b, c);
       if (crossing.sign == 0) continue;
       total += crossing.sign;
-      if (int64_t(crossing.height) <= after || spent(2u * kLevels)) continue;
+      if (crossing.height < from || spent(2u * kLevels)) continue;
       levels_insert(levels, crossing.height, crossing.sign);
     }
   }
@@ -65,11 +65,11 @@ Levels tool_sweep(ivec3 p, ivec3 d, int64_t after, out int32_t total) {
 // The height of the sample p over the tool: `nearest`: the smallest crossing height; else the smallest one above which the
 // signs add up to 0. kNone: no crossing.
 uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
-  int64_t after = -1l;
-  int32_t passed = 0;   // sum of the signs at or below `after`
+  uint32_t from = 0u;
+  int32_t passed = 0;   // sum of the signs below `from`
   do {
     int32_t total;
-    const Levels levels = tool_sweep(p, d, after, total);
+    const Levels levels = tool_sweep(p, d, from, total);
     if (levels.count == 0u) return kNone;
     if (nearest) return levels.height[0];
     for (uint32_t i = 0u; i < levels.count; ++i) {
@@ -77,7 +77,7 @@ uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
       if (passed == total) return levels.height[i];
     }
     if (!levels.more) return kNone;   // only when the budget is spent: above the last crossing nothing is left
-    after = int64_t(levels.height[levels.count - 1u]);
+    from = levels.height[levels.count - 1u] + 1u;
   } while (!spent(1u));
   return kNone;
 }

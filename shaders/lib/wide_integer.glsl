@@ -47,7 +47,7 @@ struct Int128 {
   uint64_t low;
 };
 
-Int128 i128(int64_t v) { return Int128(v < 0l ? -1l : 0l, uint64_t(v)); }
+Int128 i128(int64_t v) { return Int128(v >> 63, uint64_t(v)); }
 
 Int128 i128_add(Int128 a, Int128 b) {
   uint64_t low = a.low + b.low;
@@ -76,11 +76,12 @@ Int128 u64_mul(uint64_t a, uint64_t b) {
   return Int128(int64_t(hh + (lh >> 32) + (hl >> 32) + (middle >> 32)), (ll & 0xFFFFFFFFul) | middle << 32);
 }
 
-// The product of two signed 64-bit integers.
+// The product of two signed 64-bit integers. Masks, not comparisons: Mesa 22.3 takes `int64_t(x) < 0` of a 32-bit x for false
+// (seen on llvmpipe; tests/compute, ASheetFacesTheToolsCentreOfMass).
 Int128 i64_mul(int64_t a, int64_t b) {
   Int128 p = u64_mul(uint64_t(a), uint64_t(b));
   // a read as unsigned is a + 2^64 when negative: take b · 2^64 off again, and the other way round.
-  p.high -= (a < 0l ? b : 0l) + (b < 0l ? a : 0l);
+  p.high -= ((a >> 63) & b) + ((b >> 63) & a);
   return p;
 }
 

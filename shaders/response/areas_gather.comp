@@ -60,12 +60,9 @@ void main() {
   const int64_t w = int64_t(mockup_weights[id]);
   for (int k = 0; k < 3; ++k) {
     if (samples != 0u) {
-      if (sheet) {
-        atomicAdd(areas[area].sheet_plus[k], k_samples * ((w * int64_t(n[k])) >> 30));
-        atomicAdd(areas[area].sheet_minus[k], k_samples * ((w * -int64_t(n[k])) >> 30));
-      } else {
-        atomicAdd(areas[area].fixed_sum[k], k_samples * ((w * int64_t(n[k])) >> 30));
-      }
+      const int64_t term = k_samples * ((w * int64_t(n[k])) >> 30);
+      if (sheet) atomicAdd(areas[area].sheet_sum[k], term);
+      else atomicAdd(areas[area].fixed_sum[k], term);
     }
     if (hit) {
       if (sheet) atomicAdd(areas[area].bare_sheet[k], int64_t(n[k]));

@@ -27,8 +27,7 @@ void main() {
   const int64_t zero[3] = {0l, 0l, 0l};
   AreaWork empty;
   empty.fixed_sum = zero;
-  empty.sheet_plus = zero;
-  empty.sheet_minus = zero;
+  empty.sheet_sum = zero;
   empty.static_weight = 0l;
   empty.bare_fixed = zero;
   empty.bare_sheet = zero;

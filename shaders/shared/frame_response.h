@@ -96,8 +96,7 @@ PALPATE_CONSTANT uint32_t kAreaNeedle = 4u;
 // One area. Sums are of whole frames' terms, in any order.
 struct AreaWork {
   int64_t fixed_sum[3];        // Σ k·((w·n̂) >> 30), k counting samples, of triangles that are no sheet; `paper`: Σ n̂ over C_s
-  int64_t sheet_plus[3];       // the same of sheet triangles with their n̂ …
-  int64_t sheet_minus[3];      // … and with −n̂
+  int64_t sheet_sum[3];        // the same of sheet triangles, to be taken with the sheet sign
   int64_t static_weight;       // Σ k·w of both
   int64_t bare_fixed[3];       // Σ n̂ over CST that are no sheet
   int64_t bare_sheet[3];       // Σ n̂ over CST of sheets

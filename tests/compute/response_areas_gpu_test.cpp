@@ -235,6 +235,28 @@ TEST_F(Areas, APlateIsPiercedFromBothSides) {
   EXPECT_EQ(pierces, (std::set<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {1, 0}}));
 }
 
+// The side of a sheet is the one where the tool's centre of mass (the origin of its frame, here of the world too) lies.
+TEST_F(Areas, ASheetFacesTheToolsCentreOfMass) {
+  for (const int z : {-30, 30}) {
+    ResponseCase c = one_sample();
+    c.mockup_info[0] |= gpu::kInfoSheet;
+    for (ivec3& v : c.mockup_vertices) v.z = z;
+    c.samples[0].point.z = z;
+    const ResponseAnswer answer = run(c);
+    ASSERT_EQ(answer.area_count, 1u);
+    const int sign = z < 0 ? 1 : -1;
+    EXPECT_EQ(answer.areas[0].sheet_sign, sign);
+    EXPECT_EQ(answer.areas[0].direction, ivec3(0, 0, sign * (1 << 28)));
+    EXPECT_TRUE(answer.areas[0].flags & gpu::kAreaFlagSheet);
+
+    c.held_areas = {{ivec3(0, 0, 1 << 28), -sign}};
+    c.held_statics = {{0, 0}};
+    const ResponseAnswer held = run(c);
+    EXPECT_EQ(held.areas.at(0).sheet_sign, -sign);
+    EXPECT_TRUE(held.areas.at(0).flags & gpu::kAreaFlagHeld);
+  }
+}
+
 // Of two held areas the one with more common triangles speaks, and only when no normal does.
 TEST_F(Areas, CancelledNormalsLeaveTheWordToTheHeldArea) {
   ResponseCase c = row_of_triangles(4);
