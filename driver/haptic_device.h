@@ -18,8 +18,8 @@ enum class DeviceState : std::uint8_t { kClosed, kOpening, kLoading, kHoming, kR
 struct DeviceCapabilities {
   std::array<bool, 6> sensed{};
   std::array<bool, 6> actuated{};
-  double max_force_n = 0;
-  double max_torque_nm = 0;
+  double max_force_n = 0;             ///< largest length of the force; 0: none is ever sent
+  double max_torque_nm = 0;           ///< largest length of the torque; 0: none is ever sent
   double max_stiffness_n_per_m = 0;   ///< 0: not stated
   double rate_hz = 1000;
 };
