@@ -79,9 +79,14 @@ std::vector<pieces::Piece> clamp() {
 }
 
 /// Comes on along y, presses, twists about all three axes while pressing (`yaw`: about z, `tilt`: about x and y), and goes back.
-void collide(Motion& motion, double height, double push, double yaw, double tilt, int stage) {
+/// With a `skew` about z one side comes first.
+void collide(Motion& motion, double height, double push, double yaw, double tilt, double skew, int stage) {
   const double away = touching_y() - 0.030, pressed = touching_y() + push;
-  motion.go({0, away, height}, Vec3(0), 0.8, stage);
+  motion.go({0, away, height}, {0, 0, skew}, 0.8, stage);
+  if (skew != 0) {
+    motion.go({0, touching_y() - 0.003, height}, {0, 0, skew}, 0.7, stage);
+    motion.rest(0.4, stage);
+  }
   motion.go({0, pressed, height}, Vec3(0), 1.0, stage);
   motion.rest(0.3, stage);
   for (const Vec3& turn : {Vec3(0, 0, yaw), Vec3(tilt, 0, 0), Vec3(0, tilt, 0)}) {
@@ -102,12 +107,12 @@ GeneratedScene generate_contacts(std::uint64_t triangles, std::uint64_t tool_tri
   // The hand pulls with 135 N/m (the default), the contact pushes back with 2000 N/m an area: 20 mm of intent give 1–3 mm of depth.
   Motion motion({0, touching_y() - 0.040, 0.160}, Vec3(0), 1);
   motion.rest(0.4, 1);
-  collide(motion, 0.160, 0.020, 0.06, 0.25, 1);
-  collide(motion, -0.040, 0.020, 0.04, 0.20, 2);
-  collide(motion, 0.060, 0.030, 0.03, 0.12, 3);
+  collide(motion, 0.160, 0.020, 0.06, 0.25, 0, 1);
+  collide(motion, -0.040, 0.020, 0.04, 0.20, 0.15, 2);
+  collide(motion, 0.060, 0.030, 0.03, 0.12, 0, 3);
   motion.rest(0.4, 3);
   scene.path = motion.take();
-  scene.stage_names = {"two areas on the cylinder", "the corners of both blocks", "four areas at once"};
+  scene.stage_names = {"two areas on the cylinder", "the corners of the blocks, one and then both", "four areas at once"};
   scene.actuated = {true, true, true, true, true, true};
   return scene;
 }
