@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <map>
+#include <string_view>
 
 #include "model/response.h"
 #include "service/cli.h"
@@ -80,23 +80,23 @@ Result<void> put(const std::string& text) {
 Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   if (!options.pose && !options.poses)
     return Error{ErrorCode::kUsage, "query needs --pose or --poses (see palpate query --help)"};
+  // All poses are read first: a bad one costs no preparation and leaves standard output empty.
+  std::vector<Pose> poses;
+  if (options.pose) {
+    const Result<Pose> pose = parse_pose(*options.pose);
+    if (!pose) return pose.error();
+    poses.push_back(*pose);
+  } else {
+    Result<std::vector<Pose>> read = read_poses(*options.poses);
+    if (!read) return read.error();
+    poses = std::move(*read);
+  }
+
   catch_interrupts();
   Console console;
   Result<std::unique_ptr<PreparedScene>> prepared = prepare_scene(options.common, Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
   PreparedScene& scene = **prepared;
-
-  // All poses are read before the first answer: a bad line leaves standard output empty.
-  std::vector<InputPose> poses;
-  if (options.pose) {
-    const Result<InputPose> pose = parse_pose(*options.pose, scene.loaded.geometry);
-    if (!pose) return pose.error();
-    poses.push_back(*pose);
-  } else {
-    Result<std::vector<InputPose>> read = read_poses(*options.poses, scene.loaded.geometry);
-    if (!read) return read.error();
-    poses = std::move(*read);
-  }
 
   if (!options.export_directory.empty()) {
     std::vector<std::string> notes;
@@ -107,7 +107,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   Answerer answerer(scene);
   std::vector<Answer> batch(std::min<std::uint64_t>(options.batch.value_or(1), poses.size()));
   for (std::size_t i = 0; i < std::min(kWarmUpPoses, poses.size()); ++i) {
-    if (auto done = answerer.answer(poses[i].pose, batch.front()); !done) return done;
+    if (auto done = answerer.answer(poses[i], batch.front()); !done) return done;
     if (batch.front().contacts.contact) break;
   }
 
@@ -117,7 +117,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   for (std::size_t first = 0; first < poses.size(); first += batch.size()) {
     batch.resize(std::min(batch.size(), poses.size() - first));
     for (std::size_t i = 0; i < batch.size(); ++i)
-      if (auto done = answerer.answer(poses[first + i].pose, batch[i]); !done) return done;
+      if (auto done = answerer.answer(poses[first + i], batch[i]); !done) return done;
     if (options.batch) share_times(batch);
     text.clear();
     for (std::size_t i = 0; i < batch.size(); ++i) {

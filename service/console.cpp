@@ -76,18 +76,17 @@ void Console::note(std::string_view sentence) {
   put(fmt::format("palpate: {}\n", sentence));
 }
 
+void Console::step(std::string_view name) {
+  step_ = name;
+  if (!terminal_) put(fmt::format("palpate: {}\n", name));
+}
+
 bool Console::progress(const char* what, double done) {
   const auto now = std::chrono::steady_clock::now();
-  const bool new_step = step_ != what;
-  if (terminal_) {
-    if (new_step || done >= 1 || now - last_draw_ >= kRedraw) {
-      last_draw_ = now;
-      draw(fmt::format("{} {:3.0f} %  {}", bar(done), 100 * std::clamp(done, 0.0, 1.0), what));
-    }
-  } else if (new_step) {
-    put(fmt::format("palpate: {}\n", what));
+  if (terminal_ && (!drawn_ || done >= 1 || now - last_draw_ >= kRedraw)) {
+    last_draw_ = now;
+    draw(fmt::format("{} {:3.0f} %  {}: {}", bar(done), 100 * std::clamp(done, 0.0, 1.0), step_, what));
   }
-  if (new_step) step_ = what;
   return !interrupted();
 }
 
@@ -100,7 +99,6 @@ void Console::live(std::string_view line) {
 }
 
 void Console::finish() {
-  step_.clear();
   if (!drawn_) return;
   drawn_ = false;
   put("\r\033[K");

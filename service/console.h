@@ -7,7 +7,7 @@
 namespace palpate {
 
 /// Writes to standard error: sentences, a progress bar, a live line. On a terminal the bar and the live line are redrawn in place; elsewhere
-/// each step of the work is one plain line and the live line is not shown. One thread at a time.
+/// a step is one plain line and the live line is not shown. One thread at a time.
 class Console {
  public:
   Console();
@@ -20,8 +20,10 @@ class Console {
   /// "palpate: <sentence>".
   void note(std::string_view sentence);
 
-  /// Progress of a step, `done` in [0, 1]. Redraws at most 20 times a second. Returns false when the user asked to stop
-  /// (interrupted()), as `Progress` of model/collision_backend.h wants it.
+  /// Begins a step of long work ("reading the meshes").
+  void step(std::string_view name);
+  /// Progress of the step, `done` in [0, 1]; `what` goes on inside it now. Redraws at most 20 times a second. Returns false when the
+  /// user asked to stop (interrupted()), as `Progress` of model/collision_backend.h wants it.
   bool progress(const char* what, double done);
 
   /// Whether a live line would be seen now: on a terminal, at most 20 times a second.
@@ -37,7 +39,7 @@ class Console {
 
   bool terminal_ = false;
   bool drawn_ = false;            ///< a bar or live line stands on the current line
-  std::string step_;              ///< of the last progress()
+  std::string step_;
   std::chrono::steady_clock::time_point last_draw_{};
 };
 

@@ -40,7 +40,7 @@ Result<void> write_triangles(const std::filesystem::path& path, const LatticeMes
 }  // namespace
 
 Result<void> export_geometry(const std::string& directory, const SceneGeometry& geometry, const CollisionBackend& backend,
-                             const std::vector<InputPose>& poses, std::vector<std::string>& notes) {
+                             const std::vector<Pose>& poses, std::vector<std::string>& notes) {
   const std::filesystem::path root = directory;
   std::error_code error;
   std::filesystem::create_directories(root, error);
@@ -53,12 +53,14 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
     return done;
   if (auto done = write_triangles(root / "static.i32", geometry.mockup, [](const Int3& v) { return v; }); !done) return done;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (poses[i].lattice.beyond_lattice) {
+    const Result<LatticePose> pose = to_lattice(poses[i], geometry);
+    if (!pose) return pose.error();
+    if (pose->beyond_lattice) {
       notes.push_back(fmt::format("pose {} is beyond the lattice and free of contact: no tool_{}.i32", i, i));
       continue;
     }
     const auto path = root / fmt::format("tool_{}.i32", i);
-    const auto done = write_triangles(path, geometry.tool, [&](const Int3& v) { return transform(poses[i].lattice, v); });
+    const auto done = write_triangles(path, geometry.tool, [&](const Int3& v) { return transform(*pose, v); });
     if (!done) return done;
   }
 

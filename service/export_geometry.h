@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "model/collision_backend.h"
+#include "model/pose.h"
 #include "model/scene_geometry.h"
-#include "service/pose_input.h"
 
 namespace palpate {
 
@@ -13,6 +13,6 @@ namespace palpate {
 /// steps; metre = origin_m + step_m × value), voxels.json (size, origin, counts in lattice steps) and voxels.u8 (0 ext, 1 bnd, 2 int;
 /// x fastest). A pose beyond the lattice has no such coordinates and no file: `notes` says so.
 Result<void> export_geometry(const std::string& directory, const SceneGeometry& geometry, const CollisionBackend& backend,
-                             const std::vector<InputPose>& poses, std::vector<std::string>& notes);
+                             const std::vector<Pose>& poses, std::vector<std::string>& notes);
 
 }  // namespace palpate

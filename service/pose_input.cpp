@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "model/scene_geometry.h"
+
 namespace palpate {
 namespace {
 
@@ -20,7 +22,7 @@ std::string_view trim(std::string_view text) {
 }
 
 /// Seven fields to a pose; the error says which field, without naming the file.
-Result<InputPose> to_pose(const std::vector<std::string_view>& fields, const SceneGeometry& geometry) {
+Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
   if (fields.size() != kFields.size())
     return bad_value(fmt::format("has {} values instead of 7 (x y z qx qy qz qw)", fields.size()));
   std::array<double, 7> value{};
@@ -33,12 +35,14 @@ Result<InputPose> to_pose(const std::vector<std::string_view>& fields, const Sce
       return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], field));
     if (error != std::errc() || stop != end) return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], field));
   }
-  InputPose pose;
-  pose.pose.position = Vec3(value[0], value[1], value[2]);
-  pose.pose.rotation = Quat(value[6], value[3], value[4], value[5]);
-  Result<LatticePose> lattice = to_lattice(pose.pose, geometry);
+  Pose pose;
+  pose.position = Vec3(value[0], value[1], value[2]);
+  pose.rotation = Quat(value[6], value[3], value[4], value[5]);
+  // Whether it is a pose does not depend on the scene, so any lattice tells; a bad one is refused before meshes are read.
+  SceneGeometry any;
+  any.lattice.step_m = 1;
+  const Result<LatticePose> lattice = to_lattice(pose, any);
   if (!lattice) return bad_value("is no pose: " + lattice.error().sentence);
-  pose.lattice = *lattice;
   return pose;
 }
 
@@ -55,26 +59,26 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 
 }  // namespace
 
-Result<InputPose> parse_pose(const std::string& text, const SceneGeometry& geometry) {
-  Result<InputPose> pose = to_pose(split(text, " ,\t\n\r", true), geometry);
+Result<Pose> parse_pose(const std::string& text) {
+  Result<Pose> pose = to_pose(split(text, " ,\t\n\r", true));
   if (!pose) return bad_value(fmt::format("--pose \"{}\" {}", text, pose.error().sentence));
   return pose;
 }
 
-Result<std::vector<InputPose>> read_poses(const std::string& path, const SceneGeometry& geometry) {
+Result<std::vector<Pose>> read_poses(const std::string& path) {
   std::ifstream in(path);
   if (!in) return bad_value(fmt::format("{}: the poses file can't be opened", path));
   std::string text;
   if (!std::getline(in, text) || trim(text) != kHeader)
     return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, trim(text), kHeader));
 
-  std::vector<InputPose> poses;
+  std::vector<Pose> poses;
   std::string first_error;
   std::size_t bad_lines = 0;
   for (std::size_t line = 2; std::getline(in, text); ++line) {
     const std::string_view row = trim(text);
     if (row.empty()) continue;
-    Result<InputPose> pose = to_pose(split(row, ",", false), geometry);
+    Result<Pose> pose = to_pose(split(row, ",", false));
     if (pose)
       poses.push_back(*pose);
     else if (bad_lines++ == 0)

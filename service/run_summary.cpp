@@ -56,8 +56,8 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
     line("lateness", fmt::format("{:.0f} µs median, {:.0f} µs p99, {:.0f} µs at most", summary.lateness_us.p50, summary.lateness_us.p99,
                                  summary.lateness_us.max));
   line("result age", fmt::format("{:.0f} ticks median, {:.0f} at most", summary.result_age_ticks.p50, summary.result_age_ticks.max));
-  line("frames", fmt::format("{}: {:.0f} µs median, {:.0f} µs p99, {:.0f} µs at most", count_text(summary.frames), summary.frame_us.p50,
-                             summary.frame_us.p99, summary.frame_us.max));
+  line("frames", fmt::format("{}: {:.3g} ms median, {:.3g} ms p99, {:.3g} ms at most", count_text(summary.frames), summary.frame_us.p50 / 1000,
+                             summary.frame_us.p99 / 1000, summary.frame_us.max / 1000));
   std::string stages;
   for (const int stage : summary.stages_reached) stages += (stages.empty() ? "" : "; ") + stage_text(stage, stage_names);
   if (!stages.empty()) line("stages", stages);

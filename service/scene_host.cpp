@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "model/scene_file.h"
+#include "service/numbers.h"
 
 namespace palpate {
 namespace {
@@ -19,6 +20,14 @@ PlanFacts facts_of(const LoadedScene& loaded, Purpose purpose, bool full) {
                                                : session_facts(loaded.scene, loaded.geometry, false);
   facts.full = full;
   return facts;
+}
+
+std::string prepared_text(const PreparedScene& prepared) {
+  const SceneGeometry& geometry = prepared.loaded.geometry;
+  return fmt::format("mock-up {} triangles, tool {}, voxels of {:.3g} mm, {} on {}; read in {:.2f} s, prepared in {:.2f} s",
+                     count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()),
+                     1000 * geometry.lattice.step_m * geometry.mockup_grid.size, bytes_text(prepared.backend->memory_bytes()),
+                     prepared.backend->device(), prepared.load_s, prepared.prepare_s);
 }
 
 }  // namespace
@@ -42,6 +51,7 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   prepared->backend = std::move(*backend);
 
   const Progress progress = [&console](const char* what, double done) { return console.progress(what, done); };
+  console.step("reading the meshes");
   const auto load_start = Clock::now();
   Result<LoadedScene> loaded = load_scene(std::move(*scene), progress);
   if (!loaded) return loaded.error();
@@ -49,6 +59,7 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   prepared->load_s = seconds_since(load_start);
   for (const std::string& warning : prepared->loaded.scene.warnings) console.note(warning);
 
+  console.step("preparing the scene");
   const auto prepare_start = Clock::now();
   PlanFacts facts = facts_of(prepared->loaded, purpose, options.full_plan);
   prepared->plan = decide_plan(facts);
@@ -57,7 +68,7 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   facts.internal_voxels = prepared->backend->has_internal_voxels();
   prepared->plan = decide_plan(facts);
   prepared->prepare_s = seconds_since(prepare_start);
-  console.finish();
+  console.note(prepared_text(*prepared));
   return prepared;
 }
 

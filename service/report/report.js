@@ -106,7 +106,7 @@
           } },
         },
         scales: {
-          x: { type: 'linear', min: range[0], max: range[1], ticks: { maxRotation: 0, callback: (v) => number(v, 6) + ' s' } },
+          x: { type: 'linear', min: range[0], max: range[1], ticks: { maxRotation: 0, includeBounds: false, callback: (v) => number(v, 6) + ' s' } },
           y: { stacked, grace: headroom, beginAtZero: true, ticks: { maxTicksLimit: 6, precision: integers ? 0 : undefined },
                afterFit: (scale) => { scale.width = 58; } },   // one width, so that the time axes line up
         },
@@ -122,12 +122,19 @@
        { integers: true, headroom: '12%' });
   draw('areas', lines([{ label: 'areas', colour: 'accent', points: curves.areas, stepped: true, width: 1.3 }]), { integers: true, headroom: '12%' });
   const milliseconds = (points) => (points || []).map(([x, y]) => [x, y / 1000]);
-  const timed = Object.entries(data.stage_us);
+  // The stages that take most of the time, in the order of a frame; the others together.
+  const mean = (points) => points.reduce((sum, p) => sum + p[1], 0) / Math.max(1, points.length);
+  const entries = Object.entries(data.stage_us).map(([name, points]) => ({ name: name.replaceAll('_', ' '), points, mean: mean(points) }));
+  const ranked = [...entries].sort((a, b) => b.mean - a.mean);
+  const shown = entries.filter((entry) => ranked.indexOf(entry) < 5);
+  const others = ranked.slice(5);
+  if (others.length)
+    shown.push({ name: 'others', points: others[0].points.map(([x], i) => [x, others.reduce((sum, entry) => sum + (entry.points[i]?.[1] ?? 0), 0)]) });
   draw('time', lines([
     { label: 'frame', colour: 'soft', points: milliseconds(curves.frame_us), width: 0.8, order: 2, stack: 'frame' },
-    ...timed.map(([name, points], i) => ({ label: name.replaceAll('_', ' '), colour: 't' + (i % 10), points: milliseconds(points), width: 0.6,
-                                           fill: i === 0 ? 'origin' : '-1', order: 1, stack: 'stages' })),
-  ]), { headroom: '12%', stacked: timed.length > 0 });
+    ...shown.map(({ name, points }, i) => ({ label: name, colour: name === 'others' ? 't9' : 't' + [0, 2, 5, 6, 8][i], points: milliseconds(points), width: 0.6,
+                                             fill: i === 0 ? 'origin' : '-1', order: 1, stack: 'stages' })),
+  ]), { headroom: '12%', stacked: shown.length > 0 });
 
   // ---- with and without the law: the component that moves most, of torque and of force ------------------------------
   const rows = data.highlight;   // time, response force xyz, torque xyz, sent force xyz, torque xyz

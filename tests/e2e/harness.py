@@ -15,7 +15,7 @@ import traceback
 
 PROGRAM = sys.argv[1]
 SOURCE = pathlib.Path(sys.argv[2])
-TIMEOUT_S = 300   # a hang is a failure, not a wait
+TIMEOUT_S = 900   # a hang is a failure, not a wait; a whole scene on a busy machine takes minutes
 
 
 class Outcome:

@@ -1,65 +1,9 @@
 """`palpate run`: files, reproducible bytes, the chapter's stages and contacts, the report, interruption."""
 import html.parser
-import re
 import signal
 
 from harness import *
-
-TRACE = ('time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,'
-         'response_force_x_N,response_force_y_N,response_force_z_N,response_torque_x_Nm,response_torque_y_Nm,response_torque_z_Nm,'
-         'result_age_ticks,contact,stage')
-SUMMARY = ['static_triangles', 'tool_triangles', 'backend', 'device', 'profile', 'law', 'ticks', 'missed_ticks', 'lateness_us', 'result_age_ticks',
-           'frame_us', 'stages_reached', 'areas_max', 'force_max_N', 'torque_max_Nm']
-
-
-def run(scene, out, *arguments):
-    outcome = palpate('run', scene, '--pace', 'asap', '--out', out, *arguments)
-    expect(outcome.code == 0, outcome)
-    return outcome
-
-
-def frames(out):
-    return [json.loads(line) for line in (out / 'frames.jsonl').read_text().splitlines()]
-
-
-def without_time(line):
-    return re.sub(r'"time_us":\{[^}]*\}', '', line)
-
-
-def test_the_disassembly_twice_gives_the_same_bytes_and_reaches_all_stages():
-    folder = Folder()
-    scene = SOURCE / 'scenes' / 'disassembly.json'
-    outcome = run(scene, folder / 'a')
-    run(scene, folder / 'b')
-    expect((folder / 'a' / 'trace.csv').read_bytes() == (folder / 'b' / 'trace.csv').read_bytes(), 'trace.csv differs')
-    one, two = ((folder / d / 'frames.jsonl').read_text().splitlines() for d in 'ab')
-    expect(len(one) == len(two) and all(without_time(x) == without_time(y) for x, y in zip(one, two)), 'frames.jsonl differs beyond times')
-
-    trace = (folder / 'a' / 'trace.csv').read_text().splitlines()
-    expect(trace[0].startswith(TRACE), trace[0])
-    summary = json.loads((folder / 'a' / 'summary.json').read_text())
-    expect(list(summary) == SUMMARY, list(summary))
-    expect(list(summary['lateness_us']) == ['p50', 'p99', 'p999', 'max'], summary['lateness_us'])
-    expect(list(summary['result_age_ticks']) == ['p50', 'max'] and list(summary['frame_us']) == ['p50', 'p99', 'max'], summary)
-    expect(summary['stages_reached'] == [1, 2, 3, 4, 5, 6], summary['stages_reached'])
-    expect(summary['ticks'] == len(trace) - 1 and summary['missed_ticks'] == 0, summary)
-    expect(abs(summary['static_triangles'] / 100000 - 1) <= 0.02 and abs(summary['tool_triangles'] / 2000 - 1) <= 0.02, summary)
-    expect(summary['result_age_ticks']['max'] <= 2 * 3, summary['result_age_ticks'])   # virtual_delay_ticks 3, renewed every 3
-    expect(summary['force_max_N'] > 0 and summary['torque_max_Nm'] > 0, summary)
-    expect('report' in outcome.out and str(folder / 'a' / 'report.html') in outcome.out, outcome)
-
-
-def test_the_contacts_reach_one_two_and_four_areas_at_once():
-    folder = Folder()
-    run(SOURCE / 'scenes' / 'contacts.json', folder / 'a')
-    seen = set()
-    for frame in frames(folder / 'a'):
-        seen.add(sum(any(area['force']) for area in frame['areas']))
-        expect('tick' in frame and list(frame)[-1] == 'tick', list(frame))
-    expect({1, 2, 4} <= seen, f'areas at once: {sorted(seen)}')
-    summary = json.loads((folder / 'a' / 'summary.json').read_text())
-    expect(summary['stages_reached'] == [1, 2, 3], summary['stages_reached'])
-
+from run_files import *
 
 class Page(html.parser.HTMLParser):
     def __init__(self):
@@ -77,6 +21,16 @@ class Page(html.parser.HTMLParser):
 def small_run(folder, *arguments):
     expect(palpate('generate', 'contacts', '--triangles', '2000', '--tool-triangles', '1000', '--out', folder / 'scene').code == 0, 'generate')
     return run(folder / 'scene' / 'scene.json', folder / 'out', *arguments)
+
+
+def test_the_same_run_twice_leaves_the_same_bytes():
+    folder = Folder()
+    small_run(folder, '--duration', '3')
+    (folder / 'out').rename(folder / 'first')
+    small_run(folder, '--duration', '3')
+    expect_same_files(folder / 'first', folder / 'out')
+    expect_contract(folder / 'out')
+    expect(any(frame['areas'] for frame in frames(folder / 'out')), 'three seconds reach the first contact')
 
 
 def test_the_report_is_one_self_contained_page():
