@@ -1,5 +1,5 @@
 // The height of a ray through the transformed tool, docs/EXACTNESS.md section 7. The including shader declares
-//   cluster_boxes[], tool_order[], tool_triangles[], tool_world[], mobile_state[], scene, frame_state (writable).
+//   cluster_boxes[], run_boxes[], tool_corners[], scene, frame_state (writable).
 #ifndef PALPATE_LIB_TOOL_RAY
 #define PALPATE_LIB_TOOL_RAY
 #include "shaders/lib/ray.glsl"
@@ -41,22 +41,24 @@ Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   levels.count = 0u;
   levels.more = false;
   total = 0;
+  const vec3 e = ray_scaled(d);
   const uint32_t triangles = scene.tool.triangles;
-  const uint32_t clusters = (triangles + kClusterSize - 1u) / kClusterSize;
-  for (uint32_t cluster = 0u; cluster < clusters && !spent(1u); ++cluster) {
-    if (!ray_may_meet(p, d, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) continue;
-    const uint32_t end = min((cluster + 1u) * kClusterSize, triangles);
-    for (uint32_t i = cluster * kClusterSize; i < end && !spent(1u); ++i) {
-      const uint32_t mobile = tool_order[i];
-      if ((mobile_state[mobile] & kMobileVoid) != 0u) continue;
-      const uvec3 corners = tool_triangles[mobile];
-      const ivec3 a = tool_world[corners.x], b = tool_world[corners.y], c = tool_world[corners.z];
-      if (!ray_may_meet(p, d, min(min(a, b), c), max(max(a, b), c))) continue;
-      const Crossing crossing = ray_crossing(p, d, a, b, c);
-      if (crossing.sign == 0) continue;
-      total += crossing.sign;
-      if (crossing.height < from || spent(2u * kLevels)) continue;
-      levels_insert(levels, crossing.height, crossing.sign);
+  for (uint32_t cluster = 0u; cluster * kClusterSize < triangles && !spent(1u); ++cluster) {
+    if (!ray_may_meet_box(p, e, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) continue;
+    const uint32_t cluster_end = min((cluster + 1u) * kClusterSize, triangles);
+    for (uint32_t first = cluster * kClusterSize; first < cluster_end && !spent(1u); first += kRunSize) {
+      const uint32_t run = first / kRunSize;
+      if (!ray_may_meet_box(p, e, run_boxes[run].low, run_boxes[run].high)) continue;
+      const uint32_t end = min(first + kRunSize, triangles);
+      for (uint32_t i = first; i < end && !spent(1u); ++i) {
+        const ToolCorners t = tool_corners[i];
+        if (!ray_may_meet_triangle(p, e, t.a, t.b, t.c)) continue;
+        const Crossing crossing = ray_crossing(p, d, t.a, t.b, t.c);   // none for a void triangle: its corners are one point
+        if (crossing.sign == 0) continue;
+        total += crossing.sign;
+        if (crossing.height < from || spent(2u * kLevels)) continue;
+        levels_insert(levels, crossing.height, crossing.sign);
+      }
     }
   }
   return levels;

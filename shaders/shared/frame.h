@@ -177,7 +177,7 @@ struct FrameState {
   uint32_t overflow;              // bit per list
   uint32_t overflow_other;        // kOverflow… bits
   uint32_t contact;               // 1: CST, IMT or EST is not empty
-  uint32_t swallowed;             // 1: C_s empty, IMT not (refined)
+  uint32_t swallowed;             // 1: IMT, but no CST and no counting sample (refined)
   uint32_t cst, bst, est, cmt, bmt, imt; // sizes of the sets
 };
 

@@ -46,12 +46,12 @@ PALPATE_CONSTANT int32_t kMobileTile = 8;              // grid points along an e
 
 // ---- structs -------------------------------------------------------------------------------------------------------------
 
-// Who wants the nearest V_ext voxel of a point: areas by number, and the swallowed tool as the last request.
+// Who wants the nearest V_ext voxel of a point: an area, or the swallowed tool.
 struct NearestRequest {
   uint64_t distance;         // smallest |2·centre − 2p|²; ~0: nothing found yet
   uint64_t voxel;            // smallest linear number at that distance
   ivec3 point;               // p, world lattice
-  uint32_t area;             // area number, or kNone for the swallowed tool
+  uint32_t area;             // its number; kNone: the swallowed tool
 };
 
 struct ResponseState {

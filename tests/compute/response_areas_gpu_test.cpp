@@ -175,13 +175,24 @@ TEST_F(Areas, TheHeightEndsWhereTheWindingFirstFallsToZero) {
   EXPECT_EQ(area.moment_high[0], 0);
 }
 
-// 60 boxes that each overlap the next one: 120 distinct crossings, so that one sweep of eight heights can't be enough.
+// 60 boxes that each overlap the next one: 120 distinct crossings, so that one sweep of eight heights can't be enough. Large
+// coordinates, so that the float culling has something to cull.
 TEST_F(Areas, AHeightBeyondManyCrossingsIsNotCutOff) {
   ResponseCase c = one_sample();
-  for (int i = 0; i < 60; ++i) add_box(c, {0, 0, -40 - 30 * i}, {300, 300, 10 - 30 * i});
+  constexpr int kBig = 10000;
+  for (ivec3& v : c.mockup_vertices) v *= kBig;
+  c.samples[0].point *= kBig;
+  for (int i = 0; i < 60; ++i) add_box(c, ivec3(0, 0, -40 - 30 * i) * kBig, ivec3(300, 300, 10 - 30 * i) * kBig);
   const ResponseAnswer answer = run(c);
   EXPECT_EQ(answer.state.overflow_other, 0u);
-  EXPECT_EQ(answer.areas.at(0).max_height, height_at(40 + 30 * 59));
+  EXPECT_EQ(answer.areas.at(0).max_height, height_at((40 + 30 * 59) * kBig));
+}
+
+// The same many crossings with nothing to cull cost more than an invocation may spend: told, not cut off.
+TEST_F(Areas, ARayBeyondTheLoopBudgetIsReported) {
+  ResponseCase c = one_sample();
+  for (int i = 0; i < 90; ++i) add_box(c, {0, 0, -40 - 30 * i}, {300, 300, 10 - 30 * i});
+  EXPECT_TRUE(run(c).state.overflow_other & gpu::kOverflowLoop);
 }
 
 // Equal heights happen together: faces that coincide, one leaving and one entering, leave the winding as it was.

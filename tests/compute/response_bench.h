@@ -124,10 +124,6 @@ class ResponseTest : public GpuTest {
     put(buffers, kBindToolVertices, c.tool_world);   // the pose is the identity
     put(buffers, kBindToolTriangles, c.tool_triangles);
     const std::size_t tool = c.tool_triangles.size();
-    std::vector<std::uint32_t> order(tool);
-    for (std::uint32_t i = 0; i < tool; ++i) order[i] = i;
-    put(buffers, kBindToolOrder, order);
-    put(buffers, kBindMobileState, std::vector<std::uint32_t>(tool, 0));
     put(buffers, kBindToolInfo, std::vector<std::uint32_t>(tool, 2u << kInfoAxisShift));
     put(buffers, kBindToolNormals, std::vector<ivec3>(tool, ivec3(0, 0, -(1 << 30))));
     put(buffers, kBindToolWeights, std::vector<std::uint32_t>(tool, 1u << 30));
@@ -139,6 +135,17 @@ class ResponseTest : public GpuTest {
         box.high = glm::max(box.high, c.tool_world[v]);
       }
     put(buffers, kBindClusterBoxes, boxes);
+    std::vector<LatticeBox> runs(boxes.size() * kClusterSize / kRunSize, LatticeBox{ivec3(INT32_MAX), ivec3(INT32_MIN)});
+    std::vector<ToolCorners> corners;
+    for (std::size_t t = 0; t < tool; ++t) {
+      const uvec3 v = c.tool_triangles[t];
+      corners.push_back({c.tool_world[v.x], c.tool_world[v.y], c.tool_world[v.z]});
+      LatticeBox& box = runs[t / kRunSize];
+      box.low = glm::min(glm::min(box.low, corners[t].a), glm::min(corners[t].b, corners[t].c));
+      box.high = glm::max(glm::max(box.high, corners[t].a), glm::max(corners[t].b, corners[t].c));
+    }
+    put(buffers, kBindRunBoxes, runs);
+    put(buffers, kBindToolCorners, corners);
 
     put(buffers, kBindContactStatics, c.contact_statics);
     put(buffers, kBindContactMobiles, c.contact_mobiles);
