@@ -1,0 +1,18 @@
+// One invocation: one ray and one triangle. Reads cases, writes the crossing.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/item.glsl"
+#include "shaders/lib/ray.glsl"
+#include "tests/compute/shaders/probe_geometry.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Cases { RayCase cases[]; };
+layout(scalar, set = 0, binding = 1) writeonly buffer Answers { RayAnswer answers[]; };
+layout(push_constant) uniform Push { uint32_t count; };
+
+void main() {
+  uint32_t i = item_index();
+  if (i >= count) return;
+  RayCase c = cases[i];
+  Crossing crossing = ray_crossing(c.point, c.direction, c.corner[0], c.corner[1], c.corner[2]);
+  answers[i] = RayAnswer(crossing.sign, crossing.height, x_crossing(c.point, c.corner[0], c.corner[1], c.corner[2]));
+}
