@@ -89,7 +89,7 @@ std::string distrust_off(std::string_view bytes) {
 }
 
 std::string distrust_dae(std::string_view bytes) {
-  // Which nodes hold which: by nesting, and by <instance_node url="#id"/>. Reads tags alone.
+  // Which nodes hold which: by nesting, and by <instance_node url="#id"/>. Reads tags alone, and what index lists hold.
   std::map<std::string, std::vector<std::string>, std::less<>> holds;
   std::vector<std::string> open;
   const auto attribute = [](std::string_view tag, std::string_view name) -> std::string {
@@ -107,6 +107,21 @@ std::string distrust_dae(std::string_view bytes) {
       return rest.substr(0, start.size()) == start && rest.size() > start.size() && (blank(rest[start.size()]) || rest[start.size()] == '>');
     };
     const std::string_view tag = rest.substr(0, rest.find('>'));
+    if (const std::string count = attribute(tag, " count="); !count.empty()) {
+      std::string_view digits = count;
+      std::uint64_t value = 0;
+      if (!take_number(digits, value) || value > bytes.size())
+        return fmt::format("has a count of '{}', more than its {} bytes can hold", count.substr(0, 40), bytes.size());
+    }
+    if (is("<p") || is("<vcount") || is("<v") || is("<h")) {   // on anything but digits the importer would turn for ever
+      const std::string_view content = rest.substr(tag.size(), rest.find('<', tag.size()) - tag.size());
+      const std::size_t odd = content.find_first_not_of("0123456789 \t\r\n-", 1);
+      if (odd < content.size())
+        return std::isprint(static_cast<unsigned char>(content[odd]))
+                   ? fmt::format("has '{}' among its vertex indices", content[odd])
+                   : fmt::format("has a byte {:#x} among its vertex indices", static_cast<unsigned char>(content[odd]));
+      if (is("<p") && content.find('-') < content.size()) return "has '-' among its vertex indices";
+    }
     if (is("<node")) {
       std::string id = attribute(tag, " id=");
       if (id.empty()) id = fmt::format(" {}", unnamed++);

@@ -186,6 +186,13 @@ TEST_F(MeshImport, AColladaNodeThatContainsItselfIsRefused) {
                                      "<instance_node url=\"#a\"/></node></library_nodes></COLLADA>")), HasSubstr("contains itself"));
 }
 
+TEST_F(MeshImport, AColladaFileWithOddIndicesOrCountsIsRefused) {
+  EXPECT_THAT(refused(write("p.dae", "<COLLADA><p>0 1 7? 3</p></COLLADA>")), HasSubstr("has '?' among its vertex indices"));
+  EXPECT_THAT(refused(write("m.dae", "<COLLADA><p>0 1 -2 3</p></COLLADA>")), HasSubstr("has '-' among its vertex indices"));
+  EXPECT_THAT(refused(write("c.dae", "<COLLADA><float_array count=\"99999999999\">0</float_array></COLLADA>")),
+              HasSubstr("count of '99999999999'"));
+}
+
 TEST_F(MeshImport, TruncatedStlIsRefused) {
   std::string binary = binary_stl(solids::box(Vec3(0), Vec3(1)));
   EXPECT_THAT(refused(write("a.stl", binary.substr(0, binary.size() - 70))), HasSubstr("cut short: its 12 facets take 684 bytes, it has 614"));
