@@ -29,8 +29,8 @@ ivec3 tool_from_world(ivec3 p) {
 ivec3 tool_reach(int32_t offset) {
   ivec3 reach;
   for (int c = 0; c < 3; ++c) {
-    const int64_t sum = abs(int64_t(frame_input.rotation_q30[c])) + abs(int64_t(frame_input.rotation_q30[3 + c])) +
-                        abs(int64_t(frame_input.rotation_q30[6 + c]));
+    const int64_t sum = int64_t(abs(frame_input.rotation_q30[c])) + int64_t(abs(frame_input.rotation_q30[3 + c])) +
+                        int64_t(abs(frame_input.rotation_q30[6 + c]));
     reach[c] = int32_t((sum * int64_t(offset)) >> 30) + 2;
   }
   return reach;

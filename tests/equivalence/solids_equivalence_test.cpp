@@ -11,6 +11,14 @@ namespace {
 LatticePose near(const SceneGeometry& geometry, std::mt19937_64& random) { return random_touching_pose(geometry, 1.0, random); }
 LatticePose deep(const SceneGeometry& geometry, std::mt19937_64& random) { return random_touching_pose(geometry, 4.0, random); }
 
+/// Anywhere in the mock-up's box.
+LatticePose inside(const SceneGeometry& geometry, std::mt19937_64& random) {
+  LatticePose pose = random_touching_pose(geometry, 0.0, random);
+  for (int k = 0; k < 3; ++k)
+    pose.translation[k] = std::uniform_int_distribution<int>(geometry.mockup.box_min[k], geometry.mockup.box_max[k])(random);
+  return pose;
+}
+
 Mesh big_box() { return solids::box({-0.05, -0.05, -0.02}, {0.05, 0.05, 0.0}); }
 Mesh small_box() { return solids::box({-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}); }
 Mesh ball() { return solids::sphere(0.02, 24, 12); }
@@ -34,24 +42,28 @@ Mesh square_sheet() {
 class SolidsEquivalence : public testing::TestWithParam<EquivalenceCase> {};
 TEST_P(SolidsEquivalence, BothBackEndsGiveTheSameIntegers) { expect_equal_answers(GetParam()); }
 
-const GeometrySettings two_mm = {.voxel_size_m = 0.002, .sample_spacing_m = {}, .smooth_angle_deg = 30, .centre_of_mass_m = {}};
+const GeometrySettings four_mm = {.voxel_size_m = 0.004, .sample_spacing_m = {}, .smooth_angle_deg = 30, .centre_of_mass_m = {}};
 
 INSTANTIATE_TEST_SUITE_P(
     All, SolidsEquivalence,
     testing::Values(
-        EquivalenceCase{.name = "ball_on_block", .mockup = big_box, .tool = ball, .settings = two_mm, .pose = near},
-        EquivalenceCase{.name = "ball_deep_in_block", .mockup = big_box, .tool = ball, .settings = two_mm, .pose = deep},
-        EquivalenceCase{.name = "ball_on_block_paper", .mockup = big_box, .tool = ball, .settings = two_mm, .profile = Profile::kPaper, .pose = near},
-        EquivalenceCase{.name = "boxes_aligned", .mockup = big_box, .tool = small_box, .settings = two_mm, .pose = aligned_touching_pose},
-        EquivalenceCase{.name = "boxes_aligned_paper", .mockup = big_box, .tool = small_box, .settings = two_mm, .profile = Profile::kPaper, .pose = aligned_touching_pose},
+        EquivalenceCase{.name = "ball_on_block", .mockup = big_box, .tool = ball, .settings = four_mm, .pose = near},
+        EquivalenceCase{.name = "ball_deep_in_block", .mockup = big_box, .tool = ball, .settings = four_mm, .pose = deep},
+        EquivalenceCase{.name = "ball_on_block_paper", .mockup = big_box, .tool = ball, .settings = four_mm, .profile = Profile::kPaper, .pose = near},
+        EquivalenceCase{.name = "boxes_aligned", .mockup = big_box, .tool = small_box, .settings = four_mm, .pose = aligned_touching_pose},
+        EquivalenceCase{.name = "boxes_aligned_paper", .mockup = big_box, .tool = small_box, .settings = four_mm, .profile = Profile::kPaper, .pose = aligned_touching_pose},
         EquivalenceCase{.name = "cells_aligned", .mockup = [] { return solids::box({-0.04, -0.04, -0.02}, {0.04, 0.04, 0.02}, {8, 8, 4}); },
-                        .tool = [] { return solids::box({-0.02, -0.02, -0.01}, {0.02, 0.02, 0.01}, {4, 4, 2}); }, .settings = two_mm, .pose = aligned_touching_pose},
-        EquivalenceCase{.name = "ball_held", .mockup = big_box, .tool = ball, .settings = two_mm, .held = true, .pose = near},
-        EquivalenceCase{.name = "box_held", .mockup = [] { return solids::torus(0.04, 0.01, 32, 16); }, .tool = small_box, .settings = two_mm, .held = true, .pose = near},
-        EquivalenceCase{.name = "open_ball", .mockup = big_box, .tool = [] { return without_every(ball(), 7); }, .settings = two_mm, .pose = near},
-        EquivalenceCase{.name = "sheet_tool", .mockup = big_box, .tool = square_sheet, .settings = two_mm, .pose = near},
-        EquivalenceCase{.name = "ball_on_sheet", .mockup = square_sheet, .tool = ball, .settings = two_mm, .held = true, .pose = near},
-        EquivalenceCase{.name = "ball_on_open_torus", .mockup = [] { return without_every(solids::torus(0.04, 0.01, 32, 16), 5); }, .tool = ball, .settings = two_mm, .pose = near}),
+                        .tool = [] { return solids::box({-0.02, -0.02, -0.01}, {0.02, 0.02, 0.01}, {4, 4, 2}); }, .settings = four_mm, .pose = aligned_touching_pose},
+        EquivalenceCase{.name = "ball_held", .mockup = big_box, .tool = ball, .settings = four_mm, .held = true, .pose = near},
+        EquivalenceCase{.name = "box_held", .mockup = [] { return solids::torus(0.04, 0.01, 32, 16); }, .tool = small_box, .settings = four_mm, .held = true, .pose = near},
+        EquivalenceCase{.name = "box_swallowed", .mockup = big_box, .tool = [] { return solids::box({-0.003, -0.002, -0.002}, {0.003, 0.002, 0.002}); },
+                        .settings = four_mm, .held = true, .pose = inside},
+        EquivalenceCase{.name = "needle", .mockup = big_box, .tool = [] { return solids::box({-0.0001, -0.0001, -0.01}, {0.0001, 0.0001, 0.01}); }, .settings = four_mm, .pose = near},
+        EquivalenceCase{.name = "ball_through_plate", .mockup = [] { return solids::box({-0.05, -0.05, -0.001}, {0.05, 0.05, 0.0}); }, .tool = ball, .settings = four_mm, .held = true, .pose = deep},
+        EquivalenceCase{.name = "open_ball", .mockup = big_box, .tool = [] { return without_every(ball(), 7); }, .settings = four_mm, .pose = near},
+        EquivalenceCase{.name = "sheet_tool", .mockup = big_box, .tool = square_sheet, .settings = four_mm, .pose = near},
+        EquivalenceCase{.name = "ball_on_sheet", .mockup = square_sheet, .tool = ball, .settings = four_mm, .held = true, .pose = near},
+        EquivalenceCase{.name = "ball_on_open_torus", .mockup = [] { return without_every(solids::torus(0.04, 0.01, 32, 16), 5); }, .tool = ball, .settings = four_mm, .pose = near}),
     [](const auto& made) { return made.param.name; });
 
 }  // namespace
