@@ -35,7 +35,11 @@ void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossin
   levels.count = last + 1u;
 }
 
+const uint32_t kCandidates = 16u;   // triangles put by for the exact test (chosen: a ray of a compact tool has 2 to 6)
+
 // The lowest crossings of the ray with heights of at least `from`; `total` is the sum of the signs of all.
+// First the triangles that the ray may meet are put by, then all are tested: so that rays side by side, which meet different
+// triangles, run the long exact test together.
 Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   Levels levels;
   levels.count = 0u;
@@ -43,22 +47,29 @@ Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   total = 0;
   const vec3 e = ray_scaled(d);
   const uint32_t triangles = scene.tool.triangles;
-  for (uint32_t cluster = 0u; cluster * kClusterSize < triangles && !spent(1u); ++cluster) {
-    if (!ray_may_meet_box(p, e, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) continue;
-    const uint32_t cluster_end = min((cluster + 1u) * kClusterSize, triangles);
-    for (uint32_t first = cluster * kClusterSize; first < cluster_end && !spent(1u); first += kRunSize) {
-      const uint32_t run = first / kRunSize;
-      if (!ray_may_meet_box(p, e, run_boxes[run].low, run_boxes[run].high)) continue;
-      const uint32_t end = min(first + kRunSize, triangles);
-      for (uint32_t i = first; i < end && !spent(1u); ++i) {
+  uint32_t candidates[kCandidates];
+  uint32_t i = 0u;   // place in the order of clusters
+  while (i < triangles && !spent(1u)) {
+    uint32_t count = 0u;
+    while (i < triangles && count < kCandidates && !spent(1u)) {
+      const uint32_t cluster = i / kClusterSize, run = i / kRunSize;
+      if (i % kClusterSize == 0u && !ray_may_meet_box(p, e, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) {
+        i += kClusterSize;
+      } else if (i % kRunSize == 0u && !ray_may_meet_box(p, e, run_boxes[run].low, run_boxes[run].high)) {
+        i += kRunSize;
+      } else {
         const ToolCorners t = tool_corners[i];
-        if (!ray_may_meet_triangle(p, e, t.a, t.b, t.c)) continue;
-        const Crossing crossing = ray_crossing(p, d, t.a, t.b, t.c);   // none for a void triangle: its corners are one point
-        if (crossing.sign == 0) continue;
-        total += crossing.sign;
-        if (crossing.height < from || spent(2u * kLevels)) continue;
-        levels_insert(levels, crossing.height, crossing.sign);
+        if (ray_may_meet_triangle(p, e, t.a, t.b, t.c)) candidates[count++] = i;
+        ++i;
       }
+    }
+    for (uint32_t k = 0u; k < count && !spent(1u); ++k) {
+      const ToolCorners t = tool_corners[candidates[k]];
+      const Crossing crossing = ray_crossing(p, d, t.a, t.b, t.c);   // none for a void triangle: its corners are one point
+      if (crossing.sign == 0) continue;
+      total += crossing.sign;
+      if (crossing.height < from || spent(2u * kLevels)) continue;
+      levels_insert(levels, crossing.height, crossing.sign);
     }
   }
   return levels;
