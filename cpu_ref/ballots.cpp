@@ -26,6 +26,13 @@ struct Rows {
   std::uint64_t number(const Int3& voxel) const {
     return static_cast<std::uint64_t>(voxel[u]) + static_cast<std::uint64_t>(size[u]) * static_cast<std::uint64_t>(voxel[v]);
   }
+  /// The first voxel of a row.
+  Int3 start(std::uint64_t row) const {
+    Int3 voxel(0);
+    voxel[u] = static_cast<int>(row % static_cast<std::uint64_t>(size[u]));
+    voxel[v] = static_cast<int>(row / static_cast<std::uint64_t>(size[u]));
+    return voxel;
+  }
   /// First and last voxel along k whose centre lies within [low, high].
   std::pair<std::int32_t, std::int32_t> centres(int k, std::int32_t low, std::int32_t high) const {
     const std::int64_t first_centre = std::int64_t{grid.origin[k]} + grid.size / 2;
@@ -77,39 +84,42 @@ std::vector<RowCrossing> row_crossings(const LatticeMesh& mesh, const Rows& rows
   return crossings;
 }
 
+/// Only rows with a voxel that asks need their crossings.
+std::vector<bool> rows_with(VoxelClass undecided, const Rows& rows, const BrickClasses& classes) {
+  std::vector<bool> wanted(rows.count(), false);
+  for (std::size_t brick = 0; brick < classes.brick_count(); ++brick) {
+    const Int3 first = classes.first_voxel(brick);
+    if (classes.uniform(brick) && classes.at(first) < undecided) continue;
+    for (int z = 0; z < kBrickSide; ++z)
+      for (int y = 0; y < kBrickSide; ++y)
+        for (int x = 0; x < kBrickSide; ++x)
+          if (classes.at(first + Int3(x, y, z)) >= undecided) wanted[rows.number(first + Int3(x, y, z))] = true;
+  }
+  return wanted;
+}
+
 }  // namespace
 
-void cast_ballots(const LatticeMesh& mesh, const VoxelGrid& grid, int axis, VoxelClass enclosed, std::vector<VoxelClass>& classes) {
+void cast_ballots(const LatticeMesh& mesh, const VoxelGrid& grid, int axis, VoxelClass undecided, BrickClasses& classes,
+                  Ballots& ballots) {
   const Rows rows(grid, axis);
-  const auto stride = [&](int k) {
-    return k == 0 ? std::uint64_t{1} : k == 1 ? static_cast<std::uint64_t>(rows.size.x)
-                                              : static_cast<std::uint64_t>(rows.size.x) * static_cast<std::uint64_t>(rows.size.y);
-  };
-
-  // Only rows with an enclosed voxel need their crossings.
-  std::vector<bool> wanted(rows.count(), false);
-  {
-    Int3 voxel;
-    std::uint64_t number = 0;
-    for (voxel.z = 0; voxel.z < rows.size.z; ++voxel.z)
-      for (voxel.y = 0; voxel.y < rows.size.y; ++voxel.y)
-        for (voxel.x = 0; voxel.x < rows.size.x; ++voxel.x, ++number)
-          if (classes[number] >= enclosed) wanted[rows.number(voxel)] = true;
-  }
-
+  const std::vector<RowCrossing> crossings = row_crossings(mesh, rows, rows_with(undecided, rows, classes));
   // Walk each row from its far end: crossings ahead of a voxel come in one after the other.
-  const std::vector<RowCrossing> crossings = row_crossings(mesh, rows, wanted);
   for (std::size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
-    const std::uint64_t row = crossings[begin].row;
-    while (end < crossings.size() && crossings[end].row == row) ++end;
-    const auto size_u = static_cast<std::uint64_t>(rows.size[rows.u]);
-    const std::uint64_t row_start = row % size_u * stride(rows.u) + row / size_u * stride(rows.v);
+    while (end < crossings.size() && crossings[end].row == crossings[begin].row) ++end;
+    Int3 voxel = rows.start(crossings[begin].row);
     std::int64_t winding = 0;
     std::size_t next = begin;
-    for (std::int32_t i = rows.size[axis] - 1; i >= 0; --i) {
-      for (; next < end && crossings[next].last >= i; ++next) winding += crossings[next].sign;
-      VoxelClass& voxel = classes[row_start + static_cast<std::uint64_t>(i) * stride(axis)];
-      if (winding != 0 && voxel >= enclosed) voxel = static_cast<VoxelClass>(static_cast<int>(voxel) + 1);
+    for (voxel[axis] = rows.size[axis] - 1; voxel[axis] >= 0; --voxel[axis]) {
+      for (; next < end && crossings[next].last >= voxel[axis]; ++next) winding += crossings[next].sign;
+      if (winding == 0) continue;
+      const VoxelClass c = classes.at(voxel);
+      if (c < undecided) continue;
+      const std::size_t brick = classes.brick_of(voxel);
+      if (classes.uniform(brick))
+        ++ballots.of_brick[brick];
+      else
+        classes.mark(voxel, static_cast<VoxelClass>(static_cast<int>(c) + 1));
     }
   }
 }

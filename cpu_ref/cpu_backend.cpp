@@ -75,7 +75,7 @@ class CpuBackend final : public CollisionBackend {
 
   Result<VoxelPartition> partition(bool tool) const override {
     if (!scene_ || (tool && !scene_->refined())) return Error{ErrorCode::kInternal, "There is no such partition."};
-    return tool ? scene_->tool.voxels : scene_->mockup.voxels;
+    return tool ? scene_->tool.dense() : scene_->mockup.dense();
   }
 
   bool has_internal_voxels() const override { return scene_ && scene_->mockup.has_internal; }

@@ -96,11 +96,11 @@ void find_voxel_sets(Frame& frame, Contacts& out) {
     if (frame.tool[m].collapsed()) continue;
     bool touches_boundary = false, touches_internal = false;
     for_each_touched_voxel(
-        frame.tool[m], partition.voxels.grid, 0,
+        frame.tool[m], partition.grid, 0,
         [&](const Int3& begin, const Int3& end) { return !partition.block_is_external(begin, end); },
         [&](const Int3& voxel) {
           const std::uint64_t number = partition.number(voxel);
-          const VoxelClass voxel_class = partition.voxels.classes[number];
+          const VoxelClass voxel_class = partition.classes.at(voxel);
           if (voxel_class == VoxelClass::kBoundary) {
             touches_boundary = true;
             frame.touched_boundary.push_back(number);

@@ -125,7 +125,7 @@ void measure_swallowed(const Frame& frame, Contacts& out) {
   }
 
   // March from every touched V_int voxel until it is out; the tool is out when the last one is.
-  const std::int64_t half = partition.voxels.grid.size / 2;
+  const std::int64_t half = partition.grid.size / 2;
   std::int64_t most = 0;
   for (const std::uint64_t number : frame.touched_internal) {
     const Int3 centre = partition.centre(partition.voxel(number));
@@ -139,7 +139,7 @@ void measure_swallowed(const Frame& frame, Contacts& out) {
     while (partition.class_of(at(steps)) == VoxelClass::kInternal) ++steps;
     most = std::max(most, steps);
   }
-  out.swallowed_height = static_cast<std::uint32_t>(partition.voxels.grid.size * most);
+  out.swallowed_height = static_cast<std::uint32_t>(partition.grid.size * most);
 }
 
 }  // namespace palpate::cpu_ref
