@@ -32,7 +32,7 @@ class ListBuilder {
   Items large_triangles();
   void mark_bricks(const Items* lists, std::size_t count);
   VoxelPairs list_pairs(const Items* lists, std::size_t count);
-  void sort_lists(const VoxelPairs& pairs);
+  void sort_lists(VoxelPairs& pairs);
   std::uint64_t brick_count() const {
     return static_cast<std::uint64_t>(grid_.bricks.x) * static_cast<std::uint64_t>(grid_.bricks.y) *
            static_cast<std::uint64_t>(grid_.bricks.z);
@@ -74,13 +74,14 @@ Items ListBuilder::expand(std::uint32_t source, const Items& from, Int3 cells, I
   push.count = count;
   push.bricks = grid_.bricks;
   push.brick_side = grid_.size * kBrickSide;
+  push.source = source;
   const bool items = source == gpu::kSourceItems;
   const VulkanBuffer& in_triangle = items ? from.triangle : body_.triangle_info;   // not read for triangles
   const VulkanBuffer& in_cell = items ? from.cell : body_.triangle_info;
   VulkanBuffer counts = steps_.buffer("counts of bricks", std::uint64_t{count} + 1);
   const VulkanBuffer unused = steps_.buffer("unused", 1);
   if (!steps_.ok()) return out;
-  steps_.run_items(spirv::triangle_expand, {source, 0u},
+  steps_.run_items(spirv::triangle_expand, {},
                    {body_.vertices, body_.triangles, body_.triangle_info, in_triangle, in_cell, counts, unused, unused}, push,
                    count);
   out.count = steps_.scan("pairs of triangle and brick", counts, count);
@@ -88,7 +89,8 @@ Items ListBuilder::expand(std::uint32_t source, const Items& from, Int3 cells, I
   out.triangle = steps_.buffer("pairs of triangle and brick", out.count);
   out.cell = steps_.buffer("pairs of triangle and brick", out.count);
   if (!steps_.ok()) return out;
-  steps_.run_items(spirv::triangle_expand, {source, 1u},
+  push.emit = 1;
+  steps_.run_items(spirv::triangle_expand, {},
                    {body_.vertices, body_.triangles, body_.triangle_info, in_triangle, in_cell, counts, out.triangle, out.cell},
                    push, count);
   return out;
@@ -152,7 +154,7 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
     push.count = lists[i].count;
     counts[i] = steps_.buffer("counts of voxels", std::uint64_t{lists[i].count} + 1);
     if (!steps_.ok() || push.count == 0) continue;
-    steps_.run_items(spirv::voxel_list, {0u},
+    steps_.run_items(spirv::voxel_list, {},
                      {body_.vertices, body_.triangles, lists[i].triangle, lists[i].cell, p.brick_slot, p.bricks, counts[i],
                       unused, unused, unused},
                      push, push.count);
@@ -178,10 +180,11 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
 
   // The pairs, and how long each voxel's list is.
   steps_.fill(p.list_begin, 0);
+  push.emit = 1;
   for (std::size_t i = 0; i < count; ++i) {
     push.count = lists[i].count;
     if (push.count > 0)
-      steps_.run_items(spirv::voxel_list, {1u},
+      steps_.run_items(spirv::voxel_list, {},
                        {body_.vertices, body_.triangles, lists[i].triangle, lists[i].cell, p.brick_slot, p.bricks, counts[i],
                         pairs.triangle, pairs.voxel, p.list_begin},
                        push, push.count);
@@ -191,34 +194,30 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
   return pairs;
 }
 
-/// Scatters the pairs into their lists and sorts each: short lists by rank, long ones by merging ranked chunks.
-void ListBuilder::sort_lists(const VoxelPairs& pairs) {
+/// Scatters the pairs into their lists and sorts each by ranks in chunks; long lists merge their chunks.
+void ListBuilder::sort_lists(VoxelPairs& pairs) {
   PartitionBuffers& p = body_.partition;
   const std::uint32_t voxels = p.grid.boundary_voxels;
   p.list_triangles = steps_.buffer("voxels' lists", pairs.count);
   VulkanBuffer scattered = steps_.buffer("voxels' lists", pairs.count);
   VulkanBuffer cursors = steps_.buffer("cursors of voxels' lists", std::uint64_t{voxels} + 1);
+  pairs.entry_voxel = steps_.buffer("voxels of lists' entries", pairs.count);
   const VulkanBuffer longest = steps_.buffer("longest list", 1);
   if (!steps_.ok()) return;
   steps_.run([&](CommandRecorder& r) {
     r.copy(p.list_begin, 0, cursors, 0, cursors.bytes());
     r.fill(longest, 0);
   });
-  steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, scattered}, pairs.count, pairs.count);
-  struct {
-    std::uint32_t count, voxels;
-  } const push{pairs.count, voxels};
-  for (const std::uint32_t chunks : {0u, 1u}) {
-    steps_.run_items(spirv::list_rank, {chunks},
-                     {pairs.triangle, pairs.voxel, p.list_begin, scattered, p.list_triangles, longest}, push, pairs.count);
-    p.longest_list = std::max(gpu::kRankSpan, steps_.read(longest, 0));
-    if (p.longest_list == gpu::kRankSpan) return;
-  }
+  steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, scattered, pairs.entry_voxel},
+                   pairs.count, pairs.count);
+  steps_.run_items(spirv::list_rank, {}, {pairs.entry_voxel, p.list_begin, scattered, p.list_triangles, longest}, pairs.count,
+                   pairs.count);
+  p.longest_list = std::max(gpu::kRankSpan, steps_.read(longest, 0));
   for (std::uint64_t run = gpu::kRankSpan; run < p.longest_list && steps_.ok(); run *= 2) {
     struct {
-      std::uint32_t count, voxels, run;
-    } const merge{pairs.count, voxels, static_cast<std::uint32_t>(run)};
-    steps_.run_items(spirv::list_merge, {}, {p.list_begin, p.list_triangles, scattered}, merge, pairs.count);
+      std::uint32_t count, run;
+    } const push{pairs.count, static_cast<std::uint32_t>(run)};
+    steps_.run_items(spirv::list_merge, {}, {pairs.entry_voxel, p.list_begin, p.list_triangles, scattered}, push, pairs.count);
     std::swap(p.list_triangles, scattered);
   }
 }

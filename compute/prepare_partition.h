@@ -12,6 +12,7 @@ namespace palpate {
 struct VoxelPairs {
   VulkanBuffer triangle;   ///< uint32
   VulkanBuffer voxel;      ///< uint32, compact index
+  VulkanBuffer entry_voxel;   ///< uint32, compact index of the voxel of every entry of list_triangles
   std::uint32_t count = 0;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "compute/prepare_partition.h"
 #include "compute/prepare_steps.h"
 #include "compute/prepared_scene.h"
 #include "model/scene_geometry.h"
@@ -7,7 +8,7 @@ namespace palpate {
 
 /// Seams of the mock-up (docs/EXACTNESS.md section 5): pairs of triangles that share no edge, make a smooth angle and touch
 /// in more than one common corner. Fills seam_begin, seams and seam_entries of `body`; none unless `refined`.
-/// Before: the partition's lists.
-void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool refined, BodyBuffers& body);
+/// Before: the partition's lists and their pairs.
+void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool refined, const VoxelPairs& pairs, BodyBuffers& body);
 
 }  // namespace palpate

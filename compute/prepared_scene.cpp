@@ -73,7 +73,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
   steps.progress("seams", 0.9);
-  find_seams(steps, geometry, refined, out.mockup);
+  find_seams(steps, geometry, refined, pairs, out.mockup);
   if (refined) {
     const VoxelPairs tool_pairs =
         build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);

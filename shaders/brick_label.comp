@@ -3,6 +3,7 @@
 // of the component of voxel `bit` is bit of labels[slot · 128 + k · 16 …]. Before: labels are 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shaders/lib/item.glsl"
 #include "shaders/shared/scene.h"
 
@@ -11,6 +12,7 @@ layout(scalar, set = 0, binding = 1) buffer Labels { uint32_t labels[]; };
 layout(scalar, set = 0, binding = 2) writeonly buffer Counts { uint32_t counts[]; };
 layout(push_constant, scalar) uniform Push { uint32_t count; };
 
+// Loops stay loops: unrolled, the driver takes a second to compile this.
 const uint64_t kColumn0 = 0x0101010101010101ul;   // voxels with x = 0
 const uint64_t kColumn7 = 0x8080808080808080ul;
 
@@ -19,7 +21,7 @@ void main() {
   if (slot >= count) return;
   uint64_t open[8];   // voxels without a component yet
   uint64_t left = 0ul;
-  for (int32_t z = 0; z < 8; ++z) {
+  [[dont_unroll]] for (int32_t z = 0; z < 8; ++z) {
     open[z] = ~(uint64_t(bricks[slot].boundary[2 * z]) | uint64_t(bricks[slot].boundary[2 * z + 1]) << 32);
     left |= open[z];
   }
@@ -27,14 +29,14 @@ void main() {
   while (left != 0ul) {   // at most 256 times (a chequered brick)
     uint64_t region[8];
     bool seeded = false;
-    for (int32_t z = 0; z < 8; ++z) {
+    [[dont_unroll]] for (int32_t z = 0; z < 8; ++z) {
       region[z] = seeded ? 0ul : open[z] & (~open[z] + 1ul);
       seeded = seeded || open[z] != 0ul;
     }
     bool grown = true;
     while (grown) {
       grown = false;
-      for (int32_t z = 0; z < 8; ++z) {
+      [[dont_unroll]] for (int32_t z = 0; z < 8; ++z) {
         uint64_t r = region[z];
         if (z > 0) r |= region[z - 1];
         if (z < 7) r |= region[z + 1];
@@ -46,13 +48,13 @@ void main() {
       }
     }
     left = 0ul;
-    for (int32_t z = 0; z < 8; ++z) {
+    [[dont_unroll]] for (int32_t z = 0; z < 8; ++z) {
       open[z] &= ~region[z];
       left |= open[z];
     }
-    for (uint32_t plane = 0u; plane < 8u; ++plane) {
+    [[dont_unroll]] for (uint32_t plane = 0u; plane < 8u; ++plane) {
       if ((components >> plane & 1u) == 0u) continue;
-      for (int32_t z = 0; z < 8; ++z) {
+      [[dont_unroll]] for (int32_t z = 0; z < 8; ++z) {
         uint32_t word = slot * 128u + plane * 16u + 2u * uint32_t(z);
         labels[word] |= uint32_t(region[z]);
         labels[word + 1u] |= uint32_t(region[z] >> 32);

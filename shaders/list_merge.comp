@@ -5,18 +5,16 @@
 #include "shaders/lib/item.glsl"
 #include "shaders/shared/prepare.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer ListBegin { uint32_t list_begin[]; };
-layout(scalar, set = 0, binding = 1) readonly buffer From { uint32_t from[]; };
-layout(scalar, set = 0, binding = 2) writeonly buffer To { uint32_t to[]; };
-layout(push_constant, scalar) uniform Push { uint32_t count, voxels, run; };
-
-#define LIST_BEGIN list_begin
-#include "shaders/lib/list_of_entry.glsl"
+layout(scalar, set = 0, binding = 0) readonly buffer EntryVoxel { uint32_t entry_voxel[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer ListBegin { uint32_t list_begin[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer From { uint32_t from[]; };
+layout(scalar, set = 0, binding = 3) writeonly buffer To { uint32_t to[]; };
+layout(push_constant, scalar) uniform Push { uint32_t count, run; };
 
 void main() {
   uint32_t entry = item_index();
   if (entry >= count) return;
-  uint32_t voxel = list_of_entry(entry, voxels);
+  uint32_t voxel = entry_voxel[entry];
   uint32_t start = list_begin[voxel], end = list_begin[voxel + 1u];
   uint32_t id = from[entry];
   uint32_t mine = (entry - start) / run;                       // number of the run

@@ -1,5 +1,5 @@
 // One invocation: a triangle and the whole grid, or an item (triangle, cell) of the level above. Finds the cells of this
-// level that, closed and grown, touch the triangle. EMIT 0: writes their number to counts; EMIT 1: reads counts, now
+// level that, closed and grown, touch the triangle. emit 0: writes their number to counts; emit 1: reads counts, now
 // prefix sums, and writes the items. Before: cells of this level are at most kTopCells along each axis (large
 // triangles), or an eighth of the parents' (items), so that no invocation tests more than 512.
 #version 460
@@ -9,9 +9,6 @@
 #include "shaders/lib/triangle_voxel.glsl"
 #include "shaders/shared/prepare.h"
 #include "shaders/shared/scene.h"
-
-layout(constant_id = 0) const uint32_t SOURCE = 0u;
-layout(constant_id = 1) const uint32_t EMIT = 0u;
 
 layout(scalar, set = 0, binding = 0) readonly buffer Vertices { ivec3 vertices[]; };
 layout(scalar, set = 0, binding = 1) readonly buffer Triangles { uvec3 triangles[]; };
@@ -26,14 +23,14 @@ layout(push_constant, scalar) uniform Push { ExpandPush push; };
 void main() {
   uint32_t item = item_index();
   if (item >= push.count) return;
-  uint32_t t = SOURCE == kSourceItems ? item_triangle[item] : item;
+  uint32_t t = push.source == kSourceItems ? item_triangle[item] : item;
   uvec3 corner = triangles[t];
   ivec3 a = vertices[corner.x], b = vertices[corner.y], c = vertices[corner.z];
   ivec3 lo = min(a, min(b, c)), hi = max(a, max(b, c));
   ivec3 first = first_cell(lo, push.origin, push.side, push.growth);
   ivec3 last = last_cell(hi, push.origin, push.side, push.growth, push.cells);
   bool mine = true;
-  if (SOURCE == kSourceItems) {
+  if (push.source == kSourceItems) {
     ivec3 parent = cell_of_number(item_cell[item], push.parents);
     first = max(first, parent * 8);
     last = min(last, parent * 8 + 7);
@@ -42,13 +39,13 @@ void main() {
                  first_cell(lo, push.origin, push.brick_side, push.growth) + 1;
     // Spans are at most kMostBricksAlong < 2^12, so the product fits.
     bool is_small = uint64_t(span.x) * uint64_t(span.y) * uint64_t(span.z) <= uint64_t(kSmallCells);
-    mine = (triangle_info[t] & kInfoCollapsed) == 0u && is_small == (SOURCE == kSourceSmall);
+    mine = (triangle_info[t] & kInfoCollapsed) == 0u && is_small == (push.source == kSourceSmall);
   }
   uint32_t found = 0u;
   if (mine) {
     i64vec3 n = raw_normal(a, b, c);
     ivec3 grid_end = push.origin + push.bricks * push.brick_side;
-    uint32_t at = EMIT != 0u ? counts[item] : 0u;
+    uint32_t at = push.emit != 0u ? counts[item] : 0u;
     for (int32_t z = first.z; z <= last.z; ++z)
       for (int32_t y = first.y; y <= last.y; ++y)
         for (int32_t x = first.x; x <= last.x; ++x) {
@@ -56,12 +53,12 @@ void main() {
           ivec3 box_lo = push.origin + cell * push.side;
           ivec3 box_hi = min(box_lo + push.side, grid_end);
           if (!triangle_touches_box(a, b, c, n, box_lo - push.growth, box_hi + push.growth)) continue;
-          if (EMIT != 0u) {
+          if (push.emit != 0u) {
             out_triangle[at + found] = t;
             out_cell[at + found] = cell_number(cell, push.cells);
           }
           ++found;
         }
   }
-  if (EMIT == 0u) counts[item] = found;
+  if (push.emit == 0u) counts[item] = found;
 }

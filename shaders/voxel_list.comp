@@ -1,6 +1,6 @@
 // One invocation: an item (triangle, brick). Finds the brick's voxels that, closed and grown, touch the triangle.
-// EMIT 0: marks them as boundary and writes their number to counts. EMIT 1: reads counts, now prefix sums, writes pairs
-// (triangle, compact index of the voxel) and counts the triangles of each voxel. Before EMIT 1: first[] of every brick.
+// emit 0: marks them as boundary and writes their number to counts. emit 1: reads counts, now prefix sums, writes pairs
+// (triangle, compact index of the voxel) and counts the triangles of each voxel. Before emit 1: first[] of every brick.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"
@@ -8,8 +8,6 @@
 #include "shaders/lib/triangle_voxel.glsl"
 #include "shaders/shared/prepare.h"
 #include "shaders/shared/scene.h"
-
-layout(constant_id = 0) const uint32_t EMIT = 0u;
 
 layout(scalar, set = 0, binding = 0) readonly buffer Vertices { ivec3 vertices[]; };
 layout(scalar, set = 0, binding = 1) readonly buffer Triangles { uvec3 triangles[]; };
@@ -34,7 +32,7 @@ void main() {
   ivec3 last = min(last_cell(max(a, max(b, c)), push.origin, push.size, push.growth, push.bricks * 8), base + 7) - base;
   ivec3 corner_of_brick = push.origin + base * push.size;
   i64vec3 n = raw_normal(a, b, c);
-  uint32_t at = EMIT != 0u ? push.out_base + counts[item] : 0u;
+  uint32_t at = push.emit != 0u ? push.out_base + counts[item] : 0u;
   uint32_t found = 0u;
   for (int32_t z = first.z; z <= last.z; ++z)
     for (int32_t y = first.y; y <= last.y; ++y) {
@@ -46,7 +44,7 @@ void main() {
       if (row == 0u) continue;
       uint32_t bit = uint32_t(y) << 3 | uint32_t(z) << 6;   // of the row's first voxel
       uint32_t word = bit >> 5, shift = bit & 31u;
-      if (EMIT == 0u) {
+      if (push.emit == 0u) {
         atomicOr(bricks[slot].boundary[word], row << shift);
         found += uint32_t(bitCount(row));
       } else {
@@ -61,5 +59,5 @@ void main() {
         }
       }
     }
-  if (EMIT == 0u) counts[item] = found;
+  if (push.emit == 0u) counts[item] = found;
 }

@@ -9,13 +9,14 @@ PALPATE_SHARED_BEGIN
 PALPATE_CONSTANT uint32_t kScanChunk = 64u;        // numbers that one invocation of a prefix sum adds
 PALPATE_CONSTANT uint32_t kSmallCells = 64u;       // bricks in the box of a triangle that is tested against them at once
 PALPATE_CONSTANT int32_t kTopCells = 8;            // cells along an axis at the coarsest level
-PALPATE_CONSTANT uint32_t kRankSpan = 1024u;       // entries of a list that one invocation looks at
+PALPATE_CONSTANT uint32_t kRankSpan = 256u;        // entries of a list among which one invocation ranks one
+PALPATE_CONSTANT uint32_t kSeamSpan = 2048u;       // entries of a list that one invocation tests against one
 PALPATE_CONSTANT uint32_t kFindSteps = 256u;       // steps towards a root, before a union is left to the next run
 PALPATE_CONSTANT uint32_t kUnionTries = 16u;       // lost races of a union, before it is left to the next run
 PALPATE_CONSTANT int32_t kMostBricksAlong = 3500;  // bricks along an axis: a row is swept by one invocation, 9 steps a brick
 PALPATE_CONSTANT uint32_t kMostMixedBricks = 1u << 23;   // slot · 512 + bit fits 32 bits
 
-// Values of triangle_expand.comp's constant SOURCE.
+// What triangle_expand.comp starts from.
 PALPATE_CONSTANT uint32_t kSourceSmall = 0u;   // all triangles whose box holds at most kSmallCells bricks
 PALPATE_CONSTANT uint32_t kSourceLarge = 1u;   // all others
 PALPATE_CONSTANT uint32_t kSourceItems = 2u;   // items of the level above
@@ -29,8 +30,10 @@ struct ExpandPush {
   uint32_t count;    // triangles or items
   ivec3 bricks;      // along each axis
   int32_t brick_side;
+  uint32_t source;   // kSource…
+  uint32_t emit;     // 0: count, 1: write
 };
-PALPATE_ASSERT_SIZE(ExpandPush, 64);
+PALPATE_ASSERT_SIZE(ExpandPush, 72);
 
 struct VoxelPush {
   ivec3 origin;
@@ -39,8 +42,9 @@ struct VoxelPush {
   int32_t growth;
   uint32_t count;    // items
   uint32_t out_base; // first pair of this list
+  uint32_t emit;     // 0: mark and count, 1: write
 };
-PALPATE_ASSERT_SIZE(VoxelPush, 40);
+PALPATE_ASSERT_SIZE(VoxelPush, 44);
 
 struct GridPush {
   ivec3 origin;
@@ -54,9 +58,9 @@ PALPATE_ASSERT_SIZE(GridPush, 36);
 struct SeamPush {
   int64_t least_cosine;   // Q60; pairs below can't be smooth
   uint32_t count;         // entries
-  uint32_t voxels;
   uint32_t round;
   uint32_t capacity;      // pairs
+  uint32_t unused;
 };
 PALPATE_ASSERT_SIZE(SeamPush, 24);
 
