@@ -43,16 +43,11 @@ struct Rows {
   }
 };
 
-/// The last voxel of a row whose ray crosses a triangle that the row's line passes; `start` is the row's first centre.
+/// The last voxel of a row whose ray crosses a triangle that the row's line passes; `start` is the row's first centre. A centre
+/// on the triangle itself is in a V_bnd voxel and never asks, so that its tie need not be broken.
 std::int64_t last_before(const Int3& start, const Triangle& triangle, int axis, int facing, std::int64_t step) {
   // (a − p)·N · facing > 0 means ahead; a step along the row takes |N_axis| · step off it.
-  const Int128 ahead = -triangle.side(start) * facing;
-  const Int128 per_step = Int128{triangle.normal[axis]} * facing * step;
-  const Int128 whole = floor_divide(ahead, per_step);
-  const bool meets_a_centre = whole * per_step == ahead;
-  // A centre in the triangle's plane: the perturbation says on which side of it the centre is.
-  const bool centre_is_before = -first_sign(triangle.normal) == facing;
-  return static_cast<std::int64_t>(meets_a_centre && !centre_is_before ? whole - 1 : whole);
+  return static_cast<std::int64_t>(floor_divide(-triangle.side(start) * facing, Int128{triangle.normal[axis]} * facing * step));
 }
 
 std::vector<RowCrossing> row_crossings(const LatticeMesh& mesh, const Rows& rows, const std::vector<bool>& wanted) {

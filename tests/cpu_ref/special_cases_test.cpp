@@ -1,7 +1,9 @@
 // METHOD section 4's special cases, each as it says.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "cpu_ref/samples.h"
 #include "model/generate/solids.h"
 #include "tests/cpu_ref/bench_scene.h"
 
@@ -193,6 +195,54 @@ TEST(OpenTool, HasTheNearestHitsAndSaysSo) {
   EXPECT_LT(angle_deg(answer.areas[0].normal, kUp), 1e-6);
   // The cap is 1 mm deep: its mean height is 0.51 mm.
   EXPECT_NEAR(answer.areas[0].depth, 0.51 * kMm, 0.05 * kMm);
+}
+
+/// Plates one below the other as one tool; z from … to of each, in mm.
+Mesh plates(std::initializer_list<std::pair<double, double>> heights) {
+  Mesh mesh;
+  for (const auto& [low, high] : heights)
+    solids::append(mesh, solids::box(Vec3(-10 * kMm, -10 * kMm, low * kMm), Vec3(10 * kMm, 10 * kMm, high * kMm)), "plate");
+  return mesh;
+}
+
+TEST(Heights, EndWhereTheRayFirstLeavesTheTool) {
+  // The upper plate reaches 1 mm into the block; another, 3 mm further down, is no part of that contact.
+  BenchScene scene(block(), plates({{-5, -4}, {-1, 2}}), voxels_of(2 * kMm));
+  const ContactResponse& answer = scene.ask(Vec3(1 * kMm, 2 * kMm, 0));
+  ASSERT_EQ(answer.areas.size(), 1u);
+  EXPECT_NEAR(answer.areas[0].depth, 1 * kMm, 1e-6);   // m: lattice steps and Q30
+}
+
+TEST(Heights, GoThroughPartsThatOverlap) {
+  // Two parts that overlap are one body 4 mm deep: the inner faces at 1 and 2 mm end nothing.
+  BenchScene scene(block(), plates({{-4, -1}, {-2, 2}}), voxels_of(2 * kMm));
+  const ContactResponse& answer = scene.ask(Vec3(1 * kMm, 2 * kMm, 0));
+  ASSERT_EQ(answer.areas.size(), 1u);
+  EXPECT_NEAR(answer.areas[0].depth, 4 * kMm, 1e-6);
+}
+
+TEST(Est, HasTheTrianglesWithASampleInTheToolAndNoOther) {
+  const double r = 10 * kMm;
+  BenchScene scene(block(100), solids::sphere_of(r, 20000), voxels_of(2 * kMm));
+  // Turned, so that the tool's own grid is askew to the world's.
+  const Vec3 centre(1 * kMm, 2 * kMm, 3 * kMm);
+  scene.ask(Pose{centre, glm::normalize(Quat(0.9, 0.2, -0.3, 0.1))});
+  const SceneGeometry& geometry = *scene.geometry;
+  const Lattice& lattice = geometry.lattice;
+  int inside = 0;
+  for (std::uint32_t s = 0; s < geometry.mockup.triangles.size(); ++s) {
+    // The mesh of 20,000 lies between 0.999 and 1 of the radius.
+    double nearest = 1e9;
+    cpu_ref::for_each_sample(geometry.mockup, s, geometry.sample_spacing, {Int3(-kLatticeReach), Int3(kLatticeReach)}, [&](const Int3& p) {
+      nearest = std::min(nearest, glm::length(lattice.origin_m + lattice.step_m * Vec3(p) - centre));
+    });
+    const bool found = std::binary_search(scene.contacts.est.begin(), scene.contacts.est.end(), s);
+    const bool crossed = std::binary_search(scene.contacts.cst.begin(), scene.contacts.cst.end(), s);
+    if (nearest > r) { EXPECT_FALSE(found) << s; }
+    if (nearest < 0.999 * r) { EXPECT_TRUE(found || crossed) << s; }
+    inside += found;
+  }
+  EXPECT_GT(inside, 100);
 }
 
 TEST(Refined, AsksTheSameTwiceGetsTheSame) {
