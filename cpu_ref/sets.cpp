@@ -142,11 +142,14 @@ void find_samples(Frame& frame, Contacts& out) {
     std::vector<std::uint32_t> near;
     frame.scene.mockup_tree.meeting(frame.tool_box, near);
     for (const std::uint32_t s : near) {
+      if (frame.mockup().collapsed(s)) continue;
       const std::size_t before = frame.counting.size();
       for_each_sample(frame.mockup(), s, frame.scene.geometry->sample_spacing, frame.tool_box, [&](const Int3& point) {
         if (inside_tool(frame, point)) frame.counting.push_back({s, point});
       });
-      if (frame.counting.size() > before && !has(out.cst, s)) out.est.push_back(s);
+      // A triangle that crosses nothing is wholly inside or wholly outside: one corner tells, where it has no sample.
+      const bool inside = frame.counting.size() > before || inside_tool(frame, frame.mockup().corner(s, 0));
+      if (inside && !has(out.cst, s)) out.est.push_back(s);
     }
   }
   frame.contact_static = all_of({&out.cst, &out.bst, &out.est});

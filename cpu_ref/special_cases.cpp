@@ -108,7 +108,7 @@ void find_pierced(const Frame& frame, std::vector<Area>& areas, std::size_t a) {
 }
 
 void measure_swallowed(const Frame& frame, Contacts& out) {
-  if (out.imt.empty() || !out.cst.empty() || !frame.counting.empty()) return;
+  if (out.imt.empty() || !out.cst.empty() || !out.est.empty() || !frame.counting.empty()) return;
   out.flags |= kFlagSwallowed;
   const Partition& partition = frame.scene.mockup;
   if (frame.held != nullptr && frame.held->last_direction != Int3(0)) {

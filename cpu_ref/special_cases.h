@@ -12,7 +12,7 @@ void measure_needle(const Frame& frame, Area& area);
 /// Which areas the measured rays of area `a` pierce. Fills `pierces`.
 void find_pierced(const Frame& frame, std::vector<Area>& areas, std::size_t a);
 
-/// Swallowed: IMT, and neither CST nor a counting sample. Fills direction, height and flags of the frame.
+/// Swallowed: IMT, and neither CST nor EST nor a counting sample. Fills direction, height and flags of the frame.
 void measure_swallowed(const Frame& frame, Contacts& out);
 
 }  // namespace palpate::cpu_ref

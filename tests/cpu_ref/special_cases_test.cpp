@@ -221,6 +221,20 @@ TEST(Heights, GoThroughPartsThatOverlap) {
   EXPECT_NEAR(answer.areas[0].depth, 4 * kMm, 1e-6);
 }
 
+TEST(Est, FineTrianglesInTheMiddleKeepTheContactWhole) {
+  // Cells of 0.6 and 0.4 mm under samples 0.5 mm apart: many triangles have none. Were they left out, the middle of the
+  // contact would fall apart into islands, each with a force of its own.
+  const Mesh ball = solids::sphere_of(10 * kMm, 8000);
+  BenchScene coarse(block(1), ball, voxels_of(2 * kMm));
+  const Vec3 at(1 * kMm, 2 * kMm, 6 * kMm);
+  const double expected = coarse.ask(at).wrench.force.z;
+  for (const int cells : {200, 300}) {
+    BenchScene fine(block(cells), ball, voxels_of(2 * kMm));
+    EXPECT_EQ(fine.ask(at).areas.size(), 1u);
+    EXPECT_NEAR(fine.response.wrench.force.z, expected, 1e-3 * expected);   // N: the same samples, faces snapped to the lattice
+  }
+}
+
 TEST(Est, HasTheTrianglesWithASampleInTheToolAndNoOther) {
   const double r = 10 * kMm;
   BenchScene scene(block(100), solids::sphere_of(r, 20000), voxels_of(2 * kMm));
