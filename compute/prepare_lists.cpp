@@ -32,7 +32,7 @@ class ListBuilder {
   Items large_triangles();
   void mark_bricks(const Items* lists, std::size_t count);
   VoxelPairs list_pairs(const Items* lists, std::size_t count);
-  void sort_lists(VoxelPairs& pairs);
+  void scatter(VoxelPairs& pairs);
   std::uint64_t brick_count() const {
     return static_cast<std::uint64_t>(grid_.bricks.x) * static_cast<std::uint64_t>(grid_.bricks.y) *
            static_cast<std::uint64_t>(grid_.bricks.z);
@@ -194,32 +194,17 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
   return pairs;
 }
 
-/// Scatters the pairs into their lists and sorts each by ranks in chunks; long lists merge their chunks.
-void ListBuilder::sort_lists(VoxelPairs& pairs) {
+/// Scatters the pairs into their lists, and sorts each.
+void ListBuilder::scatter(VoxelPairs& pairs) {
   PartitionBuffers& p = body_.partition;
-  const std::uint32_t voxels = p.grid.boundary_voxels;
+  const VulkanBuffer cursors = steps_.buffer("cursors of voxels' lists", std::uint64_t{p.grid.boundary_voxels} + 1);
   p.list_triangles = steps_.buffer("voxels' lists", pairs.count);
-  VulkanBuffer scattered = steps_.buffer("voxels' lists", pairs.count);
-  VulkanBuffer cursors = steps_.buffer("cursors of voxels' lists", std::uint64_t{voxels} + 1);
   pairs.entry_voxel = steps_.buffer("voxels of lists' entries", pairs.count);
-  const VulkanBuffer longest = steps_.buffer("longest list", 1);
   if (!steps_.ok()) return;
-  steps_.run([&](CommandRecorder& r) {
-    r.copy(p.list_begin, 0, cursors, 0, cursors.bytes());
-    r.fill(longest, 0);
-  });
-  steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, scattered, pairs.entry_voxel},
+  steps_.run([&](CommandRecorder& r) { r.copy(p.list_begin, 0, cursors, 0, cursors.bytes()); });
+  steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, p.list_triangles, pairs.entry_voxel},
                    pairs.count, pairs.count);
-  steps_.run_items(spirv::list_rank, {}, {pairs.entry_voxel, p.list_begin, scattered, p.list_triangles, longest}, pairs.count,
-                   pairs.count);
-  p.longest_list = std::max(gpu::kRankSpan, steps_.read(longest, 0));
-  for (std::uint64_t run = gpu::kRankSpan; run < p.longest_list && steps_.ok(); run *= 2) {
-    struct {
-      std::uint32_t count, run;
-    } const push{pairs.count, static_cast<std::uint32_t>(run)};
-    steps_.run_items(spirv::list_merge, {}, {pairs.entry_voxel, p.list_begin, p.list_triangles, scattered}, push, pairs.count);
-    std::swap(p.list_triangles, scattered);
-  }
+  p.longest_list = sort_lists(steps_, pairs.entry_voxel, p.list_begin, p.list_triangles, pairs.count);
 }
 
 VoxelPairs ListBuilder::build() {
@@ -237,11 +222,30 @@ VoxelPairs ListBuilder::build() {
   mark_bricks(lists, 2);
   VoxelPairs pairs = list_pairs(lists, 2);
   steps_.progress("voxel lists", 0.6);
-  sort_lists(pairs);
+  scatter(pairs);
   return pairs;
 }
 
 }  // namespace
+
+std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, const VulkanBuffer& list_begin,
+                         VulkanBuffer& lists, std::uint32_t entries) {
+  VulkanBuffer sorted = steps.buffer("voxels' lists", entries);
+  const VulkanBuffer longest = steps.buffer("longest list", 1);
+  if (!steps.ok()) return 0;
+  steps.fill(longest, 0);
+  steps.run_items(spirv::list_rank, {}, {entry_voxel, list_begin, lists, sorted, longest}, entries, entries);
+  std::swap(lists, sorted);
+  const std::uint32_t bound = std::max(gpu::kRankSpan, steps.read(longest, 0));
+  for (std::uint64_t run = gpu::kRankSpan; run < bound && steps.ok(); run *= 2) {
+    struct {
+      std::uint32_t count, run;
+    } const push{entries, static_cast<std::uint32_t>(run)};
+    steps.run_items(spirv::list_merge, {}, {entry_voxel, list_begin, lists, sorted}, push, entries);
+    std::swap(lists, sorted);
+  }
+  return bound;
+}
 
 VoxelPairs build_lists(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t growth,
                        const char* name, BodyBuffers& body) {

@@ -21,6 +21,11 @@ struct VoxelPairs {
 VoxelPairs build_lists(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t growth,
                        const char* name, BodyBuffers& body);
 
+/// Sorts each list of a CSR of `entries` distinct-in-their-list numbers: by ranks in chunks, then by merging the chunks of long
+/// lists. `entry_voxel`: the list of every entry. Returns a number that no list's length exceeds.
+std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, const VulkanBuffer& list_begin,
+                         VulkanBuffer& lists, std::uint32_t entries);
+
 /// Classes of all voxels that are not boundary: components, votes, V_ext and V_int.
 void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pairs, BodyBuffers& body);
 

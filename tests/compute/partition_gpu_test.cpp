@@ -125,6 +125,43 @@ TEST_F(Partition, OfAnOpenBodyIsVotedInThreeDirections) {
   EXPECT_EQ(at(Vec3(0.003)), VoxelClass::kInternal);
 }
 
+TEST_F(Partition, OfAnOpenBodyDecidesARayThroughACornerByThePerturbedPoint) {
+  // A cube round one voxel, its faces cut so that the ray from the voxel's centre along each axis leaves through a corner
+  // of six triangles. The face of the next axis has a clear hole there, so two of three ballots hang on this one: of the
+  // six, the one that the perturbed ray meets must be missing to make the voxel external.
+  constexpr double kV = 1.0 / 64;
+  const Vec3 centre(kV / 2);
+  const Mesh cube = solids::box(centre - kV, centre + kV, Int3(4));
+  const auto touches = [&](const std::array<std::uint32_t, 3>& t, const Vec3& point) {
+    return std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return cube.vertices[v] == point; });
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 through = centre, clear = centre;
+    through[axis] += kV;
+    clear[(axis + 1) % 3] += kV;
+    std::vector<std::size_t> round_corner;
+    for (std::size_t i = 0; i < cube.triangles.size(); ++i)
+      if (touches(cube.triangles[i], through)) round_corner.push_back(i);
+    ASSERT_GE(round_corner.size(), 4u);
+    int external = 0;
+    for (const std::size_t missing : round_corner) {
+      Mesh mesh;
+      Mesh holed = cube;
+      holed.triangles.clear();
+      for (std::size_t i = 0; i < cube.triangles.size(); ++i)
+        if (i != missing && !touches(cube.triangles[i], clear)) holed.triangles.push_back(cube.triangles[i]);
+      solids::append(mesh, holed, "cube with holes");
+      // Two beads keep the lattice's origin, and with it the grid, where the cube was drawn for.
+      solids::append(mesh, solids::box(Vec3(8 * kV), Vec3(8.25 * kV)), "bead");
+      solids::append(mesh, solids::box(Vec3(-8.25 * kV), Vec3(-8 * kV)), "bead");
+      prepare(mesh, kV);
+      ASSERT_NE(at(centre), VoxelClass::kBoundary);
+      external += at(centre) == VoxelClass::kExternal;
+    }
+    EXPECT_EQ(external, 1) << "axis " << axis;
+  }
+}
+
 TEST_F(Partition, OfLargeTrianglesAmongSmallOnes) {
   // Boxes of twelve triangles over 20 bricks an axis, turned so that nothing is parallel to the grid.
   Mesh mesh;
