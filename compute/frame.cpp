@@ -26,9 +26,10 @@ std::int32_t floor_div(std::int64_t a, std::int64_t b) {
   return static_cast<std::int32_t>(a % b < 0 ? q - 1 : q);
 }
 
-/// Bricks of the mock-up that the tool may reach at a pose, and whether any of them is not V_ext.
-struct BrickRange {
-  Int3 first{0}, last{-1};
+/// Where the tool is at a pose.
+struct Reach {
+  Int3 low{0}, high{0};                        ///< holds the transformed tool and its inside; closed
+  Int3 first_brick{0}, last_brick{-1};         ///< bricks of the mock-up that meet it
 };
 
 class RecordedFrame final : public Frame {
@@ -43,9 +44,9 @@ class RecordedFrame final : public Frame {
   void name_scene(const PreparedScene& scene);
   Result<void> set_capacities();
   Result<void> record();
-  BrickRange reach(const LatticePose& pose) const;
-  bool empty(const BrickRange& range) const;
-  bool write_input(const LatticePose& pose, const BrickRange& range, const Held* held);
+  Reach reach(const LatticePose& pose) const;
+  bool empty(const Reach& reach) const;
+  bool write_input(const LatticePose& pose, const Reach& reach, const Held* held);
 
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
@@ -122,43 +123,48 @@ Result<void> RecordedFrame::record() {
   return commands_->end();
 }
 
-BrickRange RecordedFrame::reach(const LatticePose& pose) const {
+Reach RecordedFrame::reach(const LatticePose& pose) const {
   // The tool's inside reaches beyond its triangles by less than a grown voxel (EXACTNESS.md, section 2); rounding of the corners
   // and of vertices adds two steps.
   const std::int32_t margin = geometry_.tool_grid.size + 5;
-  Int3 low(INT32_MAX), high(INT32_MIN);
+  Reach out;
+  out.low = Int3(INT32_MAX);
+  out.high = Int3(INT32_MIN);
   for (int corner = 0; corner < 8; ++corner) {
     Int3 v;
     for (int k = 0; k < 3; ++k) v[k] = (corner >> k & 1) != 0 ? geometry_.tool.box_max[k] + margin : geometry_.tool.box_min[k] - margin;
     const Int3 p = transform(pose, v);
-    low = glm::min(low, p);
-    high = glm::max(high, p);
+    out.low = glm::min(out.low, p - 2);
+    out.high = glm::max(out.high, p + 2);
   }
-  BrickRange range;
   const std::int64_t side = std::int64_t{8} * grid_.size;
   for (int k = 0; k < 3; ++k) {
-    range.first[k] = std::max(floor_div(std::int64_t{low[k]} - 2 - grid_.origin[k] - 1, side), 0);
-    range.last[k] = std::min(floor_div(std::int64_t{high[k]} + 2 - grid_.origin[k], side), grid_.bricks[k] - 1);
+    out.first_brick[k] = std::max(floor_div(std::int64_t{out.low[k]} - grid_.origin[k] - 1, side), 0);
+    out.last_brick[k] = std::min(floor_div(std::int64_t{out.high[k]} - grid_.origin[k], side), grid_.bricks[k] - 1);
   }
-  return range;
+  return out;
 }
 
-bool RecordedFrame::empty(const BrickRange& range) const {
+bool RecordedFrame::empty(const Reach& reach) const {
   const auto nx = static_cast<std::size_t>(grid_.bricks.x), ny = static_cast<std::size_t>(grid_.bricks.y);
-  for (std::int32_t z = range.first.z; z <= range.last.z; ++z)
-    for (std::int32_t y = range.first.y; y <= range.last.y; ++y)
-      for (std::int32_t x = range.first.x; x <= range.last.x; ++x)
+  for (std::int32_t z = reach.first_brick.z; z <= reach.last_brick.z; ++z)
+    for (std::int32_t y = reach.first_brick.y; y <= reach.last_brick.y; ++y)
+      for (std::int32_t x = reach.first_brick.x; x <= reach.last_brick.x; ++x)
         if (brick_slot_[static_cast<std::size_t>(x) + nx * (static_cast<std::size_t>(y) + ny * static_cast<std::size_t>(z))] != gpu::kBrickExternal)
           return false;
   return true;
 }
 
-bool RecordedFrame::write_input(const LatticePose& pose, const BrickRange& range, const Held* held) {
+bool RecordedFrame::write_input(const LatticePose& pose, const Reach& reach, const Held* held) {
   gpu::FrameInput input{};
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
-  input.brick_first = range.first;
-  input.brick_last = range.last;
+  input.brick_first = reach.first_brick;
+  input.brick_last = reach.last_brick;
+  input.tool_low = reach.low;
+  input.tool_high = reach.high;
+  const std::int32_t shadow = std::max(reach.high.y - reach.low.y, reach.high.z - reach.low.z);
+  while (shadow >> input.bin_shift >= detection_->bins()) ++input.bin_shift;
   if (held != nullptr) {
     input.last_direction = held->last_direction;
     auto* statics = buffers_[gpu::kBindHeldStatics].as<gpu::HeldStatic>();
@@ -180,15 +186,15 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   out.times.clear();
   clear(out);
   if (!pose.beyond_lattice) out.flags = frame_flags_;
-  const BrickRange range = pose.beyond_lattice ? BrickRange{} : reach(pose);
-  if (pose.beyond_lattice || empty(range)) {
+  const Reach where = pose.beyond_lattice ? Reach{} : reach(pose);
+  if (pose.beyond_lattice || empty(where)) {
     out.times.push_back({"cull", us_since(start)});
     return {};
   }
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
-  if (!write_input(pose, range, held)) {
+  if (!write_input(pose, where, held)) {
     out.truncated = true;
     out.truncated_capacity = "held triangles";
     return {};

@@ -23,6 +23,7 @@ const char* overflow_name(const FrameState& state) {
   const auto first = static_cast<std::size_t>(std::countr_zero(state.overflow));   // 32 when none
   if (first < lists.size()) return lists[first];
   if ((state.overflow_other & kOverflowPairTable) != 0) return "pair table";
+  if ((state.overflow_other & kOverflowBins) != 0) return "bins of the tool's shadow";
   if ((state.overflow_other & kOverflowLoop) != 0) return "steps of one invocation";
   const char* name = FrameResponse::overflow_name(state.overflow, state.overflow_other);
   return name != nullptr ? name : "an unnamed list";

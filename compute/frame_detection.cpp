@@ -16,6 +16,8 @@ using namespace gpu;   // names of shaders/shared/frame.h
 constexpr std::uint64_t kSmallList = 1u << 17;
 constexpr std::uint64_t kLargeList = 1u << 20;
 constexpr std::uint64_t kMostPairs = 1u << 22;
+constexpr std::uint32_t kMostBinsBits = 9;
+constexpr std::uint64_t kBinEntries = 12;   // a triangle, on average
 
 std::uint32_t capacity(std::uint64_t wanted, std::uint64_t most) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, most));
@@ -27,9 +29,11 @@ Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& dev
                                                                const PreparedScene& scene, FrameBuffers& buffers) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
   out->refined_ = scene.constants.refined != 0;
-  out->tool_has_inside_ = scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0;
+  out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out->tool_vertices_ = scene.constants.tool.vertices;
   out->tool_clusters_ = (scene.constants.tool.triangles + kClusterSize - 1) / kClusterSize;
+  // About a bin a triangle.
+  while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;
   if (auto r = out->make_buffers(device, geometry, scene, buffers); !r) return r.error();
   if (auto r = out->make_shaders(device); !r) return r.error();
   return out;
@@ -89,6 +93,10 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * std::uint64_t{tool_clusters_}},
       {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * std::uint64_t{tool_clusters_} * (kClusterSize / kRunSize)},
       {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
+      {kBindToolBins, "bins of the tool's shadow", sizeof(ToolBin) << (inside_ ? 2 * bins_bits_ : 0)},
+      {kBindBinEntries, "entries of bins", 4 * (inside_ ? std::max(kSmallList, kBinEntries * tool.triangles) : 1)},
+      {kBindWideTriangles, "wide triangles", 4 * std::uint64_t{inside_ ? tool.triangles : 1}},
+      {kBindBinState, "state of bins", sizeof(BinState)},
       {kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
       {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
       {kBindToolOrder, "order of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
@@ -112,7 +120,8 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
 }
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
-  const SpecConstant no_inside[] = {{0, tool_has_inside_ ? 0u : 1u}};
+  const SpecConstant no_inside[] = {{0, inside_ ? 0u : 1u}};
+  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;
@@ -120,7 +129,6 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
     std::uint32_t push_bytes = 0;
     std::span<const SpecConstant> constants = {};
   };
-  const bool inside = refined_ && tool_has_inside_;
   const Made all[] = {
       {&list_close_, &spirv::list_close, true, 4},
       {&frame_begin_, &spirv::frame_begin},
@@ -132,11 +140,16 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
       {&pair_collect_, &spirv::pair_collect},
       {&pair_test_, &spirv::pair_test},
       {&voxel_statics_, &spirv::voxel_statics},
-      {&sample_bricks_, &spirv::sample_bricks, inside},
-      {&sample_voxels_, &spirv::sample_voxels, inside},
-      {&sample_touched_, &spirv::sample_touched, refined_ && !inside},
+      {&sample_bricks_, &spirv::sample_bricks, inside_},
+      {&sample_voxels_, &spirv::sample_voxels, inside_},
+      {&sample_touched_, &spirv::sample_touched, refined_ && !inside_},
       {&sample_scan_, &spirv::sample_scan, refined_, 0, no_inside},
-      {&sample_winding_, &spirv::sample_winding, inside},
+      {&bins_begin_, &spirv::bins_begin, inside_},
+      {&bins_clear_, &spirv::bins_clear, inside_},
+      {&bins_count_, &spirv::bins_fill, inside_, 0, counting},
+      {&bins_place_, &spirv::bins_place, inside_},
+      {&bins_fill_, &spirv::bins_fill, inside_, 0, filling},
+      {&sample_winding_, &spirv::sample_winding, inside_, 0, filling},
       {&set_statics_, &spirv::set_statics},
       {&set_mobiles_, &spirv::set_mobiles},
       {&set_decide_, &spirv::set_decide},
@@ -197,17 +210,31 @@ void FrameDetection::record(FrameRecorder& recorder) const {
 
 void FrameDetection::record_samples(FrameRecorder& recorder) const {
   recorder.stage("est");
-  if (tool_has_inside_) {
-    recorder.run_dispatch(sample_bricks_, kDispatchBricks);
-    recorder.close({kListSampleBricks});
-    recorder.run_groups(sample_voxels_, kListSampleBricks);
-  } else {
+  if (!inside_) {
     recorder.run_items(sample_touched_, kListTouchedVoxels);
+    recorder.close({kListSampleChunks});
+    recorder.run_items(sample_scan_, kListSampleChunks);
+    return;
   }
+  const std::uint32_t bin_groups = ((1u << 2 * bins_bits_) + kGroupSize - 1) / kGroupSize;
+  recorder.run_dispatch(sample_bricks_, kDispatchBricks);
+  recorder.run(bins_clear_, bin_groups);
+  recorder.close({kListSampleBricks});
+  recorder.run_groups(sample_voxels_, kListSampleBricks);
   recorder.close({kListSampleChunks});
   recorder.run_items(sample_scan_, kListSampleChunks);
   recorder.close({kListOpenSamples});
-  if (tool_has_inside_) recorder.run_items(sample_winding_, kListOpenSamples);
+
+  // Samples that the tool's partition leaves open.
+  recorder.run(bins_begin_, 1);
+  recorder.barrier();
+  recorder.run_dispatch(bins_count_, kDispatchBinTriangles);
+  recorder.barrier();
+  recorder.run(bins_place_, bin_groups);
+  recorder.barrier();
+  recorder.run_dispatch(bins_fill_, kDispatchBinTriangles);
+  recorder.barrier();
+  recorder.run_items(sample_winding_, kListOpenSamples);
 }
 
 void FrameDetection::record_end(FrameRecorder& recorder) const {

@@ -26,6 +26,8 @@ class FrameDetection {
   void record_end(FrameRecorder& recorder) const;
   /// Every list's capacity that was made here; 0 for others.
   const std::array<std::uint32_t, gpu::kListCount>& capacities() const { return capacities_; }
+  /// Bins of the tool's shadow along each axis (FrameInput::bin_shift).
+  std::int32_t bins() const { return 1 << bins_bits_; }
   const FrameShader& list_close() const { return list_close_; }
 
  private:
@@ -35,12 +37,14 @@ class FrameDetection {
   void record_samples(FrameRecorder& recorder) const;
 
   bool refined_ = false;
-  bool tool_has_inside_ = false;
+  bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
   std::uint32_t tool_vertices_ = 0, tool_clusters_ = 0;
+  std::uint32_t bins_bits_ = 0;   ///< 2^bins_bits bins along y and along z
   std::array<std::uint32_t, gpu::kListCount> capacities_{};
   FrameShader list_close_, frame_begin_, tool_transform_, tool_clusters_find_, brick_triangles_, brick_voxels_, voxel_touch_,
       pair_collect_, pair_test_, voxel_statics_, sample_bricks_, sample_voxels_, sample_touched_, sample_scan_, sample_winding_,
-      set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
+      bins_begin_, bins_clear_,
+      bins_count_, bins_place_, bins_fill_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
 };
 
 }  // namespace palpate

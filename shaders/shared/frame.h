@@ -87,6 +87,10 @@ PALPATE_CONSTANT int32_t kBindResultPierces = 62;                // kListPierces
 PALPATE_CONSTANT int32_t kBindToolOrder = 63;                    // uint32_t[tool triangles]: ids in the order of clusters (cluster c: kClusterSize · c …)
 PALPATE_CONSTANT int32_t kBindToolCorners = 65;        // ToolCorners[tool triangles]: transformed, in the order of clusters
 PALPATE_CONSTANT int32_t kBindRunBoxes = 66;           // LatticeBox[runs]: of kRunSize triangles that follow each other in a cluster
+PALPATE_CONSTANT int32_t kBindToolBins = 67;           // ToolBin[bins]; refined
+PALPATE_CONSTANT int32_t kBindBinEntries = 68;         // uint32_t: places in the order of clusters, bin by bin
+PALPATE_CONSTANT int32_t kBindWideTriangles = 69;      // uint32_t: places of triangles that lie in too many bins
+PALPATE_CONSTANT int32_t kBindBinState = 70;           // BinState, one
 PALPATE_CONSTANT int32_t kBindSampleBricks = 64;                 // kListSampleBricks: uint32_t linear brick number
 PALPATE_CONSTANT int32_t kBindResponseFirst = 72;                // frame_response.h has this one and above
 
@@ -115,6 +119,7 @@ PALPATE_CONSTANT uint32_t kListCount = 32;
 PALPATE_CONSTANT uint32_t kOverflowPairTable = 1u << 0;          // no free slot near a pair's own in the table
 PALPATE_CONSTANT uint32_t kOverflowAreas = 1u << 1;              // more than kMaxFrameAreas
 PALPATE_CONSTANT uint32_t kOverflowLoop = 1u << 2;               // an invocation would have run beyond kLoopBudget
+PALPATE_CONSTANT uint32_t kOverflowBins = 1u << 3;               // the bins of the tool's shadow have too many entries
 PALPATE_CONSTANT uint32_t kOverflowResponseFirst = 1u << 8;      // bits 8…31: frame_response.h
 PALPATE_CONSTANT uint32_t kLoopBudget = 30000;                   // loop iterations of one invocation, all its loops together (llvmpipe ends loops silently at 65,535)
 
@@ -146,6 +151,7 @@ PALPATE_CONSTANT uint32_t kDispatchSwallowed = 11;               // swallowed: a
 PALPATE_CONSTANT uint32_t kDispatchPairGroups = 12;              // contact: a workgroup a pair
 PALPATE_CONSTANT uint32_t kDispatchBricks = 13;                  // an invocation a brick of FrameInput's range (set at the frame's beginning)
 PALPATE_CONSTANT uint32_t kDispatchReset = 14;                   // an invocation an entry of whatever is emptied at the frame's end
+PALPATE_CONSTANT uint32_t kDispatchBinTriangles = 15;  // some sample is open: an invocation a tool triangle
 PALPATE_CONSTANT uint32_t kDispatchResponseFirst = 16;           // 16…31: of the response's own making
 PALPATE_CONSTANT uint32_t kDispatchCount = 32;
 
@@ -158,6 +164,8 @@ struct FrameInput {
   ivec3 brick_last;               // … inclusive; the host submits nothing when there are none
   ivec3 last_direction;           // Held::last_direction, 0: none
   uint32_t held_areas;            // entries of held areas, in the order of Held::areas
+  ivec3 tool_low, tool_high;     // holds all transformed corners; closed
+  int32_t bin_shift;             // bins are 2^bin_shift steps wide, from tool_low on
   uint32_t held_statics;          // entries of held statics
 };
 
@@ -189,6 +197,17 @@ struct LatticeBox {
 struct ToolCorners {
   ivec3 a, b, c;
 };
+
+// Bins: a square grid over the tool's shadow along x, kept only while samples need rays along x. A bin lists the triangles whose
+// boxes meet it.
+struct ToolBin {
+  uint32_t count, begin, filled;
+};
+struct BinState {
+  uint32_t entries;              // places given out
+  uint32_t wide;                 // triangles in the list of wide ones
+};
+PALPATE_CONSTANT uint32_t kWideTriangle = 32;                    // bins beyond which a triangle is wide (chosen)
 
 // States of a static triangle. CST wins over BST when sets are named; EST may be in BST too.
 PALPATE_CONSTANT uint32_t kStaticHit = 1u;                       // in an intersecting pair: CST
@@ -317,7 +336,7 @@ struct AreaPierce {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 92);
+PALPATE_ASSERT_SIZE(FrameInput, 120);
 PALPATE_ASSERT_SIZE(AreaResult, 128);
 PALPATE_ASSERT_SIZE(FrameResult, 88 + 128 * kMaxFrameAreas);
 

@@ -16,6 +16,7 @@ EquivalenceCase chapter_case(const char* scene, std::uint64_t triangles, std::ui
   c.tool = [=] { return made().tool; };
   c.profile = profile;
   c.held = held;
+  c.poses = 200;
   c.pose = [](const SceneGeometry& geometry, std::mt19937_64& random) { return random_touching_pose(geometry, 1.0, random); };
   return c;
 }

@@ -17,7 +17,7 @@ struct EquivalenceCase {
   std::function<Mesh()> mockup, tool;
   GeometrySettings settings = {};
   Profile profile = Profile::kRefined;
-  int poses = 200;               ///< PALPATE_POSES overrides it
+  int poses = 60;                ///< PALPATE_POSES overrides it
   bool held = false;             ///< each frame remembers the one before it; poses then move on by small steps
   std::function<LatticePose(const SceneGeometry&, std::mt19937_64&)> pose = {};
   std::uint64_t seed = 1;        ///< PALPATE_SEED overrides it
