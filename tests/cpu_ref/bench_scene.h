@@ -4,14 +4,14 @@
 #include <memory>
 #include <string>
 
-#include "cpu_ref/cpu_backend.h"
 #include "model/geometry_build.h"
 #include "model/pose.h"
 #include "model/response.h"
+#include "tests/cpu_ref/bench_backend.h"
 
 namespace palpate {
 
-/// A mock-up and a tool, prepared by the reference; what tests ask poses of. Metres, newtons.
+/// A mock-up and a tool, prepared by the reference (tests/equivalence: by both back ends); what tests ask poses of. Metres, newtons.
 struct BenchScene {
   static constexpr double kStiffness = 2000;   // N/m, the default of a scene
 
@@ -41,7 +41,7 @@ struct BenchScene {
 
   std::unique_ptr<SceneGeometry> geometry;
   Plan plan;
-  std::unique_ptr<CollisionBackend> backend = make_cpu_backend();
+  std::unique_ptr<CollisionBackend> backend = make_bench_backend();
   Contacts contacts;
   ContactResponse response;
 };

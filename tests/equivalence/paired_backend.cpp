@@ -1,0 +1,49 @@
+// Both back ends behind one interface: what scenes with known answers are asked of the reference is asked of the device as well.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "compute/gpu_backend.h"
+#include "cpu_ref/cpu_backend.h"
+#include "tests/cpu_ref/bench_backend.h"
+#include "tests/equivalence/contacts_difference.h"
+
+namespace palpate {
+namespace {
+
+/// Answers with the device's contacts; a difference from the reference is a test failure.
+class PairedBackend final : public CollisionBackend {
+ public:
+  PairedBackend() : reference_(make_cpu_backend()) {
+    GpuOptions options;
+    options.validation = true;
+    auto made = make_gpu_backend(options);
+    if (!made) throw std::runtime_error(made.error().sentence);
+    device_ = std::move(*made);
+  }
+  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
+    if (auto prepared = reference_->prepare(geometry, plan, progress); !prepared) return prepared;
+    return device_->prepare(geometry, plan, progress);
+  }
+  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+    if (auto answered = reference_->query(pose, held, expected_); !answered) return answered;
+    if (auto answered = device_->query(pose, held, out); !answered) return answered;
+    EXPECT_EQ(first_difference(out, expected_), "") << "(gpu, cpu)";
+    return {};
+  }
+  Result<VoxelPartition> partition(bool tool) const override { return device_->partition(tool); }
+  bool has_internal_voxels() const override { return device_->has_internal_voxels(); }
+  std::string name() const override { return "both"; }
+  std::string device() const override { return device_->device(); }
+  std::uint64_t memory_bytes() const override { return device_->memory_bytes() + reference_->memory_bytes(); }
+
+ private:
+  std::unique_ptr<CollisionBackend> reference_, device_;
+  Contacts expected_;
+};
+
+}  // namespace
+
+std::unique_ptr<CollisionBackend> make_bench_backend() { return std::make_unique<PairedBackend>(); }
+
+}  // namespace palpate
