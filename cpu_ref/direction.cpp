@@ -93,8 +93,10 @@ NormalSum mobile_normals(const Frame& frame, const Area& area) {
   return result;
 }
 
+/// Needles only: where samples count and cancel, the few triangles that the tool's skin crosses may face any way.
 NormalSum bare_static_normals(const Frame& frame, const Area& area) {
   NormalSum result;
+  if (!area.counting.empty()) return result;
   for (const std::uint32_t s : area.cst) {
     result.sum += side_of(frame, area, s) * Long3(frame.mockup().unit_normal_q30[s]);
     result.weight += std::int64_t{1} << 30;
