@@ -13,6 +13,7 @@
 #include "compute/frame_detection.h"
 #include "compute/frame_recorder.h"
 #include "compute/frame_response.h"
+#include "compute/stage_memory.h"
 
 namespace palpate {
 namespace {
@@ -39,6 +40,7 @@ class RecordedFrame final : public Frame {
   Result<void> make(const PreparedScene& scene, const Plan& plan);
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
+  std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_); }
 
  private:
   void name_scene(const PreparedScene& scene);

@@ -1,8 +1,10 @@
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "compute/prepared_scene.h"
 #include "compute/vulkan_device.h"
+#include "model/collision_backend.h"
 #include "model/contacts.h"
 #include "model/lattice.h"
 #include "model/plan.h"
@@ -22,6 +24,8 @@ class Frame {
   virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
   /// Bytes of device memory that the frame itself holds.
   virtual std::uint64_t memory_bytes() const = 0;
+  /// Device memory of frame and scene together, by stage of `palpate plan`.
+  virtual std::vector<StageMemory> memory_by_stage() const = 0;
 };
 
 }  // namespace palpate

@@ -53,6 +53,12 @@ const VulkanBuffer& FrameBuffers::operator[](std::int32_t binding) const {
   return *named_[at(binding)];
 }
 
+std::uint64_t FrameBuffers::bytes(std::int32_t binding) const {
+  if (owned_[at(binding)]) return owned_[at(binding)].bytes();
+  const VulkanBuffer* named = named_[at(binding)];
+  return named && *named ? named->bytes() : 0;
+}
+
 std::uint64_t FrameBuffers::owned_bytes() const {
   std::uint64_t sum = 0;
   for (const VulkanBuffer& buffer : owned_) sum += buffer ? buffer.bytes() : 0;

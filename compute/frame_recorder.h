@@ -35,14 +35,17 @@ class FrameBuffers {
   Result<void> clear_tables(VulkanDevice& device) const;
   /// The buffer behind a binding; there must be one.
   const VulkanBuffer& operator[](std::int32_t binding) const;
+  /// Bytes behind a binding, 0 if there is none.
+  std::uint64_t bytes(std::int32_t binding) const;
   /// Bytes of the buffers that this owns.
   std::uint64_t owned_bytes() const;
 
+  static constexpr std::int32_t kBindings = 128;   ///< binding numbers are below
+
  private:
-  static constexpr std::size_t kBindings = 128;
   static std::size_t at(std::int32_t binding) { return static_cast<std::size_t>(binding); }
-  std::array<VulkanBuffer, kBindings> owned_;
-  std::array<const VulkanBuffer*, kBindings> named_{};
+  std::array<VulkanBuffer, std::size_t{kBindings}> owned_;
+  std::array<const VulkanBuffer*, std::size_t{kBindings}> named_{};
   std::vector<std::int32_t> tables_;
 };
 

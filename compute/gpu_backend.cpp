@@ -43,6 +43,9 @@ class GpuBackend final : public CollisionBackend {
   std::uint64_t memory_bytes() const override {
     return (scene_ ? scene_->memory_bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0);
   }
+  std::vector<StageMemory> memory_by_stage() const override {
+    return frame_ ? frame_->memory_by_stage() : std::vector<StageMemory>{};
+  }
 
  private:
   std::unique_ptr<VulkanDevice> device_;

@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "model/contacts.h"
 #include "model/lattice.h"
@@ -13,6 +14,12 @@ namespace palpate {
 
 /// Told about long work; returns false to cancel it. `done` in [0, 1].
 using Progress = std::function<bool(const char* what, double done)>;
+
+/// What a stage of `palpate plan` keeps for the prepared scene.
+struct StageMemory {
+  std::string stage;
+  std::uint64_t bytes = 0;
+};
 
 /// Finds contacts. prepare() once, off the loops; query() each frame, by one thread at a time.
 /// Two implementations answer every query with identical integers: compute (Vulkan) and cpu_ref.
@@ -35,6 +42,8 @@ class CollisionBackend {
   virtual std::string name() const = 0;           ///< "gpu" or "cpu"
   virtual std::string device() const = 0;         ///< "llvmpipe (LLVM 15.0.6, 256 bits)", "CPU reference"
   virtual std::uint64_t memory_bytes() const = 0; ///< kept for the prepared scene
+  /// memory_bytes() by stage; what several stages use counts for the first of them. Empty: this back end doesn't tell them apart.
+  virtual std::vector<StageMemory> memory_by_stage() const { return {}; }
 };
 
 }  // namespace palpate

@@ -29,6 +29,9 @@ Result<void> plan_command(const SceneOptions& options, bool json, const Parts& p
   fmt::print("{:<14} {:<9} {:>10}  {}\n", "stage", "", "memory", "reason");
   for (const PlanStage& stage : stages)
     fmt::print("{:<14} {:<9} {:>10}  {}\n", stage.stage, stage.kept ? "kept" : "left out", bytes_text(stage.memory_bytes), stage.reason);
+  std::uint64_t sum = 0;
+  for (const PlanStage& stage : stages) sum += stage.memory_bytes;
+  fmt::print("{:<14} {:<9} {:>10}  on {}\n", "in all", "", bytes_text(sum), (*prepared)->backend->device());
   return {};
 }
 

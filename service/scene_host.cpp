@@ -22,6 +22,15 @@ PlanFacts facts_of(const LoadedScene& loaded, Purpose purpose, bool full) {
   return facts;
 }
 
+/// What each stage keeps on the back end; one that doesn't tell stages apart keeps all for finding pairs.
+void add_memory(const CollisionBackend& backend, std::vector<PlanStage>& stages) {
+  std::vector<StageMemory> memory = backend.memory_by_stage();
+  if (memory.empty()) memory.push_back({"pairs", backend.memory_bytes()});
+  for (const StageMemory& line : memory)
+    for (PlanStage& stage : stages)
+      if (stage.stage == line.stage) stage.memory_bytes += line.bytes;
+}
+
 std::string prepared_text(const PreparedScene& prepared) {
   const SceneGeometry& geometry = prepared.loaded.geometry;
   return fmt::format("mock-up {} triangles, tool {}, voxels of {:.3g} mm, {} on {}; read in {:.2f} s, prepared in {:.2f} s",
@@ -67,6 +76,7 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   // Whether there are V_int voxels is known only now.
   facts.internal_voxels = prepared->backend->has_internal_voxels();
   prepared->plan = decide_plan(facts);
+  add_memory(*prepared->backend, prepared->plan.stages);
   prepared->prepare_s = seconds_since(prepare_start);
   console.note(prepared_text(*prepared));
   return prepared;

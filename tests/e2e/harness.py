@@ -13,8 +13,8 @@ import tempfile
 import time
 import traceback
 
-PROGRAM = sys.argv[1]
-SOURCE = pathlib.Path(sys.argv[2])
+PROGRAM = os.path.abspath(sys.argv[1])
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
 TIMEOUT_S = 900   # a hang is a failure, not a wait; a whole scene on a busy machine takes minutes
 
 

@@ -35,7 +35,7 @@ def test_the_same_run_twice_leaves_the_same_bytes():
 
 def test_the_report_is_one_self_contained_page():
     folder = Folder()
-    small_run(folder)
+    small_run(folder, '--duration', '3')
     text = (folder / 'out' / 'report.html').read_text()
     page = Page()
     page.feed(text)

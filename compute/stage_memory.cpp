@@ -1,0 +1,55 @@
+#include "compute/stage_memory.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+#include "shaders/shared/frame.h"
+#include "shaders/shared/frame_response.h"
+
+namespace palpate {
+namespace {
+
+using namespace gpu;
+
+struct BufferUse {
+  std::string_view stage;
+  std::initializer_list<std::int32_t> bindings;
+};
+
+/// Small buffers of the frame as a whole (input, lists, state) stand with transform, which every frame begins with.
+const BufferUse kUses[] = {
+    {"transform", {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists, kBindFrameState,
+                   kBindDispatches, kBindToolWorld, kBindToolOrder, kBindClusterBoxes}},
+    {"cull", {kBindMockupBrickSlot, kBindMockupBricks, kBindMockupMixedBrick, kBindClusterBricks, kBindTriangleBricks}},
+    {"pairs", {kBindMockupVertices, kBindMockupTriangles, kBindMockupInfo, kBindMockupListBegin, kBindMockupListTriangles,
+               kBindMockupBoundaryPlace, kBindMobileState, kBindTouchCandidates, kBindVoxelState, kBindTouchedVoxels, kBindPairChunks,
+               kBindPairTable, kBindPairCandidates, kBindPairs, kBindStaticState, kBindStaticSlot, kBindContactStatics, kBindContactMobiles,
+               kBindResult, kBindResultStatics, kBindResultMobiles}},
+    {"bst", {kBindVoxelChunks}},
+    {"est", {kBindMockupWeights, kBindToolBrickSlot, kBindToolBricks, kBindSampleBricks, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
+    {"areas", {kBindNeighbourBegin, kBindNeighbours, kBindSeamBegin, kBindSeams, kBindMockupNormals, kBindToolNormals, kBindToolWeights,
+               kBindHeldStatics, kBindHeldAreas, kBindResultMembers, kBindResultPierces}},
+    {"rays", {kBindHeights, kBindNeedleTable, kBindNeedleVertices}},
+};
+
+/// What the response adds and no line above names belongs to the areas.
+std::string_view stage_of(std::int32_t binding) {
+  for (const BufferUse& use : kUses)
+    if (std::find(use.bindings.begin(), use.bindings.end(), binding) != use.bindings.end()) return use.stage;
+  return binding >= kBindResponseFirst ? "areas" : "pairs";
+}
+
+}  // namespace
+
+std::vector<StageMemory> stage_memory(const FrameBuffers& buffers) {
+  std::vector<StageMemory> memory;
+  for (const BufferUse& use : kUses) memory.push_back({std::string(use.stage), 0});
+  for (std::int32_t binding = 0; binding < FrameBuffers::kBindings; ++binding) {
+    const auto line = std::find_if(memory.begin(), memory.end(), [&](const StageMemory& m) { return m.stage == stage_of(binding); });
+    line->bytes += buffers.bytes(binding);
+  }
+  return memory;
+}
+
+}  // namespace palpate
