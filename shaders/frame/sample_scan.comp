@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The grid samples of listed triangles in one voxel, and what the tool's partition says of them. An invocation a SampleChunk.
 // V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. With NO_INSIDE = 1 (a tool without
-// inside) all of them count and none is marked.
+// inside) all of them count and none is marked. A triangle's first corner is asked as well, in the voxel that holds it.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/sample.glsl"
 
@@ -45,6 +45,15 @@ void take(ivec3 point, uint32_t id) {
   if (at < frame_lists[kListSamples].capacity) samples[at] = FrameSample(point, id);
 }
 
+// EST by the first corner, for triangles between the samples.
+void probe(ivec3 corner, uint32_t id) {
+  const uint32_t voxel_class = tool_class_of(tool_voxel_of(tool_from_world(corner)));
+  if (voxel_class == kVoxelInternal) mark_static(id, kStaticSampled);
+  if (voxel_class != kVoxelBoundary) return;
+  const uint32_t at = atomicAdd(frame_lists[kListOpenSamples].count, 1u);
+  if (at < frame_lists[kListOpenSamples].capacity) open_samples[at] = FrameSample(corner, id | kCornerProbe);
+}
+
 void main() {
   const uint32_t item = flat_invocation();
   if (item >= frame_lists[kListSampleChunks].count) return;
@@ -61,6 +70,7 @@ void main() {
     t.c = mockup_vertices[s.z];
     t.axis = int(mockup_info[id] >> kInfoAxisShift & 3u);
     t.normal = raw_normal(t.a, t.b, t.c);
+    if (NO_INSIDE == 0u && all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) probe(t.a, id);
     // Grid points of the voxel that lie in the triangle's box; at most 64 an axis, as a voxel is at most 64 spacings.
     const ivec2 from = seen_along(t.axis, max(low, min(min(t.a, t.b), t.c)));
     const ivec2 to = seen_along(t.axis, min(high, max(max(t.a, t.b), t.c)));

@@ -45,7 +45,8 @@ void main() {
   for (uint32_t i = 0u; i < bin.count; ++i) winding += crossing_of(work.point, bin_entries[bin.begin + i]);
   for (uint32_t i = 0u; i < bin_state.wide; ++i) winding += crossing_of(work.point, wide_triangles[i]);
   if (winding == 0) return;
-  mark_static(work.static_id, kStaticSampled);
+  mark_static(work.static_id & ~kCornerProbe, kStaticSampled);
+  if ((work.static_id & kCornerProbe) != 0u) return;
   const uint32_t at = atomicAdd(frame_lists[kListSamples].count, 1u);
   if (at < frame_lists[kListSamples].capacity) samples[at] = work;
 }

@@ -35,7 +35,7 @@ void main() {
     dispatches[kDispatchPairGroups] = frame_lists[kListPairs].groups;
     dispatches[kDispatchTouchedVoxels] = frame_lists[kListTouchedVoxels].items;
     dispatches[kDispatchHeldStatics] = groups_for((frame_input.held_statics + kGroupSize - 1u) / kGroupSize);
-    if (scene.refined != 0u && frame_state.imt != 0u && frame_state.cst == 0u && frame_lists[kListSamples].count == 0u) {
+    if (scene.refined != 0u && frame_state.imt != 0u && frame_state.cst + frame_state.est == 0u && frame_lists[kListSamples].count == 0u) {
       frame_state.swallowed = 1u;
       dispatches[kDispatchSwallowedOne] = one;
       dispatches[kDispatchSwallowed] = frame_lists[kListTriangleBricks].groups;

@@ -275,8 +275,10 @@ struct ContactPair {
 
 struct FrameSample {
   ivec3 point;                    // world lattice
-  uint32_t static_id;             // its triangle; the weight is the triangle's
+  uint32_t static_id;             // its triangle; the weight is the triangle's. In open samples with kCornerProbe: the point is the
+                                  // triangle's first corner, tells EST and does not count
 };
+PALPATE_CONSTANT uint32_t kCornerProbe = 1u << 31;               // more triangles than this do not fit a lattice mesh
 
 // ---- what it leaves to the host ------------------------------------------------------------------------------------------
 

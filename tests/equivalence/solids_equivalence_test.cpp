@@ -54,6 +54,8 @@ INSTANTIATE_TEST_SUITE_P(
         EquivalenceCase{.name = "boxes_aligned_paper", .mockup = big_box, .tool = small_box, .settings = four_mm, .profile = Profile::kPaper, .pose = aligned_touching_pose},
         EquivalenceCase{.name = "cells_aligned", .mockup = [] { return solids::box({-0.04, -0.04, -0.02}, {0.04, 0.04, 0.02}, {8, 8, 4}); },
                         .tool = [] { return solids::box({-0.02, -0.02, -0.01}, {0.02, 0.02, 0.01}, {4, 4, 2}); }, .settings = four_mm, .pose = aligned_touching_pose},
+        EquivalenceCase{.name = "ball_deep_in_fine_cells", .mockup = [] { return solids::box({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.0}, {60, 60, 1}); },
+                        .tool = ball, .settings = four_mm, .poses = 40, .pose = deep},
         EquivalenceCase{.name = "ball_held", .mockup = big_box, .tool = ball, .settings = four_mm, .held = true, .pose = near},
         EquivalenceCase{.name = "box_held", .mockup = [] { return solids::torus(0.04, 0.01, 32, 16); }, .tool = small_box, .settings = four_mm, .held = true, .pose = near},
         EquivalenceCase{.name = "box_swallowed", .mockup = big_box, .tool = [] { return solids::box({-0.003, -0.002, -0.002}, {0.003, 0.002, 0.002}); },
