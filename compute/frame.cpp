@@ -122,7 +122,8 @@ Result<void> RecordedFrame::record() {
   response_->record(recorder);
   recorder.barrier();
   detection_->record_end(recorder);
-  return commands_->end();
+  if (auto r = commands_->end(); !r) return r;
+  return warm_up(device_, recorder.used());   // no frame should wait for a compiler
 }
 
 Reach RecordedFrame::reach(const LatticePose& pose) const {

@@ -84,6 +84,7 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
 }
 
 std::span<const BufferView> FrameRecorder::bound(const FrameShader& shader) {
+  if (std::find(used_.begin(), used_.end(), &shader.pipeline) == used_.end()) used_.push_back(&shader.pipeline);
   views_.clear();
   for (const std::int32_t binding : shader.bindings) views_.emplace_back(buffers_[binding]);
   return views_;

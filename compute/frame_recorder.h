@@ -95,6 +95,8 @@ class FrameRecorder {
   void barrier() { recorder_.barrier(); }
   /// See CommandRecorder::stage.
   void stage(const char* name) { recorder_.stage(name); }
+  /// Every pipeline that was recorded, once.
+  const std::vector<const ComputePipeline*>& used() const { return used_; }
 
  private:
   template <class Push>
@@ -108,6 +110,7 @@ class FrameRecorder {
   const FrameBuffers& buffers_;
   const FrameShader& list_close_;
   std::vector<BufferView> views_;
+  std::vector<const ComputePipeline*> used_;
 };
 
 }  // namespace palpate
