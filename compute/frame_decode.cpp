@@ -29,6 +29,12 @@ const char* overflow_name(const FrameState& state) {
   return name != nullptr ? name : "an unnamed list";
 }
 
+/// Whether all that overflowed, if anything, comes after the sets: lists of areas, tables of the response.
+bool sets_are_whole(const FrameState& state) {
+  constexpr std::uint32_t kAfterSets = 1u << kListMembers | 1u << kListPierces | ~0u << kListResponseFirst;
+  return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & (kOverflowPairTable | kOverflowBins | kOverflowLoop)) == 0;
+}
+
 void sort_ids(std::vector<std::uint32_t>& ids) { std::sort(ids.begin(), ids.end()); }
 
 void decode_sets(const FrameOutput& output, Contacts& out) {
@@ -121,15 +127,13 @@ void clear(Contacts& out) {
 void decode(const FrameOutput& output, Contacts& out) {
   clear(out);
   const FrameResult& result = *output.result;
-  if ((result.state.overflow | result.state.overflow_other) != 0) {
-    out.truncated = true;
-    out.truncated_capacity = overflow_name(result.state);
-    return;
-  }
+  out.truncated = (result.state.overflow | result.state.overflow_other) != 0;
+  if (out.truncated) out.truncated_capacity = overflow_name(result.state);
+  if (!sets_are_whole(result.state)) return;
   out.contact = result.state.contact != 0;
   out.pairs = result.pair_count;
   decode_sets(output, out);
-  if (!out.contact) return;
+  if (!out.contact || out.truncated) return;
   out.flags = result.flags;
   out.swallowed_direction = result.swallowed_direction;
   out.swallowed_height = result.swallowed_height;

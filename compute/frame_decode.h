@@ -14,7 +14,8 @@ struct FrameOutput {
 };
 
 /// Puts a frame's output in the order that Contacts asks for: ids ascending, areas by id, zones by first id. Writes all of `out`
-/// but its times, reusing its memory. A frame that overflowed becomes a truncated one without sets.
+/// but its times, reusing its memory. A frame that overflowed becomes a truncated one without areas, and
+/// without sets unless they were complete.
 void decode(const FrameOutput& output, Contacts& out);
 
 /// Empties all of `out` but its times: free of contact.

@@ -106,6 +106,7 @@ Result<void> warm_up(VulkanDevice& device, std::span<const ComputePipeline* cons
   for (const ComputePipeline* pipeline : pipelines) {
     const std::vector<BufferView> buffers(pipeline->buffers(), BufferView(*dummy));
     recorder->dispatch_raw(*pipeline, buffers, zero.data(), pipeline->push_bytes(), 0, 1, 1);
+    recorder->barrier();   // one dummy buffer stands for all
   }
   return recorder->submit_and_wait();
 }
