@@ -11,8 +11,9 @@
 namespace palpate {
 namespace {
 
-/// Puts a mesh on the device as it is; `neighbours` only for the mock-up.
-BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool neighbours) {
+/// Puts a mesh on the device as it is; `neighbours` only for the mock-up, `samples` only in refined.
+BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool neighbours, bool samples) {
+  static const std::vector<std::uint32_t> none{0};
   BodyBuffers out;
   out.vertices = steps.filled("vertices", mesh.vertices);
   out.triangles = steps.filled("triangles", mesh.triangles);
@@ -21,8 +22,7 @@ BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool neigh
     info[i] = mesh.flags[i] | static_cast<std::uint32_t>(mesh.sample_axis[i]) << gpu::kInfoAxisShift;
   out.triangle_info = steps.filled("flags of triangles", info);
   out.unit_normal = steps.filled("normals", mesh.unit_normal_q30);
-  out.sample_weight = steps.filled("weights of samples", mesh.sample_weight_q30);
-  static const std::vector<std::uint32_t> none{0};
+  out.sample_weight = steps.filled("weights of samples", samples ? mesh.sample_weight_q30 : none);
   out.neighbour_begin = steps.filled("neighbours", neighbours ? mesh.neighbour_begin : none);
   out.neighbours = steps.filled("neighbours", neighbours ? mesh.neighbours : none);
   return out;
@@ -67,8 +67,8 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   const bool refined = plan.profile == Profile::kRefined;
   PrepareSteps steps(device, progress);
   PreparedScene out;
-  out.mockup = upload_body(steps, geometry.mockup, true);
-  out.tool = upload_body(steps, geometry.tool, false);
+  out.mockup = upload_body(steps, geometry.mockup, true, refined);
+  out.tool = upload_body(steps, geometry.tool, false, refined);
 
   const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);

@@ -40,6 +40,9 @@ std::string_view stage_of(std::int32_t binding) {
   return binding >= kBindResponseFirst ? "areas" : "pairs";
 }
 
+/// Largest buffer that only stands where a descriptor needs one.
+constexpr std::uint64_t kPlaceholderBytes = 64;
+
 }  // namespace
 
 std::vector<StageMemory> stage_memory(const FrameBuffers& buffers) {
@@ -47,7 +50,7 @@ std::vector<StageMemory> stage_memory(const FrameBuffers& buffers) {
   for (const BufferUse& use : kUses) memory.push_back({std::string(use.stage), 0});
   for (std::int32_t binding = 0; binding < FrameBuffers::kBindings; ++binding) {
     const auto line = std::find_if(memory.begin(), memory.end(), [&](const StageMemory& m) { return m.stage == stage_of(binding); });
-    line->bytes += buffers.bytes(binding);
+    if (buffers.bytes(binding) > kPlaceholderBytes) line->bytes += buffers.bytes(binding);
   }
   return memory;
 }

@@ -86,6 +86,9 @@ def test_plan_leaves_out_what_the_scene_does_not_need():
     stages = json.loads(palpate('plan', folder.save(static=[{'mesh': 'sheet.stl'}]), '--json').out)['stages']
     line = next(s for s in stages if s['stage'] == 'imt')
     expect(not line['kept'] and 'V_int' in line['reason'], line)
+    stages = json.loads(palpate('plan', folder.save(response={'profile': 'paper'}), '--json').out)['stages']
+    line = next(s for s in stages if s['stage'] == 'est')
+    expect(not line['kept'] and line['memory_bytes'] == 0, line)
 
 
 main(globals())
