@@ -55,6 +55,7 @@ const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
   }
   device_.write(wrench, pose_.gc);
   record_.sent = device_.sent();
+  record_.uncontrolled = device_.exertable(record_.response, pose_.gc);
   record_.result_age_ticks = result_tick_ < 0 ? -1 : static_cast<std::int32_t>(pose_.tick - result_tick_);
 
   ++ticks_;

@@ -160,7 +160,7 @@ std::string ReportSeries::json(const std::vector<std::string>& stage_names) cons
   for (const TickRecord& tick : highlight_.ticks()) {
     if (out.back() != '[') out.push_back(',');
     fmt::format_to(std::back_inserter(out), "[{:.7g}", tick.time_s);
-    for (const Wrench* wrench : {&tick.response, &tick.sent})
+    for (const Wrench* wrench : {&tick.uncontrolled, &tick.sent})
       for (const Vec3* v : {&wrench->force, &wrench->torque})
         for (int i = 0; i < 3; ++i) fmt::format_to(std::back_inserter(out), ",{:.6g}", std::isfinite((*v)[i]) ? (*v)[i] : 0.0);
     out.push_back(']');

@@ -16,6 +16,7 @@ struct TickRecord {
   Pose pose;                         ///< world from tool, as the device reported it
   Wrench sent;                       ///< what went to the device, after law, gate and limits; torque about gc
   Wrench response;                   ///< sum over areas of the newest result, as the back end found it at its own pose
+  Wrench uncontrolled;               ///< what would go out without the control law: `response`, as far as the device's axes exert it
   std::int32_t result_age_ticks = -1;   ///< now − tick of the newest result's pose; −1: no result yet
   bool contact = false;              ///< of the newest result
   std::int32_t stage = 0;            ///< of the path, 0: none

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string_view>
 #include <nlohmann/json.hpp>
 
 #include "service/numbers.h"
@@ -69,7 +70,13 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
 
 std::string summary_text(const SessionSummary& summary, const std::vector<std::string>& stage_names) {
   std::string text;
-  for (const auto& [name, value] : summary_lines(summary, stage_names)) text += fmt::format("{:<14} {}\n", name, value);
+  for (const auto& [name, value] : summary_lines(summary, stage_names)) {
+    // The stages, one below the other.
+    std::string lines = value;
+    if (std::string_view(name) == "stages")
+      for (std::size_t at = 0; (at = lines.find("; ", at)) != std::string::npos;) lines.replace(at, 2, "\n" + std::string(15, ' '));
+    text += fmt::format("{:<14} {}\n", name, lines);
+  }
   return text;
 }
 

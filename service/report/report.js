@@ -89,7 +89,7 @@
 
   const begin = data.stages.length ? data.stages[0].begin : 0;
   const end = data.stages.length ? data.stages[data.stages.length - 1].end : 1;
-  const draw = (id, datasets, { range = [begin, end], stages = true, names = false, integers = false, stacked = false, headroom = 0 } = {}) => {
+  const draw = (id, datasets, { range = [begin, end], stages = true, names = false, integers = false, stacked = false, headroom = 0, zero = true } = {}) => {
     const chart = new Chart(byId(id), {
       type: 'line',
       data: { datasets },
@@ -107,7 +107,7 @@
         },
         scales: {
           x: { type: 'linear', min: range[0], max: range[1], ticks: { maxRotation: 0, includeBounds: false, callback: (v) => number(v, 6) + ' s' } },
-          y: { stacked, grace: headroom, beginAtZero: true, ticks: { maxTicksLimit: 6, precision: integers ? 0 : undefined },
+          y: { stacked, grace: headroom, beginAtZero: zero, ticks: { maxTicksLimit: 6, precision: integers ? 0 : undefined },
                afterFit: (scale) => { scale.width = 58; } },   // one width, so that the time axes line up
         },
       },
@@ -137,24 +137,22 @@
   ]), { headroom: '12%', stacked: shown.length > 0 });
 
   // ---- with and without the law: the component that moves most, of torque and of force ------------------------------
-  const rows = data.highlight;   // time, response force xyz, torque xyz, sent force xyz, torque xyz
+  const rows = data.highlight;   // time, force xyz and torque xyz without the law, the same with it
   if (!rows.length) {
     byId('control-lead').textContent = 'This run had no contact.';
     byId('control').querySelector('.pair').hidden = true;
   } else {
-    byId('control-lead').textContent = 'The ' + rows.length + ' ticks around the strongest contact. Without: the newest result of the collision response, held until the '
-      + 'next one. With: what the control law made of it and sent to the device each millisecond. (The chapter’s figure 13.)';
+    byId('control-lead').textContent = 'The ' + rows.length + ' ticks around the strongest contact. Without: the newest collision response, held until the next one, '
+      + 'as far as the device’s axes can exert it. With: what the control law sent to the device each millisecond. (The chapter’s figure 13.)';
     const range = (column) => rows.reduce((r, v) => [Math.min(r[0], v[column]), Math.max(r[1], v[column])], [Infinity, -Infinity]);
     const extent = (column) => { const [low, high] = range(column); return high - low; };
-    const law = (id, kind, unit, response, sent) => {
-      // An axis that the device can't drive is sent nothing; another one then tells more.
-      const reach = (axis) => Math.max(...rows.map((v) => Math.abs(v[sent + axis])));
-      const best = [0, 1, 2].reduce((b, axis) => ((reach(axis) > 0) === (reach(b) > 0) ? extent(response + axis) > extent(response + b) : reach(axis) > 0) ? axis : b, 0);
+    const law = (id, kind, unit, without, sent) => {
+      const best = [0, 1, 2].reduce((b, axis) => extent(without + axis) > extent(without + b) ? axis : b, 0);
       byId(id + '-caption').innerHTML = kind + ' ' + 'xyz'[best] + ' <span>' + unit + '</span>';
       draw(id, lines([
-        { label: 'without', colour: 'without', points: rows.map((v) => [v[0], v[response + best]]), stepped: true, width: 1.2 },
+        { label: 'without', colour: 'without', points: rows.map((v) => [v[0], v[without + best]]), stepped: true, width: 1.2 },
         { label: 'with', colour: 'with', points: rows.map((v) => [v[0], v[sent + best]]), width: 2 },
-      ]), { range: [rows[0][0], rows[rows.length - 1][0]], stages: false });
+      ]), { range: [rows[0][0], rows[rows.length - 1][0]], stages: false, zero: false, headroom: '8%' });
     };
     law('law-torque', 'Torque', 'N·m', 4, 10);
     law('law-force', 'Force', 'N', 1, 7);
