@@ -139,12 +139,16 @@ bool inside_tool(const Frame& frame, const Int3& point) {
 
 void find_samples(Frame& frame, Contacts& out) {
   if (frame.scene.refined() && frame.scene.tool_has_inside) {
+    // V_int voxels of an open tool may stand out of its triangles' box: they lie in the hull of V_bnd voxels, and a point of such a
+    // voxel is within √3 (V + 6) of a triangle.
+    const Int3 margin(2 * frame.scene.geometry->tool_grid.size + 20);
+    const Box reach{frame.tool_box.min - margin, frame.tool_box.max + margin};
     std::vector<std::uint32_t> near;
-    frame.scene.mockup_tree.meeting(frame.tool_box, near);
+    frame.scene.mockup_tree.meeting(reach, near);
     for (const std::uint32_t s : near) {
       if (frame.mockup().collapsed(s)) continue;
       const std::size_t before = frame.counting.size();
-      for_each_sample(frame.mockup(), s, frame.scene.geometry->sample_spacing, frame.tool_box, [&](const Int3& point) {
+      for_each_sample(frame.mockup(), s, frame.scene.geometry->sample_spacing, reach, [&](const Int3& point) {
         if (inside_tool(frame, point)) frame.counting.push_back({s, point});
       });
       // A triangle that crosses nothing is wholly inside or wholly outside: one corner tells, where it has no sample.
