@@ -34,6 +34,8 @@ void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pa
   if (!steps.ok()) return;
   const auto node_count = static_cast<std::uint32_t>(nodes);
   steps.run_items(spirv::component_root, {1u}, {parent, again}, node_count, nodes);
+  grid.count = bricks / static_cast<std::uint32_t>(p.grid.bricks.x);
+  steps.run_items(spirv::row_init, {}, {p.brick_slot, parent}, grid, grid.count);
   grid.count = bricks * 3;
   int runs = 0;
   do {
@@ -47,6 +49,8 @@ void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pa
   // Votes along +x, and +y and +z where the mesh is open: there the winding depends on the direction.
   const std::uint32_t axes = mesh.closed ? 1 : 3;
   VulkanBuffer votes = steps.buffer("votes of components", nodes, 8);
+  const VulkanBuffer enclosed = steps.buffer("bricks with enclosed voxels", slots);
+  const VulkanBuffer link = steps.buffer("rows of bricks", slots);
   VulkanBuffer crossings = steps.buffer("crossings of rows", std::uint64_t{p.grid.boundary_voxels} * axes);
   if (!steps.ok()) return;
   steps.fill(votes, 0);
@@ -60,14 +64,20 @@ void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pa
   steps.run_items(spirv::row_cross, {},
                   {body.vertices, body.triangles, pairs.triangle, pairs.voxel, p.boundary_place, p.mixed_brick, crossings}, push,
                   pairs.count);
+  steps.run_items(spirv::brick_enclosed, {}, {first, parent, enclosed}, gpu::EnclosedPush{slots, bricks}, slots);
   for (std::uint32_t axis = 0; axis < axes; ++axis) {
     const int u = static_cast<int>((axis + 1) % 3), v = static_cast<int>((axis + 2) % 3);
-    const std::uint64_t rows = static_cast<std::uint64_t>(p.grid.bricks[u]) * static_cast<std::uint64_t>(p.grid.bricks[v]) * 64;
+    const std::uint64_t rows = static_cast<std::uint64_t>(p.grid.bricks[u]) * static_cast<std::uint64_t>(p.grid.bricks[v]);
+    const VulkanBuffer head = steps.buffer("rows of bricks", rows);
+    if (!steps.ok()) return;
     push.grid.count = static_cast<std::uint32_t>(rows);
     push.grid.axis = axis;
+    steps.run_items(spirv::row_link, {}, {p.brick_slot, head, link}, push.grid, rows);
+    push.grid.count = static_cast<std::uint32_t>(rows * 64);
     push.voxels = p.grid.boundary_voxels * axis;   // first crossing of this axis
     steps.progress("votes", 0.85 + 0.05 * axis);
-    steps.run_items(spirv::vote_sweep, {}, {p.brick_slot, p.bricks, first, labels, parent, crossings, votes}, push, rows);
+    steps.run_items(spirv::vote_sweep, {}, {p.mixed_brick, p.bricks, first, labels, parent, crossings, votes, head, link, enclosed},
+                    push, rows * 64);
   }
 
   // Classes.

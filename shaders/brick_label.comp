@@ -16,6 +16,36 @@ layout(push_constant, scalar) uniform Push { uint32_t count; };
 const uint64_t kColumn0 = 0x0101010101010101ul;   // voxels with x = 0
 const uint64_t kColumn7 = 0x8080808080808080ul;
 
+// Cells of `open` that a straight walk from r reaches through `open`, along +x, −x, +y and −y one after the other. Each walk
+// doubles its stride: 1, 2 and 4 cells cover a slice.
+uint64_t flood_slice(uint64_t r, uint64_t open) {
+  uint64_t pass = open & ~kColumn0;
+  r |= pass & r << 1;
+  pass &= pass << 1;
+  r |= pass & r << 2;
+  pass &= pass << 2;
+  r |= pass & r << 4;
+  pass = open & ~kColumn7;
+  r |= pass & r >> 1;
+  pass &= pass >> 1;
+  r |= pass & r >> 2;
+  pass &= pass >> 2;
+  r |= pass & r >> 4;
+  pass = open;
+  r |= pass & r << 8;
+  pass &= pass << 8;
+  r |= pass & r << 16;
+  pass &= pass << 16;
+  r |= pass & r << 32;
+  pass = open;
+  r |= pass & r >> 8;
+  pass &= pass >> 8;
+  r |= pass & r >> 16;
+  pass &= pass >> 16;
+  r |= pass & r >> 32;
+  return r;
+}
+
 void main() {
   uint32_t slot = item_index();
   if (slot >= count) return;
@@ -33,16 +63,16 @@ void main() {
       region[z] = seeded ? 0ul : open[z] & (~open[z] + 1ul);
       seeded = seeded || open[z] != 0ul;
     }
+    // Sweeps upwards and downwards in turn; inside a slice the flood runs on to the next obstacle at once.
     bool grown = true;
-    while (grown) {
+    for (int32_t sweep = 0; grown; ++sweep) {
       grown = false;
-      [[dont_unroll]] for (int32_t z = 0; z < 8; ++z) {
+      [[dont_unroll]] for (int32_t i = 0; i < 8; ++i) {
+        int32_t z = (sweep & 1) == 0 ? i : 7 - i;
         uint64_t r = region[z];
         if (z > 0) r |= region[z - 1];
         if (z < 7) r |= region[z + 1];
-        r &= open[z];
-        r |= (r << 1 & ~kColumn0) | (r >> 1 & ~kColumn7) | r << 8 | r >> 8;
-        r &= open[z];
+        r = flood_slice(r & open[z], open[z]);
         grown = grown || r != region[z];
         region[z] = r;
       }

@@ -49,10 +49,23 @@ uint32_t face_bit(uint32_t axis, uint32_t depth, uint32_t i, uint32_t j) {
   return axis == 0u ? depth | i << 3 | j << 6 : (axis == 1u ? i | depth << 3 | j << 6 : i | j << 3 | depth << 6);
 }
 
+// Nodes of one side of a face.
+struct Side {
+  bool mixed;
+  uint32_t node;      // of a uniform brick, or 0 beyond the border
+  BrickNodes nodes;   // of a mixed one
+};
+
+Side side_of(uint32_t slot, uint32_t brick) {
+  bool mixed = slot < kBrickInternal;
+  return Side(mixed, uniform_node(brick), brick_nodes(mixed ? slot : 0u));
+}
+
 // Node of a face's voxel; kNoVoxel for a boundary voxel.
-uint32_t node_at(uint32_t slot, uint32_t brick, uint32_t bit) {
-  if (slot >= kBrickInternal) return uniform_node(brick);
-  return is_boundary(slot, bit) ? kNoVoxel : voxel_node(slot, bit);
+uint32_t node_at(Side side, uint32_t bit) {
+  if (!side.mixed) return side.node;
+  bool boundary = (bricks[side.nodes.slot].boundary[bit >> 5] >> (bit & 31u) & 1u) != 0u;
+  return boundary ? kNoVoxel : voxel_node(side.nodes, bit);
 }
 
 void main() {
@@ -61,6 +74,7 @@ void main() {
   uint32_t brick = item / 3u, axis = item - brick * 3u;
   ivec3 cell = cell_of_number(brick, push.bricks);
   uint32_t slot = brick_slot[brick];
+  Side here = side_of(slot, brick);
 
   // Sides: 0 the lower border, if this is it; 1 the upper face, towards the next brick or beyond the border.
   for (uint32_t side = cell[axis] == 0 ? 0u : 1u; side < 2u; ++side) {
@@ -74,11 +88,14 @@ void main() {
     }
     uint32_t last_a = kNoVoxel, last_b = kNoVoxel;
     bool plain = slot >= kBrickInternal && (border || next_slot >= kBrickInternal);
+    if (plain && axis == 0u) continue;   // row_init joined them
+    Side there = side_of(next_slot, next);
+    if (border) there = Side(false, 0u, here.nodes);
     uint32_t voxels = plain ? 1u : 64u;
     for (uint32_t v = 0u; v < voxels; ++v) {
-      uint32_t a = node_at(slot, brick, face_bit(axis, side == 0u ? 0u : 7u, v & 7u, v >> 3));
+      uint32_t a = node_at(here, face_bit(axis, side == 0u ? 0u : 7u, v & 7u, v >> 3));
       if (a == kNoVoxel) continue;
-      uint32_t b = border ? 0u : node_at(next_slot, next, face_bit(axis, 0u, v & 7u, v >> 3));
+      uint32_t b = node_at(there, face_bit(axis, 0u, v & 7u, v >> 3));
       if (b == kNoVoxel || (a == last_a && b == last_b)) continue;
       join(a, b);
       last_a = a;

@@ -46,19 +46,20 @@ void main() {
     i64vec3 n = raw_normal(a, b, c);
     ivec3 grid_end = push.origin + push.bricks * push.brick_side;
     uint32_t at = push.emit != 0u ? counts[item] : 0u;
-    for (int32_t z = first.z; z <= last.z; ++z)
-      for (int32_t y = first.y; y <= last.y; ++y)
-        for (int32_t x = first.x; x <= last.x; ++x) {
-          ivec3 cell = ivec3(x, y, z);
-          ivec3 box_lo = push.origin + cell * push.side;
-          ivec3 box_hi = min(box_lo + push.side, grid_end);
-          if (!triangle_touches_box(a, b, c, n, box_lo - push.growth, box_hi + push.growth)) continue;
-          if (push.emit != 0u) {
-            out_triangle[at + found] = t;
-            out_cell[at + found] = cell_number(cell, push.cells);
-          }
-          ++found;
+    // One loop instead of three: invocations that run together are done after the most cells that any of them has.
+    ivec3 cell = first;
+    while (all(lessThanEqual(cell, last))) {
+      ivec3 box_lo = push.origin + cell * push.side;
+      ivec3 box_hi = min(box_lo + push.side, grid_end);
+      if (triangle_touches_box(a, b, c, n, box_lo - push.growth, box_hi + push.growth)) {
+        if (push.emit != 0u) {
+          out_triangle[at + found] = t;
+          out_cell[at + found] = cell_number(cell, push.cells);
         }
+        ++found;
+      }
+      cell = next_cell(cell, first, last);
+    }
   }
   if (push.emit == 0u) counts[item] = found;
 }

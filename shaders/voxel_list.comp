@@ -34,30 +34,23 @@ void main() {
   i64vec3 n = raw_normal(a, b, c);
   uint32_t at = push.emit != 0u ? push.out_base + counts[item] : 0u;
   uint32_t found = 0u;
-  for (int32_t z = first.z; z <= last.z; ++z)
-    for (int32_t y = first.y; y <= last.y; ++y) {
-      uint32_t row = 0u;   // bits of this row's touched voxels
-      for (int32_t x = first.x; x <= last.x; ++x) {
-        ivec3 lo = corner_of_brick + ivec3(x, y, z) * push.size;
-        if (triangle_touches_box(a, b, c, n, lo - push.growth, lo + push.size + push.growth)) row |= 1u << x;
-      }
-      if (row == 0u) continue;
-      uint32_t bit = uint32_t(y) << 3 | uint32_t(z) << 6;   // of the row's first voxel
-      uint32_t word = bit >> 5, shift = bit & 31u;
+  ivec3 voxel = first;
+  while (all(lessThanEqual(voxel, last))) {   // one loop: see triangle_expand
+    ivec3 lo = corner_of_brick + voxel * push.size;
+    if (triangle_touches_box(a, b, c, n, lo - push.growth, lo + push.size + push.growth)) {
+      uint32_t bit = uint32_t(voxel.x | voxel.y << 3 | voxel.z << 6);
+      uint32_t word = bit >> 5, mask = 1u << (bit & 31u);
       if (push.emit == 0u) {
-        atomicOr(bricks[slot].boundary[word], row << shift);
-        found += uint32_t(bitCount(row));
+        atomicOr(bricks[slot].boundary[word], mask);
       } else {
-        uint32_t boundary = bricks[slot].boundary[word], index = bricks[slot].first[word];
-        for (uint32_t rest = row << shift; rest != 0u; rest &= rest - 1u) {
-          uint32_t below = (rest & (~rest + 1u)) - 1u;
-          uint32_t voxel = index + uint32_t(bitCount(boundary & below));
-          pair_triangle[at + found] = t;
-          pair_voxel[at + found] = voxel;
-          ++found;
-          atomicAdd(list_count[voxel], 1u);
-        }
+        uint32_t index = bricks[slot].first[word] + uint32_t(bitCount(bricks[slot].boundary[word] & (mask - 1u)));
+        pair_triangle[at + found] = t;
+        pair_voxel[at + found] = index;
+        atomicAdd(list_count[index], 1u);
       }
+      ++found;
     }
+    voxel = next_cell(voxel, first, last);
+  }
   if (push.emit == 0u) counts[item] = found;
 }

@@ -18,4 +18,18 @@ ivec3 first_cell(ivec3 lo, ivec3 origin, int32_t side, int32_t growth) { return 
 ivec3 last_cell(ivec3 hi, ivec3 origin, int32_t side, int32_t growth, ivec3 cells) {
   return min((hi + growth - origin) / side, cells - 1);
 }
+
+// The cell after `cell` in the box [first, last], x fastest; z beyond last.z after the last one.
+ivec3 next_cell(ivec3 cell, ivec3 first, ivec3 last) {
+  cell.x += 1;
+  if (cell.x > last.x) {
+    cell.x = first.x;
+    cell.y += 1;
+    if (cell.y > last.y) {
+      cell.y = first.y;
+      cell.z += 1;
+    }
+  }
+  return cell;
+}
 #endif

@@ -55,6 +55,12 @@ struct GridPush {
 };
 PALPATE_ASSERT_SIZE(GridPush, 36);
 
+struct EnclosedPush {
+  uint32_t count;    // mixed bricks
+  uint32_t bricks;   // all
+};
+PALPATE_ASSERT_SIZE(EnclosedPush, 8);
+
 struct SeamPush {
   int64_t least_cosine;   // Q60; pairs below can't be smooth
   uint32_t count;         // entries
