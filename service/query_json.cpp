@@ -82,6 +82,9 @@ class Writer {
   bool first_ = true;
 };
 
+/// Clocks tell no less than a nanosecond; more digits would be noise of the arithmetic.
+double to_nanoseconds(double us) { return std::round(us * 1000) / 1000; }
+
 void write_area(Writer& json, const ContactArea& area, const AreaResponse& response) {
   json.open('{');
   json.key("id");
@@ -133,10 +136,10 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   json.key("time_us");
   json.open('{');
   json.key("total");
-  json.number(line.total_us);
+  json.number(to_nanoseconds(line.total_us));
   for (const Contacts::StageTime& time : contacts.times) {
     json.key(time.stage);
-    json.number(time.us);
+    json.number(to_nanoseconds(time.us));
   }
   json.close('}');
   if (line.batch) {

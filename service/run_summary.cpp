@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
   line("frames", fmt::format("{}: {:.3g} ms median, {:.3g} ms p99, {:.3g} ms at most", count_text(summary.frames), summary.frame_us.p50 / 1000,
                              summary.frame_us.p99 / 1000, summary.frame_us.max / 1000));
   std::string stages;
-  for (const int stage : summary.stages_reached) stages += (stages.empty() ? "" : "; ") + stage_text(stage, stage_names);
+  for (const int stage : summary.stages_reached) stages += (stages.empty() ? "" : stage_names.empty() ? ", " : "; ") + stage_text(stage, stage_names);
   if (!stages.empty()) line("stages", stages);
   line("areas", fmt::format("{} at once at most", summary.areas_max));
   line("force", fmt::format("{:.3g} N at most", summary.force_max_N));
