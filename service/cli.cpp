@@ -30,7 +30,7 @@ A first quarter of an hour:
   palpate devices                                                  what can compute, what can be felt
   palpate generate contacts --out try                              a mock-up of 25,000 triangles, a clamp and its path
   palpate info try/*.stl                                           what was read: parts, size, closed or open
-  palpate query try/scene.json --pose "0 0 0.5 0 0 0 1"            contact at one pose, as JSON
+  palpate query try/scene.json --pose "0 0 0 0 0 0 1"              contact at one pose, as JSON
   palpate run try/scene.json --pace asap --out first               the simulated hand; then open first/report.html
 
 `palpate COMMAND --help` tells more.)";
@@ -162,7 +162,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   pose->excludes(poses);
   add_backend(*query_app, query.common);
   add_method(*query_app, query.common);
-  query_app->add_option("--batch", query.batch, "time N poses together; time_us is then a pose's share")
+  query_app->add_option("--batch", query.batch, "time N poses together; time_us is then a pose's share (each pose is still a submission of its own)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
@@ -174,6 +174,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   CLI::App* plan_app = app.add_subcommand("plan", "tell which stages a run of the scene needs, and why");
   add_scene(*plan_app, plan);
   plan_app->add_flag("--json", plan_json, "{\"stages\":[{\"stage\",\"kept\",\"reason\",\"memory_bytes\"}]}");
+  plan_app->footer("Leaving a stage out never changes an answer; `--plan full` of run and query keeps them all, to compare.");
   plan_app->callback([&] { outcome = plan_command(plan, plan_json, parts); });
 
   std::vector<std::string> meshes;
@@ -191,9 +192,13 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
       ->type_name("N");
   generate_app->add_option("--tool-triangles", generate.tool_triangles, "of the tool; default the chapter's 1,500 or 2,000")->type_name("N");
   generate_app->add_option("--out", generate.out, "directory for meshes, path and scene.json")->required()->type_name("DIR");
+  generate_app->footer("Writes the meshes as files, so that any of them can be exchanged for a part of yours.\n\nExamples:\n"
+                       "  palpate generate disassembly --out try\n"
+                       "  palpate generate contacts --triangles 1000000 --out big");
   generate_app->callback([&] { outcome = generate_command(generate); });
 
   CLI::App* devices_app = app.add_subcommand("devices", "list Vulkan and haptic devices, with the reason for each that can't be used");
+  devices_app->footer("Of several usable Vulkan devices the best is taken; the back end's name is in the summary of a run.");
   devices_app->callback([&] { outcome = devices_command(parts); });
 
   std::vector<std::string> commands;

@@ -13,13 +13,10 @@ Result<void> devices_command(const Parts& parts) {
   for (const DeviceLine& line : lines) width = std::max(width, line.name.size());
   for (const char* kind : {"vulkan", "haptic"}) {
     fmt::print("{} devices\n", kind[0] == 'v' ? "Vulkan" : "Haptic");
-    bool any = false;
     for (const DeviceLine& line : lines) {
       if (line.kind != kind) continue;
-      any = true;
       fmt::print("  {:<{}}  {:<10}  {}\n", line.name, width, line.usable ? "usable" : "not usable", line.reason);
     }
-    if (!any) fmt::print("  none found\n");
   }
   return {};
 }

@@ -96,7 +96,7 @@ void print_table(const MeshInfo& info) {
   const MeshReport& body = info.body;
   const auto line = [](const char* name, const std::string& value) { fmt::print("  {:<12} {}\n", name, value); };
   fmt::print("{}\n", info.import.file);
-  line("triangles", fmt::format("{}, {} vertices", count_text(body.triangles), count_text(body.vertices)));
+  line("triangles", fmt::format("{} ({} vertices)", count_text(body.triangles), count_text(body.vertices)));
   line("size", fmt::format("{} (file units)", size_text(info.max - info.min)));
   line("bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", info.min.x, info.min.y, info.min.z, info.max.x, info.max.y, info.max.z));
   line("closed", info.closed ? "yes" : fmt::format("no: {} open edges, the largest gap {:.4g} wide", count_text(body.open_edges), body.largest_gap_m));

@@ -10,7 +10,10 @@ using namespace palpate;
 
 std::vector<DeviceLine> list_devices() {
   std::vector<DeviceLine> lines;
-  for (const VulkanDeviceInfo& device : list_vulkan_devices())
+  const std::vector<VulkanDeviceInfo> vulkan = list_vulkan_devices();
+  if (vulkan.empty())
+    if (const auto none = make_gpu_backend({}); !none) lines.push_back({"vulkan", "none", false, none.error().sentence});
+  for (const VulkanDeviceInfo& device : vulkan)
     lines.push_back({"vulkan", device.name, device.usable, device.usable ? device.driver : device.reason});
   for (const HapticDeviceInfo& device : list_haptic_devices())
     lines.push_back({"haptic", device.name, device.usable, device.usable ? device.what : device.reason});

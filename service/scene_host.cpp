@@ -44,7 +44,8 @@ std::string prepared_text(const PreparedScene& prepared) {
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console) {
   if (name == "cpu") return parts.make_cpu();
   Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu();
-  if (gpu || name == "gpu") return gpu;
+  if (gpu) return gpu;
+  if (name == "gpu") return Error{gpu.error().code, "--backend gpu: no usable Vulkan device: " + gpu.error().sentence};
   console.note("no usable Vulkan device, so the CPU reference answers: " + gpu.error().sentence);
   return parts.make_cpu();
 }

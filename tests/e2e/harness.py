@@ -26,8 +26,9 @@ class Outcome:
         return f'exit {self.code}\n--- stdout\n{self.out[:2000]}\n--- stderr\n{self.err[:2000]}'
 
 
-def palpate(*arguments, cwd=None):
-    done = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT_S, cwd=cwd)
+def palpate(*arguments, cwd=None, **environment):
+    done = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT_S, cwd=cwd,
+                          env={**os.environ, **environment})
     return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
 
 

@@ -62,6 +62,21 @@ def test_devices_lists_both_kinds_with_reasons():
         expect(word in outcome.out, f"no '{word}' in\n{outcome.out}")
 
 
+NO_DRIVER = {'VK_ICD_FILENAMES': '/nowhere/driver.json', 'VK_DRIVER_FILES': '/nowhere/driver.json'}
+
+
+def test_without_a_vulkan_device_the_cpu_answers_and_says_so():
+    folder = Folder()
+    query = ('query', folder.save(), '--pose', '0 0 0.018 0 0 0 1')
+    expect_refused(palpate(*query, '--backend', 'gpu', **NO_DRIVER), 4, 'no usable Vulkan device')
+    outcome = palpate(*query, **NO_DRIVER)
+    expect(outcome.code == 0 and outcome.err.count('CPU reference answers') == 1, outcome)
+    with_driver = palpate(*query)
+    for a, b in zip(lines_of(outcome), lines_of(with_driver), strict=True):
+        expect({**a, 'time_us': 0} == {**b, 'time_us': 0}, 'the same answer')
+    expect('Vulkan driver' in palpate('devices', **NO_DRIVER).out, 'devices says why')
+
+
 def test_plan_gives_a_reason_for_each_of_the_thirteen_stages():
     folder = Folder()
     outcome = palpate('plan', folder.save(), '--json')
