@@ -19,7 +19,9 @@ class Finder {
     print(text, b);
     found_ = text.str();
   }
-  void list(const std::string& name, const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  template <class T>
+  void list(const std::string& name, const std::vector<T>& a, const std::vector<T>& b) {
+    if (a == b) return;
     field(name + ".size", a.size(), b.size());
     for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) field(name + "[" + std::to_string(i) + "]", a[i], b[i]);
   }
@@ -30,6 +32,7 @@ class Finder {
   static void print(std::ostringstream& text, const T& v) {
     text << +v;
   }
+  static void print(std::ostringstream& text, VoxelClass v) { text << static_cast<int>(v); }
   static void print(std::ostringstream& text, const Int3& v) { text << v.x << ' ' << v.y << ' ' << v.z; }
   static void print(std::ostringstream& text, const std::string& v) { text << v; }
   std::string found_;
@@ -78,6 +81,18 @@ std::string first_difference(const Contacts& a, const Contacts& b) {
   find.field("flags", a.flags, b.flags);
   find.field("swallowed_direction", a.swallowed_direction, b.swallowed_direction);
   find.field("swallowed_height", a.swallowed_height, b.swallowed_height);
+  return find.found();
+}
+
+std::string first_difference(const VoxelPartition& a, const VoxelPartition& b) {
+  Finder find;
+  find.field("grid.origin", a.grid.origin, b.grid.origin);
+  find.field("grid.size", a.grid.size, b.grid.size);
+  find.field("grid.bricks", a.grid.bricks, b.grid.bricks);
+  find.list("classes", a.classes, b.classes);
+  find.list("boundary_voxels", a.boundary_voxels, b.boundary_voxels);
+  find.list("list_begin", a.list_begin, b.list_begin);
+  find.list("list_triangles", a.list_triangles, b.list_triangles);
   return find.found();
 }
 

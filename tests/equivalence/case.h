@@ -1,0 +1,60 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/lattice.h"
+#include "model/plan.h"
+#include "model/result.h"
+#include "model/scene_geometry.h"
+#include "tests/equivalence/random.h"
+
+namespace palpate::equivalence {
+
+/// What is known of an answer by how its pose was made, not by asking a back end. Empty: not known.
+struct Known {
+  std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs;   ///< (static, mobile), all of them, in any order
+  std::optional<std::size_t> areas;
+  std::optional<bool> contact;
+  std::optional<bool> est;                                                      ///< whether EST has a member
+};
+
+/// A scene as both back ends get it, and what they are asked.
+struct TestScene {
+  SceneGeometry geometry;
+  /// A pose; writes what is known of its answer.
+  std::function<LatticePose(const SceneGeometry&, Random&, Known&)> pose;
+  /// Class of the mock-up's voxel whose lower corner this is, from the scene's construction; empty: no such knowledge.
+  std::function<VoxelClass(const Int3& lower)> known_class = {};
+};
+
+/// One line of `equivalence --list`: two bodies, how they are made into integers, where the tool is put, and what must hold.
+/// Everything that two back ends compute is compared bit for bit; a case needs no tolerance.
+struct Case {
+  std::string name;
+  std::string family;              ///< solids, chapter, touch or topology
+  std::string about;               ///< what it meets that others do not, and what is known of it beforehand
+  std::function<Result<TestScene>(std::uint64_t seed)> make;   ///< most scenes do not depend on the seed
+  Profile profile = Profile::kRefined;
+  bool held = false;               ///< poses come in chains of kChain: each frame remembers the one before, and moves on a little
+  bool killer = false;             ///< one of the few that together reach every rule, for those who need an answer in seconds
+  bool degenerate = false;         ///< of a family where points, edges and faces coincide or a surface is not a solid's
+  int poses = 24;                  ///< how many the stored hashes cover
+  double share = 1;                ///< of a campaign's poses, relative to other cases: less where a pose takes long
+};
+
+inline constexpr int kChain = 8;   ///< poses of a chain of a `held` case
+
+/// All cases, in the order of their hashes.
+std::vector<Case> all_cases();
+
+// Each family's own, in cases_*.cpp.
+std::vector<Case> solid_cases();
+std::vector<Case> chapter_cases();
+std::vector<Case> touch_cases();
+std::vector<Case> topology_cases();
+
+}  // namespace palpate::equivalence

@@ -1,0 +1,40 @@
+// The chapter's two scenes, smaller than they are there so that a test stays short.
+#include "model/generate.h"
+#include "tests/equivalence/case.h"
+#include "tests/equivalence/mesh_scene.h"
+#include "tests/equivalence/touching_poses.h"
+
+namespace palpate::equivalence {
+namespace {
+
+Case chapter(const std::string& scene, std::uint64_t triangles, Profile profile, bool held) {
+  Case c;
+  c.name = scene + (profile == Profile::kPaper ? "_paper" : "") + (held ? "_held" : "");
+  c.family = "chapter";
+  c.about = "the chapter's scene with " + std::to_string(triangles) + " triangles and a tool of 1000";
+  c.profile = profile;
+  c.held = held;
+  c.share = 0.1;
+  c.poses = 8;
+  c.make = [=](std::uint64_t) -> Result<TestScene> {
+    const auto made = generate_scene(scene, triangles, 1000);
+    if (!made) return made.error();
+    return mesh_scene(made->mockup, made->tool, {},
+                      [](const SceneGeometry& geometry, Random& random, Known&) { return random_touching_pose(geometry, 1.0, random); });
+  };
+  return c;
+}
+
+}  // namespace
+
+std::vector<Case> chapter_cases() {
+  std::vector<Case> cases;
+  for (const auto& [scene, triangles] : {std::pair<const char*, std::uint64_t>{"contacts", 5000}, {"disassembly", 10000}}) {
+    cases.push_back(chapter(scene, triangles, Profile::kRefined, false));
+    cases.push_back(chapter(scene, triangles, Profile::kPaper, false));
+    cases.push_back(chapter(scene, triangles, Profile::kRefined, true));
+  }
+  return cases;
+}
+
+}  // namespace palpate::equivalence
