@@ -12,6 +12,7 @@
 #include <map>
 #include <new>
 
+#include "service/cli_bench.h"
 #include "service/console.h"
 
 namespace palpate {
@@ -200,6 +201,9 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   CLI::App* devices_app = app.add_subcommand("devices", "list Vulkan and haptic devices, with the reason for each that can't be used");
   devices_app->footer("Of several usable Vulkan devices the best is taken; the back end's name is in the summary of a run.");
   devices_app->callback([&] { outcome = devices_command(parts); });
+
+  BenchOptions bench;
+  add_bench_command(app, bench, parts, outcome);
 
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());

@@ -9,6 +9,7 @@
 #include "driver/haptic_device.h"
 #include "model/collision_backend.h"
 #include "model/scene.h"
+#include "service/peer.h"
 
 namespace palpate {
 
@@ -29,6 +30,9 @@ struct Parts {
   /// setting, kNoDevice for one that this version can't drive.
   std::function<Result<std::unique_ptr<HapticDevice>>(const std::string& name, const Scene& scene, const Vec3& tool_gc_m)> make_device;
   std::function<std::vector<DeviceLine>()> list_devices;
+  /// Other collision libraries, for `bench peers`, and the judge of their pairs (service/peer.h); empty where they were not built.
+  std::function<std::vector<std::unique_ptr<Peer>>()> make_peers;
+  std::function<std::unique_ptr<Peer>()> make_judge;
 };
 
 /// What several commands share.

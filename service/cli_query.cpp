@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <string_view>
 
-#include "model/response.h"
+#include "service/answer.h"
 #include "service/cli.h"
 #include "service/console.h"
 #include "service/export_geometry.h"
@@ -16,37 +15,8 @@
 namespace palpate {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Poses that are answered and thrown away, so that every pipeline has run once with a contact (chosen).
 constexpr std::size_t kWarmUpPoses = 32;
-
-struct Answer {
-  Contacts contacts;
-  ContactResponse response;
-  double total_us = 0;
-};
-
-class Answerer {
- public:
-  explicit Answerer(PreparedScene& scene) : scene_(scene) {}
-
-  /// Pose in to wrench and id lists out. A lone query holds nothing from a frame before.
-  Result<void> answer(const Pose& pose, Answer& out) {
-    const auto start = Clock::now();
-    const SceneGeometry& geometry = scene_.loaded.geometry;
-    const Result<LatticePose> lattice = to_lattice(pose, geometry);
-    if (!lattice) return lattice.error();
-    if (auto done = scene_.backend->query(*lattice, nullptr, out.contacts); !done) return done;
-    const ResponseSettings& settings = scene_.loaded.scene.response;
-    respond(out.contacts, *lattice, geometry, settings.profile, settings.stiffness_n_per_m, out.response);
-    out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-    return {};
-  }
-
- private:
-  PreparedScene& scene_;
-};
 
 /// Gives every answer of a batch the mean of the batch's times.
 void share_times(std::vector<Answer>& batch) {
@@ -104,10 +74,9 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     for (const std::string& note : notes) console.note(note);
   }
 
-  Answerer answerer(scene);
   std::vector<Answer> batch(std::min<std::uint64_t>(options.batch.value_or(1), poses.size()));
   for (std::size_t i = 0; i < std::min(kWarmUpPoses, poses.size()); ++i) {
-    if (auto done = answerer.answer(poses[i], batch.front()); !done) return done;
+    if (auto done = answer_pose(scene, poses[i], batch.front()); !done) return done;
     if (batch.front().contacts.contact) break;
   }
 
@@ -117,7 +86,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   for (std::size_t first = 0; first < poses.size(); first += batch.size()) {
     batch.resize(std::min(batch.size(), poses.size() - first));
     for (std::size_t i = 0; i < batch.size(); ++i)
-      if (auto done = answerer.answer(poses[first + i], batch[i]); !done) return done;
+      if (auto done = answer_pose(scene, poses[first + i], batch[i]); !done) return done;
     if (options.batch) share_times(batch);
     text.clear();
     for (std::size_t i = 0; i < batch.size(); ++i) {

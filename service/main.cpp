@@ -3,6 +3,7 @@
 #include "cpu_ref/cpu_backend.h"
 #include "driver/device_list.h"
 #include "service/cli.h"
+#include "service/peer.h"
 
 namespace {
 
@@ -34,6 +35,13 @@ int main(int argc, char** argv) {
       .make_cpu = palpate::make_cpu_backend,
       .make_device = make_device,
       .list_devices = list_devices,
+#ifdef PALPATE_BENCH_PEERS
+      .make_peers = palpate::make_peers,
+      .make_judge = palpate::make_judge,
+#else
+      .make_peers = nullptr,
+      .make_judge = nullptr,
+#endif
   };
   return palpate::command_line(argc, argv, parts);
 }

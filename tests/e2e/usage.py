@@ -7,7 +7,7 @@ def test_help_lists_every_command_and_the_exit_codes():
     expect(outcome.code == 0 and outcome.err == '', outcome)
     for word in ('run', 'query', 'plan', 'info', 'generate', 'devices', 'Exit codes', 'metres', 'unit quaternion'):
         expect(word in outcome.out, f"help lacks '{word}'")
-    for word in ('tune', 'serve', 'bench'):
+    for word in ('tune', 'serve'):
         expect(f'  {word}' not in outcome.out, f'{word} is not in this version')
 
 

@@ -1,0 +1,13 @@
+#pragma once
+#include <memory>
+
+#include "service/peer.h"
+
+namespace palpate::peers {
+
+std::unique_ptr<Peer> make_fcl();
+std::unique_ptr<Peer> make_bullet();
+std::unique_ptr<Peer> make_cgal();
+std::unique_ptr<Peer> make_embree();
+
+}  // namespace palpate::peers

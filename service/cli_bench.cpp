@@ -1,0 +1,74 @@
+#include "service/cli_bench.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
+
+namespace palpate {
+namespace {
+
+constexpr const char* kFooter = R"(Times are wall time in microseconds unless a column says otherwise, or --clock. Whatever is compared is measured in turns in one process, for other
+work on the machine moves absolute figures; trust ratios of one run. Every file names machine, driver and commit.
+
+Examples:
+  palpate generate disassembly --triangles 1000000 --out big
+  palpate bench latency big/scene.json --out figures
+  palpate bench peers big/scene.json --out figures        (needs a build with -DPALPATE_BENCH_PEERS=ON, see scripts/bench))";
+
+CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMember(words).description(""); }
+
+void add_common(CLI::App& app, BenchOptions& options) {
+  app.add_option("scenes", options.scenes, "scene files (JSON)")->required()->type_name("SCENE");
+  app.add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  app.add_option_function<std::string>(
+         "--profile", [&options](const std::string& word) { options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined; },
+         "in place of the scenes'")
+      ->check(one_of({"paper", "refined"}))
+      ->type_name("paper|refined");
+}
+
+void add_poses(CLI::App& app, BenchOptions& options) {
+  app.add_option("--poses", options.poses, "poses, as for query; `run`: those of a run in virtual time; without it the path's, deeper than a hand gets")
+      ->type_name("FILE|run");
+  app.add_option("--frames", options.frames, "poses taken from them, evenly (400)")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
+      ->type_name("N");
+  app.add_option_function<std::string>(
+         "--clock", [&options](const std::string& word) { options.cpu_clock = word == "cpu"; },
+         "wall, or cpu: time that this process itself ran, for machines that do other work, too (wall)")
+      ->check(one_of({"wall", "cpu"}))
+      ->type_name("wall|cpu");
+  app.add_option("--rounds", options.rounds, "times that all poses are gone through (3)")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))
+      ->type_name("N");
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
+  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it");
+  bench->require_subcommand(1);
+  bench->footer(kFooter);
+
+  CLI::App* latency = bench->add_subcommand("latency", "a frame's time by stage: p50, p95, p99, p99.9, max; contact and free apart");
+  add_common(*latency, options);
+  add_poses(*latency, options);
+  latency->add_option("--backend", options.backends, "gpu, cpu, or both in turns; without it gpu, else cpu")
+      ->check(one_of({"gpu", "cpu"}))
+      ->expected(1, 2)
+      ->type_name("gpu|cpu");
+  latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the tool's box meets nothing). Stages are the\n"
+                  "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out.");
+  latency->callback([&] { outcome = bench_latency(options, parts); });
+
+  CLI::App* peers = bench->add_subcommand("peers", "other collision libraries on the same triangles and poses, in turns with palpate");
+  add_common(*peers, options);
+  add_poses(*peers, options);
+  peers->add_option("--peers", options.peers, "beginnings of names (fcl, embree, bullet, cgal); without it all")->type_name("NAME");
+  peers->footer("palpate's time is a whole frame: sets, areas, zones, rays, wrench. The others' is the pairs alone. Before anything is timed, each\n"
+                "library's pairs are held against the exact ones: `missing` and `extra` count pairs over all poses.");
+  peers->callback([&] { outcome = bench_peers(options, parts); });
+}
+
+}  // namespace palpate
