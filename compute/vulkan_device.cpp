@@ -292,6 +292,7 @@ std::vector<VulkanDeviceInfo> VulkanDevice::list() {
 VulkanDevice::~VulkanDevice() {
   if (device_ != VK_NULL_HANDLE) {
     vkDeviceWaitIdle(device_);
+    pipelines.clear();
     vkDestroyDevice(device_, nullptr);
   }
   if (messenger_ != VK_NULL_HANDLE) {

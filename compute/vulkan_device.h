@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,6 +13,8 @@
 #include "model/result.h"
 
 namespace palpate {
+
+struct PipelineObjects;
 
 /// The sentence for a Vulkan call that failed: "vkQueueSubmit2 failed: device lost".
 Error vulkan_error(const char* call, VkResult result);
@@ -55,6 +58,9 @@ class VulkanDevice {
 
   /// Bytes of device memory now held by buffers.
   std::atomic<std::uint64_t> allocated{0};
+
+  /// Pipelines made so far, by module and constants; ComputePipeline::create fills it.
+  std::map<std::vector<std::uint32_t>, std::shared_ptr<const PipelineObjects>> pipelines;
 
  private:
   VulkanDevice() = default;

@@ -8,15 +8,13 @@
 #include "compute/vulkan_buffer.h"
 
 namespace palpate {
+namespace {
 
-Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
-                                                std::uint32_t push_bytes, std::span<const SpecConstant> constants) {
-  ComputePipeline out;
-  out.device_ = device.handle();
-  out.buffers_ = buffers;
-  out.push_bytes_ = push_bytes;
-  out.name_ = code.name;
+using MadePipeline = Result<std::shared_ptr<const PipelineObjects>>;
 
+MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers, std::uint32_t push_bytes,
+                          std::span<const SpecConstant> constants) {
+  auto out = std::make_shared<PipelineObjects>(device.handle());
   std::vector<VkDescriptorSetLayoutBinding> bindings(buffers);
   for (std::uint32_t i = 0; i < buffers; ++i) {
     bindings[i] = {};
@@ -30,17 +28,17 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set.bindingCount = buffers;
   set.pBindings = bindings.data();
-  if (const VkResult r = vkCreateDescriptorSetLayout(out.device_, &set, nullptr, &out.set_layout_); r != VK_SUCCESS)
+  if (const VkResult r = vkCreateDescriptorSetLayout(out->device, &set, nullptr, &out->set_layout); r != VK_SUCCESS)
     return vulkan_error("vkCreateDescriptorSetLayout", r);
 
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
   VkPipelineLayoutCreateInfo layout{};
   layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
   layout.setLayoutCount = 1;
-  layout.pSetLayouts = &out.set_layout_;
+  layout.pSetLayouts = &out->set_layout;
   layout.pushConstantRangeCount = push_bytes > 0 ? 1 : 0;
   layout.pPushConstantRanges = &push;
-  if (const VkResult r = vkCreatePipelineLayout(out.device_, &layout, nullptr, &out.layout_); r != VK_SUCCESS)
+  if (const VkResult r = vkCreatePipelineLayout(out->device, &layout, nullptr, &out->layout); r != VK_SUCCESS)
     return vulkan_error("vkCreatePipelineLayout", r);
 
   VkShaderModuleCreateInfo module{};
@@ -48,7 +46,7 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   module.codeSize = code.bytes;
   module.pCode = code.words;
   VkShaderModule shader = VK_NULL_HANDLE;
-  if (const VkResult r = vkCreateShaderModule(out.device_, &module, nullptr, &shader); r != VK_SUCCESS)
+  if (const VkResult r = vkCreateShaderModule(out->device, &module, nullptr, &shader); r != VK_SUCCESS)
     return vulkan_error("vkCreateShaderModule", r);
 
   std::vector<VkSpecializationMapEntry> entries;
@@ -66,34 +64,41 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   create.stage.module = shader;
   create.stage.pName = "main";
   create.stage.pSpecializationInfo = &specialisation;
-  create.layout = out.layout_;
-  const VkResult made = vkCreateComputePipelines(out.device_, VK_NULL_HANDLE, 1, &create, nullptr, &out.pipeline_);
-  vkDestroyShaderModule(out.device_, shader, nullptr);
+  create.layout = out->layout;
+  const VkResult made = vkCreateComputePipelines(out->device, VK_NULL_HANDLE, 1, &create, nullptr, &out->pipeline);
+  vkDestroyShaderModule(out->device, shader, nullptr);
   if (made != VK_SUCCESS) return vulkan_error("vkCreateComputePipelines", made);
   // A module that the layout does not fit is a bug of ours that the layer finds here.
   if (auto r = device.take_validation_error(); !r)
     return Error{ErrorCode::kInternal, std::string("shader ") + code.name + ": " + r.error().sentence};
+  return std::shared_ptr<const PipelineObjects>(std::move(out));
+}
+
+}  // namespace
+
+Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
+                                                std::uint32_t push_bytes, std::span<const SpecConstant> constants) {
+  std::vector<std::uint32_t> key{buffers, push_bytes, static_cast<std::uint32_t>(constants.size())};
+  for (const SpecConstant& c : constants) key.insert(key.end(), {c.id, c.value});
+  key.insert(key.end(), code.words, code.words + code.bytes / 4);
+  std::shared_ptr<const PipelineObjects>& kept = device.pipelines[std::move(key)];
+  if (!kept) {
+    auto made = make_objects(device, code, buffers, push_bytes, constants);
+    if (!made) return made.error();
+    kept = std::move(*made);
+  }
+  ComputePipeline out;
+  out.made_ = kept;
+  out.buffers_ = buffers;
+  out.push_bytes_ = push_bytes;
+  out.name_ = code.name;
   return out;
 }
 
-ComputePipeline::~ComputePipeline() {
-  if (device_ == VK_NULL_HANDLE) return;
-  vkDestroyPipeline(device_, pipeline_, nullptr);
-  vkDestroyPipelineLayout(device_, layout_, nullptr);
-  vkDestroyDescriptorSetLayout(device_, set_layout_, nullptr);
-}
-
-ComputePipeline::ComputePipeline(ComputePipeline&& other) noexcept { *this = std::move(other); }
-
-ComputePipeline& ComputePipeline::operator=(ComputePipeline&& other) noexcept {
-  std::swap(device_, other.device_);
-  std::swap(set_layout_, other.set_layout_);
-  std::swap(layout_, other.layout_);
-  std::swap(pipeline_, other.pipeline_);
-  std::swap(buffers_, other.buffers_);
-  std::swap(push_bytes_, other.push_bytes_);
-  std::swap(name_, other.name_);
-  return *this;
+PipelineObjects::~PipelineObjects() {
+  vkDestroyPipeline(device, pipeline, nullptr);
+  vkDestroyPipelineLayout(device, layout, nullptr);
+  vkDestroyDescriptorSetLayout(device, set_layout, nullptr);
 }
 
 Result<void> warm_up(VulkanDevice& device, std::span<const ComputePipeline* const> pipelines) {

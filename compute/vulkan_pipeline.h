@@ -2,6 +2,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "compute/vulkan_device.h"
@@ -16,30 +17,35 @@ struct SpecConstant {
   std::uint32_t value;
 };
 
+/// What the driver made of one module with one choice of constants.
+struct PipelineObjects {
+  VkDevice device = VK_NULL_HANDLE;
+  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  explicit PipelineObjects(VkDevice of) : device(of) {}
+  PipelineObjects(const PipelineObjects&) = delete;
+  PipelineObjects& operator=(const PipelineObjects&) = delete;
+  ~PipelineObjects();
+};
+
 /// A compute pipeline whose set 0 is `buffers` storage buffers, bindings 0 … buffers − 1 (push descriptors),
-/// with `push_bytes` of push constants. Movable.
+/// with `push_bytes` of push constants. Copies share what the driver made; so do all that one device was ever asked for with the
+/// same module and constants, so that a second scene compiles nothing.
 class ComputePipeline {
  public:
   ComputePipeline() = default;
   static Result<ComputePipeline> create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
                                         std::uint32_t push_bytes = 0, std::span<const SpecConstant> constants = {});
-  ~ComputePipeline();
-  ComputePipeline(ComputePipeline&& other) noexcept;
-  ComputePipeline& operator=(ComputePipeline&& other) noexcept;
-  ComputePipeline(const ComputePipeline&) = delete;
-  ComputePipeline& operator=(const ComputePipeline&) = delete;
 
-  VkPipeline handle() const { return pipeline_; }
-  VkPipelineLayout layout() const { return layout_; }
+  VkPipeline handle() const { return made_->pipeline; }
+  VkPipelineLayout layout() const { return made_->layout; }
   std::uint32_t buffers() const { return buffers_; }
   std::uint32_t push_bytes() const { return push_bytes_; }
   const char* name() const { return name_; }
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  std::shared_ptr<const PipelineObjects> made_;
   std::uint32_t buffers_ = 0;
   std::uint32_t push_bytes_ = 0;
   const char* name_ = "";
