@@ -43,6 +43,7 @@ struct Case {
   bool killer = false;             ///< one of the few that together reach every rule, for those who need an answer in seconds
   bool degenerate = false;         ///< of a family where points, edges and faces coincide or a surface is not a solid's
   int poses = 24;                  ///< how many the stored hashes cover
+  std::uint64_t scene_poses = 400; ///< in a campaign, after how many poses the next seed's scene is made
   double share = 1;                ///< of a campaign's poses, relative to other cases: less where a pose takes long
 };
 

@@ -174,19 +174,18 @@ int run_cases(const std::vector<Case>& cases, const Backends& backends, const Op
   return exit_code(totals);
 }
 
-/// Many poses, shared among the cases by their cost; a new scene, where it depends on the seed, every kPosesPerScene poses.
+/// Many poses, shared among the cases by their cost; a new scene, where it depends on the seed, every so many poses.
 int run_campaign(const std::vector<Case>& cases, const Backends& backends, const Options& options) {
-  constexpr std::uint64_t kPosesPerScene = 240;   // a multiple of kChain
   double shares = 0;
   for (const Case& c : cases) shares += c.share;
   Totals totals;
   for (const Case& c : cases) {
     Totals of_case;
     const auto wanted = static_cast<std::uint64_t>(static_cast<double>(options.campaign) * c.share / shares) + 1;
-    for (std::uint64_t done = 0, seed = options.seed; done < wanted; done += kPosesPerScene, ++seed) {
+    for (std::uint64_t done = 0, seed = options.seed; done < wanted; done += c.scene_poses, ++seed) {
       RunSettings settings;
       settings.seed = seed;
-      settings.poses = std::min(kPosesPerScene, wanted - done);
+      settings.poses = std::min(c.scene_poses, wanted - done);
       settings.twice = true;
       settings.floats = options.floats;
       CaseRun run = run_case(c, backends, settings);
