@@ -39,6 +39,7 @@ class RecordedFrame final : public Frame {
 
   Result<void> make(const PreparedScene& scene, const Plan& plan);
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
+  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_); }
 
@@ -60,6 +61,7 @@ class RecordedFrame final : public Frame {
   std::unique_ptr<CommandRecorder> commands_;
   std::vector<CommandRecorder::StageTime> times_;
   bool tables_clear_ = false;
+  std::uint64_t pairs_ = 0;         ///< that the last query counted
   std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
 };
 
@@ -188,6 +190,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   const auto start = Clock::now();
   out.times.clear();
   clear(out);
+  pairs_ = 0;
   if (!pose.beyond_lattice) out.flags = frame_flags_;
   const Reach where = pose.beyond_lattice ? Reach{} : reach(pose);
   if (pose.beyond_lattice || empty(where)) {
@@ -217,6 +220,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   output.members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>();
   output.pierces = buffers_[gpu::kBindResultPierces].as<gpu::AreaPierce>();
   decode(output, out);
+  pairs_ = out.pairs;
   out.flags |= frame_flags_;
   tables_clear_ = !out.truncated;
 
@@ -230,6 +234,15 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   out.times.push_back({"submit", std::max(0.0, device_us - stages_us)});
   out.times.push_back({"readback", us_since(finished)});
   return {};
+}
+
+Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pairs() const {
+  std::vector<gpu::ContactPair> found(pairs_);
+  if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(), found.size() * sizeof(gpu::ContactPair)); !r) return r.error();
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+  for (const gpu::ContactPair& pair : found) out.emplace_back(pair.static_id, pair.mobile);
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 }  // namespace

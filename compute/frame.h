@@ -1,5 +1,7 @@
 #pragma once
+#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "compute/prepared_scene.h"
@@ -22,6 +24,8 @@ class Frame {
                                                const Plan& plan);
   /// As CollisionBackend::query.
   virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
+  /// As CollisionBackend::pairs.
+  virtual Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const = 0;
   /// Bytes of device memory that the frame itself holds.
   virtual std::uint64_t memory_bytes() const = 0;
   /// Device memory of frame and scene together, by stage of `palpate plan`.

@@ -37,6 +37,11 @@ class GpuBackend final : public CollisionBackend {
     return read_partition(*device_, tool ? scene_->tool.partition : scene_->mockup.partition);
   }
 
+  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override {
+    if (!frame_) return Error{ErrorCode::kInternal, "pairs before prepare"};
+    return frame_->pairs();
+  }
+
   bool has_internal_voxels() const override { return scene_ && scene_->mockup.partition.has_internal; }
   std::string name() const override { return "gpu"; }
   std::string device() const override { return device_->name(); }

@@ -63,6 +63,7 @@ class CpuBackend final : public CollisionBackend {
 
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
     out = Contacts();
+    pairs_.clear();
     if (!scene_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
     try {
       if (!pose.beyond_lattice) answer(pose, held, out);
@@ -77,6 +78,8 @@ class CpuBackend final : public CollisionBackend {
     if (!scene_ || (tool && !scene_->refined())) return Error{ErrorCode::kInternal, "There is no such partition."};
     return tool ? scene_->tool.dense() : scene_->mockup.dense();
   }
+
+  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override { return pairs_; }
 
   bool has_internal_voxels() const override { return scene_ && scene_->mockup.has_internal; }
   std::string name() const override { return "cpu"; }
@@ -94,6 +97,7 @@ class CpuBackend final : public CollisionBackend {
     tool_tree_.build(transform_tool(frame));
     clock.done("transform");
     find_pairs(frame, out);
+    pairs_ = frame.pairs;
     clock.done("pairs");
     find_voxel_sets(frame, out);
     clock.done("voxels");
@@ -127,6 +131,7 @@ class CpuBackend final : public CollisionBackend {
 
   std::unique_ptr<Prepared> scene_;
   BoxTree tool_tree_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;   ///< of the last query, for pairs()
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/contacts.h"
@@ -37,6 +39,12 @@ class CollisionBackend {
 
   /// The mock-up's partition (`tool` = false) or the tool's (refined only), for export and comparison.
   virtual Result<VoxelPartition> partition(bool tool) const = 0;
+
+  /// The intersecting (static, mobile) pairs that the last query() counted in Contacts::pairs, ascending; for export and
+  /// comparison, off the loops: it allocates. An error: this back end lists none.
+  virtual Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const {
+    return Error{ErrorCode::kInternal, "this back end lists no pairs"};
+  }
 
   virtual bool has_internal_voxels() const = 0;   ///< the mock-up has V_int voxels
   virtual std::string name() const = 0;           ///< "gpu" or "cpu"

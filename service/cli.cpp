@@ -53,7 +53,7 @@ A file of poses is CSV with the header x,y,z,qx,qy,qz,qw. A pose far away is fre
 not a unit rotation is an error (exit code 3).
 
 --export-geometry writes what was judged, on the integer lattice, for other software to check: lattice.json, static.i32,
-tool_<pose>.i32, voxels.json, voxels.u8.
+tool_<pose>.i32, voxels.json, voxels.u8, and what it came to: pairs_<pose>.u32 (static and mobile id of each intersecting pair).
 
 Examples:
   palpate query scene.json --pose "0.1 0 0.25 0 0 0 1"

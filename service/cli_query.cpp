@@ -85,8 +85,11 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   const char* capacity = "";
   for (std::size_t first = 0; first < poses.size(); first += batch.size()) {
     batch.resize(std::min(batch.size(), poses.size() - first));
-    for (std::size_t i = 0; i < batch.size(); ++i)
+    for (std::size_t i = 0; i < batch.size(); ++i) {
       if (auto done = answer_pose(scene, poses[first + i], batch[i]); !done) return done;
+      if (options.export_directory.empty()) continue;
+      if (auto done = export_pairs(options.export_directory, *scene.backend, first + i); !done) return done;
+    }
     if (options.batch) share_times(batch);
     text.clear();
     for (std::size_t i = 0; i < batch.size(); ++i) {

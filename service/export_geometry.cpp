@@ -77,4 +77,13 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
   return write_file(root / "voxels.u8", partition->classes.data(), partition->classes.size());
 }
 
+Result<void> export_pairs(const std::string& directory, const CollisionBackend& backend, std::size_t pose) {
+  const auto pairs = backend.pairs();
+  if (!pairs) return pairs.error();
+  std::vector<std::uint32_t> words;
+  words.reserve(2 * pairs->size());
+  for (const auto& [static_id, mobile_id] : *pairs) words.insert(words.end(), {static_id, mobile_id});
+  return write_file(std::filesystem::path(directory) / fmt::format("pairs_{}.u32", pose), words.data(), words.size() * sizeof(std::uint32_t));
+}
+
 }  // namespace palpate

@@ -1,9 +1,11 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "model/collision_backend.h"
 #include "model/pose.h"
+#include "model/result.h"
 #include "model/scene_geometry.h"
 
 namespace palpate {
@@ -14,5 +16,8 @@ namespace palpate {
 /// x fastest). A pose beyond the lattice has no such coordinates and no file: `notes` says so.
 Result<void> export_geometry(const std::string& directory, const SceneGeometry& geometry, const CollisionBackend& backend,
                              const std::vector<Pose>& poses, std::vector<std::string>& notes);
+
+/// Writes beside it pairs_<pose>.u32: the intersecting pairs of the back end's last query, two numbers each (static id, mobile id), ascending.
+Result<void> export_pairs(const std::string& directory, const CollisionBackend& backend, std::size_t pose);
 
 }  // namespace palpate
