@@ -18,6 +18,8 @@ Result<void> SafeDevice::open() {
   faulted_ = false;
   fault_ = "";
   gain_ = 0;
+  sent_ = slewed_ = {};
+  passivity_.reset();
   ticks_since_fresh_ = 0;
   state_ = DeviceState::kOpening;
   return {};
@@ -48,20 +50,44 @@ DeviceSample SafeDevice::read() noexcept {
 void SafeDevice::write(const Wrench& wrench, const Vec3& gc) noexcept {
   if (opened_ && !(finite(wrench) && finite(gc))) latch("a force or torque wasn't finite");
   step_gain();
+  const Wrench before = sent_;
   sent_ = {};
-  if (opened_ && !faulted_ && state_ == DeviceState::kReady && gain_ > 0) {
-    const Wrench able = device_.exertable(wrench, gc);
+  if (opened_ && !faulted_ && state_ == DeviceState::kReady) {
+    Wrench wanted = wrench;
+    if (settings_.passivity) {
+      passivity_.observe(before, gc, last_pose_.rotation);
+      const Wrench damping = passivity_.damping();
+      if (damping.force != Vec3(0) || damping.torque != Vec3(0)) ++damped_ticks_;
+      wanted.force += damping.force;
+      wanted.torque += damping.torque;
+    }
+    const Wrench able = device_.exertable(wanted, gc);
     if (!finite(able)) {
       latch("the haptic device found a wrench that isn't finite");
     } else {
-      sent_ = {shortened(able.force, can_.max_force_n), shortened(able.torque, can_.max_torque_nm)};
-      if (sent_.force != able.force || sent_.torque != able.torque) ++saturated_ticks_;
-      sent_.force *= gain_;
-      sent_.torque *= gain_;
+      const Wrench inside{shortened(able.force, can_.max_force_n), shortened(able.torque, can_.max_torque_nm)};
+      if (inside.force != able.force || inside.torque != able.torque) ++saturated_ticks_;
+      slew(inside);
+      sent_ = {gain_ * slewed_.force, gain_ * slewed_.torque};
     }
   }
+  if (faulted_ || state_ != DeviceState::kReady) slewed_ = {};
   // Zero is written too: a device that hears nothing may hold its last force.
   if (opened_) device_.write(sent_, finite(gc) ? gc : last_pose_.position);
+}
+
+/// Goes from the last wrench towards `wanted`, as far as the slew limit lets it. The gain comes after it, so the limit
+/// delays neither a watchdog's fade nor a zero.
+void SafeDevice::slew(const Wrench& wanted) noexcept {
+  const Wrench change{wanted.force - slewed_.force, wanted.torque - slewed_.torque};
+  const double ticks = settings_.slew_ticks;
+  if (ticks > 0 && (length(change.force) > can_.max_force_n / ticks || length(change.torque) > can_.max_torque_nm / ticks)) {
+    ++slewed_ticks_;
+    slewed_.force += shortened(change.force, can_.max_force_n / ticks);
+    slewed_.torque += shortened(change.torque, can_.max_torque_nm / ticks);
+  } else {
+    slewed_ = wanted;
+  }
 }
 
 void SafeDevice::latch(const char* why) noexcept {

@@ -50,6 +50,9 @@ struct ControlSettings {
   int virtual_delay_ticks = 3;
   double watchdog_ms = 20;
   double fade_in_ms = 200;
+  double change_n_per_s = 100;               ///< law `corrected`: force that comes or goes with the areas, not the hand; 0: unlimited
+  double slew_ms = 5;                        ///< from no force to the device's largest takes at least this long; 0: unlimited
+  bool passivity = false;                    ///< damping takes back what the wall has made by itself
 };
 
 /// A tick of the hand's intended motion. With a guide, position.x is the travel in m and the rest is unused.

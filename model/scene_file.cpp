@@ -19,7 +19,7 @@ const std::map<std::string, std::vector<std::string>>& scene_keys() {
       {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
       {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size"}},
-      {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms"}},
+      {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms", "change_n_per_s", "slew_ms", "passivity"}},
       {"device",
        {"driver", "path", "guide", "stages", "actuated", "mass", "inertia", "damping", "angular_damping", "hand", "max_force",
         "max_torque"}},
@@ -155,6 +155,9 @@ void read_control(const SceneObject& scene_json, Profile profile, ControlSetting
   body.whole("virtual_delay_ticks", 1, 1000, control.virtual_delay_ticks);
   body.number("watchdog_ms", {0, 1e4, " ms", true}, control.watchdog_ms);
   body.number("fade_in_ms", {0, 6e4, " ms"}, control.fade_in_ms);
+  body.number("change_n_per_s", {0, 1e9, " N/s"}, control.change_n_per_s);
+  body.number("slew_ms", {0, 1e4, " ms"}, control.slew_ms);
+  if (const auto passivity = body.choice("passivity", {"off", "on"})) control.passivity = *passivity == 1;
 }
 
 void read_hand(const SceneObject& device_json, DeviceSettings& device) {

@@ -47,6 +47,7 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
 
 const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
   const Wrench wrench = law_.step(pose_, fresh);
+  if (law_.jumped()) device_.restart_fade();   // the device homed, or slipped
   if (law_.took_fresh()) {
     device_.fresh();
     result_tick_ = fresh->tick;

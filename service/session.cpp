@@ -46,6 +46,9 @@ Result<void> check(const Scene& scene, const SessionOptions& options) {
     return wrong("control.virtual_delay_ticks", control.virtual_delay_ticks, "1 to " + std::to_string(kMaxVirtualDelay));
   if (!(control.watchdog_ms >= 0 && control.watchdog_ms <= kMaxFadeMs)) return wrong("control.watchdog_ms", control.watchdog_ms, "0 to 60000");
   if (!(control.fade_in_ms >= 0 && control.fade_in_ms <= kMaxFadeMs)) return wrong("control.fade_in_ms", control.fade_in_ms, "0 to 60000");
+  if (!(control.change_n_per_s >= 0 && std::isfinite(control.change_n_per_s)))
+    return wrong("control.change_n_per_s", control.change_n_per_s, "a finite number of N/s from 0");
+  if (!(control.slew_ms >= 0 && control.slew_ms <= kMaxFadeMs)) return wrong("control.slew_ms", control.slew_ms, "0 to 60000");
   if (options.duration_s && !(*options.duration_s > 0 && *options.duration_s <= 1e9)) return bad_value("the duration is " + number(*options.duration_s) + " s, allowed is more than 0 to 1e9");
   return {};
 }
@@ -109,7 +112,8 @@ struct Run {
   static ForceLawSettings law_settings(const Scene& scene) {
     return {.kind = scene.control.law == ForceLaw::kPrinted ? LawKind::kPrinted : LawKind::kCorrected,
             .stiffness_n_per_m = scene.response.stiffness_n_per_m,
-            .transitions = scene.control.transitions.value_or(0)};
+            .transitions = scene.control.transitions.value_or(0),
+            .change_n_per_s = scene.control.change_n_per_s};
   }
 
   const Scene& scene;
@@ -245,6 +249,8 @@ Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& b
   SafetySettings safety;
   safety.fade_in_ticks = in_ticks(control.fade_in_ms);
   safety.watchdog_ticks = in_ticks(control.watchdog_ms);
+  safety.slew_ticks = control.slew_ms / 1000 / kTickSeconds;
+  safety.passivity = control.passivity;
   // From here on every way out passes SafeDevice's destructor: zero force, then closed.
   SafeDevice safe(device, safety);
   if (auto opened = safe.open(); !opened) return opened.error();

@@ -202,5 +202,80 @@ TEST(SafeDevice, StartsFromZeroAgainWhenTold) {
   EXPECT_EQ(safe.gain(), 0.25);
 }
 
+TEST(SafeDevice, ChangesForceAndTorqueNoFasterThanTheSlewLimitBothWays) {
+  FakeDevice device;
+  SafeDevice safe(device, {.fade_in_ticks = 0, .watchdog_ticks = 0, .slew_ticks = 5});
+  ASSERT_TRUE(safe.open());
+  Wrench before;
+  for (int i = 0; i < 40; ++i) {
+    const double sign = i % 20 < 10 ? 1 : -1;
+    tick(safe, {Vec3(0, 0, 100 * sign), Vec3(0.2 * sign, 0, 0)});
+    EXPECT_LE(length(device.last.force - before.force), 2 + 1e-12) << "10 N in 5 ticks";
+    EXPECT_LE(length(device.last.torque - before.torque), 0.2 + 1e-12);
+    before = device.last;
+    if (i == 9) {
+      EXPECT_NEAR(before.force.z, 10, 1e-12);
+    }
+  }
+  EXPECT_GT(safe.slewed_ticks(), 0u);
+}
+
+TEST(SafeDevice, IsAtZeroAtOnceWhateverTheSlewLimit) {
+  const SafetySettings slow{.fade_in_ticks = 0, .watchdog_ticks = 3, .fade_out_ticks = 4, .slew_ticks = 1000};
+  {
+    FakeDevice device;
+    SafeDevice safe(device, slow);
+    ASSERT_TRUE(safe.open());
+    for (int i = 0; i < 500; ++i) tick(safe, kPush);
+    EXPECT_GT(device.last.force.z, 1);
+    device.state = DeviceState::kFault;
+    tick(safe, kPush);
+    EXPECT_EQ(device.last.force, Vec3(0));
+  }
+  FakeDevice device;
+  SafeDevice safe(device, slow);
+  ASSERT_TRUE(safe.open());
+  for (int i = 0; i < 500; ++i) tick(safe, kPush);
+  for (int i = 0; i < 8; ++i) safe.read(), safe.write(kPush, Vec3(0));   // no fresh result
+  EXPECT_EQ(device.last.force, Vec3(0)) << "the watchdog's fade is not held up";
+}
+
+/// A hand of 0.2 kg on a wall that makes energy: it pushes back harder on the way out than on the way in. Returns the wall's work, J.
+double work_of_an_active_wall(bool passivity) {
+  FakeDevice device;
+  device.can.max_force_n = 100;
+  SafeDevice safe(device, {.fade_in_ticks = 0, .watchdog_ticks = 0, .passivity = passivity});
+  EXPECT_TRUE(safe.open());
+  double x = 1e-3, v = -0.1, work = 0;
+  for (int i = 0; i < 3000; ++i) {
+    device.pose.position.z = x;
+    safe.read();
+    safe.write({Vec3(0, 0, x < 0 ? (v > 0 ? -520 : -500) * x : 0), Vec3(0)}, device.pose.position);
+    const double push = device.last.force.z;
+    const double next = x + v * 1e-3 + 0.5 * (push - 1) / 0.2 * 1e-6;   // the hand presses with 1 N
+    work += push * (next - x);
+    v += (push - 1) / 0.2 * 1e-3;
+    x = next;
+  }
+  return work;
+}
+
+TEST(SafeDevice, TakesBackTheEnergyThatAWallMakesWhenPassivityIsOn) {
+  EXPECT_GT(work_of_an_active_wall(false), 1e-3);
+  EXPECT_LT(work_of_an_active_wall(true), 1e-5);
+}
+
+TEST(SafeDevice, LeavesAPassiveWallAloneWhenPassivityIsOn) {
+  FakeDevice device;
+  SafeDevice safe(device, {.fade_in_ticks = 0, .watchdog_ticks = 0, .passivity = true});
+  ASSERT_TRUE(safe.open());
+  for (int i = 0; i < 300; ++i) {   // a damper: takes energy only
+    device.pose.position.z = 1e-3 * std::sin(0.05 * i);
+    tick(safe, {Vec3(0, 0, -0.05 * std::cos(0.05 * i)), Vec3(0)});
+    ASSERT_EQ(device.last.force.z, -0.05 * std::cos(0.05 * i)) << i;
+  }
+  EXPECT_EQ(safe.damped_ticks(), 0u);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <type_traits>
 
 #include "driver/limits.h"
 #include "model/rotation.h"
+#include "service/axis_loop.h"
 #include "tests/driver/allocation_count.h"
-#include "tests/service/one_axis_loop.h"
 
 namespace palpate {
 namespace {
@@ -39,7 +40,25 @@ ForceLawSettings law(LawKind kind, int transitions, bool stops = false) {
   return {.kind = kind, .stiffness_n_per_m = kK, .transitions = transitions, .printed_stops_at_n = stops};
 }
 
-// --- The highest stable stiffness (the design's table; measured there by pole analysis, here by bisection of a run) ---
+// --- The highest stable stiffness (the design's table; measured there by pole analysis, here by bisection of runs) ---
+
+/// The design's yardstick: 0.5 kg, 1 N·s/m, pressed so deep into a linear wall that nothing is clamped.
+AxisLoop pressed(const ForceLawSettings& settings, int delay, double stiffness, double ratio = 1, double depth = 1) {
+  AxisLoop loop;
+  loop.law = settings;
+  loop.law.stiffness_n_per_m = stiffness;
+  loop.delivery.delay = delay;
+  loop.contact = linear_wall(stiffness, depth, 1, ratio, false);
+  loop.load_n = -stiffness * depth;
+  return loop;
+}
+
+// 20 pm: at 2000 N the rounding of the force alone moves the mass by less.
+bool stable(const AxisLoop& loop, int ticks = 20000) { return AxisLoop::stable(loop.run(ticks), 2e-11); }
+
+double critical_stiffness(const ForceLawSettings& settings, int delay, double ratio = 1, double depth = 1) {
+  return highest_stable(20, 8000, [&](double k) { return stable(pressed(settings, delay, k, ratio, depth)); });
+}
 
 struct StabilityCase {
   const char* name;
@@ -54,11 +73,9 @@ void PrintTo(const StabilityCase& c, std::ostream* out) { *out << c.name; }
 class ForceLawStability : public testing::TestWithParam<StabilityCase> {};
 
 TEST_P(ForceLawStability, HasTheHighestStiffnessOfPoleAnalysis) {
-  OneAxisLoop loop;
-  loop.delay = GetParam().delay;
-  loop.law = law(GetParam().kind, GetParam().transitions, GetParam().stops);
-  // 1 %: a run of 20 s counts as dying out only if it has lost 5 % between its quarters; measured −0.3 to −0.7 %.
-  EXPECT_NEAR(loop.critical_stiffness() / GetParam().expected, 1, 0.01);
+  const double critical = critical_stiffness(law(GetParam().kind, GetParam().transitions, GetParam().stops), GetParam().delay);
+  // 1 %: a run of 20 s counts as dying out only if it has lost 5 % between its quarters; measured −0.3 to −0.9 %.
+  EXPECT_NEAR(critical / GetParam().expected, 1, 0.01);
 }
 
 constexpr LawKind kH = LawKind::kHold, kP = LawKind::kPrinted, kC = LawKind::kCorrected;
@@ -79,19 +96,15 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ForceLawStability, AsPrintedAddingUntilTheNextResultIsNeverStableWhenNIsHalfTheDelay) {
   // ΔM is added 10 times instead of 5: the error changes sign with every result and slowly grows, whatever K is.
   for (const double k : {100.0, 500.0, 1000.0}) {
-    OneAxisLoop loop{.contact_k = k, .delay = 10, .law = law(kP, 5)};
-    EXPECT_FALSE(loop.stable(200000)) << k;
-    loop.law = law(kP, 5, true);
-    EXPECT_TRUE(loop.stable(200000)) << k;
+    EXPECT_FALSE(stable(pressed(law(kP, 5), 10, k), 200000)) << k;
+    EXPECT_TRUE(stable(pressed(law(kP, 5, true), 10, k), 200000)) << k;
   }
 }
 
 TEST(ForceLawStability, FallsWithAPlaneSofterThanTheContactAsTheoryPredicts) {
   // K < b / (T/2 + (1 − α)(2c − 1) T), n = c.
-  for (const int delay : {1, 2, 5}) {
-    OneAxisLoop loop{.kappa_ratio = 0.5, .delay = delay, .law = law(kC, delay)};
-    EXPECT_NEAR(loop.critical_stiffness() / (1.0 / (0.5e-3 + 0.5 * (2 * delay - 1) * 1e-3)), 1, 0.02);
-  }
+  for (const int delay : {1, 2, 5})
+    EXPECT_NEAR(critical_stiffness(law(kC, delay), delay, 0.5) / (1.0 / (0.5e-3 + 0.5 * (2 * delay - 1) * 1e-3)), 1, 0.02);
 }
 
 // --- What the laws do to a hand ---
@@ -222,7 +235,9 @@ TEST(ForceLaw, CorrectedReachesALateResultInNTicksAndNeverPassesIt) {
 
 TEST(ForceLaw, CorrectedEndsAContactInNTicksExactly) {
   ForceLawState state(law(kC, 4));
-  const LawResult touch = wall(0, -5e-3), free = wall(10, 1e-9);
+  const LawResult touch = wall(0, -5e-3);
+  LawResult free = wall(10, 1.0);
+  free.gc.x = -5e-3;   // nothing where the wall was
   for (int i = 0; i < 10; ++i) state.step(at(i, -5e-3), &touch);
   for (int i = 10; i < 14; ++i) EXPECT_NEAR(state.step(at(i, -5e-3), &free).force.x, 10.0 * (13 - i) / 4, 1e-12);
   EXPECT_EQ(state.step(at(14, -5e-3), nullptr).force, Vec3(0));
@@ -336,6 +351,221 @@ TEST(ForceLaw, DoesNotAllocate) {
   EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
+// --- A force that never jumps ---
+
+constexpr double kRate = 100;   // N/s
+
+ForceLawSettings steady(int transitions) {
+  ForceLawSettings settings = law(kC, transitions);
+  settings.change_n_per_s = kRate;
+  return settings;
+}
+
+TEST(SteadyForce, NeverChangesByMoreInATickThanTheHandsWayAndTheRateAllowWhateverResultsCome) {
+  // In a tick: (κ + 2K) times the way of the contact points, plus 0.1 N. κ sums over a result's planes; levers reach 0.1 m.
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto vector = [&](double reach) { return reach * Vec3(2 * unit(random) - 1, 2 * unit(random) - 1, 2 * unit(random) - 1); };
+  double largest_jump = 0;
+  for (int run = 0; run < 60; ++run) {
+    ForceLawState state(steady(run % 8));
+    const double speed = run % 3 == 0 ? 0 : 1e-3 * unit(random);   // m a tick
+    LawPose pose;
+    Vec3 before(0), told(0);
+    for (int i = 0; i < 600; ++i) {
+      const Vec3 moved = vector(speed), turned = vector(speed);
+      pose = {i, pose.gc + moved, glm::normalize(rotation_by(turned) * pose.rotation)};
+      LawResult result;
+      result.tick = i - 1 - static_cast<int>(12 * unit(random));
+      result.gc = pose.gc + vector(1e-3);
+      result.rotation = pose.rotation;
+      result.plane_count = static_cast<std::uint32_t>(5 * unit(random));
+      for (std::uint32_t p = 0; p < result.plane_count; ++p)
+        result.planes[p] = {glm::normalize(vector(1) + Vec3(0, 0, 1.1)), vector(0.05), 30 * unit(random), 500 + 1500 * unit(random)};
+      const bool comes = unit(random) < 0.3;
+      if (comes) {
+        const Vec3 now = pushed(result, pose.gc, pose.rotation).force;
+        largest_jump = std::max(largest_jump, length(now - told));
+        told = now;
+      }
+      const Vec3 force = state.step(pose, comes ? &result : nullptr).force;
+      const double way = length(moved) + 0.1 * length(turned);
+      ASSERT_LE(length(force - before), (4 * 2000 + 2 * kK) * way + kRate * 1e-3 + 1e-9) << run << " " << i;
+      before = force;
+    }
+  }
+  EXPECT_GT(largest_jump, 50) << "the results themselves jumped by that many newtons";
+}
+
+TEST(SteadyForce, GoesOverToAnotherSetOfAreasAtTheRateWhileTheHandRests) {
+  // Two pads of 10 N become one: 20 N → 10 N in 100 ticks; and splits again.
+  ForceLawState state(steady(3));
+  LawResult two = wall(0, -5e-3), one = wall(10, -5e-3);
+  two.planes[1] = two.planes[0];
+  two.planes[1].lever = Vec3(0, 0.05, 0);
+  two.plane_count = 2;
+  double before = 0;
+  for (int i = 0; i < 800; ++i) {
+    two.tick = one.tick = i;
+    const double force = state.step(at(i, -5e-3), i % 3 != 0 ? nullptr : i < 300 || i >= 500 ? &two : &one).force.x;
+    EXPECT_LE(std::abs(force - before), 0.1 + 1e-9) << i;
+    if (i == 299 || i == 799) {
+      EXPECT_NEAR(force, 20, 1e-9);
+    }
+    // 51 N·mm of torque at 0.05 m goes with the force: the lever's share sets the pace, 100 ticks of force.
+    if (i == 450) {
+      EXPECT_NEAR(force, 10, 1e-9);
+    }
+    before = force;
+  }
+}
+
+TEST(SteadyForce, LetsAWallBuildUpInFrontOfAFastHand) {
+  // 1 m/s into 2000 N/m, results 5 ticks late: 25 ms on, the force is the wall's, and within 10 ms it is half of it.
+  ForceLawState state(steady(5));
+  LawResult pending;
+  for (int i = 0; i < 60; ++i) {
+    const double x = 0.02 - 1e-3 * i;
+    const LawResult arrived = pending;
+    if (i % 5 == 0) pending = wall(i, x);
+    const double force = state.step(at(i, x), i % 5 == 0 && arrived.tick >= 0 ? &arrived : nullptr).force.x;
+    if (i >= 32) {
+      EXPECT_GE(force, 0.5 * kK * -x) << i;
+    }
+    if (i >= 45) {
+      EXPECT_NEAR(force, kK * -x, 1e-6) << i;
+    }
+  }
+}
+
+TEST(SteadyForce, IsThatOfTheLawWithoutTheLimitWhereAreasDoNotChange) {
+  // A smooth press: nothing to hold back, the same bits.
+  ForceLawState limited(steady(5)), free(law(kC, 5));
+  LawResult pending;
+  for (int i = 0; i < 2000; ++i) {
+    const double x = -2e-3 * (1 - std::cos(0.003 * i));
+    const LawResult arrived = pending;
+    if (i % 5 == 0) pending = wall(i, x);
+    const LawResult* fresh = i % 5 == 0 && arrived.tick >= 0 ? &arrived : nullptr;
+    ASSERT_EQ(limited.step(at(i, x), fresh).force, free.step(at(i, x), fresh).force) << i;
+  }
+}
+
+TEST(SteadyForce, LetsWhatIsLeftBehindGiveWayButNotGrow) {
+  // The contact has ended; the hand presses on into the empty place.
+  ForceLawState state(steady(1));
+  const LawResult touch = wall(0, -5e-3), free = wall(200, 1.0);
+  for (int i = 0; i < 200; ++i) state.step(at(i, -5e-3), i == 0 ? &touch : nullptr);
+  double before = 10;
+  for (int i = 200; i < 300; ++i) {
+    const double force = state.step(at(i, -5e-3 - 1e-5 * (i - 200)), i == 200 ? &free : nullptr).force.x;
+    EXPECT_LE(force, before);
+    before = force;
+  }
+  EXPECT_EQ(before, 0);
+}
+
+TEST(SteadyForce, KeepsTheStableStiffness) {
+  // 1 mm of preload: reached within the loop's 200 ticks of settling, 0.1 N each.
+  for (const int delay : {1, 5, 10}) EXPECT_NEAR(critical_stiffness(steady(delay), delay, 1, 1e-3) / 2001, 1, 0.01) << delay;
+}
+
+// --- A wall that the tool has just left ---
+
+/// A mass dropped on a wall by its own weight of 1 N, from 1 mm; results c ticks old and c apart.
+AxisLoop drop(double stiffness, int delay) {
+  AxisLoop loop = pressed(steady(delay), delay, stiffness);
+  loop.contact = linear_wall(stiffness, 0);
+  loop.load_n = -1;
+  loop.start_x = 1e-3;
+  loop.settle_ticks = 0;
+  return loop;
+}
+
+TEST(LeftWall, LetsABounceDieOutAtTheStiffnessThatIsStableInContact) {
+  for (const int delay : {1, 2, 5, 10}) {
+    const AxisLoop::Outcome outcome = drop(1900, delay).run(20000);
+    EXPECT_TRUE(AxisLoop::stable(outcome, 1e-6)) << delay << ": " << outcome.early << " " << outcome.late << " m";
+    EXPECT_GE(outcome.least_force_n, 0);
+  }
+}
+
+TEST(LeftWall, IsThereAtOnceWhenTheHandComesBack) {
+  ForceLawState state(steady(1));
+  const LawResult touch = wall(0, -2e-3), free = wall(20, 3e-3);
+  for (int i = 0; i < 20; ++i) state.step(at(i, -2e-3 + 2.5e-4 * i), i == 0 ? &touch : nullptr);
+  EXPECT_EQ(state.step(at(21, 3e-3), &free).force, Vec3(0));
+  for (int i = 22; i < 60; ++i) {
+    const double x = 3e-3 - 2e-4 * (i - 22);
+    EXPECT_NEAR(state.step(at(i, x), nullptr).force.x, std::max(0.0, -kK * x), 1e-9) << i;
+  }
+}
+
+TEST(LeftWall, IsGivenUpWhereAResultFindsNothingOrTheHandHasGoneAlongItOrItIsOld) {
+  const auto force_after = [](const LawResult& second, int tick, const Vec3& gc) {
+    ForceLawState state(law(kC, 1));
+    const LawResult touch = wall(0, -2e-3);
+    state.step(at(0, -2e-3), &touch);
+    for (int i = 1; i < tick; ++i) state.step({i, Vec3(2e-3, gc.y * i / tick, 0)}, nullptr);
+    state.step({tick, second.gc}, &second);
+    return state.step({tick + 1, gc}, nullptr).force.x;
+  };
+  const LawResult near = wall(20, 2e-3);
+  EXPECT_GT(force_after(near, 21, Vec3(-1e-3, 0, 0)), 1) << "kept";
+  LawResult nothing = near;
+  nothing.gc.x = -1e-3;
+  EXPECT_EQ(force_after(nothing, 21, Vec3(-1e-3, 0, 0)), 0);
+  LawResult along = near;
+  along.gc.y = 6e-3;
+  EXPECT_EQ(force_after(along, 21, Vec3(-1e-3, 6e-3, 0)), 0);
+  LawResult old = near;
+  old.tick = 260;
+  EXPECT_EQ(force_after(old, 261, Vec3(-1e-3, 0, 0)), 0);
+}
+
+TEST(LeftWall, CountsOnceWhenAResultHasItAgain) {
+  ForceLawState state(law(kC, 1));
+  const LawResult touch = wall(0, -2e-3), free = wall(20, 2e-3), again = wall(40, -1e-3);
+  state.step(at(0, -2e-3), &touch);
+  state.step(at(21, 2e-3), &free);
+  EXPECT_NEAR(state.step(at(41, -1e-3), &again).force.x, 2, 1e-12);
+}
+
+// --- What can't be trusted ---
+
+TEST(ForceLaw, IgnoresAResultThatIsNotFiniteOrFromTheFuture) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  for (const LawKind kind : {kH, kP, kC}) {
+    for (int fault = 0; fault < 7; ++fault) {
+      ForceLawState state(law(kind, 3));
+      LawResult good = wall(0, -5e-3), bad = wall(5, -5e-3);
+      for (int i = 0; i < 5; ++i) state.step(at(i, -5e-3), &good);
+      if (fault == 0) bad.gc.y = nan;
+      if (fault == 1) bad.planes[0].force = inf;
+      if (fault == 2) bad.planes[0].stiffness = -inf;
+      if (fault == 3) bad.wrench.torque.z = nan;
+      if (fault == 4) bad.plane_count = kMaxLawPlanes + 1;
+      if (fault == 5) bad.rotation.w = 7;
+      if (fault == 6) bad.tick = 7;
+      const Wrench with = state.step(at(6, -5e-3), &bad);
+      EXPECT_FALSE(state.took_fresh()) << fault;
+      EXPECT_TRUE(finite(with));
+    }
+  }
+}
+
+TEST(ForceLaw, ForgetsEverythingWhenThePoseJumps) {
+  ForceLawState state(law(kC, 1));
+  LawResult touch = wall(0, -5e-3);
+  EXPECT_GT(state.step(at(1, -5e-3), &touch).force.x, 9);
+  EXPECT_EQ(state.step(at(2, -1.0), nullptr).force, Vec3(0)) << "a device that homes: not 2000 N";
+  EXPECT_TRUE(state.jumped());
+  touch.tick = 1;
+  EXPECT_EQ(state.step(at(3, -1.0), &touch).force, Vec3(0)) << "a result for the pose before the jump";
+  touch = wall(3, -1.0);
+  EXPECT_GT(state.step(at(4, -1.0), &touch).force.x, 0);
+}
+
 // --- From a contact response to planes ---
 
 AreaResponse area(std::uint32_t id, const Vec3& normal, double depth, double max_depth, const Vec3& point) {
@@ -347,14 +577,29 @@ TEST(LawResult, TakesTheStiffnessFromMeanOverLargestHeightWithinAQuarterAndOne) 
   ContactResponse response;
   response.contact = true;
   const Vec3 up(0, 0, 1);
-  response.areas = {area(1, up, 2e-3, 4e-3, up), area(2, up, 1e-3, 9e-3, up), area(3, up, 3e-3, 3e-3, up), area(4, up, 3e-3, 0, up)};
+  response.areas = {area(1, up, 2e-3, 4e-3, up), area(2, up, 1e-3, 9e-3, up), area(3, up, 3e-3, 3e-3, up), area(4, up, 3e-3, 0, up),
+                    area(5, up, 1e-3, 3e-3, up)};
   LawResult out;
   fill_law_result(response, kK, out);
-  ASSERT_EQ(out.plane_count, 4u);
+  ASSERT_EQ(out.plane_count, 5u);
   EXPECT_NEAR(out.planes[0].stiffness, 1000, 1e-9);
   EXPECT_NEAR(out.planes[1].stiffness, 500, 1e-9);
   EXPECT_NEAR(out.planes[2].stiffness, 2000, 1e-9);
   EXPECT_NEAR(out.planes[3].stiffness, 2000, 1e-9);
+  EXPECT_NEAR(out.planes[4].stiffness, 2000. / 3, 1e-9) << "a corner";
+}
+
+TEST(LawResult, TakesTheStiffnessOfASphereOnTheSafeSideAndWithinOneAndAHalfPercent) {
+  // Mean height of a cap: d = h (3R − h) / (3 (2R − h)); ∂d/∂h by x = h/R: (6 − 4x + x²) / (3 (2 − x)²).
+  for (double x = 0.01; x <= 0.5; x += 0.01) {
+    ContactResponse response;
+    response.areas = {area(1, Vec3(0, 0, 1), x * (3 - x) / (3 * (2 - x)), x, Vec3(0))};
+    LawResult out;
+    fill_law_result(response, kK, out);
+    const double ratio = out.planes[0].stiffness / (kK * (6 - 4 * x + x * x) / (3 * (2 - x) * (2 - x)));
+    EXPECT_GE(ratio, 1 - 1e-9) << x;   // below is what costs stability; rounding
+    EXPECT_LE(ratio, 1.015) << x;
+  }
 }
 
 TEST(LawResult, LeavesOutAreasThatDoNotPush) {

@@ -339,9 +339,11 @@ TEST(Session, RefusesSettingsInOneSentenceBeforeTheDeviceIsTouched) {
     EXPECT_EQ(device.writes, 0);
     return summary ? std::string("accepted") : summary.error().sentence;
   };
-  EXPECT_THAT(refusal([](Scene& s) { s.control.transitions = 65; }), HasSubstr("control.transitions is 65"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.transitions = 1001; }), HasSubstr("control.transitions is 1001"));
   EXPECT_THAT(refusal([](Scene& s) { s.control.virtual_delay_ticks = 0; }), HasSubstr("control.virtual_delay_ticks is 0"));
   EXPECT_THAT(refusal([](Scene& s) { s.control.watchdog_ms = NAN; }), HasSubstr("control.watchdog_ms is nan"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.slew_ms = -1; }), HasSubstr("control.slew_ms is -1"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.change_n_per_s = NAN; }), HasSubstr("control.change_n_per_s is nan"));
   EXPECT_THAT(refusal([](Scene& s) { s.response.stiffness_n_per_m = -1; }), HasSubstr("response.stiffness is -1"));
 }
 

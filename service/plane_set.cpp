@@ -1,0 +1,92 @@
+#include "service/plane_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "driver/limits.h"
+#include "model/rotation.h"
+
+namespace palpate {
+namespace {
+
+/// How far the tool has come since a set's pose.
+struct Motion {
+  Vec3 moved, turned;
+  Motion(const PlaneSet& set, const Vec3& gc, const Quat& rotation)
+      : moved(gc - set.gc), turned(rotation_vector(rotation * glm::conjugate(set.rotation))) {}   // the short way
+};
+
+double force_at(const ContactPlane& plane, const Motion& motion, bool grows) {
+  const double out = glm::dot(plane.normal, motion.moved) + glm::dot(plane.lever, motion.turned);   // n_cᵀ J ΔX
+  const double force = std::max(0.0, plane.force - plane.stiffness * out);
+  return grows ? force : std::min(force, plane.force);
+}
+
+/// How unlike two planes are: a tenth of a radian of direction counts as much as a centimetre of lever.
+double unlikeness(const ContactPlane& a, const ContactPlane& b) {
+  const Vec3 turn = a.normal - b.normal, lever = (a.lever - b.lever) / 0.1;
+  return glm::dot(turn, turn) + glm::dot(lever, lever);
+}
+constexpr double kAlike = 1e-4;   ///< a hundredth of a radian, or a millimetre of lever (chosen)
+
+ContactPlane merged(const ContactPlane& a, const ContactPlane& b) {
+  const Vec3 force = a.force * a.normal + b.force * b.normal;
+  const double size = length(force);
+  if (!(size > 1e-9 * (a.force + b.force))) return a.force >= b.force ? a : b;   // they cancel: a couple at most is lost
+  ContactPlane sum{.normal = force / size, .lever = (a.force * a.lever + b.force * b.lever) / size, .force = size, .stiffness = 0};
+  for (const ContactPlane* one : {&a, &b}) {
+    const double along = glm::dot(sum.normal, one->normal);
+    sum.stiffness += one->stiffness * along * along;
+  }
+  return sum;
+}
+
+void add(PlaneSet& into, const ContactPlane& plane) {
+  std::uint32_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < into.plane_count; ++i)
+    if (const double unlike = unlikeness(into.planes[i], plane); unlike < least) least = unlike, nearest = i;
+  if (into.plane_count > 0 && (least < kAlike || into.plane_count == kMaxLawPlanes)) {
+    into.planes[nearest] = merged(into.planes[nearest], plane);
+  } else {
+    into.planes[into.plane_count++] = plane;
+  }
+}
+
+}  // namespace
+
+Wrench pushed(const PlaneSet& set, const Vec3& gc, const Quat& rotation, bool grows) {
+  Wrench sum;
+  if (set.plane_count == 0) return sum;
+  const Motion motion(set, gc, rotation);
+  for (std::uint32_t i = 0; i < set.plane_count; ++i) {
+    const double force = force_at(set.planes[i], motion, grows);
+    sum.force += force * set.planes[i].normal;
+    sum.torque += force * set.planes[i].lever;
+  }
+  return sum;
+}
+
+void add_pushes(PlaneSet& into, const PlaneSet& set, double share, bool grows) {
+  if (set.plane_count == 0 || !(share > 0)) return;
+  const Motion motion(set, into.gc, into.rotation);
+  for (std::uint32_t i = 0; i < set.plane_count; ++i) {
+    ContactPlane plane = set.planes[i];
+    plane.force = share * force_at(plane, motion, grows);
+    plane.stiffness *= share;
+    if (plane.force > 0) add(into, plane);
+  }
+}
+
+bool sound(const PlaneSet& set) {
+  if (set.plane_count > kMaxLawPlanes || !sound(Pose{set.gc, set.rotation})) return false;
+  for (std::uint32_t i = 0; i < set.plane_count; ++i) {
+    const ContactPlane& plane = set.planes[i];
+    if (!finite(plane.normal) || !finite(plane.lever) || !std::isfinite(plane.force) || !(plane.stiffness >= 0 && std::isfinite(plane.stiffness)))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace palpate
