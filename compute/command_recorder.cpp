@@ -117,15 +117,14 @@ void CommandRecorder::barrier() {
   vkCmdPipelineBarrier2(commands_, &dependency);
 }
 
-void CommandRecorder::fill(const VulkanBuffer& buffer, std::uint32_t word, std::uint64_t offset, std::uint64_t bytes) {
-  vkCmdFillBuffer(commands_, buffer.handle(), offset, bytes, word);
+void CommandRecorder::fill(VkBuffer buffer, std::uint32_t word, std::uint64_t offset, std::uint64_t bytes) {
+  vkCmdFillBuffer(commands_, buffer, offset, bytes, word);
 }
 
-void CommandRecorder::copy(const VulkanBuffer& from, std::uint64_t from_offset, const VulkanBuffer& to,
-                           std::uint64_t to_offset, std::uint64_t bytes) {
+void CommandRecorder::copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to, std::uint64_t to_offset, std::uint64_t bytes) {
   if (bytes == 0) return;
   const VkBufferCopy region{from_offset, to_offset, bytes};
-  vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
+  vkCmdCopyBuffer(commands_, from, to, 1, &region);
 }
 
 void CommandRecorder::stage(const char* name) {

@@ -79,9 +79,13 @@ class CommandRecorder {
   /// Everything recorded so far is complete and visible to all that follows: shaders, indirect arguments, copies, host.
   void barrier();
   /// Sets every 32-bit word of [offset, offset + bytes) to `word`; bytes a multiple of 4.
-  void fill(const VulkanBuffer& buffer, std::uint32_t word, std::uint64_t offset = 0, std::uint64_t bytes = VK_WHOLE_SIZE);
+  void fill(const VulkanBuffer& buffer, std::uint32_t word) { fill(buffer.handle(), word, 0, buffer.bytes()); }
+  void fill(VkBuffer buffer, std::uint32_t word, std::uint64_t offset, std::uint64_t bytes);
   void copy(const VulkanBuffer& from, std::uint64_t from_offset, const VulkanBuffer& to, std::uint64_t to_offset,
-            std::uint64_t bytes);
+            std::uint64_t bytes) {
+    copy(from.handle(), from_offset, to.handle(), to_offset, bytes);
+  }
+  void copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to, std::uint64_t to_offset, std::uint64_t bytes);
   /// Begins the stage `name` (a literal): what follows counts as its time until the next stage or the end.
   void stage(const char* name);
   /// Ends recording; called by submit_and_wait() if need be.

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
 #include <string>
 
 namespace palpate {
 namespace {
 
 // Words of SPIR-V that matter here (specification 2.3, 3.20, 3.32.3): a five-word header, then instructions that begin with
-// (length << 16 | opcode). OpDecorate target decoration literal.
+// (length << 16 | opcode). OpDecorate target decoration literal; OpArrayLength type result variable member.
 constexpr std::size_t kHeaderWords = 5;
+constexpr std::uint32_t kOpArrayLength = 68;
 constexpr std::uint32_t kOpDecorate = 71;
 constexpr std::uint32_t kDecorationBinding = 33;
 
@@ -22,6 +24,18 @@ void for_each_binding(std::span<std::uint32_t> words, F f) {
     if (length == 0) return;
     i += length;
   }
+}
+
+/// Bindings whose number of entries a module asks.
+std::vector<std::int32_t> measured_bindings(std::span<const std::uint32_t> words) {
+  std::map<std::uint32_t, std::int32_t> binding_of;   // by variable; decorations stand before all code
+  std::vector<std::int32_t> measured;
+  for (std::size_t i = kHeaderWords; i < words.size() && words[i] >> 16 != 0; i += words[i] >> 16) {
+    const std::uint32_t opcode = words[i] & 0xFFFFu;
+    if (opcode == kOpDecorate && words[i + 2] == kDecorationBinding) binding_of[words[i + 1]] = static_cast<std::int32_t>(words[i + 3]);
+    if (opcode == kOpArrayLength) measured.push_back(binding_of.at(words[i + 3]));
+  }
+  return measured;
 }
 
 }  // namespace
@@ -70,6 +84,7 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
   FrameShader out;
   std::vector<std::uint32_t> words(code.words, code.words + code.bytes / 4);
   for_each_binding(words, [&](std::uint32_t& b) { out.bindings.push_back(static_cast<std::int32_t>(b)); });
+  out.measured = measured_bindings(words);
   std::sort(out.bindings.begin(), out.bindings.end());
   out.bindings.erase(std::unique(out.bindings.begin(), out.bindings.end()), out.bindings.end());
   for_each_binding(words, [&](std::uint32_t& b) {
@@ -86,7 +101,11 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
 std::span<const BufferView> FrameRecorder::bound(const FrameShader& shader) {
   if (std::find(used_.begin(), used_.end(), &shader.pipeline) == used_.end()) used_.push_back(&shader.pipeline);
   views_.clear();
-  for (const std::int32_t binding : shader.bindings) views_.emplace_back(buffers_[binding]);
+  for (const std::int32_t binding : shader.bindings) {
+    const VulkanBuffer& buffer = buffers_[binding];
+    const bool measured = std::find(shader.measured.begin(), shader.measured.end(), binding) != shader.measured.end();
+    views_.push_back(measured ? BufferView(buffer, 0, buffer.bytes()) : BufferView(buffer));   // a guard is no entry
+  }
   return views_;
 }
 

@@ -53,6 +53,7 @@ class FrameBuffers {
 struct FrameShader {
   ComputePipeline pipeline;
   std::vector<std::int32_t> bindings;   ///< frame-wide number behind the pipeline's binding 0, 1, …
+  std::vector<std::int32_t> measured;   ///< of these, whose length the shader asks
 };
 
 /// Builds the pipeline of a module that declares its buffers in set 0 by frame-wide numbers.

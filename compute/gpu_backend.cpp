@@ -24,12 +24,13 @@ class GpuBackend final : public CollisionBackend {
     auto frame = Frame::create(*device_, geometry, *scene_, plan);
     if (!frame) return frame.error();
     frame_ = std::move(*frame);
-    return {};
+    return device_->check_guards();
   }
 
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
-    return frame_->query(pose, held, out);
+    if (auto r = frame_->query(pose, held, out); !r) return r;
+    return device_->check_guards();
   }
 
   Result<VoxelPartition> partition(bool tool) const override {

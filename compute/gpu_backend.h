@@ -11,6 +11,7 @@ namespace palpate {
 struct GpuOptions {
   std::string device;             ///< part of a device's name; empty: the best usable one
   bool validation = false;        ///< validation layer with synchronisation checks; a message is an error
+  bool guard_buffers = false;     ///< for tests: prepare and query fail when anything was written beyond a buffer's ends
   bool inline_execution = true;   ///< on lavapipe, run on the submitting thread (LP_NUM_THREADS=0); see docs
 };
 

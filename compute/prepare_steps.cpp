@@ -89,7 +89,7 @@ void PrepareSteps::scan_level(const VulkanBuffer& values, std::uint64_t count) {
 
 std::uint32_t PrepareSteps::scan(const char* what, const VulkanBuffer& values, std::uint64_t count) {
   // The entry behind the last counts as 0, and so ends as the total.
-  run([&](CommandRecorder& r) { r.fill(values, 0, count * 4, 4); });
+  run([&](CommandRecorder& r) { r.fill(values.handle(), 0, count * 4, 4); });
   scan_level(values, count + 1);
   const std::uint32_t total = read(values, count);
   if (total == 0xFFFFFFFFu) fail(bad_value(std::string("more than 4294967294 ") + what + "; a larger voxel would do with fewer"));

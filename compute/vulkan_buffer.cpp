@@ -33,7 +33,7 @@ Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what
   out.bytes_ = bytes;
   VkBufferCreateInfo create{};
   create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-  create.size = bytes;
+  create.size = bytes + (device.guarded ? BufferGuard::kBytes : 0);
   create.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   create.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
@@ -55,22 +55,28 @@ Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what
   if (type < 0) return Error{ErrorCode::kInternal, device.name() + " has no memory type for " + what};
   VkMemoryAllocateInfo allocate{};
   allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  allocate.allocationSize = needs.size;
+  const std::uint64_t before = device.guarded ? BufferGuard::before(needs.alignment) : 0;
+  allocate.allocationSize = before + needs.size;
   allocate.memoryTypeIndex = static_cast<std::uint32_t>(type);
   if (const VkResult r = vkAllocateMemory(device.handle(), &allocate, nullptr, &out.memory_); r != VK_SUCCESS)
     return bad_value(std::string(what) + " need " + mebibytes(bytes) + ", which " + device.name() + " could not give (" +
                      vulkan_error("vkAllocateMemory", r).sentence + ")");
   device.allocated += bytes;
-  if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, 0); r != VK_SUCCESS)
+  if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, before); r != VK_SUCCESS)
     return vulkan_error("vkBindBufferMemory", r);
   if (map)
     if (const VkResult r = vkMapMemory(device.handle(), out.memory_, 0, VK_WHOLE_SIZE, 0, &out.mapped_); r != VK_SUCCESS)
       return vulkan_error("vkMapMemory", r);
+  if (device.guarded) {
+    out.guard_ = std::make_unique<BufferGuard>(device, what, out.memory_, out.mapped_, before, bytes);
+    if (map) out.mapped_ = static_cast<char*>(out.mapped_) + before;
+  }
   return out;
 }
 
 VulkanBuffer::~VulkanBuffer() {
   if (device_ == nullptr) return;
+  guard_.reset();
   if (memory_ != VK_NULL_HANDLE) device_->allocated -= bytes_;
   vkDestroyBuffer(device_->handle(), buffer_, nullptr);
   vkFreeMemory(device_->handle(), memory_, nullptr);
@@ -84,6 +90,7 @@ VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
   std::swap(memory_, other.memory_);
   std::swap(bytes_, other.bytes_);
   std::swap(mapped_, other.mapped_);
+  std::swap(guard_, other.guard_);
   return *this;
 }
 

@@ -2,8 +2,10 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
+#include "compute/buffer_guard.h"
 #include "compute/vulkan_device.h"
 #include "model/result.h"
 
@@ -46,6 +48,7 @@ class VulkanBuffer {
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   std::uint64_t bytes_ = 0;
   void* mapped_ = nullptr;
+  std::unique_ptr<BufferGuard> guard_;   ///< in tests
 };
 
 /// Copies host data into any buffer and waits; through a staging buffer where it is not mapped. Not for the frame.

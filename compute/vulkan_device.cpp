@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "compute/buffer_guard.h"
+
 namespace palpate {
 namespace {
 
@@ -277,6 +279,7 @@ Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& opt
   if (auto r = device->make_instance(options.validation); !r) return r.error();
   if (auto r = device->choose(options.device); !r) return r.error();
   if (auto r = device->make_device(); !r) return r.error();
+  device->guarded = options.guard_buffers;
   return device;
 }
 
@@ -312,6 +315,15 @@ int VulkanDevice::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wante
     if (found < 0) found = static_cast<int>(i);
   }
   return found;
+}
+
+Result<void> VulkanDevice::check_guards() {
+  for (BufferGuard* guard : std::set<BufferGuard*>(guards)) {   // a copy: reading one may make another buffer
+    if (!guard_error.empty()) break;
+    guard_error = guard->broken().value_or("");
+  }
+  if (guard_error.empty()) return {};
+  return Error{ErrorCode::kInternal, "a buffer's guard is broken: " + guard_error};
 }
 
 Result<void> VulkanDevice::take_validation_error() {

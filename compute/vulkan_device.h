@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 
 namespace palpate {
 
+class BufferGuard;
 struct PipelineObjects;
 
 /// The sentence for a Vulkan call that failed: "vkQueueSubmit2 failed: device lost".
@@ -61,6 +63,14 @@ class VulkanDevice {
 
   /// Pipelines made so far, by module and constants; ComputePipeline::create fills it.
   std::map<std::vector<std::uint32_t>, std::shared_ptr<const PipelineObjects>> pipelines;
+
+  /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
+  /// `guard_error`: the first that was found broken when its buffer died, or empty.
+  bool guarded = false;
+  std::set<BufferGuard*> guards;
+  std::string guard_error;
+  /// Success, or a sentence that names a buffer that something wrote beyond. Nothing when not `guarded`.
+  Result<void> check_guards();
 
  private:
   VulkanDevice() = default;

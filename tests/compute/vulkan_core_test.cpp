@@ -97,6 +97,60 @@ TEST_F(VulkanCore, ABufferBeyondWhatAShaderMaySeeIsRefusedInOneSentence) {
   EXPECT_EQ(device().allocated, before);
 }
 
+/// Buffers made within are guarded.
+struct Guarded {
+  explicit Guarded(VulkanDevice& of) : device(of) { device.guarded = true; }
+  ~Guarded() {
+    device.guarded = false;
+    device.guard_error.clear();
+  }
+  VulkanDevice& device;
+};
+
+TEST_F(VulkanCore, AShaderThatWritesWithinAGuardedBufferIsLeftAlone) {
+  const Guarded guarded(device());
+  const VulkanBuffer a = buffer(400), b = buffer(400);
+  const ComputePipeline add = increment();
+  CommandRecorder commands = recorder();
+  commands.begin();
+  commands.fill(a, 7);
+  commands.barrier();
+  commands.dispatch_items(add, {a, b}, 100u, 100);
+  ASSERT_TRUE(commands.submit_and_wait());
+  const auto checked = device().check_guards();
+  EXPECT_TRUE(checked) << checked.error().sentence;
+  std::vector<std::uint32_t> out(100);
+  ASSERT_TRUE(download(device(), b, 0, out.data(), 400));
+  EXPECT_EQ(out, std::vector<std::uint32_t>(100, 8));
+}
+
+TEST_F(VulkanCore, AShaderThatWritesOneEntryBehindAGuardedBufferIsFound) {
+  const Guarded guarded(device());
+  const VulkanBuffer a = buffer(404), b = buffer(400);
+  const ComputePipeline add = increment();
+  CommandRecorder commands = recorder();
+  commands.begin();
+  commands.fill(a, 7);
+  commands.barrier();
+  commands.dispatch_items(add, {a, b}, 101u, 101);
+  ASSERT_TRUE(commands.submit_and_wait());
+  const auto checked = device().check_guards();
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().sentence, "a buffer's guard is broken: test numbers (400 bytes): something wrote 0 bytes behind its end");
+}
+
+TEST_F(VulkanCore, AHostThatWritesBeforeAGuardedBufferIsFoundWhenItDies) {
+  const Guarded guarded(device());
+  {
+    auto made = VulkanBuffer::create(device(), "upload", 64, BufferKind::kUpload);
+    ASSERT_TRUE(made) << made.error().sentence;
+    made->as<char>()[-4] = 0;
+  }
+  const auto checked = device().check_guards();
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().sentence, "a buffer's guard is broken: upload (64 bytes): something wrote 4 bytes before its start");
+}
+
 TEST_F(VulkanCore, MemoryIsCountedWhileABufferLives) {
   const std::uint64_t before = device().allocated;
   {

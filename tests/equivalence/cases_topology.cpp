@@ -175,7 +175,7 @@ Case topology(const char* name, const char* about, std::function<Body()> body) {
   c.family = "topology";
   c.about = about;
   c.degenerate = true;
-  c.share = 0.6;
+  c.share = 0.33;
   c.make = [=](std::uint64_t) -> Result<TestScene> {
     const Body made = body();
     auto geometry = lattice_scene(made.triangles, tool_block(), kVoxel, kVoxel / 2, made.parts);

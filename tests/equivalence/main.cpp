@@ -19,7 +19,7 @@ constexpr int kAllEqual = 0, kSomeDiffer = 1, kBadUsage = 2, kSomeNotSupported =
 
 struct Options {
   std::vector<std::string> names, families;
-  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false, floats = false;
+  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false, floats = false, guards = false;
   std::string backend = "both", device, check, write, reason;
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> poses, pose;
@@ -50,6 +50,7 @@ Result<Backends> make_backends(const Options& options) {
     GpuOptions gpu;
     gpu.device = options.device;
     gpu.validation = options.validation;
+    gpu.guard_buffers = options.guards;
     auto made = make_gpu_backend(gpu);
     if (!made) return made.error();
     backends.push_back(std::move(*made));
@@ -224,6 +225,7 @@ int run(int argc, char** argv) {
   app.add_flag("--floats", o.floats, "count what single precision would have judged otherwise");
   app.add_flag("--times", o.times, "print the median time of every stage");
   app.add_flag("--validation", o.validation, "with Vulkan's validation layer and its synchronisation checks");
+  app.add_flag("--guards", o.guards, "with guard bytes round every buffer of the device, checked after every scene and pose");
   app.add_option("--campaign", o.campaign, "this many poses over all cases, with changing seeds, everything asked twice");
   CLI11_PARSE(app, argc, argv);
 
