@@ -102,12 +102,14 @@ void print(const Case& c, CaseRun& run, const Options& options, std::uint64_t se
   if (options.times) print_times(run);
 }
 
-/// How to see a finding again, with both back ends.
-void print_repeat(const Case& c, const CaseRun& run, std::uint64_t seed) {
+/// How to see a finding again, with both back ends if the device was asked.
+void print_repeat(const Case& c, const CaseRun& run, const Options& options, std::uint64_t seed) {
   const std::string text = run.findings.empty() ? "" : run.findings.front();
   const auto at = text.find("pose ");
   const std::string pose = at == std::string::npos ? "" : " --pose " + std::to_string(std::stoull(text.substr(at + 5)));
-  std::printf("    repeat: equivalence --case %s --seed %llu%s\n", c.name.c_str(), Count{seed}, pose.c_str());
+  const std::string flags = std::string(options.guards ? " --guards" : "") + (options.validation ? " --validation" : "") +
+                            (options.twice || options.campaign > 0 ? " --twice" : "") + (options.backend == "cpu" ? " --backend cpu" : "");
+  std::printf("    repeat: equivalence --case %s --seed %llu%s%s\n", c.name.c_str(), Count{seed}, pose.c_str(), flags.c_str());
 }
 
 void print(const Totals& t, const Options& options) {
@@ -158,7 +160,7 @@ int run_cases(const std::vector<Case>& cases, const Backends& backends, const Op
     }
     file.cases[c.name] = hashes;
     print(c, run, options, options.seed);
-    if (run.outcome != Outcome::kEqual) print_repeat(c, run, options.seed);
+    if (run.outcome != Outcome::kEqual) print_repeat(c, run, options, options.seed);
     totals.add(c, run);
     if (options.stop && run.outcome != Outcome::kEqual) break;
   }
@@ -192,7 +194,7 @@ int run_campaign(const std::vector<Case>& cases, const Backends& backends, const
       CaseRun run = run_case(c, backends, settings);
       if (run.outcome != Outcome::kEqual) {
         print(c, run, options, seed);
-        print_repeat(c, run, seed);
+        print_repeat(c, run, options, seed);
       }
       of_case.add(c, run);
       totals.add(c, run);
