@@ -44,6 +44,7 @@ Result<CommandRecorder> CommandRecorder::create(VulkanDevice& device, std::uint3
 
 CommandRecorder::~CommandRecorder() {
   if (device_ == nullptr) return;
+  if (pending_) vkDeviceWaitIdle(device_->handle());   // submitted and never waited for
   vkDestroyQueryPool(device_->handle(), queries_, nullptr);
   vkDestroyFence(device_->handle(), fence_, nullptr);
   vkDestroyCommandPool(device_->handle(), pool_, nullptr);
@@ -61,6 +62,7 @@ CommandRecorder& CommandRecorder::operator=(CommandRecorder&& other) noexcept {
   std::swap(max_groups_, other.max_groups_);
   std::swap(stages_, other.stages_);
   std::swap(recording_, other.recording_);
+  std::swap(pending_, other.pending_);
   return *this;
 }
 
@@ -153,14 +155,21 @@ Result<void> CommandRecorder::submit() {
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &commands;
-  if (const VkResult r = vkQueueSubmit2(device_->queue(), 1, &info, fence_); r != VK_SUCCESS)
-    return vulkan_error("vkQueueSubmit2", r);
+  VkResult submitted = device_->injected(GpuFault::Call::kSubmit);
+  if (submitted == VK_SUCCESS) submitted = vkQueueSubmit2(device_->queue(), 1, &info, fence_);
+  if (submitted != VK_SUCCESS) return vulkan_error("vkQueueSubmit2", submitted);
+  pending_ = true;
   return {};
 }
 
 Result<void> CommandRecorder::wait(std::uint64_t timeout_ns) {
-  if (const VkResult r = vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, timeout_ns); r != VK_SUCCESS)
-    return vulkan_error("vkWaitForFences", r);
+  VkResult waited = device_->injected(GpuFault::Call::kWait);
+  if (waited == VK_SUCCESS) waited = vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, timeout_ns);
+  pending_ = false;
+  if (waited != VK_SUCCESS) {
+    vkDeviceWaitIdle(device_->handle());   // whoever hears of the failure will destroy what may still be in use
+    return vulkan_error("vkWaitForFences", waited);
+  }
   return device_->take_validation_error();
 }
 

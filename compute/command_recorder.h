@@ -120,6 +120,7 @@ class CommandRecorder {
   std::uint32_t max_groups_ = 1;
   std::vector<const char*> stages_;
   bool recording_ = false;
+  bool pending_ = false;   ///< submitted, and not known to be finished
 };
 
 }  // namespace palpate

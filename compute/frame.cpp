@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compute/command_recorder.h"
+#include "compute/frame_capacity.h"
 #include "compute/frame_decode.h"
 #include "compute/frame_detection.h"
 #include "compute/frame_recorder.h"
@@ -35,16 +36,19 @@ struct Reach {
 
 class RecordedFrame final : public Frame {
  public:
-  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry) : device_(device), geometry_(geometry) {}
+  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene)
+      : device_(device), geometry_(geometry), scene_(scene) {}
 
-  Result<void> make(const PreparedScene& scene, const Plan& plan);
+  Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
+  Result<void> enlarge() override;
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_); }
 
  private:
-  void name_scene(const PreparedScene& scene);
+  void name_scene();
+  Result<void> make_buffers();
   Result<void> set_capacities();
   Result<void> record();
   Reach reach(const LatticePose& pose) const;
@@ -53,23 +57,27 @@ class RecordedFrame final : public Frame {
 
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
+  const PreparedScene& scene_;
   gpu::GridConstants grid_{};
   std::vector<std::uint32_t> brick_slot_;   ///< the mock-up's, on the host: to leave out frames that can't touch
+  FrameCapacity capacity_;
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
   std::optional<FrameResponse> response_;
-  std::unique_ptr<CommandRecorder> commands_;
+  std::unique_ptr<CommandRecorder> commands_;   ///< null after a failed record()
+  std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;         ///< that the last query counted
+  bool held_overflow_ = false;      ///< the last query brought more held triangles than there is room for
   std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
 };
 
-void RecordedFrame::name_scene(const PreparedScene& scene) {
+void RecordedFrame::name_scene() {
   using namespace gpu;
-  const BodyBuffers &m = scene.mockup, &t = scene.tool;
+  const BodyBuffers &m = scene_.mockup, &t = scene_.tool;
   const std::pair<std::int32_t, const VulkanBuffer*> all[] = {
-      {kBindScene, &scene.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
+      {kBindScene, &scene_.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
       {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.sample_weight},
       {kBindNeighbourBegin, &m.neighbour_begin}, {kBindNeighbours, &m.neighbours}, {kBindSeamBegin, &m.seam_begin},
       {kBindSeams, &m.seams}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
@@ -82,38 +90,66 @@ void RecordedFrame::name_scene(const PreparedScene& scene) {
     if (*buffer) buffers_.name(binding, *buffer);   // `paper` has no partition of the tool
 }
 
-Result<void> RecordedFrame::make(const PreparedScene& scene, const Plan&) {
-  name_scene(scene);
-  grid_ = scene.constants.mockup.grid;
-  const gpu::BodyConstants& tool = scene.constants.tool;
-  if (scene.constants.refined != 0 && tool.closed == 0 && tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
+Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& first_capacity) {
+  name_scene();
+  const gpu::SceneConstants& constants = scene_.constants;
+  grid_ = constants.mockup.grid;
+  const bool refined = constants.refined != 0;
+  if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
   brick_slot_.resize(static_cast<std::size_t>(grid_.bricks.x) * static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(grid_.bricks.z));
-  if (auto r = download(device_, scene.mockup.partition.brick_slot, 0, brick_slot_.data(), brick_slot_.size() * 4); !r) return r;
-  auto detection = FrameDetection::create(device_, geometry_, scene, buffers_);
+  if (auto r = download(device_, scene_.mockup.partition.brick_slot, 0, brick_slot_.data(), brick_slot_.size() * 4); !r) return r;
+
+  auto detection = FrameDetection::create(device_, scene_);
   if (!detection) return detection.error();
   detection_ = std::move(*detection);
-
-  FrameResponse::Sizes sizes;
-  sizes.refined = scene.constants.refined != 0;
-  sizes.tool_triangles = scene.constants.tool.triangles;
-  sizes.statics = detection_->capacities()[gpu::kListContactStatics];
-  sizes.samples = sizes.refined ? detection_->capacities()[gpu::kListSamples] : 0;
-  auto response = FrameResponse::create(device_, sizes, buffers_);
+  auto response = FrameResponse::create(device_, refined);
   if (!response) return response.error();
   response_.emplace(std::move(*response));
-  if (auto r = set_capacities(); !r) return r;
-  return record();
+  capacity_ = FrameCapacity::first(constants, first_capacity);
+  if (auto r = make_buffers(); !r) return r;
+  if (auto r = record(); !r) return r;
+  return warm_up(device_, pipelines_);   // no frame should wait for a compiler
+}
+
+Result<void> RecordedFrame::make_buffers() {
+  if (auto r = detection_->make_buffers(device_, geometry_, scene_, capacity_, buffers_); !r) return r;
+  if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
+  return set_capacities();
 }
 
 Result<void> RecordedFrame::set_capacities() {
   std::array<gpu::FrameList, gpu::kListCount> lists{};
-  for (std::size_t i = 0; i < lists.size(); ++i) lists[i].capacity = detection_->capacities()[i];
-  for (const auto& list : FrameResponse::kCapacities) lists[list.list].capacity = list.items;
+  for (std::size_t i = 0; i < lists.size(); ++i) lists[i].capacity = capacity_.lists[i];
   return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
+}
+
+Result<void> RecordedFrame::enlarge() {
+  // What was asked for, list by list; the result has not been touched since the frame that overflowed.
+  std::array<gpu::FrameList, gpu::kListCount> lists{};
+  if (auto r = download(device_, buffers_[gpu::kBindFrameLists], 0, lists.data(), sizeof lists); !r) return r;
+  std::array<std::uint32_t, gpu::kListCount> asked{};
+  for (std::size_t i = 0; i < lists.size(); ++i) asked[i] = lists[i].asked;
+  gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
+  if (held_overflow_) {
+    state = {};
+    state.overflow = 1u << gpu::kListContactStatics;   // the held triangles' room follows this list's
+  }
+  const FrameCapacity before = capacity_;
+  if (!capacity_.grow(state, asked)) return bad_value(fixed_limit(state));
+  tables_clear_ = false;
+  if (auto made = make_buffers(); !made) {
+    // Buffers that have grown already do no harm: the lists' capacities are what counts.
+    capacity_ = before;
+    if (auto r = set_capacities(); !r) return r;
+    if (auto r = record(); !r) return r;
+    return made;
+  }
+  return record();
 }
 
 Result<void> RecordedFrame::record() {
   constexpr std::uint32_t kStages = 32;   // most calls of stage()
+  commands_.reset();
   auto commands = CommandRecorder::create(device_, kStages);
   if (!commands) return commands.error();
   commands_ = std::make_unique<CommandRecorder>(std::move(*commands));
@@ -124,8 +160,8 @@ Result<void> RecordedFrame::record() {
   response_->record(recorder);
   recorder.barrier();
   detection_->record_end(recorder);
-  if (auto r = commands_->end(); !r) return r;
-  return warm_up(device_, recorder.used());   // no frame should wait for a compiler
+  pipelines_ = recorder.used();
+  return commands_->end();
 }
 
 Reach RecordedFrame::reach(const LatticePose& pose) const {
@@ -200,13 +236,15 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
-  if (!write_input(pose, where, held)) {
+  held_overflow_ = !write_input(pose, where, held);
+  if (held_overflow_) {
     out.truncated = true;
     out.truncated_capacity = "held triangles";
     return {};
   }
   out.times.push_back({"upload", us_since(start)});
 
+  if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
   const auto submitted = Clock::now();
   if (auto r = commands_->submit(); !r) return r;
   if (auto r = commands_->wait(); !r) return r;
@@ -248,9 +286,9 @@ Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pair
 }  // namespace
 
 Result<std::unique_ptr<Frame>> Frame::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                             const Plan& plan) {
-  auto out = std::make_unique<RecordedFrame>(device, geometry);
-  if (auto r = out->make(scene, plan); !r) return r.error();
+                                             const std::map<std::string, std::uint32_t>& first_capacity) {
+  auto out = std::make_unique<RecordedFrame>(device, geometry, scene);
+  if (auto r = out->make(first_capacity); !r) return r.error();
   return std::unique_ptr<Frame>(std::move(out));
 }
 

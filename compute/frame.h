@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -9,7 +11,6 @@
 #include "model/collision_backend.h"
 #include "model/contacts.h"
 #include "model/lattice.h"
-#include "model/plan.h"
 #include "model/result.h"
 #include "model/scene_geometry.h"
 
@@ -20,10 +21,12 @@ class Frame {
  public:
   virtual ~Frame() = default;
   /// All arguments must outlive the frame.
+  /// `first_capacity` is GpuOptions::first_capacity.
   static Result<std::unique_ptr<Frame>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                               const Plan& plan);
-  /// As CollisionBackend::query.
+                                               const std::map<std::string, std::uint32_t>& first_capacity);
+  /// As CollisionBackend::query and enlarge.
   virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
+  virtual Result<void> enlarge() = 0;
   /// As CollisionBackend::pairs.
   virtual Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const = 0;
   /// Bytes of device memory that the frame itself holds.

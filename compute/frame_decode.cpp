@@ -2,32 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <numeric>
 #include <span>
 #include <tuple>
 
-#include "compute/frame_response.h"
+#include "compute/frame_capacity.h"
 
 namespace palpate {
 namespace {
 
 using namespace gpu;   // names of shaders/shared/frame.h
-
-/// What overflowed, for the person who reads the truncated answer.
-const char* overflow_name(const FrameState& state) {
-  static constexpr std::array<const char*, kListResponseFirst> lists = {
-      "bricks of clusters", "bricks of triangles", "voxels to touch", "touched voxels", "lists of touched voxels", "lists to pair",
-      "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
-      "samples near the tool's surface", "samples", "tool triangles of areas", "pierced areas", "bricks with samples"};
-  const auto first = static_cast<std::size_t>(std::countr_zero(state.overflow));   // 32 when none
-  if (first < lists.size()) return lists[first];
-  if ((state.overflow_other & kOverflowPairTable) != 0) return "pair table";
-  if ((state.overflow_other & kOverflowBins) != 0) return "bins of the tool's shadow";
-  if ((state.overflow_other & kOverflowLoop) != 0) return "steps of one invocation";
-  const char* name = FrameResponse::overflow_name(state.overflow, state.overflow_other);
-  return name != nullptr ? name : "an unnamed list";
-}
 
 /// Whether all that overflowed, if anything, comes after the sets: lists of areas, tables of the response.
 bool sets_are_whole(const FrameState& state) {

@@ -11,22 +11,11 @@ namespace {
 
 using namespace gpu;   // names of shaders/shared/frame.h
 
-// Capacities, chosen: a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of them; they grow with the bodies up to
-// what a binding of 128 MiB holds.
-constexpr std::uint64_t kSmallList = 1u << 17;
-constexpr std::uint64_t kLargeList = 1u << 20;
-constexpr std::uint64_t kMostPairs = 1u << 22;
 constexpr std::uint32_t kMostBinsBits = 9;
-constexpr std::uint64_t kBinEntries = 12;   // a triangle, on average
-
-std::uint32_t capacity(std::uint64_t wanted, std::uint64_t most) {
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, most));
-}
 
 }  // namespace
 
-Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& device, const SceneGeometry& geometry,
-                                                               const PreparedScene& scene, FrameBuffers& buffers) {
+Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& device, const PreparedScene& scene) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
   out->refined_ = scene.constants.refined != 0;
   out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
@@ -34,49 +23,42 @@ Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& dev
   out->tool_clusters_ = (scene.constants.tool.triangles + kClusterSize - 1) / kClusterSize;
   // About a bin a triangle.
   while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;
-  if (auto r = out->make_buffers(device, geometry, scene, buffers); !r) return r.error();
   if (auto r = out->make_shaders(device); !r) return r.error();
   return out;
 }
 
 Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                          FrameBuffers& buffers) {
+                                          const FrameCapacity& capacity, FrameBuffers& buffers) const {
   const BodyConstants& mockup = scene.constants.mockup;
   const BodyConstants& tool = scene.constants.tool;
-  const std::uint64_t voxels = mockup.grid.boundary_voxels, entries = mockup.grid.list_entries;
-  const std::uint64_t pairs = std::clamp<std::uint64_t>(32 * std::uint64_t{tool.triangles}, 2 * kSmallList, kMostPairs);
+  const std::uint64_t voxels = mockup.grid.boundary_voxels, statics = capacity.lists[kListContactStatics];
 
   struct List {
     std::uint32_t list;
     std::int32_t binding;
-    const char* what;
-    std::uint32_t capacity;
     std::size_t item_bytes;
     BufferKind kind = BufferKind::kDevice;
   };
-  const std::uint32_t statics = capacity(mockup.triangles, kLargeList);
   const List lists[] = {
-      {kListClusterBricks, kBindClusterBricks, "bricks of clusters", capacity(std::max(kSmallList, 4 * std::uint64_t{tool.triangles}), kLargeList), sizeof(ClusterBrick)},
-      {kListTriangleBricks, kBindTriangleBricks, "bricks of triangles", capacity(std::max(kSmallList, 8 * std::uint64_t{tool.triangles}), kMostPairs), sizeof(TriangleBrick)},
-      {kListTouchCandidates, kBindTouchCandidates, "voxels to touch", capacity(std::max(kLargeList, 32 * std::uint64_t{tool.triangles}), kMostPairs), sizeof(TouchCandidate)},
-      {kListTouchedVoxels, kBindTouchedVoxels, "touched voxels", capacity(voxels, kLargeList), sizeof(FrameVoxel)},
-      {kListVoxelChunks, kBindVoxelChunks, "lists of touched voxels", capacity(voxels + entries / kVoxelChunk, kLargeList), sizeof(VoxelChunk)},
-      {kListPairChunks, kBindPairChunks, "lists to pair", capacity(std::max(kLargeList, 16 * std::uint64_t{tool.triangles}), kMostPairs), sizeof(PairChunk)},
-      {kListPairCandidates, kBindPairCandidates, "pairs to test", capacity(pairs, kMostPairs), sizeof(PairCandidate)},
-      {kListPairs, kBindPairs, "pairs", capacity(pairs, kMostPairs), sizeof(ContactPair)},
-      {kListContactStatics, kBindContactStatics, "contact triangles of the mock-up", statics, sizeof(std::uint32_t)},
-      {kListContactMobiles, kBindContactMobiles, "contact triangles of the tool", capacity(tool.triangles, ~0u), sizeof(std::uint32_t)},
-      {kListSampleBricks, kBindSampleBricks, "bricks with samples", capacity(refined_ ? mockup.grid.mixed_bricks : 1, ~0u), sizeof(std::uint32_t)},
-      {kListSampleChunks, kBindSampleChunks, "lists with samples", capacity(refined_ ? voxels + entries / kSampleChunk : 1, kMostPairs), sizeof(SampleChunk)},
-      {kListOpenSamples, kBindOpenSamples, "samples near the tool's surface", capacity(refined_ ? kLargeList : 1, kLargeList), sizeof(FrameSample)},
-      {kListSamples, kBindSamples, "samples", capacity(refined_ ? kLargeList : 1, kLargeList), sizeof(FrameSample)},
-      {kListMembers, kBindResultMembers, "tool triangles of areas", capacity(std::max(kSmallList, 4 * std::uint64_t{tool.triangles}), kMostPairs), sizeof(AreaMember), BufferKind::kReadback},
-      {kListPierces, kBindResultPierces, "pierced areas", kMaxFrameAreas * kMaxFrameAreas, sizeof(AreaPierce), BufferKind::kReadback},
+      {kListClusterBricks, kBindClusterBricks, sizeof(ClusterBrick)},
+      {kListTriangleBricks, kBindTriangleBricks, sizeof(TriangleBrick)},
+      {kListTouchCandidates, kBindTouchCandidates, sizeof(TouchCandidate)},
+      {kListTouchedVoxels, kBindTouchedVoxels, sizeof(FrameVoxel)},
+      {kListVoxelChunks, kBindVoxelChunks, sizeof(VoxelChunk)},
+      {kListPairChunks, kBindPairChunks, sizeof(PairChunk)},
+      {kListPairCandidates, kBindPairCandidates, sizeof(PairCandidate)},
+      {kListPairs, kBindPairs, sizeof(ContactPair)},
+      {kListContactStatics, kBindContactStatics, sizeof(std::uint32_t)},
+      {kListContactMobiles, kBindContactMobiles, sizeof(std::uint32_t)},
+      {kListSampleBricks, kBindSampleBricks, sizeof(std::uint32_t)},
+      {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk)},
+      {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample)},
+      {kListSamples, kBindSamples, sizeof(FrameSample)},
+      {kListMembers, kBindResultMembers, sizeof(AreaMember), BufferKind::kReadback},
+      {kListPierces, kBindResultPierces, sizeof(AreaPierce), BufferKind::kReadback},
   };
-  for (const List& l : lists) {
-    if (auto r = buffers.make(device, l.binding, l.what, l.capacity * l.item_bytes, l.kind); !r) return r;
-    capacities_[l.list] = l.capacity;
-  }
+  for (const List& l : lists)
+    if (auto r = buffers.make(device, l.binding, list_name(l.list), capacity.lists[l.list] * std::uint64_t{l.item_bytes}, l.kind); !r) return r;
 
   struct Plain {
     std::int32_t binding;
@@ -94,23 +76,22 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * std::uint64_t{tool_clusters_} * (kClusterSize / kRunSize)},
       {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
       {kBindToolBins, "bins of the tool's shadow", sizeof(ToolBin) << (inside_ ? 2 * bins_bits_ : 0)},
-      {kBindBinEntries, "entries of bins", 4 * (inside_ ? std::max(kSmallList, kBinEntries * tool.triangles) : 1)},
+      {kBindBinEntries, "entries of bins", 4 * std::uint64_t{capacity.bin_entries}},
       {kBindWideTriangles, "wide triangles", 4 * std::uint64_t{inside_ ? tool.triangles : 1}},
       {kBindBinState, "state of bins", sizeof(BinState)},
       {kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
       {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
       {kBindToolOrder, "order of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
-      {kBindHeldStatics, "held triangles", sizeof(HeldStatic) * std::uint64_t{statics}, BufferKind::kUpload},
+      {kBindHeldStatics, "held triangles", sizeof(HeldStatic) * statics, BufferKind::kUpload},
       {kBindHeldAreas, "held areas", sizeof(HeldDirection) * kMaxFrameAreas, BufferKind::kUpload},
       {kBindResult, "frame result", sizeof(FrameResult), BufferKind::kReadback},
-      {kBindResultStatics, "results of the mock-up's triangles", sizeof(StaticResult) * std::uint64_t{statics}, BufferKind::kReadback},
-      {kBindResultMobiles, "results of the tool's triangles", sizeof(MobileResult) * std::uint64_t{tool.triangles}, BufferKind::kReadback},
+      {kBindResultStatics, "results of the mock-up's triangles", sizeof(StaticResult) * statics, BufferKind::kReadback},
+      {kBindResultMobiles, "results of the tool's triangles", sizeof(MobileResult) * std::uint64_t{capacity.lists[kListContactMobiles]}, BufferKind::kReadback},
   };
   for (const Plain& p : plain)
     if (auto r = buffers.make(device, p.binding, p.what, p.bytes, p.kind); !r) return r;
 
-  // Half full at most, so that probing stays short.
-  if (auto r = buffers.make_table(device, kBindPairTable, "pair table", 8 * std::bit_ceil(2 * pairs)); !r) return r;
+  if (auto r = buffers.make_table(device, kBindPairTable, "pair table", 8 * std::bit_ceil(std::uint64_t{capacity.pair_table})); !r) return r;
   if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r) return r;
   if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}); !r)
     return r;

@@ -1,8 +1,8 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <memory>
 
+#include "compute/frame_capacity.h"
 #include "compute/frame_recorder.h"
 #include "compute/prepared_scene.h"
 #include "compute/vulkan_device.h"
@@ -16,23 +16,24 @@ namespace palpate {
 /// and the frame's last step, which empties what it filled. Makes its own buffers and pipelines.
 class FrameDetection {
  public:
-  /// Makes the buffers of the lists and tables into `buffers`. `scene` and `buffers` outlive this.
-  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const SceneGeometry& geometry,
-                                                        const PreparedScene& scene, FrameBuffers& buffers);
+  /// Makes the pipelines.
+  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const PreparedScene& scene);
+
+  /// Makes the buffers of the lists and tables into `buffers`; those that are large enough already stay. Before the first record(), and
+  /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
+  Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const FrameCapacity& capacity,
+                            FrameBuffers& buffers) const;
 
   /// From the pose to frame_state and the response's group counts.
   void record(FrameRecorder& recorder) const;
   /// After the response: counts to the host, tables back to 0.
   void record_end(FrameRecorder& recorder) const;
-  /// Every list's capacity that was made here; 0 for others.
-  const std::array<std::uint32_t, gpu::kListCount>& capacities() const { return capacities_; }
   /// Bins of the tool's shadow along each axis (FrameInput::bin_shift).
   std::int32_t bins() const { return 1 << bins_bits_; }
   const FrameShader& list_close() const { return list_close_; }
 
  private:
   FrameDetection() = default;
-  Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, FrameBuffers& buffers);
   Result<void> make_shaders(VulkanDevice& device);
   void record_samples(FrameRecorder& recorder) const;
 
@@ -40,7 +41,6 @@ class FrameDetection {
   bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
   std::uint32_t tool_vertices_ = 0, tool_clusters_ = 0;
   std::uint32_t bins_bits_ = 0;   ///< 2^bins_bits bins along y and along z
-  std::array<std::uint32_t, gpu::kListCount> capacities_{};
   FrameShader list_close_, frame_begin_, tool_transform_, tool_clusters_find_, brick_triangles_, brick_voxels_, voxel_touch_,
       pair_collect_, pair_test_, voxel_statics_, sample_bricks_, sample_voxels_, sample_touched_, sample_scan_, sample_winding_,
       bins_begin_, bins_clear_,

@@ -41,6 +41,7 @@ std::vector<std::int32_t> measured_bindings(std::span<const std::uint32_t> words
 }  // namespace
 
 Result<void> FrameBuffers::make(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes, BufferKind kind) {
+  if (owned_[at(binding)] && owned_[at(binding)].bytes() >= bytes) return {};
   auto buffer = VulkanBuffer::create(device, what, bytes, kind);
   if (!buffer) return buffer.error();
   owned_[at(binding)] = std::move(*buffer);
@@ -50,7 +51,7 @@ Result<void> FrameBuffers::make(VulkanDevice& device, std::int32_t binding, cons
 
 Result<void> FrameBuffers::make_table(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes) {
   if (auto r = make(device, binding, what, bytes); !r) return r;
-  tables_.push_back(binding);
+  if (std::find(tables_.begin(), tables_.end(), binding) == tables_.end()) tables_.push_back(binding);
   return {};
 }
 

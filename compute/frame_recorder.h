@@ -25,7 +25,8 @@ class FrameBuffers {
 
   /// Names a buffer that somebody else owns and that outlives this.
   void name(std::int32_t binding, const VulkanBuffer& buffer) { named_[at(binding)] = &buffer; }
-  /// Makes a buffer and owns it. `what` is for sentences ("pairs"). Contents are undefined.
+  /// Makes a buffer and owns it, unless it already has one there that is large enough. `what` is for sentences ("pairs"). Contents are
+  /// undefined. After an error the buffer before, if any, is still there.
   Result<void> make(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes,
                     BufferKind kind = BufferKind::kDevice);
   /// Makes a table: a buffer that is all 0 between frames. The frame empties the entries that it filled; after an overflow

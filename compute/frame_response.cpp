@@ -1,7 +1,7 @@
 #include "compute/frame_response.h"
 
-#include <algorithm>
 #include <array>
+#include <bit>
 
 #include "shaders/code.h"
 
@@ -20,32 +20,37 @@ struct BufferPlan {
 
 }  // namespace
 
-Result<FrameResponse> FrameResponse::create(VulkanDevice& device, const Sizes& sizes, FrameBuffers& buffers) {
-  const std::uint64_t statics = sizes.statics, slot_boxes = (statics + kSlotBox - 1) / kSlotBox;
-  const std::uint64_t heights = sizes.refined ? sizes.samples : sizes.statics;
-  const std::uint64_t refined = sizes.refined ? 1 : 0;   // what `paper` leaves out gets the smallest buffer there is
+Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t tool_triangles, const FrameCapacity& capacity,
+                                         FrameBuffers& buffers) const {
+  const std::uint64_t statics = capacity.lists[kListContactStatics], slot_boxes = (statics + kSlotBox - 1) / kSlotBox;
+  const std::uint64_t heights = refined_ ? capacity.lists[kListSamples] : statics;
+  const std::uint64_t refined = refined_ ? 1 : 0;   // what `paper` leaves out gets the smallest buffer there is
+  const std::uint64_t needles = capacity.lists[kListNeedleVertices];
   for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
            {kBindResponseState, "response state", sizeof(ResponseState)},
            {kBindAreas, "contact areas", kMaxFrameAreas * sizeof(AreaWork)},
            {kBindSlots, "slots of contact triangles", statics * sizeof(SlotWork)},
            {kBindParents, "union-find of contact triangles", statics * 2 * sizeof(std::uint32_t)},
-           {kBindMobileWork, "tool triangles of areas", sizes.tool_triangles * sizeof(MobileWork)},
+           {kBindMobileWork, "tool triangles of areas", tool_triangles * std::uint64_t{sizeof(MobileWork)}},
            {kBindHeights, "heights", heights * sizeof(std::uint32_t)},
-           {kBindHeldOverlap, "overlaps with held areas", refined * kMaxFrameAreas * sizes.held_areas * sizeof(std::uint32_t), true},
-           {kBindMobileTiles, "tiles of tool samples", refined * kCapacities[0].items * sizeof(MobileTile)},
+           {kBindHeldOverlap, "overlaps with held areas", refined * kMaxFrameAreas * kMaxFrameAreas * sizeof(std::uint32_t), true},
+           {kBindMobileTiles, "tiles of tool samples", capacity.lists[kListMobileTiles] * std::uint64_t{sizeof(MobileTile)}},
            {kBindSlotBoxes, "boxes of contact triangles", refined * slot_boxes * sizeof(LatticeBox)},
-           {kBindNeedleTable, "table of needle vertices", refined * kNeedleTable * sizeof(std::uint32_t), true},
-           {kBindNeedleVertices, "needle vertices", refined * kCapacities[1].items * sizeof(NeedleVertex)},
+           {kBindNeedleTable, "table of needle vertices", std::bit_ceil(std::uint64_t{capacity.needle_table}) * sizeof(std::uint32_t), true},
+           {kBindNeedleVertices, "needle vertices", needles * sizeof(NeedleVertex)},
        })
     if (auto made = plan.table ? buffers.make_table(device, plan.binding, plan.what, plan.bytes)
                                : buffers.make(device, plan.binding, plan.what, plan.bytes);
         !made)
       return made.error();
+  return {};
+}
 
+Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined) {
   FrameResponse out;
-  out.refined_ = sizes.refined;
-  const std::array<SpecConstant, 2> constants = {{{0, sizes.refined ? 1u : 0u}, {1, 0u}}};
-  const std::array<SpecConstant, 2> numbering = {{{0, sizes.refined ? 1u : 0u}, {1, 1u}}};
+  out.refined_ = refined;
+  const std::array<SpecConstant, 2> constants = {{{0, refined ? 1u : 0u}, {1, 0u}}};
+  const std::array<SpecConstant, 2> numbering = {{{0, refined ? 1u : 0u}, {1, 1u}}};
   struct ShaderPlan {
     FrameShader& shader;
     const ShaderCode& code;
@@ -78,12 +83,12 @@ Result<FrameResponse> FrameResponse::create(VulkanDevice& device, const Sizes& s
            {out.swallow_march_, spirv::swallow_march, true},
            {out.areas_result_, spirv::areas_result},
        }) {
-    if (sizes.refined ? plan.only_paper : plan.only_refined) continue;
+    if (refined ? plan.only_paper : plan.only_refined) continue;
     auto made = make_frame_shader(device, plan.code, 0, constants);
     if (!made) return made.error();
     plan.shader = std::move(*made);
   }
-  if (sizes.refined) {
+  if (refined) {
     auto made = make_frame_shader(device, spirv::nearest_find, 0, numbering);
     if (!made) return made.error();
     out.nearest_number_ = std::move(*made);
@@ -143,7 +148,7 @@ void FrameResponse::record_refined(FrameRecorder& recorder) const {
   recorder.barrier();
   recorder.run_dispatch(needle_pairs_, kDispatchNeedlePairs);
   recorder.close({kListNeedleVertices});
-  recorder.run_items(needle_trace_, kListNeedleVertices);
+  recorder.run_groups(needle_trace_, kListNeedleVertices);
   recorder.run_dispatch(pierce_find_, kDispatchPierce);
   recorder.close({kListPierces});
 }
@@ -166,15 +171,6 @@ void FrameResponse::record(FrameRecorder& recorder) const {
   if (refined_) record_refined(recorder);
   else record_paper(recorder);
   recorder.run_dispatch(areas_result_, kDispatchContactOne);
-}
-
-const char* FrameResponse::overflow_name(std::uint32_t overflow, std::uint32_t overflow_other) {
-  if (overflow_other & kOverflowAreas) return "areas";
-  if (overflow & 1u << kListMembers) return "tool triangles of areas";
-  if (overflow & 1u << kListMobileTiles) return "tiles of tool samples";
-  if (overflow & 1u << kListPierces) return "pierced areas";
-  if (overflow & 1u << kListNeedleVertices || overflow_other & kOverflowNeedleTable) return "needle vertices";
-  return nullptr;
 }
 
 }  // namespace palpate

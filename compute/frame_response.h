@@ -1,7 +1,7 @@
 #pragma once
-#include <array>
 #include <cstdint>
 
+#include "compute/frame_capacity.h"
 #include "compute/frame_recorder.h"
 #include "compute/vulkan_device.h"
 #include "model/result.h"
@@ -13,32 +13,16 @@ namespace palpate {
 /// leaves. Owns pipelines; its buffers live in FrameBuffers. Allocates when made, not when a frame runs.
 class FrameResponse {
  public:
-  /// Sizes of what detection hands over.
-  struct Sizes {
-    bool refined = true;
-    std::uint32_t tool_triangles = 0;
-    std::uint32_t statics = 0;      ///< capacity of the list of C_s
-    std::uint32_t samples = 0;      ///< capacity of the list of counting samples; `paper`: 0
-    std::uint32_t held_areas = gpu::kMaxFrameAreas;   ///< most held areas that a query brings
-  };
+  /// Makes the pipelines.
+  static Result<FrameResponse> create(VulkanDevice& device, bool refined);
 
-  /// Items that fit into one of the response's own lists; for FrameList::capacity.
-  struct ListCapacity {
-    std::uint32_t list;
-    std::uint32_t items;
-  };
-  static constexpr std::array<ListCapacity, 2> kCapacities = {
-      {{gpu::kListMobileTiles, 1u << 18}, {gpu::kListNeedleVertices, gpu::kNeedleTable}}};
-
-  /// Makes the buffers 72 and above in `buffers`, and the pipelines. Error: out of memory, device lost.
-  static Result<FrameResponse> create(VulkanDevice& device, const Sizes& sizes, FrameBuffers& buffers);
+  /// Makes the buffers 72 and above in `buffers`; those that are large enough already stay. Before the first record(), and again when the
+  /// capacity has grown. Error: one buffer is beyond a limit, or out of memory.
+  Result<void> make_buffers(VulkanDevice& device, std::uint32_t tool_triangles, const FrameCapacity& capacity, FrameBuffers& buffers) const;
 
   /// Records every dispatch; all of them have no groups in a frame without contact. Goes after set_decide.comp, and ends with
   /// a barrier due.
   void record(FrameRecorder& recorder) const;
-
-  /// Names what an overflow bit of FrameState::overflow or overflow_other means, for Contacts::truncated_capacity; null: not ours.
-  static const char* overflow_name(std::uint32_t overflow, std::uint32_t overflow_other);
 
  private:
   void record_paper(FrameRecorder& recorder) const;

@@ -13,7 +13,8 @@ namespace {
 /// The Vulkan back end: a device, the scene on it, and the frame that answers queries.
 class GpuBackend final : public CollisionBackend {
  public:
-  explicit GpuBackend(std::unique_ptr<VulkanDevice> device) : device_(std::move(device)) {}
+  GpuBackend(std::unique_ptr<VulkanDevice> device, std::map<std::string, std::uint32_t> first_capacity)
+      : device_(std::move(device)), first_capacity_(std::move(first_capacity)) {}
 
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
     frame_.reset();
@@ -21,7 +22,7 @@ class GpuBackend final : public CollisionBackend {
     auto scene = prepare_scene(*device_, geometry, plan, progress);
     if (!scene) return scene.error();
     scene_.emplace(std::move(*scene));
-    auto frame = Frame::create(*device_, geometry, *scene_, plan);
+    auto frame = Frame::create(*device_, geometry, *scene_, first_capacity_);
     if (!frame) return frame.error();
     frame_ = std::move(*frame);
     return device_->check_guards();
@@ -31,6 +32,11 @@ class GpuBackend final : public CollisionBackend {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
     if (auto r = frame_->query(pose, held, out); !r) return r;
     return device_->check_guards();
+  }
+
+  Result<void> enlarge() override {
+    if (!frame_) return Error{ErrorCode::kInternal, "enlarge before prepare"};
+    return frame_->enlarge();
   }
 
   Result<VoxelPartition> partition(bool tool) const override {
@@ -55,6 +61,7 @@ class GpuBackend final : public CollisionBackend {
 
  private:
   std::unique_ptr<VulkanDevice> device_;
+  std::map<std::string, std::uint32_t> first_capacity_;
   std::optional<PreparedScene> scene_;
   std::unique_ptr<Frame> frame_;
 };
@@ -64,7 +71,7 @@ class GpuBackend final : public CollisionBackend {
 Result<std::unique_ptr<CollisionBackend>> make_gpu_backend(const GpuOptions& options) {
   auto device = VulkanDevice::create(options);
   if (!device) return device.error();
-  return std::unique_ptr<CollisionBackend>(std::make_unique<GpuBackend>(std::move(*device)));
+  return std::unique_ptr<CollisionBackend>(std::make_unique<GpuBackend>(std::move(*device), options.first_capacity));
 }
 
 std::vector<VulkanDeviceInfo> list_vulkan_devices() { return VulkanDevice::list(); }

@@ -1,5 +1,7 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,11 +10,21 @@
 
 namespace palpate {
 
+/// Makes calls to the device fail, so that tests see what follows. May be set at any time, by any thread.
+struct GpuFault {
+  enum class Call : std::uint8_t { kNone, kAllocate, kSubmit, kWait };
+  std::atomic<Call> call{Call::kNone};    ///< kAllocate: out of device memory; the others: device lost
+  std::atomic<std::int64_t> after{0};     ///< so many of these calls succeed; then all fail
+};
+
 struct GpuOptions {
   std::string device;             ///< part of a device's name; empty: the best usable one
   bool validation = false;        ///< validation layer with synchronisation checks; a message is an error
   bool guard_buffers = false;     ///< for tests: prepare and query fail when anything was written beyond a buffer's ends
   bool inline_execution = true;   ///< on lavapipe, run on the submitting thread (LP_NUM_THREADS=0); see docs
+  std::map<std::string, std::uint32_t> first_capacity{};   ///< for tests: items that a list of a frame holds to begin with, by its name in
+                                                           ///< Contacts::truncated_capacity; lists not named here choose for themselves
+  std::shared_ptr<GpuFault> fault{};   ///< for tests
 };
 
 /// A Vulkan device and why it can or can't be used.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,21 @@ Long3 raw_normal(const LatticeMesh& mesh, std::uint32_t t) {
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
 
+/// Most pairs of entries of one voxel that are looked at, all voxels together (chosen: a minute of lavapipe on one core).
+constexpr std::uint64_t kMostPairsInVoxels = std::uint64_t{1} << 36;
+
+/// Fails where voxels hold so many triangles that comparing them with each other would take for ever.
+void check_pairs(PrepareSteps& steps, const PartitionBuffers& p) {
+  if (!steps.ok() || std::uint64_t{p.longest_list} * p.grid.list_entries <= kMostPairsInVoxels) return;
+  std::vector<std::uint32_t> begin(std::size_t{p.grid.boundary_voxels} + 1);
+  if (auto r = download(steps.device(), p.list_begin, 0, begin.data(), begin.size() * 4); !r) return steps.fail(r.error());
+  std::uint64_t pairs = 0;
+  for (std::size_t i = 1; i < begin.size(); ++i) pairs += std::uint64_t{begin[i] - begin[i - 1]} * (begin[i] - begin[i - 1]) / 2;
+  if (pairs > kMostPairsInVoxels)
+    steps.fail(bad_value(std::to_string(pairs) + " pairs of triangles share a voxel, at most " + std::to_string(kMostPairsInVoxels) +
+                         " are compared for seams on a device: choose a smaller voxel"));
+}
+
 /// Pairs of triangles that may touch along a seam and whose unit normals don't rule a smooth angle out; each once, ascending.
 std::vector<Pair> candidates(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& listed,
                              const BodyBuffers& body) {
@@ -33,6 +49,7 @@ std::vector<Pair> candidates(PrepareSteps& steps, const SceneGeometry& geometry,
   push.capacity = 4 * static_cast<std::uint32_t>(geometry.mockup.triangles.size()) + 1024;
 
   const std::uint32_t rounds = (p.longest_list + gpu::kSeamSpan - 1) / gpu::kSeamSpan;
+  check_pairs(steps, p);
   const VulkanBuffer found = steps.buffer("seams", 1);
   const VulkanBuffer boxes = steps.buffer("boxes of triangles in voxels", push.count);
   const gpu::GridPush grid{p.grid.origin, p.grid.size, p.grid.bricks, push.count, 0};

@@ -1,6 +1,7 @@
 #include "compute/prepared_scene.h"
 
 #include <cstring>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,6 +68,10 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   const bool refined = plan.profile == Profile::kRefined;
   PrepareSteps steps(device, progress);
   PreparedScene out;
+  // An area and a tool vertex share a word in the table of needle vertices (shaders/response/needle_pairs.comp).
+  constexpr std::size_t kMostToolVertices = (1u << 24) - 1;
+  if (const std::size_t n = geometry.tool.vertices.size(); n > kMostToolVertices)
+    return bad_value("the tool has " + std::to_string(n) + " vertices, at most " + std::to_string(kMostToolVertices) + " are possible on a device");
   out.mockup = upload_body(steps, geometry.mockup, true, refined);
   out.tool = upload_body(steps, geometry.tool, false, refined);
 

@@ -58,9 +58,12 @@ Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what
   const std::uint64_t before = device.guarded ? BufferGuard::before(needs.alignment) : 0;
   allocate.allocationSize = before + needs.size;
   allocate.memoryTypeIndex = static_cast<std::uint32_t>(type);
-  if (const VkResult r = vkAllocateMemory(device.handle(), &allocate, nullptr, &out.memory_); r != VK_SUCCESS)
-    return bad_value(std::string(what) + " need " + mebibytes(bytes) + ", which " + device.name() + " could not give (" +
-                     vulkan_error("vkAllocateMemory", r).sentence + ")");
+  VkResult allocated = device.injected(GpuFault::Call::kAllocate);
+  if (allocated == VK_SUCCESS) allocated = vkAllocateMemory(device.handle(), &allocate, nullptr, &out.memory_);
+  if (allocated != VK_SUCCESS)
+    return Error{ErrorCode::kInternal, std::string(what) + " need " + mebibytes(bytes) + " beside " + mebibytes(device.allocated) + " in use, which " +
+                                           device.name() + " with " + mebibytes(limits.heap) + " of memory could not give (" +
+                                           vulkan_error("vkAllocateMemory", allocated).sentence + ")"};
   device.allocated += bytes;
   if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, before); r != VK_SUCCESS)
     return vulkan_error("vkBindBufferMemory", r);

@@ -24,7 +24,8 @@ class VulkanBuffer {
  public:
   VulkanBuffer() = default;
   /// `what` names the contents in sentences ("triangle lists"). At least 4 bytes are made, rounded up to 4.
-  /// Error (kBadValue): larger than a shader may see or a buffer may be; out of memory. Contents are undefined.
+  /// Errors: larger than a shader may see, or a buffer or the device's memory may be (kBadValue); the device had no memory left (kInternal).
+  /// Contents are undefined.
   static Result<VulkanBuffer> create(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind);
   ~VulkanBuffer();
   VulkanBuffer(VulkanBuffer&& other) noexcept;

@@ -1,5 +1,7 @@
 #include "compute/vulkan_device.h"
 
+#include "compute/address_space.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -165,6 +167,9 @@ VKAPI_ATTR VkBool32 VKAPI_CALL VulkanDevice::on_message(VkDebugUtilsMessageSever
 }
 
 Result<void> VulkanDevice::make_instance(bool validation) {
+  if (const auto left = address_space_left(); left && *left < kDriverAddressSpace)
+    return Error{ErrorCode::kNoDevice, "this process may take " + std::to_string(*left >> 20) + " MiB more of address space (ulimit -v), a Vulkan driver needs " +
+                                           std::to_string(kDriverAddressSpace >> 20) + " MiB"};
   VkApplicationInfo application{};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
   application.pApplicationName = "palpate";
@@ -224,7 +229,7 @@ Result<void> VulkanDevice::choose(const std::string& wanted) {
   }
   if (physical_ == VK_NULL_HANDLE)
     return Error{ErrorCode::kNoDevice,
-                 "no usable Vulkan device: " + (reasons.empty() ? std::string("no driver shows any") : reasons)};
+                 reasons.empty() ? std::string("no driver shows any") : reasons};
   return {};
 }
 
@@ -241,6 +246,8 @@ Result<void> VulkanDevice::make_device() {
   for (std::uint32_t i = 0; i < memory_.memoryHeapCount; ++i)
     if ((memory_.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0)
       limits_.heap = std::max<std::uint64_t>(limits_.heap, memory_.memoryHeaps[i].size);
+  // Buffers leave the driver what it needs itself.
+  if (const auto left = address_space_left()) limits_.heap = std::min(limits_.heap, *left - std::min(*left, kDriverAddressSpace / 2));
   unified_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ||
              p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
 
@@ -276,9 +283,11 @@ Result<void> VulkanDevice::make_device() {
 Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& options) {
   const InlineExecution inline_execution(options.inline_execution);
   std::unique_ptr<VulkanDevice> device(new VulkanDevice);
-  if (auto r = device->make_instance(options.validation); !r) return r.error();
-  if (auto r = device->choose(options.device); !r) return r.error();
-  if (auto r = device->make_device(); !r) return r.error();
+  Result<void> made = device->make_instance(options.validation);
+  if (made) made = device->choose(options.device);
+  if (made) made = device->make_device();
+  if (!made) return Error{made.error().code, "no usable Vulkan device: " + made.error().sentence};
+  device->fault_ = options.fault;
   device->guarded = options.guard_buffers;
   return device;
 }
@@ -324,6 +333,11 @@ Result<void> VulkanDevice::check_guards() {
   }
   if (guard_error.empty()) return {};
   return Error{ErrorCode::kInternal, "a buffer's guard is broken: " + guard_error};
+}
+
+VkResult VulkanDevice::injected(GpuFault::Call call) {
+  if (!fault_ || call != fault_->call || fault_->after-- > 0) return VK_SUCCESS;
+  return call == GpuFault::Call::kAllocate ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_ERROR_DEVICE_LOST;
 }
 
 Result<void> VulkanDevice::take_validation_error() {

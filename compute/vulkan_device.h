@@ -58,6 +58,9 @@ class VulkanDevice {
   /// Success, or the first message of the validation layer since the last call of this.
   Result<void> take_validation_error();
 
+  /// VK_SUCCESS, or what GpuOptions::fault wants this call to come to.
+  VkResult injected(GpuFault::Call call);
+
   /// Bytes of device memory now held by buffers.
   std::atomic<std::uint64_t> allocated{0};
 
@@ -91,6 +94,7 @@ class VulkanDevice {
   Limits limits_;
   std::string name_;
   bool unified_ = false;
+  std::shared_ptr<GpuFault> fault_;
   std::mutex message_mutex_;
   std::string message_;
 };

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 namespace palpate::cpu_ref {
@@ -23,7 +24,10 @@ RTCDevice device() {
     ~Holder() { rtcReleaseDevice(device); }
   };
   static Holder holder;
-  if (holder.device == nullptr) throw std::runtime_error("Embree gives no device on this processor.");
+  if (holder.device == nullptr) {
+    if (rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU) throw std::runtime_error("Embree does not know this processor");
+    throw std::bad_alloc();   // what else keeps it from starting
+  }
   return holder.device;
 }
 

@@ -37,6 +37,10 @@ class CollisionBackend {
   /// An error means that the back end itself failed (device lost): the caller sends zero force.
   virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
 
+  /// Makes room for what truncated the last query, so that the same pose can be asked again. Takes time and memory: not for a loop that
+  /// somebody waits for. Error: there is no more room, or what ran out is not room; the back end goes on answering as before.
+  virtual Result<void> enlarge() { return Error{ErrorCode::kInternal, "the " + name() + " back end has no lists to enlarge"}; }
+
   /// The mock-up's partition (`tool` = false) or the tool's (refined only), for export and comparison.
   virtual Result<VoxelPartition> partition(bool tool) const = 0;
 
@@ -52,6 +56,8 @@ class CollisionBackend {
   virtual std::uint64_t memory_bytes() const = 0; ///< kept for the prepared scene
   /// memory_bytes() by stage; what several stages use counts for the first of them. Empty: this back end doesn't tell them apart.
   virtual std::vector<StageMemory> memory_by_stage() const { return {}; }
+  /// What a user should know of what has happened since the last call, a sentence each. Not while a query runs.
+  virtual std::vector<std::string> take_notes() { return {}; }
 };
 
 }  // namespace palpate

@@ -73,6 +73,7 @@ Result<std::vector<Pose>> bench_poses(const BenchOptions& options, PreparedScene
   const Result<SessionSummary> summary = run_session(loaded, *scene.backend, **device, session, &keeper);
   console.finish();
   if (!summary) return summary.error();
+  if (summary->failure) return *summary->failure;
   if (summary->stopped) return Error{ErrorCode::kInternal, "interrupted"};
 
   const std::vector<Pose> poses = thinned(keeper.poses, options.frames);

@@ -101,6 +101,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     if (auto done = put(text); !done) return done;
     if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + batch.size(), poses.size())};
   }
+  for (const std::string& note : scene.backend->take_notes()) console.note(note);
   if (truncated > 0) console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated, poses.size(), capacity));
   return {};
 }

@@ -120,6 +120,7 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (auto done = write_text(*directory / "report.html", report_page(*summary, loaded, facts, series)); !done) return done;
   for (const std::string& note : summary->notes) console.note(note);
   if (summary->stopped) console.note("stopped before the end, with zero force and complete files");
+  if (summary->failure) return *summary->failure;
   fmt::print("{}{:<14} {}\n", summary_text(*summary, loaded.scene.stage_names), "files", directory->string());
   fmt::print("{:<14} {}\n", "report", (*directory / "report.html").string());
   return {};

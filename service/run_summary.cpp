@@ -14,7 +14,7 @@ std::string summary_json(const SessionSummary& summary) {
   using Json = nlohmann::ordered_json;
   const auto percentiles = [](const Percentiles& p) { return Json{{"p50", p.p50}, {"p99", p.p99}, {"max", p.max}}; };
   const Percentiles& late = summary.lateness_us;
-  const Json json = {{"static_triangles", summary.static_triangles},
+  Json json = {{"static_triangles", summary.static_triangles},
                      {"tool_triangles", summary.tool_triangles},
                      {"backend", summary.backend},
                      {"device", summary.device},
@@ -29,6 +29,8 @@ std::string summary_json(const SessionSummary& summary) {
                      {"areas_max", summary.areas_max},
                      {"force_max_N", summary.force_max_N},
                      {"torque_max_Nm", summary.torque_max_Nm}};
+  if (!summary.notes.empty()) json["notes"] = summary.notes;
+  if (summary.failure) json["failure"] = summary.failure->sentence;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -7,7 +7,8 @@
 
 namespace palpate {
 
-/// summary.json: the contract's fields in its order, and nothing else.
+/// summary.json: the contract's fields in its order; then `notes`, sentences on what went on, and `failure`, why the run ended before its
+/// time, where there are any.
 std::string summary_json(const SessionSummary& summary);
 
 /// The same for a person, as pairs of name and value. `stage_names`: stage i is stage_names[i − 1].

@@ -7,6 +7,7 @@
 
 #include "model/scene_file.h"
 #include "service/numbers.h"
+#include "service/steady_backend.h"
 
 namespace palpate {
 namespace {
@@ -44,9 +45,10 @@ std::string prepared_text(const PreparedScene& prepared) {
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console) {
   if (name == "cpu") return parts.make_cpu();
   Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu();
-  if (gpu) return gpu;
-  if (name == "gpu") return Error{gpu.error().code, "--backend gpu: no usable Vulkan device: " + gpu.error().sentence};
-  console.note("no usable Vulkan device, so the CPU reference answers: " + gpu.error().sentence);
+  // Who asks for the device gets it or a refusal; else the CPU reference steps in where the device can't go on.
+  if (gpu) return std::unique_ptr<CollisionBackend>(std::make_unique<SteadyBackend>(std::move(*gpu), name == "gpu" ? nullptr : parts.make_cpu));
+  if (name == "gpu") return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
+  console.note(gpu.error().sentence + "; the CPU reference answers");
   return parts.make_cpu();
 }
 
@@ -74,6 +76,7 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   PlanFacts facts = facts_of(prepared->loaded, purpose, options.full_plan);
   prepared->plan = decide_plan(facts);
   if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, progress); !done) return done.error();
+  for (const std::string& note : prepared->backend->take_notes()) console.note(note);
   // Whether there are V_int voxels is known only now.
   facts.internal_voxels = prepared->backend->has_internal_voxels();
   prepared->plan = decide_plan(facts);

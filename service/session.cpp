@@ -197,7 +197,15 @@ Percentiles percentiles(const Histogram& histogram, double unit) {
   return {histogram.percentile(0.5) / unit, histogram.percentile(0.99) / unit, histogram.percentile(0.999) / unit, histogram.max() / unit};
 }
 
-SessionSummary summarise(const Run& run, const LoadedScene& scene, const CollisionBackend& backend) {
+/// Why the run ended before its time, if it did.
+std::optional<Error> failure_of(const Run& run) {
+  if (run.error) return Error{run.error->code, run.error->sentence + "; the run has ended with zero force"};
+  if (run.device.faulted())
+    return Error{ErrorCode::kInternal, "haptic device '" + run.device.name() + "': " + run.device.fault() + "; the run has ended with zero force"};
+  return run.observer.error();
+}
+
+SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend) {
   SessionSummary out;
   out.static_triangles = scene.mockup.triangles.size();
   out.tool_triangles = scene.tool.triangles.size();
@@ -222,9 +230,11 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, const Collisi
   out.dropped_ticks = run.dropped_ticks;
   out.dropped_frames = run.dropped_frames;
   out.stopped = run.timing.stopped;
+  out.failure = failure_of(run);
 
   const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
   if (!run.realtime_note.empty()) note(run.realtime_note);
+  for (std::string& sentence : backend.take_notes()) note(std::move(sentence));
   if (out.watchdog_ticks > 0)
     note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " + std::to_string(out.watchdog_ticks) +
          " ticks: the watchdog faded the force out");
@@ -268,9 +278,6 @@ Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& b
   }
   safe.close();
 
-  if (run->error) return *run->error;
-  if (safe.faulted()) return Error{ErrorCode::kInternal, "haptic device '" + safe.name() + "': " + safe.fault() + "; the run has ended with zero force"};
-  if (run->observer.error()) return *run->observer.error();
   return summarise(*run, scene, backend);
 }
 

@@ -50,14 +50,15 @@ struct SessionSummary {
   std::uint64_t saturated_ticks = 0;         ///< ticks where a device limit shortened force or torque
   std::uint64_t dropped_ticks = 0, dropped_frames = 0;   ///< not recorded because the recording thread fell behind
   bool stopped = false;                      ///< ended by `stop`, before its duration
-  std::vector<std::string> notes;            ///< one sentence each: no real-time priority, watchdog, truncation, …
+  std::optional<Error> failure;              ///< why the run ended before its time: back end, device fault, exception, recording; with zero force
+  std::vector<std::string> notes;            ///< one sentence each: no real-time priority, watchdog, truncation, the back end's, …
 };
 
 /// Runs the 1 kHz loop on `device` and `backend` (which has been prepared for scene.geometry) and returns when the
 /// run is over. Profile, K, law, n, delays and fades come from scene.scene. Opens the device, wraps it in
 /// SafeDevice, and on every way out sends zero force and closes it.
-/// `observer` may be null. Errors: kNoDevice (open failed), kBadValue (a setting), kInternal (back end, device
-/// fault, exception, recording); each one sentence.
+/// `observer` may be null. Errors, each one sentence: kNoDevice (open failed), kBadValue (a setting), kInternal (no memory, no thread).
+/// A run that began and failed later has a summary, too: with `failure`.
 Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& backend, HapticDevice& device,
                                    const SessionOptions& options, RunObserver* observer);
 

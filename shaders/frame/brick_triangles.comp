@@ -16,7 +16,9 @@ EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindTriangleBricks, TriangleBrick, triangle_bricks);
 EDIT(kBindContactMobiles, uint32_t, contact_mobiles);
 EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
+#include "shaders/lib/list_room.glsl"
 #include "shaders/lib/mobile_mark.glsl"
 
 void main() {
@@ -34,6 +36,6 @@ void main() {
   const ivec3 low = scene.mockup.grid.origin + side * brick_at(work.brick, scene.mockup.grid.bricks);
   if (!triangle_touches_box(a, b, c, raw_normal(a, b, c), low, low + side)) return;
   if (mockup_brick_slot[work.brick] == kBrickInternal) mark_mobile(mobile, kMobileInternal);
-  const uint32_t at = atomicAdd(frame_lists[kListTriangleBricks].count, 1u);
+  const uint32_t at = take_room(kListTriangleBricks, 1u);
   if (at < frame_lists[kListTriangleBricks].capacity) triangle_bricks[at] = TriangleBrick(mobile, work.brick);
 }

@@ -13,6 +13,9 @@ READ(kBindToolWorld, ivec3, tool_world);
 READ(kBindTriangleBricks, TriangleBrick, triangle_bricks);
 EDIT(kBindTouchCandidates, TouchCandidate, touch_candidates);
 EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
+
+#include "shaders/lib/list_room.glsl"
 
 void main() {
   const uint32_t item = flat_invocation();
@@ -33,7 +36,7 @@ void main() {
         const uint32_t bit = uint32_t(x | y << 3 | z << 6);
         const uint32_t used = mockup_bricks[slot].boundary[bit >> 5] | mockup_bricks[slot].internal_[bit >> 5];
         if ((used >> (bit & 31u) & 1u) == 0u) continue;
-        const uint32_t at = atomicAdd(frame_lists[kListTouchCandidates].count, 1u);
+        const uint32_t at = take_room(kListTouchCandidates, 1u);
         if (at < frame_lists[kListTouchCandidates].capacity)
           touch_candidates[at] = TouchCandidate(work.mobile, work.brick, bit);
       }

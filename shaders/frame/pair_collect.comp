@@ -16,14 +16,12 @@ EDIT(kBindPairCandidates, PairCandidate, pair_candidates);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
-const uint32_t kProbes = 64u;   // slots looked at before the table counts as full (chosen)
-
 // Enters the pair in the table; its slot, or kNone when it was there or found no room.
 uint32_t new_slot(uint32_t static_id, uint32_t mobile) {
   const uint64_t key = (uint64_t(static_id) + 1ul) << 32 | uint64_t(mobile);   // never 0, which is an empty slot
   const uint32_t mask = uint32_t(pair_table.length()) - 1u;
   uint32_t slot = uint32_t((key * 0x9E3779B97F4A7C15ul) >> 32);
-  for (uint32_t probe = 0u; probe < kProbes; ++probe) {
+  for (uint32_t probe = 0u; probe < kPairProbes; ++probe) {
     slot &= mask;
     const uint64_t there = atomicCompSwap(pair_table[slot], 0ul, key);
     if (there == 0ul) return slot;

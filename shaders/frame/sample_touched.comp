@@ -3,12 +3,14 @@
 // For a tool without inside: the samples in touched V_bnd voxels count. An invocation a touched voxel; appends sample_chunks.
 #include "shaders/lib/frame.glsl"
 
+READ_ONE(kBindScene, SceneConstants, scene);
 READ(kBindMockupListBegin, uint32_t, mockup_list_begin);
 READ(kBindTouchedVoxels, FrameVoxel, touched_voxels);
 EDIT(kBindSampleChunks, SampleChunk, sample_chunks);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
+#include "shaders/lib/list_room.glsl"
 #include "shaders/lib/sample_chunks.glsl"
 
 void main() {

@@ -18,6 +18,7 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #include "shaders/lib/pose.glsl"
+#include "shaders/lib/list_room.glsl"
 #include "shaders/lib/sample_chunks.glsl"
 #define PARTITION_GRID scene.mockup.grid
 #define PARTITION_SLOTS mockup_brick_slot

@@ -21,6 +21,8 @@ EDIT(kBindClusterBricks, ClusterBrick, cluster_bricks);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
+#include "shaders/lib/list_room.glsl"
+
 // One box a run, component by component.
 shared int32_t low[3 * kClusterSize / kRunSize], high[3 * kClusterSize / kRunSize];
 
@@ -84,7 +86,7 @@ void main() {
     const uvec3 brick = uvec3(first) + uvec3(i % n.x, i / n.x % n.y, i / (n.x * n.y));
     const uint32_t number = brick.x + uint32_t(scene.mockup.grid.bricks.x) * (brick.y + uint32_t(scene.mockup.grid.bricks.y) * brick.z);
     if (mockup_brick_slot[number] == kBrickExternal) continue;
-    const uint32_t at = atomicAdd(frame_lists[kListClusterBricks].count, 1u);
+    const uint32_t at = take_room(kListClusterBricks, 1u);
     if (at < frame_lists[kListClusterBricks].capacity) cluster_bricks[at] = ClusterBrick(cluster, number);
   }
 }

@@ -23,6 +23,7 @@ EDIT(kBindPairChunks, PairChunk, pair_chunks);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
+#include "shaders/lib/list_room.glsl"
 #include "shaders/lib/mobile_mark.glsl"
 #define PARTITION_GRID scene.mockup.grid
 #define PARTITION_SLOTS mockup_brick_slot
@@ -48,20 +49,21 @@ void main() {
 
   const uint32_t begin = mockup_list_begin[boundary];
   uint32_t end = mockup_list_begin[boundary + 1u];
-  if ((end - begin) / kPairChunk > kLoopBudget / 2u) {
+  const uint32_t pair_chunk = chunk_of(end - begin, kPairChunk, kMostPairChunks), voxel_chunk = chunk_of(end - begin, kVoxelChunk, kMostChunks);
+  if (pair_chunk > kLoopBudget / kPairProbes) {   // the invocation of a chunk could run beyond the budget
     atomicOr(frame_state.overflow_other, kOverflowLoop);
     end = begin;
   }
   if ((atomicOr(voxel_state[boundary], kVoxelTouched) & kVoxelTouched) == 0u) {
     const uint32_t at = atomicAdd(frame_lists[kListTouchedVoxels].count, 1u);
     if (at < frame_lists[kListTouchedVoxels].capacity) touched_voxels[at] = FrameVoxel(boundary, voxel);
-    const uint32_t chunks = (end - begin + kVoxelChunk - 1u) / kVoxelChunk;
-    const uint32_t first = atomicAdd(frame_lists[kListVoxelChunks].count, chunks);
+    const uint32_t chunks = (end - begin + voxel_chunk - 1u) / voxel_chunk;
+    const uint32_t first = take_room(kListVoxelChunks, chunks);
     for (uint32_t i = 0u; i < chunks && first + i < frame_lists[kListVoxelChunks].capacity; ++i)
-      voxel_chunks[first + i] = VoxelChunk(begin + i * kVoxelChunk, min(begin + (i + 1u) * kVoxelChunk, end));
+      voxel_chunks[first + i] = VoxelChunk(begin + i * voxel_chunk, min(begin + (i + 1u) * voxel_chunk, end));
   }
-  const uint32_t chunks = (end - begin + kPairChunk - 1u) / kPairChunk;
-  const uint32_t first = atomicAdd(frame_lists[kListPairChunks].count, chunks);
+  const uint32_t chunks = (end - begin + pair_chunk - 1u) / pair_chunk;
+  const uint32_t first = take_room(kListPairChunks, chunks);
   for (uint32_t i = 0u; i < chunks && first + i < frame_lists[kListPairChunks].capacity; ++i)
-    pair_chunks[first + i] = PairChunk(work.mobile, begin + i * kPairChunk, min(begin + (i + 1u) * kPairChunk, end));
+    pair_chunks[first + i] = PairChunk(work.mobile, begin + i * pair_chunk, min(begin + (i + 1u) * pair_chunk, end));
 }

@@ -7,6 +7,7 @@
 #include "shaders/shared/frame_response.h"
 
 EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindContactMobiles, uint32_t, contact_mobiles);
 READ(kBindToolTriangles, uvec3, tool_triangles);
 READ(kBindToolWorld, ivec3, tool_world);
@@ -16,6 +17,7 @@ EDIT(kBindMobileWork, MobileWork, mobile_work);
 EDIT(kBindResultMembers, AreaMember, members);
 
 #include "shaders/lib/centroid.glsl"
+#include "shaders/lib/list_room.glsl"
 
 int64_t squared(ivec3 v) {
   const i64vec3 w = i64vec3(v);
@@ -23,7 +25,7 @@ int64_t squared(ivec3 v) {
 }
 
 void append(uint32_t area, uint32_t mobile) {
-  const uint32_t i = atomicAdd(frame_lists[kListMembers].count, 1u);
+  const uint32_t i = take_room(kListMembers, 1u);
   if (i < frame_lists[kListMembers].capacity) members[i] = AreaMember(area, mobile);
 }
 

@@ -18,6 +18,8 @@ READ(kBindToolVertices, ivec3, tool_vertices);
 READ(kBindToolTriangles, uvec3, tool_triangles);
 READ(kBindToolInfo, uint32_t, tool_info);
 
+#include "shaders/lib/list_room.glsl"
+
 void main() {
   const uint32_t i = flat_invocation();
   if (i >= frame_lists[kListMembers].count) return;
@@ -40,7 +42,7 @@ void main() {
     atomicOr(frame_state.overflow_other, kOverflowLoop);
     return;
   }
-  const uint32_t first = atomicAdd(frame_lists[kListMobileTiles].count, across * down);
+  const uint32_t first = take_room(kListMobileTiles, across * down);
   const uint32_t capacity = frame_lists[kListMobileTiles].capacity;
   for (uint32_t t = 0u; t < across * down && first + t < capacity; ++t)
     mobile_tiles[first + t] = MobileTile(member.mobile, u_first + kMobileTile * int32_t(t % across),

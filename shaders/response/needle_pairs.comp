@@ -51,8 +51,11 @@ void take_edges(ivec3 from[3], ivec3 to[3], inout Span span) {
 // Lists (area, vertex) unless it is listed already: the key's place in the table decides.
 void list_vertex(uint32_t area, uint32_t vertex) {
   const uint32_t key = (area << 24 | vertex) + 1u;   // 8 and 24 bits; 0 is an empty entry
-  uint32_t at = (key * 2654435761u >> 12) & (kNeedleTable - 1u);
+  const uint32_t mask = uint32_t(needle_table.length()) - 1u;
+  uint32_t at = key * 2654435761u;
+  at ^= at >> 15;   // the upper bits are the mixed ones
   for (uint32_t probe = 0u; probe < kNeedleProbes; ++probe) {
+    at &= mask;
     const uint32_t before = atomicCompSwap(needle_table[at], 0u, key);
     if (before == key) return;
     if (before == 0u) {
@@ -60,7 +63,7 @@ void list_vertex(uint32_t area, uint32_t vertex) {
       if (i < frame_lists[kListNeedleVertices].capacity) needle_vertices[i] = NeedleVertex(area, vertex, at);
       return;
     }
-    at = (at + 1u) & (kNeedleTable - 1u);
+    ++at;
   }
   atomicOr(frame_state.overflow_other, kOverflowNeedleTable);
 }

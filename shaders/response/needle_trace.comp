@@ -1,5 +1,5 @@
 #version 460
-// One invocation: a tool vertex near a needle. How far along n_c does it leave the area's surface?
+// One workgroup: a tool vertex near a needle; an invocation a share of C_s. How far along n_c does the vertex leave the area's surface?
 // Reads needle vertices, C_s, areas. Writes sums of areas; empties the needle table.
 // Before: needle_pairs; its list is closed.
 #extension GL_GOOGLE_include_directive : require
@@ -22,26 +22,33 @@ READ(kBindNeedleVertices, NeedleVertex, needle_vertices);
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/height_sum.glsl"
 
+shared uint32_t lowest;
+
 void main() {
-  const uint32_t i = flat_invocation();
-  if (i >= frame_lists[kListNeedleVertices].count) return;
+  const uint32_t i = flat_group();
+  if (i >= frame_lists[kListNeedleVertices].count) return;   // the whole workgroup
   const NeedleVertex item = needle_vertices[i];
-  needle_table[item.entry] = 0u;
+  if (gl_LocalInvocationIndex == 0u) {
+    needle_table[item.entry] = 0u;
+    lowest = kNone;
+  }
+  barrier();
 
   const ivec3 p = tool_world[item.vertex], d = areas[item.area].direction;
-  uint32_t height = kNone;
   const uint32_t count = frame_lists[kListContactStatics].count;
-  if (count > kLoopBudget) atomicOr(frame_state.overflow_other, kOverflowLoop);
-  for (uint32_t slot = 0u; slot < min(count, kLoopBudget); ++slot) {
+  if (count > kLoopBudget * kGroupSize) atomicOr(frame_state.overflow_other, kOverflowLoop);
+  for (uint32_t slot = gl_LocalInvocationIndex; slot < min(count, kLoopBudget * kGroupSize); slot += kGroupSize) {
     if (slots[slot].area != item.area) continue;
     const uint32_t id = contact_statics[slot];
     if ((static_state[id] & kStaticHit) == 0u) continue;
     const uvec3 corners = mockup_triangles[id];
     const Crossing crossing = ray_crossing(p, d, mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]);
     const bool counts = crossing.sign > 0 || (crossing.sign < 0 && (mockup_info[id] & kInfoSheet) != 0u);
-    if (counts) height = min(height, crossing.height);
+    if (counts) atomicMin(lowest, crossing.height);
   }
-  if (height == kNone) return;
+  barrier();
+  const uint32_t height = lowest;
+  if (gl_LocalInvocationIndex != 0u || height == kNone) return;
   HeightSum sum = height_sum_empty();
   height_sum_add(sum, p + ivec3((i64vec3(d) * int64_t(height)) >> 30), height, 1u << 30);
   height_sum_flush(item.area, sum);

@@ -260,7 +260,9 @@ struct SampleChunk {
 };
 PALPATE_CONSTANT uint32_t kPairChunk = 8;                        // entries in a PairChunk (chosen: most lists are shorter)
 PALPATE_CONSTANT uint32_t kVoxelChunk = 32;                      // entries in a VoxelChunk
-PALPATE_CONSTANT uint32_t kSampleChunk = 2;                      // entries in a SampleChunk: at most 2 · 64² grid points
+PALPATE_CONSTANT uint32_t kSampleChunk = 2;                      // entries in a SampleChunk
+PALPATE_CONSTANT uint32_t kMostChunks = 1024, kMostPairChunks = 8192;   // chunks of one list: where it is very long, chunks are longer
+PALPATE_CONSTANT uint32_t kPairProbes = 64;                      // slots of the pair table looked at before it counts as full
 
 struct PairCandidate {
   uint32_t static_id;

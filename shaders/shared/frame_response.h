@@ -19,7 +19,7 @@ PALPATE_CONSTANT int32_t kBindHeldOverlap = 76;       // uint32_t[kMaxFrameAreas
 PALPATE_CONSTANT int32_t kBindMobileTiles = 77;       // kListMobileTiles: MobileTile
 PALPATE_CONSTANT int32_t kBindHeights = 78;           // uint32_t[samples] (`paper`: [C_s]): H, or kNone
 PALPATE_CONSTANT int32_t kBindSlotBoxes = 79;         // LatticeBox[C_s / kSlotBox]
-PALPATE_CONSTANT int32_t kBindNeedleTable = 80;       // uint32_t[kNeedleTable]: hash of (area, tool vertex) + 1; 0 between frames
+PALPATE_CONSTANT int32_t kBindNeedleTable = 80;       // uint32_t[2^n]: hash of (area, tool vertex) + 1; 0 between frames
 PALPATE_CONSTANT int32_t kBindNeedleVertices = 81;    // kListNeedleVertices: NeedleVertex
 PALPATE_CONSTANT int32_t kBindParents = 82;           // uint32_t[2 · C_s]: union-find, lib/union_find.glsl
 
@@ -40,7 +40,6 @@ PALPATE_CONSTANT uint32_t kOverflowNeedleTable = 1u << 8;   // no free slot near
 
 PALPATE_CONSTANT uint32_t kSlotBox = 32u;              // slots that share a box (chosen: 1 box test for 32 triangle tests)
 PALPATE_CONSTANT uint32_t kHeightRun = 32u;            // samples summed by one invocation before it touches an area's atomics
-PALPATE_CONSTANT uint32_t kNeedleTable = 1u << 16;     // entries; a power of two
 PALPATE_CONSTANT uint32_t kNeedleProbes = 64u;         // entries looked at before the table counts as full
 PALPATE_CONSTANT int32_t kMobileTile = 8;              // grid points along an edge of a tile of tool samples: one workgroup
 

@@ -121,7 +121,7 @@ TEST_F(Areas, BeyondTheCapacityAreReportedNotCut) {
   ResponseCase c = row_of_triangles(gpu::kMaxFrameAreas + 1);
   for (std::uint32_t i = 0; i < c.static_state.size(); ++i) put_in_contact(c, i);
   const ResponseAnswer answer = run(c);
-  EXPECT_STREQ(FrameResponse::overflow_name(answer.state.overflow, answer.state.overflow_other), "areas");
+  EXPECT_STREQ(overflow_name(answer.state), "areas");
   c.contact_statics.pop_back();
   c.static_state.back() = 0;
   const ResponseAnswer fits = run(c);

@@ -44,9 +44,17 @@ class ResponseTest : public GpuTest {
     ResponseAnswer answer;
     FrameBuffers buffers;
     fill(buffers, c);
-    auto response = FrameResponse::create(
-        device(), {true, size(c.tool_triangles), size(c.contact_statics), size(c.samples), gpu::kMaxFrameAreas}, buffers);
+    auto response = FrameResponse::create(device(), true);
     EXPECT_TRUE(response) << response.error().sentence;
+    FrameCapacity capacity;
+    capacity.lists[gpu::kListContactStatics] = size(c.contact_statics);
+    capacity.lists[gpu::kListSamples] = size(c.samples);
+    capacity.lists[gpu::kListMobileTiles] = kMostTiles;
+    capacity.lists[gpu::kListNeedleVertices] = kMostNeedles;
+    capacity.needle_table = 2 * kMostNeedles;
+    const auto made = response->make_buffers(device(), size(c.tool_triangles), capacity, buffers);
+    EXPECT_TRUE(made) << made.error().sentence;
+    EXPECT_TRUE(buffers.clear_tables(device()));
     auto close = make_frame_shader(device(), spirv::list_close, 4);
     EXPECT_TRUE(close);
     auto commands = CommandRecorder::create(device(), 8);
@@ -69,6 +77,8 @@ class ResponseTest : public GpuTest {
   }
 
  private:
+  static constexpr std::uint32_t kMostTiles = 1u << 16, kMostNeedles = 1u << 12;
+
   template <class T>
   static std::uint32_t size(const std::vector<T>& v) { return static_cast<std::uint32_t>(v.size()); }
 
@@ -185,7 +195,8 @@ class ResponseTest : public GpuTest {
     set_list(kListPairs, size(c.pairs), size(c.pairs));
     set_list(kListMembers, 0, most_members);
     set_list(kListPierces, 0, most_pierces);
-    for (const auto& own : FrameResponse::kCapacities) set_list(own.list, 0, own.items);
+    set_list(kListMobileTiles, 0, kMostTiles);
+    set_list(kListNeedleVertices, 0, kMostNeedles);
     put(buffers, kBindFrameLists, lists);
     std::vector<DispatchArguments> dispatches(kDispatchCount);
     dispatches[kDispatchContactOne] = {1, 1, 1};

@@ -44,5 +44,6 @@ int main() {
   MyDevice device(made->path);
   const auto summary = run_session(scene, *backend, device, {.pace = Pace::kRealtime, .duration_s = 2.5}, nullptr);
   if (!summary) return failed(summary.error());
+  if (summary->failure) return failed(*summary->failure);
   std::printf("%llu ticks, at most %.2f N\n", static_cast<unsigned long long>(summary->ticks), summary->force_max_N);
 }

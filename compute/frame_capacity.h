@@ -1,0 +1,36 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "shaders/shared/frame.h"
+#include "shaders/shared/frame_response.h"
+#include "shaders/shared/scene.h"
+
+namespace palpate {
+
+/// How many items each list of a frame holds. Chosen so that usual contacts fit; what has overflowed grows when asked.
+struct FrameCapacity {
+  std::array<std::uint32_t, gpu::kListCount> lists{};   ///< by kList…; at least 1 for each list that the profile has
+  std::uint32_t pair_table = 1, needle_table = 1;       ///< entries of hash tables; rounded up to a power of two
+  std::uint32_t bin_entries = 1;                        ///< places in all bins of the tool's shadow together
+
+  /// What a frame of this scene begins with. `wanted` overrides lists and tables by their names (overflow_name), for tests.
+  static FrameCapacity first(const gpu::SceneConstants& scene, const std::map<std::string, std::uint32_t>& wanted);
+
+  /// Makes room for what a frame ran out of: at least double, and all that was `asked` for. False: what it ran out of is no
+  /// matter of memory (areas, steps of one invocation).
+  bool grow(const gpu::FrameState& state, const std::array<std::uint32_t, gpu::kListCount>& asked);
+};
+
+/// What a frame ran out of, for Contacts::truncated_capacity; "" for nothing.
+const char* overflow_name(const gpu::FrameState& state);
+
+/// One sentence on a limit that no memory moves, for a frame that grow() can't help.
+std::string fixed_limit(const gpu::FrameState& state);
+
+/// The name of a list ("pairs"), or null for a number that is none.
+const char* list_name(std::uint32_t list);
+
+}  // namespace palpate

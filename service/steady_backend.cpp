@@ -1,0 +1,77 @@
+#include "service/steady_backend.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace palpate {
+
+SteadyBackend::SteadyBackend(std::unique_ptr<CollisionBackend> first, Make make_spare)
+    : first_(std::move(first)), make_spare_(std::move(make_spare)) {}
+
+Result<void> SteadyBackend::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+  geometry_ = &geometry;
+  plan_ = plan;
+  if (!first_) return prepare_spare(progress);
+  bool cancelled = false;
+  const Progress watched = [&](const char* what, double done) { return !(cancelled = cancelled || (progress && !progress(what, done))); };
+  const Result<void> prepared = first_->prepare(geometry, plan, watched);
+  if (prepared || cancelled || !make_spare_) return prepared;
+  note("the scene can't be prepared on " + first_->device() + ": " + prepared.error().sentence);
+  first_.reset();
+  return prepare_spare(progress);
+}
+
+Result<void> SteadyBackend::prepare_spare(const Progress& progress) {
+  if (!spare_) spare_ = make_spare_();
+  if (auto prepared = spare_->prepare(*geometry_, plan_, progress); !prepared) return prepared;
+  spare_ready_ = true;
+  note("the " + spare_->name() + " back end answers instead");
+  return {};
+}
+
+Result<void> SteadyBackend::ask_first(const LatticePose& pose, const Held* held, Contacts& out) {
+  for (;;) {
+    if (auto answered = first_->query(pose, held, out); !answered || !out.truncated || out.truncated_capacity == full_) return answered;
+    if (auto enlarged = first_->enlarge(); !enlarged) {
+      full_ = out.truncated_capacity;
+      note(enlarged.error().sentence);
+      return {};
+    }
+    note("a frame had too little room for " + std::string(out.truncated_capacity) + ": it was enlarged and the frame asked again");
+  }
+}
+
+Result<void> SteadyBackend::query(const LatticePose& pose, const Held* held, Contacts& out) {
+  by_spare_ = false;
+  if (first_) {
+    const Result<void> answered = ask_first(pose, held, out);
+    // More areas than a frame may have is truncation by definition, whoever answers.
+    if (answered && (!out.truncated || std::strcmp(out.truncated_capacity, "areas") == 0)) return answered;
+    if (!make_spare_) return answered;
+    if (!answered) {
+      note("the " + first_->name() + " back end has failed: " + answered.error().sentence);
+      first_.reset();
+    }
+  }
+  if (!spare_ready_)
+    if (auto prepared = prepare_spare([](const char*, double) { return true; }); !prepared) return prepared;
+  by_spare_ = true;
+  return spare_->query(pose, held, out);
+}
+
+std::uint64_t SteadyBackend::memory_bytes() const {
+  return (first_ ? first_->memory_bytes() : 0) + (spare_ ? spare_->memory_bytes() : 0);
+}
+
+std::vector<std::string> SteadyBackend::take_notes() {
+  std::vector<std::string> fresh(notes_.begin() + static_cast<std::ptrdiff_t>(told_), notes_.end());
+  told_ = notes_.size();
+  return fresh;
+}
+
+void SteadyBackend::note(std::string sentence) {
+  if (std::find(notes_.begin(), notes_.end(), sentence) == notes_.end()) notes_.push_back(std::move(sentence));
+}
+
+}  // namespace palpate

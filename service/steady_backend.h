@@ -1,0 +1,53 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/collision_backend.h"
+
+namespace palpate {
+
+/// A back end that goes on. Where a list was too small it makes room and asks again; where the first back end fails, or a frame is more
+/// than it can hold, a spare one answers from then on, or that frame. All back ends give the same integers, so no answer tells who gave it;
+/// take_notes() does. A query that enlarges or prepares the spare takes as long as it takes: in real time the watchdog holds the force at
+/// zero meanwhile.
+class SteadyBackend final : public CollisionBackend {
+ public:
+  using Make = std::function<std::unique_ptr<CollisionBackend>()>;
+
+  /// `make_spare` may be empty: then what the first back end can't do remains an error, or a truncated frame.
+  SteadyBackend(std::unique_ptr<CollisionBackend> first, Make make_spare);
+
+  /// The first back end, or, if that fails, the spare. Keeps `plan` for a spare that is needed later.
+  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override;
+  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
+
+  Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }
+  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override { return by_spare_ ? spare_->pairs() : now().pairs(); }
+  bool has_internal_voxels() const override { return now().has_internal_voxels(); }
+  std::string name() const override { return now().name(); }         ///< of the one that answers now
+  std::string device() const override { return now().device(); }
+  std::uint64_t memory_bytes() const override;
+  std::vector<StageMemory> memory_by_stage() const override { return now().memory_by_stage(); }
+  std::vector<std::string> take_notes() override;
+
+ private:
+  const CollisionBackend& now() const { return first_ ? *first_ : *spare_; }
+  Result<void> ask_first(const LatticePose& pose, const Held* held, Contacts& out);
+  Result<void> prepare_spare(const Progress& progress);
+  void note(std::string sentence);   ///< each sentence once
+
+  std::unique_ptr<CollisionBackend> first_, spare_;   ///< first_ is gone once it has failed
+  Make make_spare_;
+  bool spare_ready_ = false;
+  bool by_spare_ = false;            ///< the last query was answered by the spare
+  const SceneGeometry* geometry_ = nullptr;
+  Plan plan_;
+  std::string full_;                 ///< the list that could not be enlarged last
+  std::vector<std::string> notes_;
+  std::size_t told_ = 0;             ///< notes that take_notes() has given
+};
+
+}  // namespace palpate
