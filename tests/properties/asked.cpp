@@ -83,7 +83,7 @@ std::string text_of(const ContactArea& area, Extent extent, const Mapping& mappi
 
 }  // namespace
 
-Answer ask(const Question& question) {
+std::vector<Answer> ask(const Question& question, const std::vector<LatticePose>& poses) {
   SceneGeometry geometry;
   geometry.lattice.step_m = 1;
   geometry.mockup = built(question.mockup);
@@ -98,15 +98,19 @@ Answer ask(const Question& question) {
   plan.profile = question.profile;
   plan.est = question.profile == Profile::kRefined;
   checked(backend().prepare(geometry, plan, {}));
-  Answer answer;
-  checked(backend().query(question.pose, nullptr, answer.contacts));
-  answer.pairs = checked(backend().pairs());
-  answer.partition = checked(backend().partition(false));
-  answer.closed = geometry.mockup.closed && geometry.tool.closed;
-  respond(answer.contacts, question.pose, geometry, question.profile, 1000, answer.response);
-  if (answer.contacts.truncated) throw std::runtime_error("a small scene was truncated");
-  return answer;
+  std::vector<Answer> answers;
+  for (const LatticePose& pose : poses) {
+    Answer& answer = answers.emplace_back();
+    checked(backend().query(pose, nullptr, answer.contacts));
+    answer.pairs = checked(backend().pairs());
+    answer.partition = checked(backend().partition(false));
+    respond(answer.contacts, pose, geometry, question.profile, kStiffness, answer.response);
+    if (answer.contacts.truncated) throw std::runtime_error("a small scene was truncated");
+  }
+  return answers;
 }
+
+Answer ask(const Question& question) { return std::move(ask(question, {question.pose}).front()); }
 
 std::string text_of(const Answer& answer, Extent extent, const Mapping& mapping) {
   const Contacts& c = answer.contacts;

@@ -16,6 +16,8 @@ namespace palpate::properties {
 using Corners = std::array<Int3, 3>;
 using Body = std::vector<Corners>;
 
+inline constexpr double kStiffness = 1000;   ///< K of every answer, N/m; a step is a metre
+
 /// Two bodies where they are judged. The tool's lattice frame has its origin where the generator left it.
 struct Question {
   Body mockup, tool;
@@ -29,11 +31,12 @@ struct Answer {
   ContactResponse response;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   VoxelPartition partition;   ///< of the mock-up
-  bool closed = false;        ///< both bodies
 };
 
 /// Prepares and asks the reference, or the device when PALPATE_BACKEND is gpu. Throws std::runtime_error when either fails.
 Answer ask(const Question& question);
+/// The same for several poses in place of the question's, one after the other on one prepared scene.
+std::vector<Answer> ask(const Question& question, const std::vector<LatticePose>& poses);
 
 /// What of an answer is written out.
 enum class Extent {

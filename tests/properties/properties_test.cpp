@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "tests/properties/questions.h"
@@ -64,6 +66,10 @@ bool includes(const std::vector<std::uint32_t>& all, const std::vector<std::uint
   return std::includes(all.begin(), all.end(), part.begin(), part.end());
 }
 
+bool same_wrench(const Answer& a, const Answer& b) {
+  return a.response.wrench.force == b.response.wrench.force && a.response.wrench.torque == b.response.wrench.torque;
+}
+
 // Grids of voxels and samples are anchored at lattice 0: a shift by whole voxels, that is by whole spacings, takes them to themselves, and
 // everything else is made of differences. Sums of points move by their weight.
 TEST(Moving, BothByWholeVoxelsMovesTheAnswerAlong) {
@@ -73,7 +79,15 @@ TEST(Moving, BothByWholeVoxelsMovesTheAnswerAlong) {
     Question other = question;
     other.mockup = mapped(question.mockup, [&](const Int3& p) { return p + mapping.shift; });
     other.pose.translation += mapping.shift;
-    RC_ASSERT(text_of(ask(other), Extent::kAll) == text_of(answer, Extent::kAll, mapping));
+    const Answer along = ask(other);
+    RC_ASSERT(text_of(along, Extent::kAll) == text_of(answer, Extent::kAll, mapping));
+    // Force is made of d and n_c, which are the same. cp is a quotient of rounded sums, off by 3 · 2^-53 of itself, within 1024 steps, in
+    // either answer; gc, the tool's lattice origin, is exact. A cross product takes two such products a component.
+    RC_ASSERT(along.response.wrench.force == answer.response.wrench.force);
+    double force = 0;
+    for (const AreaResponse& area : answer.response.areas) force += glm::length(area.force);
+    for (int k = 0; k < 3; ++k)
+      RC_ASSERT(std::abs(along.response.wrench.torque[k] - answer.response.wrench.torque[k]) <= 2 * 2 * 4 * 0x1p-53 * 1024 * force);
   });
 }
 
@@ -159,7 +173,9 @@ TEST(Order, OfToolTrianglesAndOfCornersIsOfNoConsequence) {
     Question other = question;
     other.tool = with_other_first_corners(in_order(question.tool, mapping.mobiles));
     other.mockup = with_other_first_corners(question.mockup);
-    RC_ASSERT(text_of(ask(other), Extent::kAll, mapping) == text_of(answer, Extent::kAll));
+    const Answer reordered = ask(other);
+    RC_ASSERT(text_of(reordered, Extent::kAll, mapping) == text_of(answer, Extent::kAll));
+    RC_ASSERT(same_wrench(reordered, answer));
   });
 }
 
@@ -275,7 +291,9 @@ TEST(FarGeometry, ChangesNothing) {
     Question other = question;
     const Int3 away((random_below(2) == 0 ? -1 : 1) * (400 + random_below(100)), random_below(201) - 100, random_below(201) - 100);
     for (const Corners& t : mapped(question.tool, [&](const Int3& p) { return p + away; })) other.mockup.push_back(t);
-    RC_ASSERT(text_of(ask(other), Extent::kAll) == text_of(answer, Extent::kAll));
+    const Answer with = ask(other);
+    RC_ASSERT(text_of(with, Extent::kAll) == text_of(answer, Extent::kAll));
+    RC_ASSERT(same_wrench(with, answer));
   });
 }
 
@@ -298,6 +316,19 @@ TEST(AddingATriangle, NeverRemovesABoundaryVoxelOrAContactTriangle) {
   });
 }
 
+// A lone query remembers nothing, whatever was asked before.
+TEST(AskingAgain, GivesTheSame) {
+  check("asking again", soups(false), [](const Question& question, const Answer& answer) {
+    LatticePose elsewhere = question.pose;
+    elsewhere.translation += Int3(random_below(31) - 15, random_below(31) - 15, random_below(31) - 15);
+    const std::vector<Answer> answers = ask(question, {elsewhere, question.pose, elsewhere, question.pose});
+    RC_ASSERT(text_of(answers[1], Extent::kAll) == text_of(answer, Extent::kAll));
+    RC_ASSERT(text_of(answers[3], Extent::kAll) == text_of(answer, Extent::kAll));
+    RC_ASSERT(text_of(answers[2], Extent::kAll) == text_of(answers[0], Extent::kAll));
+    RC_ASSERT(same_wrench(answers[3], answer) && same_wrench(answers[2], answers[0]));
+  });
+}
+
 /// |v|² of v/|v|: three quotients, squares and a sum, each rounded: within 8 units of the last place of 1 (2^-53 each).
 constexpr double kUnit = 8 * 0x1p-53;
 
@@ -317,7 +348,7 @@ void expect_sound(const Answer& answer) {
     RC_ASSERT(!directed || std::abs(glm::dot(area.normal, area.normal) - 1) <= kUnit);
     if ((area.flags & kFlagNoDirection) != 0) RC_ASSERT(area.force == Vec3(0));
     if (area.silent || !directed) RC_ASSERT(area.force == Vec3(0) && area.torque == Vec3(0));
-    if (!area.silent) RC_ASSERT(area.force == 1000.0 * area.depth * area.normal);   // eq. 3, the same products in the same order
+    if (!area.silent) RC_ASSERT(area.force == kStiffness * area.depth * area.normal);   // eq. 3, the same products in the same order
     for (int k = 0; k < 3; ++k) RC_ASSERT(std::isfinite(area.point[k]) && std::isfinite(area.torque[k]));
     force += area.force;
     torque += area.torque;
