@@ -14,12 +14,15 @@
 
 namespace palpate::equivalence {
 
+/// (static, mobile) triangles that intersect.
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
 /// What is known of an answer by how its pose was made, not by asking a back end. Empty: not known.
 struct Known {
-  std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs;   ///< (static, mobile), all of them, in any order
+  std::optional<Pairs> pairs;     ///< all of them, ascending
   std::optional<std::size_t> areas;
   std::optional<bool> contact;
-  std::optional<bool> est;                                                      ///< whether EST has a member
+  std::optional<bool> est;        ///< whether EST has a member
 };
 
 /// A scene as both back ends get it, and what they are asked.

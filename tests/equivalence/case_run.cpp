@@ -1,8 +1,8 @@
 #include "tests/equivalence/case_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <utility>
 
 #include "model/response.h"
 #include "tests/equivalence/contacts_difference.h"
@@ -21,6 +21,32 @@ std::string text_of(const LatticePose& pose) {
   text += " translation";
   for (int k = 0; k < 3; ++k) text += " " + std::to_string(pose.translation[k]);
   return text;
+}
+
+/// What one back end says to one pose.
+struct Answer {
+  Contacts contacts;
+  Pairs pairs;
+  ContactResponse response;
+};
+
+std::string first_difference(const Pairs& a, const Pairs& b) {
+  if (a == b) return "";
+  std::size_t i = 0;
+  while (i < a.size() && i < b.size() && a[i] == b[i]) ++i;
+  const auto text = [i](const Pairs& list) { return i < list.size() ? std::to_string(list[i].first) + " " + std::to_string(list[i].second) : "none"; };
+  return "pairs[" + std::to_string(i) + "]: " + text(a) + ", " + text(b);
+}
+
+/// The first difference of two answers; the responses, made of the contacts by one function, as bits.
+std::string first_difference(const Answer& a, const Answer& b) {
+  std::string difference = first_difference(a.contacts, b.contacts);
+  if (difference.empty()) difference = first_difference(a.pairs, b.pairs);
+  if (!difference.empty()) return difference;
+  CaseHashes ours, theirs;
+  add(ours, a.response);
+  add(theirs, b.response);
+  return ours.response.value() == theirs.response.value() ? "" : "d, n_c, cp, F or T";
 }
 
 /// One case being run.
@@ -97,53 +123,84 @@ class Runner {
       counted_ = i >= settings_.first;
       where_ = "pose " + std::to_string(i) + ", " + text_of(pose);
       if (!ask(geometry, pose, case_.held ? &held : nullptr, known)) return;
-      if (case_.held) remember(contacts_, response_, held);
+      if (case_.held) remember(answer_.contacts, answer_.response, held);
     }
   }
 
   /// One pose, every back end. False: no more.
   bool ask(const SceneGeometry& geometry, const LatticePose& pose, const Held* held, const Known& known) {
-    if (!query(*backends_[0], pose, held, contacts_)) return false;
-    respond(contacts_, pose, geometry, case_.profile, kStiffness, response_, held);
+    if (!query(*backends_[0], geometry, pose, held, answer_)) return false;
     if (!counted_) return true;
     count(geometry, pose, known);
     if (settings_.twice) {
-      if (!query(*backends_[0], pose, held, other_)) return false;
-      compare(first_difference(contacts_, other_), "two runs of " + backends_[0]->name());
+      if (!query(*backends_[0], geometry, pose, held, other_)) return false;
+      compare(first_difference(answer_, other_), "two runs of " + backends_[0]->name());
     }
     for (std::size_t b = 1; b < backends_.size(); ++b) {
-      if (!query(*backends_[b], pose, held, other_)) return false;
-      compare(first_difference(contacts_, other_), backends_[0]->name() + ", " + backends_[b]->name());
-      respond(other_, pose, geometry, case_.profile, kStiffness, other_response_, held);
-      CaseHashes ours, theirs;
-      add(ours, response_);
-      add(theirs, other_response_);
-      if (ours.response.value() != theirs.response.value()) compare("d, n_c, cp, F or T", backends_[0]->name() + ", " + backends_[b]->name());
+      if (!query(*backends_[b], geometry, pose, held, other_)) return false;
+      compare(first_difference(answer_, other_), backends_[0]->name() + ", " + backends_[b]->name());
     }
-    compare(first_difference(known, contacts_), backends_[0]->name() + ", known beforehand");
+    compare(first_difference(known, answer_.contacts, answer_.pairs), backends_[0]->name() + ", known beforehand");
     return out_.findings.size() < static_cast<std::size_t>(settings_.most_differences);
   }
 
-  bool query(CollisionBackend& backend, const LatticePose& pose, const Held* held, Contacts& contacts) {
-    const auto answered = backend.query(pose, held, contacts);
-    if (!answered) differs(backend.name() + " failed: " + answered.error().sentence + "; " + where_);
+  bool query(CollisionBackend& backend, const SceneGeometry& geometry, const LatticePose& pose, const Held* held, Answer& answer) {
+    if (const auto asked = backend.query(pose, held, answer.contacts); !asked) {
+      differs(backend.name() + " failed: " + asked.error().sentence + "; " + where_);
+      return false;
+    }
     // More areas than a frame may have is an answer that both give. Any other capacity is a limit of one back end.
-    const bool full = answered && contacts.truncated && std::strcmp(contacts.truncated_capacity, "areas") != 0;
-    if (full) not_supported(backend.name() + " ran out of " + contacts.truncated_capacity + "; " + where_);
-    return answered && !full;
+    if (answer.contacts.truncated && std::strcmp(answer.contacts.truncated_capacity, "areas") != 0) {
+      not_supported(backend.name() + " ran out of " + answer.contacts.truncated_capacity + "; " + where_);
+      return false;
+    }
+    auto pairs = backend.pairs();
+    if (!pairs) {
+      differs(backend.name() + " lists no pairs: " + pairs.error().sentence + "; " + where_);
+      return false;
+    }
+    answer.pairs = std::move(*pairs);
+    respond(answer.contacts, pose, geometry, case_.profile, kStiffness, answer.response, held);
+    return true;
   }
 
   void count(const SceneGeometry& geometry, const LatticePose& pose, const Known& known) {
-    add(out_.hashes, contacts_);
-    add(out_.hashes, response_);
+    const Contacts& contacts = answer_.contacts;
+    add(out_.hashes, contacts);
+    for (const auto& [s, m] : answer_.pairs) out_.hashes.sets.add(std::uint64_t{s} << 32 | m);
+    add(out_.hashes, answer_.response);
     ++out_.poses;
-    out_.contacts += contacts_.contact ? 1u : 0u;
-    out_.with_pairs += contacts_.pairs > 0 ? 1u : 0u;
-    out_.areas += contacts_.areas.size();
+    out_.contacts += contacts.contact ? 1u : 0u;
+    out_.with_pairs += contacts.pairs > 0 ? 1u : 0u;
+    out_.areas += contacts.areas.size();
     if (known.pairs || known.areas || known.contact || known.est) ++out_.known;
-    if (settings_.floats) judge_in_floats(geometry, pose, contacts_, out_.floats);
-    if (contacts_.contact)
-      for (const auto& time : contacts_.times) out_.stage_us[time.stage].push_back(time.us);
+    meet(contacts);
+    if (settings_.floats) judge_in_floats(geometry, pose, contacts, out_.floats);
+    if (contacts.contact)
+      for (const auto& time : contacts.times) out_.stage_us[time.stage].push_back(time.us);
+  }
+
+  /// Which rules this pose came to.
+  void meet(const Contacts& contacts) {
+    const auto count = [this](const char* what, bool met) { out_.met[what] += met ? 1u : 0u; };
+    count("CST", !contacts.cst.empty());
+    count("BST", !contacts.bst.empty());
+    count("EST", !contacts.est.empty());
+    count("CMT", !contacts.cmt.empty());
+    count("BMT", !contacts.bmt.empty());
+    count("IMT", !contacts.imt.empty());
+    count("areas", contacts.areas.size() > 1);
+    count("truncated", contacts.truncated);
+    bool zones = false, pierces = false;
+    for (const ContactArea& area : contacts.areas) {
+      zones = zones || area.zones.size() > 1;
+      pierces = pierces || !area.pierces.empty();
+      out_.flags |= area.flags;
+    }
+    count("zones", zones);
+    count("pierces", pierces);
+    out_.flags |= contacts.flags | answer_.response.flags;
+    for (const AreaResponse& area : answer_.response.areas) out_.flags |= area.flags;
   }
 
   void compare(const std::string& difference, const std::string& who) {
@@ -162,8 +219,7 @@ class Runner {
   const Backends& backends_;
   const RunSettings& settings_;
   CaseRun out_;
-  Contacts contacts_, other_;
-  ContactResponse response_, other_response_;
+  Answer answer_, other_;
   std::string where_;
   bool counted_ = true;
 };

@@ -35,6 +35,8 @@ struct CaseRun {
   std::uint64_t poses = 0, contacts = 0, with_pairs = 0, areas = 0, known = 0;
   FloatOpinion floats;
   double seconds = 0;
+  std::uint32_t flags = 0;             ///< every ContactFlag that an area, a frame or a response had
+  std::map<std::string, std::uint64_t> met;   ///< poses with members in each set, several areas, several zones, piercing
   std::map<std::string, std::vector<double>> stage_us;   ///< of the first back end, frames with contact
 };
 

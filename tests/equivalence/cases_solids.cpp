@@ -154,6 +154,8 @@ std::vector<Case> solid_cases() {
       shared(solid("same_body_in_the_same_place", "all triangles coplanar with their own copies",
                    [] { return solids::torus(0.02, 0.007, 12, 8); }, [] { return solids::torus(0.02, 0.007, 12, 8); }, near_identity),
              0.05, 6),
+      solid("box_in_its_own_place", "faces, edges and corners on their own copies", small_box, small_box, near_identity),
+      killer(paper(solid("box_in_its_own_place", "all normals cancel and no rule is left: no direction, no force", small_box, small_box, near_identity))),
       killer(solid("needle", "a tool thinner than the samples' spacing: heights of pairs and of tool vertices", big_box,
                    [] { return solids::box({-0.0001, -0.0001, -0.01}, {0.0001, 0.0001, 0.01}); }, near)),
       killer(held(through_plate)),

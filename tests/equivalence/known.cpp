@@ -1,20 +1,13 @@
 #include "tests/equivalence/known.h"
 
-#include <algorithm>
-
 namespace palpate::equivalence {
 namespace {
 
-std::vector<std::uint32_t> distinct(std::vector<std::uint32_t> ids) {
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  return ids;
-}
-
-std::string text_of(const std::vector<std::uint32_t>& ids) {
+std::string text_of(const Pairs& pairs) {
   std::string text = "{";
-  for (std::size_t i = 0; i < ids.size() && i < 8; ++i) text += (i > 0 ? " " : "") + std::to_string(ids[i]);
-  return text + (ids.size() > 8 ? " …}" : "}");
+  for (std::size_t i = 0; i < pairs.size() && i < 8; ++i)
+    text += (i > 0 ? ", " : "") + std::to_string(pairs[i].first) + " " + std::to_string(pairs[i].second);
+  return text + (pairs.size() > 8 ? " …}" : "}");
 }
 
 template <class T>
@@ -24,19 +17,8 @@ std::string differ(const char* what, const T& known, const T& answered) {
 
 }  // namespace
 
-std::string first_difference(const Known& known, const Contacts& contacts) {
-  if (known.pairs) {
-    if (known.pairs->size() != contacts.pairs) return differ("pairs", std::uint64_t{known.pairs->size()}, contacts.pairs);
-    std::vector<std::uint32_t> statics, mobiles;
-    for (const auto& [s, m] : *known.pairs) {
-      statics.push_back(s);
-      mobiles.push_back(m);
-    }
-    statics = distinct(std::move(statics));
-    mobiles = distinct(std::move(mobiles));
-    if (statics != contacts.cst) return "CST: " + text_of(statics) + " known, " + text_of(contacts.cst) + " answered";
-    if (mobiles != contacts.cmt) return "CMT: " + text_of(mobiles) + " known, " + text_of(contacts.cmt) + " answered";
-  }
+std::string first_difference(const Known& known, const Contacts& contacts, const Pairs& pairs) {
+  if (known.pairs && *known.pairs != pairs) return "pairs: " + text_of(*known.pairs) + " known, " + text_of(pairs) + " answered";
   if (known.areas && *known.areas != contacts.areas.size()) return differ("areas", *known.areas, contacts.areas.size());
   if (known.contact && *known.contact != contacts.contact) return differ("contact", *known.contact, contacts.contact);
   if (known.est && *known.est == contacts.est.empty()) return differ("EST has members", *known.est, !contacts.est.empty());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <map>
 
 #include "compute/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
@@ -74,6 +75,8 @@ struct Totals {
   std::uint64_t cases = 0, equal = 0, differ = 0, not_supported = 0, poses = 0, degenerate_poses = 0, contacts = 0, with_pairs = 0, known = 0;
   FloatOpinion floats;
   double seconds = 0;
+  std::uint32_t flags = 0;
+  std::map<std::string, std::uint64_t> met;
 
   void add(const Case& c, const CaseRun& run) {
     ++cases;
@@ -89,6 +92,8 @@ struct Totals {
     floats.ambiguous_poses += run.floats.ambiguous_poses;
     floats.wrong_poses += run.floats.wrong_poses;
     seconds += run.seconds;
+    flags |= run.flags;
+    for (const auto& [what, times] : run.met) met[what] += times;
   }
 };
 
@@ -121,6 +126,19 @@ void print(const Totals& t, const Options& options) {
     std::printf("single precision: %llu pairs of boxes met; %llu ambiguous, in %llu poses; %llu judged wrongly, in %llu poses\n",
                 Count{t.floats.pairs}, Count{t.floats.ambiguous}, Count{t.floats.ambiguous_poses}, Count{t.floats.wrong},
                 Count{t.floats.wrong_poses});
+}
+
+/// Poses that came to each rule, and the rules that no pose came to.
+void print_rules(const Totals& t) {
+  std::printf("poses with:");
+  for (const auto& [what, times] : t.met) std::printf(" %s %llu", what.c_str(), Count{times});
+  std::printf("\nflags met:");
+  for (const bool met : {true, false}) {
+    if (!met) std::printf("\nflags not met:");
+    for (std::size_t i = 0; i < flag_names.size(); ++i)
+      if (((t.flags >> i & 1u) != 0) == met) std::printf(" %.*s", static_cast<int>(flag_names[i].size()), flag_names[i].data());
+  }
+  std::printf("\n");
 }
 
 int exit_code(const Totals& totals) {
@@ -165,6 +183,7 @@ int run_cases(const std::vector<Case>& cases, const Backends& backends, const Op
     if (options.stop && run.outcome != Outcome::kEqual) break;
   }
   print(totals, options);
+  print_rules(totals);
   if (!options.write.empty() && exit_code(totals) == kAllEqual) {
     file.reason = options.reason;
     if (options.names.empty() && options.families.empty() && !options.killer)   // cases that are no more go
@@ -204,6 +223,7 @@ int run_campaign(const std::vector<Case>& cases, const Backends& backends, const
     std::fflush(stdout);
   }
   print(totals, options);
+  print_rules(totals);
   return exit_code(totals);
 }
 
