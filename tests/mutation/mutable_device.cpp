@@ -1,0 +1,109 @@
+#include "tests/mutation/mutable_device.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include "compute/gpu_backend.h"
+
+namespace palpate::mutation {
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+Words words_of(const std::string& bytes) {
+  Words words(bytes.size() / 4);
+  std::memcpy(words.data(), bytes.data(), bytes.size());
+  return words;
+}
+
+/// Calls visit(binding) for the number in every `OpDecorate … Binding`; visit may change it.
+template <class Visit>
+void for_each_binding(Words& words, const Visit& visit) {
+  constexpr std::uint32_t kOpDecorate = 71, kBinding = 33;
+  constexpr std::size_t kHeader = 5;
+  for (std::size_t at = kHeader; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16)
+    if ((words[at] & 0xFFFFu) == kOpDecorate && words[at + 2] == kBinding) visit(words[at + 3]);
+}
+
+Words bindings(Words words) {
+  Words found;
+  for_each_binding(words, [&](std::uint32_t& binding) { found.push_back(binding); });
+  return found;
+}
+
+Words without_bindings(Words words) {
+  for_each_binding(words, [](std::uint32_t& binding) { binding = 0; });
+  return words;
+}
+
+/// A frame numbers a module's buffers anew; its mutant's are numbered in the same way.
+Words bound_alike(const Words& original, Words mutant, const Words& numbered) {
+  const Words before = bindings(original), after = bindings(numbered);
+  for_each_binding(mutant, [&](std::uint32_t& binding) {
+    const auto found = std::find(before.begin(), before.end(), binding);
+    if (found != before.end()) binding = after[static_cast<std::size_t>(found - before.begin())];
+  });
+  return mutant;
+}
+
+}  // namespace
+
+MutableDevice::MutableDevice() {
+  GpuOptions options;
+  options.guard_buffers = true;
+  auto device = VulkanDevice::create(options);
+  if (!device) throw std::runtime_error(device.error().sentence);
+  device_ = std::move(*device);
+}
+
+Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+  frame_.reset();
+  scene_.reset();
+  auto scene = prepare_scene(*device_, geometry, plan, progress);
+  if (!scene) return scene.error();
+  scene_.emplace(std::move(*scene));
+  auto frame = Frame::create(*device_, geometry, *scene_, {});
+  if (!frame) return frame.error();
+  frame_ = std::move(*frame);
+  return device_->check_guards();
+}
+
+Result<void> MutableDevice::query(const LatticePose& pose, const Held* held, Contacts& out) {
+  if (auto r = frame_->query(pose, held, out); !r) return r;
+  return device_->check_guards();
+}
+
+Result<VoxelPartition> MutableDevice::partition(bool tool) const {
+  return read_partition(*device_, tool ? scene_->tool.partition : scene_->mockup.partition);
+}
+
+Result<void> MutableDevice::swap(const std::string& original, const std::string& mutant) {
+  const Words before = words_of(original), after = words_of(mutant), bare = without_bindings(before);
+  std::vector<Key> keys;
+  const std::size_t known = swapped_.size();
+  for (const auto& [key, made] : device_->pipelines) keys.push_back(key);
+  for (const Key& key : keys) {   // buffers, bytes of push constants, number of constants, (id, value) …, words of the module
+    std::vector<SpecConstant> constants;
+    for (std::size_t i = 0; i < key[2]; ++i) constants.push_back({key[3 + 2 * i], key[4 + 2 * i]});
+    const Words code(key.begin() + 3 + 2 * static_cast<std::ptrdiff_t>(key[2]), key.end());
+    if (code.size() != before.size() || without_bindings(code) != bare) continue;
+    const Words changed = bound_alike(before, after, code);
+    const auto made = ComputePipeline::create(*device_, {"mutant", changed.data(), changed.size() * 4}, key[0], key[1], constants);
+    if (!made) return made.error();
+    Key mutants_key(key.begin(), key.end() - static_cast<std::ptrdiff_t>(code.size()));
+    mutants_key.insert(mutants_key.end(), changed.begin(), changed.end());
+    swapped_.emplace_back(key, device_->pipelines[key]);
+    device_->pipelines[key] = device_->pipelines[mutants_key];
+    device_->pipelines.erase(mutants_key);
+  }
+  if (swapped_.size() == known) return Error{ErrorCode::kUsage, "no pipeline has been made of this module"};
+  return {};
+}
+
+void MutableDevice::restore() {
+  for (auto& [key, made] : swapped_) device_->pipelines[key] = std::move(made);
+  swapped_.clear();
+}
+
+}  // namespace palpate::mutation

@@ -1,0 +1,222 @@
+// Judges mutants, one a line of standard input, one line of answer each.
+//   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
+//   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT; modules that include it
+//                          in: "intact"             whether the unchanged program still answers as at first
+// With --killers as last argument only the killer cases are asked.
+//   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when it is.
+// Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the same),
+// not-asked (no case runs the module, or the sources are not those that this program was built of).
+// A mutant costs little: scenes, their answers and all pipelines but the mutant's are there already. The reference's mutants run in
+// children of this process; the device's run in it, for Vulkan does not survive a fork, and one that crashes or hangs ends the program.
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "cpu_ref/cpu_backend.h"
+#include "tests/mutation/mutable_device.h"
+#include "tests/mutation/mutant_switch.h"
+#include "tests/mutation/oracle.h"
+#include "tests/mutation/shader_compiler.h"
+
+namespace palpate::mutation {
+namespace {
+
+double cpu_seconds(int who) {
+  rusage used{};
+  getrusage(who, &used);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+void answer(const char* outcome, double seconds, const std::string& where, std::string what) {
+  for (char& c : what)
+    if (c == '\t' || c == '\n') c = ' ';
+  std::printf("%s\t%.2f\t%s\t%s\n", outcome, seconds, where.c_str(), what.c_str());
+  std::fflush(stdout);
+}
+
+// ---- the reference, in children
+
+/// What a child reports through its pipe.
+struct Report {
+  std::size_t at = 0;
+  char difference[200] = "";
+};
+
+[[noreturn]] void child(const Oracle& oracle, int mutant, int pipe_end, rlim_t seconds) {
+  const rlimit time{seconds, seconds + 1}, no_core{0, 0}, memory{rlim_t{4} << 30, rlim_t{4} << 30};
+  setrlimit(RLIMIT_CPU, &time);
+  setrlimit(RLIMIT_CORE, &no_core);
+  setrlimit(RLIMIT_AS, &memory);
+  if (std::freopen("/dev/null", "w", stderr) == nullptr) std::_Exit(3);
+  active = mutant;
+  Report report;
+  const std::string difference = oracle.first_difference_now(report.at);
+  std::strncpy(report.difference, difference.c_str(), sizeof report.difference - 1);
+  if (write(pipe_end, &report, sizeof report) != sizeof report) std::_Exit(3);
+  std::_Exit(difference.empty() ? 0 : 1);
+}
+
+void judge_reference(Oracle& oracle, int mutant, double limit) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  const double before = cpu_seconds(RUSAGE_CHILDREN);
+  const pid_t pid = fork();
+  if (pid == 0) child(oracle, mutant, ends[1], static_cast<rlim_t>(limit));
+  close(ends[1]);
+  Report report;
+  const bool reported = read(ends[0], &report, sizeof report) == sizeof report;
+  close(ends[0]);
+  int status = 0;
+  waitpid(pid, &status, 0);
+  const double seconds = cpu_seconds(RUSAGE_CHILDREN) - before;
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    answer(signal == SIGXCPU || signal == SIGKILL ? "hangs" : "crashed", seconds, "", strsignal(signal));
+  } else if (WEXITSTATUS(status) == kNoProgram) {
+    answer("no-program", seconds, "", "");
+  } else if (WEXITSTATUS(status) == 0) {
+    answer("survived", seconds, "", "");
+  } else if (reported) {
+    oracle.ask_first(report.at);
+    answer("differs", seconds, oracle.name(report.at), report.difference);
+  } else {
+    answer("crashed", seconds, "", "exit status " + std::to_string(WEXITSTATUS(status)));
+  }
+}
+
+// ---- the device's shaders, in this process
+
+/// SIGPROF ends the program when a mutant uses more processor time than this; 0: no limit.
+void limit_time(double seconds) {
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
+class ShaderJudge {
+ public:
+  ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, double limit)
+      : oracle_(oracle), device_(device), root_(std::move(root)), limit_(limit) {}
+
+  void judge(const std::string& line) {
+    std::istringstream fields(line);
+    TextChange change;
+    std::string begin, end, names;
+    std::getline(fields, change.file, '\t');
+    std::getline(fields, begin, '\t');
+    std::getline(fields, end, '\t');
+    std::getline(fields, change.text, '\t');
+    std::getline(fields, names);
+    change.begin = std::stoul(begin);
+    change.end = std::stoul(end);
+
+    const double before = cpu_seconds(RUSAGE_SELF);
+    const auto spent = [&] { return cpu_seconds(RUSAGE_SELF) - before; };
+    std::vector<std::pair<std::string, std::string>> changed;   // SPIR-V before and after
+    std::istringstream list(names);
+    for (std::string name; list >> name;) {
+      const std::string& original = this->original(name);
+      const auto mutant = compile_shader(root_, name, &change);
+      if (!mutant) return answer("no-program", spent(), "", name);
+      if (*mutant != original) changed.emplace_back(original, *mutant);
+    }
+    if (changed.empty()) return answer("no-change", spent(), "", "");
+
+    // A mutant of a file that many modules include is tried in a few of them first: caught there, it need not be compiled for all.
+    limit_time(limit_ + 3 * static_cast<double>(changed.size()));
+    std::size_t at = 0, swapped = 0;
+    std::string difference;
+    for (const std::size_t until : {std::min<std::size_t>(changed.size(), 3), changed.size()}) {
+      if (swapped == until || !difference.empty()) continue;
+      for (; swapped < until && difference.empty(); ++swapped)
+        if (auto r = device_.swap(changed[swapped].first, changed[swapped].second); !r) {
+          device_.restore();
+          // No case runs it, or the sources are not those that this program was built of.
+          if (r.error().code == ErrorCode::kUsage) return answer("not-asked", spent(), "", r.error().sentence);
+          difference = r.error().sentence;
+        }
+      if (difference.empty()) difference = oracle_.first_difference_now(at);
+    }
+    device_.restore();
+    limit_time(0);
+    if (difference.empty()) return answer("survived", spent(), "", "");
+    oracle_.ask_first(at);
+    answer("differs", spent(), oracle_.name(at), difference);
+  }
+
+ private:
+  const std::string& original(const std::string& name) {
+    std::string& code = originals_[name];
+    if (code.empty()) code = compile_shader(root_, name, nullptr).value();
+    return code;
+  }
+
+  Oracle& oracle_;
+  MutableDevice& device_;
+  std::string root_;
+  double limit_;
+  std::map<std::string, std::string> originals_;
+};
+
+/// Asks everything once more; how much processor time that takes.
+double rehearse(const Oracle& oracle) {
+  const double begin = cpu_seconds(RUSAGE_SELF);
+  std::size_t at = 0;
+  if (const std::string difference = oracle.first_difference_now(at); !difference.empty())
+    throw std::runtime_error("the unchanged program differs from itself: " + oracle.name(at) + ", " + difference);
+  const double once = cpu_seconds(RUSAGE_SELF) - begin;
+  std::printf("ready\t%zu cases\t%.2f s\n", oracle.size(), once);
+  std::fflush(stdout);
+  return once;
+}
+
+void judge_shaders(const std::string& root, bool killers) {
+  MutableDevice device;
+  Oracle oracle(device, killers);
+  ShaderJudge judge(oracle, device, root, 2 + 5 * rehearse(oracle));
+  for (std::string line; std::getline(std::cin, line);) {
+    if (line != "intact") {
+      judge.judge(line);
+      continue;
+    }
+    std::size_t at = 0;
+    const std::string difference = oracle.first_difference_now(at);
+    answer(difference.empty() ? "intact" : "corrupt", 0, oracle.name(at), difference);
+  }
+}
+
+void judge_reference(bool killers) {
+  const auto backend = make_cpu_backend();
+  Oracle oracle(*backend, killers);
+  const double limit = 2 + 5 * rehearse(oracle);
+  for (std::string line; std::getline(std::cin, line);) judge_reference(oracle, std::stoi(line), limit);
+}
+
+}  // namespace
+}  // namespace palpate::mutation
+
+int main(int count, char** arguments) {
+  const std::vector<std::string> words(arguments + 1, arguments + count);
+  const bool killers = !words.empty() && words.back() == "--killers";
+  try {
+    if (words.size() >= 2 && words[0] == "gpu")
+      palpate::mutation::judge_shaders(words[1], killers);
+    else
+      palpate::mutation::judge_reference(killers);
+    return 0;
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "mutant_judge: %s\n", failure.what());
+    return 2;
+  }
+}
