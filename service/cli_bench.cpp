@@ -47,7 +47,7 @@ void add_poses(CLI::App& app, BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
-  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it");
+  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it, stability of the force");
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
@@ -69,6 +69,12 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   peers->footer("palpate's time is a whole frame: sets, areas, zones, rays, wrench. The others' is the pairs alone. Before anything is timed, each\n"
                 "library's pairs are held against the exact ones: `missing` and `extra` count pairs over all poses.");
   peers->callback([&] { outcome = bench_peers(options, parts); });
+
+  CLI::App* stability = bench->add_subcommand("stability", "highest stable stiffness of each force law beside theory; steps and energy of the force");
+  stability->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  stability->footer("In virtual time: the shipped law closed over springs, over a bouncing wall, and over the real collision query. critical_k is found by\n"
+                    "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and torque, and energy given out.");
+  stability->callback([&] { outcome = bench_stability(options, parts); });
 }
 
 }  // namespace palpate

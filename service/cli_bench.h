@@ -28,6 +28,7 @@ struct BenchOptions {
 
 Result<void> bench_latency(const BenchOptions& options, const Parts& parts);
 Result<void> bench_peers(const BenchOptions& options, const Parts& parts);
+Result<void> bench_stability(const BenchOptions& options, const Parts& parts);
 
 /// Adds `bench` with its subcommands; `options`, `parts` and `outcome` outlive the parsing.
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome);

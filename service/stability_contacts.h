@@ -1,0 +1,68 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/collision_backend.h"
+#include "model/scene_geometry.h"
+#include "service/axis_loop.h"
+#include "service/collision_frame.h"
+
+namespace palpate {
+
+/// Two bodies and a motion of the tool: what `bench stability` asks the real collision query about. Metres, seconds.
+struct ContactCase {
+  std::string name;
+  Mesh mockup, tool;                          ///< the mock-up in the world, the tool in its own frame
+  double seconds = 1;                         ///< length of the motion
+  std::function<Pose(double time_s)> pose;    ///< of the tool; at 0 for a contact that is only pressed
+};
+
+/// Contacts that a force loop is closed over: flat, sphere, corner, four at once; pressed down along −z.
+std::vector<ContactCase> pressed_contacts();
+
+/// Motions at which the chapter's response jumps: corner slide, edge roll-over, peg in hole, four contacts, pierced plate, seam, two
+/// pads becoming one, quick retreat, fast impact, grazing, resting.
+std::vector<ContactCase> jumping_motions();
+
+using BackendMaker = std::function<Result<std::unique_ptr<CollisionBackend>>()>;
+
+/// A case's bodies, prepared. Doesn't move.
+class PreparedCase {
+ public:
+  /// Errors: the geometry's or the back end's own.
+  static Result<std::unique_ptr<PreparedCase>> make(const ContactCase& what, Profile profile, const BackendMaker& backend);
+
+  /// Starts anew with nothing held; `stiffness` K, N/m.
+  void begin(double stiffness);
+  /// What the control loop would get for this pose of the tool. The first error is kept and returned from then on.
+  Result<void> ask(const Pose& pose, LawResult& out);
+
+  const SceneGeometry& geometry() const { return geometry_; }
+
+ private:
+  PreparedCase() = default;
+  SceneGeometry geometry_;
+  Profile profile_ = Profile::kRefined;
+  std::unique_ptr<CollisionBackend> backend_;
+  std::unique_ptr<CollisionFrame> frame_;
+  FrameSlot slot_;
+};
+
+/// Over the real query, from a push of 50 µm to what is left below 5 µm: the highest stable K of a contact that is pressed down, N/m, with
+/// results `delay` ticks old (0: none). The device resolves 1 µm, so that a place is asked about once and not ten thousand times.
+Result<double> highest_stable_query(const ContactCase& what, PreparedCase& prepared, LawKind law, int delay);
+
+/// Steps of the sent force and torque from tick to tick over a motion that no force changes.
+struct JumpStatistics {
+  double force_step_n = 0, torque_step_nm = 0;     ///< the largest
+  double force_jerk = 0, torque_jerk = 0;          ///< rms of the second difference, N and N·m a tick²
+  double response_step_n = 0;                      ///< the largest between two results
+  double least_push_n = 0;                         ///< smallest force along the result's own, while it has contact; < 0: it pulled
+};
+
+/// Results `delay` ticks old and apart, a law, no device limits.
+Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, const ForceLawSettings& law, int delay);
+
+}  // namespace palpate
