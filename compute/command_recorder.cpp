@@ -176,7 +176,7 @@ Result<void> CommandRecorder::wait(std::uint64_t timeout_ns) {
 Result<void> CommandRecorder::submit_and_wait() {
   if (auto r = end(); !r) return r;
   if (auto r = submit(); !r) return r;
-  return wait();
+  return wait(600'000'000'000);
 }
 
 Result<void> CommandRecorder::times(std::vector<StageTime>& out) const {

@@ -94,6 +94,7 @@ class CommandRecorder {
   Result<void> submit();
   /// Waits for the last submit; a message of the validation layer since then is an error, too.
   Result<void> wait(std::uint64_t timeout_ns = 60'000'000'000);
+  /// Both, with all the time that a large scene's preparation may take on a busy machine without a GPU: ten minutes.
   Result<void> submit_and_wait();
 
   struct StageTime {
