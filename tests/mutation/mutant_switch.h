@@ -127,7 +127,8 @@ struct Added {
 };
 template <class A, class B, int id, bool plus>
 constexpr A& change(A& a, const Change<B, id, plus>& by) {
-  const bool changed = !std::is_constant_evaluated() && active == id;
+  bool changed = false;   // a const one would be worked out at compile time, where no mutant is on
+  if (!std::is_constant_evaluated()) changed = active == id;
   if constexpr (requires { a += by.b; a -= by.b; }) {
     if (plus != changed)
       a += by.b;
