@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "model/generate.h"
+#include "model/one_line.h"
 #include "model/path_file.h"
 #include "model/scene_json.h"
 #include "model/scene_keys.h"
@@ -35,7 +36,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestFile = 16u << 20;   ///< bytes (chosen: a scene file is a page)
 constexpr double kFarthest = 1e4;                    ///< m; scenes over 100 m are warned about
-constexpr double kNoLimit = 1e300;
 
 const std::vector<std::string>& keys_of(const char* object) { return scene_keys().at(object); }
 
@@ -252,9 +252,9 @@ Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile
     scene.start = start_of(scene);
     return scene;
   } catch (const SceneFault& found) {
-    return bad_value(found.sentence);
+    return bad_value(one_line(found.sentence));
   } catch (const std::exception& found) {   // of the JSON library or the file system: nothing of theirs leaves this file
-    return bad_value(path + " cannot be read: " + found.what());
+    return bad_value(one_line(path + " cannot be read: " + found.what()));
   }
 }
 

@@ -32,9 +32,9 @@ Result<Mesh> generate(const MeshSource& source) {
   return tool ? std::move(scene->tool) : std::move(scene->mockup);
 }
 
-Result<Mesh> mesh_of(const MeshSource& source, std::vector<std::string>& warnings) {
+Result<Mesh> mesh_of(const MeshSource& source, const ImportLimits& limits, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
   ImportReport report;
-  Result<Mesh> mesh = source.file.empty() ? generate(source) : import_mesh(source.file, source.scale, report);
+  Result<Mesh> mesh = source.file.empty() ? generate(source) : import_mesh(source.file, source.scale, report, limits, go_on);
   if (!mesh) return mesh;
   for (const std::string& note : report.notes) warnings.push_back(source.file + ": " + note);
   if (!source.part.empty()) mesh = take_part(*mesh, source.part, source_name(source));
@@ -78,21 +78,23 @@ void warn_of_size(const char* what, const Mesh& mesh, std::vector<std::string>& 
 
 }  // namespace
 
-Result<LoadedScene> load_scene(Scene scene, const Progress& progress) {
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits) {
   const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
   const auto tell = [&](const char* what, double done) { return !progress || progress(what, done); };
   LoadedScene loaded;
 
   const double bodies = static_cast<double>(scene.statics.size()) + 1;
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
-    if (!tell("import", static_cast<double>(i) / bodies)) return cancelled;
+    const auto go_on = [&] { return tell("import", static_cast<double>(i) / bodies); };
+    if (!go_on()) return cancelled;
     const StaticBody& body = scene.statics[i];
-    const auto mesh = mesh_of(body.source, scene.warnings);
+    const auto mesh = mesh_of(body.source, limits, go_on, scene.warnings);
     if (!mesh) return mesh.error();
     place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", loaded.mockup);
   }
-  if (!tell("import", (bodies - 1) / bodies)) return cancelled;
-  auto tool = mesh_of(scene.tool.source, scene.warnings);
+  const auto go_on = [&] { return tell("import", (bodies - 1) / bodies); };
+  if (!go_on()) return cancelled;
+  auto tool = mesh_of(scene.tool.source, limits, go_on, scene.warnings);
   if (!tool) return tool.error();
   loaded.tool = std::move(*tool);
   warn_of_size("mock-up", loaded.mockup, scene.warnings);

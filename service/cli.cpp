@@ -12,6 +12,7 @@
 #include <map>
 #include <new>
 
+#include "model/one_line.h"
 #include "service/cli_bench.h"
 #include "service/console.h"
 
@@ -68,8 +69,24 @@ CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
       ->type_name("gpu|cpu");
 }
 
+void add_import_limits(CLI::App& app, ImportLimits& limits) {
+  app.add_option_function<std::uint64_t>("--import-memory", [&limits](const std::uint64_t& mib) { limits.memory_bytes = mib << 20; },
+                                         "most memory for reading a mesh file; default 2048 MiB and 20 times the file's size")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description(""))
+      ->type_name("MIB");
+  app.add_option_function<double>("--import-seconds",
+                                  [&limits](const double& seconds) {   // CLI::Range would let nan pass
+                                    if (!(seconds >= 1 && seconds <= 1e6))
+                                      throw CLI::ValidationError("--import-seconds", fmt::format("{} is not from 1 to 1000000", seconds));
+                                    limits.seconds = seconds;
+                                  },
+                                  "most processor time for reading a mesh file; default 20 s and 1 s a MiB")
+      ->type_name("S");
+}
+
 void add_scene(CLI::App& app, SceneOptions& options) {
   app.add_option("scene", options.scene, "scene file (JSON)")->required()->type_name("SCENE");
+  add_import_limits(app, options.import);
 }
 
 /// `--profile` and `--plan`, which read words and leave enumerators.
@@ -114,7 +131,7 @@ std::string unknown_command(const std::string& word, const std::vector<std::stri
 }
 
 int fail(const Error& error) {
-  std::fprintf(stderr, "palpate: %s\n", error.sentence.c_str());
+  std::fprintf(stderr, "palpate: %s\n", one_line(error.sentence).c_str());
   return static_cast<int>(error.code);
 }
 
@@ -183,8 +200,10 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   CLI::App* info_app = app.add_subcommand("info", "tell what is in mesh files and what import made of them");
   info_app->add_option("meshes", meshes, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, …")->required()->type_name("MESH");
   info_app->add_flag("--json", info_json, "one JSON object");
+  ImportLimits info_limits;
+  add_import_limits(*info_app, info_limits);
   info_app->footer("A part's path is what `part` and `without` of a scene file name. Sizes are in the file's own unit.");
-  info_app->callback([&] { outcome = info_command(meshes, info_json); });
+  info_app->callback([&] { outcome = info_command(meshes, info_json, info_limits); });
 
   GenerateOptions generate;
   CLI::App* generate_app = app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");

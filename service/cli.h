@@ -8,6 +8,7 @@
 
 #include "driver/haptic_device.h"
 #include "model/collision_backend.h"
+#include "model/mesh_import.h"
 #include "model/scene.h"
 #include "service/peer.h"
 
@@ -41,6 +42,7 @@ struct SceneOptions {
   std::string backend;                ///< "gpu", "cpu" or empty: gpu, else cpu with a sentence
   std::optional<Profile> profile;     ///< in place of the scene's
   bool full_plan = false;
+  ImportLimits import = {};           ///< of each mesh file
 };
 
 struct RunOptions {
@@ -70,7 +72,7 @@ struct GenerateOptions {
 Result<void> run_command(const RunOptions& options, const Parts& parts);
 Result<void> query_command(const QueryOptions& options, const Parts& parts);
 Result<void> plan_command(const SceneOptions& options, bool json, const Parts& parts);
-Result<void> info_command(const std::vector<std::string>& meshes, bool json);
+Result<void> info_command(const std::vector<std::string>& meshes, bool json, const ImportLimits& limits);
 Result<void> generate_command(const GenerateOptions& options);
 Result<void> devices_command(const Parts& parts);
 

@@ -22,9 +22,9 @@ struct MeshInfo {
 };
 
 /// Import as it stands in the file (scale 1: one file unit is taken for a metre), then what a mock-up would go through.
-Result<MeshInfo> inspect(const std::string& path) {
+Result<MeshInfo> inspect(const std::string& path, const ImportLimits& limits) {
   MeshInfo info;
-  const Result<Mesh> mesh = import_mesh(path, 1.0, info.import);
+  const Result<Mesh> mesh = import_mesh(path, 1.0, info.import, limits);
   if (!mesh) return mesh.error();
   bool first = true;
   for (const auto& triangle : mesh->triangles)
@@ -118,11 +118,11 @@ void print_table(const MeshInfo& info) {
 
 }  // namespace
 
-Result<void> info_command(const std::vector<std::string>& meshes, bool json) {
+Result<void> info_command(const std::vector<std::string>& meshes, bool json, const ImportLimits& limits) {
   // Every mesh is read before anything is printed, so a bad one leaves standard output empty.
   std::vector<MeshInfo> infos;
   for (const std::string& path : meshes) {
-    Result<MeshInfo> info = inspect(path);
+    Result<MeshInfo> info = inspect(path, limits);
     if (!info) return info.error();
     infos.push_back(std::move(*info));
   }

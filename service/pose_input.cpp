@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "model/one_line.h"
 #include "model/scene_geometry.h"
 
 namespace palpate {
@@ -21,6 +22,9 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
+/// A value as a sentence may show it.
+std::string shown(std::string_view text) { return one_line(std::string(text.substr(0, 80))) + (text.size() > 80 ? "…" : ""); }
+
 /// Seven fields to a pose; the error says which field, without naming the file.
 Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
   if (fields.size() != kFields.size())
@@ -32,8 +36,8 @@ Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
     const char* end = field.data() + field.size();
     const auto [stop, error] = std::from_chars(field.data(), end, value[i]);
     if (error == std::errc::result_out_of_range && stop == end)
-      return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], field));
-    if (error != std::errc() || stop != end) return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], field));
+      return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], shown(field)));
+    if (error != std::errc() || stop != end) return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], shown(field)));
   }
   Pose pose;
   pose.position = Vec3(value[0], value[1], value[2]);
@@ -61,7 +65,7 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 
 Result<Pose> parse_pose(const std::string& text) {
   Result<Pose> pose = to_pose(split(text, " ,\t\n\r", true));
-  if (!pose) return bad_value(fmt::format("--pose \"{}\" {}", text, pose.error().sentence));
+  if (!pose) return bad_value(fmt::format("--pose \"{}\" {}", shown(text), pose.error().sentence));
   return pose;
 }
 
@@ -70,7 +74,7 @@ Result<std::vector<Pose>> read_poses(const std::string& path) {
   if (!in) return bad_value(fmt::format("{}: the poses file can't be opened", path));
   std::string text;
   if (!std::getline(in, text) || trim(text) != kHeader)
-    return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, trim(text), kHeader));
+    return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, shown(trim(text)), kHeader));
 
   std::vector<Pose> poses;
   std::string first_error;

@@ -65,7 +65,7 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   const Progress progress = [&console](const char* what, double done) { return console.progress(what, done); };
   console.step("reading the meshes");
   const auto load_start = Clock::now();
-  Result<LoadedScene> loaded = load_scene(std::move(*scene), progress);
+  Result<LoadedScene> loaded = load_scene(std::move(*scene), progress, options.import);
   if (!loaded) return loaded.error();
   prepared->loaded = std::move(*loaded);
   prepared->load_s = seconds_since(load_start);

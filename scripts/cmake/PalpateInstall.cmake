@@ -12,6 +12,11 @@ endforeach()
 
 install(TARGETS ${palpate_libraries} EXPORT palpateTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+# The program that reads mesh files for the library and the program; each finds it there.
+target_link_options(palpate-import PRIVATE -Wl,--disable-new-dtags)
+set_target_properties(palpate-import PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate")
+install(TARGETS palpate-import RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpate COMPONENT library)
+set(PALPATE_IMPORT_PATH "${CMAKE_INSTALL_LIBEXECDIR}/palpate/palpate-import")
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
 
 # Headers keep their folders, so that "model/pose.h" means the same here and there.
@@ -21,7 +26,7 @@ install(FILES compute/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palp
 install(FILES cpu_ref/cpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/cpu_ref COMPONENT library)
 
 configure_package_config_file(scripts/cmake/palpateConfig.cmake.in "${PROJECT_BINARY_DIR}/palpateConfig.cmake"
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate PATH_VARS PALPATE_IMPORT_PATH)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/palpateConfig.cmake" "${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake"
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
@@ -31,6 +36,7 @@ if(TARGET palpate)
   target_link_options(palpate PRIVATE -Wl,--disable-new-dtags)
   set_target_properties(palpate PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/palpate")
   install(TARGETS palpate RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bundle)
+  install(TARGETS palpate-import RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION libexec/palpate COMPONENT bundle)
   # The C library and the loader belong to the machine; everything else travels, the Vulkan loader too (drivers do not).
   install(RUNTIME_DEPENDENCY_SET palpate_runtime COMPONENT bundle DESTINATION lib/palpate
     PRE_EXCLUDE_REGEXES "^ld-linux" "^libc\\.so" "^libm\\.so" "^libpthread" "^libdl\\.so" "^librt\\.so"

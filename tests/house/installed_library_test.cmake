@@ -21,8 +21,20 @@ if(SANITIZE)
   string(REPLACE ";" "," SANITIZE "${SANITIZE}")
   set(flags "-DCMAKE_EXE_LINKER_FLAGS=-fsanitize=${SANITIZE}")
 endif()
-must(${CMAKE_COMMAND} -S "${EXAMPLE_DIR}" -B "${WORK_DIR}/build" -G Ninja -DCMAKE_BUILD_TYPE=Release
-  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix ${flags})
-must(${CMAKE_COMMAND} --build "${WORK_DIR}/build")
-must("${WORK_DIR}/build/own_device")
+# build(SOURCE NAME): a stranger's project, built against what was installed.
+function(build source name)
+  must(${CMAKE_COMMAND} -S "${source}" -B "${WORK_DIR}/${name}" -G Ninja -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix ${flags})
+  must(${CMAKE_COMMAND} --build "${WORK_DIR}/${name}")
+endfunction()
+build("${EXAMPLE_DIR}" own_device)
+must("${WORK_DIR}/own_device/own_device")
 message(STATUS "${output}")
+
+# A program elsewhere finds the importer that was installed with the library.
+build("${CMAKE_CURRENT_LIST_DIR}/installed_import" installed_import)
+file(WRITE "${WORK_DIR}/triangle.off" "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+must("${WORK_DIR}/installed_import/installed_import" "${WORK_DIR}/triangle.off")
+if(NOT output STREQUAL "1 triangles\n")
+  message(FATAL_ERROR "the installed library read: ${output}")
+endif()

@@ -86,13 +86,15 @@ TEST_F(MeshImport, BinaryStlKeepsTheOrderOfItsFaces) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_LT(glm::length(corners(mesh, t)[k] - 0.001 * corners(sphere, t)[k]), 1e-10);   // STL keeps 24 bits of 0.5 mm
-  EXPECT_EQ(mesh.parts.size(), 1u);
+  ASSERT_EQ(mesh.parts.size(), 1u);
+  EXPECT_EQ(mesh.parts[0].path, "a") << "a file without names is one part, named like the file";
 }
 
 TEST_F(MeshImport, AsciiStl) {
   const Mesh mesh = read(write("a.STL", ascii_stl()));
   ASSERT_EQ(mesh.triangles.size(), 2u);
   EXPECT_THAT(corners(mesh, 0), ElementsAre(Vec3(0), Vec3(1.5, 0, 0), Vec3(0, 1, 0)));
+  EXPECT_EQ(mesh.parts[0].path, "a/s");
 }
 
 TEST_F(MeshImport, PolygonsAreSplitAsFansInOrder) {
@@ -124,6 +126,9 @@ TEST_F(MeshImport, PlyAndOff) {
               HasSubstr("promises 2 elements 'face' and has 1"));
   EXPECT_THAT(refused(write("many.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n")),
               HasSubstr("promises 4000000000 elements 'vertex'"));
+  // Without a known property an element takes no bytes: the importer then counted to 353535235358 (found by fuzzing).
+  EXPECT_THAT(refused(write("no_property.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 353535235358\npoperty float x\nend_header\n0000")),
+              HasSubstr("promises 353535235358 elements 'vertex'"));
   EXPECT_THAT(refused(write("index.ply", header + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 9\n")), HasSubstr("vertex index 9"));
   EXPECT_THAT(refused(write("many.off", "OFF\n353535235358 6 0\n0 0 0\n")), HasSubstr("promises 353535235358 vertices"));
   EXPECT_THAT(refused(write("short.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n")), HasSubstr("promises 2 faces and has 1"));
@@ -176,6 +181,17 @@ TEST_F(MeshImport, AbsurdGltfIsRefused) {
   std::string doubling = "[";
   for (int i = 0; i < 40; ++i) doubling += "{\"children\":[" + std::to_string(i + 1) + "," + std::to_string(i + 1) + "]},";
   EXPECT_THAT(refused(write("doubling.gltf", gltf(doubling + "{\"mesh\":0}]"))), HasSubstr("instances counted"));
+  // A sparse accessor without its lists: the importer crashed (found by fuzzing).
+  const auto sparse = [](const std::string& what) {
+    return R"({"asset":{"version":"2.0"},"accessors":[{"componentType":5126,"count":4,"type":"VEC3","sparse":)" + what +
+           R"(}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"t.bin"}]})";
+  };
+  EXPECT_THAT(refused(write("s1.gltf", sparse(R"({"count":2,"values":{"bufferView":0}})"))), HasSubstr("sparse accessor 0 without indices"));
+  EXPECT_THAT(refused(write("s2.gltf", sparse(R"({"count":2,"indices":{"bufferView":0,"componentType":5123},"values":{"bufferView":1}})"))),
+              HasSubstr("sparse accessor 0 without values"));
+  EXPECT_THAT(refused(write("s3.gltf", sparse(R"({"count":4,"indices":{"bufferView":0,"componentType":5123},"values":{"bufferView":0}})"))),
+              HasSubstr("values are beyond their buffer view"));
+  EXPECT_THAT(refused(write("s4.gltf", sparse("7"))), HasSubstr("without a count"));
   write("t.bin", std::string(20, '\0'));
   EXPECT_THAT(refused(write("short.gltf", gltf(R"([{"mesh":0}])"))), HasSubstr("buffer 0 promises 36 bytes, there are 20"));
   EXPECT_THAT(refused(write("short.glb", std::string("glTF\2\0\0\0\xff\0\0\0\10\0\0\0JSON{}", 22))), HasSubstr("cut short"));

@@ -1,4 +1,4 @@
-#include "model/import_checks.h"
+#include "model/import/import_checks.h"
 
 #include <fmt/format.h>
 

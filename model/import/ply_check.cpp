@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "model/import_checks.h"
+#include "model/import/import_checks.h"
 
 namespace palpate {
 namespace {
@@ -98,7 +98,10 @@ std::string distrust_binary(std::string_view body, const Header& header) {
       fixed += property.count_size == 0 ? property.size : property.count_size;
       lists |= property.count_size != 0;
     }
-    if (fixed == 0) continue;
+    if (fixed == 0) {   // costs no bytes, so a sane count is what bounds the importer's loop
+      if (element.count > body.size()) return cut_short(element, 0);
+      continue;
+    }
     if (element.count > (body.size() - at) / fixed) return cut_short(element, (body.size() - at) / fixed);
     if (!lists) {
       at += element.count * fixed;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "model/import_checks.h"
+#include "model/import/import_checks.h"
 
 namespace palpate {
 namespace {
@@ -87,6 +87,23 @@ std::uint64_t bytes_of_buffer(const Json& buffer, std::uint64_t file_size, const
   return error ? UINT64_MAX : size;
 }
 
+/// A sparse accessor's two lists, which the importer takes for granted.
+std::string distrust_sparse(const Json& accessor, std::size_t a, std::uint64_t entry, const Json& views) {
+  const auto sparse = accessor.find("sparse");
+  if (sparse == accessor.end()) return {};
+  const std::uint64_t count = sparse->is_object() ? number(*sparse, "count", UINT64_MAX) : UINT64_MAX;
+  if (count > number(accessor, "count", 0)) return fmt::format("has a sparse accessor {} without a count within its own", a);
+  for (const char* key : {"indices", "values"}) {
+    const auto list = sparse->find(key);
+    const std::uint64_t view = list != sparse->end() && list->is_object() ? number(*list, "bufferView", UINT64_MAX) : UINT64_MAX;
+    if (view >= views.size()) return fmt::format("has a sparse accessor {} without {}", a, key);
+    const std::uint64_t size = key[0] == 'i' ? component_size(number(*list, "componentType", 0)) : entry, length = number(views[view], "byteLength", 0),
+                        offset = number(*list, "byteOffset", 0);
+    if (offset > length || count > (length - offset) / size) return fmt::format("has a sparse accessor {} whose {} are beyond their buffer view", a, key);
+  }
+  return {};
+}
+
 /// Buffers within their files, views within buffers, accessors within views.
 std::string distrust_buffers(const Json& root, std::uint64_t file_size, const std::string& path) {
   const Json &buffers = list(root, "buffers"), &views = list(root, "bufferViews"), &accessors = list(root, "accessors");
@@ -105,6 +122,7 @@ std::string distrust_buffers(const Json& root, std::uint64_t file_size, const st
   for (std::size_t a = 0; a < accessors.size(); ++a) {
     const std::uint64_t count = number(accessors[a], "count", 0), entry = component_size(number(accessors[a], "componentType", 5126)) * components(accessors[a]);
     if (count > kMostEntries) return fmt::format("has an accessor {} of {} entries, the limit is {}", a, count, kMostEntries);
+    if (std::string wrong = distrust_sparse(accessors[a], a, entry, views); !wrong.empty()) return wrong;
     const std::uint64_t view = number(accessors[a], "bufferView", UINT64_MAX);
     if (view == UINT64_MAX) {
       // Without a view all entries are 0; only a sparse one may say so, and never with more entries than the file has bytes.

@@ -1,0 +1,70 @@
+// palpate-import: reads one mesh file, in a process of its own, and hands the mesh back as a parcel. import_mesh() starts it; nobody else does.
+// Exit codes: 0 the parcel is complete, be it a mesh or why there is none; 12 an allocation failed; 2 called by hand.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "model/import/import_child.h"
+#include "model/import/mesh_parcel.h"
+#include "model/import/mesh_read.h"
+
+namespace palpate {
+namespace {
+
+void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
+  rlimit now{};
+  if (::getrlimit(what, &now) != 0) return;
+  const rlimit lower{std::min(soft, now.rlim_max), std::min(hard, now.rlim_max)};   // never above what somebody set before us
+  ::setrlimit(what, &lower);
+}
+
+/// Before the first byte of the file is read.
+void limit_myself(rlim_t memory_bytes, rlim_t seconds) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);           // nothing outlives the one who asked
+  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  limit(RLIMIT_CPU, seconds, seconds + 1);
+  limit(RLIMIT_CORE, 0, 0);
+  limit(RLIMIT_FSIZE, kLargestParcel, kLargestParcel);
+#ifndef PALPATE_SANITIZED   // sanitizers reserve terabytes of address space
+  limit(RLIMIT_AS, memory_bytes, memory_bytes);
+  std::set_new_handler([] { std::_Exit(kOutOfMemoryExit); });
+#else
+  static_cast<void>(memory_bytes);
+#endif
+  // When memory runs out on the whole machine, this process is the one to go.
+  if (std::FILE* score = std::fopen("/proc/self/oom_score_adj", "w")) {
+    std::fputs("1000", score);
+    std::fclose(score);
+  }
+}
+
+Result<Mesh> read(const char* path, double scale, ImportReport& report) {
+  try {
+    return read_mesh(path, scale, report);
+  } catch (...) {   // even what is no std::exception
+    return bad_value(std::string("'") + path + "' can't be read: the import failed for an unknown reason");
+  }
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  if (argc != 5) {
+    std::fputs("palpate-import is a part of palpate, which starts it to read a mesh file; use `palpate info FILE`\n", stderr);
+    return static_cast<int>(ErrorCode::kUsage);
+  }
+  limit_myself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
+  ImportReport report;
+  const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), report), report);
+  std::_Exit(written ? 0 : 1);   // taking it all apart first would cost as much as a tenth of the reading
+}

@@ -1,0 +1,74 @@
+// Stands in for the importer in palpate-import-faulty: does what the file's first word says.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <vector>
+
+#include "model/import/import_child.h"
+#include "model/import/mesh_read.h"
+
+namespace palpate {
+namespace {
+
+[[noreturn]] void greed() {
+  std::vector<char*> kept;
+  for (;;) {
+    kept.push_back(new char[1 << 20]);
+    for (int i = 0; i < 1 << 20; i += 4096) kept.back()[i] = 1;
+  }
+}
+
+[[noreturn]] void burn() {
+  for (volatile unsigned i = 0;;) i = i + 1;
+}
+
+[[noreturn]] void chatter() {
+  for (;;) std::fputs("words and words and words\n", stderr);
+}
+
+/// Leaves a process behind that would live for ever, and dies.
+[[noreturn]] void leave_one_behind() {
+  if (::fork() == 0)
+    for (;;) ::pause();
+  std::raise(SIGSEGV);
+  std::abort();
+}
+
+[[noreturn]] void tell_descriptors() {
+  std::fputs("open:", stderr);
+  struct stat status {};
+  for (int i = 0; i < 1024; ++i)
+    if (::fstat(i, &status) == 0) std::fprintf(stderr, " %d", i);
+  std::fputs("\n", stderr);
+  std::_Exit(7);
+}
+
+}  // namespace
+
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report) {
+  std::string word;
+  std::ifstream(path) >> word;
+  if (word == "crash") std::raise(SIGSEGV);
+  if (word == "abort") std::fputs("first line\nfree(): invalid \x1b[31mpointer\n", stderr), std::abort();
+  if (word == "hang") burn();
+  if (word == "sleep") for (;;) ::pause();
+  if (word == "greed") greed();
+  if (word == "chatter") chatter();
+  if (word == "fork") leave_one_behind();
+  if (word == "descriptors") tell_descriptors();
+  if (word == "silent") std::_Exit(0);
+  if (word == "throw") throw 7;
+  if (word == "garbage") {
+    const std::string noise(1000, 'x');
+    std::_Exit(::pwrite(kParcelDescriptor, noise.data(), noise.size(), 0) > 0 ? 0 : 1);
+  }
+  if (word == "bad") return bad_value("'" + path + "' is bad");
+  report.notes.emplace_back("a note");
+  return Mesh{{Vec3(0), Vec3(scale, 0, 0), Vec3(0, scale, 0)}, {{0, 1, 2}}, {{"part", 0, 1}}};
+}
+
+}  // namespace palpate
