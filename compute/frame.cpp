@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/broad_phase.h"
 #include "compute/command_recorder.h"
 #include "compute/frame_capacity.h"
 #include "compute/frame_decode.h"
@@ -26,6 +27,13 @@ double us_since(Clock::time_point from) { return std::chrono::duration<double, s
 std::int32_t floor_div(std::int64_t a, std::int64_t b) {
   const std::int64_t q = a / b;
   return static_cast<std::int32_t>(a % b < 0 ? q - 1 : q);
+}
+
+/// An answer cut short by a capacity: no force.
+Result<void> truncate(Contacts& out, const char* capacity) {
+  out.truncated = true;
+  out.truncated_capacity = capacity;
+  return {};
 }
 
 /// Where the tool is at a pose.
@@ -52,14 +60,15 @@ class RecordedFrame final : public Frame {
   Result<void> set_capacities();
   Result<void> record();
   Reach reach(const LatticePose& pose) const;
-  bool empty(const Reach& reach) const;
-  bool write_input(const LatticePose& pose, const Reach& reach, const Held* held);
+  bool write_input(const LatticePose& pose, const BroadPhase::Near& near, const Held* held);
 
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
   const PreparedScene& scene_;
   gpu::GridConstants grid_{};
-  std::vector<std::uint32_t> brick_slot_;   ///< the mock-up's, on the host: to leave out frames that can't touch
+  std::optional<BroadPhase> broad_phase_;
+  bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
+  bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
   FrameCapacity capacity_;
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
@@ -69,6 +78,7 @@ class RecordedFrame final : public Frame {
   std::vector<CommandRecorder::StageTime> times_;
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;         ///< that the last query counted
+  bool near_overflow_ = false;      ///< the last query found more near triangles than there is room for
   bool held_overflow_ = false;      ///< the last query brought more held triangles than there is room for
   std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
 };
@@ -76,6 +86,7 @@ class RecordedFrame final : public Frame {
 void RecordedFrame::name_scene() {
   using namespace gpu;
   const BodyBuffers &m = scene_.mockup, &t = scene_.tool;
+  const PartitionBuffers& fine = scene_.fine.brick_slot ? scene_.fine : t.partition;
   const std::pair<std::int32_t, const VulkanBuffer*> all[] = {
       {kBindScene, &scene_.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
       {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.sample_weight},
@@ -85,7 +96,9 @@ void RecordedFrame::name_scene() {
       {kBindMockupBoundaryPlace, &m.partition.boundary_place}, {kBindMockupMixedBrick, &m.partition.mixed_brick},
       {kBindToolVertices, &t.vertices}, {kBindToolTriangles, &t.triangles}, {kBindToolInfo, &t.triangle_info},
       {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.sample_weight}, {kBindToolBrickSlot, &t.partition.brick_slot},
-      {kBindToolBricks, &t.partition.bricks}};
+      {kBindToolBricks, &t.partition.bricks}, {kBindFineBrickSlot, &fine.brick_slot}, {kBindFineBricks, &fine.bricks},
+      {kBindFineListBegin, &fine.list_begin}, {kBindFineListTriangles, &fine.list_triangles}, {kBindFineExit, &scene_.fine_exit},
+      {kBindSampleBegin, &scene_.sample_begin}, {kBindMockupSamples, &scene_.samples}, {kBindToolNear, &scene_.tool_near}};
   for (const auto& [binding, buffer] : all)
     if (*buffer) buffers_.name(binding, *buffer);   // `paper` has no partition of the tool
 }
@@ -96,12 +109,15 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   grid_ = constants.mockup.grid;
   const bool refined = constants.refined != 0;
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
-  brick_slot_.resize(static_cast<std::size_t>(grid_.bricks.x) * static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(grid_.bricks.z));
-  if (auto r = download(device_, scene_.mockup.partition.brick_slot, 0, brick_slot_.data(), brick_slot_.size() * 4); !r) return r;
+  has_inside_ = refined && (constants.tool.closed != 0 || constants.tool.has_internal != 0);
+  always_samples_ = has_inside_ && constants.tool.closed == 0;
 
-  auto detection = FrameDetection::create(device_, scene_);
+  auto detection = FrameDetection::create(device_, geometry_, scene_);
   if (!detection) return detection.error();
   detection_ = std::move(*detection);
+  auto broad_phase = BroadPhase::make(device_, geometry_, scene_.mockup.partition, detection_->order());
+  if (!broad_phase) return broad_phase.error();
+  broad_phase_.emplace(std::move(*broad_phase));
   auto response = FrameResponse::create(device_, refined);
   if (!response) return response.error();
   response_.emplace(std::move(*response));
@@ -130,9 +146,9 @@ Result<void> RecordedFrame::enlarge() {
   std::array<std::uint32_t, gpu::kListCount> asked{};
   for (std::size_t i = 0; i < lists.size(); ++i) asked[i] = lists[i].asked;
   gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
-  if (held_overflow_) {
+  if (near_overflow_ || held_overflow_) {   // before the frame began
     state = {};
-    state.overflow = 1u << gpu::kListContactStatics;   // the held triangles' room follows this list's
+    state.overflow = 1u << (near_overflow_ ? gpu::kListNearTriangles : gpu::kListContactStatics);   // the held triangles' room follows the latter's
   }
   const FrameCapacity before = capacity_;
   if (!capacity_.grow(state, asked)) return bad_value(fixed_limit(state));
@@ -186,18 +202,11 @@ Reach RecordedFrame::reach(const LatticePose& pose) const {
   return out;
 }
 
-bool RecordedFrame::empty(const Reach& reach) const {
-  const auto nx = static_cast<std::size_t>(grid_.bricks.x), ny = static_cast<std::size_t>(grid_.bricks.y);
-  for (std::int32_t z = reach.first_brick.z; z <= reach.last_brick.z; ++z)
-    for (std::int32_t y = reach.first_brick.y; y <= reach.last_brick.y; ++y)
-      for (std::int32_t x = reach.first_brick.x; x <= reach.last_brick.x; ++x)
-        if (brick_slot_[static_cast<std::size_t>(x) + nx * (static_cast<std::size_t>(y) + ny * static_cast<std::size_t>(z))] != gpu::kBrickExternal)
-          return false;
-  return true;
-}
-
-bool RecordedFrame::write_input(const LatticePose& pose, const Reach& reach, const Held* held) {
+bool RecordedFrame::write_input(const LatticePose& pose, const BroadPhase::Near& near, const Held* held) {
+  const Reach reach = this->reach(pose);
   gpu::FrameInput input{};
+  input.near_triangles = near.near_triangles;
+  input.encloses = near.encloses ? 1 : 0;
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   input.brick_first = reach.first_brick;
@@ -228,21 +237,24 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   clear(out);
   pairs_ = 0;
   if (!pose.beyond_lattice) out.flags = frame_flags_;
-  const Reach where = pose.beyond_lattice ? Reach{} : reach(pose);
-  if (pose.beyond_lattice || empty(where)) {
-    out.times.push_back({"cull", us_since(start)});
-    return {};
+  near_overflow_ = held_overflow_ = false;
+  BroadPhase::Near near;
+  if (!pose.beyond_lattice) {
+    const VulkanBuffer& near_triangles = buffers_[gpu::kBindNearTriangles];
+    near = broad_phase_->find(pose, {near_triangles.as<gpu::NearTriangle>(), near_triangles.bytes() / sizeof(gpu::NearTriangle)});
+    near.encloses = has_inside_ && (near.encloses || always_samples_);
   }
+  out.times.push_back({"cull", us_since(start)});
+  near_overflow_ = near.overflow;
+  if (near_overflow_) return truncate(out, "bricks of near triangles");
+  if (near.near_triangles == 0 && !near.encloses) return {};
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
-  held_overflow_ = !write_input(pose, where, held);
-  if (held_overflow_) {
-    out.truncated = true;
-    out.truncated_capacity = "held triangles";
-    return {};
-  }
-  out.times.push_back({"upload", us_since(start)});
+  const auto writing = Clock::now();
+  held_overflow_ = !write_input(pose, near, held);
+  if (held_overflow_) return truncate(out, "held triangles");
+  out.times.push_back({"upload", us_since(writing)});
 
   if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
   const auto submitted = Clock::now();

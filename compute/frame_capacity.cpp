@@ -26,7 +26,7 @@ constexpr std::array<Other, 3> kOthers = {{{"pair table", kOverflowPairTable, &F
                                            {"bins of the tool's shadow", kOverflowBins, &FrameCapacity::bin_entries}}};
 
 constexpr std::array<const char*, 18> kListNames = {
-    "bricks of clusters", "bricks of triangles", "voxels to touch", "touched voxels", "lists of touched voxels", "lists to pair",
+    "bricks of near triangles", "", "voxels to touch", "touched voxels", "", "lists to pair",
     "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
     "samples near the tool's surface", "samples", "tool triangles of areas", "pierced areas", "bricks with samples",
     "tiles of tool samples", "needle vertices"};
@@ -48,11 +48,9 @@ FrameCapacity FrameCapacity::first(const SceneConstants& scene, const std::map<s
   const std::uint64_t pairs = std::clamp<std::uint64_t>(32 * tool, 2 * kSmallList, kMostPairs);
   FrameCapacity out;
   auto& l = out.lists;
-  l[kListClusterBricks] = items(std::max(kSmallList, 4 * tool), kLargeList);
-  l[kListTriangleBricks] = items(std::max(kSmallList, 8 * tool), kMostPairs);
+  l[kListNearTriangles] = items(std::max(kSmallList, 8 * tool), kMostPairs);
   l[kListTouchCandidates] = items(std::max(kLargeList, 32 * tool), kMostPairs);
   l[kListTouchedVoxels] = items(voxels, kLargeList);
-  l[kListVoxelChunks] = items(voxels + entries / kVoxelChunk, kLargeList);
   l[kListPairChunks] = items(std::max(kLargeList, 16 * tool), kMostPairs);
   l[kListPairCandidates] = items(pairs, kMostPairs);
   l[kListPairs] = items(pairs, kMostPairs);

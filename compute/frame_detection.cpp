@@ -15,12 +15,14 @@ constexpr std::uint32_t kMostBinsBits = 9;
 
 }  // namespace
 
-Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& device, const PreparedScene& scene) {
+Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
+  out->order_ = order_in_space(geometry.tool);
   out->refined_ = scene.constants.refined != 0;
   out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
-  out->tool_vertices_ = scene.constants.tool.vertices;
-  out->tool_clusters_ = (scene.constants.tool.triangles + kClusterSize - 1) / kClusterSize;
+  out->closed_ = scene.constants.tool.closed != 0;
+  out->listed_ = static_cast<bool>(scene.samples);
+  out->near_ = static_cast<bool>(scene.tool_near);
   // About a bin a triangle.
   while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;
   if (auto r = out->make_shaders(device); !r) return r.error();
@@ -32,6 +34,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   const BodyConstants& mockup = scene.constants.mockup;
   const BodyConstants& tool = scene.constants.tool;
   const std::uint64_t voxels = mockup.grid.boundary_voxels, statics = capacity.lists[kListContactStatics];
+  const std::uint64_t clusters = (tool.triangles + kClusterSize - 1) / kClusterSize;
 
   struct List {
     std::uint32_t list;
@@ -40,11 +43,9 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
     BufferKind kind = BufferKind::kDevice;
   };
   const List lists[] = {
-      {kListClusterBricks, kBindClusterBricks, sizeof(ClusterBrick)},
-      {kListTriangleBricks, kBindTriangleBricks, sizeof(TriangleBrick)},
+      {kListNearTriangles, kBindNearTriangles, sizeof(NearTriangle), BufferKind::kUpload},
       {kListTouchCandidates, kBindTouchCandidates, sizeof(TouchCandidate)},
       {kListTouchedVoxels, kBindTouchedVoxels, sizeof(FrameVoxel)},
-      {kListVoxelChunks, kBindVoxelChunks, sizeof(VoxelChunk)},
       {kListPairChunks, kBindPairChunks, sizeof(PairChunk)},
       {kListPairCandidates, kBindPairCandidates, sizeof(PairCandidate)},
       {kListPairs, kBindPairs, sizeof(ContactPair)},
@@ -71,17 +72,16 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindFrameLists, "frame lists", sizeof(FrameList) * kListCount},
       {kBindFrameState, "frame state", sizeof(FrameState)},
       {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
-      {kBindToolWorld, "transformed tool", sizeof(ivec3) * std::uint64_t{tool.vertices}},
-      {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * std::uint64_t{tool_clusters_}},
-      {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * std::uint64_t{tool_clusters_} * (kClusterSize / kRunSize)},
+      {kBindMobileCorners, "corners of near tool triangles", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
+      {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
+      {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
+      {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * clusters * (kClusterSize / kRunSize)},
       {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
       {kBindToolBins, "bins of the tool's shadow", sizeof(ToolBin) << (inside_ ? 2 * bins_bits_ : 0)},
       {kBindBinEntries, "entries of bins", 4 * std::uint64_t{capacity.bin_entries}},
       {kBindWideTriangles, "wide triangles", 4 * std::uint64_t{inside_ ? tool.triangles : 1}},
       {kBindBinState, "state of bins", sizeof(BinState)},
-      {kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
       {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
-      {kBindToolOrder, "order of the tool's triangles", 4 * std::uint64_t{tool.triangles}},
       {kBindHeldStatics, "held triangles", sizeof(HeldStatic) * statics, BufferKind::kUpload},
       {kBindHeldAreas, "held areas", sizeof(HeldDirection) * kMaxFrameAreas, BufferKind::kUpload},
       {kBindResult, "frame result", sizeof(FrameResult), BufferKind::kReadback},
@@ -96,13 +96,22 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}); !r)
     return r;
 
-  const std::vector<std::uint32_t> order = order_in_space(geometry.tool);
-  return upload(device, buffers[kBindToolOrder], order.data(), order.size() * sizeof order[0]);
+  if (auto r = buffers.make_table(device, kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}); !r) return r;
+  return upload_records(device, geometry.tool, buffers[kBindToolRecords]);
+}
+
+Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const {
+  std::vector<ToolRecord> records;
+  records.reserve(order_.size());
+  for (const std::uint32_t id : order_)
+    records.push_back({tool.corner(id, 0), id, tool.corner(id, 1), tool.flags[id], tool.corner(id, 2), 0});
+  return upload(device, to, records.data(), records.size() * sizeof records[0]);
 }
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const SpecConstant no_inside[] = {{0, inside_ ? 0u : 1u}};
-  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}};
+  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}}, rays[] = {{0, bins_bits_}, {1, inside_ ? 1u : 0u}};
+  const SpecConstant voxels[] = {{0, listed_ ? 1u : 0u}, {1, near_ ? 1u : 0u}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;
@@ -113,24 +122,24 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const Made all[] = {
       {&list_close_, &spirv::list_close, true, 4},
       {&frame_begin_, &spirv::frame_begin},
-      {&tool_transform_, &spirv::tool_transform},
-      {&tool_clusters_find_, &spirv::tool_clusters},
-      {&brick_triangles_, &spirv::brick_triangles},
-      {&brick_voxels_, &spirv::brick_voxels},
+      {&near_voxels_, &spirv::near_voxels},
+      {&rays_begin_, &spirv::rays_begin, true, 0, rays},
+      {&tool_clusters_place_, &spirv::tool_clusters},
       {&voxel_touch_, &spirv::voxel_touch},
       {&pair_collect_, &spirv::pair_collect},
       {&pair_test_, &spirv::pair_test},
-      {&voxel_statics_, &spirv::voxel_statics},
       {&sample_bricks_, &spirv::sample_bricks, inside_},
-      {&sample_voxels_, &spirv::sample_voxels, inside_},
+      {&sample_voxels_, &spirv::sample_voxels, inside_, 0, voxels},
+      {&sample_listed_, &spirv::sample_listed, inside_ && listed_},
+      {&sample_walk_, &spirv::sample_walk, inside_ && closed_},
       {&sample_touched_, &spirv::sample_touched, refined_ && !inside_},
-      {&sample_scan_, &spirv::sample_scan, refined_, 0, no_inside},
-      {&bins_begin_, &spirv::bins_begin, inside_},
-      {&bins_clear_, &spirv::bins_clear, inside_},
-      {&bins_count_, &spirv::bins_fill, inside_, 0, counting},
-      {&bins_place_, &spirv::bins_place, inside_},
-      {&bins_fill_, &spirv::bins_fill, inside_, 0, filling},
-      {&sample_winding_, &spirv::sample_winding, inside_, 0, filling},
+      {&sample_scan_, &spirv::sample_scan, refined_ && !(inside_ && listed_), 0, no_inside},
+      {&bins_begin_, &spirv::bins_begin, inside_ && !closed_},
+      {&bins_clear_, &spirv::bins_clear, inside_ && !closed_},
+      {&bins_count_, &spirv::bins_fill, inside_ && !closed_, 0, counting},
+      {&bins_place_, &spirv::bins_place, inside_ && !closed_},
+      {&bins_fill_, &spirv::bins_fill, inside_ && !closed_, 0, filling},
+      {&sample_winding_, &spirv::sample_winding, inside_ && !closed_, 0, filling},
       {&set_statics_, &spirv::set_statics},
       {&set_mobiles_, &spirv::set_mobiles},
       {&set_decide_, &spirv::set_decide},
@@ -147,38 +156,30 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
 }
 
 void FrameDetection::record(FrameRecorder& recorder) const {
-  // The tool at its pose, and which bricks its clusters meet.
-  recorder.stage("transform");
-  recorder.run(frame_begin_, 1);
-  recorder.run(tool_transform_, (tool_vertices_ + kGroupSize - 1) / kGroupSize);
-  recorder.barrier();
-  recorder.run(tool_clusters_find_, tool_clusters_);
-  recorder.close({kListClusterBricks});
-
-  // Triangles and bricks, then voxels in their boxes.
+  // What the host found near, at its pose; voxels in the boxes of its triangles.
   recorder.stage("cull");
-  recorder.run_groups(brick_triangles_, kListClusterBricks);
-  recorder.close({kListTriangleBricks});
-  recorder.run_items(brick_voxels_, kListTriangleBricks);
+  recorder.run(frame_begin_, 1);
+  recorder.barrier();
+  recorder.run_dispatch(near_voxels_, kDispatchNear);
   recorder.close({kListTouchCandidates});
 
-  // Which voxels the triangles touch: IMT and BMT; and what is listed there.
+  // Which voxels the triangles touch: IMT and BMT.
   recorder.stage("imt");
   recorder.run_items(voxel_touch_, kListTouchCandidates);
-  recorder.close({kListTouchedVoxels, kListVoxelChunks, kListPairChunks});
+  recorder.close({kListTouchedVoxels, kListPairChunks});
 
+  // What is listed there: BST, and pairs.
   recorder.stage("pairs");
   recorder.run_items(pair_collect_, kListPairChunks);
   recorder.close({kListPairCandidates});
   recorder.run_items(pair_test_, kListPairCandidates);
   recorder.barrier();
+  recorder.run(rays_begin_, 1);
+  recorder.barrier();
 
-  recorder.stage("bst");
-  recorder.run_items(voxel_statics_, kListVoxelChunks);
-  if (refined_) {
-    recorder.barrier();
-    record_samples(recorder);
-  }
+  recorder.stage("transform");
+  recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
+  if (refined_) record_samples(recorder);
 
   recorder.stage("sets");
   recorder.close({kListPairs, kListContactStatics, kListContactMobiles, kListSamples});
@@ -197,21 +198,24 @@ void FrameDetection::record_samples(FrameRecorder& recorder) const {
     recorder.run_items(sample_scan_, kListSampleChunks);
     return;
   }
-  const std::uint32_t bin_groups = ((1u << 2 * bins_bits_) + kGroupSize - 1) / kGroupSize;
   recorder.run_dispatch(sample_bricks_, kDispatchBricks);
-  recorder.run(bins_clear_, bin_groups);
+  if (!closed_) recorder.run_dispatch(bins_clear_, kDispatchBins);
   recorder.close({kListSampleBricks});
   recorder.run_groups(sample_voxels_, kListSampleBricks);
   recorder.close({kListSampleChunks});
-  recorder.run_items(sample_scan_, kListSampleChunks);
+  recorder.run_items(listed_ ? sample_listed_ : sample_scan_, kListSampleChunks);
   recorder.close({kListOpenSamples});
 
   // Samples that the tool's partition leaves open.
+  if (closed_) {
+    recorder.run_items(sample_walk_, kListOpenSamples);
+    return;
+  }
   recorder.run(bins_begin_, 1);
   recorder.barrier();
   recorder.run_dispatch(bins_count_, kDispatchBinTriangles);
   recorder.barrier();
-  recorder.run(bins_place_, bin_groups);
+  recorder.run_dispatch(bins_place_, kDispatchBins);
   recorder.barrier();
   recorder.run_dispatch(bins_fill_, kDispatchBinTriangles);
   recorder.barrier();

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "compute/frame_capacity.h"
 #include "compute/frame_recorder.h"
@@ -17,7 +18,7 @@ namespace palpate {
 class FrameDetection {
  public:
   /// Makes the pipelines.
-  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const PreparedScene& scene);
+  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
 
   /// Makes the buffers of the lists and tables into `buffers`; those that are large enough already stay. Before the first record(), and
   /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
@@ -30,20 +31,25 @@ class FrameDetection {
   void record_end(FrameRecorder& recorder) const;
   /// Bins of the tool's shadow along each axis (FrameInput::bin_shift).
   std::int32_t bins() const { return 1 << bins_bits_; }
+  /// Ids of the tool's triangles in the order of clusters and runs.
+  const std::vector<std::uint32_t>& order() const { return order_; }
   const FrameShader& list_close() const { return list_close_; }
 
  private:
   FrameDetection() = default;
+  Result<void> upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const;
   Result<void> make_shaders(VulkanDevice& device);
   void record_samples(FrameRecorder& recorder) const;
 
   bool refined_ = false;
   bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
-  std::uint32_t tool_vertices_ = 0, tool_clusters_ = 0;
+  bool closed_ = false;   ///< the tool's surface: open samples walk out of it
+  bool listed_ = false;   ///< samples were listed by preparation
+  bool near_ = false;     ///< there are bits of the voxels near the tool
   std::uint32_t bins_bits_ = 0;   ///< 2^bins_bits bins along y and along z
-  FrameShader list_close_, frame_begin_, tool_transform_, tool_clusters_find_, brick_triangles_, brick_voxels_, voxel_touch_,
-      pair_collect_, pair_test_, voxel_statics_, sample_bricks_, sample_voxels_, sample_touched_, sample_scan_, sample_winding_,
-      bins_begin_, bins_clear_,
+  std::vector<std::uint32_t> order_;
+  FrameShader list_close_, frame_begin_, near_voxels_, voxel_touch_, pair_collect_, pair_test_, rays_begin_, tool_clusters_place_, sample_bricks_, sample_voxels_, sample_touched_, sample_scan_, sample_listed_,
+      sample_walk_, sample_winding_, bins_begin_, bins_clear_,
       bins_count_, bins_place_, bins_fill_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
 };
 

@@ -92,8 +92,11 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
     const auto at = std::lower_bound(out.bindings.begin(), out.bindings.end(), static_cast<std::int32_t>(b));
     b = static_cast<std::uint32_t>(at - out.bindings.begin());
   });
+  std::uint32_t uniform = 0;
+  for (std::size_t i = 0; i < out.bindings.size(); ++i)
+    if (out.bindings[i] == gpu::kBindScene || out.bindings[i] == gpu::kBindFrameInput) uniform |= 1u << i;
   auto pipeline = ComputePipeline::create(device, {code.name, words.data(), code.bytes},
-                                          static_cast<std::uint32_t>(out.bindings.size()), push_bytes, constants);
+                                          static_cast<std::uint32_t>(out.bindings.size()), push_bytes, constants, uniform);
   if (!pipeline) return pipeline.error();
   out.pipeline = std::move(*pipeline);
   return out;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compute/prepare_partition.h"
+#include "compute/prepare_samples.h"
 #include "compute/prepare_seams.h"
 #include "compute/prepare_steps.h"
 
@@ -52,6 +53,9 @@ void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
 
 std::uint64_t PreparedScene::memory_bytes() const {
   std::uint64_t sum = scene.bytes();
+  for (const VulkanBuffer* b : {&fine.brick_slot, &fine.bricks, &fine.mixed_brick, &fine.boundary_place, &fine.list_begin, &fine.list_triangles,
+                                &fine_exit, &tool_near, &sample_begin, &samples})
+    sum += b->bytes();
   for (const BodyBuffers* body : {&mockup, &tool}) {
     const PartitionBuffers& p = body->partition;
     for (const VulkanBuffer* b :
@@ -83,6 +87,9 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
     const VoxelPairs tool_pairs =
         build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);
     classify(steps, geometry.tool, tool_pairs, out.tool);
+    steps.progress("samples", 0.95);
+    refine_tool(steps, geometry, out);
+    if (geometry.tool.closed || out.tool.partition.has_internal) list_samples(steps, geometry, pairs, out);
   } else {
     make_empty(steps, out.tool.partition);
   }
@@ -95,6 +102,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   out.constants.tool_radius = geometry.tool_radius;
   out.constants.sample_spacing = geometry.sample_spacing;
   out.constants.refined = refined ? 1 : 0;
+  out.constants.fine = out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid;
   out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
   steps.progress("prepared", 1);
   if (!steps.ok()) return steps.error();

@@ -46,6 +46,11 @@ struct PreparedScene {
   VulkanBuffer scene;             ///< constants, as a storage buffer
   BodyBuffers mockup;
   BodyBuffers tool;
+  PartitionBuffers fine;          ///< of a closed tool, in finer voxels; may be empty: then the tool's own serves
+  VulkanBuffer fine_exit;         ///< uint32, one a boundary voxel of it: kBindFineExit
+  VulkanBuffer tool_near;         ///< bits: kBindToolNear; may be empty: all are near
+  VulkanBuffer sample_begin;      ///< uint32, one an entry of the mock-up's lists, + 1; may be empty
+  VulkanBuffer samples;           ///< gpu::FrameSample; may be empty: frames work them out
   std::uint64_t memory_bytes() const;
 };
 

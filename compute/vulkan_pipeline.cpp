@@ -13,13 +13,13 @@ namespace {
 using MadePipeline = Result<std::shared_ptr<const PipelineObjects>>;
 
 MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers, std::uint32_t push_bytes,
-                          std::span<const SpecConstant> constants) {
+                          std::span<const SpecConstant> constants, std::uint32_t uniform) {
   auto out = std::make_shared<PipelineObjects>(device.handle());
   std::vector<VkDescriptorSetLayoutBinding> bindings(buffers);
   for (std::uint32_t i = 0; i < buffers; ++i) {
     bindings[i] = {};
     bindings[i].binding = i;
-    bindings[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    bindings[i].descriptorType = (uniform >> i & 1u) != 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     bindings[i].descriptorCount = 1;
     bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
   }
@@ -77,13 +77,14 @@ MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uin
 }  // namespace
 
 Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
-                                                std::uint32_t push_bytes, std::span<const SpecConstant> constants) {
-  std::vector<std::uint32_t> key{buffers, push_bytes, static_cast<std::uint32_t>(constants.size())};
+                                                std::uint32_t push_bytes, std::span<const SpecConstant> constants,
+                                                std::uint32_t uniform) {
+  std::vector<std::uint32_t> key{buffers, push_bytes, uniform, static_cast<std::uint32_t>(constants.size())};
   for (const SpecConstant& c : constants) key.insert(key.end(), {c.id, c.value});
   key.insert(key.end(), code.words, code.words + code.bytes / 4);
   std::shared_ptr<const PipelineObjects>& kept = device.pipelines[std::move(key)];
   if (!kept) {
-    auto made = make_objects(device, code, buffers, push_bytes, constants);
+    auto made = make_objects(device, code, buffers, push_bytes, constants, uniform);
     if (!made) return made.error();
     kept = std::move(*made);
   }
@@ -91,6 +92,7 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   out.made_ = kept;
   out.buffers_ = buffers;
   out.push_bytes_ = push_bytes;
+  out.uniform_ = uniform;
   out.name_ = code.name;
   return out;
 }

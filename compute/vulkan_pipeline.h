@@ -29,25 +29,28 @@ struct PipelineObjects {
   ~PipelineObjects();
 };
 
-/// A compute pipeline whose set 0 is `buffers` storage buffers, bindings 0 … buffers − 1 (push descriptors),
-/// with `push_bytes` of push constants. Copies share what the driver made; so do all that one device was ever asked for with the
+/// A compute pipeline whose set 0 is `buffers` buffers, bindings 0 … buffers − 1 (push descriptors), with `push_bytes` of push
+/// constants. Bit i of `uniform`: binding i is a uniform buffer, else a storage buffer. Copies share what the driver made; so do all that one device was ever asked for with the
 /// same module and constants, so that a second scene compiles nothing.
 class ComputePipeline {
  public:
   ComputePipeline() = default;
   static Result<ComputePipeline> create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
-                                        std::uint32_t push_bytes = 0, std::span<const SpecConstant> constants = {});
+                                        std::uint32_t push_bytes = 0, std::span<const SpecConstant> constants = {},
+                                        std::uint32_t uniform = 0);
 
   VkPipeline handle() const { return made_->pipeline; }
   VkPipelineLayout layout() const { return made_->layout; }
   std::uint32_t buffers() const { return buffers_; }
   std::uint32_t push_bytes() const { return push_bytes_; }
+  bool uniform(std::uint32_t binding) const { return (uniform_ >> binding & 1u) != 0; }
   const char* name() const { return name_; }
 
  private:
   std::shared_ptr<const PipelineObjects> made_;
   std::uint32_t buffers_ = 0;
   std::uint32_t push_bytes_ = 0;
+  std::uint32_t uniform_ = 0;
   const char* name_ = "";
 };
 

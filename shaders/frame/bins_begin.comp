@@ -3,7 +3,7 @@
 // Whether bins are needed: there are open samples. A lone invocation; reads frame_lists, starts bin_state, writes dispatches.
 #include "shaders/lib/frame.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindBinState, BinState, bin_state);
 EDIT(kBindDispatches, DispatchArguments, dispatches);

@@ -6,8 +6,8 @@
 
 layout(constant_id = 0) const uint32_t COUNT = 0u;
 
-READ_ONE(kBindScene, SceneConstants, scene);
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindToolCorners, ToolCorners, tool_corners);
 EDIT(kBindToolBins, ToolBin, tool_bins);
 EDIT(kBindBinEntries, uint32_t, bin_entries);

@@ -1,20 +1,24 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Distinct pairs whose boxes meet. An invocation a PairChunk; one triangle pair lies in many voxels, so a hash table keeps the
-// first. Reads both bodies; appends pair_candidates, fills pair_table.
+// first. Reads both bodies; appends pair_candidates, fills pair_table, marks kStaticListed what is listed in a touched voxel.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/triangle_pair.glsl"
 
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
-READ(kBindToolTriangles, uvec3, tool_triangles);
-READ(kBindToolWorld, ivec3, tool_world);
-READ(kBindPairChunks, PairChunk, pair_chunks);
+READ(kBindMobileCorners, ToolCorners, mobile_corners);
+READ(kBindPairChunks, uvec3, pair_chunks);
+EDIT(kBindStaticState, uint32_t, static_state);
+EDIT(kBindStaticSlot, uint32_t, static_slot);
+EDIT(kBindContactStatics, uint32_t, contact_statics);
 EDIT(kBindPairTable, uint64_t, pair_table);
 EDIT(kBindPairCandidates, PairCandidate, pair_candidates);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
+
+#include "shaders/lib/static_mark.glsl"
 
 // Enters the pair in the table; its slot, or kNone when it was there or found no room.
 uint32_t new_slot(uint32_t static_id, uint32_t mobile) {
@@ -35,16 +39,23 @@ uint32_t new_slot(uint32_t static_id, uint32_t mobile) {
 void main() {
   const uint32_t item = flat_invocation();
   if (item >= frame_lists[kListPairChunks].count) return;
-  const PairChunk work = pair_chunks[item];
-  const uvec3 m = tool_triangles[work.mobile];
-  const Triangle t = Triangle(tool_world[m.x], tool_world[m.y], tool_world[m.z]);
-  for (uint32_t i = work.begin; i < work.end; ++i) {
+  const uvec3 work = pair_chunks[item];   // PairChunk
+  const uint32_t mobile = work.x & ~kFirstTouch;
+  const ToolCorners t = mobile_corners[mobile];
+  const ivec3 low = min(min(t.a, t.b), t.c), high = max(max(t.a, t.b), t.c);
+  bool close = false;
+  for (uint32_t i = work.y; i < work.z; ++i) {
     const uint32_t id = mockup_list_triangles[i];
+    if ((work.x & kFirstTouch) != 0u) mark_static(id, kStaticListed);
     const uvec3 s = mockup_triangles[id];
-    if (!boxes_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]), t)) continue;
-    const uint32_t slot = new_slot(id, work.mobile);
+    const ivec3 a = mockup_vertices[s.x], b = mockup_vertices[s.y], c = mockup_vertices[s.z];
+    const ivec3 apart = max(low - max(max(a, b), c), min(min(a, b), c) - high);   // > 0: the boxes do not meet
+    close = close || all(lessThanEqual(apart, ivec3(kCloseSteps)));
+    if (any(greaterThan(apart, ivec3(0)))) continue;
+    const uint32_t slot = new_slot(id, mobile);
     if (slot == kNone) continue;
     const uint32_t at = atomicAdd(frame_lists[kListPairCandidates].count, 1u);
-    if (at < frame_lists[kListPairCandidates].capacity) pair_candidates[at] = PairCandidate(id, work.mobile, slot);
+    if (at < frame_lists[kListPairCandidates].capacity) pair_candidates[at] = PairCandidate(id, mobile, slot);
   }
+  if (close) frame_state.close = 1u;
 }

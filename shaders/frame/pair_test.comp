@@ -6,8 +6,7 @@
 
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
-READ(kBindToolTriangles, uvec3, tool_triangles);
-READ(kBindToolWorld, ivec3, tool_world);
+READ(kBindMobileCorners, ToolCorners, mobile_corners);
 READ(kBindPairCandidates, PairCandidate, pair_candidates);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindContactMobiles, uint32_t, contact_mobiles);
@@ -24,9 +23,10 @@ void main() {
   const uint32_t item = flat_invocation();
   if (item >= frame_lists[kListPairCandidates].count) return;
   const PairCandidate work = pair_candidates[item];
-  const uvec3 s = mockup_triangles[work.static_id], m = tool_triangles[work.mobile];
+  const uvec3 s = mockup_triangles[work.static_id];
+  const ToolCorners t = mobile_corners[work.mobile];
   if (!triangles_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]),
-                      Triangle(tool_world[m.x], tool_world[m.y], tool_world[m.z])))
+                      Triangle(t.a, t.b, t.c)))
     return;
   mark_static(work.static_id, kStaticHit);
   mark_mobile(work.mobile, kMobileHit);

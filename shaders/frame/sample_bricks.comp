@@ -3,8 +3,8 @@
 // Mixed bricks that the tool's partition may reach. An invocation a brick of FrameInput's range; appends sample_bricks.
 #include "shaders/lib/frame.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slot);
 EDIT(kBindSampleBricks, uint32_t, sample_bricks);
 EDIT(kBindFrameLists, FrameList, frame_lists);

@@ -1,21 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The grid samples of listed triangles in one voxel, and what the tool's partition says of them. An invocation a SampleChunk.
+// The grid samples of listed triangles in one voxel, and what the tool's fine partition says of them. An invocation a SampleChunk.
 // V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. With NO_INSIDE = 1 (a tool without
 // inside) all of them count and none is marked. A triangle's first corner is asked as well, in the voxel that holds it.
 #include "shaders/lib/frame.glsl"
+#include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
 
 layout(constant_id = 0) const uint32_t NO_INSIDE = 0u;
 
-READ_ONE(kBindScene, SceneConstants, scene);
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupInfo, uint32_t, mockup_info);
 READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
-READ(kBindToolBrickSlot, uint32_t, tool_brick_slot);
-READ(kBindToolBricks, Brick, tool_bricks);
+READ(kBindFineBrickSlot, uint32_t, tool_brick_slot);
+READ(kBindFineBricks, Brick, tool_bricks);
 READ(kBindSampleChunks, SampleChunk, sample_chunks);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
@@ -26,7 +27,7 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
-#define PARTITION_GRID scene.tool.grid
+#define PARTITION_GRID scene.fine
 #define PARTITION_SLOTS tool_brick_slot
 #define PARTITION_BRICKS tool_bricks
 #define PARTITION(name) tool_##name

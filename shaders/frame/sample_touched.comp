@@ -3,7 +3,7 @@
 // For a tool without inside: the samples in touched V_bnd voxels count. An invocation a touched voxel; appends sample_chunks.
 #include "shaders/lib/frame.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindMockupListBegin, uint32_t, mockup_list_begin);
 READ(kBindTouchedVoxels, FrameVoxel, touched_voxels);
 EDIT(kBindSampleChunks, SampleChunk, sample_chunks);

@@ -1,17 +1,21 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// V_bnd voxels that may hold a point inside the tool: somewhere near, the tool's partition is not V_ext. A workgroup a brick of
-// sample_bricks, an invocation 8 voxels along x. Reads both partitions; appends sample_chunks.
+// V_bnd voxels that may hold a point inside the tool. A workgroup a brick of sample_bricks, an invocation one boundary voxel in 64.
+// Reads both partitions; appends sample_chunks: of the listed samples (LISTED = 1), else of the voxel's list of triangles.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/voxel_range.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+layout(constant_id = 0) const uint32_t LISTED = 1u;
+layout(constant_id = 1) const uint32_t HAS_NEAR = 1u;   // 0: there are no bits, all voxels are near
+
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slot);
 READ(kBindMockupBricks, Brick, mockup_bricks);
 READ(kBindMockupListBegin, uint32_t, mockup_list_begin);
-READ(kBindToolBrickSlot, uint32_t, tool_brick_slot);
-READ(kBindToolBricks, Brick, tool_bricks);
+READ(kBindMockupBoundaryPlace, uint32_t, boundary_place);
+READ(kBindToolNear, uint32_t, tool_near);
+READ(kBindSampleBegin, uint32_t, sample_begin);
 READ(kBindSampleBricks, uint32_t, sample_bricks);
 EDIT(kBindSampleChunks, SampleChunk, sample_chunks);
 EDIT(kBindFrameLists, FrameList, frame_lists);
@@ -20,24 +24,16 @@ EDIT_ONE(kBindFrameState, FrameState, frame_state);
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/sample_chunks.glsl"
-#define PARTITION_GRID scene.mockup.grid
-#define PARTITION_SLOTS mockup_brick_slot
-#define PARTITION_BRICKS mockup_bricks
-#define PARTITION(name) mockup_##name
-#include "shaders/lib/partition.glsl"
-#define PARTITION_GRID scene.tool.grid
-#define PARTITION_SLOTS tool_brick_slot
-#define PARTITION_BRICKS tool_bricks
-#define PARTITION(name) tool_##name
-#include "shaders/lib/partition.glsl"
 
-// Whether some voxel of the tool's grid between first and last is not V_ext. A voxel's reach spans at most 4 an axis.
-bool may_be_inside(ivec3 first, ivec3 last) {
-  for (int z = first.z; z <= last.z; ++z)
-    for (int y = first.y; y <= last.y; ++y)
-      for (int x = first.x; x <= last.x; ++x)
-        if (tool_class_of(ivec3(x, y, z)) != kVoxelExternal) return true;
-  return false;
+// Whether the tool's solid may reach into a voxel with this centre (tool lattice point).
+bool near_tool(ivec3 centre) {
+  if (HAS_NEAR == 0u) return true;
+  // What reaches out of the grid has its nearest voxel of the solid seen from the border: the grid is padded by two voxels.
+  const ivec3 n = 8 * scene.fine.bricks, d = centre - scene.fine.origin;
+  if (any(lessThan(d, ivec3(-scene.mockup.grid.size))) || any(greaterThan(d, n * scene.fine.size + scene.mockup.grid.size))) return false;
+  const uvec3 v = uvec3(clamp(cell_along(d, scene.fine.size, n), ivec3(0), n - 1));
+  const uint32_t i = v.x + uint32_t(n.x) * (v.y + uint32_t(n.y) * v.z);
+  return (tool_near[i >> 5] >> (i & 31u) & 1u) != 0u;
 }
 
 void main() {
@@ -46,16 +42,12 @@ void main() {
   const uint32_t number = sample_bricks[item];
   const uint32_t slot = mockup_brick_slot[number];
   const ivec3 brick = 8 * brick_at(number, scene.mockup.grid.bricks);
-  const int32_t half_size = scene.mockup.grid.size / 2;
-  const ivec3 reach = tool_reach(half_size);
-  for (uint32_t i = 0u; i < 8u; ++i) {
-    const uint32_t bit = gl_LocalInvocationIndex * 8u + i;
-    const uint32_t boundary = mockup_boundary_index_in(slot, bit);
-    if (boundary == kNoVoxel) continue;
-    const ivec3 voxel = brick + voxel_at(bit);
-    const ivec3 centre = tool_from_world(scene.mockup.grid.origin + 2 * half_size * voxel + half_size);
-    const ivec3 first = max(tool_voxel_of(centre - reach), ivec3(0));
-    const ivec3 last = min(tool_voxel_of(centre + reach), 8 * scene.tool.grid.bricks - 1);
-    if (may_be_inside(first, last)) ask_for_samples(voxel, boundary);
+  const int32_t size = scene.mockup.grid.size;
+  const uint32_t begin = mockup_bricks[slot].first[0], end = mockup_bricks[slot].first[15] + uint32_t(bitCount(mockup_bricks[slot].boundary[15]));
+  for (uint32_t boundary = begin + gl_LocalInvocationIndex; boundary < end; boundary += kGroupSize) {
+    const ivec3 voxel = brick + voxel_at(boundary_place[boundary] & 511u);
+    if (!near_tool(tool_from_world(scene.mockup.grid.origin + size * voxel + size / 2))) continue;
+    if (LISTED != 0u) ask_for_listed(sample_begin[mockup_list_begin[boundary]], sample_begin[mockup_list_begin[boundary + 1u]]);
+    else ask_for_samples(voxel, boundary);
   }
 }

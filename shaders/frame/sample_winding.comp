@@ -6,7 +6,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/ray.glsl"
 
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindToolCorners, ToolCorners, tool_corners);
 READ(kBindToolBins, ToolBin, tool_bins);
 READ(kBindBinEntries, uint32_t, bin_entries);

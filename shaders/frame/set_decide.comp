@@ -4,8 +4,8 @@
 // Reads frame_lists, frame_state; writes dispatches, starts result. An overflow before this leaves the response out.
 #include "shaders/lib/frame.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 EDIT(kBindDispatches, DispatchArguments, dispatches);
@@ -13,7 +13,7 @@ EDIT_ONE(kBindResult, FrameResult, result);
 
 void main() {
   if (gl_LocalInvocationIndex != 0u) return;
-  const uint32_t most = max(max(frame_lists[kListContactStatics].count, frame_lists[kListTouchedVoxels].count), frame_lists[kListPairCandidates].count);
+  const uint32_t most = max(max(frame_lists[kListContactStatics].count, frame_lists[kListContactMobiles].count), max(frame_lists[kListTouchedVoxels].count, frame_lists[kListPairCandidates].count));
   dispatches[kDispatchReset] = groups_for((most + kGroupSize - 1u) / kGroupSize);
   result.flags = 0u;   // what the response writes, when it runs
   result.area_count = 0u;
@@ -26,19 +26,15 @@ void main() {
     const DispatchArguments one = DispatchArguments(1u, 1u, 1u);
     dispatches[kDispatchContactOne] = one;
     dispatches[kDispatchContactStatics] = frame_lists[kListContactStatics].items;
-    dispatches[kDispatchContactStaticGroups] = frame_lists[kListContactStatics].groups;
     dispatches[kDispatchContactMobiles] = frame_lists[kListContactMobiles].items;
-    dispatches[kDispatchContactMobileGroups] = frame_lists[kListContactMobiles].groups;
     dispatches[kDispatchSamples] = frame_lists[kListSamples].items;
-    dispatches[kDispatchSampleGroups] = frame_lists[kListSamples].groups;
     dispatches[kDispatchPairs] = frame_lists[kListPairs].items;
-    dispatches[kDispatchPairGroups] = frame_lists[kListPairs].groups;
     dispatches[kDispatchTouchedVoxels] = frame_lists[kListTouchedVoxels].items;
     dispatches[kDispatchHeldStatics] = groups_for((frame_input.held_statics + kGroupSize - 1u) / kGroupSize);
     if (scene.refined != 0u && frame_state.imt != 0u && frame_state.cst + frame_state.est == 0u && frame_lists[kListSamples].count == 0u) {
       frame_state.swallowed = 1u;
       dispatches[kDispatchSwallowedOne] = one;
-      dispatches[kDispatchSwallowed] = frame_lists[kListTriangleBricks].groups;
+      dispatches[kDispatchSwallowed] = groups_for(frame_input.near_triangles);
     }
   }
 }

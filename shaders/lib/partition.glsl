@@ -6,12 +6,8 @@
 // and may include it again with other names for the other body (it has no include guard, and undefines them).
 // All outside the grid is V_ext.
 
-// The voxel that holds lattice point p, half-open. p may be anywhere; |p − origin| < 2^31.
-ivec3 PARTITION(voxel_of)(ivec3 p) {
-  ivec3 d = p - PARTITION_GRID.origin;
-  ivec3 q = d / PARTITION_GRID.size;
-  return q - ivec3(lessThan(d, q * PARTITION_GRID.size));   // division truncates: round towards −∞
-}
+// The voxel that holds lattice point p, half-open; some voxel off the grid when p is off it. |p − origin| < 2^31.
+ivec3 PARTITION(voxel_of)(ivec3 p) { return cell_along(p - PARTITION_GRID.origin, PARTITION_GRID.size, 8 * PARTITION_GRID.bricks); }
 
 bool PARTITION(in_grid)(ivec3 voxel) {
   return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, PARTITION_GRID.bricks * 8));

@@ -12,6 +12,16 @@ ivec3 last_touched(ivec3 high, ivec3 origin, int32_t side) {
   return ivec3(last_touched(high.x, origin.x, side), last_touched(high.y, origin.y, side), last_touched(high.z, origin.z, side));
 }
 
+// floor(d / side) for cells 0 … n − 1 with n ≤ 2^15; −1 for what is below, n for what is beyond. A rounded float quotient is less than
+// one off; an integer division costs llvmpipe a loop over its lanes.
+ivec3 cell_along(ivec3 d, int32_t side, ivec3 n) {
+  const ivec3 inside = clamp(d, ivec3(-1), n * side);
+  const ivec3 q = ivec3(floor(vec3(inside) * (1.0 / float(side))));
+  const ivec3 rest = inside - q * side;
+  return q + ivec3(greaterThanEqual(rest, ivec3(side))) - ivec3(lessThan(rest, ivec3(0)));
+}
+ivec3 cell_along(ivec3 d, int32_t side, int32_t n) { return cell_along(d, side, ivec3(n)); }
+
 // Coordinates of a brick from its linear number.
 ivec3 brick_at(uint32_t number, ivec3 bricks) {
   const uint32_t x = uint32_t(bricks.x), y = uint32_t(bricks.y);

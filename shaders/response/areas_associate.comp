@@ -10,14 +10,16 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindContactMobiles, uint32_t, contact_mobiles);
 READ(kBindToolTriangles, uvec3, tool_triangles);
-READ(kBindToolWorld, ivec3, tool_world);
+READ(kBindToolVertices, ivec3, tool_vertices);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ_ONE(kBindResponseState, ResponseState, response);
 READ(kBindAreas, AreaWork, areas);
 EDIT(kBindMobileWork, MobileWork, mobile_work);
 EDIT(kBindResultMembers, AreaMember, members);
 
-#include "shaders/lib/centroid.glsl"
 #include "shaders/lib/list_room.glsl"
+#include "shaders/lib/centroid.glsl"
+#include "shaders/lib/pose.glsl"
 
 int64_t squared(ivec3 v) {
   const i64vec3 w = i64vec3(v);
@@ -36,7 +38,7 @@ void main() {
   mobile_work[mobile] = MobileWork(0u, 0u);
 
   const uvec3 corners = tool_triangles[mobile];
-  const ivec3 g = rounded_centroid(tool_world[corners.x], tool_world[corners.y], tool_world[corners.z]);
+  const ivec3 g = rounded_centroid(world_from_tool(tool_vertices[corners.x]), world_from_tool(tool_vertices[corners.y]), world_from_tool(tool_vertices[corners.z]));
   bool held_by_one = false;
   uint32_t nearest = kNone;
   int64_t nearest_distance = 0l;

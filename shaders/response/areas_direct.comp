@@ -8,7 +8,7 @@
 
 layout(constant_id = 0) const bool REFINED = true;
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindFrameLists, FrameList, frame_lists);
 READ(kBindHeldAreas, HeldDirection, held_areas);
 EDIT(kBindDispatches, DispatchArguments, dispatches);

@@ -9,8 +9,8 @@
 
 layout(constant_id = 0) const bool REFINED = true;
 
-READ_ONE(kBindScene, SceneConstants, scene);
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT(kBindDispatches, DispatchArguments, dispatches);
 READ(kBindHeldAreas, HeldDirection, held_areas);

@@ -6,7 +6,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ_ONE(kBindResponseState, ResponseState, response);
 READ(kBindAreas, AreaWork, areas);
 EDIT_ONE(kBindResult, FrameResult, result);

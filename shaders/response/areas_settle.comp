@@ -7,7 +7,7 @@
 #include "shaders/shared/frame_response.h"
 #include "shaders/lib/direction.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 EDIT_ONE(kBindResponseState, ResponseState, response);
 EDIT(kBindAreas, AreaWork, areas);
 

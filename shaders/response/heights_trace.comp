@@ -8,7 +8,7 @@
 
 layout(constant_id = 0) const bool REFINED = true;
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindSamples, FrameSample, frame_samples);

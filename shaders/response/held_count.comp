@@ -6,7 +6,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindHeldStatics, HeldStatic, held_statics);
 READ(kBindStaticState, uint32_t, static_state);
 READ(kBindStaticSlot, uint32_t, static_slot);

@@ -8,7 +8,7 @@
 
 layout(constant_id = 0) const bool REFINED = true;
 
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindFrameLists, FrameList, frame_lists);
 READ(kBindResultMembers, AreaMember, members);
 READ(kBindMobileWork, MobileWork, mobile_work);

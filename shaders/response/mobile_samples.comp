@@ -5,11 +5,12 @@
 // Before: mobile_tiles; its list is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
+#include "shaders/lib/voxel_range.glsl"
 #include "shaders/shared/frame_response.h"
 #include "shaders/lib/sample.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindFrameLists, FrameList, frame_lists);
 READ(kBindMobileTiles, MobileTile, mobile_tiles);
 READ(kBindToolVertices, ivec3, tool_vertices);

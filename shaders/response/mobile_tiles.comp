@@ -7,7 +7,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindResultMembers, AreaMember, members);

@@ -9,7 +9,7 @@
 
 layout(constant_id = 1) const bool NUMBER = false;
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
 READ(kBindMockupBricks, Brick, mockup_bricks);
 EDIT_ONE(kBindResponseState, ResponseState, response);

@@ -7,7 +7,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindPairs, ContactPair, pairs);
@@ -18,7 +18,8 @@ READ(kBindClusterBoxes, LatticeBox, cluster_boxes);
 READ(kBindRunBoxes, LatticeBox, run_boxes);
 READ(kBindToolCorners, ToolCorners, tool_corners);
 READ(kBindToolTriangles, uvec3, tool_triangles);
-READ(kBindToolWorld, ivec3, tool_world);
+READ(kBindToolVertices, ivec3, tool_vertices);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindSlots, SlotWork, slots);
 READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindSlotBoxes, LatticeBox, slot_boxes);
@@ -28,6 +29,7 @@ EDIT(kBindAreas, AreaWork, areas);
 EDIT(kBindNeedleTable, uint32_t, needle_table);
 EDIT(kBindNeedleVertices, NeedleVertex, needle_vertices);
 
+#include "shaders/lib/pose.glsl"
 #include "shaders/lib/edge_crossing.glsl"
 #include "shaders/lib/tool_ray.glsl"
 #include "shaders/lib/height_sum.glsl"
@@ -77,7 +79,7 @@ void main() {
 
   const uvec3 sc = mockup_triangles[pair.static_id], mc = tool_triangles[pair.mobile];
   const ivec3 s[3] = {mockup_vertices[sc.x], mockup_vertices[sc.y], mockup_vertices[sc.z]};
-  const ivec3 m[3] = {tool_world[mc.x], tool_world[mc.y], tool_world[mc.z]};
+  const ivec3 m[3] = {world_from_tool(tool_vertices[mc.x]), world_from_tool(tool_vertices[mc.y]), world_from_tool(tool_vertices[mc.z])};
   Span span = Span(false, ivec3(0), ivec3(0));
   take_edges(s, m, span);
   take_edges(m, s, span);

@@ -13,12 +13,14 @@ READ(kBindStaticState, uint32_t, static_state);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupInfo, uint32_t, mockup_info);
-READ(kBindToolWorld, ivec3, tool_world);
+READ(kBindToolVertices, ivec3, tool_vertices);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindSlots, SlotWork, slots);
 EDIT(kBindAreas, AreaWork, areas);
 EDIT(kBindNeedleTable, uint32_t, needle_table);
 READ(kBindNeedleVertices, NeedleVertex, needle_vertices);
 
+#include "shaders/lib/pose.glsl"
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/height_sum.glsl"
 
@@ -34,7 +36,7 @@ void main() {
   }
   barrier();
 
-  const ivec3 p = tool_world[item.vertex], d = areas[item.area].direction;
+  const ivec3 p = world_from_tool(tool_vertices[item.vertex]), d = areas[item.area].direction;
   const uint32_t count = frame_lists[kListContactStatics].count;
   if (count > kLoopBudget * kGroupSize) atomicOr(frame_state.overflow_other, kOverflowLoop);
   for (uint32_t slot = gl_LocalInvocationIndex; slot < min(count, kLoopBudget * kGroupSize); slot += kGroupSize) {

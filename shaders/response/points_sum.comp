@@ -6,7 +6,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindTouchedVoxels, FrameVoxel, touched_voxels);

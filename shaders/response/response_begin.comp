@@ -6,7 +6,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
-READ_ONE(kBindFrameInput, FrameInput, frame_input);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ_ONE(kBindFrameState, FrameState, frame_state);
 EDIT_ONE(kBindResponseState, ResponseState, response);
 

@@ -1,19 +1,21 @@
 #version 460
-// One workgroup: a brick that a tool triangle meets, of a swallowed tool; an invocation takes eight of its voxels. How many half
+// One workgroup: a triangle of a swallowed tool near a brick; an invocation takes eight of its voxels. How many half
 // voxels along D until each touched V_int voxel is out of V_int?
-// Reads triangle bricks, the transformed tool, the partition. Writes swallowed_steps.
+// Reads near triangles, the transformed tool, the partition. Writes swallowed_steps.
 // Before: the direction is settled.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
+#include "shaders/lib/voxel_range.glsl"
 #include "shaders/shared/frame_response.h"
 #include "shaders/lib/triangle_voxel.glsl"
 
-READ_ONE(kBindScene, SceneConstants, scene);
+CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
-READ(kBindTriangleBricks, TriangleBrick, triangle_bricks);
-READ(kBindToolTriangles, uvec3, tool_triangles);
-READ(kBindToolWorld, ivec3, tool_world);
+READ(kBindNearTriangles, uvec4, near_triangles);
+READ(kBindToolRecords, uvec4, tool_records);
+READ(kBindMobileCorners, ToolCorners, mobile_corners);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
 READ(kBindMockupBricks, Brick, mockup_bricks);
 EDIT_ONE(kBindResponseState, ResponseState, response);
@@ -37,23 +39,20 @@ uint32_t steps_out(ivec3 centre, i64vec3 d) {
 }
 
 void main() {
-  const uint32_t t = flat_group();
-  if (t >= frame_lists[kListTriangleBricks].count || response.swallowed_direction == ivec3(0)) return;
-  const TriangleBrick item = triangle_bricks[t];
-  const uint32_t slot = mockup_brick_slots[item.brick];
-  if (slot == kBrickExternal) return;
-  const uvec3 corners = tool_triangles[item.mobile];
-  const ivec3 a = tool_world[corners.x], b = tool_world[corners.y], c = tool_world[corners.z];
-  const i64vec3 normal = raw_normal(a, b, c);
-  const uvec3 n = uvec3(scene.mockup.grid.bricks);
-  const ivec3 first = 8 * ivec3(item.brick % n.x, item.brick / n.x % n.y, item.brick / n.x / n.y);
+  if (flat_group() >= frame_input.near_triangles || response.swallowed_direction == ivec3(0)) return;
+  const uvec4 work = near_triangles[flat_group()];   // NearTriangle
+  const ivec3 first = 8 * ivec3(work.z & 0xFFFFu, work.z >> 16, work.w);
+  const uint32_t place = work.x & ~kFirstOfTriangle;
   const int32_t size = scene.mockup.grid.size;
+  if ((tool_records[3u * place + 1u].w & kInfoCollapsed) != 0u) return;
+  const ToolCorners t = mobile_corners[tool_records[3u * place].w];
+  const i64vec3 normal = raw_normal(t.a, t.b, t.c);
+  if (normal == i64vec3(0l)) return;
   for (uint32_t z = 0u; z < 8u; ++z) {
     const ivec3 voxel = first + ivec3(gl_LocalInvocationIndex & 7u, gl_LocalInvocationIndex >> 3, z);
     if (mockup_class_of(voxel) != kVoxelInternal) continue;
     const ivec3 low = scene.mockup.grid.origin + voxel * size;
-    if (!triangle_touches_box(a, b, c, normal, low, low + size)) continue;
-    const uint32_t k = steps_out(low + size / 2, i64vec3(response.swallowed_direction));
-    atomicMax(response.swallowed_steps, k);
+    if (!triangle_touches_box(t.a, t.b, t.c, normal, low, low + size)) continue;
+    atomicMax(response.swallowed_steps, steps_out(low + size / 2, i64vec3(response.swallowed_direction)));
   }
 }

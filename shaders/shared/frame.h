@@ -51,21 +51,28 @@ PALPATE_CONSTANT int32_t kBindToolNormals = 19;        // ivec3, Q30, tool latti
 PALPATE_CONSTANT int32_t kBindToolWeights = 20;        // uint32_t, Q30
 PALPATE_CONSTANT int32_t kBindToolBrickSlot = 21;      // uint32_t; refined
 PALPATE_CONSTANT int32_t kBindToolBricks = 22;         // Brick; refined
+PALPATE_CONSTANT int32_t kBindFineBrickSlot = 23;      // the tool's fine partition (SceneConstants::fine) …
+PALPATE_CONSTANT int32_t kBindFineBricks = 24;
+PALPATE_CONSTANT int32_t kBindFineListBegin = 25;
+PALPATE_CONSTANT int32_t kBindFineListTriangles = 26;
+PALPATE_CONSTANT int32_t kBindFineExit = 27;           // uint32_t, by V_bnd voxel of it: the axis step (0 … 5: −x, +x, −y …) that leads out to V_ext
+PALPATE_CONSTANT int32_t kBindSampleBegin = 28;        // uint32_t, by entry of the mock-up's lists, + 1: its samples
+PALPATE_CONSTANT int32_t kBindMockupSamples = 29;      // FrameSample, with kCornerProbe too
+PALPATE_CONSTANT int32_t kBindToolNear = 30;           // a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet the tool's solid
 
 // The frame.
 PALPATE_CONSTANT int32_t kBindFrameInput = 32;                   // FrameInput, one; mapped, written by the host
 PALPATE_CONSTANT int32_t kBindFrameLists = 33;                   // FrameList[kListCount]
 PALPATE_CONSTANT int32_t kBindFrameState = 34;                   // FrameState, one
 PALPATE_CONSTANT int32_t kBindDispatches = 35;                   // DispatchArguments[kDispatchCount]: the response's, set by frame_sets.comp
-PALPATE_CONSTANT int32_t kBindToolWorld = 36;           // ivec3[tool vertices]: transformed, world lattice
+PALPATE_CONSTANT int32_t kBindMobileCorners = 36;       // ToolCorners[tool triangles], by id; valid for those of NearTriangles
 PALPATE_CONSTANT int32_t kBindClusterBoxes = 37;                 // LatticeBox[clusters]: of the transformed triangles of a cluster, closed
-PALPATE_CONSTANT int32_t kBindMobileState = 38;                  // uint32_t[tool triangles]: kMobile… bits; rewritten every frame
-PALPATE_CONSTANT int32_t kBindClusterBricks = 39;                // kListClusterBricks: ClusterBrick
-PALPATE_CONSTANT int32_t kBindTriangleBricks = 40;               // kListTriangleBricks: TriangleBrick
+PALPATE_CONSTANT int32_t kBindMobileState = 38;                  // uint32_t[tool triangles]: kMobile… bits; 0 between frames
+PALPATE_CONSTANT int32_t kBindNearTriangles = 39;                    // NearTriangle[FrameInput::near_triangles]; mapped
+PALPATE_CONSTANT int32_t kBindToolRecords = 40;                  // ToolRecord[tool triangles], in the order of clusters
 PALPATE_CONSTANT int32_t kBindTouchCandidates = 41;              // kListTouchCandidates: TouchCandidate
 PALPATE_CONSTANT int32_t kBindVoxelState = 42;                   // uint32_t[boundary voxels]: kVoxel… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindTouchedVoxels = 43;                // kListTouchedVoxels: FrameVoxel, each V_bnd voxel touched by a mobile triangle once
-PALPATE_CONSTANT int32_t kBindVoxelChunks = 44;                  // kListVoxelChunks: VoxelChunk over the touched voxels (for BST)
 PALPATE_CONSTANT int32_t kBindPairChunks = 45;                   // kListPairChunks: PairChunk
 PALPATE_CONSTANT int32_t kBindPairTable = 46;                    // uint64_t[2^n]: hash of pairs under test; 0 between frames
 PALPATE_CONSTANT int32_t kBindPairCandidates = 47;               // kListPairCandidates: PairCandidate
@@ -84,7 +91,6 @@ PALPATE_CONSTANT int32_t kBindResultStatics = 59;                // StaticResult
 PALPATE_CONSTANT int32_t kBindResultMobiles = 60;                // MobileResult[C_m], by position; mapped
 PALPATE_CONSTANT int32_t kBindResultMembers = 61;                // kListMembers: AreaMember; mapped
 PALPATE_CONSTANT int32_t kBindResultPierces = 62;                // kListPierces: AreaPierce; mapped
-PALPATE_CONSTANT int32_t kBindToolOrder = 63;                    // uint32_t[tool triangles]: ids in the order of clusters (cluster c: kClusterSize · c …)
 PALPATE_CONSTANT int32_t kBindToolCorners = 65;        // ToolCorners[tool triangles]: transformed, in the order of clusters
 PALPATE_CONSTANT int32_t kBindRunBoxes = 66;           // LatticeBox[runs]: of kRunSize triangles that follow each other in a cluster
 PALPATE_CONSTANT int32_t kBindToolBins = 67;           // ToolBin[bins]; refined
@@ -96,11 +102,9 @@ PALPATE_CONSTANT int32_t kBindResponseFirst = 72;                // frame_respon
 
 // ---- lists ---------------------------------------------------------------------------------------------------------------
 
-PALPATE_CONSTANT uint32_t kListClusterBricks = 0;
-PALPATE_CONSTANT uint32_t kListTriangleBricks = 1;
+PALPATE_CONSTANT uint32_t kListNearTriangles = 0;                // filled by the host, which knows its length: FrameInput::near_triangles
 PALPATE_CONSTANT uint32_t kListTouchCandidates = 2;
 PALPATE_CONSTANT uint32_t kListTouchedVoxels = 3;
-PALPATE_CONSTANT uint32_t kListVoxelChunks = 4;
 PALPATE_CONSTANT uint32_t kListPairChunks = 5;
 PALPATE_CONSTANT uint32_t kListPairCandidates = 6;
 PALPATE_CONSTANT uint32_t kListPairs = 7;
@@ -139,17 +143,16 @@ struct FrameList {
 PALPATE_CONSTANT uint32_t kDispatchContactOne = 0;               // contact
 PALPATE_CONSTANT uint32_t kDispatchContactStatics = 1;           // contact: an invocation a slot of C_s
 PALPATE_CONSTANT uint32_t kDispatchContactMobiles = 2;           // contact: an invocation a member of C_m
-PALPATE_CONSTANT uint32_t kDispatchContactMobileGroups = 3;      // contact: a workgroup a member of C_m
 PALPATE_CONSTANT uint32_t kDispatchSamples = 4;                  // contact: an invocation a counting sample (refined)
-PALPATE_CONSTANT uint32_t kDispatchSampleGroups = 5;             // contact: a workgroup a counting sample (refined)
 PALPATE_CONSTANT uint32_t kDispatchPairs = 6;                    // contact: an invocation a pair
 PALPATE_CONSTANT uint32_t kDispatchTouchedVoxels = 7;            // contact: an invocation a touched V_bnd voxel
-PALPATE_CONSTANT uint32_t kDispatchContactStaticGroups = 8;      // contact: a workgroup a slot of C_s
 PALPATE_CONSTANT uint32_t kDispatchHeldStatics = 9;              // contact: an invocation a HeldStatic
 PALPATE_CONSTANT uint32_t kDispatchSwallowedOne = 10;            // swallowed: a single workgroup
-PALPATE_CONSTANT uint32_t kDispatchSwallowed = 11;               // swallowed: a workgroup a TriangleBrick
-PALPATE_CONSTANT uint32_t kDispatchPairGroups = 12;              // contact: a workgroup a pair
-PALPATE_CONSTANT uint32_t kDispatchBricks = 13;                  // an invocation a brick of FrameInput's range (set at the frame's beginning)
+PALPATE_CONSTANT uint32_t kDispatchSwallowed = 11;               // swallowed: a workgroup a NearTriangle
+PALPATE_CONSTANT uint32_t kDispatchBricks = 13;                  // samples may be inside: an invocation a brick of FrameInput's range
+PALPATE_CONSTANT uint32_t kDispatchNear = 3;                     // an invocation a NearTriangle (set at the frame's beginning)
+PALPATE_CONSTANT uint32_t kDispatchClusters = 5;                 // rays are needed: a workgroup a cluster of the tool
+PALPATE_CONSTANT uint32_t kDispatchBins = 8;                     // samples may be inside: an invocation a bin
 PALPATE_CONSTANT uint32_t kDispatchReset = 14;                   // an invocation an entry of whatever is emptied at the frame's end
 PALPATE_CONSTANT uint32_t kDispatchBinTriangles = 15;  // some sample is open: an invocation a tool triangle
 PALPATE_CONSTANT uint32_t kDispatchResponseFirst = 16;           // 16…31: of the response's own making
@@ -167,6 +170,8 @@ struct FrameInput {
   ivec3 tool_low, tool_high;     // holds all transformed corners; closed
   int32_t bin_shift;             // bins are 2^bin_shift steps wide, from tool_low on
   uint32_t held_statics;          // entries of held statics
+  uint32_t near_triangles;            // entries of NearTriangles
+  uint32_t encloses;              // 1: samples may be inside although no triangle of the tool comes near the mock-up
 };
 
 struct HeldStatic {
@@ -187,7 +192,11 @@ struct FrameState {
   uint32_t contact;               // 1: CST, IMT or EST is not empty
   uint32_t swallowed;             // 1: IMT, but no CST and no counting sample (refined)
   uint32_t cst, bst, est, cmt, bmt, imt; // sizes of the sets
+  uint32_t close;                 // 1: the bodies may come within kCloseSteps of each other: samples may be inside
 };
+// Samples are rounded by less than a step, transformed corners too. Bodies that keep this distance have no sample on the wrong side
+// of each other's surface.
+PALPATE_CONSTANT int32_t kCloseSteps = 3;
 
 struct LatticeBox {
   ivec3 low, high;                // closed; low > high: empty
@@ -218,26 +227,35 @@ PALPATE_CONSTANT uint32_t kStaticSampled = 4u;                   // a sample ins
 PALPATE_CONSTANT uint32_t kMobileHit = 1u;                       // in an intersecting pair: CMT
 PALPATE_CONSTANT uint32_t kMobileInternal = 2u;                  // touches a V_int voxel: IMT unless CMT
 PALPATE_CONSTANT uint32_t kMobileBoundary = 4u;                  // touches a V_bnd voxel: BMT in neither
-PALPATE_CONSTANT uint32_t kMobileVoid = 8u;                      // collapsed at load or collinear at this pose: in no set, rays do not see it
 PALPATE_CONSTANT uint32_t kMobileSets = 7u;                      // any of the first three: in C_m
 
 PALPATE_CONSTANT uint32_t kVoxelTouched = 1u;                    // in touched voxels
 
-struct ClusterBrick {
-  uint32_t cluster;
-  uint32_t brick;                 // linear brick number
+// A tool triangle and a brick of the mock-up with voxels that it may touch, found by the host (compute/broad_phase.h).
+struct NearTriangle {
+  uint32_t place;                 // in the order of clusters; with kFirstOfTriangle in the first entry of each triangle
+  uint32_t slot;                  // of the brick; kBrickInternal: all of it is V_int
+  int32_t xy;                     // brick x + 2^16 · brick y
+  int32_t z;
+};
+PALPATE_CONSTANT uint32_t kFirstOfTriangle = 1u << 31;
+
+// A tool triangle as it was loaded, tool lattice frame.
+struct ToolRecord {
+  ivec3 a;
+  uint32_t id;
+  ivec3 b;
+  uint32_t info;                  // kInfo… bits
+  ivec3 c;
+  uint32_t padding;
 };
 
-// A tool triangle whose closed transformed point set meets the closed cube of a brick that is mixed or interior.
-struct TriangleBrick {
-  uint32_t mobile;
-  uint32_t brick;
-};
-
+// A tool triangle whose box comes near a voxel that is V_bnd or V_int.
 struct TouchCandidate {
   uint32_t mobile;
-  uint32_t brick;
-  uint32_t local;                 // voxel within the brick, x fastest, 0…511
+  uint32_t boundary;              // number of the V_bnd voxel; kNoVoxel: V_int
+  int32_t xy;                     // voxel x + 2^16 · voxel y
+  int32_t z;
 };
 
 // A V_bnd voxel of the mock-up's grid.
@@ -248,21 +266,19 @@ struct FrameVoxel {
 
 // Parts [begin, end) of the list of static triangles of a V_bnd voxel, so that no invocation walks a long list.
 struct PairChunk {
-  uint32_t mobile;                // to be paired with each of them
+  uint32_t mobile;                // to be paired with each of them; with kFirstTouch when they are BST unless CST, and not yet marked
   uint32_t begin, end;
 };
-struct VoxelChunk {
-  uint32_t begin, end;
-};
+PALPATE_CONSTANT uint32_t kFirstTouch = 1u << 31;
 struct SampleChunk {
   ivec3 voxel;                    // whose samples are asked for
-  uint32_t begin, end;
+  uint32_t begin, end;            // of its list; where samples are listed: of them
 };
 PALPATE_CONSTANT uint32_t kPairChunk = 8;                        // entries in a PairChunk (chosen: most lists are shorter)
-PALPATE_CONSTANT uint32_t kVoxelChunk = 32;                      // entries in a VoxelChunk
 PALPATE_CONSTANT uint32_t kSampleChunk = 2;                      // entries in a SampleChunk
 PALPATE_CONSTANT uint32_t kMostChunks = 1024, kMostPairChunks = 8192;   // chunks of one list: where it is very long, chunks are longer
 PALPATE_CONSTANT uint32_t kPairProbes = 64;                      // slots of the pair table looked at before it counts as full
+PALPATE_CONSTANT uint32_t kListedChunk = 8;                      // samples in a SampleChunk where they are listed
 
 struct PairCandidate {
   uint32_t static_id;
@@ -313,7 +329,6 @@ struct FrameResult {
   uint32_t area_count;            // ≤ kMaxFrameAreas
   ivec3 swallowed_direction;
   uint32_t swallowed_height;
-  uint32_t padding;
   AreaResult areas[kMaxFrameAreas];
 };
 
@@ -340,7 +355,10 @@ struct AreaPierce {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 120);
+PALPATE_ASSERT_SIZE(FrameInput, 128);
+PALPATE_ASSERT_SIZE(NearTriangle, 16);
+PALPATE_ASSERT_SIZE(ToolRecord, 48);
+PALPATE_ASSERT_SIZE(TouchCandidate, 16);
 PALPATE_ASSERT_SIZE(AreaResult, 128);
 PALPATE_ASSERT_SIZE(FrameResult, 88 + 128 * kMaxFrameAreas);
 

@@ -70,5 +70,15 @@ struct SeamPush {
 };
 PALPATE_ASSERT_SIZE(SeamPush, 24);
 
+// Push constants of sample_list.comp.
+struct SampleListPush {
+  ivec3 origin;
+  int32_t size;
+  ivec3 bricks;
+  int32_t spacing;
+  uint32_t count;            // entries
+};
+PALPATE_ASSERT_SIZE(SampleListPush, 36);
+
 PALPATE_SHARED_END
 #endif

@@ -63,8 +63,9 @@ struct SceneConstants {
   int32_t tool_radius;       // steps
   int32_t sample_spacing;    // steps
   uint32_t refined;          // 1: profile `refined`, 0: `paper`
+  GridConstants fine;        // a second, finer partition of a closed tool, or its own: early answers for samples
 };
-PALPATE_ASSERT_SIZE(SceneConstants, 136);
+PALPATE_ASSERT_SIZE(SceneConstants, 176);
 PALPATE_ASSERT_OFFSET(SceneConstants, tool_gc, 112);
 
 PALPATE_SHARED_END

@@ -130,7 +130,6 @@ class ResponseTest : public GpuTest {
     put_lists(buffers, kBindNeighbourBegin, kBindNeighbours, c.neighbours);
     put_lists(buffers, kBindSeamBegin, kBindSeams, c.seams);
 
-    put(buffers, kBindToolWorld, c.tool_world);
     put(buffers, kBindToolVertices, c.tool_world);   // the pose is the identity
     put(buffers, kBindToolTriangles, c.tool_triangles);
     const std::size_t tool = c.tool_triangles.size();

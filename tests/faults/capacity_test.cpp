@@ -30,14 +30,14 @@ void PrintTo(const Small& small, std::ostream* out) { *out << small.list; }
 
 class Capacity : public testing::TestWithParam<Small> {};
 INSTANTIATE_TEST_SUITE_P(Each, Capacity,
-                         testing::Values(Small{"bricks of clusters", ball_on_edge}, Small{"bricks of triangles", ball_on_edge},
+                         testing::Values(Small{"bricks of near triangles", ball_on_edge},
                                          Small{"voxels to touch", ball_on_edge}, Small{"touched voxels", ball_on_edge},
-                                         Small{"lists of touched voxels", ball_on_edge}, Small{"lists to pair", ball_on_edge},
+                                         Small{"lists to pair", ball_on_edge},
                                          Small{"pairs to test", ball_on_edge}, Small{"pairs", ball_on_edge}, Small{"pair table", ball_on_edge},
                                          Small{"contact triangles of the mock-up", ball_on_edge}, Small{"contact triangles of the tool", ball_on_edge},
                                          Small{"lists with samples", ball_on_edge}, Small{"samples near the tool's surface", ball_on_edge},
                                          Small{"samples", ball_on_edge}, Small{"bricks with samples", ball_on_edge},
-                                         Small{"bins of the tool's shadow", ball_on_edge}, Small{"tool triangles of areas", ball_on_edge},
+                                         Small{"tool triangles of areas", ball_on_edge},
                                          Small{"tiles of tool samples", ball_on_edge}, Small{"pierced areas", ball_in_plate},
                                          Small{"needle vertices", needle_in_block}, Small{"needle table", needle_in_block}),
                          [](const auto& tested) {

@@ -1,0 +1,248 @@
+#include "compute/broad_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kFan = 8;   // children of a node
+
+// Transformed vertices are rounded by half a step an axis, and doubles by far less than a thousandth: two steps hold both, and
+// voxels are closed.
+constexpr double kMargin = gpu::kCloseSteps + 2.0;
+
+}  // namespace
+
+/// A pose in doubles. Its products are within 2^29 and off by less than 2^-20.
+struct BroadPhase::Turn {
+  explicit Turn(const LatticePose& pose) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        rotation[r][c] = pose.rotation_q30[r][c] * 0x1p-30;
+        size[r][c] = std::abs(rotation[r][c]);
+      }
+      translation[r] = pose.translation[static_cast<int>(r)];
+    }
+  }
+  double rotation[3][3], size[3][3], translation[3];
+};
+
+struct BroadPhase::Search {
+  const Turn& turn;
+  std::span<gpu::NearTriangle> out;
+  Near near;
+};
+
+Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup,
+                                    std::span<const std::uint32_t> order) {
+  BroadPhase out;
+  out.make_levels(geometry.tool, order);
+  out.tool_radius_ = geometry.tool_radius;
+  if (auto r = out.read_occupancy(device, mockup); !r) return r.error();
+  out.find_parts(geometry.mockup, geometry.tool_radius);
+  return out;
+}
+
+void BroadPhase::make_levels(const LatticeMesh& tool, std::span<const std::uint32_t> order) {
+  // What is no triangle lies far beyond every grid, wherever the tool is turned.
+  constexpr float kNowhere = 1e30f;
+  runs_.resize((order.size() + gpu::kRunSize - 1) / gpu::kRunSize);
+  for (RunCorners& run : runs_)
+    for (auto& coordinate : run) coordinate.fill(kNowhere);
+  std::vector<Int3> low, high;
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    if (place % gpu::kRunSize == 0) {
+      low.emplace_back(INT32_MAX);
+      high.emplace_back(INT32_MIN);
+    }
+    if (tool.collapsed(order[place])) continue;
+    for (int corner = 0; corner < 3; ++corner) {
+      const Int3 p = tool.corner(order[place], corner);
+      low.back() = glm::min(low.back(), p);
+      high.back() = glm::max(high.back(), p);
+      for (int k = 0; k < 3; ++k)
+        runs_[place / gpu::kRunSize][static_cast<std::size_t>(3 * corner + k)][place % gpu::kRunSize] = static_cast<float>(p[k]);
+    }
+  }
+  while (true) {
+    std::vector<Box>& level = levels_.emplace_back(low.size());
+    for (std::size_t i = 0; i < low.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double l = low[i][static_cast<int>(k)], h = high[i][static_cast<int>(k)];
+        level[i].centre[k] = l > h ? 0 : (l + h) / 2;
+        level[i].half[k] = l > h ? -1 : (h - l) / 2;
+      }
+    if (low.size() <= 1) return;
+    const std::size_t above = (low.size() + kFan - 1) / kFan;
+    for (std::size_t i = 0; i < above; ++i) {
+      for (std::size_t child = i * kFan + 1; child < std::min((i + 1) * kFan, low.size()); ++child) {
+        low[i * kFan] = glm::min(low[i * kFan], low[child]);
+        high[i * kFan] = glm::max(high[i * kFan], high[child]);
+      }
+      low[i] = low[i * kFan];
+      high[i] = high[i * kFan];
+    }
+    low.resize(above);
+    high.resize(above);
+  }
+}
+
+Result<void> BroadPhase::read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup) {
+  grid_ = mockup.grid;
+  per_voxel_ = 1.0 / grid_.size;
+  slots_.resize(static_cast<std::size_t>(grid_.bricks.x) * static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(grid_.bricks.z));
+  if (auto r = download(device, mockup.brick_slot, 0, slots_.data(), slots_.size() * 4); !r) return r;
+  std::vector<gpu::Brick> bricks(grid_.mixed_bricks);
+  if (auto r = download(device, mockup.bricks, 0, bricks.data(), bricks.size() * sizeof bricks[0]); !r) return r;
+  occupied_.resize(bricks.size());
+  for (std::size_t i = 0; i < bricks.size(); ++i)
+    for (std::size_t z = 0; z < 8; ++z)
+      occupied_[i][z] = std::uint64_t{bricks[i].boundary[2 * z] | bricks[i].internal_[2 * z]} |
+                        std::uint64_t{bricks[i].boundary[2 * z + 1] | bricks[i].internal_[2 * z + 1]} << 32;
+  return {};
+}
+
+void BroadPhase::find_parts(const LatticeMesh& mockup, std::int32_t tool_radius) {
+  // Parts are connected by corners: a part that meets no triangle of a closed tool lies wholly on one side of it.
+  std::vector<std::uint32_t> parent(mockup.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (std::uint32_t t = 0; t < mockup.triangles.size(); ++t) {
+    if (mockup.collapsed(t)) continue;
+    for (std::size_t k = 1; k < 3; ++k) parent[root(mockup.triangles[t][k])] = root(mockup.triangles[t][0]);
+  }
+  std::vector<std::array<std::int32_t, 6>> boxes(mockup.vertices.size(), {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MIN, INT32_MIN, INT32_MIN});
+  for (std::uint32_t t = 0; t < mockup.triangles.size(); ++t) {
+    if (mockup.collapsed(t)) continue;
+    auto& box = boxes[root(mockup.triangles[t][0])];
+    for (int corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t v = mockup.corner(t, corner)[static_cast<int>(k)];
+        box[k] = std::min(box[k], v);
+        box[k + 3] = std::max(box[k + 3], v);
+      }
+  }
+  const std::int64_t most = 2 * std::int64_t{tool_radius} + 2 * gpu::kCloseSteps;
+  for (const auto& box : boxes)
+    if (box[0] <= box[3] && std::int64_t{box[3]} - box[0] <= most && std::int64_t{box[4]} - box[1] <= most && std::int64_t{box[5]} - box[2] <= most)
+      parts_.push_back(box);
+}
+
+BroadPhase::Reach BroadPhase::reach(const Turn& turn, const Box& box) const {
+  Reach out;
+  for (std::size_t r = 0; r < 3; ++r) {
+    const double centre = turn.rotation[r][0] * box.centre[0] + turn.rotation[r][1] * box.centre[1] + turn.rotation[r][2] * box.centre[2] + turn.translation[r];
+    const double half = turn.size[r][0] * box.half[0] + turn.size[r][1] * box.half[1] + turn.size[r][2] * box.half[2] + kMargin;
+    out.low[r] = centre - half;
+    out.high[r] = centre + half;
+  }
+  return out;
+}
+
+/// Calls take(brick coordinates, slot) for each brick with an occupied voxel in reach, until it returns true.
+template <class Take>
+void BroadPhase::for_bricks(const Reach& reach, Take&& take) const {
+  std::int32_t first[3], last[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    const double voxels = grid_.bricks[axis] * 8;
+    const double low = (reach.low[k] - grid_.origin[axis]) * per_voxel_, high = (reach.high[k] - grid_.origin[axis]) * per_voxel_;
+    if (high < 0 || low >= voxels) return;
+    first[k] = static_cast<std::int32_t>(std::max(low, 0.0));   // rounded down
+    last[k] = static_cast<std::int32_t>(std::min(high, voxels - 1));
+  }
+  constexpr std::uint64_t kRows = 0x0101010101010101u;
+  for (std::int32_t z = first[2] >> 3; z <= last[2] >> 3; ++z)
+    for (std::int32_t y = first[1] >> 3; y <= last[1] >> 3; ++y)
+      for (std::int32_t x = first[0] >> 3; x <= last[0] >> 3; ++x) {
+        const std::uint32_t slot = slots_[static_cast<std::size_t>(x) + static_cast<std::size_t>(grid_.bricks.x) *
+                                          (static_cast<std::size_t>(y) + static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(z))];
+        if (slot == gpu::kBrickExternal) continue;
+        if (slot != gpu::kBrickInternal) {
+          const auto from = [&](std::size_t k, std::int32_t brick) { return static_cast<unsigned>(std::max(first[k] - 8 * brick, 0)); };
+          const auto to = [&](std::size_t k, std::int32_t brick) { return static_cast<unsigned>(std::min(last[k] - 8 * brick, 7)); };
+          const std::uint64_t row = (2u << to(0, x)) - (1u << from(0, x));
+          const std::uint64_t rows = (kRows >> 8 * (7 - (to(1, y) - from(1, y)))) << 8 * from(1, y);
+          std::uint64_t found = 0;
+          for (unsigned k = from(2, z); k <= to(2, z); ++k) found |= occupied_[slot][k];
+          if ((found & row * rows) == 0) continue;
+        }
+        if (take(Int3(x, y, z), slot)) return;
+      }
+}
+
+bool BroadPhase::meets(const Reach& reach) const {
+  bool any = false;
+  for_bricks(reach, [&](const Int3&, std::uint32_t) { return any = true; });
+  return any;
+}
+
+void BroadPhase::descend(Search& search, std::size_t level, std::size_t node) const {
+  const Box& box = levels_[level][node];
+  if (box.half[0] < 0) return;
+  const Reach where = reach(search.turn, box);
+  if (level > 0) {
+    if (!meets(where)) return;
+    for (std::size_t child = node * kFan; child < std::min((node + 1) * kFan, levels_[level - 1].size()); ++child)
+      descend(search, level - 1, child);
+    return;
+  }
+  if (meets(where)) take_run(search, node);
+}
+
+/// The triangles of a run, each by the box of its corners.
+void BroadPhase::take_run(Search& search, std::size_t run) const {
+  const Turn& turn = search.turn;
+  // Coordinates within 2^28, rounded to 24 bits, times entries rounded alike, three products and a sum: below 8 · 2^-24 of the radius.
+  const double margin = kMargin + tool_radius_ * 0x1p-20;
+  const RunCorners& corners = runs_[run];
+  std::array<std::array<float, gpu::kRunSize>, 3> low, high;
+  for (std::size_t r = 0; r < 3; ++r) {
+    const auto x = static_cast<float>(turn.rotation[r][0]), y = static_cast<float>(turn.rotation[r][1]), z = static_cast<float>(turn.rotation[r][2]);
+    for (std::size_t i = 0; i < gpu::kRunSize; ++i) {
+      const float a = x * corners[0][i] + y * corners[1][i] + z * corners[2][i];
+      const float b = x * corners[3][i] + y * corners[4][i] + z * corners[5][i];
+      const float c = x * corners[6][i] + y * corners[7][i] + z * corners[8][i];
+      const float least = a < b ? a : b, most = a < b ? b : a;
+      low[r][i] = least < c ? least : c;
+      high[r][i] = most < c ? c : most;
+    }
+  }
+  for (std::size_t i = 0; i < gpu::kRunSize; ++i) {
+    Reach where;
+    for (std::size_t r = 0; r < 3; ++r) {
+      where.low[r] = static_cast<double>(low[r][i]) + turn.translation[r] - margin;
+      where.high[r] = static_cast<double>(high[r][i]) + turn.translation[r] + margin;
+    }
+    std::uint32_t tag = static_cast<std::uint32_t>(run * gpu::kRunSize + i) | gpu::kFirstOfTriangle;
+    for_bricks(where, [&](const Int3& brick, std::uint32_t slot) {
+      if (search.near.near_triangles == search.out.size()) return search.near.overflow = true;
+      search.out[search.near.near_triangles++] = {tag, slot, brick.x | brick.y << 16, brick.z};
+      tag &= ~gpu::kFirstOfTriangle;
+      return false;
+    });
+  }
+}
+
+BroadPhase::Near BroadPhase::find(const LatticePose& pose, std::span<gpu::NearTriangle> out) const {
+  const Turn turn(pose);
+  Search search{turn, out, {}};
+  descend(search, levels_.size() - 1, 0);
+  if (!parts_.empty() && levels_.back()[0].half[0] >= 0) {
+    const Reach whole = reach(turn, levels_.back()[0]);
+    for (const auto& part : parts_)
+      if (part[0] >= whole.low[0] && part[1] >= whole.low[1] && part[2] >= whole.low[2] && part[3] <= whole.high[0] && part[4] <= whole.high[1] &&
+          part[5] <= whole.high[2]) {
+        search.near.encloses = true;
+        break;
+      }
+  }
+  return search.near;
+}
+
+}  // namespace palpate

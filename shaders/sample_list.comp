@@ -1,0 +1,66 @@
+#version 460
+// One invocation: an entry of the mock-up's lists, a triangle in a voxel. Counts (EMIT 0) or lists (EMIT 1) the triangle's samples
+// that lie in the voxel, and its first corner if that lies in it.
+// Reads the mock-up and its partition. Writes begins[], samples.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/item.glsl"
+#include "shaders/shared/scene.h"
+#include "shaders/shared/prepare.h"
+#include "shaders/shared/frame.h"
+
+layout(constant_id = 0) const uint32_t EMIT = 0u;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Vertices { ivec3 vertices[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Triangles { uvec3 triangles[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Info { uint32_t info[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer EntryVoxel { uint32_t entry_voxel[]; };
+layout(scalar, set = 0, binding = 4) readonly buffer List { uint32_t list_triangles[]; };
+layout(scalar, set = 0, binding = 5) readonly buffer Place { uint32_t boundary_place[]; };
+layout(scalar, set = 0, binding = 6) readonly buffer Mixed { uint32_t mixed_brick[]; };
+layout(scalar, set = 0, binding = 7) buffer Begin { uint32_t begins[]; };
+layout(scalar, set = 0, binding = 8) writeonly buffer Samples { FrameSample samples[]; };
+layout(push_constant, scalar) uniform Push { SampleListPush push; };
+
+int32_t floor_div(int32_t a, int32_t b) {
+  const int32_t q = a / b;
+  return q - int32_t(a < q * b);
+}
+
+#include "shaders/lib/cells.glsl"
+#include "shaders/lib/sample.glsl"
+
+void main() {
+  const uint32_t entry = item_index();
+  if (entry >= push.count) return;
+  const uint32_t place = boundary_place[entry_voxel[entry]], bit = place & 511u;
+  const ivec3 voxel = 8 * cell_of_number(mixed_brick[place >> 9], push.bricks) + ivec3(bit & 7u, bit >> 3 & 7u, bit >> 6);
+  const ivec3 low = push.origin + push.size * voxel, high = low + push.size - 1;   // the last lattice point of the half-open cube
+  const uint32_t id = list_triangles[entry];
+  const uvec3 corners = triangles[id];
+  SampledTriangle t;
+  t.a = vertices[corners.x];
+  t.b = vertices[corners.y];
+  t.c = vertices[corners.z];
+  t.axis = int(info[id] >> kInfoAxisShift & 3u);
+  t.normal = raw_normal(t.a, t.b, t.c);
+  uint32_t count = 0u;
+  const uint32_t begin = EMIT != 0u ? begins[entry] : 0u;
+  if (all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) {
+    if (EMIT != 0u) samples[begin] = FrameSample(t.a, id | kCornerProbe);
+    count = 1u;
+  }
+  // Grid points of the voxel that lie in the triangle's box; at most 64 an axis, as a voxel is at most 64 spacings.
+  const ivec2 from = seen_along(t.axis, max(low, min(min(t.a, t.b), t.c)));
+  const ivec2 to = seen_along(t.axis, min(high, max(max(t.a, t.b), t.c)));
+  const ivec2 first = push.spacing * ivec2(-floor_div(-from.x, push.spacing), -floor_div(-from.y, push.spacing));
+  for (int32_t v = first.y; v <= to.y; v += push.spacing) {
+    for (int32_t u = first.x; u <= to.x; u += push.spacing) {
+      if (!grid_point_inside(t, ivec2(u, v))) continue;
+      const ivec3 point = sample_point(t, ivec2(u, v));
+      if (point[t.axis] < low[t.axis] || point[t.axis] > high[t.axis]) continue;
+      if (EMIT != 0u) samples[begin + count] = FrameSample(point, id);
+      count += 1u;
+    }
+  }
+  if (EMIT == 0u) begins[entry] = count;
+}
