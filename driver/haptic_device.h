@@ -44,6 +44,9 @@ class HapticDevice {
   virtual Result<void> open() = 0;
   virtual void close() noexcept = 0;                      ///< forces zero, then closed
   virtual DeviceSample read() noexcept = 0;
+  /// What the person at the device should do now (home it, plug it in), or why it is at fault; "" when there is nothing to say. Text that
+  /// outlives the device; the thread that reads may ask.
+  virtual const char* guidance() const noexcept { return ""; }
   /// The part of a wrench that the motors can exert at the pose last read; what they can't is left out before limits
   /// apply, so that it doesn't use them up. As given: the actuated axes of the world. A device whose axes are its
   /// own (a guide, a tilted base) overrides it. Called like write().

@@ -29,7 +29,8 @@ struct Parts {
   std::function<std::unique_ptr<CollisionBackend>()> make_cpu;
   /// A haptic device by name, closed; `tool_gc_m` is the tool's centre of mass, tool frame. Errors: kBadValue for an unknown name or a
   /// setting, kNoDevice for one that this version can't drive.
-  std::function<Result<std::unique_ptr<HapticDevice>>(const std::string& name, const Scene& scene, const Vec3& tool_gc_m)> make_device;
+  std::function<Result<std::unique_ptr<HapticDevice>>(const std::string& name, const Scene& scene, const Vec3& tool_gc_m,
+                                                            const std::string& firmware)> make_device;
   std::function<std::vector<DeviceLine>()> list_devices;
   /// Other collision libraries, for `bench peers`, and the judge of their pairs (service/peer.h); empty where they were not built.
   std::function<std::vector<std::unique_ptr<Peer>>()> make_peers;

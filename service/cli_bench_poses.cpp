@@ -63,7 +63,7 @@ Result<std::vector<Pose>> bench_poses(const BenchOptions& options, PreparedScene
     for (const PathPoint& point : loaded.scene.device.path) poses.push_back(path_pose(point, loaded.scene.device.guide));
     return thinned(poses, options.frames);
   }
-  auto device = parts.make_device("simulated", loaded.scene, loaded.geometry.tool_gc_m);
+  auto device = parts.make_device("simulated", loaded.scene, loaded.geometry.tool_gc_m, {});
   if (!device) return device.error();
   console.step("taking poses");
   SessionOptions session;

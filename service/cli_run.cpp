@@ -77,8 +77,6 @@ Result<void> write_text(const fs::path& path, const std::string& text) {
 Result<void> check_options(const RunOptions& options) {
   if (options.duration_s && !(std::isfinite(*options.duration_s) && *options.duration_s > 0))
     return bad_value(fmt::format("--duration {} is not a positive number of seconds", *options.duration_s));
-  if (!options.firmware.empty())
-    return Error{ErrorCode::kUsage, "--firmware is for a device that loads one, and this version drives none (see palpate devices)"};
   return {};
 }
 
@@ -94,7 +92,9 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   const std::string driver = options.device.empty() ? loaded.scene.device.driver : options.device;
   if (options.asap && driver != "simulated")
     return Error{ErrorCode::kUsage, fmt::format("--pace asap is virtual time, which the device '{}' can't keep: only simulated can", driver)};
-  Result<std::unique_ptr<HapticDevice>> device = parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m);
+  if (!options.firmware.empty() && driver != "falcon")
+    return Error{ErrorCode::kUsage, fmt::format("--firmware is for the device falcon, and the device is {}", driver)};
+  Result<std::unique_ptr<HapticDevice>> device = parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m, options.firmware);
   if (!device) return device.error();
 
   const Result<fs::path> directory = output_directory(options.out, options.common.scene);

@@ -7,7 +7,7 @@
 
 #include "model/result.h"
 #include "service/collision_frame.h"
-#include "service/latest_value.h"
+#include "model/latest_value.h"
 
 namespace palpate {
 

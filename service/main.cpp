@@ -21,8 +21,9 @@ std::vector<DeviceLine> list_devices() {
   return lines;
 }
 
-Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const Scene& scene, const Vec3& tool_gc_m) {
-  auto device = make_haptic_device(name, scene.device, scene.start, tool_gc_m);
+Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const Scene& scene, const Vec3& tool_gc_m,
+                                                  const std::string& firmware) {
+  auto device = make_haptic_device(name, scene.device, scene.start, tool_gc_m, firmware);
   if (!device && device.error().code == ErrorCode::kUsage) return bad_value(device.error().sentence);
   return device;
 }

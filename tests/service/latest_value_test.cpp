@@ -1,4 +1,4 @@
-#include "service/latest_value.h"
+#include "model/latest_value.h"
 
 #include <gtest/gtest.h>
 
