@@ -12,8 +12,8 @@ ivec3 last_touched(ivec3 high, ivec3 origin, int32_t side) {
   return ivec3(last_touched(high.x, origin.x, side), last_touched(high.y, origin.y, side), last_touched(high.z, origin.z, side));
 }
 
-// floor(d / side) for cells 0 … n − 1 with n ≤ 2^15; −1 for what is below, n for what is beyond. A rounded float quotient is less than
-// one off; an integer division costs llvmpipe a loop over its lanes.
+// floor(d / side) for cells 0 … n − 1 with n ≤ 2^15; −1 for what is below, n for what is beyond. A float quotient is less than
+// one off on any device: the division's 2.5 ULP and two roundings are under 2^-21 of at most 2^15. An integer division costs llvmpipe a loop over its lanes.
 ivec3 cell_along(ivec3 d, int32_t side, ivec3 n) {
   const ivec3 inside = clamp(d, ivec3(-1), n * side);
   const ivec3 q = ivec3(floor(vec3(inside) * (1.0 / float(side))));

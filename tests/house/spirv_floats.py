@@ -19,8 +19,16 @@ INEXACT = {'OpFDiv', 'OpFRem', 'OpFMod', 'OpDot', 'OpOuterProduct', 'OpMatrixTim
 SHARED_STORAGE = {'StorageBuffer', 'Uniform', 'UniformConstant', 'PushConstant', 'Workgroup', 'CrossWorkgroup', 'Input', 'Output'}
 
 RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding, contracted or not, and exact tests follow'
+CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
 CULLS = {
     'heights_trace': RAYS,
+    'mobile_samples': CELL,
+    'near_voxels': CELL,
+    'sample_listed': CELL,
+    'sample_scan': CELL,
+    'sample_voxels': CELL,
+    'sample_walk': CELL,
+    'swallow_march': CELL,
     'needle_pairs': RAYS,
     'pierce_find': RAYS,
     'seam_find': 'a plane that may separate two triangles (lib/seam.glsl): integers decide whether it does, and exact tests follow where it does not',

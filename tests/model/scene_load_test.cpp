@@ -106,7 +106,7 @@ TEST_F(SceneLoad, CanBeCancelledAtAnyStep) {
     int calls = 0;
     const auto loaded = load(R"({"mesh": "two.obj"})", R"("mesh": "tool.obj")", [&](const char*, double) { return calls++ < allowed; });
     ASSERT_FALSE(loaded) << allowed;
-    EXPECT_THAT(loaded.error().sentence, HasSubstr("s.json: loading was cancelled"));
+    EXPECT_THAT(loaded.error().sentence, HasSubstr("was cancelled"));
   }
 }
 
