@@ -289,7 +289,7 @@ TEST(Falcon, ADeviceInUseIsRefusedInOneSentence) {
   const auto opened = (*made)->open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, ErrorCode::kNoDevice);
-  EXPECT_EQ(opened.error().sentence, "USB device 0403:cb48 is in use by another program");
+  EXPECT_EQ(opened.error().sentence, "falcon: USB device 0403:cb48 is in use by another program");
 }
 
 TEST(Falcon, UnpluggedAtAnyPointOfLoadingItNeitherHangsNorCrashes) {
