@@ -60,12 +60,26 @@ int edge_direction(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_
   return (v[0] == low && v[1] == high) || (v[1] == low && v[2] == high) || (v[2] == low && v[0] == high) ? 1 : -1;
 }
 
+Result<void> check_crowded_edges(const EdgeTable& edges, const LatticeMesh& mesh) {
+  std::size_t most = 0;
+  Int3 most_at(0);
+  edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> uses) {
+    if (uses.size() <= most) return;
+    const auto solid = static_cast<std::size_t>(std::count_if(uses.begin(), uses.end(), [&](const EdgeUse& use) { return !mesh.collapsed(use.triangle); }));
+    if (solid <= most) return;
+    most = solid;
+    most_at = mesh.vertices[low];
+  });
+  if (most > kMaxTrianglesOnEdge)
+    return bad_value(fmt::format("an edge at lattice point ({}, {}, {}) carries {} triangles, the limit is {}", most_at.x, most_at.y,
+                                 most_at.z, most, kMaxTrianglesOnEdge));
+  return {};
+}
+
 Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, LatticeMesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   std::vector<std::uint32_t> length(count, 0);
   std::uint64_t total = 0;
-  std::size_t most = 0;
-  Int3 most_at(0);
   std::vector<std::uint32_t> solid;   // the triangles on an edge that did not collapse
   const auto gather = [&](std::span<const EdgeUse> uses) {
     solid.clear();
@@ -73,19 +87,12 @@ Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, L
       if (!mesh.collapsed(use.triangle)) solid.push_back(use.triangle);
     return solid.size();
   };
-  edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> uses) {
+  edges.for_each([&](std::uint32_t, std::span<const EdgeUse> uses) {
     const std::size_t n = gather(uses);
-    if (n > most) {
-      most = n;
-      most_at = mesh.vertices[low];
-    }
-    if (n < 2 || n > kMaxTrianglesOnEdge) return;
+    if (n < 2) return;
     total += n * (n - 1);
     for (const std::uint32_t t : solid) length[t] += static_cast<std::uint32_t>(n) - 1;
   });
-  if (most > kMaxTrianglesOnEdge)
-    return bad_value(fmt::format("an edge at lattice point ({}, {}, {}) carries {} triangles, the limit is {}", most_at.x, most_at.y,
-                                 most_at.z, most, kMaxTrianglesOnEdge));
   if (total > kMaxNeighbours)
     return bad_value(fmt::format("{} pairs of triangles share an edge, the limit is {}", total / 2, kMaxNeighbours / 2));
 

@@ -45,7 +45,12 @@ class EdgeTable {
 /// Whether the triangle runs along the edge from `low` to `high` (+1) or from `high` to `low` (−1).
 int edge_direction(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_t low, std::uint32_t high);
 
-/// Fills `neighbours` and `neighbour_begin`; collapsed triangles are nobody's neighbours. Error (kBadValue): an edge with more than kMaxTrianglesOnEdge triangles.
+/// Error (kBadValue): an edge with more than kMaxTrianglesOnEdge triangles that did not collapse. Asked before a mesh is oriented: rays
+/// through a pile of a million coincident triangles would each cross all of them.
+Result<void> check_crowded_edges(const EdgeTable& edges, const LatticeMesh& mesh);
+
+/// Fills `neighbours` and `neighbour_begin`; collapsed triangles are nobody's neighbours. Requires check_crowded_edges. Error (kBadValue): more
+/// pairs of neighbours than memory is kept for.
 Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, LatticeMesh& mesh);
 
 /// Fills `closed` of the mesh, and of the report open and non-manifold edges, duplicates, the largest gap and which

@@ -135,6 +135,7 @@ Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice,
   for (const std::uint8_t flags : out.flags) report.collapsed += flags & kTriangleCollapsed ? 1 : 0;
 
   const EdgeTable edges(out);
+  if (const Result<void> bearable = check_crowded_edges(edges, out); !bearable) return bearable.error();
   const std::vector<std::uint32_t> part_of = list_parts(mesh, out, lattice, report);
   describe_shells(orient(edges, part_of, out), part_of, out, report);
   examine_edges(edges, lattice.step_m, part_of, out, report);
