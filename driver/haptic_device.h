@@ -31,6 +31,7 @@ struct DeviceSample {
   std::uint32_t buttons = 0;
   DeviceState state = DeviceState::kClosed;
   int stage = 0;                   ///< of the recorded or simulated path, 0: none
+  bool clutched = false;           ///< the hand moves without the tool, so it must feel nothing
 };
 
 /// A haptic device. Implement it to plug in a device with a closed SDK (docs/examples).
@@ -47,6 +48,8 @@ class HapticDevice {
   /// What the person at the device should do now (home it, plug it in), or why it is at fault; "" when there is nothing to say. Text that
   /// outlives the device; the thread that reads may ask.
   virtual const char* guidance() const noexcept { return ""; }
+  /// How long the device moves by itself, s; 0: a person moves it, for as long as they like.
+  virtual double motion_s() const { return 0; }
   /// The part of a wrench that the motors can exert at the pose last read; what they can't is left out before limits
   /// apply, so that it doesn't use them up. As given: the actuated axes of the world. A device whose axes are its
   /// own (a guide, a tilted base) overrides it. Called like write().

@@ -37,13 +37,14 @@ void SafeDevice::close() noexcept {
 
 DeviceSample SafeDevice::read() noexcept {
   DeviceSample sample = device_.read();
-  if (opened_ && sample.state == DeviceState::kFault) latch("the haptic device reported a fault");
+  if (opened_ && sample.state == DeviceState::kFault) latch(*device_.guidance() ? device_.guidance() : "the haptic device reported a fault");
   if (opened_ && sample.state == DeviceState::kReady && !sound(sample.pose))
     latch("the haptic device reported a pose that isn't finite or has no unit rotation");
   if (sound(sample.pose)) last_pose_ = sample.pose;
   sample.pose = last_pose_;
   if (faulted_) sample.state = DeviceState::kFault;
   state_ = sample.state;
+  clutched_ = sample.clutched;
   return sample;
 }
 
@@ -52,7 +53,7 @@ void SafeDevice::write(const Wrench& wrench, const Vec3& gc) noexcept {
   step_gain();
   const Wrench before = sent_;
   sent_ = {};
-  if (opened_ && !faulted_ && state_ == DeviceState::kReady) {
+  if (flowing()) {
     Wrench wanted = wrench;
     if (settings_.passivity) {
       passivity_.observe(before, gc, last_pose_.rotation);
@@ -71,7 +72,7 @@ void SafeDevice::write(const Wrench& wrench, const Vec3& gc) noexcept {
       sent_ = {gain_ * slewed_.force, gain_ * slewed_.torque};
     }
   }
-  if (faulted_ || state_ != DeviceState::kReady) slewed_ = {};
+  if (!flowing()) slewed_ = {};
   // Zero is written too: a device that hears nothing may hold its last force.
   if (opened_) device_.write(sent_, finite(gc) ? gc : last_pose_.position);
 }
@@ -97,7 +98,7 @@ void SafeDevice::latch(const char* why) noexcept {
 }
 
 void SafeDevice::step_gain() noexcept {
-  if (!opened_ || faulted_ || state_ != DeviceState::kReady) {
+  if (!flowing()) {
     gain_ = 0;
     ticks_since_fresh_ = 0;   // the watchdog watches results, and nobody asks for any before the device is ready
     return;

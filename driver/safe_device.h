@@ -18,7 +18,7 @@ struct SafetySettings {
 /// The last thing before the motors, round any device: whoever writes, only what is safe gets through.
 /// In this order: passivity control, if it is on; only the device's exertable part; force and torque each shortened to the device's
 /// limits, keeping their directions; no further from those of the tick before than the slew limit allows; scaled by a gain in [0, 1] that
-/// rises from 0 and falls to 0 when the watchdog runs out; and zero, at once, whenever the device isn't ready, a pose or wrench isn't finite, after any fault until the next open(), on close and destruction.
+/// rises from 0 and falls to 0 when the watchdog runs out; and zero, at once, whenever the device isn't ready or is clutched, a pose or wrench isn't finite, after any fault until the next open(), on close and destruction.
 /// One thread calls read, write and fresh; they don't allocate, lock or throw. Refers to the device; closes it.
 class SafeDevice final : public HapticDevice {
  public:
@@ -32,6 +32,8 @@ class SafeDevice final : public HapticDevice {
   Result<void> open() override;             ///< forgets an earlier fault, fades in anew
   void close() noexcept override;
   DeviceSample read() noexcept override;    ///< a pose that isn't one comes back as kFault, with the last sound pose
+  const char* guidance() const noexcept override { return device_.guidance(); }
+  double motion_s() const override { return device_.motion_s(); }
   Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override { return device_.exertable(wrench, gc); }
   void write(const Wrench& wrench, const Vec3& gc) noexcept override;
 
@@ -41,7 +43,7 @@ class SafeDevice final : public HapticDevice {
   void restart_fade() noexcept { gain_ = 0; }
 
   bool faulted() const noexcept { return faulted_; }            ///< latched until open()
-  const char* fault() const noexcept { return fault_; }         ///< why, one sentence; "" without a fault
+  const char* fault() const noexcept { return fault_; }         ///< why, one sentence, the device's own where it has one; "" without a fault
   double gain() const noexcept { return gain_; }
   const Wrench& sent() const noexcept { return sent_; }         ///< by the last write, torque about its gc
   std::uint64_t watchdog_ticks() const noexcept { return watchdog_ticks_; }     ///< writes with the watchdog run out
@@ -50,6 +52,8 @@ class SafeDevice final : public HapticDevice {
   std::uint64_t damped_ticks() const noexcept { return damped_ticks_; }         ///< writes with passivity damping
 
  private:
+  /// Whether force may flow at all.
+  bool flowing() const noexcept { return opened_ && !faulted_ && !clutched_ && state_ == DeviceState::kReady; }
   void latch(const char* why) noexcept;
   void step_gain() noexcept;
   void slew(const Wrench& wanted) noexcept;
@@ -65,7 +69,7 @@ class SafeDevice final : public HapticDevice {
   Passivity passivity_;
   std::uint64_t watchdog_ticks_ = 0, saturated_ticks_ = 0, slewed_ticks_ = 0, damped_ticks_ = 0;
   const char* fault_ = "";
-  bool faulted_ = false, opened_ = false;
+  bool faulted_ = false, opened_ = false, clutched_ = false;
 };
 
 }  // namespace palpate

@@ -24,7 +24,8 @@ class SimulatedDevice : public HapticDevice {
                  settings.hand_stiffness_n_per_m, kTickSeconds),
         turning_(settings.inertia_kg_m2, settings.angular_damping_nm_s + settings.hand_angular_damping_nm_s,
                  settings.hand_angular_stiffness_nm, kTickSeconds) {
-    if (settings_.path.empty()) settings_.path.push_back({.pose = start});
+    moves_ = !settings_.path.empty();
+    if (!moves_) settings_.path.push_back({.pose = start});
   }
 
   std::string name() const final { return "simulated"; }
@@ -35,6 +36,8 @@ class SimulatedDevice : public HapticDevice {
             .max_force_n = settings_.max_force_n,
             .max_torque_nm = settings_.max_torque_nm};
   }
+
+  double motion_s() const final { return moves_ ? settings_.path.back().time_s : 0; }
 
   Result<void> open() final {
     ticks_ = 0;
@@ -104,7 +107,7 @@ class SimulatedDevice : public HapticDevice {
 
  private:
   std::int64_t ticks_ = 0;
-  bool open_ = false;
+  bool open_ = false, moves_ = false;
 };
 
 /// Six degrees of freedom; the state is gc and the tool's rotation.

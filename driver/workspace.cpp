@@ -6,9 +6,9 @@ Workspace::Workspace(const WorkspaceSettings& settings, const Pose& start) noexc
 
 Vec3 Workspace::position(const Vec3& device, std::uint32_t buttons) noexcept {
   clutched_ = (buttons & settings_.clutch_buttons) != 0;
-  if (clutched_ || !held_) {
+  if (!held_ || clutched_) {
     hand_anchor_ = device;
-    tool_anchor_ = tool_;
+    tool_anchor_ = !held_ && settings_.offset_m ? *settings_.offset_m + settings_.scale * world(device) : tool_;
     held_ = true;
   }
   tool_ = tool_anchor_ + settings_.scale * world(device - hand_anchor_);

@@ -10,6 +10,7 @@
 #include "model/plan.h"
 #include "model/pose.h"
 #include "model/result.h"
+#include "model/workspace_settings.h"
 
 namespace palpate {
 
@@ -81,6 +82,8 @@ struct DeviceSettings {
   std::array<bool, 6> actuated{true, true, true, true, true, true};   ///< fx fy fz tx ty tz; guided: fx is the travel
   std::vector<PathPoint> path;               ///< ascending time; empty: the tool rests at its start pose
   std::vector<GuidePoint> guide;             ///< ascending travel; empty: free motion in 6 degrees of freedom
+  WorkspaceSettings workspace;               ///< of a device that a hand holds
+  std::string replay_file;                   ///< driver `replay`: the recorded trace.csv, absolute after loading
 };
 
 /// A scene file, read, checked and completed with defaults.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <sstream>
 
 #include "model/generate.h"
@@ -23,7 +24,8 @@ const std::map<std::string, std::vector<std::string>>& scene_keys() {
       {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms", "change_n_per_s", "slew_ms", "passivity"}},
       {"device",
        {"driver", "path", "guide", "stages", "actuated", "mass", "inertia", "damping", "angular_damping", "hand", "max_force",
-        "max_torque"}},
+        "max_torque", "workspace"}},
+      {"workspace", {"scale", "offset", "axes", "clutch_button"}},
       {"hand", {"stiffness", "damping", "mass", "angular_stiffness", "angular_damping"}},
   };
   return keys;
@@ -183,6 +185,37 @@ void read_actuated(const SceneObject& body, DeviceSettings& device) {
   }
 }
 
+/// "axes": ["y", "-x", "z"]: which way of the device the world's x, y and z are. A rotation: nobody can guide a mirrored hand.
+void read_axes(const SceneObject& body, WorkspaceSettings& workspace) {
+  if (!body.has("axes")) return;
+  const std::vector<std::string> ways{"x", "-x", "y", "-y", "z", "-z"};
+  std::vector<std::string> named;
+  body.texts("axes", named);
+  if (named.size() != 3) body.fail("axes", "is " + body.at("axes").dump() + "; three ways of the device are wanted, for the world's x, y and z");
+  Vec3 rows[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto way = std::find(ways.begin(), ways.end(), named[i]);
+    if (way == ways.end()) body.fail("axes", "has " + json(named[i]).dump() + "; each must be " + listed(ways));
+    const auto at = static_cast<std::size_t>(way - ways.begin());
+    workspace.axes[i] = {};
+    workspace.axes[i][at / 2] = at % 2 == 0 ? 1 : -1;
+    rows[i] = {workspace.axes[i][0], workspace.axes[i][1], workspace.axes[i][2]};
+  }
+  if (glm::dot(glm::cross(rows[0], rows[1]), rows[2]) != 1)
+    body.fail("axes", "is " + body.at("axes").dump() + "; each of x, y and z must stand there once, and right-handed");
+}
+
+void read_workspace(const SceneObject& device_json, WorkspaceSettings& workspace) {
+  if (!device_json.has("workspace")) return;
+  const SceneObject body(device_json.file(), device_json.pointer("workspace"), device_json.at("workspace"), keys_of("workspace"));
+  body.number("scale", {0, 1e3, " m of the tool for a metre of the hand", true}, workspace.scale);
+  if (body.has("offset")) body.vector("offset", kFarthest, " m", workspace.offset_m.emplace());
+  read_axes(body, workspace);
+  int button = 0;
+  body.whole("clutch_button", 1, 32, button);
+  if (button > 0) workspace.clutch_buttons = std::uint32_t{1} << (button - 1);
+}
+
 /// What a generator's tool does when the file has no path: the generator's own. It doesn't depend on the number of triangles.
 void take_generated_motion(const SceneObject* body, Scene& scene) {
   const std::string& generate = scene.tool.source.generate;
@@ -207,11 +240,18 @@ void read_device(const SceneObject& scene_json, Scene& scene) {
   body.number("max_torque", {0, 1e2, " N·m"}, device.max_torque_nm);
   read_hand(body, device);
   read_actuated(body, device);
+  read_workspace(body, device.workspace);
   body.texts("stages", scene.stage_names);
   if (body.has("guide") && !body.has("path")) body.fail("guide", "needs \"path\" beside it, which says how to travel along it");
   if (!body.has("path")) return take_generated_motion(&body, scene);
 
   std::string file;
+  if (device.driver == "replay") {
+    if (body.has("guide")) body.fail("guide", "is for the simulated device; a replay needs none");
+    body.text("path", file);
+    device.replay_file = beside(scene.file, file);   // read when the device is made
+    return;
+  }
   if (body.has("guide")) {
     body.text("guide", file);
     device.guide = must(read_guide(beside(scene.file, file)));

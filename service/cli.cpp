@@ -163,7 +163,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
       ->check(one_of({"realtime", "asap"}))
       ->type_name("realtime|asap");
   add_method(*run_app, run.common);
-  run_app->add_option("--device", run.device, "haptic device by name, in place of the scene's (palpate devices lists them)")->type_name("NAME");
+  run_app->add_option("--device", run.device, "haptic device by name, in place of the scene's (palpate devices lists them); replay:FILE: a recorded trace.csv")->type_name("NAME");
   run_app->add_option("--firmware", run.firmware, "firmware file for a device that needs one")->type_name("FILE");
   run_app->add_option("--duration", run.duration_s, "seconds; without it to the end of the path")
       ->type_name("S");

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "service/cli.h"
 #include "service/console.h"
@@ -26,7 +27,11 @@ class RunWatch : public RunObserver {
 
   Result<void> on_tick(const TickRecord& tick) override {
     if (auto done = recorder_.on_tick(tick); !done) return done;
-    if (console_.wants_live())
+    guide(tick);
+    if (!console_.wants_live()) return series_.on_tick(tick);
+    if (*tick.guidance != 0)
+      console_.live(fmt::format("{:7.2f} s  {}", tick.time_s, tick.guidance));
+    else
       console_.live(fmt::format("{:7.2f} s  {:5.2f} N  {:6.3f} N·m  {} areas  frame {:.2f} ms  result {} ticks old  {}", tick.time_s,
                                 glm::length(tick.sent.force), glm::length(tick.sent.torque), areas_, frame_us_ / 1000, tick.result_age_ticks,
                                 tick.stage > 0 ? "stage " + stage_text(tick.stage, scene_.stage_names) : ""));
@@ -41,12 +46,21 @@ class RunWatch : public RunObserver {
   }
 
  private:
+  /// What the person at the device should do: on a terminal it takes the live line's place, elsewhere each new sentence is a line.
+  void guide(const TickRecord& tick) {
+    const std::string_view said = tick.guidance;
+    if (said == guidance_) return;
+    guidance_ = said;
+    if (!console_.terminal()) console_.note(said.empty() ? "the haptic device is ready" : said);
+  }
+
   Recorder& recorder_;
   ReportSeries& series_;
   Console& console_;
   const Scene& scene_;
   std::size_t areas_ = 0;
   double frame_us_ = 0;
+  std::string_view guidance_;   // text that outlives the run
 };
 
 /// `wanted`, or a directory palpate-run-SCENE[-N] that did not exist before.
@@ -89,9 +103,13 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   Result<std::unique_ptr<PreparedScene>> prepared = prepare_scene(options.common, Purpose::kSession, parts, console);
   if (!prepared) return prepared.error();
   LoadedScene& loaded = (*prepared)->loaded;
-  const std::string driver = options.device.empty() ? loaded.scene.device.driver : options.device;
-  if (options.asap && driver != "simulated")
-    return Error{ErrorCode::kUsage, fmt::format("--pace asap is virtual time, which the device '{}' can't keep: only simulated can", driver)};
+  std::string driver = options.device.empty() ? loaded.scene.device.driver : options.device;
+  if (constexpr std::string_view replay = "replay:"; driver.starts_with(replay)) {
+    loaded.scene.device.replay_file = driver.substr(replay.size());
+    driver = "replay";
+  }
+  if (options.asap && driver != "simulated" && driver != "replay")
+    return Error{ErrorCode::kUsage, fmt::format("--pace asap is virtual time, which the device '{}' can't keep: simulated and replay can", driver)};
   if (!options.firmware.empty() && driver != "falcon")
     return Error{ErrorCode::kUsage, fmt::format("--firmware is for the device falcon, and the device is {}", driver)};
   Result<std::unique_ptr<HapticDevice>> device = parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m, options.firmware);

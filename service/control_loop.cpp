@@ -40,6 +40,9 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
   record_.time_s = static_cast<double>(tick) / 1000;
   record_.pose = sample.pose;
   record_.stage = sample.stage;
+  record_.ready = sample.state == DeviceState::kReady;
+  record_.guidance = device_.guidance();
+  if (!record_.ready) ++unready_ticks_;
   if (sample.stage > 0 && static_cast<std::size_t>(sample.stage) < kMaxStages) stages_[static_cast<std::size_t>(sample.stage)] = true;
   pose_ = {tick, sample.pose.position + sample.pose.rotation * tool_gc_, sample.pose.rotation};
   return {tick, sample.pose};

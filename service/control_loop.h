@@ -29,6 +29,7 @@ class ControlTick {
 
   bool device_failed() const noexcept { return device_.faulted(); }
   std::uint64_t ticks() const { return ticks_; }
+  std::uint64_t unready_ticks() const { return unready_ticks_; }   ///< in which the device was opening, loading, homing or at fault
   const Histogram& result_age() const { return result_age_; }
   const std::array<bool, kMaxStages>& stages() const { return stages_; }
   double force_max() const { return force_max_; }     ///< N, sent
@@ -41,7 +42,7 @@ class ControlTick {
   LawPose pose_;
   TickRecord record_;
   std::int64_t result_tick_ = -1;
-  std::uint64_t ticks_ = 0;
+  std::uint64_t ticks_ = 0, unready_ticks_ = 0;
   Histogram result_age_;
   std::array<bool, kMaxStages> stages_{};
   double force_max_ = 0, torque_max_ = 0;

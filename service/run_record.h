@@ -20,6 +20,8 @@ struct TickRecord {
   std::int32_t result_age_ticks = -1;   ///< now − tick of the newest result's pose; −1: no result yet
   bool contact = false;              ///< of the newest result
   std::int32_t stage = 0;            ///< of the path, 0: none
+  bool ready = false;                ///< whether the device was: else no force
+  const char* guidance = "";         ///< what the person at the device should do now; text that outlives the run
 };
 
 /// One answered query. The references live for the call only.

@@ -53,12 +53,11 @@ Result<void> check(const Scene& scene, const SessionOptions& options) {
   return {};
 }
 
-/// How many ticks a run takes. A path's last point, and its stage, are part of it.
-std::uint64_t tick_count(const Scene& scene, const HapticDevice& device, const SessionOptions& options) {
+/// How many ticks a run takes. The last point of the device's own motion, and its stage, are part of it.
+std::uint64_t tick_count(const HapticDevice& device, const SessionOptions& options) {
   const auto ticks = [](double seconds) { return static_cast<std::uint64_t>(std::max(std::llround(seconds / kTickSeconds), 1LL)); };
   if (options.duration_s) return ticks(*options.duration_s);
-  const auto& path = scene.device.path;
-  if (device.name() == "simulated" && !path.empty()) return ticks(path.back().time_s) + 1;
+  if (device.motion_s() > 0) return ticks(device.motion_s()) + 1;
   return options.pace == Pace::kAsap ? ticks(1) : kForever;
 }
 
@@ -103,7 +102,7 @@ struct Run {
         frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe)),
         tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m),
         observer(run_observer),
-        ticks(tick_count(loaded.scene, safe, session_options)) {}
+        ticks(tick_count(safe, session_options)) {}
 
   static bool has_torques(const SafeDevice& safe) {
     const auto can = safe.capabilities().actuated;
@@ -238,6 +237,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   if (out.watchdog_ticks > 0)
     note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " + std::to_string(out.watchdog_ticks) +
          " ticks: the watchdog faded the force out");
+  if (run.tick.unready_ticks() > 0)
+    note("the haptic device was not ready (unplugged, loading, homing) in " + std::to_string(run.tick.unready_ticks()) + " ticks, which had no force");
   if (out.missed_ticks > 0) note(std::to_string(out.missed_ticks) + " ticks were missed: the loop's thread did not get the processor in time");
   if (run.frame.truncated_frames() > 0)
     note(std::to_string(run.frame.truncated_frames()) + " frames gave no force because a capacity was too small: " + run.frame.truncated_capacity());

@@ -44,6 +44,7 @@ class FalconDevice final : public HapticDevice {
     if (sample_.state != DeviceState::kClosed) sample_.state = device_.state;
     sample_.time_ns = device_.time_ns;
     sample_.buttons = device_.buttons;
+    sample_.clutched = false;
     if (sample_.state != DeviceState::kReady) {
       grip_ = kCentre;
       workspace_.release();
@@ -58,7 +59,8 @@ class FalconDevice final : public HapticDevice {
       return sample_;
     }
     grip_ = *grip;
-    sample_.pose.position = workspace_.position(grip_, device_.buttons);
+    sample_.pose.position = workspace_.position(grip_ - kCentre, device_.buttons);
+    sample_.clutched = workspace_.clutched();
     return sample_;
   }
 
@@ -66,7 +68,7 @@ class FalconDevice final : public HapticDevice {
 
   void write(const Wrench& wrench, const Vec3& /*gc*/) noexcept override {
     FromLoop wanted;
-    if (sample_.state == DeviceState::kReady && finite(wrench.force) && wrench.force != Vec3(0)) {
+    if (sample_.state == DeviceState::kReady && !sample_.clutched && finite(wrench.force) && wrench.force != Vec3(0)) {
       if (const auto torques = torques_of_force(angles_, grip_, workspace_.device(wrench.force))) {
         std::array<double, 3> counts{};
         for (std::size_t i = 0; i < 3; ++i) counts[i] = settings_.counts_per_newton_metre * (*torques)[i];

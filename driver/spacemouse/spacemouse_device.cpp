@@ -28,7 +28,7 @@ struct News {
 class SpaceMouseDevice final : public HapticDevice {
  public:
   SpaceMouseDevice(const SpaceMouseSettings& settings, const Pose& start, OpenPort open_port)
-      : settings_(settings), axes_(settings.workspace, Pose{}), rate_(settings.rate, start), open_port_(std::move(open_port)) {
+      : settings_(settings), axes_(settings.workspace, Pose{}), rate_(scaled(settings), start), open_port_(std::move(open_port)) {
     sample_.pose = start;
   }
   ~SpaceMouseDevice() override { close(); }
@@ -66,8 +66,9 @@ class SpaceMouseDevice final : public HapticDevice {
     sample_.state = newest_.plugged ? DeviceState::kReady : DeviceState::kOpening;
     sample_.buttons = newest_.cap.buttons;
     sample_.time_ns = newest_.time_ns;
+    sample_.clutched = (newest_.cap.buttons & settings_.workspace.clutch_buttons) != 0;
     std::array<double, 6> deflection{};
-    if (newest_.plugged) {
+    if (newest_.plugged && !sample_.clutched) {
       const auto& a = newest_.cap.axes;
       const Vec3 push = axes_.world(Vec3(a[0], a[1], a[2]) / double{kFullDeflection});
       const Vec3 turn = axes_.world(Vec3(a[3], a[4], a[5]) / double{kFullDeflection});
@@ -81,6 +82,12 @@ class SpaceMouseDevice final : public HapticDevice {
   void write(const Wrench& /*wrench*/, const Vec3& /*gc*/) noexcept override {}
 
  private:
+  static RateSettings scaled(const SpaceMouseSettings& settings) {
+    RateSettings rate = settings.rate;
+    rate.speed_m_per_s *= settings.workspace.scale;
+    return rate;
+  }
+
   Result<void> begin() {
     now_ = {};
     auto listening = port_->listen(kIn, true, kReportBytes, [this](std::span<const std::uint8_t> bytes) {

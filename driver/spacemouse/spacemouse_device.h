@@ -11,7 +11,8 @@ namespace palpate::spacemouse {
 
 struct SpaceMouseSettings {
   RateSettings rate;
-  WorkspaceSettings workspace;   ///< its axes turn the cap's (x right, y towards the user, z down); its scale is not used
+  WorkspaceSettings workspace;   ///< its axes turn the cap's (x right, y towards the user, z down), its scale multiplies
+                                 ///< the speed, its clutch holds the tool; its offset is not used
 };
 
 using OpenPort = std::function<Result<std::unique_ptr<UsbPort>>()>;

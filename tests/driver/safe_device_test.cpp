@@ -17,7 +17,8 @@ class FakeDevice : public HapticDevice {
   DeviceCapabilities capabilities() const override { return can; }
   Result<void> open() override { return {}; }
   void close() noexcept override { closed_after = last; }
-  DeviceSample read() noexcept override { return {.pose = pose, .state = state}; }
+  DeviceSample read() noexcept override { return {.pose = pose, .state = state, .clutched = clutched}; }
+  const char* guidance() const noexcept override { return says; }
   void write(const Wrench& wrench, const Vec3&) noexcept override { last = wrench, ++writes; }
 
   DeviceCapabilities can{.actuated = {true, true, true, true, true, true}, .max_force_n = 10, .max_torque_nm = 1};
@@ -25,6 +26,8 @@ class FakeDevice : public HapticDevice {
   DeviceState state = DeviceState::kReady;
   Wrench last{Vec3(99), Vec3(99)}, closed_after{Vec3(99), Vec3(99)};
   int writes = 0;
+  bool clutched = false;
+  const char* says = "";
 };
 
 constexpr SafetySettings kAtOnce{.fade_in_ticks = 0, .watchdog_ticks = 0};
@@ -99,6 +102,30 @@ TEST(SafeDevice, SendsZeroUntilTheDeviceIsReadyAndFadesInAfterwards) {
   device.state = DeviceState::kReady;
   tick(safe, kPush);
   EXPECT_NEAR(device.last.force.x, 0.25, 1e-15);
+}
+
+TEST(SafeDevice, AClutchedHandFeelsNothingAndForceFadesInAfterwards) {
+  FakeDevice device;
+  SafeDevice safe(device, {.fade_in_ticks = 4, .watchdog_ticks = 0});
+  ASSERT_TRUE(safe.open());
+  for (int i = 0; i < 10; ++i) tick(safe, kPush);
+  device.clutched = true;
+  tick(safe, kPush);
+  EXPECT_EQ(device.last.force, Vec3(0)) << "the tool stays behind: its force would push a free hand";
+  device.clutched = false;
+  tick(safe, kPush);
+  EXPECT_NEAR(device.last.force.x, 0.25, 1e-15);
+}
+
+TEST(SafeDevice, AFaultIsToldInTheDevicesOwnWords) {
+  FakeDevice device;
+  SafeDevice safe(device, kAtOnce);
+  ASSERT_TRUE(safe.open());
+  device.says = "the fake is broken";
+  device.state = DeviceState::kFault;
+  tick(safe, kPush);
+  EXPECT_STREQ(safe.fault(), "the fake is broken");
+  EXPECT_STREQ(safe.guidance(), "the fake is broken");
 }
 
 TEST(SafeDevice, LatchesAWrenchThatIsNotFiniteAsAFault) {

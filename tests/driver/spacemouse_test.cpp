@@ -96,5 +96,18 @@ TEST(Workspace, TheClutchLetsTheHandBeginAnew) {
   EXPECT_EQ(workspace.position({7, 7, 7}, 0), Vec3(2, 0, 0));
 }
 
+TEST(Workspace, AnOffsetPutsTheMiddleOfTheDeviceThere) {
+  WorkspaceSettings settings;
+  settings.scale = 2;
+  settings.offset_m = Vec3(10, 0, 0);
+  settings.clutch_buttons = 1;
+  Workspace workspace(settings, Pose{});
+  EXPECT_EQ(workspace.position({0.5, 0, 0}, 0), Vec3(11, 0, 0));
+  EXPECT_EQ(workspace.position({0, 0, 0}, 1), Vec3(11, 0, 0));
+  EXPECT_EQ(workspace.position({0.5, 0, 0}, 0), Vec3(12, 0, 0)) << "the clutch takes the hand elsewhere all the same";
+  workspace.release();
+  EXPECT_EQ(workspace.position({0.5, 0, 0}, 0), Vec3(11, 0, 0)) << "homed anew: back to what the scene says";
+}
+
 }  // namespace
 }  // namespace palpate

@@ -45,7 +45,8 @@ TEST(SceneFile, EverySettingArrivesInItsPlace) {
     "device": {"driver": "simulated", "path": "path.csv", "guide": "guide.csv", "stages": ["one", "two"],
                "actuated": ["fx", "tz"], "mass": 1, "inertia": 0.01, "damping": 2, "angular_damping": 0.1,
                "hand": {"stiffness": 200, "damping": 7, "mass": 0.6, "angular_stiffness": 3, "angular_damping": 0.2},
-               "max_force": 10, "max_torque": 1}})"));
+               "max_force": 10, "max_torque": 1,
+               "workspace": {"scale": 2, "offset": [1, 2, 3], "axes": ["y", "-x", "z"], "clutch_button": 3}}})"));
   ASSERT_TRUE(scene) << scene.error().sentence;
   ASSERT_EQ(scene->statics.size(), 2u);
   EXPECT_EQ(scene->statics[0].source.file, std::filesystem::weakly_canonical(folder.path("engine.glb")).string());
@@ -82,6 +83,10 @@ TEST(SceneFile, EverySettingArrivesInItsPlace) {
   EXPECT_EQ(device.hand_angular_damping_nm_s, 0.2);
   EXPECT_EQ(device.max_force_n, 10);
   EXPECT_EQ(device.max_torque_nm, 1);
+  EXPECT_EQ(device.workspace.scale, 2);
+  EXPECT_EQ(device.workspace.offset_m, Vec3(1, 2, 3));
+  EXPECT_EQ(device.workspace.axes, (std::array<std::array<double, 3>, 3>{{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}}));
+  EXPECT_EQ(device.workspace.clutch_buttons, 4u);
   EXPECT_EQ(device.path.size(), 2u);
   EXPECT_EQ(device.guide.size(), 2u);
   EXPECT_EQ(scene->stage_names, (std::vector<std::string>{"one", "two"}));
@@ -176,6 +181,14 @@ TEST(SceneFile, WhatContradictsOrIsMissingIsRefused) {
             R"(s.json: /static/0/generate/name is "contact"; it must be "contacts" or "disassembly")");
   EXPECT_EQ(fault_of(R"({"static": [{"generate": {"name": "contacts", "triangles": 10}}], "tool": {"mesh": "b.stl"}})"),
             "s.json: /static/0/generate/triangles is 10; it must be a whole number from 1000 to 10000000");
+  EXPECT_EQ(fault_of(scene_with(R"("device": {"workspace": {"axes": ["x", "y", "w"]}})")),
+            R"(s.json: /device/workspace/axes has "w"; each must be "x", "-x", "y", "-y", "z" or "-z")");
+  EXPECT_THAT(fault_of(scene_with(R"("device": {"workspace": {"axes": ["x", "y", "-z"]}})")), HasSubstr("right-handed"));
+  EXPECT_THAT(fault_of(scene_with(R"("device": {"workspace": {"axes": ["x", "x", "z"]}})")), HasSubstr("once"));
+  EXPECT_THAT(fault_of(scene_with(R"("device": {"workspace": {"axes": ["x", "y"]}})")), HasSubstr("three ways"));
+  EXPECT_THAT(fault_of(scene_with(R"("device": {"workspace": {"scale": 0}})")), HasSubstr("/device/workspace/scale is 0; it must be above 0"));
+  EXPECT_THAT(fault_of(scene_with(R"("device": {"workspace": {"clutch_button": 33}})")), HasSubstr("a whole number from 1 to 32"));
+  EXPECT_THAT(fault_of(scene_with(R"("device": {"driver": "replay", "path": "t.csv", "guide": "g.csv"})")), HasSubstr("a replay needs none"));
   EXPECT_EQ(fault_of(scene_with(R"("device": {"guide": "g.csv"})")),
             R"(s.json: /device/guide needs "path" beside it, which says how to travel along it)");
   EXPECT_EQ(fault_of(scene_with(R"("device": {"path": "none.csv"})")), "none.csv cannot be opened");

@@ -85,7 +85,8 @@ TEST_F(Schema, RefusesWhatTheReaderRefuses) {
                             R"({"static": [{"mesh": "a.stl", "rotation": [0, 0, 1]}]})", R"({"response": {"stiffness": -1}})",
                             R"({"response": {"voxel_size": 0}})", R"({"response": {"profile": "exact"}})",
                             R"({"control": {"transitions": 0}})", R"({"device": {"guide": "g.csv"}})",
-                            R"({"device": {"actuated": ["rx"]}})", R"({"device": {"hand": {"mass": -1}}})"}) {
+                            R"({"device": {"actuated": ["rx"]}})", R"({"device": {"workspace": {"axes": ["x", "y"]}}})",
+                            R"({"device": {"workspace": {"scale": 0}}})", R"({"device": {"workspace": {"clutch_button": 0}}})", R"({"device": {"hand": {"mass": -1}}})"}) {
     json bad = good;
     bad.merge_patch(json::parse(patch));
     EXPECT_FALSE(accepts(bad)) << patch;

@@ -32,6 +32,7 @@ class WatchedDevice : public HapticDevice {
     if (made) device_ = std::move(made).value();
   }
   std::string name() const override { return "simulated"; }
+  double motion_s() const override { return device_->motion_s(); }
   DeviceCapabilities capabilities() const override { return device_->capabilities(); }
   Result<void> open() override { return device_->open(); }
   void close() noexcept override {
