@@ -17,20 +17,35 @@ namespace {
 /// Whether a USB device can be used now, and why not.
 HapticDeviceInfo usb_info(std::string name, std::string what, std::span<const UsbId> ids) {
   HapticDeviceInfo info{std::move(name), std::move(what), false, "not plugged in"};
-  for (const UsbDeviceInfo& device : list_usb_devices(ids)) {
+  const Result<std::vector<UsbDeviceInfo>> found = list_usb_devices(ids);
+  if (!found) {
+    info.reason = found.error().sentence;
+    return info;
+  }
+  for (const UsbDeviceInfo& device : *found) {
+    if (device.usable && device.kernel_driver) info.what += "; the kernel's own driver has it now, palpate takes it over for a run";
     info.usable = info.usable || device.usable;
     info.reason = info.usable ? "" : device.reason;
+    if (info.usable) break;   // the one that a run takes
   }
+  return info;
+}
+
+HapticDeviceInfo falcon_info() {
+  constexpr std::array ids{falcon::kUsbId};
+  HapticDeviceInfo info = usb_info("falcon", "Novint Falcon, 3 forces", ids);
+  if (!info.usable) return info;
+  auto port = falcon::open_first_falcon();
+  info.what += port && falcon::runs_firmware(std::move(*port)) ? "; its firmware runs" : "; firmware missing: name your file with --firmware";
   return info;
 }
 
 }  // namespace
 
 std::vector<HapticDeviceInfo> list_haptic_devices() {
-  constexpr std::array falcon{falcon::kUsbId};
   return {
       {"simulated", "a hand that follows the scene's path, in real or virtual time", true, ""},
-      usb_info("falcon", "Novint Falcon, 3 forces; needs --firmware FILE unless it was loaded before", falcon),
+      falcon_info(),
       usb_info("spacemouse", "3Dconnexion SpaceMouse, 6 axes in, no force", spacemouse::kModels),
       {"replay", "a recorded trace.csv of any device: --device replay:FILE", true, ""},
   };
@@ -38,25 +53,20 @@ std::vector<HapticDeviceInfo> list_haptic_devices() {
 
 Result<std::unique_ptr<HapticDevice>> make_haptic_device(const std::string& name, const DeviceSettings& settings,
                                                          const Pose& start, const Vec3& tool_gc_m, const std::string& firmware) {
-  std::string known;
-  for (const HapticDeviceInfo& info : list_haptic_devices()) {
-    known += (known.empty() ? "" : ", ") + info.name;
-    if (info.name != name) continue;
-    if (name == "falcon") {
-      falcon::FalconSettings falcon;
-      falcon.firmware = firmware;
-      falcon.workspace = settings.workspace;
-      return falcon::make_falcon(falcon, start);
-    }
-    if (name == "spacemouse") return spacemouse::make_spacemouse({.rate = {}, .workspace = settings.workspace}, start);
-    if (name == "replay") {
-      if (settings.replay_file.empty())
-        return bad_value("haptic device 'replay' needs a recorded trace: --device replay:FILE, or the scene's device.path beside \"driver\": \"replay\"");
-      return replay::make_replay(settings.replay_file, settings.max_force_n, settings.max_torque_nm);
-    }
-    return make_simulated_device(settings, start, tool_gc_m);
+  if (name == "simulated") return make_simulated_device(settings, start, tool_gc_m);
+  if (name == "falcon") {
+    falcon::FalconSettings falcon;
+    falcon.firmware = firmware;
+    falcon.workspace = settings.workspace;
+    return falcon::make_falcon(falcon, start);
   }
-  return Error{ErrorCode::kUsage, "unknown haptic device '" + name + "', known are " + known};
+  if (name == "spacemouse") return spacemouse::make_spacemouse({.rate = {}, .workspace = settings.workspace}, start);
+  if (name == "replay") {
+    if (settings.replay_file.empty())
+      return bad_value("haptic device 'replay' needs a recorded trace: --device replay:FILE, or the scene's device.path beside \"driver\": \"replay\"");
+    return replay::make_replay(settings.replay_file, settings.max_force_n, settings.max_torque_nm);
+  }
+  return Error{ErrorCode::kUsage, "unknown haptic device '" + name + "', known are simulated, falcon, spacemouse, replay"};
 }
 
 }  // namespace palpate

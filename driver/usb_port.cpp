@@ -315,10 +315,10 @@ bool UsbPort::lost() const noexcept { return state_->gone; }
 
 std::uint64_t UsbPort::errors() const noexcept { return state_->error_count; }
 
-std::vector<UsbDeviceInfo> list_usb_devices(std::span<const UsbId> ids) {
+Result<std::vector<UsbDeviceInfo>> list_usb_devices(std::span<const UsbId> ids) {
   std::vector<UsbDeviceInfo> found;
   const Result<Context> context = make_context(true);
-  if (!context) return found;
+  if (!context) return context.error();
   const DeviceList list(context->get());
   for (libusb_device* device : list.devices()) {
     UsbDeviceInfo info;
@@ -327,7 +327,11 @@ std::vector<UsbDeviceInfo> list_usb_devices(std::span<const UsbId> ids) {
     libusb_device_handle* handle = nullptr;
     const int error = libusb_open(device, &handle);
     if (error == LIBUSB_SUCCESS) {
-      info.usable = true;
+      info.kernel_driver = libusb_kernel_driver_active(handle, 0) == 1;
+      const int claimed = info.kernel_driver ? LIBUSB_SUCCESS : libusb_claim_interface(handle, 0);
+      info.usable = claimed == LIBUSB_SUCCESS;
+      if (!info.usable) info.reason = meaning(claimed, info.id);
+      if (info.usable && !info.kernel_driver) libusb_release_interface(handle, 0);
       libusb_close(handle);
     } else {
       info.reason = meaning(error, info.id);

@@ -21,7 +21,8 @@ struct UsbDeviceInfo {
   UsbId id;
   std::string place;        ///< bus and address, "1-4"; tells two devices of one model apart
   bool usable = false;
-  std::string reason;       ///< why it can't be opened, one sentence with what to do; empty when usable
+  bool kernel_driver = false;   ///< the kernel's own driver has it, which palpate takes it from for a run
+  std::string reason;       ///< why it can't be used, one sentence with what to do; empty when usable
 };
 
 /// One claimed interface of a USB device: the only place of the project that knows libusb.
@@ -68,7 +69,8 @@ class UsbPort {
   std::unique_ptr<State> state_;
 };
 
-/// The devices plugged in whose id is among `ids`, each tried for access (opened and closed at once, never claimed).
-std::vector<UsbDeviceInfo> list_usb_devices(std::span<const UsbId> ids);
+/// The devices plugged in whose id is among `ids`, each tried for access: opened, its first interface claimed and
+/// released at once. The kernel's own driver is left where it is. Error: libusb does not start.
+Result<std::vector<UsbDeviceInfo>> list_usb_devices(std::span<const UsbId> ids);
 
 }  // namespace palpate

@@ -95,6 +95,11 @@ Result<std::unique_ptr<UsbPort>> open_first_falcon() {
   return UsbPort::open(ids, 0);
 }
 
+bool runs_firmware(std::unique_ptr<UsbPort> port) {
+  SerialLine line(std::move(port));
+  return line.begin() && set_running_line(line) && answers(line);
+}
+
 Result<std::unique_ptr<HapticDevice>> make_falcon(const FalconSettings& settings, const Pose& start, OpenPort open_port) {
   if (!(std::isfinite(settings.counts_per_newton_metre) && settings.max_force_n > 0 && settings.homing_timeout_s > 0 &&
         settings.workspace.scale > 0))

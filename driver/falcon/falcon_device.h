@@ -24,6 +24,9 @@ struct FalconSettings {
 using OpenPort = std::function<Result<std::unique_ptr<UsbPort>>()>;
 Result<std::unique_ptr<UsbPort>> open_first_falcon();
 
+/// Whether the Falcon on a port runs its firmware: asked with packets of no force, a tenth of a second at most.
+bool runs_firmware(std::unique_ptr<UsbPort> port);
+
 /// The Novint Falcon: three forces at a grip that has no orientation of its own, so the tool keeps `start`'s.
 /// open() claims the device and returns; loading and homing go on in the device's own thread, seen in the samples' state
 /// and in guidance(). That thread alone talks to the bus, sends the newest motor values at about 1–2 kHz, and sends zero

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "driver/kept_text.h"
+
 namespace palpate::falcon {
 namespace {
 
@@ -18,7 +20,6 @@ constexpr auto kDeviceSilence = milliseconds(200);   // without a sound report b
 constexpr const char* kUnplugged = "the Falcon is gone; plug it in again";
 constexpr const char* kLoading = "loading the Falcon's firmware";
 constexpr const char* kHomingText = "home the Falcon: pull the grip all the way out, then push it all the way in";
-constexpr const char* kNotLoaded = "the Falcon's firmware did not load in 10 attempts; unplug it, plug it in and start again";
 constexpr const char* kNoFirmware = "the Falcon runs no firmware; name its file with --firmware";
 constexpr const char* kNotHomed = "the Falcon was not homed in time; start again";
 constexpr const char* kJumped = "the Falcon's encoders keep jumping, so its homing is lost; start again and home it";
@@ -92,10 +93,11 @@ std::optional<FalconLink::Next> FalconLink::bring_up(SerialLine& line) {
     tell(DeviceState::kFault, kNoFirmware);
     return Next::kFault;
   }
-  if (load_firmware(line, image_, [this] { return stopping(); })) return std::nullopt;
+  const Result<void> loaded = load_firmware(line, image_, [this] { return stopping(); });
+  if (loaded) return std::nullopt;
   if (stopping()) return Next::kStop;
   if (line.lost()) return Next::kReopen;
-  tell(DeviceState::kFault, kNotLoaded);
+  tell(DeviceState::kFault, kept_text(loaded.error().sentence + "; unplug the Falcon, plug it in and start again"));
   return Next::kFault;
 }
 

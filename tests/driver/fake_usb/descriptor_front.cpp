@@ -39,16 +39,6 @@ constexpr auto kStatusEvery = std::chrono::milliseconds(1);   // the serial chip
 
 }  // namespace
 
-std::vector<std::uint8_t> bulk_pair_descriptors(std::uint16_t vendor, std::uint16_t product) {
-  const auto low = [](std::uint16_t v) { return static_cast<std::uint8_t>(v & 0xFF); };
-  const auto high = [](std::uint16_t v) { return static_cast<std::uint8_t>(v >> 8); };
-  return {18,   1, 0x00, 0x02, 0, 0, 0, 64, low(vendor), high(vendor), low(product), high(product), 0, 4, 0, 0, 0, 1,   // device
-          9,    2, 32,   0,    1, 1, 0, 0x80, 50,                                                                       // configuration
-          9,    4, 0,    0,    2, 0xFF, 0xFF, 0xFF, 0,                                                                  // interface
-          7,    5, 0x81, 2,    64, 0, 0,                                                                                // endpoints
-          7,    5, 0x02, 2,    64, 0, 0};
-}
-
 DescriptorFront::DescriptorFront(DeviceCalls calls, std::vector<std::uint8_t> descriptors)
     : calls_(std::move(calls)), descriptors_(std::move(descriptors)) {
   std::array<int, 2> ends{};
@@ -87,10 +77,8 @@ DescriptorFront* DescriptorFront::of(int descriptor) {
 void DescriptorFront::unplug() {
   const std::lock_guard lock(mutex_);
   gone_ = true;
-  while (!waiting_in_.empty()) {
-    finished_.push_back({waiting_in_.front(), -ENODEV});
-    waiting_in_.pop_front();
-  }
+  for (std::deque<void*>* waiting : {&waiting_in_, &waiting_out_})
+    for (; !waiting->empty(); waiting->pop_front()) finished_.push_back({waiting->front(), -ENODEV});
   drain(other_end_);
   ::close(other_end_);
   other_end_ = -1;
@@ -141,12 +129,21 @@ int DescriptorFront::submit(void* argument) {
       finish(urb, 0);
       return 0;
     }
+    if (faults.stalled_control > 0) {
+      --faults.stalled_control;
+      finish(urb, -EPIPE);
+      return 0;
+    }
     const bool good = calls_.control(setup[1], static_cast<std::uint16_t>(setup[2] | (setup[3] << 8)));
     finish(urb, good ? 0 : -EPIPE);
     return 0;
   }
   if ((urb->endpoint & 0x80) != 0) {
     waiting_in_.push_back(urb);
+    return 0;
+  }
+  if (faults.deaf) {
+    waiting_out_.push_back(urb);
     return 0;
   }
   if (faults.stalled_out > 0) {
@@ -175,11 +172,14 @@ int DescriptorFront::reap(void** urb) {
 }
 
 int DescriptorFront::discard(void* urb) {
-  const auto found = std::find(waiting_in_.begin(), waiting_in_.end(), urb);
-  if (found == waiting_in_.end()) return -EINVAL;
-  waiting_in_.erase(found);
-  finish(urb, -ENOENT);
-  return 0;
+  for (std::deque<void*>* waiting : {&waiting_in_, &waiting_out_}) {
+    const auto found = std::find(waiting->begin(), waiting->end(), urb);
+    if (found == waiting->end()) continue;
+    waiting->erase(found);
+    finish(urb, -ENOENT);
+    return 0;
+  }
+  return -EINVAL;
 }
 
 int DescriptorFront::handle_ioctl(unsigned long request, void* argument) {

@@ -4,30 +4,14 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <mutex>
 #include <span>
 #include <thread>
 #include <vector>
 
+#include "tests/driver/fake_usb/device_calls.h"
+
 namespace palpate::fake {
-
-/// What a device answers, by the front that carries it. Called with the front's lock held.
-struct DeviceCalls {
-  std::function<bool(std::uint8_t request, std::uint16_t value)> control;
-  std::function<void(std::span<const std::uint8_t>)> out;
-  std::function<std::vector<std::uint8_t>()> in;   ///< one IN packet
-  std::function<bool()> has_bytes;                 ///< whether in() has more to say than an empty packet
-};
-
-/// Faults of the bus rather than of the device.
-struct BusFaults {
-  std::atomic<int> stalled_in{0};          ///< so many IN transfers stall
-  std::atomic<int> stalled_out{0};
-  std::atomic<int> babble{0};              ///< so many IN transfers overflow
-  std::atomic<int> slow_us{0};             ///< every transfer takes so much longer
-  std::atomic<bool> busy{false};           ///< claiming fails: somebody else has the interface
-};
 
 /// A USB device behind a descriptor of this process: the unmodified libusb talks to it, since this program defines ioctl,
 /// read and lseek itself and hands all other descriptors on to the system. Readiness is a pipe's: full while nothing waits,
@@ -73,14 +57,11 @@ class DescriptorFront {
   std::size_t at_ = 0;
   int device_end_ = -1, other_end_ = -1;
   std::mutex mutex_;
-  std::deque<void*> waiting_in_;
+  std::deque<void*> waiting_in_, waiting_out_;
   std::deque<Finished> finished_;
   bool gone_ = false, stop_ = false;
   std::atomic<int> claims_{0};
   std::thread thread_;
 };
-
-/// The descriptors of a device with one interface of one bulk pair: OUT 0x02 and IN 0x81, 64 bytes.
-std::vector<std::uint8_t> bulk_pair_descriptors(std::uint16_t vendor, std::uint16_t product);
 
 }  // namespace palpate::fake
