@@ -118,7 +118,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_.mockup.partition, detection_->order());
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
-  auto response = FrameResponse::create(device_, refined);
+  auto response = FrameResponse::create(device_, refined, scene_.rays_walk());
   if (!response) return response.error();
   response_.emplace(std::move(*response));
   capacity_ = FrameCapacity::first(constants, first_capacity);

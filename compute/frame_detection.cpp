@@ -20,8 +20,9 @@ Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& dev
   out->order_ = order_in_space(geometry.tool);
   out->refined_ = scene.constants.refined != 0;
   out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
-  out->closed_ = scene.constants.tool.closed != 0;
+  out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
   out->listed_ = static_cast<bool>(scene.samples);
+  out->walks_ = scene.rays_walk();
   out->near_ = static_cast<bool>(scene.tool_near);
   // About a bin a triangle.
   while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;
@@ -74,6 +75,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
       {kBindMobileCorners, "corners of near tool triangles", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
       {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
+      {kBindFinePlaces, "lists of the tool's fine voxels", closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
       {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * clusters * (kClusterSize / kRunSize)},
       {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
@@ -97,7 +99,18 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
     return r;
 
   if (auto r = buffers.make_table(device, kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}); !r) return r;
-  return upload_records(device, geometry.tool, buffers[kBindToolRecords]);
+  if (auto r = upload_records(device, geometry.tool, buffers[kBindToolRecords]); !r) return r;
+  return closed_ ? upload_places(device, scene, buffers[kBindFinePlaces]) : Result<void>{};
+}
+
+Result<void> FrameDetection::upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const {
+  std::vector<std::uint32_t> place(order_.size());
+  for (std::uint32_t i = 0; i < order_.size(); ++i) place[order_[i]] = i;
+  std::vector<std::uint32_t> entries(scene.constants.fine.list_entries);
+  const VulkanBuffer& ids = (scene.fine.brick_slot ? scene.fine : scene.tool.partition).list_triangles;
+  if (auto r = download(device, ids, 0, entries.data(), entries.size() * sizeof entries[0]); !r) return r;
+  for (std::uint32_t& entry : entries) entry = place[entry];
+  return upload(device, to, entries.data(), entries.size() * sizeof entries[0]);
 }
 
 Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const {
@@ -110,7 +123,7 @@ Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeM
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const SpecConstant no_inside[] = {{0, inside_ ? 0u : 1u}};
-  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}}, rays[] = {{0, bins_bits_}, {1, inside_ ? 1u : 0u}};
+  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}}, rays[] = {{0, bins_bits_}, {1, inside_ ? 1u : 0u}, {2, walks_ ? 1u : 0u}};
   const SpecConstant voxels[] = {{0, listed_ ? 1u : 0u}, {1, near_ ? 1u : 0u}};
   struct Made {
     FrameShader* shader;
@@ -124,7 +137,7 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
       {&frame_begin_, &spirv::frame_begin},
       {&near_voxels_, &spirv::near_voxels},
       {&rays_begin_, &spirv::rays_begin, true, 0, rays},
-      {&tool_clusters_place_, &spirv::tool_clusters},
+      {&tool_clusters_place_, &spirv::tool_clusters, !walks_},
       {&voxel_touch_, &spirv::voxel_touch},
       {&pair_collect_, &spirv::pair_collect},
       {&pair_test_, &spirv::pair_test},
@@ -178,7 +191,7 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.barrier();
 
   recorder.stage("transform");
-  recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
+  if (!walks_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
   if (refined_) record_samples(recorder);
 
   recorder.stage("sets");

@@ -38,6 +38,7 @@ class FrameDetection {
  private:
   FrameDetection() = default;
   Result<void> upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const;
+  Result<void> upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const;
   Result<void> make_shaders(VulkanDevice& device);
   void record_samples(FrameRecorder& recorder) const;
 
@@ -45,6 +46,7 @@ class FrameDetection {
   bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
   bool closed_ = false;   ///< the tool's surface: open samples walk out of it
   bool listed_ = false;   ///< samples were listed by preparation
+  bool walks_ = false;    ///< rays walk through the tool's fine partition
   bool near_ = false;     ///< there are bits of the voxels near the tool
   std::uint32_t bins_bits_ = 0;   ///< 2^bins_bits bins along y and along z
   std::vector<std::uint32_t> order_;

@@ -46,10 +46,10 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
   return {};
 }
 
-Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined) {
+Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, bool walks) {
   FrameResponse out;
   out.refined_ = refined;
-  const std::array<SpecConstant, 2> constants = {{{0, refined ? 1u : 0u}, {1, 0u}}};
+  const std::array<SpecConstant, 3> constants = {{{0, refined ? 1u : 0u}, {1, 0u}, {2, walks ? 1u : 0u}}};
   const std::array<SpecConstant, 2> numbering = {{{0, refined ? 1u : 0u}, {1, 1u}}};
   struct ShaderPlan {
     FrameShader& shader;

@@ -13,8 +13,8 @@ namespace palpate {
 /// leaves. Owns pipelines; its buffers live in FrameBuffers. Allocates when made, not when a frame runs.
 class FrameResponse {
  public:
-  /// Makes the pipelines.
-  static Result<FrameResponse> create(VulkanDevice& device, bool refined);
+  /// Makes the pipelines. `walks`: PreparedScene::rays_walk().
+  static Result<FrameResponse> create(VulkanDevice& device, bool refined, bool walks = false);
 
   /// Makes the buffers 72 and above in `buffers`; those that are large enough already stay. Before the first record(), and again when the
   /// capacity has grown. Error: one buffer is beyond a limit, or out of memory.

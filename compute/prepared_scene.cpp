@@ -67,6 +67,11 @@ std::uint64_t PreparedScene::memory_bytes() const {
   return sum;
 }
 
+bool PreparedScene::rays_walk() const {
+  constexpr std::int32_t kMostRadius = 1 << 26, kMostVoxel = 1 << 19;
+  return constants.refined != 0 && constants.tool.closed != 0 && constants.tool_radius <= kMostRadius && constants.fine.size <= kMostVoxel;
+}
+
 Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
                                     const Progress& progress) {
   const bool refined = plan.profile == Profile::kRefined;

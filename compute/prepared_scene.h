@@ -52,6 +52,8 @@ struct PreparedScene {
   VulkanBuffer sample_begin;      ///< uint32, one an entry of the mock-up's lists, + 1; may be empty
   VulkanBuffer samples;           ///< gpu::FrameSample; may be empty: frames work them out
   std::uint64_t memory_bytes() const;
+  /// Whether rays walk through the tool's fine partition: it is closed, and the bounds of shaders/lib/tool_walk.glsl hold.
+  bool rays_walk() const;
 };
 
 /// Builds both bodies and their partitions. Errors: memory (kBadValue, one sentence), cancelled, device lost.

@@ -28,7 +28,7 @@ const BufferUse kUses[] = {
                kBindResult, kBindResultStatics, kBindResultMobiles}},
     {"bst", {kBindVoxelState, kBindTouchedVoxels}},
     {"est", {kBindMockupWeights, kBindToolBrickSlot, kBindToolBricks, kBindFineBrickSlot, kBindFineBricks,
-             kBindFineListBegin, kBindFineListTriangles, kBindFineExit, kBindSampleBegin, kBindMockupSamples, kBindToolNear, kBindSampleBricks, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
+             kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces, kBindFineExit, kBindSampleBegin, kBindMockupSamples, kBindToolNear, kBindSampleBricks, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
     {"areas", {kBindNeighbourBegin, kBindNeighbours, kBindSeamBegin, kBindSeams, kBindMockupNormals, kBindToolNormals, kBindToolWeights,
                kBindHeldStatics, kBindHeldAreas, kBindResultMembers, kBindResultPierces}},
     {"rays", {kBindHeights, kBindNeedleTable, kBindNeedleVertices}},

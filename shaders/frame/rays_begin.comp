@@ -8,6 +8,8 @@
 layout(constant_id = 0) const uint32_t BINS_BITS = 0u;
 layout(constant_id = 1) const uint32_t INSIDE = 0u;   // samples are asked whether they lie inside the tool
 
+layout(constant_id = 2) const uint32_t WALK = 0u;     // rays walk through the tool's fine partition and need no tool at its pose
+
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindFrameLists, FrameList, frame_lists);
@@ -20,6 +22,6 @@ void main() {
   if (!meet) return;
   const uvec3 n = uvec3(frame_input.brick_last - frame_input.brick_first + 1);
   dispatches[kDispatchBricks] = groups_for((n.x * n.y * n.z + kGroupSize - 1u) / kGroupSize);
-  dispatches[kDispatchClusters] = groups_for((scene.tool.triangles + kClusterSize - 1u) / kClusterSize);
+  if (WALK == 0u) dispatches[kDispatchClusters] = groups_for((scene.tool.triangles + kClusterSize - 1u) / kClusterSize);
   dispatches[kDispatchBins] = groups_for(((1u << 2u * BINS_BITS) + kGroupSize - 1u) / kGroupSize);
 }

@@ -13,12 +13,11 @@
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
-READ(kBindToolVertices, ivec3, tool_vertices);
-READ(kBindToolTriangles, uvec3, tool_triangles);
+READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindFineBrickSlot, uint32_t, fine_brick_slot);
 READ(kBindFineBricks, Brick, fine_bricks);
 READ(kBindFineListBegin, uint32_t, fine_list_begin);
-READ(kBindFineListTriangles, uint32_t, fine_list_triangles);
+READ(kBindFinePlaces, uint32_t, fine_places);
 READ(kBindFineExit, uint32_t, fine_exit);
 READ(kBindOpenSamples, ivec4, open_samples);
 EDIT(kBindStaticState, uint32_t, static_state);
@@ -29,6 +28,7 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #include "shaders/lib/pose.glsl"
+#include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/static_mark.glsl"
 #include "shaders/lib/budget.glsl"
 #define PARTITION_GRID scene.fine
@@ -54,8 +54,8 @@ void main() {
     if (boundary != kNoVoxel && from != to) {
       const uint32_t end = fine_list_begin[boundary + 1u];
       for (uint32_t i = fine_list_begin[boundary]; i < end && !spent(1u); ++i) {
-        const uvec3 t = tool_triangles[fine_list_triangles[i]];
-        winding += segment_crossing(from, to, world_from_tool(tool_vertices[t.x]), world_from_tool(tool_vertices[t.y]), world_from_tool(tool_vertices[t.z]));
+        const RecordCorners t = record_at(fine_places[i]);
+        winding += segment_crossing(from, to, world_from_tool(t.a), world_from_tool(t.b), world_from_tool(t.c));
       }
     }
     from = to;

@@ -1,10 +1,12 @@
 // The height of a ray through the transformed tool, docs/EXACTNESS.md section 7. The including shader declares
-//   cluster_boxes[], run_boxes[], tool_corners[], scene, frame_state (writable).
+//   cluster_boxes[], run_boxes[], tool_corners[], scene, frame_state (writable), and what lib/tool_walk.glsl asks for.
 #ifndef PALPATE_LIB_TOOL_RAY
 #define PALPATE_LIB_TOOL_RAY
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/line_box.glsl"
 #include "shaders/lib/budget.glsl"
+
+layout(constant_id = 2) const bool WALK = false;   // rays walk through the tool's fine partition; else they look at the whole tool
 
 const uint32_t kLevels = 8u;   // distinct heights kept a sweep; more take another sweep (chosen: most rays have fewer)
 
@@ -75,6 +77,8 @@ Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   return levels;
 }
 
+#include "shaders/lib/tool_walk.glsl"
+
 // The height of the sample p over the tool: `nearest`: the smallest crossing height; else the smallest one above which the
 // signs add up to 0. kNone: no crossing.
 uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
@@ -82,7 +86,9 @@ uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
   int32_t passed = 0;   // sum of the signs below `from`
   do {
     int32_t total;
-    const Levels levels = tool_sweep(p, d, from, total);
+    Levels levels;
+    if (WALK) levels = tool_walk(p, d, from, total);
+    else levels = tool_sweep(p, d, from, total);
     if (levels.count == 0u) return kNone;
     if (nearest) return levels.height[0];
     for (uint32_t i = 0u; i < levels.count; ++i) {

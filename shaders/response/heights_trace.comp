@@ -1,6 +1,6 @@
 #version 460
 // One invocation: a counting sample (`paper`: a triangle of C_s and its rounded centroid). Traces −n_c through the tool.
-// Reads samples, slots, areas, the transformed tool. Writes heights.
+// Reads samples, slots, areas, the tool: as a whole at its pose, or (WALK) its fine partition. Writes heights.
 // Before: areas_direct, areas_settle.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -19,6 +19,12 @@ READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindClusterBoxes, LatticeBox, cluster_boxes);
 READ(kBindRunBoxes, LatticeBox, run_boxes);
 READ(kBindToolCorners, ToolCorners, tool_corners);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+READ(kBindFineBrickSlot, uint32_t, fine_brick_slot);
+READ(kBindFineBricks, Brick, fine_bricks);
+READ(kBindFineListBegin, uint32_t, fine_list_begin);
+READ(kBindFinePlaces, uint32_t, fine_places);
+READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindSlots, SlotWork, slots);
 READ(kBindAreas, AreaWork, areas);
 EDIT(kBindHeights, uint32_t, heights);

@@ -59,6 +59,7 @@ PALPATE_CONSTANT int32_t kBindFineExit = 27;           // uint32_t, by V_bnd vox
 PALPATE_CONSTANT int32_t kBindSampleBegin = 28;        // uint32_t, by entry of the mock-up's lists, + 1: its samples
 PALPATE_CONSTANT int32_t kBindMockupSamples = 29;      // FrameSample, with kCornerProbe too
 PALPATE_CONSTANT int32_t kBindToolNear = 30;           // a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet the tool's solid
+PALPATE_CONSTANT int32_t kBindFinePlaces = 31;         // uint32_t: kBindFineListTriangles as places in the order of clusters; of a closed tool (refined)
 
 // The frame.
 PALPATE_CONSTANT int32_t kBindFrameInput = 32;                   // FrameInput, one; mapped, written by the host
