@@ -30,14 +30,27 @@ struct BroadPhase::Turn {
 };
 
 struct BroadPhase::Search {
+  const LatticePose& pose;
   const Turn& turn;
-  std::span<gpu::NearTriangle> out;
-  Near near;
+  NearLists& lists;
 };
 
-Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup,
-                                    std::span<const std::uint32_t> order) {
+Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
+  const PartitionBuffers& mockup = scene.mockup.partition;
   BroadPhase out;
+  out.tool_ = &geometry.tool;
+  out.order_ = order;
+  out.has_inside_ = scene.constants.refined != 0 && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
+  out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
+  auto pairs = NearPairs::make(device, geometry, mockup);
+  if (!pairs) return pairs.error();
+  out.pairs_ = std::move(*pairs);
+  if (out.has_inside_) {
+    auto samples = NearSamples::make(device, scene);
+    if (!samples) return samples.error();
+    out.samples_ = std::move(*samples);
+  }
+  out.inside_margin_ = 1.75 * geometry.tool_grid.size + 16;   // a grown voxel's diagonal
   out.make_levels(geometry.tool, order);
   out.tool_radius_ = geometry.tool_radius;
   if (auto r = out.read_occupancy(device, mockup); !r) return r.error();
@@ -182,9 +195,9 @@ bool BroadPhase::meets(const Reach& reach) const {
   return any;
 }
 
-void BroadPhase::descend(Search& search, std::size_t level, std::size_t node) const {
+void BroadPhase::descend(Search& search, std::size_t level, std::size_t node) {
   const Box& box = levels_[level][node];
-  if (box.half[0] < 0) return;
+  if (box.half[0] < 0 || search.lists.full != gpu::kNone) return;
   const Reach where = reach(search.turn, box);
   if (level > 0) {
     if (!meets(where)) return;
@@ -196,7 +209,7 @@ void BroadPhase::descend(Search& search, std::size_t level, std::size_t node) co
 }
 
 /// The triangles of a run, each by the box of its corners.
-void BroadPhase::take_run(Search& search, std::size_t run) const {
+void BroadPhase::take_run(Search& search, std::size_t run) {
   const Turn& turn = search.turn;
   // Coordinates within 2^28, rounded to 24 bits, times entries rounded alike, three products and a sum: below 8 · 2^-24 of the radius.
   const double margin = kMargin + tool_radius_ * 0x1p-20;
@@ -219,30 +232,50 @@ void BroadPhase::take_run(Search& search, std::size_t run) const {
       where.low[r] = static_cast<double>(low[r][i]) + turn.translation[r] - margin;
       where.high[r] = static_cast<double>(high[r][i]) + turn.translation[r] + margin;
     }
-    std::uint32_t tag = static_cast<std::uint32_t>(run * gpu::kRunSize + i) | gpu::kFirstOfTriangle;
+    const auto place = static_cast<std::uint32_t>(run * gpu::kRunSize + i);
+    std::uint32_t first = gpu::kFirstOfTriangle;
+    NearPairs::Triangle triangle;
     for_bricks(where, [&](const Int3& brick, std::uint32_t slot) {
-      if (search.near.near_triangles == search.out.size()) return search.near.overflow = true;
-      search.out[search.near.near_triangles++] = {tag, slot, brick.x | brick.y << 16, brick.z};
-      tag &= ~gpu::kFirstOfTriangle;
-      return false;
+      if (first != 0 && !pairs_.begin(search.pose, *tool_, order_[place], place, triangle)) return true;
+      if (!search.lists.push(search.lists.triangles, gpu::kListNearTriangles, {place | first, slot, brick.x | brick.y << 16, brick.z})) return true;
+      first = 0;
+      return !pairs_.take(triangle, brick, slot, search.lists);
     });
+    if (search.lists.full != gpu::kNone) return;
   }
 }
 
-BroadPhase::Near BroadPhase::find(const LatticePose& pose, std::span<gpu::NearTriangle> out) const {
-  const Turn turn(pose);
-  Search search{turn, out, {}};
-  descend(search, levels_.size() - 1, 0);
-  if (!parts_.empty() && levels_.back()[0].half[0] >= 0) {
-    const Reach whole = reach(turn, levels_.back()[0]);
-    for (const auto& part : parts_)
-      if (part[0] >= whole.low[0] && part[1] >= whole.low[1] && part[2] >= whole.low[2] && part[3] <= whole.high[0] && part[4] <= whole.high[1] &&
-          part[5] <= whole.high[2]) {
-        search.near.encloses = true;
-        break;
-      }
+void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const {
+  // The tool's inside reaches beyond its triangles by less than a grown voxel of its partition (EXACTNESS.md, section 2).
+  const double margin = inside_margin_, brick = 8.0 * grid_.size;
+  Int3 first, last;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    const double low = (whole.low[k] - margin - grid_.origin[axis]) / brick, high = (whole.high[k] + margin - grid_.origin[axis]) / brick;
+    if (high < 0 || low >= grid_.bricks[axis]) return;
+    first[axis] = static_cast<std::int32_t>(std::max(low, 0.0));
+    last[axis] = static_cast<std::int32_t>(std::min(high, grid_.bricks[axis] - 1.0));
   }
-  return search.near;
+  samples_.find(pose, first, last, lists);
+}
+
+bool BroadPhase::find(const LatticePose& pose, NearLists& lists) {
+  if (levels_.back()[0].half[0] < 0) return false;
+  const Turn turn(pose);
+  Search search{pose, turn, lists};
+  descend(search, levels_.size() - 1, 0);
+  if (lists.full != gpu::kNone) return false;
+  if (!has_inside_) return lists.touch.count != 0;
+  const Reach whole = reach(turn, levels_.back()[0]);
+  bool meet = always_samples_ || lists.pairs.count != 0;
+  // A whole connected part of the mock-up may lie inside the tool.
+  for (std::size_t i = 0; i < parts_.size() && !meet; ++i) {
+    const auto& part = parts_[i];
+    meet = part[0] >= whole.low[0] && part[1] >= whole.low[1] && part[2] >= whole.low[2] && part[3] <= whole.high[0] && part[4] <= whole.high[1] &&
+           part[5] <= whole.high[2];
+  }
+  if (meet) find_samples(pose, whole, lists);
+  return meet;
 }
 
 }  // namespace palpate

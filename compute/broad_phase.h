@@ -4,6 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "compute/near_lists.h"
+#include "compute/near_pairs.h"
+#include "compute/near_samples.h"
 #include "compute/prepared_scene.h"
 #include "model/lattice.h"
 #include "model/result.h"
@@ -12,23 +15,19 @@
 
 namespace palpate {
 
-/// Which pieces of the tool may meet the mock-up at a pose, from boxes that turn with the tool: on the host, so that a frame which
-/// can't touch costs no submission, and one that can begins with what is near. Errs only towards "may meet".
+/// What of tool and mock-up may meet at a pose, from boxes that turn with the tool: on the host, so that a frame which can't touch
+/// costs no submission, and one that can begins with what is near. Errs only towards "may meet".
 /// One thread; find() neither allocates nor blocks.
 class BroadPhase {
  public:
-  /// `order`: the tool's triangles in the order of runs. Reads the mock-up's partition back from the device. Allocates.
-  static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup,
-                                 std::span<const std::uint32_t> order);
+  /// `order`: the tool's triangles in the order of runs; it, geometry and scene outlive this. Reads the mock-up's partition back from the
+  /// device. Allocates.
+  static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
-  struct Near {
-    std::uint32_t near_triangles = 0;    ///< entries written
-    bool overflow = false;           ///< there are more than fit
-    bool encloses = false;           ///< a whole connected part of the mock-up may lie inside the tool
-  };
-  /// Tool triangles with the bricks in which they may come within kCloseSteps of a V_bnd or V_int voxel. `pose` must
-  /// not be beyond the lattice.
-  Near find(const LatticePose& pose, std::span<gpu::NearTriangle> out) const;
+  /// Fills the lists: tool triangles with the bricks in which they may come within kCloseSteps of a V_bnd or V_int voxel, those voxels,
+  /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. `pose` must not be
+  /// beyond the lattice.
+  bool find(const LatticePose& pose, NearLists& lists);
 
  private:
   struct Box {
@@ -49,9 +48,17 @@ class BroadPhase {
   template <class Take>
   void for_bricks(const Reach& reach, Take&& take) const;
   bool meets(const Reach& reach) const;
-  void descend(Search& search, std::size_t level, std::size_t node) const;
-  void take_run(Search& search, std::size_t run) const;
+  void descend(Search& search, std::size_t level, std::size_t node);
+  void take_run(Search& search, std::size_t run);
+  void find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const;
 
+  const LatticeMesh* tool_ = nullptr;
+  std::span<const std::uint32_t> order_;
+  NearPairs pairs_;
+  NearSamples samples_;
+  double inside_margin_ = 0;      ///< steps
+  bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
+  bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
   /// Boxes of runs, of 8 runs, of 64 …; the last level is the whole tool.
   std::vector<std::vector<Box>> levels_;
   std::vector<RunCorners> runs_;

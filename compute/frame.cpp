@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -55,20 +56,23 @@ class RecordedFrame final : public Frame {
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_); }
 
  private:
+  /// Room for a list that the host fills.
+  template <class T>
+  std::span<T> mapped(std::int32_t binding, std::uint32_t list) const {
+    return {buffers_[binding].as<T>(), capacity_.lists[list]};
+  }
   void name_scene();
   Result<void> make_buffers();
   Result<void> set_capacities();
   Result<void> record();
   Reach reach(const LatticePose& pose) const;
-  bool write_input(const LatticePose& pose, const BroadPhase::Near& near, const Held* held);
+  bool write_input(const LatticePose& pose, const NearLists& near, bool rays, const Held* held);
 
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
   const PreparedScene& scene_;
   gpu::GridConstants grid_{};
   std::optional<BroadPhase> broad_phase_;
-  bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
-  bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
   FrameCapacity capacity_;
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
@@ -78,7 +82,7 @@ class RecordedFrame final : public Frame {
   std::vector<CommandRecorder::StageTime> times_;
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;         ///< that the last query counted
-  bool near_overflow_ = false;      ///< the last query found more near triangles than there is room for
+  std::uint32_t near_full_ = gpu::kNone;   ///< the list for which the last query found more than there is room for on the host
   bool held_overflow_ = false;      ///< the last query brought more held triangles than there is room for
   std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
 };
@@ -109,13 +113,11 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   grid_ = constants.mockup.grid;
   const bool refined = constants.refined != 0;
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
-  has_inside_ = refined && (constants.tool.closed != 0 || constants.tool.has_internal != 0);
-  always_samples_ = has_inside_ && constants.tool.closed == 0;
 
   auto detection = FrameDetection::create(device_, geometry_, scene_);
   if (!detection) return detection.error();
   detection_ = std::move(*detection);
-  auto broad_phase = BroadPhase::make(device_, geometry_, scene_.mockup.partition, detection_->order());
+  auto broad_phase = BroadPhase::make(device_, geometry_, scene_, detection_->order());
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
   auto response = FrameResponse::create(device_, refined, scene_.rays_walk());
@@ -146,9 +148,9 @@ Result<void> RecordedFrame::enlarge() {
   std::array<std::uint32_t, gpu::kListCount> asked{};
   for (std::size_t i = 0; i < lists.size(); ++i) asked[i] = lists[i].asked;
   gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
-  if (near_overflow_ || held_overflow_) {   // before the frame began
+  if (near_full_ != gpu::kNone || held_overflow_) {   // before the frame began
     state = {};
-    state.overflow = 1u << (near_overflow_ ? gpu::kListNearTriangles : gpu::kListContactStatics);   // the held triangles' room follows the latter's
+    state.overflow = 1u << (near_full_ != gpu::kNone ? near_full_ : gpu::kListContactStatics);   // the held triangles' room follows the latter's
   }
   const FrameCapacity before = capacity_;
   if (!capacity_.grow(state, asked)) return bad_value(fixed_limit(state));
@@ -202,11 +204,14 @@ Reach RecordedFrame::reach(const LatticePose& pose) const {
   return out;
 }
 
-bool RecordedFrame::write_input(const LatticePose& pose, const BroadPhase::Near& near, const Held* held) {
+bool RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, bool rays, const Held* held) {
   const Reach reach = this->reach(pose);
   gpu::FrameInput input{};
-  input.near_triangles = near.near_triangles;
-  input.encloses = near.encloses ? 1 : 0;
+  input.near_triangles = near.triangles.count;
+  input.touch_candidates = near.touch.count;
+  input.pair_candidates = near.pairs.count;
+  input.sample_chunks = near.samples.count;
+  input.rays = rays ? 1 : 0;
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   input.brick_first = reach.first_brick;
@@ -237,22 +242,26 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   clear(out);
   pairs_ = 0;
   if (!pose.beyond_lattice) out.flags = frame_flags_;
-  near_overflow_ = held_overflow_ = false;
-  BroadPhase::Near near;
+  near_full_ = gpu::kNone;
+  held_overflow_ = false;
+  NearLists near;
+  bool rays = false;
   if (!pose.beyond_lattice) {
-    const VulkanBuffer& near_triangles = buffers_[gpu::kBindNearTriangles];
-    near = broad_phase_->find(pose, {near_triangles.as<gpu::NearTriangle>(), near_triangles.bytes() / sizeof(gpu::NearTriangle)});
-    near.encloses = has_inside_ && (near.encloses || always_samples_);
+    near.triangles.room = mapped<gpu::NearTriangle>(gpu::kBindNearTriangles, gpu::kListNearTriangles);
+    near.touch.room = mapped<gpu::TouchCandidate>(gpu::kBindTouchCandidates, gpu::kListTouchCandidates);
+    near.pairs.room = mapped<gpu::PairCandidate>(gpu::kBindPairCandidates, gpu::kListPairCandidates);
+    near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
+    rays = broad_phase_->find(pose, near);
   }
   out.times.push_back({"cull", us_since(start)});
-  near_overflow_ = near.overflow;
-  if (near_overflow_) return truncate(out, "bricks of near triangles");
-  if (near.near_triangles == 0 && !near.encloses) return {};
+  near_full_ = near.full;
+  if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
+  if (near.touch.count == 0 && near.samples.count == 0) return {};   // every pair lies in a voxel that may be touched
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
   const auto writing = Clock::now();
-  held_overflow_ = !write_input(pose, near, held);
+  held_overflow_ = !write_input(pose, near, rays, held);
   if (held_overflow_) return truncate(out, "held triangles");
   out.times.push_back({"upload", us_since(writing)});
 

@@ -21,14 +21,13 @@ struct Other {
   std::uint32_t overflow;
   std::uint32_t FrameCapacity::*capacity;
 };
-constexpr std::array<Other, 3> kOthers = {{{"pair table", kOverflowPairTable, &FrameCapacity::pair_table},
-                                           {"needle table", kOverflowNeedleTable, &FrameCapacity::needle_table},
+constexpr std::array<Other, 2> kOthers = {{{"needle table", kOverflowNeedleTable, &FrameCapacity::needle_table},
                                            {"bins of the tool's shadow", kOverflowBins, &FrameCapacity::bin_entries}}};
 
 constexpr std::array<const char*, 18> kListNames = {
-    "bricks of near triangles", "", "voxels to touch", "touched voxels", "", "lists to pair",
+    "bricks of near triangles", "", "voxels to touch", "touched voxels", "", "lists of touched voxels",
     "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
-    "samples near the tool's surface", "samples", "tool triangles of areas", "pierced areas", "bricks with samples",
+    "samples near the tool's surface", "samples", "tool triangles of areas", "pierced areas", "",
     "tiles of tool samples", "needle vertices"};
 static_assert(kListMobileTiles == 16 && kListNeedleVertices == 17);
 
@@ -51,12 +50,11 @@ FrameCapacity FrameCapacity::first(const SceneConstants& scene, const std::map<s
   l[kListNearTriangles] = items(std::max(kSmallList, 8 * tool), kMostPairs);
   l[kListTouchCandidates] = items(std::max(kLargeList, 32 * tool), kMostPairs);
   l[kListTouchedVoxels] = items(voxels, kLargeList);
-  l[kListPairChunks] = items(std::max(kLargeList, 16 * tool), kMostPairs);
+  l[kListStaticChunks] = items(voxels + entries / kStaticChunk, kLargeList);
   l[kListPairCandidates] = items(pairs, kMostPairs);
   l[kListPairs] = items(pairs, kMostPairs);
   l[kListContactStatics] = items(scene.mockup.triangles, kLargeList);
   l[kListContactMobiles] = items(tool, ~0u);
-  l[kListSampleBricks] = items(refined ? scene.mockup.grid.mixed_bricks : 1, ~0u);
   l[kListSampleChunks] = items(refined ? voxels + entries / kSampleChunk : 1, kMostPairs);
   l[kListOpenSamples] = items(refined ? kLargeList : 1, kLargeList);
   l[kListSamples] = items(refined ? kLargeList : 1, kLargeList);
@@ -66,7 +64,6 @@ FrameCapacity FrameCapacity::first(const SceneConstants& scene, const std::map<s
   l[kListNeedleVertices] = refined ? 1u << 15 : 1;
   out.bin_entries = items(refined ? std::max(kSmallList, kBinEntries * tool) : 1, ~0u);
   // Half full at most, so that probing stays short.
-  out.pair_table = doubled(l[kListPairCandidates]);
   out.needle_table = doubled(l[kListNeedleVertices]);
   const auto put = [&](const char* name, std::uint32_t& capacity) {
     if (const auto asked = wanted.find(name); asked != wanted.end()) capacity = std::max(1u, asked->second);
@@ -88,7 +85,6 @@ bool FrameCapacity::grow(const FrameState& state, const std::array<std::uint32_t
     this->*other.capacity = doubled(this->*other.capacity);
     grown = true;
   }
-  pair_table = std::max(pair_table, doubled(lists[kListPairCandidates]));
   needle_table = std::max(needle_table, doubled(lists[kListNeedleVertices]));
   return grown;
 }

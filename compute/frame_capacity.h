@@ -13,7 +13,7 @@ namespace palpate {
 /// How many items each list of a frame holds. Chosen so that usual contacts fit; what has overflowed grows when asked.
 struct FrameCapacity {
   std::array<std::uint32_t, gpu::kListCount> lists{};   ///< by kList…; at least 1 for each list that the profile has
-  std::uint32_t pair_table = 1, needle_table = 1;       ///< entries of hash tables; rounded up to a power of two
+  std::uint32_t needle_table = 1;                       ///< entries of a hash table; rounded up to a power of two
   std::uint32_t bin_entries = 1;                        ///< places in all bins of the tool's shadow together
 
   /// What a frame of this scene begins with. `wanted` overrides lists and tables by their names (overflow_name), for tests.

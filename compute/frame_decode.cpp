@@ -16,7 +16,7 @@ using namespace gpu;   // names of shaders/shared/frame.h
 /// Whether all that overflowed, if anything, comes after the sets: lists of areas, tables of the response.
 bool sets_are_whole(const FrameState& state) {
   constexpr std::uint32_t kAfterSets = 1u << kListMembers | 1u << kListPierces | ~0u << kListResponseFirst;
-  return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & (kOverflowPairTable | kOverflowBins | kOverflowLoop)) == 0;
+  return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & (kOverflowBins | kOverflowLoop)) == 0;
 }
 
 void sort_ids(std::vector<std::uint32_t>& ids) { std::sort(ids.begin(), ids.end()); }

@@ -23,7 +23,6 @@ Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& dev
   out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
   out->listed_ = static_cast<bool>(scene.samples);
   out->walks_ = scene.rays_walk();
-  out->near_ = static_cast<bool>(scene.tool_near);
   // About a bin a triangle.
   while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;
   if (auto r = out->make_shaders(device); !r) return r.error();
@@ -45,15 +44,14 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   };
   const List lists[] = {
       {kListNearTriangles, kBindNearTriangles, sizeof(NearTriangle), BufferKind::kUpload},
-      {kListTouchCandidates, kBindTouchCandidates, sizeof(TouchCandidate)},
+      {kListTouchCandidates, kBindTouchCandidates, sizeof(TouchCandidate), BufferKind::kUpload},
       {kListTouchedVoxels, kBindTouchedVoxels, sizeof(FrameVoxel)},
-      {kListPairChunks, kBindPairChunks, sizeof(PairChunk)},
-      {kListPairCandidates, kBindPairCandidates, sizeof(PairCandidate)},
+      {kListStaticChunks, kBindStaticChunks, sizeof(StaticChunk)},
+      {kListPairCandidates, kBindPairCandidates, sizeof(PairCandidate), BufferKind::kUpload},
       {kListPairs, kBindPairs, sizeof(ContactPair)},
       {kListContactStatics, kBindContactStatics, sizeof(std::uint32_t)},
       {kListContactMobiles, kBindContactMobiles, sizeof(std::uint32_t)},
-      {kListSampleBricks, kBindSampleBricks, sizeof(std::uint32_t)},
-      {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk)},
+      {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk), BufferKind::kUpload},
       {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample)},
       {kListSamples, kBindSamples, sizeof(FrameSample)},
       {kListMembers, kBindResultMembers, sizeof(AreaMember), BufferKind::kReadback},
@@ -73,7 +71,6 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindFrameLists, "frame lists", sizeof(FrameList) * kListCount},
       {kBindFrameState, "frame state", sizeof(FrameState)},
       {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
-      {kBindMobileCorners, "corners of near tool triangles", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
       {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
       {kBindFinePlaces, "lists of the tool's fine voxels", closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
@@ -93,7 +90,6 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   for (const Plain& p : plain)
     if (auto r = buffers.make(device, p.binding, p.what, p.bytes, p.kind); !r) return r;
 
-  if (auto r = buffers.make_table(device, kBindPairTable, "pair table", 8 * std::bit_ceil(std::uint64_t{capacity.pair_table})); !r) return r;
   if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r) return r;
   if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}); !r)
     return r;
@@ -123,8 +119,7 @@ Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeM
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const SpecConstant no_inside[] = {{0, inside_ ? 0u : 1u}};
-  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}}, rays[] = {{0, bins_bits_}, {1, inside_ ? 1u : 0u}, {2, walks_ ? 1u : 0u}};
-  const SpecConstant voxels[] = {{0, listed_ ? 1u : 0u}, {1, near_ ? 1u : 0u}};
+  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}}, begin[] = {{0, bins_bits_}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;
@@ -134,15 +129,11 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   };
   const Made all[] = {
       {&list_close_, &spirv::list_close, true, 4},
-      {&frame_begin_, &spirv::frame_begin},
-      {&near_voxels_, &spirv::near_voxels},
-      {&rays_begin_, &spirv::rays_begin, true, 0, rays},
+      {&frame_begin_, &spirv::frame_begin, true, 0, begin},
       {&tool_clusters_place_, &spirv::tool_clusters, !walks_},
       {&voxel_touch_, &spirv::voxel_touch},
-      {&pair_collect_, &spirv::pair_collect},
+      {&static_list_, &spirv::static_list},
       {&pair_test_, &spirv::pair_test},
-      {&sample_bricks_, &spirv::sample_bricks, inside_},
-      {&sample_voxels_, &spirv::sample_voxels, inside_, 0, voxels},
       {&sample_listed_, &spirv::sample_listed, inside_ && listed_},
       {&sample_walk_, &spirv::sample_walk, inside_ && closed_},
       {&sample_touched_, &spirv::sample_touched, refined_ && !inside_},
@@ -169,29 +160,26 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
 }
 
 void FrameDetection::record(FrameRecorder& recorder) const {
-  // What the host found near, at its pose; voxels in the boxes of its triangles.
-  recorder.stage("cull");
+  recorder.stage("transform");
   recorder.run(frame_begin_, 1);
   recorder.barrier();
-  recorder.run_dispatch(near_voxels_, kDispatchNear);
-  recorder.close({kListTouchCandidates});
+  if (!walks_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
 
-  // Which voxels the triangles touch: IMT and BMT.
+  // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the tool's partition knows.
   recorder.stage("imt");
   recorder.run_items(voxel_touch_, kListTouchCandidates);
-  recorder.close({kListTouchedVoxels, kListPairChunks});
-
-  // What is listed there: BST, and pairs.
   recorder.stage("pairs");
-  recorder.run_items(pair_collect_, kListPairChunks);
-  recorder.close({kListPairCandidates});
   recorder.run_items(pair_test_, kListPairCandidates);
-  recorder.barrier();
-  recorder.run(rays_begin_, 1);
-  recorder.barrier();
+  if (inside_) {
+    recorder.stage("est");
+    recorder.run_items(listed_ ? sample_listed_ : sample_scan_, kListSampleChunks);
+    if (!closed_) recorder.run_dispatch(bins_clear_, kDispatchBins);
+  }
 
-  recorder.stage("transform");
-  if (!walks_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
+  // What is listed in touched voxels; samples that the tool's partition leaves open.
+  recorder.stage("bst");
+  recorder.close({kListTouchedVoxels, kListStaticChunks, kListOpenSamples});
+  recorder.run_items(static_list_, kListStaticChunks);
   if (refined_) record_samples(recorder);
 
   recorder.stage("sets");
@@ -204,22 +192,13 @@ void FrameDetection::record(FrameRecorder& recorder) const {
 }
 
 void FrameDetection::record_samples(FrameRecorder& recorder) const {
-  recorder.stage("est");
+  recorder.stage("open");
   if (!inside_) {
     recorder.run_items(sample_touched_, kListTouchedVoxels);
     recorder.close({kListSampleChunks});
     recorder.run_items(sample_scan_, kListSampleChunks);
     return;
   }
-  recorder.run_dispatch(sample_bricks_, kDispatchBricks);
-  if (!closed_) recorder.run_dispatch(bins_clear_, kDispatchBins);
-  recorder.close({kListSampleBricks});
-  recorder.run_groups(sample_voxels_, kListSampleBricks);
-  recorder.close({kListSampleChunks});
-  recorder.run_items(listed_ ? sample_listed_ : sample_scan_, kListSampleChunks);
-  recorder.close({kListOpenSamples});
-
-  // Samples that the tool's partition leaves open.
   if (closed_) {
     recorder.run_items(sample_walk_, kListOpenSamples);
     return;

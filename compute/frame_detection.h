@@ -47,10 +47,9 @@ class FrameDetection {
   bool closed_ = false;   ///< the tool's surface: open samples walk out of it
   bool listed_ = false;   ///< samples were listed by preparation
   bool walks_ = false;    ///< rays walk through the tool's fine partition
-  bool near_ = false;     ///< there are bits of the voxels near the tool
   std::uint32_t bins_bits_ = 0;   ///< 2^bins_bits bins along y and along z
   std::vector<std::uint32_t> order_;
-  FrameShader list_close_, frame_begin_, near_voxels_, voxel_touch_, pair_collect_, pair_test_, rays_begin_, tool_clusters_place_, sample_bricks_, sample_voxels_, sample_touched_, sample_scan_, sample_listed_,
+  FrameShader list_close_, frame_begin_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_touched_, sample_scan_, sample_listed_,
       sample_walk_, sample_winding_, bins_begin_, bins_clear_,
       bins_count_, bins_place_, bins_fill_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
 };

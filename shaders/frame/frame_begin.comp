@@ -1,9 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Empties all lists and the state of the frame before; sets the group count over what the host found near.
+// Empties all lists but those that the host filled, and the state of the frame before; sets their group counts.
 // One workgroup; invocation i handles list i. Reads frame_input; writes frame_lists, frame_state, dispatches.
 #include "shaders/lib/frame.glsl"
 
+layout(constant_id = 0) const uint32_t BINS_BITS = 0u;
+
+CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
@@ -12,14 +15,19 @@ EDIT(kBindDispatches, DispatchArguments, dispatches);
 void main() {
   const uint32_t i = gl_LocalInvocationIndex;
   if (i < kListCount) {
-    frame_lists[i].count = 0u;
-    frame_lists[i].asked = 0u;
-    frame_lists[i].items = DispatchArguments(0u, 0u, 0u);
+    const uint32_t count = i == kListTouchCandidates ? frame_input.touch_candidates
+                           : i == kListPairCandidates ? frame_input.pair_candidates
+                           : i == kListSampleChunks ? frame_input.sample_chunks : 0u;
+    frame_lists[i].count = count;
+    frame_lists[i].asked = count;
+    frame_lists[i].items = groups_for((count + kGroupSize - 1u) / kGroupSize);
     frame_lists[i].groups = DispatchArguments(0u, 0u, 0u);
   }
-  if (i < kDispatchCount && i != kDispatchNear) dispatches[i] = DispatchArguments(0u, 0u, 0u);
-  if (i == 0u) {
-    frame_state = FrameState(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
-    dispatches[kDispatchNear] = groups_for((frame_input.near_triangles + kGroupSize - 1u) / kGroupSize);
+  if (i < kDispatchCount) {
+    const bool rays = frame_input.rays != 0u;
+    dispatches[i] = i == kDispatchClusters && rays ? groups_for((scene.tool.triangles + kClusterSize - 1u) / kClusterSize)
+                    : i == kDispatchBins && rays ? groups_for(((1u << 2u * BINS_BITS) + kGroupSize - 1u) / kGroupSize)
+                    : DispatchArguments(0u, 0u, 0u);
   }
+  if (i == 0u) frame_state = FrameState(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 }

@@ -8,16 +8,13 @@ READ(kBindFrameLists, FrameList, frame_lists);
 READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindContactMobiles, uint32_t, contact_mobiles);
 READ(kBindTouchedVoxels, FrameVoxel, touched_voxels);
-READ(kBindPairCandidates, PairCandidate, pair_candidates);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindVoxelState, uint32_t, voxel_state);
-EDIT(kBindPairTable, uint64_t, pair_table);
 
 void main() {
   const uint32_t i = flat_invocation();
   if (i < frame_lists[kListContactStatics].count) static_state[contact_statics[i]] = 0u;
   if (i < frame_lists[kListContactMobiles].count) mobile_state[contact_mobiles[i]] = 0u;
   if (i < frame_lists[kListTouchedVoxels].count) voxel_state[touched_voxels[i].boundary] = 0u;
-  if (i < frame_lists[kListPairCandidates].count) pair_table[pair_candidates[i].slot] = 0ul;
 }

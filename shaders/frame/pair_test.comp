@@ -4,10 +4,11 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/triangle_pair.glsl"
 
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
-READ(kBindMobileCorners, ToolCorners, mobile_corners);
-READ(kBindPairCandidates, PairCandidate, pair_candidates);
+READ(kBindToolRecords, uint64_t, tool_records);
+READ(kBindPairCandidates, uint64_t, pair_candidates);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindContactMobiles, uint32_t, contact_mobiles);
 EDIT(kBindStaticState, uint32_t, static_state);
@@ -16,20 +17,23 @@ EDIT(kBindContactStatics, uint32_t, contact_statics);
 EDIT(kBindPairs, ContactPair, pairs);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 
+#include "shaders/lib/pose.glsl"
+#include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/mobile_mark.glsl"
 #include "shaders/lib/static_mark.glsl"
 
 void main() {
   const uint32_t item = flat_invocation();
   if (item >= frame_lists[kListPairCandidates].count) return;
-  const PairCandidate work = pair_candidates[item];
-  const uvec3 s = mockup_triangles[work.static_id];
-  const ToolCorners t = mobile_corners[work.mobile];
+  const uint64_t work = pair_candidates[item];   // PairCandidate
+  const uint32_t id = uint32_t(work);
+  const RecordCorners r = record_at(uint32_t(work >> 32));
+  const uvec3 s = mockup_triangles[id];
   if (!triangles_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]),
-                      Triangle(t.a, t.b, t.c)))
+                      Triangle(world_from_tool(r.a), world_from_tool(r.b), world_from_tool(r.c))))
     return;
-  mark_static(work.static_id, kStaticHit);
-  mark_mobile(work.mobile, kMobileHit);
+  mark_static(id, kStaticHit);
+  mark_mobile(r.id, kMobileHit);
   const uint32_t at = atomicAdd(frame_lists[kListPairs].count, 1u);
-  if (at < frame_lists[kListPairs].capacity) pairs[at] = ContactPair(work.static_id, work.mobile);
+  if (at < frame_lists[kListPairs].capacity) pairs[at] = ContactPair(id, r.id);
 }

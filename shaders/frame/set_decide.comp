@@ -13,7 +13,7 @@ EDIT_ONE(kBindResult, FrameResult, result);
 
 void main() {
   if (gl_LocalInvocationIndex != 0u) return;
-  const uint32_t most = max(max(frame_lists[kListContactStatics].count, frame_lists[kListContactMobiles].count), max(frame_lists[kListTouchedVoxels].count, frame_lists[kListPairCandidates].count));
+  const uint32_t most = max(max(frame_lists[kListContactStatics].count, frame_lists[kListContactMobiles].count), frame_lists[kListTouchedVoxels].count);
   dispatches[kDispatchReset] = groups_for((most + kGroupSize - 1u) / kGroupSize);
   result.flags = 0u;   // what the response writes, when it runs
   result.area_count = 0u;

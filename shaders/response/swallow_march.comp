@@ -13,8 +13,7 @@ CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindNearTriangles, uvec4, near_triangles);
-READ(kBindToolRecords, uvec4, tool_records);
-READ(kBindMobileCorners, ToolCorners, mobile_corners);
+READ(kBindToolRecords, uint64_t, tool_records);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
 READ(kBindMockupBricks, Brick, mockup_bricks);
@@ -27,6 +26,8 @@ EDIT_ONE(kBindResponseState, ResponseState, response);
 #include "shaders/lib/partition.glsl"
 
 #include "shaders/lib/budget.glsl"
+#include "shaders/lib/pose.glsl"
+#include "shaders/lib/tool_record.glsl"
 
 // Smallest k ≥ 1 for which the voxel at centre + ((D·k·(V/2)) >> 29) is not V_int. |D·k·V/2| < 2^29 · 2^31.
 uint32_t steps_out(ivec3 centre, i64vec3 d) {
@@ -44,8 +45,8 @@ void main() {
   const ivec3 first = 8 * ivec3(work.z & 0xFFFFu, work.z >> 16, work.w);
   const uint32_t place = work.x & ~kFirstOfTriangle;
   const int32_t size = scene.mockup.grid.size;
-  if ((tool_records[3u * place + 1u].w & kInfoCollapsed) != 0u) return;
-  const ToolCorners t = mobile_corners[tool_records[3u * place].w];
+  const RecordCorners r = record_at(place);
+  const ToolCorners t = ToolCorners(world_from_tool(r.a), world_from_tool(r.b), world_from_tool(r.c));
   const i64vec3 normal = raw_normal(t.a, t.b, t.c);
   if (normal == i64vec3(0l)) return;
   for (uint32_t z = 0u; z < 8u; ++z) {

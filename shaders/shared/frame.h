@@ -66,23 +66,21 @@ PALPATE_CONSTANT int32_t kBindFrameInput = 32;                   // FrameInput, 
 PALPATE_CONSTANT int32_t kBindFrameLists = 33;                   // FrameList[kListCount]
 PALPATE_CONSTANT int32_t kBindFrameState = 34;                   // FrameState, one
 PALPATE_CONSTANT int32_t kBindDispatches = 35;                   // DispatchArguments[kDispatchCount]: the response's, set by frame_sets.comp
-PALPATE_CONSTANT int32_t kBindMobileCorners = 36;       // ToolCorners[tool triangles], by id; valid for those of NearTriangles
 PALPATE_CONSTANT int32_t kBindClusterBoxes = 37;                 // LatticeBox[clusters]: of the transformed triangles of a cluster, closed
 PALPATE_CONSTANT int32_t kBindMobileState = 38;                  // uint32_t[tool triangles]: kMobile… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindNearTriangles = 39;                    // NearTriangle[FrameInput::near_triangles]; mapped
 PALPATE_CONSTANT int32_t kBindToolRecords = 40;                  // ToolRecord[tool triangles], in the order of clusters
-PALPATE_CONSTANT int32_t kBindTouchCandidates = 41;              // kListTouchCandidates: TouchCandidate
+PALPATE_CONSTANT int32_t kBindTouchCandidates = 41;              // TouchCandidate[FrameInput::touch_candidates]; mapped
 PALPATE_CONSTANT int32_t kBindVoxelState = 42;                   // uint32_t[boundary voxels]: kVoxel… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindTouchedVoxels = 43;                // kListTouchedVoxels: FrameVoxel, each V_bnd voxel touched by a mobile triangle once
-PALPATE_CONSTANT int32_t kBindPairChunks = 45;                   // kListPairChunks: PairChunk
-PALPATE_CONSTANT int32_t kBindPairTable = 46;                    // uint64_t[2^n]: hash of pairs under test; 0 between frames
-PALPATE_CONSTANT int32_t kBindPairCandidates = 47;               // kListPairCandidates: PairCandidate
+PALPATE_CONSTANT int32_t kBindStaticChunks = 45;                 // kListStaticChunks: StaticChunk
+PALPATE_CONSTANT int32_t kBindPairCandidates = 47;               // PairCandidate[FrameInput::pair_candidates]; mapped
 PALPATE_CONSTANT int32_t kBindPairs = 48;                        // kListPairs: ContactPair, distinct intersecting pairs
 PALPATE_CONSTANT int32_t kBindStaticState = 49;                  // uint32_t[static triangles]: kStatic… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindStaticSlot = 50;                   // uint32_t[static triangles]: position in contact_statics; valid where the state is not 0
 PALPATE_CONSTANT int32_t kBindContactStatics = 51;               // kListContactStatics: uint32_t static id = C_s
 PALPATE_CONSTANT int32_t kBindContactMobiles = 52;               // kListContactMobiles: uint32_t tool triangle = C_m
-PALPATE_CONSTANT int32_t kBindSampleChunks = 53;                 // kListSampleChunks: SampleChunk over voxels that may hold counting samples
+PALPATE_CONSTANT int32_t kBindSampleChunks = 53;                 // kListSampleChunks: SampleChunk over voxels that may hold counting samples; mapped
 PALPATE_CONSTANT int32_t kBindOpenSamples = 54;                  // kListOpenSamples: FrameSample in V_bnd voxels of the tool: the winding decides
 PALPATE_CONSTANT int32_t kBindSamples = 55;                      // kListSamples: FrameSample that count (inside; or the rule for open tools); refined only
 PALPATE_CONSTANT int32_t kBindHeldStatics = 56;                  // HeldStatic[FrameInput::held_statics]; mapped
@@ -98,30 +96,27 @@ PALPATE_CONSTANT int32_t kBindToolBins = 67;           // ToolBin[bins]; refined
 PALPATE_CONSTANT int32_t kBindBinEntries = 68;         // uint32_t: places in the order of clusters, bin by bin
 PALPATE_CONSTANT int32_t kBindWideTriangles = 69;      // uint32_t: places of triangles that lie in too many bins
 PALPATE_CONSTANT int32_t kBindBinState = 70;           // BinState, one
-PALPATE_CONSTANT int32_t kBindSampleBricks = 64;                 // kListSampleBricks: uint32_t linear brick number
 PALPATE_CONSTANT int32_t kBindResponseFirst = 72;                // frame_response.h has this one and above
 
 // ---- lists ---------------------------------------------------------------------------------------------------------------
 
 PALPATE_CONSTANT uint32_t kListNearTriangles = 0;                // filled by the host, which knows its length: FrameInput::near_triangles
-PALPATE_CONSTANT uint32_t kListTouchCandidates = 2;
+PALPATE_CONSTANT uint32_t kListTouchCandidates = 2;              // by the host
 PALPATE_CONSTANT uint32_t kListTouchedVoxels = 3;
-PALPATE_CONSTANT uint32_t kListPairChunks = 5;
-PALPATE_CONSTANT uint32_t kListPairCandidates = 6;
+PALPATE_CONSTANT uint32_t kListStaticChunks = 5;
+PALPATE_CONSTANT uint32_t kListPairCandidates = 6;               // by the host
 PALPATE_CONSTANT uint32_t kListPairs = 7;
 PALPATE_CONSTANT uint32_t kListContactStatics = 8;
 PALPATE_CONSTANT uint32_t kListContactMobiles = 9;
-PALPATE_CONSTANT uint32_t kListSampleChunks = 10;
+PALPATE_CONSTANT uint32_t kListSampleChunks = 10;                // by the host; for tools without inside by the device
 PALPATE_CONSTANT uint32_t kListOpenSamples = 11;
 PALPATE_CONSTANT uint32_t kListSamples = 12;
 PALPATE_CONSTANT uint32_t kListMembers = 13;                     // response: mobile triangles of areas; ids only, goes to the host as it is
 PALPATE_CONSTANT uint32_t kListPierces = 14;                     // response: distinct (area, pierced area); goes to the host as it is
-PALPATE_CONSTANT uint32_t kListSampleBricks = 15;
 PALPATE_CONSTANT uint32_t kListResponseFirst = 16;               // 16…31: lists of frame_response.h
 PALPATE_CONSTANT uint32_t kListCount = 32;
 
 // An overflow is a bit of FrameState::overflow: 1 << list for a list, and in overflow_other:
-PALPATE_CONSTANT uint32_t kOverflowPairTable = 1u << 0;          // no free slot near a pair's own in the table
 PALPATE_CONSTANT uint32_t kOverflowAreas = 1u << 1;              // more than kMaxFrameAreas
 PALPATE_CONSTANT uint32_t kOverflowLoop = 1u << 2;               // an invocation would have run beyond kLoopBudget
 PALPATE_CONSTANT uint32_t kOverflowBins = 1u << 3;               // the bins of the tool's shadow have too many entries
@@ -150,8 +145,6 @@ PALPATE_CONSTANT uint32_t kDispatchTouchedVoxels = 7;            // contact: an 
 PALPATE_CONSTANT uint32_t kDispatchHeldStatics = 9;              // contact: an invocation a HeldStatic
 PALPATE_CONSTANT uint32_t kDispatchSwallowedOne = 10;            // swallowed: a single workgroup
 PALPATE_CONSTANT uint32_t kDispatchSwallowed = 11;               // swallowed: a workgroup a NearTriangle
-PALPATE_CONSTANT uint32_t kDispatchBricks = 13;                  // samples may be inside: an invocation a brick of FrameInput's range
-PALPATE_CONSTANT uint32_t kDispatchNear = 3;                     // an invocation a NearTriangle (set at the frame's beginning)
 PALPATE_CONSTANT uint32_t kDispatchClusters = 5;                 // rays are needed: a workgroup a cluster of the tool
 PALPATE_CONSTANT uint32_t kDispatchBins = 8;                     // samples may be inside: an invocation a bin
 PALPATE_CONSTANT uint32_t kDispatchReset = 14;                   // an invocation an entry of whatever is emptied at the frame's end
@@ -171,8 +164,11 @@ struct FrameInput {
   ivec3 tool_low, tool_high;     // holds all transformed corners; closed
   int32_t bin_shift;             // bins are 2^bin_shift steps wide, from tool_low on
   uint32_t held_statics;          // entries of held statics
-  uint32_t near_triangles;            // entries of NearTriangles
-  uint32_t encloses;              // 1: samples may be inside although no triangle of the tool comes near the mock-up
+  uint32_t near_triangles;        // entries of the lists that the host filled …
+  uint32_t touch_candidates;
+  uint32_t pair_candidates;
+  uint32_t sample_chunks;
+  uint32_t rays;                  // 1: the bodies may meet: the tool may be needed as a whole, where rays or samples ask for it
 };
 
 struct HeldStatic {
@@ -193,7 +189,6 @@ struct FrameState {
   uint32_t contact;               // 1: CST, IMT or EST is not empty
   uint32_t swallowed;             // 1: IMT, but no CST and no counting sample (refined)
   uint32_t cst, bst, est, cmt, bmt, imt; // sizes of the sets
-  uint32_t close;                 // 1: the bodies may come within kCloseSteps of each other: samples may be inside
 };
 // Samples are rounded by less than a step, transformed corners too. Bodies that keep this distance have no sample on the wrong side
 // of each other's surface.
@@ -251,13 +246,14 @@ struct ToolRecord {
   uint32_t padding;
 };
 
-// A tool triangle whose box comes near a voxel that is V_bnd or V_int.
+// A tool triangle that comes near a voxel that is V_bnd or V_int, found by the host (compute/near_pairs.h).
 struct TouchCandidate {
-  uint32_t mobile;
+  uint32_t place;                 // in the order of clusters
   uint32_t boundary;              // number of the V_bnd voxel; kNoVoxel: V_int
   int32_t xy;                     // voxel x + 2^16 · voxel y
-  int32_t z;
+  int32_t z;                      // with kWholeBrick: the voxel is the first one of a brick that is all V_int, and stands for it
 };
+PALPATE_CONSTANT int32_t kWholeBrick = 1 << 30;
 
 // A V_bnd voxel of the mock-up's grid.
 struct FrameVoxel {
@@ -266,25 +262,22 @@ struct FrameVoxel {
 };
 
 // Parts [begin, end) of the list of static triangles of a V_bnd voxel, so that no invocation walks a long list.
-struct PairChunk {
-  uint32_t mobile;                // to be paired with each of them; with kFirstTouch when they are BST unless CST, and not yet marked
-  uint32_t begin, end;
+struct StaticChunk {
+  uint32_t begin, end;            // to be marked as listed in a touched voxel
 };
-PALPATE_CONSTANT uint32_t kFirstTouch = 1u << 31;
 struct SampleChunk {
   ivec3 voxel;                    // whose samples are asked for
   uint32_t begin, end;            // of its list; where samples are listed: of them
 };
-PALPATE_CONSTANT uint32_t kPairChunk = 8;                        // entries in a PairChunk (chosen: most lists are shorter)
+PALPATE_CONSTANT uint32_t kStaticChunk = 8;                      // entries in a StaticChunk (chosen: most lists are shorter)
 PALPATE_CONSTANT uint32_t kSampleChunk = 2;                      // entries in a SampleChunk
-PALPATE_CONSTANT uint32_t kMostChunks = 1024, kMostPairChunks = 8192;   // chunks of one list: where it is very long, chunks are longer
-PALPATE_CONSTANT uint32_t kPairProbes = 64;                      // slots of the pair table looked at before it counts as full
+PALPATE_CONSTANT uint32_t kMostChunks = 1024, kMostStaticChunks = 8192;   // chunks of one list: where it is very long, chunks are longer
 PALPATE_CONSTANT uint32_t kListedChunk = 8;                      // samples in a SampleChunk where they are listed
 
+// Two triangles whose boxes meet, found by the host.
 struct PairCandidate {
   uint32_t static_id;
-  uint32_t mobile;
-  uint32_t slot;                  // in the pair table, to be emptied at the end of the frame
+  uint32_t place;                 // of the tool triangle, in the order of clusters
 };
 
 struct ContactPair {
@@ -330,6 +323,7 @@ struct FrameResult {
   uint32_t area_count;            // ≤ kMaxFrameAreas
   ivec3 swallowed_direction;
   uint32_t swallowed_height;
+  uint32_t padding;               // whole 8 bytes
   AreaResult areas[kMaxFrameAreas];
 };
 
@@ -356,7 +350,7 @@ struct AreaPierce {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 128);
+PALPATE_ASSERT_SIZE(FrameInput, 140);
 PALPATE_ASSERT_SIZE(NearTriangle, 16);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(TouchCandidate, 16);

@@ -32,11 +32,11 @@ class Capacity : public testing::TestWithParam<Small> {};
 INSTANTIATE_TEST_SUITE_P(Each, Capacity,
                          testing::Values(Small{"bricks of near triangles", ball_on_edge},
                                          Small{"voxels to touch", ball_on_edge}, Small{"touched voxels", ball_on_edge},
-                                         Small{"lists to pair", ball_on_edge},
-                                         Small{"pairs to test", ball_on_edge}, Small{"pairs", ball_on_edge}, Small{"pair table", ball_on_edge},
+                                         Small{"lists of touched voxels", ball_on_edge},
+                                         Small{"pairs to test", ball_on_edge}, Small{"pairs", ball_on_edge},
                                          Small{"contact triangles of the mock-up", ball_on_edge}, Small{"contact triangles of the tool", ball_on_edge},
                                          Small{"lists with samples", ball_on_edge}, Small{"samples near the tool's surface", ball_on_edge},
-                                         Small{"samples", ball_on_edge}, Small{"bricks with samples", ball_on_edge},
+                                         Small{"samples", ball_on_edge},
                                          Small{"tool triangles of areas", ball_on_edge},
                                          Small{"tiles of tool samples", ball_on_edge}, Small{"pierced areas", ball_in_plate},
                                          Small{"needle vertices", needle_in_block}, Small{"needle table", needle_in_block}),
@@ -84,7 +84,7 @@ TEST_P(Capacity, TooSmallIsToldByNameAndGrowsToTheReferencesAnswer) {
 TEST(AllLists, TooSmallAtOnceGrowToTheReferencesAnswer) {
   std::map<std::string, std::uint32_t> ones;
   for (std::uint32_t list = 0; list_name(list) != nullptr; ++list) ones[list_name(list)] = 1;
-  for (const char* other : {"pair table", "needle table", "bins of the tool's shadow"}) ones[other] = 1;
+  for (const char* other : {"needle table", "bins of the tool's shadow"}) ones[other] = 1;
   for (const auto& make : {ball_on_edge, needle_in_block, ball_in_plate}) {
     const auto scene = make();
     const auto backend = gpu(ones);

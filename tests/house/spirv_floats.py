@@ -23,10 +23,8 @@ CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): wi
 CULLS = {
     'heights_trace': RAYS,
     'mobile_samples': CELL,
-    'near_voxels': CELL,
     'sample_listed': CELL,
     'sample_scan': CELL,
-    'sample_voxels': CELL,
     'sample_walk': CELL,
     'swallow_march': CELL,
     'needle_pairs': RAYS,

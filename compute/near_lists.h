@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "shaders/shared/frame.h"
+
+namespace palpate {
+
+/// A list that the host fills for one frame, in mapped memory.
+template <class T>
+struct HostList {
+  std::span<T> room;
+  std::uint32_t count = 0;
+  /// False: there is no room.
+  bool push(const T& item) {
+    if (count == room.size()) return false;
+    room[count++] = item;
+    return true;
+  }
+};
+
+/// What the host finds near at a pose: all that the device then decides exactly. Errs only towards "may meet".
+struct NearLists {
+  HostList<gpu::NearTriangle> triangles;
+  HostList<gpu::TouchCandidate> touch;
+  HostList<gpu::PairCandidate> pairs;
+  HostList<gpu::SampleChunk> samples;
+  std::uint32_t full = gpu::kNone;   ///< the kList… that had no room; the search ended there
+
+  /// As HostList::push; notes `list` as full.
+  template <class T>
+  bool push(HostList<T>& to, std::uint32_t list, const T& item) {
+    if (to.push(item)) return true;
+    full = list;
+    return false;
+  }
+};
+
+}  // namespace palpate

@@ -1,0 +1,187 @@
+#include "compute/near_samples.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kRootThree = 1.7320508075688774;
+
+std::size_t at(const Int3& cell, const Int3& cells) {
+  return static_cast<std::size_t>(cell.x) +
+         static_cast<std::size_t>(cells.x) * (static_cast<std::size_t>(cell.y) + static_cast<std::size_t>(cells.y) * static_cast<std::size_t>(cell.z));
+}
+
+/// Every cell takes the largest of those up to `reach` before and behind it along an axis.
+void widen(std::vector<std::uint8_t>& cells, const Int3& n, int axis, std::int32_t reach) {
+  const std::vector<std::uint8_t> before = cells;
+  Int3 c;
+  for (c.z = 0; c.z < n.z; ++c.z)
+    for (c.y = 0; c.y < n.y; ++c.y)
+      for (c.x = 0; c.x < n.x; ++c.x) {
+        Int3 other = c;
+        std::uint8_t most = 0;
+        for (other[axis] = std::max(c[axis] - reach, 0); other[axis] <= std::min(c[axis] + reach, n[axis] - 1); ++other[axis]) most |= before[at(other, n)];
+        cells[at(c, n)] = most;
+      }
+}
+
+}  // namespace
+
+struct NearSamples::Search {
+  double rotation[3][3];      // world from tool
+  double translation[3];
+  NearLists& lists;
+  std::uint32_t begin = 0, end = 0;   // samples that follow each other, not yet listed
+
+  /// Tool lattice point of a world lattice point, off by less than 2^-20.
+  void to_tool(const Int3& p, double (&out)[3]) const {
+    const double d[3] = {p.x - translation[0], p.y - translation[1], p.z - translation[2]};
+    for (std::size_t c = 0; c < 3; ++c) out[c] = rotation[0][c] * d[0] + rotation[1][c] * d[1] + rotation[2][c] * d[2];
+  }
+  bool flush() {
+    for (; begin < end; begin += gpu::kListedChunk)
+      if (!lists.push(lists.samples, gpu::kListSampleChunks, {Int3(0), begin, std::min(begin + gpu::kListedChunk, end)})) return false;
+    return true;
+  }
+};
+
+Result<NearSamples> NearSamples::make(VulkanDevice& device, const PreparedScene& scene) {
+  NearSamples out;
+  const PartitionBuffers& m = scene.mockup.partition;
+  out.mockup_ = m.grid;
+  out.fine_ = scene.constants.fine;
+  out.per_fine_ = 1.0 / out.fine_.size;
+  out.per_cube_ = 1.0 / (8.0 * out.fine_.size);
+  out.has_near_ = static_cast<bool>(scene.tool_near);
+  out.listed_ = static_cast<bool>(scene.samples);
+  const Int3 cubes = out.fine_.bricks;
+  const std::size_t count = static_cast<std::size_t>(cubes.x) * static_cast<std::size_t>(cubes.y) * static_cast<std::size_t>(cubes.z);
+  const Int3 n = m.grid.bricks;
+  if (auto r = out.slots_.read(device, m.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r) return r.error();
+  if (auto r = out.bricks_.read(device, m.bricks, m.grid.mixed_bricks); !r) return r.error();
+  if (auto r = out.list_begin_.read(device, m.list_begin, std::size_t{m.grid.boundary_voxels} + 1); !r) return r.error();
+  if (out.listed_)
+    if (auto r = out.sample_begin_.read(device, scene.sample_begin, std::size_t{m.grid.list_entries} + 1); !r) return r.error();
+  std::vector<std::uint8_t> any(count, 1);
+  if (out.has_near_) {
+    if (auto r = out.near_.read(device, scene.tool_near, count * 16); !r) return r.error();
+    std::fill(any.begin(), any.end(), std::uint8_t{0});
+    const Int3 cells = 8 * cubes;
+    Int3 c;
+    std::size_t i = 0;
+    for (c.z = 0; c.z < cells.z; ++c.z)
+      for (c.y = 0; c.y < cells.y; ++c.y)
+        for (c.x = 0; c.x < cells.x; ++c.x, ++i)
+          if ((out.near_[i >> 5] >> (i & 31) & 1u) != 0) any[at(c / 8, cubes)] = 1;
+  }
+  // Centres of voxels are within 3.5 voxels an axis of their brick's centre, within 1.5 of their octant's; what is beyond the fine grid
+  // counts as at its border up to a voxel away.
+  out.brick_ = out.make_level(any, 3.5 * kRootThree * m.grid.size + m.grid.size);
+  out.octant_ = out.make_level(any, 1.5 * kRootThree * m.grid.size + m.grid.size);
+  return out;
+}
+
+NearSamples::Level NearSamples::make_level(const std::vector<std::uint8_t>& cubes, double reach) const {
+  Level out;
+  out.border = static_cast<std::int32_t>((reach + 2) * per_cube_) + 1;
+  out.cells = fine_.bricks + 2 * out.border;
+  out.near.resize(static_cast<std::size_t>(out.cells.x) * static_cast<std::size_t>(out.cells.y) * static_cast<std::size_t>(out.cells.z));
+  Int3 c;
+  for (c.z = 0; c.z < fine_.bricks.z; ++c.z)
+    for (c.y = 0; c.y < fine_.bricks.y; ++c.y)
+      for (c.x = 0; c.x < fine_.bricks.x; ++c.x) out.near[at(c + out.border, out.cells)] = cubes[at(c, fine_.bricks)];
+  for (int axis = 0; axis < 3; ++axis) widen(out.near, out.cells, axis, out.border);
+  return out;
+}
+
+bool NearSamples::near_cube(const Level& level, const double (&p)[3]) const {
+  Int3 cell;
+  for (int k = 0; k < 3; ++k) {
+    const double along = (p[k] - fine_.origin[k]) * per_cube_ + level.border;
+    if (!(along >= 0 && along < level.cells[k])) return false;
+    cell[k] = static_cast<std::int32_t>(along);
+  }
+  return level.near[at(cell, level.cells)] != 0;
+}
+
+bool NearSamples::near_voxel(const double (&p)[3]) const {
+  if (!has_near_) return true;
+  Int3 cell;
+  const Int3 n = 8 * fine_.bricks;
+  for (int k = 0; k < 3; ++k) {
+    // What reaches out of the grid has its nearest voxel of the solid seen from the border: the grid is padded by two voxels.
+    const double d = p[k] - fine_.origin[k];
+    if (d < -mockup_.size || d > static_cast<double>(n[k]) * fine_.size + mockup_.size) return false;
+    cell[k] = static_cast<std::int32_t>(std::clamp(d * per_fine_, 0.0, n[k] - 1.0));
+  }
+  const std::size_t i = at(cell, n);
+  return (near_[i >> 5] >> (i & 31) & 1u) != 0;
+}
+
+bool NearSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const {
+  const std::uint32_t begin = list_begin_[boundary], end = list_begin_[boundary + 1];
+  if (listed_) {
+    const std::uint32_t from = sample_begin_[begin], to = sample_begin_[end];
+    if (from != search.end) {
+      if (!search.flush()) return false;
+      search.begin = from;
+    }
+    search.end = to;
+    return true;
+  }
+  for (std::uint32_t e = begin; e < end; e += gpu::kSampleChunk)
+    if (!search.lists.push(search.lists.samples, gpu::kListSampleChunks, {voxel, e, std::min(e + gpu::kSampleChunk, end)})) return false;
+  return true;
+}
+
+void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t slot) const {
+  const std::int32_t size = mockup_.size;
+  const Int3 origin = mockup_.origin + 8 * size * brick;
+  double q[3];
+  search.to_tool(origin + 4 * size, q);
+  if (!near_cube(brick_, q)) return;
+  const gpu::Brick& voxels = bricks_[slot];
+  for (std::int32_t o = 0; o < 8; ++o) {
+    const Int3 octant(o & 1, o >> 1 & 1, o >> 2);
+    const std::uint32_t mask = 0x0F0F0F0Fu << 4 * octant.x;
+    std::uint32_t any = 0;
+    for (std::int32_t z = 0; z < 4; ++z) any |= voxels.boundary[2 * (4 * octant.z + z) + octant.y] & mask;
+    if (any == 0) continue;
+    search.to_tool(origin + size * (4 * octant + 2), q);
+    if (!near_cube(octant_, q)) continue;
+    for (std::int32_t z = 4 * octant.z; z < 4 * octant.z + 4; ++z) {
+      const auto word = static_cast<std::uint32_t>(2 * z + octant.y);
+      for (std::uint32_t rest = voxels.boundary[word] & mask; rest != 0; rest &= rest - 1) {
+        const auto bit = static_cast<std::int32_t>(std::countr_zero(rest));
+        const Int3 in_brick(bit & 7, 4 * octant.y + (bit >> 3), z);
+        search.to_tool(origin + size * in_brick + size / 2, q);
+        if (!near_voxel(q)) continue;
+        const std::uint32_t before = voxels.boundary[word] & ((1u << bit) - 1);
+        if (!take_voxel(search, 8 * brick + in_brick, voxels.first[word] + static_cast<std::uint32_t>(std::popcount(before)))) return;
+      }
+    }
+  }
+}
+
+void NearSamples::find(const LatticePose& pose, const Int3& first, const Int3& last, NearLists& lists) const {
+  Search search{{}, {}, lists};
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = pose.rotation_q30[r][c] * 0x1p-30;
+    search.translation[r] = pose.translation[static_cast<int>(r)];
+  }
+  Int3 b;
+  for (b.z = first.z; b.z <= last.z; ++b.z)
+    for (b.y = first.y; b.y <= last.y; ++b.y)
+      for (b.x = first.x; b.x <= last.x; ++b.x) {
+        const std::uint32_t slot = slots_[at(b, mockup_.bricks)];
+        if (slot >= gpu::kBrickInternal) continue;
+        take_brick(search, b, slot);
+        if (lists.full != gpu::kNone) return;
+      }
+  search.flush();
+}
+
+}  // namespace palpate
