@@ -1,9 +1,11 @@
 #include "compute/gpu_backend.h"
 
+#include <chrono>
 #include <optional>
 #include <utility>
 
 #include "compute/frame.h"
+#include "compute/prepare_cache.h"
 #include "compute/prepared_scene.h"
 #include "compute/vulkan_device.h"
 
@@ -13,15 +15,13 @@ namespace {
 /// The Vulkan back end: a device, the scene on it, and the frame that answers queries.
 class GpuBackend final : public CollisionBackend {
  public:
-  GpuBackend(std::unique_ptr<VulkanDevice> device, std::map<std::string, std::uint32_t> first_capacity)
-      : device_(std::move(device)), first_capacity_(std::move(first_capacity)) {}
+  GpuBackend(std::unique_ptr<VulkanDevice> device, const GpuOptions& options)
+      : device_(std::move(device)), first_capacity_(options.first_capacity), cache_(options.cache) {}
 
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
     frame_.reset();
     scene_.reset();
-    auto scene = prepare_scene(*device_, geometry, plan, progress);
-    if (!scene) return scene.error();
-    scene_.emplace(std::move(*scene));
+    if (auto found = scene_for(geometry, plan, progress); !found) return found;
     auto frame = Frame::create(*device_, geometry, *scene_, first_capacity_);
     if (!frame) return frame.error();
     frame_ = std::move(*frame);
@@ -60,8 +60,22 @@ class GpuBackend final : public CollisionBackend {
   }
 
  private:
+  /// Fills scene_, from the cache if it is there.
+  Result<void> scene_for(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    const ContentKey key = cache_ ? prepared_key(*device_, geometry, plan) : ContentKey{};
+    if (cache_) scene_ = find_prepared(*device_, *cache_, key);
+    if (scene_) return {};
+    auto scene = prepare_scene(*device_, geometry, plan, progress);
+    if (!scene) return scene.error();
+    scene_.emplace(std::move(*scene));
+    if (cache_) keep_prepared(*device_, *cache_, key, *scene_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    return {};
+  }
+
   std::unique_ptr<VulkanDevice> device_;
   std::map<std::string, std::uint32_t> first_capacity_;
+  std::shared_ptr<DiskCache> cache_;
   std::optional<PreparedScene> scene_;
   std::unique_ptr<Frame> frame_;
 };
@@ -71,7 +85,7 @@ class GpuBackend final : public CollisionBackend {
 Result<std::unique_ptr<CollisionBackend>> make_gpu_backend(const GpuOptions& options) {
   auto device = VulkanDevice::create(options);
   if (!device) return device.error();
-  return std::unique_ptr<CollisionBackend>(std::make_unique<GpuBackend>(std::move(*device), options.first_capacity));
+  return std::unique_ptr<CollisionBackend>(std::make_unique<GpuBackend>(std::move(*device), options));
 }
 
 std::vector<VulkanDeviceInfo> list_vulkan_devices() { return VulkanDevice::list(); }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/cache/disk_cache.h"
 #include "model/collision_backend.h"
 
 namespace palpate {
@@ -22,6 +23,7 @@ struct GpuOptions {
   bool validation = false;        ///< validation layer with synchronisation checks; a message is an error
   bool guard_buffers = false;     ///< for tests: prepare and query fail when anything was written beyond a buffer's ends
   bool inline_execution = true;   ///< on lavapipe, run on the submitting thread (LP_NUM_THREADS=0); see docs
+  std::shared_ptr<DiskCache> cache{};   ///< where prepared scenes are kept; may be null
   std::map<std::string, std::uint32_t> first_capacity{};   ///< for tests: items that a list of a frame holds to begin with, by its name in
                                                            ///< Contacts::truncated_capacity; lists not named here choose for themselves
   std::shared_ptr<GpuFault> fault{};   ///< for tests

@@ -52,18 +52,8 @@ void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
 }  // namespace
 
 std::uint64_t PreparedScene::memory_bytes() const {
-  std::uint64_t sum = scene.bytes();
-  for (const VulkanBuffer* b : {&fine.brick_slot, &fine.bricks, &fine.mixed_brick, &fine.boundary_place, &fine.list_begin, &fine.list_triangles,
-                                &fine_exit, &tool_near, &sample_begin, &samples})
-    sum += b->bytes();
-  for (const BodyBuffers* body : {&mockup, &tool}) {
-    const PartitionBuffers& p = body->partition;
-    for (const VulkanBuffer* b :
-         {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->sample_weight, &body->neighbour_begin,
-          &body->neighbours, &body->seam_begin, &body->seams, &p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place,
-          &p.list_begin, &p.list_triangles})
-      sum += b->bytes();
-  }
+  std::uint64_t sum = 0;
+  for_each_buffer(*this, [&](const VulkanBuffer& buffer) { sum += buffer.bytes(); });
   return sum;
 }
 

@@ -56,6 +56,28 @@ struct PreparedScene {
   bool rays_walk() const;
 };
 
+/// Calls visit(partition) for each partition of a prepared scene, const or not; always in the same order.
+template <class Scene, class Visit>
+void for_each_partition(Scene& scene, Visit visit) {
+  visit(scene.mockup.partition);
+  visit(scene.tool.partition);
+  visit(scene.fine);
+}
+
+/// Calls visit(buffer) for each buffer of a prepared scene, const or not; always in the same order. Some may be empty.
+template <class Scene, class Visit>
+void for_each_buffer(Scene& scene, Visit visit) {
+  visit(scene.scene);
+  for (auto* body : {&scene.mockup, &scene.tool})
+    for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->sample_weight,
+                         &body->neighbour_begin, &body->neighbours, &body->seam_begin, &body->seams})
+      visit(*buffer);
+  for_each_partition(scene, [&](auto& p) {
+    for (auto* buffer : {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) visit(*buffer);
+  });
+  for (auto* buffer : {&scene.fine_exit, &scene.tool_near, &scene.sample_begin, &scene.samples}) visit(*buffer);
+}
+
 /// Builds both bodies and their partitions. Errors: memory (kBadValue, one sentence), cancelled, device lost.
 Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
                                     const Progress& progress);

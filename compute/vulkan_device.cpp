@@ -226,6 +226,7 @@ Result<void> VulkanDevice::choose(const std::string& wanted) {
     best = rank(p.deviceType);
     physical_ = candidate;
     name_ = info.name;
+    driver_ = info.driver;
   }
   if (physical_ == VK_NULL_HANDLE)
     return Error{ErrorCode::kNoDevice,

@@ -46,6 +46,7 @@ class VulkanDevice {
   std::uint32_t queue_family() const { return queue_family_; }
   const Limits& limits() const { return limits_; }
   const std::string& name() const { return name_; }
+  const std::string& driver() const { return driver_; }   ///< its name and version
   /// Device memory is host memory (lavapipe, integrated GPUs): buffers are written in place, without staging.
   bool unified() const { return unified_; }
 
@@ -92,7 +93,7 @@ class VulkanDevice {
   std::uint32_t queue_family_ = 0;
   VkPhysicalDeviceMemoryProperties memory_{};
   Limits limits_;
-  std::string name_;
+  std::string name_, driver_;
   bool unified_ = false;
   std::shared_ptr<GpuFault> fault_;
   std::mutex message_mutex_;

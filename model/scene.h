@@ -99,12 +99,17 @@ struct Scene {
   std::vector<std::string> warnings;         ///< one sentence each
 };
 
-/// A scene with its triangles and integers, ready for a back end.
+/// A scene with its geometry on the lattice, ready for a back end.
 struct LoadedScene {
   Scene scene;
+  SceneGeometry geometry;
+  bool from_cache = false;                   ///< no mesh was read
+};
+
+/// A scene's triangles as its files have them.
+struct SceneMeshes {
   Mesh mockup;                               ///< world frame, m, all static bodies in scene order
   Mesh tool;                                 ///< tool frame, m
-  SceneGeometry geometry;
 };
 
 }  // namespace palpate

@@ -1,7 +1,9 @@
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
+#include "model/cache/geometry_cache.h"
 #include "model/generate.h"
 #include "model/generate/solids.h"
 #include "model/mesh_import.h"
@@ -76,44 +78,64 @@ void warn_of_size(const char* what, const Mesh& mesh, std::vector<std::string>& 
   warnings.emplace_back(text);
 }
 
+bool tell(const Progress& progress, const char* what, double done) { return !progress || progress(what, done); }
+
 }  // namespace
 
-Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits) {
+Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits) {
   const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
-  const auto tell = [&](const char* what, double done) { return !progress || progress(what, done); };
-  LoadedScene loaded;
-
+  SceneMeshes meshes;
   const double bodies = static_cast<double>(scene.statics.size()) + 1;
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
-    const auto go_on = [&] { return tell("import", static_cast<double>(i) / bodies); };
+    const auto go_on = [&] { return tell(progress, "import", static_cast<double>(i) / bodies); };
     if (!go_on()) return cancelled;
     const StaticBody& body = scene.statics[i];
     const auto mesh = mesh_of(body.source, limits, go_on, scene.warnings);
     if (!mesh) return mesh.error();
-    place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", loaded.mockup);
+    place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", meshes.mockup);
   }
-  const auto go_on = [&] { return tell("import", (bodies - 1) / bodies); };
+  const auto go_on = [&] { return tell(progress, "import", (bodies - 1) / bodies); };
   if (!go_on()) return cancelled;
   auto tool = mesh_of(scene.tool.source, limits, go_on, scene.warnings);
   if (!tool) return tool.error();
-  loaded.tool = std::move(*tool);
-  warn_of_size("mock-up", loaded.mockup, scene.warnings);
-  warn_of_size("tool", loaded.tool, scene.warnings);
+  meshes.tool = std::move(*tool);
+  warn_of_size("mock-up", meshes.mockup, scene.warnings);
+  warn_of_size("tool", meshes.tool, scene.warnings);
+  return meshes;
+}
 
-  if (!tell("geometry", 0)) return cancelled;
-  auto geometry = build_geometry(loaded.mockup, loaded.tool,
-                                 {scene.response.voxel_size_m, scene.response.sample_spacing_m, scene.response.smooth_angle_deg,
-                                  scene.tool.centre_of_mass_m});
-  if (!geometry) return Error{geometry.error().code, scene.file + ": " + geometry.error().sentence};
-  loaded.geometry = std::move(*geometry);
-  if (!tell("geometry", 1)) return cancelled;
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits, DiskCache* cache) {
+  const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
+  const auto start = std::chrono::steady_clock::now();
+  const std::optional<ContentKey> key = cache ? geometry_key(scene) : std::nullopt;
+  if (key)
+    if (auto found = find_geometry(*cache, *key)) {
+      scene.warnings.insert(scene.warnings.end(), found->warnings.begin(), found->warnings.end());
+      if (!tell(progress, "geometry", 1)) return cancelled;
+      return LoadedScene{std::move(scene), std::move(found->geometry), true};
+    }
 
+  const auto warnings_before = static_cast<std::ptrdiff_t>(scene.warnings.size());
+  LoadedGeometry loaded;
+  {
+    const auto meshes = import_scene(scene, progress, limits);
+    if (!meshes) return meshes.error();
+    if (!tell(progress, "geometry", 0)) return cancelled;
+    auto geometry = build_geometry(meshes->mockup, meshes->tool,
+                                   {scene.response.voxel_size_m, scene.response.sample_spacing_m, scene.response.smooth_angle_deg,
+                                    scene.tool.centre_of_mass_m});
+    if (!geometry) return Error{geometry.error().code, scene.file + ": " + geometry.error().sentence};
+    loaded.geometry = std::move(*geometry);
+  }
+  if (!tell(progress, "geometry", 1)) return cancelled;
   if (!loaded.geometry.tool.closed && !scene.tool.centre_of_mass_m)
-    scene.warnings.push_back("the tool " + source_name(scene.tool.source) + " is open (" +
-                             std::to_string(loaded.geometry.tool_report.open_edges) +
+    scene.warnings.push_back("the tool " + source_name(scene.tool.source) + " is open (" + std::to_string(loaded.geometry.tool_report.open_edges) +
                              " open edges); its centre of mass is taken for the centroid of its area");
-  loaded.scene = std::move(scene);
-  return loaded;
+  if (key) {
+    loaded.warnings.assign(scene.warnings.begin() + warnings_before, scene.warnings.end());
+    keep_geometry(*cache, *key, loaded, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return LoadedScene{std::move(scene), std::move(loaded.geometry), false};
 }
 
 }  // namespace palpate

@@ -4,7 +4,7 @@
 
 namespace palpate {
 
-Result<void> answer_pose(PreparedScene& scene, const Pose& pose, Answer& out) {
+Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const SceneGeometry& geometry = scene.loaded.geometry;

@@ -14,6 +14,6 @@ struct Answer {
 };
 
 /// Answers one pose; a lone query holds nothing from a frame before. Errors: not a pose; the back end failed.
-Result<void> answer_pose(PreparedScene& scene, const Pose& pose, Answer& out);
+Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out);
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "driver/haptic_device.h"
+#include "model/cache/disk_cache.h"
 #include "model/collision_backend.h"
 #include "model/mesh_import.h"
 #include "model/scene.h"
@@ -27,6 +28,8 @@ struct Parts {
   /// Must be called before any thread exists (compute/gpu_backend.h).
   std::function<Result<std::unique_ptr<CollisionBackend>>()> make_gpu;
   std::function<std::unique_ptr<CollisionBackend>()> make_cpu;
+  /// Keeps what loading and preparing worked out; null: nothing is kept.
+  std::shared_ptr<DiskCache> cache;
   /// A haptic device by name, closed; `tool_gc_m` is the tool's centre of mass, tool frame. Errors: kBadValue for an unknown name or a
   /// setting, kNoDevice for one that this version can't drive.
   std::function<Result<std::unique_ptr<HapticDevice>>(const std::string& name, const Scene& scene, const Vec3& tool_gc_m,

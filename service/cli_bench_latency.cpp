@@ -14,7 +14,7 @@ namespace palpate {
 namespace {
 
 struct Subject {
-  std::unique_ptr<PreparedScene> scene;
+  std::unique_ptr<HostedScene> scene;
   TimeTable times;
 };
 
@@ -72,7 +72,7 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
     const auto subjects = measure(options, file, parts, console);
     if (!subjects) return subjects.error();
     for (const Subject& subject : *subjects) {
-      const PreparedScene& scene = *subject.scene;
+      const HostedScene& scene = *subject.scene;
       const std::string name = scene_name(file), label = subjects->size() > 1 ? name + ", " + scene.backend->name() : name;
       add_rows(name, subject, table);
       const TimePercentiles all = percentiles(subject.times.times(3, "total"));

@@ -39,7 +39,7 @@ struct Competitor {
 };
 
 struct Race {
-  std::unique_ptr<PreparedScene> scene;
+  std::unique_ptr<HostedScene> scene;
   std::vector<Competitor> peers;
   TimeTable ours;
   std::uint64_t exact_pairs = 0;

@@ -49,7 +49,7 @@ Result<void> write_poses(const std::filesystem::path& file, const std::vector<Po
 
 }  // namespace
 
-Result<std::vector<Pose>> bench_poses(const BenchOptions& options, PreparedScene& scene, const Parts& parts, Console& console) {
+Result<std::vector<Pose>> bench_poses(const BenchOptions& options, HostedScene& scene, const Parts& parts, Console& console) {
   const LoadedScene& loaded = scene.loaded;
   if (!options.poses.empty() && options.poses != "run") {
     const Result<std::vector<Pose>> read = read_poses(options.poses);

@@ -15,7 +15,7 @@ Result<void> plan_command(const SceneOptions& options, bool json, const Parts& p
   catch_interrupts();
   Console console;
   // V_int voxels are known only after the partition has been made, so the scene is prepared as for a run.
-  Result<std::unique_ptr<PreparedScene>> prepared = prepare_scene(options, Purpose::kSession, parts, console);
+  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options, Purpose::kSession, parts, console);
   if (!prepared) return prepared.error();
   const std::vector<PlanStage>& stages = (*prepared)->plan.stages;
 

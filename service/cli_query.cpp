@@ -64,9 +64,9 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
 
   catch_interrupts();
   Console console;
-  Result<std::unique_ptr<PreparedScene>> prepared = prepare_scene(options.common, Purpose::kQuery, parts, console);
+  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options.common, Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
-  PreparedScene& scene = **prepared;
+  HostedScene& scene = **prepared;
 
   if (!options.export_directory.empty()) {
     std::vector<std::string> notes;

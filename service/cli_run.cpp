@@ -100,7 +100,7 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (auto done = check_options(options); !done) return done;
   catch_interrupts();
   Console console;
-  Result<std::unique_ptr<PreparedScene>> prepared = prepare_scene(options.common, Purpose::kSession, parts, console);
+  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options.common, Purpose::kSession, parts, console);
   if (!prepared) return prepared.error();
   LoadedScene& loaded = (*prepared)->loaded;
   std::string driver = options.device.empty() ? loaded.scene.device.driver : options.device;

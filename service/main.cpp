@@ -31,9 +31,17 @@ Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const
 }  // namespace
 
 int main(int argc, char** argv) {
+  const auto folder = palpate::DiskCache::usual_folder();
+  const auto cache = folder ? std::make_shared<palpate::DiskCache>(palpate::DiskCache::Settings{.folder = *folder}) : nullptr;
   const palpate::Parts parts{
-      .make_gpu = [] { return palpate::make_gpu_backend({}); },
+      .make_gpu =
+          [&cache] {
+            palpate::GpuOptions options;
+            options.cache = cache;
+            return palpate::make_gpu_backend(options);
+          },
       .make_cpu = palpate::make_cpu_backend,
+      .cache = cache,
       .make_device = make_device,
       .list_devices = list_devices,
 #ifdef PALPATE_BENCH_PEERS

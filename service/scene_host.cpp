@@ -32,12 +32,12 @@ void add_memory(const CollisionBackend& backend, std::vector<PlanStage>& stages)
       if (stage.stage == line.stage) stage.memory_bytes += line.bytes;
 }
 
-std::string prepared_text(const PreparedScene& prepared) {
+std::string prepared_text(const HostedScene& prepared) {
   const SceneGeometry& geometry = prepared.loaded.geometry;
-  return fmt::format("mock-up {} triangles, tool {}, voxels of {:.3g} mm, {} on {}; read in {:.2f} s, prepared in {:.2f} s",
+  return fmt::format("mock-up {} triangles, tool {}, voxels of {:.3g} mm, {} on {}; {} in {:.2f} s, prepared in {:.2f} s",
                      count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()),
                      1000 * geometry.lattice.step_m * geometry.mockup_grid.size, bytes_text(prepared.backend->memory_bytes()),
-                     prepared.backend->device(), prepared.load_s, prepared.prepare_s);
+                     prepared.backend->device(), prepared.loaded.from_cache ? "known from before, read" : "read", prepared.load_s, prepared.prepare_s);
 }
 
 }  // namespace
@@ -52,8 +52,8 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
   return parts.make_cpu();
 }
 
-Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
-  auto prepared = std::make_unique<PreparedScene>();
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
+  auto prepared = std::make_unique<HostedScene>();
   Result<Scene> scene = read_scene(options.scene, options.profile);
   if (!scene) return scene.error();
 
@@ -65,7 +65,7 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   const Progress progress = [&console](const char* what, double done) { return console.progress(what, done); };
   console.step("reading the meshes");
   const auto load_start = Clock::now();
-  Result<LoadedScene> loaded = load_scene(std::move(*scene), progress, options.import);
+  Result<LoadedScene> loaded = load_scene(std::move(*scene), progress, options.import, parts.cache.get());
   if (!loaded) return loaded.error();
   prepared->loaded = std::move(*loaded);
   prepared->load_s = seconds_since(load_start);
@@ -77,6 +77,8 @@ Result<std::unique_ptr<PreparedScene>> prepare_scene(const SceneOptions& options
   prepared->plan = decide_plan(facts);
   if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, progress); !done) return done.error();
   for (const std::string& note : prepared->backend->take_notes()) console.note(note);
+  if (parts.cache)
+    for (const std::string& note : parts.cache->take_notes()) console.note(note);
   // Whether there are V_int voxels is known only now.
   facts.internal_voxels = prepared->backend->has_internal_voxels();
   prepared->plan = decide_plan(facts);

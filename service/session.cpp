@@ -206,8 +206,8 @@ std::optional<Error> failure_of(const Run& run) {
 
 SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend) {
   SessionSummary out;
-  out.static_triangles = scene.mockup.triangles.size();
-  out.tool_triangles = scene.tool.triangles.size();
+  out.static_triangles = scene.geometry.mockup.triangles.size();
+  out.tool_triangles = scene.geometry.tool.triangles.size();
   out.backend = backend.name();
   out.device = backend.device();
   out.haptic_device = run.device.name();

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <unordered_map>
 
-#include "model/import/file_view.h"
+#include "model/file_view.h"
 #include "model/import/import_checks.h"
 #include "model/lattice_build.h"
 #include "model/one_line.h"

@@ -15,6 +15,7 @@ import traceback
 
 PROGRAM = os.path.abspath(sys.argv[1])
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
+os.environ.setdefault('PALPATE_CACHE', 'off')   # what is tested is worked out here and now
 TIMEOUT_S = 900   # a hang is a failure, not a wait; a whole scene on a busy machine takes minutes
 
 

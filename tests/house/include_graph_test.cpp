@@ -93,4 +93,32 @@ TEST(IncludeGraph, PublicHeadersNameNoLibraryButGlm) {
       }
 }
 
+/// Types defined in named namespaces of our folders, with where.
+std::map<std::string, std::vector<std::string>> types_by_name() {
+  static const std::regex space(R"(^namespace ([\w:]+) \{)"), anonymous(R"(^namespace \{)"), end(R"(^\}  // namespace(.*))"), type(R"(^(?:struct|class|enum(?: class)?) (\w+)(?: final)?(?: : [^;]*)? \{)");
+  std::map<std::string, std::vector<std::string>> found;
+  for (const auto& [folder, allowed] : kAllowed)
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (folder == "shaders" || (entry.path().extension() != ".h" && entry.path().extension() != ".cpp")) continue;
+      std::ifstream in(entry.path());
+      std::string name;
+      int hidden = 0;
+      for (std::string line; std::getline(in, line);) {
+        std::smatch match;
+        if (std::regex_search(line, match, anonymous)) ++hidden;
+        else if (std::regex_search(line, match, space)) name = match[1];
+        else if (std::regex_search(line, match, end) && match[1].length() == 0 && hidden > 0) --hidden;
+        else if (hidden == 0 && !name.empty() && std::regex_search(line, match, type)) found[name + "::" + match.str(1)].push_back(entry.path().string());
+      }
+    }
+  return found;
+}
+
+TEST(OneDefinition, NoTwoTypesShareAName) {
+  // Two structs palpate::PreparedScene, one of compute/ and one of service/, once destroyed each other: linkers merge what is named alike.
+  const auto types = types_by_name();
+  EXPECT_GT(types.size(), 100u);   // the scan sees the tree
+  for (const auto& [name, places] : types) EXPECT_EQ(places.size(), 1u) << name << " is defined in " << places.front() << " and " << places.back();
+}
+
 }  // namespace

@@ -34,10 +34,18 @@ class SceneLoad : public testing::Test {
     folder.write("tool.obj", box("tool", 0, 0.05, 1));
     folder.write("open.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n");
   }
+  Result<Scene> read(const std::string& statics, const std::string& tool) {
+    return read_scene(folder.write("s.json", R"({"static": [)" + statics + R"(], "tool": {)" + tool + "}}"));
+  }
   Result<LoadedScene> load(const std::string& statics, const std::string& tool, const Progress& progress = {}) {
-    auto scene = read_scene(folder.write("s.json", R"({"static": [)" + statics + R"(], "tool": {)" + tool + "}}"));
+    auto scene = read(statics, tool);
     if (!scene) return scene.error();
     return load_scene(std::move(*scene), progress);
+  }
+  Result<SceneMeshes> import(const std::string& statics, const std::string& tool) {
+    auto scene = read(statics, tool);
+    if (!scene) return scene.error();
+    return import_scene(*scene, {});
   }
   std::string refusal(const std::string& statics, const std::string& tool) {
     const auto loaded = load(statics, tool);
@@ -56,25 +64,28 @@ std::vector<std::string> paths(const Mesh& mesh) {
 }
 
 TEST_F(SceneLoad, TheToolIsThePartNamedAndTheMockUpTheRest) {
-  const auto loaded = load(R"({"mesh": "two.obj", "without": ["right"]})", R"("mesh": "two.obj", "part": "right")");
+  const char *statics = R"({"mesh": "two.obj", "without": ["right"]})", *tool = R"("mesh": "two.obj", "part": "right")";
+  const auto meshes = import(statics, tool);
+  ASSERT_TRUE(meshes) << meshes.error().sentence;
+  EXPECT_THAT(paths(meshes->mockup), ElementsAre("two.obj/left"));
+  EXPECT_THAT(paths(meshes->tool), ElementsAre("two.obj/right"));
+  EXPECT_EQ(meshes->mockup.triangles.size(), 12u);
+  const auto loaded = load(statics, tool);
   ASSERT_TRUE(loaded) << loaded.error().sentence;
-  EXPECT_THAT(paths(loaded->mockup), ElementsAre("two.obj/left"));
-  EXPECT_THAT(paths(loaded->tool), ElementsAre("two.obj/right"));
-  EXPECT_EQ(loaded->mockup.triangles.size(), 12u);
   EXPECT_EQ(loaded->geometry.mockup.triangles.size(), 12u);
   // The part keeps its place in its file: the box of 0.2 m that begins at x = 0.5 m.
-  const auto& vertices = loaded->tool.vertices;
+  const auto& vertices = meshes->tool.vertices;
   EXPECT_FLOAT_EQ(static_cast<float>(std::min_element(vertices.begin(), vertices.end(), [](const Vec3& a, const Vec3& b) { return a.x < b.x; })->x), 0.5f);
   EXPECT_THAT(loaded->scene.warnings, IsEmpty());
 }
 
 TEST_F(SceneLoad, BodiesArePlacedAndTheirPartsToldApart) {
-  const auto loaded = load(R"({"mesh": "two.obj"}, {"mesh": "tool.obj", "position": [0, 0, 2], "units": "m"})", R"("mesh": "tool.obj")");
-  ASSERT_TRUE(loaded) << loaded.error().sentence;
-  EXPECT_THAT(paths(loaded->mockup), ElementsAre("two/two.obj/left", "two/two.obj/right", "tool/tool.obj/tool"));
-  EXPECT_EQ(loaded->mockup.parts[2].first_triangle, 24u);
+  const auto meshes = import(R"({"mesh": "two.obj"}, {"mesh": "tool.obj", "position": [0, 0, 2], "units": "m"})", R"("mesh": "tool.obj")");
+  ASSERT_TRUE(meshes) << meshes.error().sentence;
+  EXPECT_THAT(paths(meshes->mockup), ElementsAre("two/two.obj/left", "two/two.obj/right", "tool/tool.obj/tool"));
+  EXPECT_EQ(meshes->mockup.parts[2].first_triangle, 24u);
   double highest = 0;
-  for (const Vec3& v : loaded->mockup.vertices) highest = std::max(highest, v.z);
+  for (const Vec3& v : meshes->mockup.vertices) highest = std::max(highest, v.z);
   EXPECT_NEAR(highest, 2.05, 1e-6);   // coordinates are floats in the importing library
 }
 

@@ -1,4 +1,4 @@
-#include "model/import/file_view.h"
+#include "model/file_view.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,0 +1,116 @@
+// A scene put back on the device from the disk answers like one that was prepared there; a damaged one is prepared anew.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/faults/fault_scene.h"
+#include "tests/model/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PrepareCache : public testing::Test {
+ protected:
+  /// A fresh back end, as in a fresh process; `prepared`: whether the progress told of preparation.
+  std::unique_ptr<CollisionBackend> start(const FaultScene& scene, const Plan& plan, bool& prepared) {
+    cache = std::make_shared<DiskCache>(DiskCache::Settings{folder.path("cache"), std::uint64_t{1} << 30, 0});
+    GpuOptions options;
+    options.validation = true;
+    options.guard_buffers = true;
+    options.cache = cache;
+    auto made = make_gpu_backend(options);
+    EXPECT_TRUE(made) << (made ? "" : made.error().sentence);
+    prepared = false;
+    const auto done = (*made)->prepare(scene.geometry, plan, [&](const char*, double) { return prepared = true; });
+    EXPECT_TRUE(done) << (done ? "" : done.error().sentence);
+    return std::move(*made);
+  }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> out;
+    for (const auto& entry : fs::directory_iterator(folder.path("cache"))) out.push_back(entry.path());
+    return out;
+  }
+  TemporaryFolder folder;
+  std::shared_ptr<DiskCache> cache;
+};
+
+/// All that the two say of the scene and of its pose.
+void expect_same(CollisionBackend& a, CollisionBackend& b, const FaultScene& scene, bool refined) {
+  for (const bool tool : {false, true}) {
+    if (tool && !refined) continue;
+    const auto one = a.partition(tool), other = b.partition(tool);
+    ASSERT_TRUE(one && other);
+    EXPECT_EQ(first_difference(*one, *other), "");
+  }
+  EXPECT_EQ(a.has_internal_voxels(), b.has_internal_voxels());
+  EXPECT_EQ(a.memory_bytes(), b.memory_bytes());
+  Contacts from_a, from_b;
+  for (const double lift : {0.0, 0.0004, -0.0007, 0.5}) {
+    LatticePose pose = scene.pose;
+    pose.translation.z += static_cast<std::int32_t>(lift / scene.geometry.lattice.step_m);
+    ASSERT_TRUE(a.query(pose, nullptr, from_a));
+    ASSERT_TRUE(b.query(pose, nullptr, from_b));
+    EXPECT_EQ(first_difference(from_a, from_b), "") << "lifted by " << lift;
+    EXPECT_FALSE(from_a.truncated);
+  }
+}
+
+TEST_F(PrepareCache, ASecondStartPreparesNothingAndAnswersTheSame) {
+  for (const auto& scene : {ball_on_edge(), needle_in_block(), ball_in_plate()})
+    for (const Profile profile : {Profile::kRefined, Profile::kPaper}) {
+      SCOPED_TRACE(scene->name);
+      Plan plan;
+      plan.profile = profile;
+      bool worked_first = false, worked_second = false;
+      const auto first = start(*scene, plan, worked_first), second = start(*scene, plan, worked_second);
+      EXPECT_TRUE(worked_first);
+      EXPECT_FALSE(worked_second);
+      expect_same(*first, *second, *scene, profile == Profile::kRefined);
+      Contacts answer;
+      ASSERT_TRUE(second->query(scene->pose, nullptr, answer));
+      if (profile == Profile::kRefined) {
+        EXPECT_EQ(first_difference(answer, scene->expected), "");
+      }
+    }
+  EXPECT_EQ(files().size(), 6u);   // no scene or profile stands in for another
+}
+
+TEST_F(PrepareCache, ADamagedEntryIsMadeAnewAndSaid) {
+  const auto scene = ball_on_edge();
+  bool worked = false;
+  const auto first = start(*scene, {}, worked);
+  const fs::path path = files().at(0);
+  const auto size = fs::file_size(path);
+  for (const bool cut : {false, true}) {
+    if (cut) {
+      fs::resize_file(path, size / 2);
+    } else {
+      std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+      file.seekp(static_cast<std::streamoff>(size / 2));
+      file.put('\x55').put('\xAA').put('\x55');
+    }
+    const auto again = start(*scene, {}, worked);
+    EXPECT_TRUE(worked);
+    EXPECT_THAT(cache->take_notes(), testing::ElementsAre(testing::HasSubstr("damaged")));
+    expect_same(*first, *again, *scene, true);
+    EXPECT_EQ(fs::file_size(path), size);
+    const auto known = start(*scene, {}, worked);
+    EXPECT_FALSE(worked);
+    EXPECT_THAT(cache->take_notes(), testing::IsEmpty());
+  }
+}
+
+TEST_F(PrepareCache, OneStepMoreOfOneVertexIsAnotherScene) {
+  const auto scene = ball_on_edge();
+  bool worked = false;
+  start(*scene, {}, worked);
+  ++scene->geometry.mockup.vertices[0].x;
+  start(*scene, {}, worked);
+  EXPECT_TRUE(worked);
+}
+
+}  // namespace
+}  // namespace palpate
