@@ -1,0 +1,332 @@
+// Ties the parts together: a scene, a source of moments (device, mouse or recorded run), the picture, the strips, the panel.
+import { read_address, write_address } from './address.js';
+import { Api, ApiError } from './api.js';
+import { Connection } from './connection.js';
+import type { Colouring } from './contact_layer.js';
+import { element, make } from './dom.js';
+import { listen, type Action } from './keys.js';
+import { Labels } from './labels.js';
+import type { Moment } from './moment.js';
+import { MouseSource } from './mouse_source.js';
+import { Picture } from './picture.js';
+import { Player } from './player.js';
+import type { Scene } from './protocol.js';
+import { Readout } from './readout.js';
+import { Samples } from './samples.js';
+import { ScenePicker } from './scene_picker.js';
+import { Sessions } from './sessions.js';
+import { Strips, figure } from './strips.js';
+
+type Source = 'live' | 'mouse' | 'run';
+const REFRESH_MS = 3000;
+const LATE: Record<Source, [string, string]> = { live: ['Lateness', 'µs'], mouse: ['There and back', 'ms'], run: ['Age of result', 'ticks'] };
+
+export class App {
+  private readonly api = new Api();
+  private readonly picture = new Picture(this.api, element('canvas'), (error) => this.failed(error));
+  private readonly labels = new Labels(this.picture.view);
+  private readonly strips = new Strips(element('strips'));
+  private readonly readout = new Readout((kind, on) => {
+    if (on) this.picture.contact.shown.add(kind); else this.picture.contact.shown.delete(kind);
+    this.picture.redraw_contact();
+  });
+  private readonly picker = new ScenePicker(this.api, (scene) => this.opened(scene), (error) => this.failed(error));
+  private readonly player = new Player(this.api, () => this.run_changed(), (error) => this.failed(error));
+  private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.dirty = true; }, (error) => this.failed(error), (text) => this.say(text));
+  private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
+  private mouse: MouseSource | null = null;
+  private mouse_retry = 0;
+  private source: Source = 'live';
+  private readonly wish = read_address();   // as the page was called, before it is kept up to date
+  private live_samples = new Samples();
+  private mouse_samples = new Samples();
+  private dirty = true;
+  private last_tick = performance.now();
+  private banner_timer = 0;
+
+  constructor() {
+    this.wire_panel();
+    listen((action) => this.act(action));
+    this.apply_theme(localStorage.getItem('palpate.theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => { if (!localStorage.getItem('palpate.theme')) this.apply_theme(event.matches ? 'dark' : 'light'); });
+    if (innerWidth <= 860) document.body.classList.add('no-panel');
+    new ResizeObserver(() => { this.dirty = true; }).observe(element('strips'));
+    this.strips.seek = (time) => { this.player.playback?.seek(time); this.run_changed(); };
+    void this.choose(['live', 'mouse', 'run'].includes(this.wish.source ?? '') ? (this.wish.source as Source) : 'live');
+    this.sessions.show();
+    void this.begin();
+    setInterval(() => void this.refresh(), REFRESH_MS);
+    const loop = (now: number) => {
+      requestAnimationFrame(loop);
+      this.tick(now);
+    };
+    requestAnimationFrame(loop);
+  }
+
+  // ---- beginning, and beginning again
+
+  private async begin(): Promise<void> {
+    const { wish } = this;
+    try {
+      await this.picker.refresh();
+      await this.player.refresh();
+      const held = this.picker.list.scenes.find((scene) => scene.id === wish.scene);
+      if (held) { await this.picker.open_id(held.id); this.picker.path = wish.path ?? ''; this.remember(); }
+      else if (wish.path && this.picker.list.available.includes(wish.path)) await this.picker.open_path(wish.path);
+      else if (this.picker.list.scenes.length > 0) await this.picker.open_id(this.picker.list.scenes[0].id);
+      else this.picker.show_empty();
+      if (wish.run) await this.player.load(wish.run);
+    } catch (error) {
+      this.picker.show_empty();
+      this.failed(error);
+    }
+  }
+  private async opened(scene: Scene): Promise<void> {
+    this.sessions.leave();
+    this.close_mouse();
+    this.live_samples.clear();
+    this.mouse_samples.clear();
+    await this.picture.open(scene);
+    this.show_scene(scene);
+    this.remember();
+    await this.choose(this.source);
+  }
+  private async link_changed(up: boolean): Promise<void> {
+    element('link').dataset['state'] = up ? 'up' : 'down';
+    element('link-text').textContent = up ? 'connected' : 'no server';
+    element('stage-box').classList.toggle('stale', !up);
+    if (!up) {
+      this.say('The server does not answer. What you see is the last picture; trying again.', true, true);
+      return;
+    }
+    this.hide_banner();
+    // It may be another process now: what it holds is asked anew, and the scene opened again if it is gone.
+    try {
+      await this.picker.refresh();
+      const { current, path } = this.picker;
+      if (!current) { await this.begin(); return; }
+      if (this.picker.list.scenes.some((scene) => scene.id === current.id && scene.state !== 'failed')) await this.restore(current);
+      else if (path) await this.restore(await this.api.open_scene(path));
+      else this.say('The server no longer holds this scene. Open it again to go on.', true);
+    } catch (error) { this.failed(error); }
+  }
+  /** After a restart: the same scene is not drawn anew; only the source begins again, where it was. */
+  private async restore(scene: Scene): Promise<void> {
+    if (scene.id !== this.picker.current?.id) { await this.picker.open_id(scene.id); return; }
+    for (let now = scene; now.state === 'queued' || now.state === 'preparing'; now = await this.api.scene(scene.id)) await new Promise((resolve) => setTimeout(resolve, 400));
+    await this.choose(this.source);
+    this.say('Connected again.');
+  }
+
+  private async refresh(): Promise<void> {
+    if (!this.connection.up || document.hidden) return;
+    try {
+      if (this.source === 'live' && this.picker.current) await this.sessions.refresh(this.picker.current.id);
+      if (this.source === 'run' && !this.player.playback?.playing) await this.player.refresh();
+      if (!this.picker.current) await this.picker.refresh();
+    } catch (error) { this.failed(error); }
+  }
+
+  // ---- sources
+
+  private async choose(source: Source): Promise<void> {
+    if (source !== this.source) { this.readout.show(null, []); this.picture.redraw_contact(); }
+    this.source = source;
+    for (const tab of document.querySelectorAll<HTMLElement>('[data-source]')) tab.setAttribute('aria-selected', String(tab.dataset['source'] === source));
+    for (const part of document.querySelectorAll<HTMLElement>('[data-for]')) part.hidden = part.dataset['for'] !== source;
+    element('player').hidden = source !== 'run';
+    document.body.classList.toggle('recorded', source === 'run');
+    this.strips.set_late(...LATE[source]);
+    this.remember();
+    this.dirty = true;
+    if (source !== 'mouse') this.close_mouse();
+    const scene = this.picker.current;
+    try {
+      if (source === 'mouse' && scene && !this.mouse) this.open_mouse(scene);
+      if (source === 'live' && scene) await this.sessions.refresh(scene.id);
+      if (source === 'run') {
+        await this.player.refresh();
+        // A run that was recorded with this scene is shown at once.
+        const fitting = this.player.playback || !scene ? undefined : this.player.runs.find((run) => run.static_triangles !== null && Player.fits(run, scene));
+        if (fitting) await this.player.load(fitting.name);
+      }
+    } catch (error) { this.failed(error); }
+  }
+  private open_mouse(scene: Scene, at = this.picture.bodies.tool.visible ? this.picture.pose_of_tool() : null): void {
+    this.close_mouse();
+    this.mouse = new MouseSource(this.api, scene, (reason) => this.mouse_lost(reason), at);
+    this.picture.drag.coupling = this.mouse.coupling;
+  }
+  private close_mouse(): void {
+    clearTimeout(this.mouse_retry);
+    this.mouse?.close();
+    this.mouse = null;
+    this.picture.drag.coupling = null;
+  }
+  private mouse_lost(reason: string): void {
+    this.close_mouse();
+    if (reason) this.say(reason, true);
+    this.connection.doubt();
+    // Perhaps the loop alone ended; when the whole server went, link_changed begins again.
+    this.mouse_retry = window.setTimeout(() => { if (this.source === 'mouse' && this.connection.up && this.picker.current) this.open_mouse(this.picker.current); }, 1500);
+  }
+  private run_changed(): void {
+    this.dirty = true;
+    this.remember();
+    const { playback } = this.player;
+    const scene = this.picker.current;
+    const fits = !playback || !scene || Player.fits(playback.run, scene);
+    if (!fits) element('run-note').textContent = `Recorded with another scene (${playback!.run.static_triangles?.toLocaleString('en')} + ${playback!.run.tool_triangles?.toLocaleString('en')} triangles): open that one to see where it touches.`;
+  }
+
+  // ---- each picture
+
+  private tick(now: number): void {
+    const seconds = Math.min((now - this.last_tick) / 1000, 0.25);
+    this.last_tick = now;
+    let moment: Moment | null = null;
+    if (this.source === 'mouse') {
+      if (this.mouse) {
+        this.mouse.advance();
+        moment = this.mouse.moment();
+        this.mouse_samples.add_moment(moment);
+        this.dirty ||= !this.idle(moment);
+      }
+    } else if (this.source === 'run') {
+      if (this.player.playback?.playing) { this.player.playback.advance(seconds); this.dirty = true; }
+    }
+    if (!this.dirty) return;
+    this.dirty = false;
+    if (this.source === 'live') moment = this.sessions.moment;
+    if (this.source === 'run') moment = this.player.moment();
+    if (this.source === 'run' && moment && this.player.playback && this.picker.current && !Player.fits(this.player.playback.run, this.picker.current)) moment = { ...moment, frame: null };
+
+    if (moment) this.picture.show(moment);
+    this.labels.set(moment?.frame?.contact ? moment.frame.areas : []);
+    this.readout.show(moment, this.picker.current?.stages ?? []);
+    this.player.show();
+    this.strips.samples = this.source === 'run' ? this.player.samples : this.source === 'mouse' ? this.mouse_samples : this.live_samples;
+    this.strips.recorded = this.source === 'run' && this.player.playback ? { duration: this.player.playback.duration, time: this.player.playback.time } : null;
+    this.strips.draw();
+    this.show_scales();
+  }
+  private last_shown = '';
+  /** Whether a mouse moment looks like the one before: then nothing is drawn. */
+  private idle(moment: Moment): boolean {
+    const text = `${moment.pose.join()} ${moment.force.join()} ${moment.frame?.tick} ${moment.note} ${this.picture.drag.holding}`;
+    const same = text === this.last_shown && moment.frame === this.last_frame;
+    this.last_shown = text;
+    this.last_frame = moment.frame;
+    return same;
+  }
+  private last_frame: unknown = null;
+
+  private show_scales(): void {
+    const { areas, view, drawn_triangles, reduced } = this.picture;
+    element('scales').textContent = !this.picture.scene ? '' : [
+      `grid ${figure(view.grid_cell * 1000)} mm`, `1 N = ${figure(areas.metres_per_newton * 1000)} mm`, `1 N·m = ${figure(areas.metres_per_newton_metre * 1000)} mm`,
+      ...(areas.gain > 1 ? [`heights ${figure(areas.gain)}×`] : []), ...(reduced ? [`drawn: ${drawn_triangles.toLocaleString('en')} triangles, contact exact`] : []),
+    ].join(' · ');
+  }
+  private show_scene(scene: Scene): void {
+    const whole = (value: number | null) => (value === null ? '–' : value.toLocaleString('en'));
+    element('facts').textContent = `${whole(scene.static_triangles)} + ${whole(scene.tool_triangles)} triangles`;
+    const rows: [string, string][] = [
+      ['mock-up', `${whole(scene.static_triangles)} triangles`], ['tool', `${whole(scene.tool_triangles)} triangles`], ['profile', scene.profile ?? '–'],
+      ['stiffness', scene.stiffness === null ? '–' : `${figure(scene.stiffness)} N/m`], ['voxel', scene.voxel_size === null ? '–' : `${figure(scene.voxel_size * 1000)} mm`],
+      ['memory', scene.memory_bytes === null || scene.memory_bytes === undefined ? '–' : `${figure(scene.memory_bytes / 1048576)} MiB`], ['found by', scene.device ?? scene.backend ?? '–'],
+    ];
+    element('scene-facts').replaceChildren(make('h2', {}, scene.name), make('dl', {}, ...rows.flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)])),
+      ...(scene.warnings ?? []).map((warning) => make('p', { class: 'warn' }, warning)));
+    document.title = `${scene.name}, palpate`;
+  }
+
+  // ---- words, keys, panel
+
+  private remember(): void {
+    write_address({ scene: this.picker.current?.id ?? '', path: this.picker.path, source: this.source, run: this.source === 'run' ? this.player.playback?.run.name ?? '' : '' });
+  }
+  private failed(error: unknown): void {
+    if (error instanceof ApiError && error.status === 0) { this.connection.doubt(); return; }   // it says by itself that the server is gone
+    if (error instanceof ApiError && error.status === 401) { element<HTMLDialogElement>('token').showModal(); return; }
+    this.say(error instanceof Error ? error.message : String(error), true);
+  }
+  private say(text: string, bad = false, stays = false): void {
+    const banner = element('banner');
+    banner.textContent = text;
+    banner.dataset['state'] = bad ? 'bad' : 'good';
+    banner.hidden = false;
+    clearTimeout(this.banner_timer);
+    if (!stays) this.banner_timer = window.setTimeout(() => this.hide_banner(), bad ? 9000 : 3500);
+  }
+  private hide_banner(): void { element('banner').hidden = true; }
+
+  private apply_theme(theme: string): void {
+    document.documentElement.dataset['theme'] = theme;
+    this.picture.theme(theme === 'dark');
+    this.strips.theme();
+    this.dirty = true;
+  }
+  private check(id: string, set: (on: boolean) => void): void {
+    const box = element<HTMLInputElement>(id);
+    box.addEventListener('change', () => { set(box.checked); this.dirty = true; this.picture.redraw_contact(); });
+  }
+  private wire_panel(): void {
+    for (const tab of document.querySelectorAll<HTMLElement>('[data-source]')) tab.addEventListener('click', () => void this.choose(tab.dataset['source'] as Source));
+    const colouring = element<HTMLSelectElement>('colouring');
+    colouring.addEventListener('change', () => { this.picture.contact.colouring = colouring.value as Colouring; this.picture.redraw_contact(); });
+    const voxels = element<HTMLSelectElement>('voxels');
+    voxels.addEventListener('change', () => {
+      this.picture.show_voxels((voxels.value || null) as 'boundary' | 'internal' | null).catch((error: unknown) => { voxels.value = ''; this.failed(error); });
+    });
+    this.check('show-normals', (on) => { this.picture.areas.show.normals = on; });
+    this.check('show-heights', (on) => { this.picture.areas.show.heights = on; });
+    this.check('show-wrench', (on) => { this.picture.areas.show.wrench = on; });
+    this.check('show-labels', (on) => { this.labels.shown = on; });
+    this.check('glass-mockup', (on) => this.picture.bodies.glass('mockup', on));
+    this.check('glass-tool', (on) => this.picture.bodies.glass('tool', on));
+    element('mouse-reset').addEventListener('click', () => { if (this.picker.current) this.open_mouse(this.picker.current, this.picker.current.start); });
+    element('mouse-pause').addEventListener('click', () => this.pause_mouse());
+    element('theme').addEventListener('click', () => this.act('theme'));
+    element('panel-button').addEventListener('click', () => this.act('panel'));
+    element('help-button').addEventListener('click', () => this.act('help'));
+    element('token').addEventListener('close', () => { this.api.set_token(element<HTMLInputElement>('token-value').value); void this.begin(); });
+  }
+  private pause_mouse(): void {
+    if (!this.mouse) return;
+    this.mouse.paused = !this.mouse.paused;
+    element('mouse-pause').textContent = this.mouse.paused ? 'Go on' : 'Pause';
+  }
+
+  private act(action: Action): void {
+    const { playback } = this.player;
+    switch (action) {
+      case 'play': if (this.source === 'run') this.player.toggle(); else if (this.source === 'live') this.sessions.toggle(); else this.pause_mouse(); break;
+      case 'back': case 'forward':
+        if (this.source === 'run' && playback) { playback.playing = false; playback.step(action === 'back' ? -1 : 1); this.run_changed(); }
+        break;
+      case 'begin': playback?.seek(0); this.run_changed(); break;
+      case 'end': playback?.seek(playback.duration); this.run_changed(); break;
+      case 'theme': {
+        const theme = document.documentElement.dataset['theme'] === 'dark' ? 'light' : 'dark';
+        localStorage.setItem('palpate.theme', theme);
+        this.apply_theme(theme);
+        break;
+      }
+      case 'all': this.picture.view.look_at_all(); break;
+      case 'tool': this.picture.look_at_tool(); break;
+      case 'up': this.picture.view.turn_up(); break;
+      case 'panel': document.body.classList.toggle('no-panel'); this.dirty = true; break;
+      case 'help': element<HTMLDialogElement>('help').showModal(); break;
+      case 'glass': element('glass-mockup').click(); break;
+      case 'voxels': {
+        const voxels = element<HTMLSelectElement>('voxels');
+        voxels.selectedIndex = (voxels.selectedIndex + 1) % voxels.options.length;
+        voxels.dispatchEvent(new Event('change'));
+        break;
+      }
+      case 'close': this.hide_banner(); break;
+      default: document.querySelectorAll<HTMLButtonElement>('#legend button')[Number(action.slice(4)) - 1]?.click();
+    }
+  }
+}

@@ -1,0 +1,22 @@
+// The keyboard. Each key is listed in the help (index.html).
+export type Action = 'play' | 'back' | 'forward' | 'begin' | 'end' | 'theme' | 'all' | 'tool' | 'up' | 'panel' | 'help' | 'voxels' | 'glass' | 'close'
+  | 'kind1' | 'kind2' | 'kind3' | 'kind4' | 'kind5' | 'kind6';
+
+const KEYS: Record<string, Action> = {
+  ' ': 'play', ArrowLeft: 'back', ArrowRight: 'forward', Home: 'begin', End: 'end', t: 'theme', a: 'all', f: 'tool', u: 'up', p: 'panel', '?': 'help', h: 'help', v: 'voxels', g: 'glass', Escape: 'close',
+  '1': 'kind1', '2': 'kind2', '3': 'kind3', '4': 'kind4', '5': 'kind5', '6': 'kind6',
+};
+
+export function listen(act: (action: Action) => void): void {
+  window.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const target = event.target as HTMLElement;
+    const action = KEYS[event.key];
+    if (!action) return;
+    // Fields and buttons keep the keys that work them.
+    if (target.matches('input:not([type=range]), select, textarea') && action !== 'close') return;
+    if (target.matches('button') && event.key === ' ') return;
+    event.preventDefault();
+    act(action);
+  });
+}

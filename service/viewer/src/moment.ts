@@ -1,0 +1,16 @@
+// What is shown at one instant, whoever it comes from: a device, the mouse, a recorded run.
+import type { Frame, Pose, Vec3 } from './protocol.js';
+
+export interface Moment {
+  time: number;            // s
+  pose: Pose;
+  frame: Frame | null;     // the newest one that was judged
+  force: Vec3;             // N, as the hand feels it, on the tool
+  torque: Vec3;            // N·m, about the centre of mass
+  depth: number;           // m, the deepest area
+  contact: boolean;
+  frame_us: number;        // NaN when unknown
+  late: number;            // what the last strip shows: lateness in µs, age in ticks or the way there and back in ms; NaN when unknown
+  stage: number;           // from 1; 0: none
+  note: string;            // "", or what holds the force back: "paused", …
+}

@@ -1,0 +1,140 @@
+// The picture of a moment: bodies, contact, areas, voxels in one view, at a level of detail that stays smooth.
+import * as three from 'three';
+import { ApiError, type Api } from './api.js';
+import { AreaLayer } from './area_layer.js';
+import { Bodies } from './bodies.js';
+import { ContactLayer } from './contact_layer.js';
+import { Ghost } from './ghost.js';
+import { LEVELS, LevelKeeper } from './lod.js';
+import type { Moment } from './moment.js';
+import { MouseDrag } from './mouse_drag.js';
+import { DARK, LIGHT } from './palette.js';
+import type { Frame, Pose, Scene } from './protocol.js';
+import { SceneView } from './scene_view.js';
+import { TriangleStore } from './triangle_store.js';
+import { VoxelLayer } from './voxel_layer.js';
+
+const STRONG_N = 3;   // chosen: arrows and heights are scaled so that this fills the tool's size
+
+export class Picture {
+  readonly view: SceneView;
+  readonly bodies: Bodies;
+  readonly contact: ContactLayer;
+  readonly areas = new AreaLayer();
+  readonly voxels = new VoxelLayer();
+  readonly ghost: Ghost;
+  readonly drag: MouseDrag;
+  readonly levels = new LevelKeeper();
+  scene: Scene | null = null;
+  drawn_triangles = 0;
+  reduced = false;
+  private readonly stores: { mockup: TriangleStore; tool: TriangleStore };
+  private shown_frame: Frame | null = null;
+  private loading: AbortController | null = null;
+  private centre = new three.Vector3();
+
+  constructor(private readonly api: Api, host: HTMLElement, private readonly failed: (error: unknown) => void) {
+    this.view = new SceneView(host);
+    this.bodies = new Bodies(this.view.scene);
+    this.stores = { mockup: new TriangleStore(api, 'static'), tool: new TriangleStore(api, 'tool') };
+    this.contact = new ContactLayer(this.stores.mockup, this.stores.tool);
+    this.ghost = new Ghost(this.bodies);
+    this.drag = new MouseDrag(this.view, this.bodies);
+    this.view.scene.add(this.contact.mockup.object, this.areas.object, this.voxels.object, this.ghost.object);
+    this.bodies.tool.add(this.contact.tool.object);
+    for (const store of [this.stores.mockup, this.stores.tool]) store.arrived = () => { this.redraw_contact(); };
+    this.view.after_draw = (ms) => {
+      if (this.scene && Number.isFinite(ms) && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
+    };
+  }
+
+  /** Shows a scene that is ready; the camera goes to it. */
+  async open(scene: Scene): Promise<void> {
+    this.scene = scene;
+    this.stores.mockup.reset(scene.id);
+    this.stores.tool.reset(scene.id);
+    this.voxels.clear();
+    this.set_contact(null);
+    this.areas.set([], this.centre, [0, 0, 0], [0, 0, 0]);
+    await this.load_level(scene);
+    this.bodies.move(scene.start ?? [0, 0, 0, 0, 0, 0, 1]);
+    const box = new three.Box3();
+    if (scene.bounds) box.set(new three.Vector3(...scene.bounds.min), new three.Vector3(...scene.bounds.max));
+    else box.copy(this.bodies.mockup_mesh.geometry.boundingBox ?? new three.Box3());
+    this.view.set_bounds(box);
+    this.areas.set_scale(scene.tool_radius ?? this.bodies.tool_radius(), STRONG_N, scene.stiffness ?? 2000);
+    this.view.look_at_all(true);
+  }
+  close(): void {
+    this.loading?.abort();
+    this.scene = null;
+    this.bodies.clear();
+    this.voxels.clear();
+    this.set_contact(null);
+    this.areas.set([], this.centre, [0, 0, 0], [0, 0, 0]);
+    this.view.request();
+  }
+
+  private async load_level(scene: Scene): Promise<void> {
+    this.loading?.abort();
+    const loading = (this.loading = new AbortController());
+    try {
+      const geometry = await this.api.geometry(scene.id, LEVELS[this.levels.level], loading.signal);
+      if (this.scene !== scene) return;
+      this.bodies.set(geometry);
+      this.reduced = geometry.reduced;
+      this.drawn_triangles = geometry.mockup.ids.length + geometry.tool.ids.length;
+      this.stores.mockup.set_body(geometry.mockup, !geometry.reduced);
+      this.stores.tool.set_body(geometry.tool, !geometry.reduced);
+      this.redraw_contact();
+    } catch (error) {
+      if (!loading.signal.aborted) this.failed(error);
+    }
+  }
+
+  show(moment: Moment): void {
+    this.bodies.move(moment.pose);
+    if (moment.frame !== this.shown_frame) this.set_contact(moment.frame);
+    const gc = this.scene?.tool_gc ?? [0, 0, 0];
+    this.bodies.tool.updateMatrixWorld();
+    this.centre.set(gc[0], gc[1], gc[2]).applyMatrix4(this.bodies.tool.matrixWorld);
+    this.areas.set(moment.frame?.contact ? moment.frame.areas : [], this.centre, moment.force, moment.torque);
+    this.ghost.set(this.drag.coupling, this.drag.holding !== null);
+    this.view.request();
+  }
+  /** Draws the contact again, in the colours and kinds that are chosen now. */
+  redraw_contact(): void { this.set_contact(this.shown_frame); }
+  private set_contact(frame: Frame | null): void {
+    this.shown_frame = frame;
+    this.contact.set(frame);
+    this.view.request();
+  }
+
+  async show_voxels(kind: 'boundary' | 'internal' | null): Promise<void> {
+    this.voxels.clear();
+    this.view.request();
+    if (!kind || !this.scene) return;
+    const scene = this.scene;
+    try {
+      const voxels = await this.api.voxels(scene.id, kind);
+      if (this.scene === scene) this.voxels.show(voxels);
+    } catch (error) {
+      throw error instanceof ApiError ? error : new Error(String(error));
+    } finally { this.view.request(); }
+  }
+
+  look_at_tool(): void { this.view.look_at(this.bodies.tool.position, (this.scene?.tool_radius ?? this.bodies.tool_radius()) * 1.9); }
+  pose_of_tool(): Pose {
+    const { position: p, quaternion: q } = this.bodies.tool;
+    return [p.x, p.y, p.z, q.x, q.y, q.z, q.w];
+  }
+  theme(dark: boolean): void {
+    const theme = dark ? DARK : LIGHT;
+    this.view.theme(theme);
+    this.bodies.theme(theme);
+    this.areas.theme(theme);
+    this.voxels.theme(theme);
+    this.ghost.theme(theme);
+    this.view.request();
+  }
+}

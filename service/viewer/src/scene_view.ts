@@ -1,0 +1,137 @@
+// The picture's frame: renderer, camera, light, ground grid. Draws when something changed, and else rests.
+import * as three from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Theme } from './palette.js';
+
+/** The nearest 1, 2 or 5 times a power of ten at or below `value`. */
+export function round_down(value: number): number {
+  const power = 10 ** Math.floor(Math.log10(value));
+  const lead = value / power;
+  return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
+}
+
+export class SceneView {
+  readonly renderer: three.WebGLRenderer;
+  readonly scene = new three.Scene();
+  readonly camera = new three.PerspectiveCamera(38, 1, 0.001, 100);
+  readonly controls: OrbitControls;
+  /** Called before each picture, and after it with the time since the last one in an unbroken row, ms (NaN for the first). */
+  before_draw: () => void = () => {};
+  after_draw: (ms: number) => void = () => {};
+  /** The grid's cell, m. */
+  grid_cell = 0;
+  private grid: three.GridHelper | null = null;
+  private grid_colour = 0xffffff;
+  private dirty = true;
+  private last_draw = NaN;
+  private focus = { centre: new three.Vector3(), radius: 1, floor: 0 };
+
+  constructor(private readonly host: HTMLElement) {
+    this.renderer = new three.WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    host.append(this.renderer.domElement);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener('change', () => this.request());
+    const sky = new three.HemisphereLight(0xffffff, 0x8a8f96, 1.9);
+    sky.position.set(0, 0, 1);
+    const lamp = new three.DirectionalLight(0xffffff, 1.9);   // over the viewer's left shoulder, whichever way one looks
+    lamp.position.set(-0.6, 0.9, 0.8);
+    this.camera.add(lamp);
+    this.scene.add(sky, this.camera);
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.resize();
+    const loop = (now: number) => {
+      requestAnimationFrame(loop);
+      if (!this.dirty) { this.last_draw = NaN; return; }
+      this.dirty = false;
+      this.before_draw();
+      this.renderer.render(this.scene, this.camera);
+      this.after_draw(now - this.last_draw);
+      this.last_draw = now;
+    };
+    requestAnimationFrame(loop);
+  }
+
+  get canvas(): HTMLCanvasElement { return this.renderer.domElement; }
+  request(): void { this.dirty = true; }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.request();
+  }
+
+  theme(theme: Theme): void {
+    this.scene.background = new three.Color(theme.page);
+    this.grid_colour = theme.grid;
+    this.draw_grid();
+    this.request();
+  }
+
+  /** What there is to see: the box of the mock-up. */
+  set_bounds(box: three.Box3): void {
+    const sphere = box.getBoundingSphere(new three.Sphere());
+    this.focus = { centre: sphere.center, radius: Math.max(sphere.radius, 1e-4), floor: box.min.z };
+    this.controls.minDistance = this.focus.radius * 0.005;
+    this.controls.maxDistance = this.focus.radius * 20;
+    this.camera.near = this.focus.radius * 0.002;
+    this.camera.far = this.focus.radius * 40;
+    this.camera.updateProjectionMatrix();
+    this.draw_grid();
+  }
+
+  /** Looks at a sphere from where the camera is, or from the usual place. */
+  look_at(centre: three.Vector3, radius: number, from_usual = false): void {
+    const direction = from_usual ? new three.Vector3(0.55, -1, 0.62).normalize() : this.camera.position.clone().sub(this.controls.target).normalize();
+    const half = three.MathUtils.degToRad(this.camera.fov / 2);
+    const distance = radius / Math.sin(Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect)));
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction, distance);
+    this.controls.update();
+    this.request();
+  }
+  look_at_all(from_usual = false): void { this.look_at(this.focus.centre, this.focus.radius * 1.02, from_usual); }
+
+  /** Turns y or z upwards. */
+  turn_up(): void {
+    const z = this.camera.up.z === 1;
+    this.camera.up.set(0, z ? 1 : 0, z ? 0 : 1);
+    this.controls.dispose();
+    Object.assign(this, { controls: new OrbitControls(this.camera, this.canvas) });
+    this.controls.addEventListener('change', () => this.request());
+    this.set_bounds_again();
+    this.look_at_all(true);
+  }
+  private set_bounds_again(): void {
+    this.controls.minDistance = this.focus.radius * 0.005;
+    this.controls.maxDistance = this.focus.radius * 20;
+    this.draw_grid();
+  }
+
+  private draw_grid(): void {
+    if (this.grid) { this.scene.remove(this.grid); this.grid.dispose(); }
+    this.grid_cell = round_down(this.focus.radius / 4);
+    const cells = 2 * Math.ceil((this.focus.radius * 1.6) / this.grid_cell);
+    this.grid = new three.GridHelper(cells * this.grid_cell, cells, this.grid_colour, this.grid_colour);
+    const snap = (value: number) => Math.round(value / this.grid_cell) * this.grid_cell;
+    if (this.camera.up.z === 1) {
+      this.grid.rotation.x = Math.PI / 2;
+      this.grid.position.set(snap(this.focus.centre.x), snap(this.focus.centre.y), this.focus.floor - this.focus.radius * 0.04);
+    } else {
+      this.grid.position.set(snap(this.focus.centre.x), this.focus.centre.y - this.focus.radius * 0.7, snap(this.focus.centre.z));
+    }
+    this.scene.add(this.grid);
+    this.request();
+  }
+
+  /** Where a point of the world is on the screen, in pixels of the canvas; null behind the camera. */
+  project(point: three.Vector3): { x: number; y: number } | null {
+    const place = point.clone().project(this.camera);
+    if (place.z > 1) return null;
+    return { x: ((place.x + 1) / 2) * this.canvas.clientWidth, y: ((1 - place.y) / 2) * this.canvas.clientHeight };
+  }
+}
