@@ -8,6 +8,8 @@
 namespace palpate::falcon {
 namespace {
 
+constexpr const char* kLying = "the Falcon's encoders say what its arms can't do; unplug it, plug it in and home it anew";
+
 class FalconDevice final : public HapticDevice {
  public:
   FalconDevice(const FalconSettings& settings, std::vector<std::uint8_t> image, const Pose& start, OpenPort open_port)
@@ -44,17 +46,18 @@ class FalconDevice final : public HapticDevice {
     if (sample_.state != DeviceState::kClosed) sample_.state = device_.state;
     sample_.time_ns = device_.time_ns;
     sample_.buttons = device_.buttons;
-    sample_.clutched = false;
+    sample_.clutched = lying_ = false;
     if (sample_.state != DeviceState::kReady) {
       grip_ = kCentre;
       workspace_.release();
       return sample_;
     }
     angles_ = angles_of_encoders(device_.encoders);
-    const std::optional<Vec3> grip = position_of_angles(angles_, grip_);
+    const std::optional<Vec3> grip = possible(angles_) ? position_of_angles(angles_, grip_) : std::nullopt;
     if (!grip) {
       // Angles that no position of the legs has: the encoders lie, so nothing may be felt until they don't.
       sample_.state = DeviceState::kHoming;
+      lying_ = true;
       workspace_.release();
       return sample_;
     }
@@ -64,7 +67,7 @@ class FalconDevice final : public HapticDevice {
     return sample_;
   }
 
-  const char* guidance() const noexcept override { return device_.guidance; }
+  const char* guidance() const noexcept override { return lying_ ? kLying : device_.guidance; }
 
   void write(const Wrench& wrench, const Vec3& /*gc*/) noexcept override {
     FromLoop wanted;
@@ -86,6 +89,7 @@ class FalconDevice final : public HapticDevice {
   DeviceSample sample_;
   Angles angles_{};
   Vec3 grip_ = kCentre;
+  bool lying_ = false;
 };
 
 }  // namespace

@@ -115,13 +115,14 @@ FalconLink::Next FalconLink::exchange(SerialLine& line) {
   PacketStream stream;
   ReportFilter filter;
   const auto begun = Clock::now();
-  auto last_sound = begun, last_sent = begun - kAnswerTime;
+  auto last_sound = begun, last_sent = begun - kAnswerTime, homing_since = begun;
   bool answered = true;
   tell(DeviceState::kHoming, kHomingText);
   while (!stopping()) {
     const auto now = Clock::now();
     if (line.lost() || now - last_sound > kDeviceSilence) return Next::kReopen;
-    if (!filter.homed() && now - begun > std::chrono::duration<double>(settings_.homing_timeout_s)) {
+    if (filter.homed()) homing_since = now;   // lost homing has the whole time again
+    if (now - homing_since > std::chrono::duration<double>(settings_.homing_timeout_s)) {
       tell(DeviceState::kFault, kNotHomed);
       return Next::kFault;
     }

@@ -1,5 +1,6 @@
 #include "driver/falcon/kinematics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
@@ -10,6 +11,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kZeroAngle = 35 * kDegree;
 constexpr double kRadiansPerCount = 0.01425 / 0.110 * 360 / 1280 * kDegree;
+constexpr double kLeastAngle = -70 * kDegree, kLargestAngle = 135 * kDegree;
 constexpr int kNewtonSteps = 24;            // far starts need some ten, the last position of a moving hand 2 or 3
 constexpr double kLongestStep = 0.02;       // m; a longer one would leave the region where the legs' equations are nearly linear
 
@@ -74,6 +76,10 @@ double counts_of_angle(double angle) { return (angle - kZeroAngle) / kRadiansPer
 
 Angles angles_of_encoders(const Encoders& encoders) {
   return {angle_of_counts(encoders[0]), angle_of_counts(encoders[1]), angle_of_counts(encoders[2])};
+}
+
+bool possible(const Angles& angles) {
+  return std::all_of(angles.begin(), angles.end(), [](double angle) { return angle >= kLeastAngle && angle <= kLargestAngle; });
 }
 
 std::optional<Vec3> position_of_angles(const Angles& angles, const Vec3& guess) {

@@ -28,6 +28,10 @@ double angle_of_counts(double counts);
 double counts_of_angle(double angle);
 Angles angles_of_encoders(const Encoders& encoders);
 
+/// Whether the arms can stand so. Chosen, well beyond the workspace, which needs −56° to 113°: −70° to 135°. Without it encoders that are off by a whole turn
+/// would go for others, for the equations below know no turns.
+bool possible(const Angles& angles);
+
 /// Where the grip is for the angles, m; nothing where the legs don't meet or the search doesn't settle. Newton's method
 /// from `guess` on the three leg equations, until the step is under 1e-15 m or rounding stops it; a fixed number of steps at most, so it is fit for
 /// the 1 kHz loop. `guess`: the last position, or kCentre.

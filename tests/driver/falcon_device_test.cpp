@@ -8,46 +8,17 @@
 #include "driver/falcon/falcon_device.h"
 #include "driver/falcon/firmware.h"
 #include "driver/safe_device.h"
-#include "tests/driver/fake_usb/descriptor_front.h"
-#include "tests/driver/fake_usb/falcon_model.h"
+#include "tests/driver/fake_usb/falcon_table.h"
 
 namespace palpate::falcon {
 namespace {
 
 using namespace std::chrono_literals;
-using fake::DescriptorFront;
 using fake::FalconFaults;
-using fake::FalconModel;
 
-/// A Falcon on a table: a model, its plug, and the driver's way to find it.
-class Table {
- public:
-  explicit Table(FalconFaults faults = {}, bool loaded = false) : model(faults, loaded) {
-    model.firmware_size = 1000;
-    plug();
-  }
-  void plug() {
-    front = std::make_unique<DescriptorFront>(
-        fake::DeviceCalls{[this](std::uint8_t r, std::uint16_t v) { return model.control(r, v); },
-                          [this](std::span<const std::uint8_t> b) { model.out(b); }, [this] { return model.in(); },
-                          [this] { return model.has_bytes(); }},
-        fake::bulk_pair_descriptors(kUsbId.vendor, kUsbId.product));
-    plugged = true;
-  }
-  void unplug() {
-    plugged = false;
-    front->unplug();
-  }
-  OpenPort opener() {
-    return [this]() -> Result<std::unique_ptr<UsbPort>> {
-      if (!plugged) return Error{ErrorCode::kNoDevice, "nothing is plugged in"};
-      return UsbPort::open_descriptor(front->descriptor(), 0);
-    };
-  }
-
-  FalconModel model;
-  std::unique_ptr<DescriptorFront> front;
-  std::atomic<bool> plugged{false};
+/// With a firmware of many chunks.
+struct Table : fake::FalconTable {
+  explicit Table(FalconFaults faults = {}, bool loaded = false) : FalconTable(faults, loaded, 1000) {}
 };
 
 std::string firmware_file(std::size_t size) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <random>
 
 namespace palpate::falcon {
@@ -47,6 +49,22 @@ TEST(FalconKinematics, ForwardAndInverseCancelOverTheWorkspace) {
   }
   EXPECT_LE(worst, 1e-12);
   EXPECT_GT(reached, 900'000) << "the cube is mostly within reach";
+}
+
+TEST(FalconKinematics, AnglesOfTheWorkspaceArePossibleAndAWholeTurnMoreIsNot) {
+  std::mt19937_64 random(3);
+  double least = 10, largest = -10;
+  for (int i = 0; i < 100'000; ++i) {
+    const auto angles = angles_of_position(random_position(random) * Vec3(0.8, 0.8, 1));   // 80 mm wide: more than the device's 75 mm
+    if (!angles) continue;
+    for (const double angle : *angles) least = std::min(least, angle), largest = std::max(largest, angle);
+    EXPECT_TRUE(possible(*angles));
+  }
+  const double turn = 2 * std::numbers::pi;
+  EXPECT_FALSE(possible({0.6 + turn, 0.6, 0.6}));
+  EXPECT_FALSE(possible({0.6, 0.6 - turn, 0.6}));
+  EXPECT_FALSE(possible({0.6, 0.6, NAN}));
+  std::printf("angles from %.1f to %.1f degrees\n", least * 360 / turn, largest * 360 / turn);
 }
 
 TEST(FalconKinematics, PowerAtTheMotorsIsPowerAtTheGrip) {

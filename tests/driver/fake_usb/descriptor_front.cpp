@@ -76,6 +76,17 @@ DescriptorFront* DescriptorFront::of(int descriptor) {
 
 void DescriptorFront::unplug() {
   const std::lock_guard lock(mutex_);
+  pull();
+}
+
+/// Counts a transfer towards the one at which the plug comes out. True once it is out.
+bool DescriptorFront::pulled() {
+  if (!gone_ && faults.unplug_in > 0 && --faults.unplug_in == 0) pull();
+  return gone_;
+}
+
+void DescriptorFront::pull() {
+  if (gone_) return;
   gone_ = true;
   for (std::deque<void*>* waiting : {&waiting_in_, &waiting_out_})
     for (; !waiting->empty(); waiting->pop_front()) finished_.push_back({waiting->front(), -ENODEV});
@@ -98,6 +109,7 @@ void DescriptorFront::run() {
     if (stop_) return;
     const auto now = std::chrono::steady_clock::now();
     while (!gone_ && !waiting_in_.empty() && (calls_.has_bytes() || now - last >= kStatusEvery)) {
+      if (pulled()) break;
       last = now;
       auto* urb = static_cast<usbdevfs_urb*>(waiting_in_.front());
       waiting_in_.pop_front();
@@ -121,6 +133,7 @@ void DescriptorFront::run() {
 }
 
 int DescriptorFront::submit(void* argument) {
+  if (pulled()) return -ENODEV;
   auto* urb = static_cast<usbdevfs_urb*>(argument);
   urb->actual_length = 0;
   if (urb->type == USBDEVFS_URB_TYPE_CONTROL) {

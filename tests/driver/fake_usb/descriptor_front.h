@@ -46,6 +46,8 @@ class DescriptorFront {
     void* urb;
     int status;
   };
+  void pull();
+  bool pulled();
   int submit(void* urb);
   int reap(void** urb);
   int discard(void* urb);

@@ -22,6 +22,7 @@ struct BusFaults {
   std::atomic<int> stalled_control{0};     ///< so many vendor requests are refused
   std::atomic<int> babble{0};              ///< so many IN transfers overflow
   std::atomic<int> slow_us{0};             ///< every transfer takes so much longer
+  std::atomic<int> unplug_in{0};           ///< after so many transfers the plug comes out; 0: never
   std::atomic<bool> deaf{false};           ///< OUT transfers are taken and never finish
   std::atomic<bool> busy{false};           ///< claiming fails: somebody else has the interface
   std::atomic<bool> kernel_driver{false};  ///< the kernel's own driver has the interface, until it is detached

@@ -17,6 +17,8 @@ struct FalconFaults {
   int greetings_ignored = 0;
   bool deaf_to_baud = false;
   int wrong_echo_at = -1;              ///< the firmware byte whose echo differs
+  int wrong_echoes = 1'000'000;        ///< how many loads that spoils
+  bool silent = false;                 ///< no report at all
   int bad_loads = 0;                   ///< loads that end in silence, before one works
   int never_homed = 0;                 ///< 1: an encoder never passes its index
   int reports_silent_after = -1;       ///< then no report any more
@@ -34,7 +36,9 @@ struct FalconFaults {
 /// fronts bring those. The hand that holds it is `encoders`.
 class FalconModel {
  public:
-  explicit FalconModel(FalconFaults faults = {}, bool loaded = false) : faults_(faults), loaded_(loaded) {}
+  explicit FalconModel(FalconFaults wrong = {}, bool loaded = false) : faults(wrong), loaded_(loaded) {}
+
+  FalconFaults faults;                 ///< may change while it runs
 
   /// What the encoders read once homed, by report number since power-up.
   std::function<falcon::Encoders(int)> encoders = [](int) { return falcon::Encoders{}; };
@@ -46,6 +50,7 @@ class FalconModel {
   /// One IN packet of at most 64 bytes, status first; empty: nothing to say but status.
   std::vector<std::uint8_t> in();
   bool has_bytes() const { return !answer_.empty(); }
+  void lose_homing();                  ///< as after a knock: it counts to homes_after again
   void power_cycle();                  ///< unplugged and plugged in: firmware and homing are gone
 
   const falcon::MotorCounts& motors() const { return motors_; }
@@ -65,7 +70,6 @@ class FalconModel {
   void take_image(std::uint8_t byte);
   void answer(const falcon::Command& command);
 
-  FalconFaults faults_;
   bool loaded_;
   Baud baud_ = Baud::kNone;
   bool greeted_ = false, ready_ = false;
