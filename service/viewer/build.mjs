@@ -16,7 +16,6 @@ await build({
   target: 'es2022',
   legalComments: 'none',   // three's licence is named in docs/DEPENDENCIES.md
   charset: 'ascii',
-  nodePaths: [join(process.cwd(), 'node_modules')],   // the build keeps the packages in its own folder
   logLevel: 'warning',
 });
 copyFileSync(join(here, 'src/theme.css'), join(out, 'viewer.css'));

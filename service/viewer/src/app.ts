@@ -313,8 +313,8 @@ export class App {
         this.apply_theme(theme);
         break;
       }
-      case 'all': this.picture.view.look_at_all(); break;
-      case 'tool': this.picture.look_at_tool(); break;
+      case 'all': this.picture.look_at_all(); break;
+      case 'tool': this.picture.follow_tool(); break;
       case 'up': this.picture.view.turn_up(); break;
       case 'panel': document.body.classList.toggle('no-panel'); this.dirty = true; break;
       case 'help': element<HTMLDialogElement>('help').showModal(); break;

@@ -32,6 +32,7 @@ export class Picture {
   private shown_frame: Frame | null = null;
   private loading: AbortController | null = null;
   private centre = new three.Vector3();
+  private following = false;
 
   constructor(private readonly api: Api, host: HTMLElement, private readonly failed: (error: unknown) => void) {
     this.view = new SceneView(host);
@@ -63,6 +64,7 @@ export class Picture {
     else box.copy(this.bodies.mockup_mesh.geometry.boundingBox ?? new three.Box3());
     this.view.set_bounds(box);
     this.areas.set_scale(scene.tool_radius ?? this.bodies.tool_radius(), STRONG_N, scene.stiffness ?? 2000);
+    this.following = false;
     this.view.look_at_all(true);
   }
   close(): void {
@@ -93,7 +95,9 @@ export class Picture {
   }
 
   show(moment: Moment): void {
+    const before = this.bodies.tool.position.clone();
     this.bodies.move(moment.pose);
+    if (this.following && !this.drag.holding) this.view.shift(this.bodies.tool.position.clone().sub(before));
     if (moment.frame !== this.shown_frame) this.set_contact(moment.frame);
     const gc = this.scene?.tool_gc ?? [0, 0, 0];
     this.bodies.tool.updateMatrixWorld();
@@ -123,7 +127,15 @@ export class Picture {
     } finally { this.view.request(); }
   }
 
-  look_at_tool(): void { this.view.look_at(this.bodies.tool.position, (this.scene?.tool_radius ?? this.bodies.tool_radius()) * 1.9); }
+  /** The camera goes to the tool and stays with it, until `look_at_all`. */
+  follow_tool(): void {
+    this.following = true;
+    this.view.look_at(this.bodies.tool.position, (this.scene?.tool_radius ?? this.bodies.tool_radius()) * 2.3);
+  }
+  look_at_all(): void {
+    this.following = false;
+    this.view.look_at_all();
+  }
   pose_of_tool(): Pose {
     const { position: p, quaternion: q } = this.bodies.tool;
     return [p.x, p.y, p.z, q.x, q.y, q.z, q.w];

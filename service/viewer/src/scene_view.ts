@@ -10,6 +10,15 @@ export function round_down(value: number): number {
   return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
 }
 
+/** Whether WebGL is drawn without a GPU: then edges are left rough, for smooth ones cost four times as much. */
+function drawn_by_processor(): boolean {
+  const context = document.createElement('canvas').getContext('webgl2');
+  const names = context?.getExtension('WEBGL_debug_renderer_info');
+  const renderer = context && names ? String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)) : '';
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(renderer);
+}
+
 export class SceneView {
   readonly renderer: three.WebGLRenderer;
   readonly scene = new three.Scene();
@@ -27,8 +36,9 @@ export class SceneView {
   private focus = { centre: new three.Vector3(), radius: 1, floor: 0 };
 
   constructor(private readonly host: HTMLElement) {
-    this.renderer = new three.WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    const software = drawn_by_processor();
+    this.renderer = new three.WebGLRenderer({ antialias: !software, powerPreference: 'high-performance' });
+    this.renderer.setPixelRatio(software ? 1 : Math.min(window.devicePixelRatio, 2));
     host.append(this.renderer.domElement);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -95,6 +105,13 @@ export class SceneView {
     this.request();
   }
   look_at_all(from_usual = false): void { this.look_at(this.focus.centre, this.focus.radius * 1.02, from_usual); }
+
+  /** Moves camera and what it looks at. */
+  shift(by: three.Vector3): void {
+    this.camera.position.add(by);
+    this.controls.target.add(by);
+    this.request();
+  }
 
   /** Turns y or z upwards. */
   turn_up(): void {

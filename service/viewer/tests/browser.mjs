@@ -1,0 +1,168 @@
+// The viewer in a real browser, against the real program: node browser.mjs PALPATE WORK [SCREENSHOTS]
+// Exit 77 (skipped) where chromium, or a viewer in the program, is missing. Environment: CHROMIUM; STAND_IN=SITE uses stand_in.mjs instead of `palpate serve`.
+import { spawn, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { createServer } from 'node:net';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const [palpate, work, pictures] = process.argv.slice(2);
+const browser_path = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const skip = (reason) => { console.log(`skipped: ${reason}`); process.exit(77); };
+if (!existsSync(browser_path)) skip(`no browser at ${browser_path} (Debian: chromium)`);
+if (!existsSync('installed')) skip('the viewer\'s packages are not here: `npm ci` failed when the viewer was built');
+const { chromium } = createRequire(join(process.cwd(), 'package.json'))('playwright-core');   // run where the build keeps the packages
+
+function check(truth, sentence) {
+  if (!truth) throw new Error(sentence);
+  console.log(`ok  ${sentence}`);
+}
+async function until(sentence, ask, seconds = 120) {
+  for (const end = Date.now() + 1000 * seconds; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 100))) if (await ask()) return check(true, sentence);
+  throw new Error(`not within ${seconds} s: ${sentence}`);
+}
+const run = (...args) => {
+  const { status, stderr } = spawnSync(palpate, args, { encoding: 'utf8' });
+  if (status !== 0) throw new Error(`palpate ${args.join(' ')}: ${status} ${stderr}`);
+};
+
+// A small mock-up and four seconds of the task on it; the first contact is in the third.
+rmSync(work, { recursive: true, force: true });
+const root = join(work, 'root');
+mkdirSync(root, { recursive: true });
+run('generate', 'disassembly', '--triangles', '4000', '--tool-triangles', '1000', '--out', join(root, 'engine'));
+run('run', join(root, 'engine/scene.json'), '--pace', 'asap', '--backend', 'cpu', '--duration', '4', '--out', join(root, 'first'));
+
+const port = await new Promise((resolve) => { const probe = createServer().listen(0, '127.0.0.1', () => { const { port: free } = probe.address(); probe.close(() => resolve(free)); }); });
+const address = `http://127.0.0.1:${port}/`;
+let server = null;
+async function start() {
+  server = process.env.STAND_IN
+    ? spawn(process.execPath, [join(dirname(fileURLToPath(import.meta.url)), 'stand_in.mjs'), process.env.STAND_IN, join(root, 'engine'), root, String(port)], { stdio: ['ignore', 'inherit', 'inherit'] })
+    : spawn(palpate, ['serve', '--listen', `127.0.0.1:${port}`, '--root', root, '--backend', 'cpu'], { stdio: ['ignore', 'ignore', 'inherit'] });
+  for (let i = 0; i < 200; ++i) {
+    if (await fetch(`${address}readyz`).then((answer) => answer.ok, () => false)) return;
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  throw new Error('the server does not start');
+}
+const stop = () => new Promise((resolve) => { if (!server || server.exitCode !== null) { resolve(); return; } server.once('exit', resolve); server.kill(process.env.STAND_IN ? 'SIGKILL' : 'SIGTERM'); });
+
+// Small pictures are drawn sooner by the processor; for the README they are larger.
+const WIDE = pictures ? { width: 1440, height: 900 } : { width: 1000, height: 640 };
+const NARROW = pictures ? { width: 760, height: 900 } : { width: 500, height: 640 };
+let browser = null;
+async function main() {
+  await start();
+  if (!(await (await fetch(address)).text()).includes('viewer.js')) { console.log('skipped: this program has no viewer'); return 77; }
+  browser = await chromium.launch({ executablePath: browser_path, args: ['--headless', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
+    '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+  const page = await browser.newPage({ viewport: WIDE, colorScheme: 'light' });
+  page.setDefaultTimeout(120_000);   // a machine without a GPU, busy with other tests, may need seconds a picture
+  const errors = [];
+  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
+  page.on('pageerror', (error) => errors.push(String(error)));
+  const text = (id) => page.textContent(`#${id}`);
+  const picture = async (name) => { if (pictures) { mkdirSync(pictures, { recursive: true }); await page.screenshot({ path: join(pictures, `${name}.png`) }); } };
+  /** Pixels of the picture whose colour is one of a kind's: at its full, before it is mixed with what lies above. */
+  const coloured = async (colour) => {
+    const legend = (visibility) => page.evaluate((value) => { for (const id of ['legend', 'labels']) document.getElementById(id).style.visibility = value; }, visibility);
+    await legend('hidden');   // it lies over the canvas and has the same colours
+    const png = (await page.screenshot({ clip: await page.locator('#canvas').boundingBox() })).toString('base64');
+    await legend('');
+    return page.evaluate(async ([data, rgb]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const canvas = Object.assign(document.createElement('canvas'), { width: image.width, height: image.height });
+      const pen = canvas.getContext('2d');
+      pen.drawImage(image, 0, 0);
+      const pixels = pen.getImageData(0, 0, image.width, image.height).data;
+      let count = 0;
+      for (let i = 0; i < pixels.length; i += 4) if (rgb.every((value, c) => Math.abs(pixels[i + c] - value) < 12)) ++count;
+      return count;
+    }, [png, colour]);
+  };
+  const BST = [0xe6, 0x9f, 0x00], BMT = [0x56, 0xb4, 0xe9];
+
+  // Nothing is open: the page says so and offers the scene file.
+  await page.goto(address);
+  await page.click('#empty-list button:has-text("engine/scene.json")');
+  await until('the scene opens', async () => /[0-9]/.test(await text('facts')));
+  check((await coloured(BST)) + (await coloured(BMT)) === 0, 'the picture shows no contact yet');
+  await picture('scene');
+
+  // A recorded run: found, played, scrubbed to a contact.
+  await page.click('[data-source=run]');
+  await until('the run that fits the scene is read', async () => /ticks/.test(await text('run-note')));
+  await page.keyboard.press('f');
+  await page.click('#play');
+  await until('it plays', async () => parseFloat(await text('clock')) > 0.2);
+  await page.click('#play');
+  const paused = await text('clock');
+  const entries = readFileSync(join(root, 'first/frames.jsonl'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+  const deepest = entries.reduce((best, frame) => (frame.cst.length + frame.bst.length > best.cst.length + best.bst.length && frame.contact ? frame : best));
+  check(deepest.contact, 'the run has a contact');
+  await page.evaluate((time) => { const bar = document.getElementById('scrubber'); bar.value = String(time); bar.dispatchEvent(new Event('input')); }, deepest.tick / 1000);
+  await until('the legend counts what the frame holds', async () => (await page.textContent('[data-kind=bst] b')) === deepest.bst.length.toLocaleString('en'));
+  check((await text('clock')) !== paused, 'the scrubber moves the clock');
+  await until('contact triangles have their colours in the picture', async () => (await coloured(BST)) + (await coloured(BMT)) > 30);
+  await picture('contact');
+  const before = (await coloured(BST)) + (await coloured(BMT));
+  for (const key of ['2', '5']) await page.keyboard.press(key);
+  await until('a kind that is switched off goes', async () => (await coloured(BST)) + (await coloured(BMT)) < before / 10);
+  for (const key of ['2', '5', 't']) await page.keyboard.press(key);
+  check((await page.getAttribute('html', 'data-theme')) === 'dark', 'dark on a key');
+  await page.setViewportSize(NARROW);
+  await picture('small_dark');
+  await page.setViewportSize(WIDE);
+  await page.keyboard.press('t');
+
+  // The mouse: the clamp is drawn against its pipe, which pushes back.
+  const drag = async () => {
+    await page.click('[data-source=mouse]');
+    await page.click('#mouse-reset');
+    await until('the loop answers', async () => /free|contact/.test(await text('contact')));
+    await page.keyboard.press('f');
+    await page.waitForTimeout(500);
+    const box = await page.locator('#canvas canvas').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    // Over the tool the pointer is a hand: its parts are looked for, for the middle of a clamp may be a hole.
+    let grip = null;
+    for (const [dx, dy] of [[0, 0], [0, -60], [60, 0], [-60, 0], [0, 60], [40, -120], [-40, -120]]) {
+      await page.mouse.move(x + dx, y + dy);
+      await page.waitForTimeout(120);
+      if ((await page.evaluate(() => document.querySelector('#canvas canvas').style.cursor)) === 'grab') { grip = [x + dx, y + dy]; break; }
+    }
+    check(grip, 'the tool can be taken');
+    await page.mouse.down();
+    for (let i = 1; i <= 12; ++i) { await page.mouse.move(grip[0], grip[1] - 12 * i); await page.waitForTimeout(60); }
+    await until('the tool that is dragged feels a force', async () => parseFloat(await text('force')) > 0.1);
+    await picture('mouse');
+    await page.mouse.up();
+    await until('and none when it is let go', async () => parseFloat(await text('force')) < 0.1);
+  };
+  await drag();
+  check(errors.length === 0, `no error on the console${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
+
+  // The server goes and comes back.
+  await stop();
+  await until('the page says that the server is gone', async () => (await page.isVisible('#banner')) && /does not answer/.test(await text('banner')));
+  await picture('gone');
+  await start();
+  await until('the page finds the server again', async () => (await page.getAttribute('#link', 'data-state')) === 'up');
+  errors.length = 0;   // connections refused while it was away
+  await drag();
+  check(errors.length === 0, `no error after the restart${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
+  return 0;
+}
+
+let status = 1;
+try { status = await main(); } catch (error) {
+  console.error(`FAILED  ${error.message}`);
+  if (pictures && browser) for (const page of browser.contexts().flatMap((context) => context.pages())) await page.screenshot({ path: join(pictures, 'failed.png') }).catch(() => {});
+}
+await browser?.close();
+await stop();
+process.exit(status);
