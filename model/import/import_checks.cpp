@@ -149,7 +149,7 @@ std::string distrust_dae(std::string_view bytes) {
         continue;
       }
       const std::string child = children->second[next++];
-      if (state[child] == 1) return fmt::format("has a node that contains itself ('{}')", child);
+      if (state[child] == 1) return fmt::format("has a node that contains itself ('{}')", std::string_view(child).substr(0, 40));
       if (state[child] == 0) state[child] = 1, stack.emplace_back(child, 0);
     }
   }

@@ -76,7 +76,7 @@ bool read_header(std::string_view bytes, Header& header) {
 }
 
 std::string cut_short(const Element& element, std::uint64_t have) {
-  return fmt::format("is cut short: it promises {} elements '{}' and has {}", element.count, element.name, have);
+  return fmt::format("is cut short: it promises {} elements '{}' and has {}", element.count, element.name.substr(0, 40), have);
 }
 
 std::uint64_t read_count(const char* data, std::size_t size, bool big_endian) {
@@ -141,7 +141,7 @@ std::string distrust_ply(std::string_view bytes) {
   const std::string_view body = bytes.substr(header.length);
   if (header.format == "ascii") return distrust_ascii(body, header);
   if (header.format == "binary_little_endian" || header.format == "binary_big_endian") return distrust_binary(body, header);
-  return fmt::format("has PLY format '{}', which is unknown", header.format);
+  return fmt::format("has PLY format '{}', which is unknown", header.format.substr(0, 40));
 }
 
 }  // namespace palpate
