@@ -42,8 +42,12 @@ void decode_sums(const AreaResult& from, ContactArea& area) {
   area.sheet_sign = static_cast<std::int8_t>(from.sheet_sign);
   area.rays = from.rays;
   area.max_height = from.max_height;
-  area.weight_sum = from.weight_sum;
   area.height_sum = from.height_sum;
+  area.weight_sum = from.weight_sum;
+  area.faded_sum = from.faded_sum;
+  area.faded_rest = from.faded_rest;
+  area.weight_slope = from.weight_slope;
+  area.height_slope = from.height_slope;
   for (std::size_t k = 0; k < 3; ++k) {
     area.moment[k] = {from.moment_low[k], from.moment_high[k]};
     area.voxel_sum[k] = from.voxel_sum[k];

@@ -33,6 +33,7 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
            {kBindParents, "union-find of contact triangles", statics * 2 * sizeof(std::uint32_t)},
            {kBindMobileWork, "tool triangles of areas", tool_triangles * std::uint64_t{sizeof(MobileWork)}},
            {kBindHeights, "heights", heights * sizeof(std::uint32_t)},
+           {kBindFades, "fades of heights", refined * heights * sizeof(std::uint32_t)},
            {kBindHeldOverlap, "overlaps with held areas", refined * kMaxFrameAreas * kMaxFrameAreas * sizeof(std::uint32_t), true},
            {kBindMobileTiles, "tiles of tool samples", capacity.lists[kListMobileTiles] * std::uint64_t{sizeof(MobileTile)}},
            {kBindSlotBoxes, "boxes of contact triangles", refined * slot_boxes * sizeof(LatticeBox)},

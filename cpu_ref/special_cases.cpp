@@ -54,8 +54,8 @@ void measure_needle(const Frame& frame, Area& area) {
     for (int k = 0; k < 3; ++k) middle[k] = static_cast<std::int32_t>((std::int64_t{ends.min[k]} + ends.max[k]) >> 1);
     const auto found = height(frame, middle, -up);
     if (!found) continue;
-    area.rays.push_back({middle, *found});
-    add_height(area, *found, kOneQ30, middle);
+    area.rays.push_back({middle, found->height});
+    add_height(area, found->height, kOneQ30, middle, 0);
   }
 
   // (b) from each of the tool's vertices there, up to the surface
@@ -72,7 +72,7 @@ void measure_needle(const Frame& frame, Area& area) {
     if (!smallest) continue;
     Int3 at;
     for (int k = 0; k < 3; ++k) at[k] = from[k] + static_cast<std::int32_t>((std::int64_t{up[k]} * *smallest) >> 30);
-    add_height(area, *smallest, kOneQ30, at);
+    add_height(area, *smallest, kOneQ30, at, 0);
   }
 }
 

@@ -41,8 +41,12 @@ struct ContactArea {
   Int3 direction{0};                                ///< n_c unnormalised, largest |component| in [2^28, 2^29), or 0
   std::uint32_t rays = 0;                           ///< samples that gave a height
   std::uint32_t max_height = 0;                     ///< largest H
-  std::int64_t weight_sum = 0;                      ///< Σ w, Q30, over samples that gave a height
   std::int64_t height_sum = 0;                      ///< Σ (H·w >> 30)
+  std::int64_t weight_sum = 0;                      ///< Σ w', Q30, over samples that gave a height; w' fades in with H
+  std::int64_t faded_sum = 0;                       ///< Σ P, heights that fade in likewise, …
+  std::int64_t faded_rest = 0;                      ///< … and its fraction in 2^-20
+  std::int64_t weight_slope = 0;                    ///< 2^10 ∂(Σ w')/∂H, as if all samples went deeper together
+  std::int64_t height_slope = 0;                    ///< ∂(Σ P)/∂H, likewise
   std::array<WideSum, 3> moment{};                  ///< Σ (H·w >> 30)·s, world lattice
   std::array<std::int64_t, 3> voxel_sum{};          ///< `paper`: Σ centres of the area's V_bnd voxels
   std::uint32_t voxel_count = 0;                    ///< `paper`

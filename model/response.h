@@ -15,7 +15,8 @@ struct AreaResponse {
   std::uint32_t id = 0;
   Vec3 normal{0};            ///< n_c, unit, out of the mock-up; 0 if there is no direction
   double depth = 0;          ///< d, m, ≥ 0; of the area that gives force for a pierced plate: the smallest of its group
-  double max_depth = 0;      ///< largest height, m; depth / max_depth estimates ∂d/∂h for κ
+  double max_depth = 0;      ///< largest height, m
+  double slope = 1;          ///< ∂d/∂h: how d changes as the tool goes deeper along n_c; may leave [0, 1] where samples come in
   Vec3 point{0};             ///< cp, m
   Vec3 force{0};             ///< K d n_c, N; 0 for an area silenced by piercing
   Vec3 torque{0};            ///< (cp − gc) × F, N·m

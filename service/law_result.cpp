@@ -10,9 +10,7 @@ namespace palpate {
 namespace {
 
 double extrapolation_stiffness(const AreaResponse& area, double stiffness) {
-  const double ratio = area.max_depth > 0 ? area.depth / area.max_depth : 1.0;
-  const double round = 3 * std::max(0.0, ratio - 0.5) * (1 - ratio);   // caps stiffen as they grow
-  return stiffness * std::clamp(ratio + round, 0.25, 1.0);
+  return stiffness * std::clamp(area.slope, 0.25, 1.0);
 }
 
 ContactPlane plane_of(const AreaResponse& area, const Vec3& gc, double stiffness) {

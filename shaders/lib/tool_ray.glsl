@@ -5,10 +5,29 @@
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/line_box.glsl"
 #include "shaders/lib/budget.glsl"
+#include "shaders/lib/direction.glsl"
+#include "shaders/lib/pose.glsl"
+#include "shaders/lib/tool_record.glsl"
 
 layout(constant_id = 2) const bool WALK = false;   // rays walk through the tool's fine partition; else they look at the whole tool
 
 const uint32_t kLevels = 8u;   // distinct heights kept a sweep; more take another sweep (chosen: most rays have fewer)
+
+// m: the normal of the triangle at a place in the order of clusters, as a direction.
+ivec3 tool_normal(uint32_t place) {
+  if (WALK) {
+    const RecordCorners r = record_at(place);
+    return normalise(raw_normal(world_from_tool(r.a), world_from_tool(r.b), world_from_tool(r.c)));
+  }
+  const ToolCorners t = tool_corners[place];
+  return normalise(raw_normal(t.a, t.b, t.c));
+}
+
+// Whether the first of two triangles has the smaller normal in the order of components.
+bool normal_before(uint32_t first, uint32_t second) {
+  const ivec3 a = tool_normal(first), b = tool_normal(second);
+  return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);
+}
 
 // Crossing heights of one sweep, ascending, equal ones merged.
 struct Levels {
@@ -16,13 +35,15 @@ struct Levels {
   bool more;                   // some did not fit: they are above the last
   uint32_t height[kLevels];
   int32_t sign_sum[kLevels];
+  uint32_t triangle[kLevels];  // of those that meet there, the one with the smallest normal
 };
 
-void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossing) {
+void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossing, uint32_t triangle) {
   uint32_t at = 0u;
   while (at < levels.count && levels.height[at] < height) ++at;
   if (at < levels.count && levels.height[at] == height) {
     levels.sign_sum[at] += sign_of_crossing;
+    if (normal_before(triangle, levels.triangle[at])) levels.triangle[at] = triangle;
     return;
   }
   if (levels.count == kLevels) levels.more = true;
@@ -31,9 +52,11 @@ void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossin
   for (uint32_t i = last; i > at; --i) {
     levels.height[i] = levels.height[i - 1u];
     levels.sign_sum[i] = levels.sign_sum[i - 1u];
+    levels.triangle[i] = levels.triangle[i - 1u];
   }
   levels.height[at] = height;
   levels.sign_sum[at] = sign_of_crossing;
+  levels.triangle[at] = triangle;
   levels.count = last + 1u;
 }
 
@@ -71,7 +94,7 @@ Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
       if (crossing.sign == 0) continue;
       total += crossing.sign;
       if (crossing.height < from || spent(2u * kLevels)) continue;
-      levels_insert(levels, crossing.height, crossing.sign);
+      levels_insert(levels, crossing.height, crossing.sign, candidates[k]);
     }
   }
   return levels;
@@ -80,8 +103,9 @@ Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
 #include "shaders/lib/tool_walk.glsl"
 
 // The height of the sample p over the tool: `nearest`: the smallest crossing height; else the smallest one above which the
-// signs add up to 0. kNone: no crossing.
-uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
+// signs add up to 0. kNone: no crossing. `triangle`: of those that are crossed there, the one with the smallest normal.
+uint32_t tool_height(ivec3 p, ivec3 d, bool nearest, out uint32_t triangle) {
+  triangle = 0u;
   uint32_t from = 0u;
   int32_t passed = 0;   // sum of the signs below `from`
   do {
@@ -90,9 +114,11 @@ uint32_t tool_height(ivec3 p, ivec3 d, bool nearest) {
     if (WALK) levels = tool_walk(p, d, from, total);
     else levels = tool_sweep(p, d, from, total);
     if (levels.count == 0u) return kNone;
+    triangle = levels.triangle[0];
     if (nearest) return levels.height[0];
     for (uint32_t i = 0u; i < levels.count; ++i) {
       passed += levels.sign_sum[i];
+      triangle = levels.triangle[i];
       if (passed == total) return levels.height[i];
     }
     if (!levels.more) return kNone;   // only when the budget is spent: above the last crossing nothing is left

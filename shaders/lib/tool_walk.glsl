@@ -87,7 +87,7 @@ Levels tool_walk(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
       crossed = true;
       total += crossing.sign;
       if (crossing.height < from || spent(2u * kLevels)) continue;
-      levels_insert(levels, crossing.height, crossing.sign);
+      levels_insert(levels, crossing.height, crossing.sign, put_by[k]);
     }
     if (out_of_it && crossed) done = true;
   }

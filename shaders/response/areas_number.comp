@@ -34,8 +34,12 @@ void main() {
   empty.sheet_side = zero;
   empty.mobile_sum = zero;
   empty.mobile_weight = 0l;
-  empty.weight_sum = 0l;
   empty.height_sum = 0l;
+  empty.weight_sum = 0l;
+  empty.faded_sum = 0l;
+  empty.faded_rest = 0l;
+  empty.weight_slope = 0l;
+  empty.height_slope = 0l;
   empty.moment_low = zero;
   empty.moment_high = zero;
   empty.voxel_sum = zero;

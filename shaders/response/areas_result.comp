@@ -21,8 +21,12 @@ void main() {
     out_area.sheet_sign = areas[area].sheet_sign;
     out_area.rays = areas[area].rays;
     out_area.max_height = areas[area].max_height;
-    out_area.weight_sum = areas[area].weight_sum;
     out_area.height_sum = areas[area].height_sum;
+    out_area.weight_sum = areas[area].weight_sum;
+    out_area.faded_sum = areas[area].faded_sum;
+    out_area.faded_rest = areas[area].faded_rest;
+    out_area.weight_slope = areas[area].weight_slope;
+    out_area.height_slope = areas[area].height_slope;
     out_area.moment_low = areas[area].moment_low;
     out_area.moment_high = areas[area].moment_high;
     out_area.voxel_sum = areas[area].voxel_sum;

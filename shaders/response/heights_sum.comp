@@ -1,6 +1,6 @@
 #version 460
 // One invocation: a run of kHeightRun samples. Adds their heights to their areas, once for each change of area in the run.
-// Reads samples, heights, slots, weights. Writes the sums of areas.
+// Reads samples, heights, fades, slots, weights. Writes the sums of areas.
 // Before: heights_trace.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -16,6 +16,7 @@ READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupWeights, uint32_t, mockup_weights);
 READ(kBindHeights, uint32_t, heights);
+READ(kBindFades, uint32_t, fades);
 READ(kBindSlots, SlotWork, slots);
 EDIT(kBindAreas, AreaWork, areas);
 
@@ -46,7 +47,7 @@ void main() {
       current = area;
       sum = height_sum_empty();
     }
-    height_sum_add(sum, p, heights[i], weight);
+    height_sum_add(sum, p, heights[i], weight, REFINED ? fades[i] : 0u);
   }
   if (current != kNone) height_sum_flush(current, sum);
 }

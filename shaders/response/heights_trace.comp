@@ -1,6 +1,7 @@
 #version 460
 // One invocation: a counting sample (`paper`: a triangle of C_s and its rounded centroid). Traces −n_c through the tool.
-// Reads samples, slots, areas, the tool: as a whole at its pose, or (WALK) its fine partition. Writes heights.
+// Reads samples, slots, areas, the tool: as a whole at its pose, or (WALK) its fine partition. Writes heights and, in `refined`, how they
+// fade in.
 // Before: areas_direct, areas_settle.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -28,9 +29,26 @@ READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindSlots, SlotWork, slots);
 READ(kBindAreas, AreaWork, areas);
 EDIT(kBindHeights, uint32_t, heights);
+EDIT(kBindFades, uint32_t, fades);
+READ(kBindMockupInfo, uint32_t, mockup_info);
+READ(kBindMockupNormals, ivec3, mockup_unit_normals);
 
 #include "shaders/lib/tool_ray.glsl"
 #include "shaders/lib/centroid.glsl"
+
+// H_0 of a sample: how much further, in height, the next sample of the grid lies on the same two faces.
+uint32_t fade_height(uint32_t static_id, ivec3 d, uint32_t exit_triangle) {
+  const ivec3 n = mockup_unit_normals[static_id], m = tool_normal(exit_triangle);
+  const int32_t k = int32_t(mockup_info[static_id] >> kInfoAxisShift & 3u), u = (k + 1) % 3, v = (k + 2) % 3;
+  const uint64_t across = uint64_t(abs(n[k]));   // ≥ 2^30 / √3
+  const uint64_t along_u = uint64_t(abs(mul_wide(m[u], n[k]) - mul_wide(m[k], n[u]))) / across;   // products within 2^59
+  const uint64_t along_v = uint64_t(abs(mul_wide(m[v], n[k]) - mul_wide(m[k], n[v]))) / across;
+  const uint64_t leaving = uint64_t(abs(mul_wide(m.x, d.x) + mul_wide(m.y, d.y) + mul_wide(m.z, d.z))) >> 28;
+  const uvec3 size = uvec3(abs(d));
+  const uint64_t spacing = uint64_t(scene.sample_spacing);   // ≤ 2^28
+  const uint64_t most = min((spacing << 32) / uint64_t(max(size.x, max(size.y, size.z))), 1ul << 30);
+  return uint32_t(leaving == 0ul ? most : min(most, 4ul * spacing * max(along_u, along_v) / leaving));
+}
 
 void main() {
   const uint32_t i = flat_invocation();
@@ -50,5 +68,7 @@ void main() {
   const ivec3 direction = areas[area].direction;
   if (direction == ivec3(0)) return;
   const bool nearest = !REFINED || (scene.tool.closed == 0u && scene.tool.has_internal == 0u);
-  heights[i] = tool_height(p, -direction, nearest);
+  uint32_t exit_triangle;
+  heights[i] = tool_height(p, -direction, nearest, exit_triangle);
+  if (REFINED && heights[i] != kNone) fades[i] = fade_height(frame_samples[i].static_id, direction, exit_triangle);
 }

@@ -91,10 +91,11 @@ void main() {
   if (span.any) {
     const ivec3 middle = (span.low + span.high) >> 1;
     const bool nearest = scene.tool.closed == 0u && scene.tool.has_internal == 0u;
-    const uint32_t height = tool_height(middle, -areas[area].direction, nearest);
+    uint32_t exit_triangle;
+    const uint32_t height = tool_height(middle, -areas[area].direction, nearest, exit_triangle);
     if (height != kNone) {
       HeightSum sum = height_sum_empty();
-      height_sum_add(sum, middle, height, 1u << 30);
+      height_sum_add(sum, middle, height, 1u << 30, 0u);
       height_sum_flush(area, sum);
       if (response.areas > 1u) find_pierced(area, middle, height);
     }

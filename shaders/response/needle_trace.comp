@@ -52,6 +52,6 @@ void main() {
   const uint32_t height = lowest;
   if (gl_LocalInvocationIndex != 0u || height == kNone) return;
   HeightSum sum = height_sum_empty();
-  height_sum_add(sum, p + ivec3((i64vec3(d) * int64_t(height)) >> 30), height, 1u << 30);
+  height_sum_add(sum, p + ivec3((i64vec3(d) * int64_t(height)) >> 30), height, 1u << 30, 0u);
   height_sum_flush(item.area, sum);
 }

@@ -303,8 +303,12 @@ struct AreaResult {
   int32_t sheet_sign;
   uint32_t rays;
   uint32_t max_height;
-  int64_t weight_sum;
   int64_t height_sum;
+  int64_t weight_sum;
+  int64_t faded_sum;
+  int64_t faded_rest;
+  int64_t weight_slope;
+  int64_t height_slope;
   int64_t moment_low[3];          // WideSum::low
   int64_t moment_high[3];         // WideSum::high
   int64_t voxel_sum[3];
@@ -354,8 +358,8 @@ PALPATE_ASSERT_SIZE(FrameInput, 140);
 PALPATE_ASSERT_SIZE(NearTriangle, 16);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(TouchCandidate, 16);
-PALPATE_ASSERT_SIZE(AreaResult, 128);
-PALPATE_ASSERT_SIZE(FrameResult, 88 + 128 * kMaxFrameAreas);
+PALPATE_ASSERT_SIZE(AreaResult, 160);
+PALPATE_ASSERT_SIZE(FrameResult, 88 + 160 * kMaxFrameAreas);
 
 PALPATE_SHARED_END
 #endif

@@ -22,6 +22,7 @@ PALPATE_CONSTANT int32_t kBindSlotBoxes = 79;         // LatticeBox[C_s / kSlotB
 PALPATE_CONSTANT int32_t kBindNeedleTable = 80;       // uint32_t[2^n]: hash of (area, tool vertex) + 1; 0 between frames
 PALPATE_CONSTANT int32_t kBindNeedleVertices = 81;    // kListNeedleVertices: NeedleVertex
 PALPATE_CONSTANT int32_t kBindParents = 82;           // uint32_t[2 · C_s]: union-find, lib/union_find.glsl
+PALPATE_CONSTANT int32_t kBindFades = 83;             // uint32_t[samples]: H_0 (not in `paper`)
 
 // ---- lists, dispatches, overflows ----------------------------------------------------------------------------------------
 
@@ -40,6 +41,7 @@ PALPATE_CONSTANT uint32_t kOverflowNeedleTable = 1u << 8;   // no free slot near
 
 PALPATE_CONSTANT uint32_t kSlotBox = 32u;              // slots that share a box (chosen: 1 box test for 32 triangle tests)
 PALPATE_CONSTANT uint32_t kHeightRun = 32u;            // samples summed by one invocation before it touches an area's atomics
+PALPATE_CONSTANT uint32_t kLeastFade = 8u;             // with a smaller H_0 a sample has its whole weight at once
 PALPATE_CONSTANT uint32_t kNeedleProbes = 64u;         // entries looked at before the table counts as full
 PALPATE_CONSTANT int32_t kMobileTile = 8;              // grid points along an edge of a tile of tool samples: one workgroup
 
@@ -102,8 +104,12 @@ struct AreaWork {
   int64_t sheet_side[3];       // B: Σ n̂ over all C_s sheet triangles
   int64_t mobile_sum[3];       // Σ k·((w·n̂') >> 30); n_c takes it with a minus. `paper`: Σ n̂'
   int64_t mobile_weight;       // Σ k·w
-  int64_t weight_sum;          // of samples with a height …
-  int64_t height_sum;
+  int64_t height_sum;          // of samples with a height …
+  int64_t weight_sum;
+  int64_t faded_sum;
+  int64_t faded_rest;
+  int64_t weight_slope;
+  int64_t height_slope;
   int64_t moment_low[3];
   int64_t moment_high[3];
   int64_t voxel_sum[3];        // `paper`

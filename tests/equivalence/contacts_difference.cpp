@@ -52,6 +52,10 @@ void compare_areas(Finder& find, const std::string& name, const ContactArea& a, 
   find.field(name + ".max_height", a.max_height, b.max_height);
   find.field(name + ".weight_sum", a.weight_sum, b.weight_sum);
   find.field(name + ".height_sum", a.height_sum, b.height_sum);
+  find.field(name + ".faded_sum", a.faded_sum, b.faded_sum);
+  find.field(name + ".faded_rest", a.faded_rest, b.faded_rest);
+  find.field(name + ".weight_slope", a.weight_slope, b.weight_slope);
+  find.field(name + ".height_slope", a.height_slope, b.height_slope);
   for (std::size_t k = 0; k < 3; ++k) {
     find.field(name + ".moment.low", a.moment[k].low, b.moment[k].low);
     find.field(name + ".moment.high", a.moment[k].high, b.moment[k].high);

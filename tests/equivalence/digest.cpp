@@ -57,8 +57,7 @@ void add(CaseHashes& hashes, const Contacts& contacts) {
     add(sums, area.direction);
     sums.add(area.rays);
     sums.add(area.max_height);
-    add(sums, area.weight_sum);
-    add(sums, area.height_sum);
+    for (const std::int64_t sum : {area.height_sum, area.weight_sum, area.faded_sum, area.faded_rest, area.weight_slope, area.height_slope}) add(sums, sum);
     for (const WideSum& moment : area.moment) {
       add(sums, moment.low);
       add(sums, moment.high);
@@ -83,6 +82,7 @@ void add(CaseHashes& hashes, const ContactResponse& response) {
     add(d, area.normal);
     add(d, area.depth);
     add(d, area.max_depth);
+    add(d, area.slope);
     add(d, area.point);
     add(d, area.force);
     add(d, area.torque);

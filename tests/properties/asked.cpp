@@ -74,8 +74,10 @@ std::string text_of(const ContactArea& area, Extent extent, const Mapping& mappi
   std::sort(zones.begin(), zones.end());
   std::string text = fmt::format("area {} zones {}", through(mapping.statics, area.static_ids), zones);
   if (extent != Extent::kAll) return text;
-  text += fmt::format(" mobile {} flags {:x} direction {} {} {} rays {} max {} weight {} heights {} moment", through(mapping.mobiles, area.mobile_ids),
+  text += fmt::format(" mobile {} flags {:x} direction {} {} {} rays {} max {} weight {} heights {}", through(mapping.mobiles, area.mobile_ids),
                       area.flags, area.direction.x, area.direction.y, area.direction.z, area.rays, area.max_height, area.weight_sum, area.height_sum);
+  text += fmt::format(" faded {} {} slopes {} {}", area.faded_sum, area.faded_rest, area.weight_slope, area.height_slope);
+  text += " moment";
   for (int k = 0; k < 3; ++k) text += fmt::format(" {}", value_of(area.moment[static_cast<std::size_t>(k)]) + mapping.shift[k] * area.height_sum);
   for (int k = 0; k < 3; ++k) text += fmt::format(" {}", area.voxel_sum[static_cast<std::size_t>(k)] + mapping.shift[k] * std::int64_t{area.voxel_count});
   return text + fmt::format(" voxels {} pierces {} sheet {}", area.voxel_count, area.pierces, static_cast<int>(area.sheet_sign));

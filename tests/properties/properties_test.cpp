@@ -279,6 +279,10 @@ TEST(Splitting, AnEdgeOfTheMockupKeepsWhatIsTouched) {
     RC_ASSERT(a.rays == b.rays);
     RC_ASSERT(a.weight_sum == b.weight_sum);
     RC_ASSERT(a.height_sum == b.height_sum);
+    RC_ASSERT(a.faded_sum == b.faded_sum);
+    RC_ASSERT(a.faded_rest == b.faded_rest);
+    RC_ASSERT(a.weight_slope == b.weight_slope);
+    RC_ASSERT(a.height_slope == b.height_slope);
     RC_ASSERT(a.max_height == b.max_height);
   });
 }

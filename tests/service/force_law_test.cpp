@@ -573,31 +573,44 @@ AreaResponse area(std::uint32_t id, const Vec3& normal, double depth, double max
           .torque = glm::cross(point, kK * depth * normal), .flags = 0};
 }
 
-TEST(LawResult, TakesTheStiffnessFromMeanOverLargestHeightWithinAQuarterAndOne) {
+TEST(LawResult, TakesTheStiffnessFromTheSlopeOfTheDepthWithinAQuarterAndOne) {
   ContactResponse response;
   response.contact = true;
-  const Vec3 up(0, 0, 1);
-  response.areas = {area(1, up, 2e-3, 4e-3, up), area(2, up, 1e-3, 9e-3, up), area(3, up, 3e-3, 3e-3, up), area(4, up, 3e-3, 0, up),
-                    area(5, up, 1e-3, 3e-3, up)};
+  const double slopes[] = {0.5, 0.1, 1, 1.3, -0.2};
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    response.areas.push_back(area(i, Vec3(0, 0, 1), 2e-3, 4e-3, Vec3(0)));
+    response.areas.back().slope = slopes[i];
+  }
   LawResult out;
   fill_law_result(response, kK, out);
   ASSERT_EQ(out.plane_count, 5u);
-  EXPECT_NEAR(out.planes[0].stiffness, 1000, 1e-9);
-  EXPECT_NEAR(out.planes[1].stiffness, 500, 1e-9);
-  EXPECT_NEAR(out.planes[2].stiffness, 2000, 1e-9);
-  EXPECT_NEAR(out.planes[3].stiffness, 2000, 1e-9);
-  EXPECT_NEAR(out.planes[4].stiffness, 2000. / 3, 1e-9) << "a corner";
+  const double expected[] = {1000, 500, 2000, 2000, 500};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(out.planes[i].stiffness, expected[i], 1e-9) << i;
 }
 
-TEST(LawResult, TakesTheStiffnessOfASphereOnTheSafeSideAndWithinOneAndAHalfPercent) {
+/// `paper`: the slope of one area whose mean height is `mean` times its largest.
+double paper_slope(double mean) {
+  Contacts contacts;
+  contacts.contact = true;
+  ContactArea area;
+  area.direction = Int3(0, 0, 1 << 28);
+  area.rays = 1;
+  area.max_height = 1u << 30;
+  area.weight_sum = std::int64_t{1} << 30;
+  area.faded_sum = std::llround(mean * (1 << 30));
+  contacts.areas = {area};
+  ContactResponse response;
+  respond(contacts, LatticePose{}, SceneGeometry{}, Profile::kPaper, kK, response);
+  return response.areas[0].slope;
+}
+
+TEST(Respond, EstimatesTheSlopeOfPapersDepthOnTheSafeSideAndWithinOneAndAHalfPercent) {
+  EXPECT_NEAR(paper_slope(1), 1, 1e-8) << "flat";
+  EXPECT_NEAR(paper_slope(1. / 3), 1. / 3, 1e-8) << "a corner";
   // Mean height of a cap: d = h (3R − h) / (3 (2R − h)); ∂d/∂h by x = h/R: (6 − 4x + x²) / (3 (2 − x)²).
   for (double x = 0.01; x <= 0.5; x += 0.01) {
-    ContactResponse response;
-    response.areas = {area(1, Vec3(0, 0, 1), x * (3 - x) / (3 * (2 - x)), x, Vec3(0))};
-    LawResult out;
-    fill_law_result(response, kK, out);
-    const double ratio = out.planes[0].stiffness / (kK * (6 - 4 * x + x * x) / (3 * (2 - x) * (2 - x)));
-    EXPECT_GE(ratio, 1 - 1e-9) << x;   // below is what costs stability; rounding
+    const double ratio = paper_slope((3 - x) / (3 * (2 - x))) / ((6 - 4 * x + x * x) / (3 * (2 - x) * (2 - x)));
+    EXPECT_GE(ratio, 1 - 1e-8) << x;   // below is what costs stability; rounding
     EXPECT_LE(ratio, 1.015) << x;
   }
 }

@@ -50,6 +50,8 @@ class HalfSpace : public CollisionBackend {
     area.rays = 1;
     area.weight_sum = std::int64_t{1} << 30;
     area.height_sum = depth * 4;   // d = |D|·step·height/weight = 2^28·h/2^30 steps
+    area.faded_sum = area.height_sum;
+    area.height_slope = area.weight_sum;
     area.max_height = static_cast<std::uint32_t>(depth * 4);
     for (std::size_t axis = 0; axis < 3; ++axis) area.moment[axis].low = area.height_sum * pose.translation[static_cast<int>(axis)];
     out.areas.push_back(area);

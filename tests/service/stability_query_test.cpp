@@ -1,0 +1,64 @@
+// The corrected law closed over the real collision query: results 10 ms old must cost little of the stiffness that none allows.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "cpu_ref/cpu_backend.h"
+#include "service/stability_contacts.h"
+
+namespace palpate {
+namespace {
+
+Result<std::unique_ptr<CollisionBackend>> reference() { return make_cpu_backend(); }
+
+class StabilityQuery : public testing::TestWithParam<int> {
+ protected:
+  void SetUp() override {
+    what_ = pressed_contacts()[static_cast<std::size_t>(GetParam())];
+    auto prepared = PreparedCase::make(what_, Profile::kRefined, reference);
+    ASSERT_TRUE(prepared) << prepared.error().sentence;
+    prepared_ = std::move(*prepared);
+  }
+  ContactCase what_;
+  std::unique_ptr<PreparedCase> prepared_;
+};
+
+TEST_P(StabilityQuery, TenMillisecondsCostLessThanATenthOfTheStiffness) {
+  const auto none = highest_stable_query(what_, *prepared_, LawKind::kHold, 0);
+  ASSERT_TRUE(none) << none.error().sentence;
+  const auto late = highest_stable_query(what_, *prepared_, LawKind::kCorrected, 10);
+  ASSERT_TRUE(late) << late.error().sentence;
+  std::printf("%s: %.0f N/m without delay, %.0f with results 10 ms old\n", what_.name.c_str(), *none, *late);
+  EXPECT_GE(*late, 0.9 * *none);
+  // b / (T/2) = 2000 N/m for all areas together, and ∂d/∂h ≤ 1: four areas that share it have 500 each.
+  EXPECT_GE(*none, what_.name == "four" ? 490 : 1900);
+}
+
+TEST_P(StabilityQuery, DeeperIsPushedHarderAndThePlanesSayByHowMuch) {
+  constexpr double kStep = 1e-5;   // m, a fiftieth of the samples' spacing
+  double before = 0, told = 0;
+  for (int i = -60; i <= 60; ++i) {
+    Pose pose = what_.pose(0);
+    pose.position.z -= i * kStep;
+    LawResult result;
+    ASSERT_TRUE(prepared_->ask(pose, result));
+    double stiffness = 0;
+    for (std::uint32_t p = 0; p < result.plane_count; ++p) stiffness += result.planes[p].stiffness * result.planes[p].normal.z * result.planes[p].normal.z;
+    if (i > -60) {
+      const double rise = (result.wrench.force.z - before) / kStep;
+      ASSERT_GT(rise, 0) << i;
+      // Between the stiffnesses told at both ends, with 6 %: a row may just have come in between, and the edge of a facet passed.
+      ASSERT_GE(rise, 0.94 * std::min(told, stiffness)) << i;
+      ASSERT_LE(rise, 1.06 * std::max(told, stiffness)) << i;
+    }
+    before = result.wrench.force.z;
+    told = stiffness;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Contacts, StabilityQuery, testing::Range(0, 4),
+                         [](const auto& tested) { return pressed_contacts()[static_cast<std::size_t>(tested.param)].name; });
+
+}  // namespace
+}  // namespace palpate
