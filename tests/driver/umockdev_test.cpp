@@ -176,6 +176,23 @@ TEST_F(OnTheBus, ASpaceMouseThatTheKernelHasIsTakenOver) {
   EXPECT_TRUE(front_->faults.kernel_driver) << "a list leaves it where it is";
 }
 
+TEST_F(OnTheBus, EveryModelOfTheSpaceMouseIsFoundAndNoOrdinaryMouseOfItsMaker) {
+  fake::DeviceCalls quiet{[](std::uint8_t, std::uint16_t) { return true; }, [](std::span<const std::uint8_t>) {},
+                          [] { return std::vector<std::uint8_t>{}; }, [] { return false; }};
+  const auto found = [&](UsbId id) {
+    front_ = std::make_unique<fake::TestbedFront>(bed_, quiet, fake::hid_descriptors(id.vendor, id.product), address_++);
+    const auto list = list_usb_devices(spacemouse::kModels);
+    EXPECT_TRUE(list) << list.error().sentence;
+    return list && list->size() == 1 && list->front().usable && list->front().id == id;
+  };
+  for (const UsbId id : spacemouse::kModels) EXPECT_TRUE(found(id)) << std::hex << id.product;
+  for (std::uint16_t product = 0xc650; product <= 0xc658; ++product) {
+    if (std::find(spacemouse::kModels.begin(), spacemouse::kModels.end(), UsbId{0x256f, product}) == spacemouse::kModels.end()) {
+      EXPECT_FALSE(found({0x256f, product})) << std::hex << product;
+    }
+  }
+}
+
 /// Columns of trace.csv.
 struct Ticks {
   std::vector<double> z, force;   ///< force: the length of what was sent

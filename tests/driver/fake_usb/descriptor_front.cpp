@@ -138,6 +138,9 @@ int DescriptorFront::submit(void* argument) {
   urb->actual_length = 0;
   if (urb->type == USBDEVFS_URB_TYPE_CONTROL) {
     const auto* setup = static_cast<const std::uint8_t*>(urb->buffer);
+    if ((setup[0] & 0x60) == 0x20 && calls_.class_out)
+      calls_.class_out(setup[1], static_cast<std::uint16_t>(setup[2] | (setup[3] << 8)),
+                       {setup + 8, static_cast<std::size_t>(urb->buffer_length) - 8});
     if ((setup[0] & 0x60) != 0x40) {   // standard requests: the system answers them for a device; nothing depends on them here
       finish(urb, 0);
       return 0;

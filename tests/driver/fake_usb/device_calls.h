@@ -13,6 +13,8 @@ struct DeviceCalls {
   std::function<void(std::span<const std::uint8_t>)> out;
   std::function<std::vector<std::uint8_t>()> in;   ///< one IN packet
   std::function<bool()> has_bytes;                 ///< whether in() has more to say than an empty packet
+  /// Class request with its data; empty: taken and forgotten.
+  std::function<void(std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data)> class_out{};
 };
 
 /// Faults of the bus rather than of the device.
