@@ -1,5 +1,8 @@
 #include "driver/falcon/falcon_link.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <chrono>
 
 #include "driver/kept_text.h"
@@ -63,6 +66,9 @@ void FalconLink::tell(DeviceState state, const char* guidance) noexcept {
 }
 
 void FalconLink::run() {
+  // As punctual as the control loop, and just behind it (its priority is 80). Refused, it is an ordinary thread, as the loop is then.
+  const sched_param priority{.sched_priority = 79};
+  (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   while (!stopping()) {
     const Next next = line_ ? serve(*line_) : Next::kReopen;
     if (line_ && !line_->lost()) (void)line_->write(encode(Command{}), milliseconds(100));   // whatever ended it: no force stays on

@@ -53,6 +53,7 @@ class DescriptorFront {
   int discard(void* urb);
   void finish(void* urb, int status);
   void run();
+  void deliver();
 
   DeviceCalls calls_;
   std::vector<std::uint8_t> descriptors_;
@@ -61,6 +62,7 @@ class DescriptorFront {
   std::mutex mutex_;
   std::deque<void*> waiting_in_, waiting_out_;
   std::deque<Finished> finished_;
+  std::chrono::steady_clock::time_point last_in_{};
   bool gone_ = false, stop_ = false;
   std::atomic<int> claims_{0};
   std::thread thread_;
