@@ -33,6 +33,31 @@ def test_the_same_run_twice_leaves_the_same_bytes():
     expect(any(frame['areas'] for frame in frames(folder / 'out')), 'three seconds reach the first contact')
 
 
+def test_a_recorded_run_is_done_again_to_the_bit():
+    folder = Folder()
+    small_run(folder, '--duration', '0.3', '--backend', 'cpu')
+    scene, trace = folder / 'scene' / 'scene.json', folder / 'out' / 'trace.csv'
+    recorded = [line.split(',') for line in trace.read_text().splitlines()]
+    expect(run(scene, folder / 'again', '--device', f'replay:{trace}', '--backend', 'cpu') is not None, 'replay')
+    again = [line.split(',') for line in (folder / 'again' / 'trace.csv').read_text().splitlines()]
+    expect(len(again) == len(recorded), f'{len(again)} rows of {len(recorded)}')
+    header = recorded[0]
+    same = [i for i, name in enumerate(header) if name in ('time_s', 'contact', 'stage', 'result_age_ticks') or name[:2] in ('x_', 'y_', 'z_', 'qx', 'qy', 'qz', 'qw')
+            or name.startswith('response_')]
+    for a, b in zip(recorded, again):
+        expect([a[i] for i in same] == [b[i] for i in same], f'{a}\n{b}')
+    # The scene may name it as well, and what is no trace is one sentence with its line.
+    described = json.loads(scene.read_text())
+    described['device'] = {'driver': 'replay', 'path': '../out/trace.csv'}
+    (folder / 'scene' / 'replay.json').write_text(json.dumps(described))
+    expect(palpate('run', folder / 'scene' / 'replay.json', '--pace', 'asap', '--duration', '0.01', '--backend', 'cpu', '--out', folder / 'third').code == 0, 'by the scene')
+    lines = trace.read_text().splitlines()
+    lines[2] = ','.join(['abc' if i == 1 else cell for i, cell in enumerate(lines[2].split(','))])
+    bad = folder.write('bad.csv', '\n'.join(lines))
+    expect_refused(palpate('run', scene, '--device', f'replay:{bad}', '--pace', 'asap', '--backend', 'cpu'), 3, 'bad.csv, line 3', '"abc" is not a finite number')
+    expect_refused(palpate('run', scene, '--device', 'replay', '--pace', 'asap', '--backend', 'cpu'), 3, 'replay:FILE')
+
+
 def test_the_report_is_one_self_contained_page():
     folder = Folder()
     small_run(folder, '--duration', '3')
