@@ -32,7 +32,7 @@ export class App {
   });
   private readonly picker = new ScenePicker(this.api, (scene) => this.opened(scene), (error) => this.failed(error));
   private readonly player = new Player(this.api, () => this.run_changed(), (error) => this.failed(error));
-  private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.dirty = true; }, (error) => this.failed(error), (text) => this.say(text));
+  private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.dirty = true; }, (error) => this.failed(error), (text) => { this.say(text); this.connection.doubt(); });
   private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
   private mouse: MouseSource | null = null;
   private mouse_retry = 0;
@@ -100,6 +100,9 @@ export class App {
       return;
     }
     this.hide_banner();
+    await this.found_again();
+  }
+  private async found_again(): Promise<void> {
     // It may be another process now: what it holds is asked anew, and the scene opened again if it is gone.
     try {
       await this.picker.refresh();
@@ -168,7 +171,7 @@ export class App {
     if (reason) this.say(reason, true);
     this.connection.doubt();
     // Perhaps the loop alone ended; when the whole server went, link_changed begins again.
-    this.mouse_retry = window.setTimeout(() => { if (this.source === 'mouse' && this.connection.up && this.picker.current) this.open_mouse(this.picker.current); }, 1500);
+    this.mouse_retry = window.setTimeout(() => { if (this.source === 'mouse' && this.connection.up) void this.found_again(); }, 1500);
   }
   private run_changed(): void {
     this.dirty = true;
@@ -248,7 +251,7 @@ export class App {
   }
   private failed(error: unknown): void {
     if (error instanceof ApiError && error.status === 0) { this.connection.doubt(); return; }   // it says by itself that the server is gone
-    if (error instanceof ApiError && error.status === 401) { element<HTMLDialogElement>('token').showModal(); return; }
+    if (error instanceof ApiError && error.status === 401) { const dialog = element<HTMLDialogElement>('token'); if (!dialog.open) dialog.showModal(); return; }
     this.say(error instanceof Error ? error.message : String(error), true);
   }
   private say(text: string, bad = false, stays = false): void {

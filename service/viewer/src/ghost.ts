@@ -4,6 +4,8 @@ import type { Bodies } from './bodies.js';
 import type { Coupling } from './coupling.js';
 import type { Theme } from './palette.js';
 
+const MOST_CORNERS = 150_000;   // an outline of more lines is a blot
+
 export class Ghost {
   readonly object = new three.Group();
   private readonly shell: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
@@ -29,6 +31,7 @@ export class Ghost {
     if (!apart) return;
     this.object.visible = true;
     this.shell.geometry = this.bodies.tool_mesh.geometry;
+    this.shell.visible = (this.shell.geometry.index?.count ?? 0) < MOST_CORNERS;
     this.shell.position.copy(coupling.target_position);
     this.shell.quaternion.copy(coupling.target_rotation);
     this.line.geometry.setFromPoints([from, to]);

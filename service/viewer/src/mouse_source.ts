@@ -58,8 +58,8 @@ export class MouseSource {
     this.server_us = wrench.server_us;
     this.contact = wrench.contact;
     this.frame = wrench.frame ?? this.frame;
-    // A cut answer is none: nothing is felt, and the tool stands.
-    this.answer = wrench.truncated ? null : { gc: wrench.gc, rotation: new Quaternion(pose[3], pose[4], pose[5], pose[6]), areas: wrench.areas };
+    // Of a cut answer nothing is felt; the tool can be drawn back, or it would be stuck where lists are too small.
+    this.answer = { gc: wrench.gc, rotation: new Quaternion(pose[3], pose[4], pose[5], pose[6]), areas: wrench.truncated ? [] : wrench.areas };
   }
 
   private ask(): void {
