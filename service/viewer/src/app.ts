@@ -32,7 +32,7 @@ export class App {
   });
   private readonly picker = new ScenePicker(this.api, (scene) => this.opened(scene), (error) => this.failed(error));
   private readonly player = new Player(this.api, () => this.run_changed(), (error) => this.failed(error));
-  private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.dirty = true; }, (error) => this.failed(error), (text) => { this.say(text); this.connection.doubt(); });
+  private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.touch(); }, (error) => this.failed(error), (text) => { this.say(text); this.connection.doubt(); });
   private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
   private mouse: MouseSource | null = null;
   private mouse_retry = 0;
@@ -41,7 +41,10 @@ export class App {
   private live_samples = new Samples();
   private mouse_samples = new Samples();
   private dirty = true;
-  private last_tick = performance.now();
+  private awake = false;
+  private rest_timer = 0;
+  private mouse_rests = false;
+  private last_tick = NaN;
   private banner_timer = 0;
 
   constructor() {
@@ -50,17 +53,32 @@ export class App {
     this.apply_theme(localStorage.getItem('palpate.theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => { if (!localStorage.getItem('palpate.theme')) this.apply_theme(event.matches ? 'dark' : 'light'); });
     if (innerWidth <= 860) document.body.classList.add('no-panel');
-    new ResizeObserver(() => { this.dirty = true; }).observe(element('strips'));
+    new ResizeObserver(() => { this.touch(); }).observe(element('strips'));
     this.strips.seek = (time) => { this.player.playback?.seek(time); this.run_changed(); };
     void this.choose(['live', 'mouse', 'run'].includes(this.wish.source ?? '') ? (this.wish.source as Source) : 'live');
     this.sessions.show();
     void this.begin();
     setInterval(() => void this.refresh(), REFRESH_MS);
-    const loop = (now: number) => {
-      requestAnimationFrame(loop);
+    this.touch();
+  }
+
+  /** Something is to be shown anew. The page rests until then. */
+  private touch(): void {
+    this.dirty = true;
+    this.wake();
+  }
+  private wake(): void {
+    clearTimeout(this.rest_timer);
+    if (this.awake) return;
+    this.awake = true;
+    requestAnimationFrame((now) => {
+      this.awake = false;
       this.tick(now);
-    };
-    requestAnimationFrame(loop);
+      if (this.source === 'run' && this.player.playback?.playing) this.wake();
+      // A mouse that moves nothing is looked at ten times a second.
+      else if (this.source === 'mouse' && this.mouse) { if (this.mouse_rests) this.rest_timer = window.setTimeout(() => this.wake(), 100); else this.wake(); }
+      if (!this.awake) this.last_tick = NaN;
+    });
   }
 
   // ---- beginning, and beginning again
@@ -141,7 +159,7 @@ export class App {
     document.body.classList.toggle('recorded', source === 'run');
     this.strips.set_late(...LATE[source]);
     this.remember();
-    this.dirty = true;
+    this.touch();
     if (source !== 'mouse') this.close_mouse();
     const scene = this.picker.current;
     try {
@@ -159,6 +177,7 @@ export class App {
     this.close_mouse();
     this.mouse = new MouseSource(this.api, scene, (reason) => this.mouse_lost(reason), at);
     this.picture.drag.coupling = this.mouse.coupling;
+    this.wake();
   }
   private close_mouse(): void {
     clearTimeout(this.mouse_retry);
@@ -174,7 +193,7 @@ export class App {
     this.mouse_retry = window.setTimeout(() => { if (this.source === 'mouse' && this.connection.up) void this.found_again(); }, 1500);
   }
   private run_changed(): void {
-    this.dirty = true;
+    this.touch();
     this.remember();
     const { playback } = this.player;
     const scene = this.picker.current;
@@ -185,7 +204,7 @@ export class App {
   // ---- each picture
 
   private tick(now: number): void {
-    const seconds = Math.min((now - this.last_tick) / 1000, 0.25);
+    const seconds = Number.isNaN(this.last_tick) ? 0 : Math.min((now - this.last_tick) / 1000, 0.25);   // after a rest, or a hidden page, time does not leap
     this.last_tick = now;
     let moment: Moment | null = null;
     if (this.source === 'mouse') {
@@ -193,10 +212,11 @@ export class App {
         this.mouse.advance();
         moment = this.mouse.moment();
         this.mouse_samples.add_moment(moment);
-        this.dirty ||= !this.idle(moment);
+        this.mouse_rests = this.idle(moment) && this.picture.drag.holding === null;
+        this.dirty ||= !this.mouse_rests;
       }
     } else if (this.source === 'run') {
-      if (this.player.playback?.playing) { this.player.playback.advance(seconds); this.dirty = true; }
+      if (this.player.playback?.playing) { this.player.playback.advance(seconds); this.touch(); }
     }
     if (!this.dirty) return;
     this.dirty = false;
@@ -268,11 +288,11 @@ export class App {
     document.documentElement.dataset['theme'] = theme;
     this.picture.theme(theme === 'dark');
     this.strips.theme();
-    this.dirty = true;
+    this.touch();
   }
   private check(id: string, set: (on: boolean) => void): void {
     const box = element<HTMLInputElement>(id);
-    box.addEventListener('change', () => { set(box.checked); this.dirty = true; this.picture.redraw_contact(); });
+    box.addEventListener('change', () => { set(box.checked); this.touch(); this.picture.redraw_contact(); });
   }
   private wire_panel(): void {
     for (const tab of document.querySelectorAll<HTMLElement>('[data-source]')) tab.addEventListener('click', () => void this.choose(tab.dataset['source'] as Source));
@@ -319,7 +339,7 @@ export class App {
       case 'all': this.picture.look_at_all(); break;
       case 'tool': this.picture.follow_tool(); break;
       case 'up': this.picture.view.turn_up(); break;
-      case 'panel': document.body.classList.toggle('no-panel'); this.dirty = true; break;
+      case 'panel': document.body.classList.toggle('no-panel'); this.touch(); break;
       case 'help': element<HTMLDialogElement>('help').showModal(); break;
       case 'glass': element('glass-mockup').click(); break;
       case 'voxels': {

@@ -47,7 +47,7 @@ export class ScenePicker {
       for (; scene.state === 'queued' || scene.state === 'preparing' || scene.state === 'evicted'; ) {
         if (turn !== this.turn) return;
         // Whoever asks for something of an evicted scene has it prepared again.
-        if (scene.state === 'evicted') await this.api.geometry(scene.id, 1).catch((error: unknown) => { if (!(error instanceof ApiError) || error.status !== 503) throw error; });
+        if (scene.state === 'evicted') await this.api.geometry(scene.id, 100).catch((error: unknown) => { if (!(error instanceof ApiError) || error.status !== 503) throw error; });
         this.show_progress(scene);
         await new Promise((resolve) => setTimeout(resolve, POLL_MS));
         scene = await this.api.scene(scene.id);

@@ -31,7 +31,9 @@ export class SceneView {
   grid_cell = 0;
   private grid: three.GridHelper | null = null;
   private grid_colour = 0xffffff;
-  private dirty = true;
+  private dirty = false;
+  private running = false;
+  private quiet = 0;
   private last_draw = NaN;
   private focus = { centre: new three.Vector3(), radius: 1, floor: 0 };
 
@@ -51,20 +53,30 @@ export class SceneView {
     this.scene.add(sky, this.camera);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
-    const loop = (now: number) => {
-      requestAnimationFrame(loop);
-      if (!this.dirty) { this.last_draw = NaN; return; }
-      this.dirty = false;
-      this.before_draw();
-      this.renderer.render(this.scene, this.camera);
-      this.after_draw(now - this.last_draw);
-      this.last_draw = now;
-    };
-    requestAnimationFrame(loop);
   }
 
+  /** A picture is due. The row of pictures goes on for a while after the last that was asked for, then rests until the next. */
+  request(): void {
+    this.dirty = true;
+    if (this.running) return;
+    this.running = true;
+    this.quiet = 0;
+    this.last_draw = NaN;
+    requestAnimationFrame(this.draw);
+  }
+  private readonly draw = (now: number): void => {
+    this.quiet = this.dirty ? 0 : this.quiet + 1;
+    this.running = this.quiet < 20;
+    if (this.running) requestAnimationFrame(this.draw);
+    if (!this.dirty) { this.last_draw = NaN; return; }
+    this.dirty = false;
+    this.before_draw();
+    this.renderer.render(this.scene, this.camera);
+    this.after_draw(now - this.last_draw);
+    this.last_draw = now;
+  };
+
   get canvas(): HTMLCanvasElement { return this.renderer.domElement; }
-  request(): void { this.dirty = true; }
 
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
