@@ -16,6 +16,7 @@
 #include "compute/frame_detection.h"
 #include "compute/frame_recorder.h"
 #include "compute/frame_response.h"
+#include "compute/host_areas.h"
 #include "compute/stage_memory.h"
 
 namespace palpate {
@@ -65,6 +66,11 @@ class RecordedFrame final : public Frame {
   Result<void> make_buffers();
   Result<void> set_capacities();
   Result<void> record();
+  template <class Body>
+  Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
+  Result<void> run(CommandRecorder& commands, Contacts& out);
+  bool join_on_host(const LatticePose& pose, const Held* held);
+  void read(Contacts& out);
   Reach reach(const LatticePose& pose) const;
   bool write_input(const LatticePose& pose, const NearLists& near, bool rays, const Held* held);
 
@@ -77,7 +83,12 @@ class RecordedFrame final : public Frame {
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
   std::optional<FrameResponse> response_;
-  std::unique_ptr<CommandRecorder> commands_;   ///< null after a failed record()
+  std::optional<HostAreas> host_areas_;   ///< `refined`
+  HostAreas::Answer joined_;              ///< of the last frame whose areas the host joined, else empty
+  /// From the pose to the sets; then, with contact, the whole response, or what follows once the host has joined areas. Null after a
+  /// failed record().
+  std::unique_ptr<CommandRecorder> detect_, respond_, follow_;
+  double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool tables_clear_ = false;
@@ -120,6 +131,11 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, detection_->order());
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
+  if (refined && device_.areas_on_host) {
+    auto areas = HostAreas::make(device_, geometry_, scene_);
+    if (!areas) return areas.error();
+    host_areas_.emplace(std::move(*areas));
+  }
   auto response = FrameResponse::create(device_, refined, scene_.rays_walk());
   if (!response) return response.error();
   response_.emplace(std::move(*response));
@@ -165,21 +181,47 @@ Result<void> RecordedFrame::enlarge() {
   return record();
 }
 
-Result<void> RecordedFrame::record() {
+/// A command buffer with what `body(FrameRecorder&)` records.
+template <class Body>
+Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
   constexpr std::uint32_t kStages = 32;   // most calls of stage()
-  commands_.reset();
+  times_.reserve(kStages);
   auto commands = CommandRecorder::create(device_, kStages);
   if (!commands) return commands.error();
-  commands_ = std::make_unique<CommandRecorder>(std::move(*commands));
-  times_.reserve(kStages);
-  commands_->begin();
-  FrameRecorder recorder(*commands_, buffers_, detection_->list_close());
-  detection_->record(recorder);
-  response_->record(recorder);
-  recorder.barrier();
-  detection_->record_end(recorder);
-  pipelines_ = recorder.used();
-  return commands_->end();
+  auto out = std::make_unique<CommandRecorder>(std::move(*commands));
+  out->begin();
+  FrameRecorder recorder(*out, buffers_, detection_->list_close());
+  body(recorder);
+  pipelines_.insert(pipelines_.end(), recorder.used().begin(), recorder.used().end());
+  if (auto r = out->end(); !r) return r.error();
+  return out;
+}
+
+Result<void> RecordedFrame::record() {
+  detect_.reset();
+  respond_.reset();
+  follow_.reset();
+  pipelines_.clear();
+  auto detect = recorded([&](FrameRecorder& recorder) { detection_->record(recorder); });
+  if (!detect) return detect.error();
+  auto respond = recorded([&](FrameRecorder& recorder) {
+    response_->record(recorder);
+    recorder.barrier();
+    detection_->record_end(recorder);
+  });
+  if (!respond) return respond.error();
+  if (host_areas_) {
+    auto follow = recorded([&](FrameRecorder& recorder) {
+      response_->record_after_areas(recorder);
+      recorder.barrier();
+      detection_->record_end(recorder);
+    });
+    if (!follow) return follow.error();
+    follow_ = std::move(*follow);
+  }
+  detect_ = std::move(*detect);
+  respond_ = std::move(*respond);
+  return {};
 }
 
 Reach RecordedFrame::reach(const LatticePose& pose) const {
@@ -211,6 +253,8 @@ bool RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, 
   input.touch_candidates = near.touch.count;
   input.pair_candidates = near.pairs.count;
   input.sample_chunks = near.samples.count;
+  input.inside_samples = near.inside.count;
+  input.open_samples = near.open.count;
   input.rays = rays ? 1 : 0;
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
@@ -251,12 +295,14 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
     near.touch.room = mapped<gpu::TouchCandidate>(gpu::kBindTouchCandidates, gpu::kListTouchCandidates);
     near.pairs.room = mapped<gpu::PairCandidate>(gpu::kBindPairCandidates, gpu::kListPairCandidates);
     near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
+    near.inside.room = mapped<gpu::FrameSample>(gpu::kBindInsideSamples, gpu::kListInsideSamples);
+    near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
     rays = broad_phase_->find(pose, near);
   }
   out.times.push_back({"cull", us_since(start)});
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
-  if (near.touch.count == 0 && near.samples.count == 0) return {};   // every pair lies in a voxel that may be touched
+  if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
@@ -265,34 +311,72 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   if (held_overflow_) return truncate(out, "held triangles");
   out.times.push_back({"upload", us_since(writing)});
 
-  if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
-  const auto submitted = Clock::now();
-  if (auto r = commands_->submit(); !r) return r;
-  if (auto r = commands_->wait(); !r) return r;
-  const double device_us = us_since(submitted);
-
+  if (!detect_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
+  waited_us_ = staged_us_ = 0;
+  joined_ = {};
+  if (auto r = run(*detect_, out); !r) return r;
+  if (buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state.contact != 0) {
+    const auto joining = Clock::now();
+    const bool joined = follow_ && join_on_host(pose, held);
+    if (joined) out.times.push_back({"areas", us_since(joining)});
+    if (auto r = run(joined ? *follow_ : *respond_, out); !r) return r;
+  }
+  out.times.push_back({"submit", std::max(0.0, waited_us_ - staged_us_)});   // what waiting cost beyond the stages themselves
   const auto finished = Clock::now();
-  FrameOutput output;
-  output.result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
-  output.statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>();
-  output.mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>();
-  output.members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>();
-  output.pierces = buffers_[gpu::kBindResultPierces].as<gpu::AreaPierce>();
-  decode(output, out);
+  read(out);
+  out.times.push_back({"readback", us_since(finished)});
+  return {};
+}
+
+/// Submits, waits, and notes the stages' times.
+Result<void> RecordedFrame::run(CommandRecorder& commands, Contacts& out) {
+  const auto submitted = Clock::now();
+  if (auto r = commands.submit(); !r) return r;
+  if (auto r = commands.wait(); !r) return r;
+  waited_us_ += us_since(submitted);
+  if (auto r = commands.times(times_); !r) return r;
+  for (const auto& stage : times_) {
+    out.times.push_back({stage.name, stage.us});
+    staged_us_ += stage.us;
+  }
+  return {};
+}
+
+/// False: the device has to.
+bool RecordedFrame::join_on_host(const LatticePose& pose, const Held* held) {
+  const auto& result = *buffers_[gpu::kBindResult].as<const gpu::FrameResult>();
+  if (result.state.swallowed != 0) return false;
+  const ContactLists lists{
+      .mobiles = {buffers_[gpu::kBindResultMobiles].as<const gpu::MobileResult>(), result.mobile_count},
+      .samples = {buffers_[gpu::kBindSamples].as<const gpu::FrameSample>(), result.sample_count},
+      .statics = {buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(), result.static_count},
+      .areas = {buffers_[gpu::kBindAreas].as<gpu::AreaWork>(), gpu::kMaxFrameAreas},
+      .slots = {buffers_[gpu::kBindSlots].as<gpu::SlotWork>(), result.static_count},
+      .members = mapped<gpu::AreaMember>(gpu::kBindResultMembers, gpu::kListMembers),
+  };
+  HostAreas::Answer answer;
+  if (!host_areas_->solve(pose, held, lists, answer)) return false;
+  auto& state = *buffers_[gpu::kBindResponseState].as<gpu::ResponseState>();
+  state.areas = answer.areas;
+  state.requests = state.swallowed_flags = state.swallowed_steps = 0;
+  state.swallowed_direction = Int3(0);
+  joined_ = answer;
+  return true;
+}
+
+/// What the device left in mapped memory.
+void RecordedFrame::read(Contacts& out) {
+  auto* result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
+  if (joined_.areas != 0) result->member_count = joined_.members;   // the host's list
+  decode({.result = result,
+          .statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(),
+          .mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>(),
+          .members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>(),
+          .pierces = buffers_[gpu::kBindResultPierces].as<gpu::AreaPierce>()},
+         out);
   pairs_ = out.pairs;
   out.flags |= frame_flags_;
   tables_clear_ = !out.truncated;
-
-  // Submission: what the wait cost beyond the stages themselves.
-  if (auto r = commands_->times(times_); !r) return r;
-  double stages_us = 0;
-  for (const auto& stage : times_) {
-    out.times.push_back({stage.name, stage.us});
-    stages_us += stage.us;
-  }
-  out.times.push_back({"submit", std::max(0.0, device_us - stages_us)});
-  out.times.push_back({"readback", us_since(finished)});
-  return {};
 }
 
 Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pairs() const {

@@ -25,7 +25,7 @@ constexpr std::array<Other, 2> kOthers = {{{"needle table", kOverflowNeedleTable
                                            {"bins of the tool's shadow", kOverflowBins, &FrameCapacity::bin_entries}}};
 
 constexpr std::array<const char*, 18> kListNames = {
-    "bricks of near triangles", "", "voxels to touch", "touched voxels", "", "lists of touched voxels",
+    "bricks of near triangles", "", "voxels to touch", "touched voxels", "samples found inside", "lists of touched voxels",
     "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
     "samples near the tool's surface", "samples", "tool triangles of areas", "pierced areas", "",
     "tiles of tool samples", "needle vertices"};
@@ -56,6 +56,7 @@ FrameCapacity FrameCapacity::first(const SceneConstants& scene, const std::map<s
   l[kListContactStatics] = items(scene.mockup.triangles, kLargeList);
   l[kListContactMobiles] = items(tool, ~0u);
   l[kListSampleChunks] = items(refined ? voxels + entries / kSampleChunk : 1, kMostPairs);
+  l[kListInsideSamples] = items(refined ? kLargeList : 1, kLargeList);
   l[kListOpenSamples] = items(refined ? kLargeList : 1, kLargeList);
   l[kListSamples] = items(refined ? kLargeList : 1, kLargeList);
   l[kListMembers] = items(std::max(kSmallList, 4 * tool), kMostPairs);

@@ -52,8 +52,9 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kListContactStatics, kBindContactStatics, sizeof(std::uint32_t)},
       {kListContactMobiles, kBindContactMobiles, sizeof(std::uint32_t)},
       {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk), BufferKind::kUpload},
-      {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample)},
-      {kListSamples, kBindSamples, sizeof(FrameSample)},
+      {kListInsideSamples, kBindInsideSamples, sizeof(FrameSample), BufferKind::kUpload},
+      {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample), BufferKind::kUpload},
+      {kListSamples, kBindSamples, sizeof(FrameSample), BufferKind::kReadback},
       {kListMembers, kBindResultMembers, sizeof(AreaMember), BufferKind::kReadback},
       {kListPierces, kBindResultPierces, sizeof(AreaPierce), BufferKind::kReadback},
   };
@@ -134,7 +135,7 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
       {&voxel_touch_, &spirv::voxel_touch},
       {&static_list_, &spirv::static_list},
       {&pair_test_, &spirv::pair_test},
-      {&sample_listed_, &spirv::sample_listed, inside_ && listed_},
+      {&sample_take_, &spirv::sample_take, inside_ && listed_},
       {&sample_walk_, &spirv::sample_walk, inside_ && closed_},
       {&sample_touched_, &spirv::sample_touched, refined_ && !inside_},
       {&sample_scan_, &spirv::sample_scan, refined_ && !(inside_ && listed_), 0, no_inside},
@@ -172,7 +173,8 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.run_items(pair_test_, kListPairCandidates);
   if (inside_) {
     recorder.stage("est");
-    recorder.run_items(listed_ ? sample_listed_ : sample_scan_, kListSampleChunks);
+    if (listed_) recorder.run_items(sample_take_, kListInsideSamples);
+    else recorder.run_items(sample_scan_, kListSampleChunks);
     if (!closed_) recorder.run_dispatch(bins_clear_, kDispatchBins);
   }
 
@@ -189,6 +191,7 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.barrier();
   recorder.run(set_decide_, 1);
   recorder.barrier();
+  recorder.run_dispatch(frame_reset_, kDispatchResetFree);
 }
 
 void FrameDetection::record_samples(FrameRecorder& recorder) const {

@@ -49,7 +49,7 @@ class FrameDetection {
   bool walks_ = false;    ///< rays walk through the tool's fine partition
   std::uint32_t bins_bits_ = 0;   ///< 2^bins_bits bins along y and along z
   std::vector<std::uint32_t> order_;
-  FrameShader list_close_, frame_begin_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_touched_, sample_scan_, sample_listed_,
+  FrameShader list_close_, frame_begin_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_touched_, sample_scan_, sample_take_,
       sample_walk_, sample_winding_, bins_begin_, bins_clear_,
       bins_count_, bins_place_, bins_fill_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
 };

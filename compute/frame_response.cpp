@@ -16,6 +16,7 @@ struct BufferPlan {
   const char* what;
   std::uint64_t bytes;
   bool table = false;   // all 0 between frames
+  BufferKind kind = BufferKind::kDevice;
 };
 
 }  // namespace
@@ -27,9 +28,9 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
   const std::uint64_t refined = refined_ ? 1 : 0;   // what `paper` leaves out gets the smallest buffer there is
   const std::uint64_t needles = capacity.lists[kListNeedleVertices];
   for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
-           {kBindResponseState, "response state", sizeof(ResponseState)},
-           {kBindAreas, "contact areas", kMaxFrameAreas * sizeof(AreaWork)},
-           {kBindSlots, "slots of contact triangles", statics * sizeof(SlotWork)},
+           {kBindResponseState, "response state", sizeof(ResponseState), false, BufferKind::kUpload},
+           {kBindAreas, "contact areas", kMaxFrameAreas * sizeof(AreaWork), false, BufferKind::kUpload},
+           {kBindSlots, "slots of contact triangles", statics * sizeof(SlotWork), false, BufferKind::kUpload},
            {kBindParents, "union-find of contact triangles", statics * 2 * sizeof(std::uint32_t)},
            {kBindMobileWork, "tool triangles of areas", tool_triangles * std::uint64_t{sizeof(MobileWork)}},
            {kBindHeights, "heights", heights * sizeof(std::uint32_t)},
@@ -41,7 +42,7 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
            {kBindNeedleVertices, "needle vertices", needles * sizeof(NeedleVertex)},
        })
     if (auto made = plan.table ? buffers.make_table(device, plan.binding, plan.what, plan.bytes)
-                               : buffers.make(device, plan.binding, plan.what, plan.bytes);
+                               : buffers.make(device, plan.binding, plan.what, plan.bytes, plan.kind);
         !made)
       return made.error();
   return {};
@@ -118,7 +119,7 @@ void FrameResponse::record_areas(FrameRecorder& recorder) const {
   recorder.barrier();
 }
 
-void FrameResponse::record_refined(FrameRecorder& recorder) const {
+void FrameResponse::record_directions(FrameRecorder& recorder) const {
   // Normals of the tool, where an area's first rule needs them.
   recorder.run_dispatch(mobile_tiles_, kDispatchMembers);
   recorder.close({kListMobileTiles});
@@ -135,9 +136,12 @@ void FrameResponse::record_refined(FrameRecorder& recorder) const {
   recorder.barrier();
   recorder.run_dispatch(areas_settle_, kDispatchNearestOne);
   recorder.barrier();
-
-  recorder.stage("rays");
+  recorder.stage("swallowed");
   recorder.run_dispatch(swallow_march_, kDispatchSwallowed);
+}
+
+void FrameResponse::record_heights(FrameRecorder& recorder) const {
+  recorder.stage("rays");
   recorder.run_dispatch(heights_trace_, kDispatchSamples);
   recorder.barrier();
   recorder.run_dispatch(heights_sum_, kDispatchHeightRuns);
@@ -169,8 +173,17 @@ void FrameResponse::record_paper(FrameRecorder& recorder) const {
 
 void FrameResponse::record(FrameRecorder& recorder) const {
   record_areas(recorder);
-  if (refined_) record_refined(recorder);
-  else record_paper(recorder);
+  if (refined_) {
+    record_directions(recorder);
+    record_heights(recorder);
+  } else {
+    record_paper(recorder);
+  }
+  recorder.run_dispatch(areas_result_, kDispatchContactOne);
+}
+
+void FrameResponse::record_after_areas(FrameRecorder& recorder) const {
+  record_heights(recorder);
   recorder.run_dispatch(areas_result_, kDispatchContactOne);
 }
 

@@ -23,10 +23,13 @@ class FrameResponse {
   /// Records every dispatch; all of them have no groups in a frame without contact. Goes after set_decide.comp, and ends with
   /// a barrier due.
   void record(FrameRecorder& recorder) const;
+  /// The same for a frame whose areas and directions the host has written (compute/host_areas.h): rays and what follows. `refined`.
+  void record_after_areas(FrameRecorder& recorder) const;
 
  private:
   void record_paper(FrameRecorder& recorder) const;
-  void record_refined(FrameRecorder& recorder) const;
+  void record_directions(FrameRecorder& recorder) const;
+  void record_heights(FrameRecorder& recorder) const;
   void record_areas(FrameRecorder& recorder) const;
 
   bool refined_ = true;

@@ -26,6 +26,7 @@ struct GpuOptions {
   std::shared_ptr<DiskCache> cache{};   ///< where prepared scenes are kept; may be null
   std::map<std::string, std::uint32_t> first_capacity{};   ///< for tests: items that a list of a frame holds to begin with, by its name in
                                                            ///< Contacts::truncated_capacity; lists not named here choose for themselves
+  bool areas_on_host = true;      ///< for tests: false leaves the areas of small contacts to the device, too
   std::shared_ptr<GpuFault> fault{};   ///< for tests
 };
 

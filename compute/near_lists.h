@@ -24,7 +24,8 @@ struct NearLists {
   HostList<gpu::NearTriangle> triangles;
   HostList<gpu::TouchCandidate> touch;
   HostList<gpu::PairCandidate> pairs;
-  HostList<gpu::SampleChunk> samples;
+  HostList<gpu::SampleChunk> samples;           ///< where samples are not listed
+  HostList<gpu::FrameSample> inside, open;      ///< where they are: what the tool's fine partition has inside, and what it leaves open
   std::uint32_t full = gpu::kNone;   ///< the kList… that had no room; the search ended there
 
   /// As HostList::push; notes `list` as full.

@@ -31,20 +31,25 @@ void widen(std::vector<std::uint8_t>& cells, const Int3& n, int axis, std::int32
 }  // namespace
 
 struct NearSamples::Search {
+  const LatticePose& pose;
   double rotation[3][3];      // world from tool
   double translation[3];
   NearLists& lists;
-  std::uint32_t begin = 0, end = 0;   // samples that follow each other, not yet listed
 
   /// Tool lattice point of a world lattice point, off by less than 2^-20.
   void to_tool(const Int3& p, double (&out)[3]) const {
     const double d[3] = {p.x - translation[0], p.y - translation[1], p.z - translation[2]};
     for (std::size_t c = 0; c < 3; ++c) out[c] = rotation[0][c] * d[0] + rotation[1][c] * d[1] + rotation[2][c] * d[2];
   }
-  bool flush() {
-    for (; begin < end; begin += gpu::kListedChunk)
-      if (!lists.push(lists.samples, gpu::kListSampleChunks, {Int3(0), begin, std::min(begin + gpu::kListedChunk, end)})) return false;
-    return true;
+  /// The same as docs/EXACTNESS.md section 4 rounds it. |p − translation| < 2^31: sums within 3 · 2^61.
+  Int3 rounded_to_tool(const Int3& p) const {
+    const std::int64_t d[3] = {std::int64_t{p.x} - pose.translation.x, std::int64_t{p.y} - pose.translation.y, std::int64_t{p.z} - pose.translation.z};
+    Int3 out;
+    for (int c = 0; c < 3; ++c) {
+      const std::int64_t sum = pose.rotation_q30[0][c] * d[0] + pose.rotation_q30[1][c] * d[1] + pose.rotation_q30[2][c] * d[2] + (std::int64_t{1} << 29);
+      out[c] = static_cast<std::int32_t>(sum >> 30);
+    }
+    return out;
   }
 };
 
@@ -63,8 +68,13 @@ Result<NearSamples> NearSamples::make(VulkanDevice& device, const PreparedScene&
   if (auto r = out.slots_.read(device, m.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r) return r.error();
   if (auto r = out.bricks_.read(device, m.bricks, m.grid.mixed_bricks); !r) return r.error();
   if (auto r = out.list_begin_.read(device, m.list_begin, std::size_t{m.grid.boundary_voxels} + 1); !r) return r.error();
-  if (out.listed_)
+  if (out.listed_) {
+    const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
     if (auto r = out.sample_begin_.read(device, scene.sample_begin, std::size_t{m.grid.list_entries} + 1); !r) return r.error();
+    if (auto r = out.mockup_samples_.read(device, scene.samples, scene.samples.bytes() / sizeof(gpu::FrameSample)); !r) return r.error();
+    if (auto r = out.fine_slots_.read(device, fine.brick_slot, count); !r) return r.error();
+    if (auto r = out.fine_bricks_.read(device, fine.bricks, out.fine_.mixed_bricks); !r) return r.error();
+  }
   std::vector<std::uint8_t> any(count, 1);
   if (out.has_near_) {
     if (auto r = out.near_.read(device, scene.tool_near, count * 16); !r) return r.error();
@@ -121,15 +131,31 @@ bool NearSamples::near_voxel(const double (&p)[3]) const {
   return (near_[i >> 5] >> (i & 31) & 1u) != 0;
 }
 
+/// kVoxel… of the tool's fine partition; V_ext beyond the grid. For an open sample the device begins at the same voxel.
+std::uint32_t NearSamples::fine_class(const Int3& p) const {
+  Int3 v;
+  for (int k = 0; k < 3; ++k) {
+    // Half a step from the nearest integer quotient, which is far more than a double rounds.
+    const double along = (p[k] - fine_.origin[k] + 0.5) * per_fine_;
+    if (!(along >= 0 && along < 8 * fine_.bricks[k])) return gpu::kVoxelExternal;
+    v[k] = static_cast<std::int32_t>(along);
+  }
+  const std::uint32_t slot = fine_slots_[at(Int3(v.x >> 3, v.y >> 3, v.z >> 3), fine_.bricks)];
+  if (slot >= gpu::kBrickInternal) return slot == gpu::kBrickInternal ? gpu::kVoxelInternal : gpu::kVoxelExternal;
+  const auto bit = static_cast<unsigned>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
+  if ((fine_bricks_[slot].boundary[bit >> 5] >> (bit & 31) & 1) != 0) return gpu::kVoxelBoundary;
+  return (fine_bricks_[slot].internal_[bit >> 5] >> (bit & 31) & 1) != 0 ? gpu::kVoxelInternal : gpu::kVoxelExternal;
+}
+
 bool NearSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const {
   const std::uint32_t begin = list_begin_[boundary], end = list_begin_[boundary + 1];
   if (listed_) {
-    const std::uint32_t from = sample_begin_[begin], to = sample_begin_[end];
-    if (from != search.end) {
-      if (!search.flush()) return false;
-      search.begin = from;
+    for (std::uint32_t i = sample_begin_[begin], last = sample_begin_[end]; i < last; ++i) {
+      const gpu::FrameSample& sample = mockup_samples_[i];
+      const std::uint32_t voxel_class = fine_class(search.rounded_to_tool(sample.point));
+      if (voxel_class == gpu::kVoxelInternal && !search.lists.push(search.lists.inside, gpu::kListInsideSamples, sample)) return false;
+      if (voxel_class == gpu::kVoxelBoundary && !search.lists.push(search.lists.open, gpu::kListOpenSamples, sample)) return false;
     }
-    search.end = to;
     return true;
   }
   for (std::uint32_t e = begin; e < end; e += gpu::kSampleChunk)
@@ -167,7 +193,7 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
 }
 
 void NearSamples::find(const LatticePose& pose, const Int3& first, const Int3& last, NearLists& lists) const {
-  Search search{{}, {}, lists};
+  Search search{pose, {}, {}, lists};
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = pose.rotation_q30[r][c] * 0x1p-30;
     search.translation[r] = pose.translation[static_cast<int>(r)];
@@ -181,7 +207,6 @@ void NearSamples::find(const LatticePose& pose, const Int3& first, const Int3& l
         take_brick(search, b, slot);
         if (lists.full != gpu::kNone) return;
       }
-  search.flush();
 }
 
 }  // namespace palpate

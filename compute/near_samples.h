@@ -9,13 +9,14 @@
 
 namespace palpate {
 
-/// Which V_bnd voxels of the mock-up may hold a sample inside the tool: those near its solid, found in ever smaller cubes. The device
-/// decides about each sample. One thread; find() does not allocate.
+/// Which samples of the mock-up may lie inside the tool: those in V_bnd voxels near its solid, found in ever smaller cubes. Where samples
+/// are listed, the tool's fine partition answers for most of them here; the device decides about the rest. One thread; find() does not
+/// allocate.
 class NearSamples {
  public:
   /// The scene outlives this.
   static Result<NearSamples> make(VulkanDevice& device, const PreparedScene& scene);
-  /// Appends to lists.samples, for bricks first … last of the mock-up's grid. Where it has no room, the search ends.
+  /// Appends to lists.inside and open, or to lists.samples, for bricks first … last of the mock-up's grid. Where it has no room, the search ends.
   void find(const LatticePose& pose, const Int3& first, const Int3& last, NearLists& lists) const;
 
  private:
@@ -31,13 +32,15 @@ class NearSamples {
   bool near_voxel(const double (&at)[3]) const;
   void take_brick(Search& search, const Int3& brick, std::uint32_t slot) const;
   bool take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const;
+  std::uint32_t fine_class(const Int3& p) const;
 
   gpu::GridConstants mockup_{}, fine_{};
   double per_fine_ = 0, per_cube_ = 0;   ///< fine voxels and cubes of them a step
   Level brick_, octant_;
   bool has_near_ = false, listed_ = false;
-  HostCopy<std::uint32_t> slots_, near_, list_begin_, sample_begin_;
-  HostCopy<gpu::Brick> bricks_;
+  HostCopy<std::uint32_t> slots_, near_, list_begin_, sample_begin_, fine_slots_;
+  HostCopy<gpu::Brick> bricks_, fine_bricks_;
+  HostCopy<gpu::FrameSample> mockup_samples_;
 };
 
 }  // namespace palpate

@@ -290,6 +290,7 @@ Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& opt
   if (!made) return Error{made.error().code, "no usable Vulkan device: " + made.error().sentence};
   device->fault_ = options.fault;
   device->guarded = options.guard_buffers;
+  device->areas_on_host = options.areas_on_host;
   return device;
 }
 

@@ -68,6 +68,8 @@ class VulkanDevice {
   /// Pipelines made so far, by module and constants; ComputePipeline::create fills it.
   std::map<std::vector<std::uint32_t>, std::shared_ptr<const PipelineObjects>> pipelines;
 
+  /// GpuOptions::areas_on_host.
+  bool areas_on_host = true;
   /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
   /// `guard_error`: the first that was found broken when its buffer died, or empty.
   bool guarded = false;

@@ -17,7 +17,9 @@ void main() {
   if (i < kListCount) {
     const uint32_t count = i == kListTouchCandidates ? frame_input.touch_candidates
                            : i == kListPairCandidates ? frame_input.pair_candidates
-                           : i == kListSampleChunks ? frame_input.sample_chunks : 0u;
+                           : i == kListSampleChunks ? frame_input.sample_chunks
+                           : i == kListInsideSamples ? frame_input.inside_samples
+                           : i == kListOpenSamples ? frame_input.open_samples : 0u;
     frame_lists[i].count = count;
     frame_lists[i].asked = count;
     frame_lists[i].items = groups_for((count + kGroupSize - 1u) / kGroupSize);

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Hands the counts to the host. A lone invocation; reads frame_lists, frame_state; writes the result's head.
+// Hands the counts of the response to the host. A lone invocation; reads frame_lists, frame_state; writes the result's head.
 #include "shaders/lib/frame.glsl"
 
 READ(kBindFrameLists, FrameList, frame_lists);
@@ -10,9 +10,6 @@ EDIT_ONE(kBindResult, FrameResult, result);
 void main() {
   if (gl_LocalInvocationIndex != 0u) return;
   result.state = frame_state;
-  result.pair_count = frame_lists[kListPairs].count;
-  result.static_count = frame_lists[kListContactStatics].count;
-  result.mobile_count = frame_lists[kListContactMobiles].count;
   result.member_count = frame_lists[kListMembers].count;
   result.pierce_count = frame_lists[kListPierces].count;
 }

@@ -15,17 +15,4 @@ void ask_for_samples(ivec3 voxel, uint32_t boundary) {
   for (uint32_t i = 0u; i < chunks && first + i < frame_lists[kListSampleChunks].capacity; ++i)
     sample_chunks[first + i] = SampleChunk(voxel, begin + i * chunk, min(begin + (i + 1u) * chunk, end));
 }
-
-// The same for listed samples.
-void ask_for_listed(uint32_t begin, uint32_t end) {
-  const uint32_t chunk = chunk_of(end - begin, kListedChunk, kMostChunks);
-  if (chunk > kLoopBudget) {
-    atomicOr(frame_state.overflow_other, kOverflowLoop);
-    return;
-  }
-  const uint32_t chunks = (end - begin + chunk - 1u) / chunk;
-  const uint32_t first = take_room(kListSampleChunks, chunks);
-  for (uint32_t i = 0u; i < chunks && first + i < frame_lists[kListSampleChunks].capacity; ++i)
-    sample_chunks[first + i] = SampleChunk(ivec3(0), begin + i * chunk, min(begin + (i + 1u) * chunk, end));
-}
 #endif

@@ -9,7 +9,6 @@
 layout(constant_id = 0) const bool REFINED = true;
 
 CONSTANT(kBindScene, SceneConstants, scene);
-READ(kBindFrameLists, FrameList, frame_lists);
 READ(kBindHeldAreas, HeldDirection, held_areas);
 EDIT(kBindDispatches, DispatchArguments, dispatches);
 EDIT_ONE(kBindResponseState, ResponseState, response);
@@ -62,9 +61,6 @@ void main() {
   memoryBarrierBuffer();
   barrier();
   if (gl_LocalInvocationIndex != 0u) return;
-  const uint32_t samples = frame_lists[REFINED ? kListSamples : kListContactStatics].count;
-  const uint32_t runs = (samples + kHeightRun - 1u) / kHeightRun;
-  if (count > 0u) dispatches[kDispatchHeightRuns] = groups_for((runs + kGroupSize - 1u) / kGroupSize);
   const uint32_t requests = atomicAdd(response.requests, 0u);
   if (requests > 0u) {
     const ivec3 bricks = scene.mockup.grid.bricks;

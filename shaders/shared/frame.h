@@ -73,6 +73,7 @@ PALPATE_CONSTANT int32_t kBindToolRecords = 40;                  // ToolRecord[t
 PALPATE_CONSTANT int32_t kBindTouchCandidates = 41;              // TouchCandidate[FrameInput::touch_candidates]; mapped
 PALPATE_CONSTANT int32_t kBindVoxelState = 42;                   // uint32_t[boundary voxels]: kVoxel… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindTouchedVoxels = 43;                // kListTouchedVoxels: FrameVoxel, each V_bnd voxel touched by a mobile triangle once
+PALPATE_CONSTANT int32_t kBindInsideSamples = 44;                // FrameSample[FrameInput::inside_samples]; mapped
 PALPATE_CONSTANT int32_t kBindStaticChunks = 45;                 // kListStaticChunks: StaticChunk
 PALPATE_CONSTANT int32_t kBindPairCandidates = 47;               // PairCandidate[FrameInput::pair_candidates]; mapped
 PALPATE_CONSTANT int32_t kBindPairs = 48;                        // kListPairs: ContactPair, distinct intersecting pairs
@@ -81,7 +82,7 @@ PALPATE_CONSTANT int32_t kBindStaticSlot = 50;                   // uint32_t[sta
 PALPATE_CONSTANT int32_t kBindContactStatics = 51;               // kListContactStatics: uint32_t static id = C_s
 PALPATE_CONSTANT int32_t kBindContactMobiles = 52;               // kListContactMobiles: uint32_t tool triangle = C_m
 PALPATE_CONSTANT int32_t kBindSampleChunks = 53;                 // kListSampleChunks: SampleChunk over voxels that may hold counting samples; mapped
-PALPATE_CONSTANT int32_t kBindOpenSamples = 54;                  // kListOpenSamples: FrameSample in V_bnd voxels of the tool: the winding decides
+PALPATE_CONSTANT int32_t kBindOpenSamples = 54;                  // kListOpenSamples: FrameSample in V_bnd voxels of the tool: the winding decides; mapped
 PALPATE_CONSTANT int32_t kBindSamples = 55;                      // kListSamples: FrameSample that count (inside; or the rule for open tools); refined only
 PALPATE_CONSTANT int32_t kBindHeldStatics = 56;                  // HeldStatic[FrameInput::held_statics]; mapped
 PALPATE_CONSTANT int32_t kBindHeldAreas = 57;                    // HeldDirection[FrameInput::held_areas]; mapped
@@ -103,13 +104,14 @@ PALPATE_CONSTANT int32_t kBindResponseFirst = 72;                // frame_respon
 PALPATE_CONSTANT uint32_t kListNearTriangles = 0;                // filled by the host, which knows its length: FrameInput::near_triangles
 PALPATE_CONSTANT uint32_t kListTouchCandidates = 2;              // by the host
 PALPATE_CONSTANT uint32_t kListTouchedVoxels = 3;
+PALPATE_CONSTANT uint32_t kListInsideSamples = 4;                // by the host
 PALPATE_CONSTANT uint32_t kListStaticChunks = 5;
 PALPATE_CONSTANT uint32_t kListPairCandidates = 6;               // by the host
 PALPATE_CONSTANT uint32_t kListPairs = 7;
 PALPATE_CONSTANT uint32_t kListContactStatics = 8;
 PALPATE_CONSTANT uint32_t kListContactMobiles = 9;
 PALPATE_CONSTANT uint32_t kListSampleChunks = 10;                // by the host; for tools without inside by the device
-PALPATE_CONSTANT uint32_t kListOpenSamples = 11;
+PALPATE_CONSTANT uint32_t kListOpenSamples = 11;                 // by the host where samples are listed, else by the device
 PALPATE_CONSTANT uint32_t kListSamples = 12;
 PALPATE_CONSTANT uint32_t kListMembers = 13;                     // response: mobile triangles of areas; ids only, goes to the host as it is
 PALPATE_CONSTANT uint32_t kListPierces = 14;                     // response: distinct (area, pierced area); goes to the host as it is
@@ -147,7 +149,8 @@ PALPATE_CONSTANT uint32_t kDispatchSwallowedOne = 10;            // swallowed: a
 PALPATE_CONSTANT uint32_t kDispatchSwallowed = 11;               // swallowed: a workgroup a NearTriangle
 PALPATE_CONSTANT uint32_t kDispatchClusters = 5;                 // rays are needed: a workgroup a cluster of the tool
 PALPATE_CONSTANT uint32_t kDispatchBins = 8;                     // samples may be inside: an invocation a bin
-PALPATE_CONSTANT uint32_t kDispatchReset = 14;                   // an invocation an entry of whatever is emptied at the frame's end
+PALPATE_CONSTANT uint32_t kDispatchReset = 14;                   // contact: an invocation an entry of whatever is emptied at the frame's end
+PALPATE_CONSTANT uint32_t kDispatchResetFree = 12;               // no contact: the same
 PALPATE_CONSTANT uint32_t kDispatchBinTriangles = 15;  // some sample is open: an invocation a tool triangle
 PALPATE_CONSTANT uint32_t kDispatchResponseFirst = 16;           // 16…31: of the response's own making
 PALPATE_CONSTANT uint32_t kDispatchCount = 32;
@@ -168,6 +171,8 @@ struct FrameInput {
   uint32_t touch_candidates;
   uint32_t pair_candidates;
   uint32_t sample_chunks;
+  uint32_t inside_samples;
+  uint32_t open_samples;
   uint32_t rays;                  // 1: the bodies may meet: the tool may be needed as a whole, where rays or samples ask for it
 };
 
@@ -267,12 +272,11 @@ struct StaticChunk {
 };
 struct SampleChunk {
   ivec3 voxel;                    // whose samples are asked for
-  uint32_t begin, end;            // of its list; where samples are listed: of them
+  uint32_t begin, end;            // of its list
 };
 PALPATE_CONSTANT uint32_t kStaticChunk = 8;                      // entries in a StaticChunk (chosen: most lists are shorter)
 PALPATE_CONSTANT uint32_t kSampleChunk = 2;                      // entries in a SampleChunk
 PALPATE_CONSTANT uint32_t kMostChunks = 1024, kMostStaticChunks = 8192;   // chunks of one list: where it is very long, chunks are longer
-PALPATE_CONSTANT uint32_t kListedChunk = 8;                      // samples in a SampleChunk where they are listed
 
 // Two triangles whose boxes meet, found by the host.
 struct PairCandidate {
@@ -327,7 +331,7 @@ struct FrameResult {
   uint32_t area_count;            // ≤ kMaxFrameAreas
   ivec3 swallowed_direction;
   uint32_t swallowed_height;
-  uint32_t padding;               // whole 8 bytes
+  uint32_t sample_count;          // that count
   AreaResult areas[kMaxFrameAreas];
 };
 
@@ -354,7 +358,7 @@ struct AreaPierce {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 140);
+PALPATE_ASSERT_SIZE(FrameInput, 148);
 PALPATE_ASSERT_SIZE(NearTriangle, 16);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(TouchCandidate, 16);

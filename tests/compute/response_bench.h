@@ -202,6 +202,7 @@ class ResponseTest : public GpuTest {
     dispatches[kDispatchContactStatics] = groups(size(c.contact_statics));
     dispatches[kDispatchContactMobiles] = groups(size(c.contact_mobiles));
     dispatches[kDispatchSamples] = groups(size(c.samples));
+    dispatches[kDispatchHeightRuns] = groups((size(c.samples) + kHeightRun - 1) / kHeightRun);
     dispatches[kDispatchHeldStatics] = groups(size(c.held_statics));
     put(buffers, kBindDispatches, dispatches);
   }

@@ -23,7 +23,6 @@ CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): wi
 CULLS = {
     'heights_trace': RAYS,
     'mobile_samples': CELL,
-    'sample_listed': CELL,
     'sample_scan': CELL,
     'sample_walk': CELL,
     'swallow_march': CELL,

@@ -1,0 +1,66 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "compute/host_copy.h"
+#include "compute/prepared_scene.h"
+#include "model/contacts.h"
+#include "model/lattice.h"
+#include "model/scene_geometry.h"
+#include "shaders/shared/frame.h"
+#include "shaders/shared/frame_response.h"
+
+namespace palpate {
+
+/// What detection leaves of a contact, and where the areas go.
+struct ContactLists {
+  std::span<const gpu::MobileResult> mobiles;    ///< C_m
+  std::span<const gpu::FrameSample> samples;     ///< that count
+  std::span<gpu::StaticResult> statics;          ///< C_s by slot; area and zone are written
+  std::span<gpu::AreaWork> areas;                ///< kMaxFrameAreas; written
+  std::span<gpu::SlotWork> slots;                ///< written, one a slot
+  std::span<gpu::AreaMember> members;            ///< room for them; written
+};
+
+/// Areas, zones and n_c of a small contact (docs/EXACTNESS.md sections 5 and 6, `refined`), on the host: a few hundred triangles are
+/// sooner joined one after the other than in fifteen dispatches. What is large or rare is left to the device, whose shaders say the same bits.
+/// One thread; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
+class HostAreas {
+ public:
+  static Result<HostAreas> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
+
+  struct Answer {
+    std::uint32_t areas = 0, members = 0;
+  };
+  /// False: left to the device. `lists` may then be half written.
+  bool solve(const LatticePose& pose, const Held* held, const ContactLists& lists, Answer& answer);
+
+  static constexpr std::size_t kMostStatics = 4096;   ///< C_s beyond which the device takes over (chosen)
+
+ private:
+  std::uint32_t root(std::uint32_t node);
+  void join(std::uint32_t a, std::uint32_t b, const ContactLists& lists);
+  void join_all(const ContactLists& lists);
+  std::uint32_t slot(std::uint32_t id, const ContactLists& lists) const;
+  void gather(const ContactLists& lists);
+  std::uint32_t match_held(std::uint32_t area, const Held& held, const ContactLists& lists) const;
+  bool associate(const LatticePose& pose, const ContactLists& lists, Answer& answer);
+  void begin_area(gpu::AreaWork& area, std::uint32_t number, const LatticePose& pose, const Held* held, const ContactLists& lists) const;
+  bool count_tool_samples(const LatticePose& pose, std::uint32_t mobile, std::uint32_t& count) const;
+  bool sum_tool_normals(const LatticePose& pose, const ContactLists& lists, const Answer& answer);
+  bool direct(gpu::AreaWork& area, const Held* held) const;
+  bool occupied(const Int3& p) const;
+
+  const SceneGeometry* geometry_ = nullptr;
+  gpu::SceneConstants constants_{};
+  HostCopy<std::uint32_t> seam_begin_, seams_, brick_slots_;
+  HostCopy<gpu::Brick> bricks_;
+  std::vector<std::uint32_t> slot_of_;          ///< by static id; valid where C_s has it there
+  std::vector<std::uint32_t> parents_;          ///< node 2·slot joins areas, 2·slot + 1 zones
+  std::vector<std::uint32_t> tool_samples_;     ///< by tool triangle: kNone until counted
+};
+
+}  // namespace palpate
