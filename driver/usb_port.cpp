@@ -43,7 +43,7 @@ std::string name_of(UsbId id) { return hex(id.vendor) + ":" + hex(id.product); }
 std::string meaning(int error, UsbId id) {
   switch (error) {
     case LIBUSB_ERROR_ACCESS:
-      return "USB device " + name_of(id) + " may not be opened by this user: install driver/udev/70-palpate.rules and plug it in again";
+      return "USB device " + name_of(id) + " may not be opened by this user: install 70-palpate.rules (in driver/udev, or a bundle's share/palpate) and plug it in again";
     case LIBUSB_ERROR_BUSY: return "USB device " + name_of(id) + " is in use by another program";
     case LIBUSB_ERROR_NO_DEVICE: return "USB device " + name_of(id) + " was unplugged";
     case LIBUSB_ERROR_TIMEOUT: return "USB device " + name_of(id) + " did not answer in time";

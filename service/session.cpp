@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "driver/device_notes.h"
 #include "driver/safe_device.h"
 #include "service/collision_frame.h"
 #include "service/collision_worker.h"
@@ -204,7 +205,7 @@ std::optional<Error> failure_of(const Run& run) {
   return run.observer.error();
 }
 
-SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend) {
+SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend, const HapticDevice& device) {
   SessionSummary out;
   out.static_triangles = scene.geometry.mockup.triangles.size();
   out.tool_triangles = scene.geometry.tool.triangles.size();
@@ -237,6 +238,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   if (out.watchdog_ticks > 0)
     note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " + std::to_string(out.watchdog_ticks) +
          " ticks: the watchdog faded the force out");
+  if (const auto* told = dynamic_cast<const DeviceNotes*>(&device))
+    for (std::string& sentence : told->notes()) note(std::move(sentence));
   if (run.tick.unready_ticks() > 0)
     note("the haptic device was not ready (unplugged, loading, homing) in " + std::to_string(run.tick.unready_ticks()) + " ticks, which had no force");
   if (out.missed_ticks > 0) note(std::to_string(out.missed_ticks) + " ticks were missed: the loop's thread did not get the processor in time");
@@ -279,7 +282,7 @@ Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& b
   }
   safe.close();
 
-  return summarise(*run, scene, backend);
+  return summarise(*run, scene, backend, device);
 }
 
 }  // namespace palpate

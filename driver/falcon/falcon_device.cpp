@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "driver/device_notes.h"
 #include "driver/falcon/falcon_link.h"
 #include "driver/limits.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 constexpr const char* kLying = "the Falcon's encoders say what its arms can't do; unplug it, plug it in and home it anew";
 
-class FalconDevice final : public HapticDevice {
+class FalconDevice final : public HapticDevice, public DeviceNotes {
  public:
   FalconDevice(const FalconSettings& settings, std::vector<std::uint8_t> image, const Pose& start, OpenPort open_port)
       : settings_(settings), workspace_(settings.workspace, start), link_(settings, std::move(image), std::move(open_port)) {
@@ -65,6 +66,13 @@ class FalconDevice final : public HapticDevice {
     sample_.pose.position = workspace_.position(grip_ - kCentre, device_.buttons);
     sample_.clutched = workspace_.clutched();
     return sample_;
+  }
+
+  std::vector<std::string> notes() const override {
+    const BusCounts& bus = link_.counts();
+    if (bus.late + bus.malformed + bus.jumps + bus.errors == 0) return {};
+    return {"falcon: of " + std::to_string(bus.reports) + " reports " + std::to_string(bus.late) + " came late, " + std::to_string(bus.malformed) +
+            " more were malformed, " + std::to_string(bus.jumps) + " had encoders that jumped; " + std::to_string(bus.errors) + " bus errors"};
   }
 
   const char* guidance() const noexcept override { return lying_ ? kLying : device_.guidance; }

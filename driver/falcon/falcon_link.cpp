@@ -123,6 +123,7 @@ FalconLink::Next FalconLink::exchange(SerialLine& line) {
   const auto begun = Clock::now();
   auto last_sound = begun, last_sent = begun - kAnswerTime, homing_since = begun;
   bool answered = true;
+  const BusCounts before = now_.counts;   // of earlier times that it was plugged in
   tell(DeviceState::kHoming, kHomingText);
   while (!stopping()) {
     const auto now = Clock::now();
@@ -136,6 +137,7 @@ FalconLink::Next FalconLink::exchange(SerialLine& line) {
       const bool ready = filter.homed();
       const Command command{ready ? wanted_motors() : MotorCounts{}, static_cast<std::uint8_t>(kHomingOn | (ready ? kGreen : kRed))};
       if (line.send(encode(command))) {
+        if (!answered) ++now_.counts.late;
         last_sent = now;
         answered = false;
       }
@@ -149,14 +151,14 @@ FalconLink::Next FalconLink::exchange(SerialLine& line) {
       const auto came = Clock::now();
       const auto ticks = std::chrono::duration_cast<milliseconds>(came - last_sound).count() + 1;
       last_sound = came;
-      ++now_.reports;
+      ++now_.counts.reports;
       if (filter.take(*report, static_cast<int>(ticks))) now_.time_ns = nanoseconds(came);
     });
     now_.encoders = filter.encoders();
     now_.buttons = filter.buttons();
-    now_.malformed = stream.malformed();
-    now_.jumps = filter.jumps();
-    now_.bus_errors = line.errors();
+    now_.counts.malformed = before.malformed + stream.malformed();
+    now_.counts.jumps = before.jumps + filter.jumps();
+    now_.counts.errors = before.errors + line.errors();
     if (filter.lost()) {
       tell(DeviceState::kFault, kJumped);
       return Next::kFault;

@@ -18,6 +18,15 @@ struct FromLoop {
   MotorCounts motors{};
 };
 
+/// What happened on the bus since start().
+struct BusCounts {
+  std::uint64_t reports = 0;           ///< sound ones
+  std::uint64_t late = 0;              ///< commands without an answer within 5 ms
+  std::uint64_t malformed = 0;         ///< reports begun and not ended as they must
+  std::uint64_t jumps = 0;             ///< whose encoders were rejected
+  std::uint64_t errors = 0;            ///< transfers that failed: stall, babble, protocol
+};
+
 /// What the link knows of the device.
 struct FromDevice {
   Encoders encoders{};
@@ -25,7 +34,7 @@ struct FromDevice {
   DeviceState state = DeviceState::kOpening;
   std::int64_t time_ns = 0;            ///< steady clock, when the newest sound report came
   const char* guidance = "";           ///< for the person at the device; text that outlives everything
-  std::uint64_t reports = 0, malformed = 0, jumps = 0, bus_errors = 0;
+  BusCounts counts;
 };
 
 /// The thread that talks to a Falcon: loads, homes, exchanges packets, finds the device again. The control loop's side is two
@@ -45,6 +54,9 @@ class FalconLink {
   /// Control loop's side.
   void publish(const FromLoop& wanted) noexcept { to_device_.publish(wanted); }
   const FromDevice* take() noexcept { return from_device_.take(); }
+
+  /// Once stopped.
+  const BusCounts& counts() const noexcept { return now_.counts; }
 
  private:
   enum class Next { kReopen, kFault, kStop };

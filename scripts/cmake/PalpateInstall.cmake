@@ -42,7 +42,7 @@ if(TARGET palpate)
     PRE_EXCLUDE_REGEXES "^ld-linux" "^libc\\.so" "^libm\\.so" "^libpthread" "^libdl\\.so" "^librt\\.so"
     POST_EXCLUDE_REGEXES "/ld-linux" "/libc\\.so" "/libm\\.so")
   install(DIRECTORY scenes DESTINATION share/palpate COMPONENT bundle)
-  install(FILES README.md LICENSE CHANGELOG.md DESTINATION share/palpate COMPONENT bundle)
+  install(FILES README.md LICENSE CHANGELOG.md driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
 endif()
 
 set(CPACK_GENERATOR TGZ)

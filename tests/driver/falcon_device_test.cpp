@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "driver/device_notes.h"
 #include "driver/falcon/falcon_device.h"
 #include "driver/falcon/firmware.h"
 #include "driver/safe_device.h"
@@ -216,6 +217,24 @@ void stays_usable(const FalconFaults& faults) {
     EXPECT_EQ((*made)->read().pose.position, rest);
     EXPECT_EQ((*made)->read().state, DeviceState::kReady);
   }
+}
+
+TEST(Falcon, WhatHappenedOnTheBusIsToldAfterwards) {
+  Table table({.corrupt_every = 3}, true);
+  auto made = make_falcon({}, Pose{}, table.opener());
+  ASSERT_TRUE(made);
+  ASSERT_TRUE((*made)->open());
+  ASSERT_TRUE(reaches(**made, DeviceState::kReady));
+  pushed(**made, table);
+  table.front->faults.stalled_in = 2;
+  pushed(**made, table);
+  (*made)->close();
+  const auto* told = dynamic_cast<const DeviceNotes*>(made->get());
+  ASSERT_TRUE(told);
+  ASSERT_EQ(told->notes().size(), 1u);
+  EXPECT_NE(told->notes()[0].find("; 2 bus errors"), std::string::npos) << told->notes()[0];
+  EXPECT_EQ(told->notes()[0].find(" 0 more were malformed"), std::string::npos) << told->notes()[0];
+  EXPECT_EQ(told->notes()[0].find(" 0 came late"), std::string::npos) << "a broken report is no answer: " << told->notes()[0];
 }
 
 TEST(Falcon, ShortReportsAreSurvived) { stays_usable({.short_every = 3}); }

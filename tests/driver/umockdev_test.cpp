@@ -163,7 +163,7 @@ TEST_F(OnTheBus, WithoutPermissionTheRuleToAddIsNamed) {
   for (const auto& entry : fs::recursive_directory_iterator(bed_.root()))
     if (entry.is_socket()) fs::permissions(entry.path(), fs::perms::all);
   ASSERT_EQ(::chmod((bed_.root() + front_->node()).c_str(), ::getuid() == 0 ? 0600 : 0), 0);
-  EXPECT_THAT(devices(true), HasSubstr("not usable  USB device 0403:cb48 may not be opened by this user: install driver/udev/70-palpate.rules"));
+  EXPECT_THAT(devices(true), HasSubstr("not usable  USB device 0403:cb48 may not be opened by this user: install 70-palpate.rules"));
 }
 
 TEST_F(OnTheBus, ASpaceMouseThatTheKernelHasIsTakenOver) {
