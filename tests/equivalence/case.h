@@ -38,7 +38,7 @@ struct TestScene {
 /// Everything that two back ends compute is compared bit for bit; a case needs no tolerance.
 struct Case {
   std::string name;
-  std::string family;              ///< solids, chapter, touch or topology
+  std::string family;              ///< solids, chapter, touch, topology or rules
   std::string about;               ///< what it meets that others do not, and what is known of it beforehand
   std::function<Result<TestScene>(std::uint64_t seed)> make;   ///< most scenes do not depend on the seed
   Profile profile = Profile::kRefined;
@@ -60,5 +60,6 @@ std::vector<Case> solid_cases();
 std::vector<Case> chapter_cases();
 std::vector<Case> touch_cases();
 std::vector<Case> topology_cases();
+std::vector<Case> rule_cases();
 
 }  // namespace palpate::equivalence

@@ -9,7 +9,7 @@
 namespace palpate::mutation {
 namespace {
 
-using Words = std::vector<std::uint32_t>;
+using Words = std::vector<std::uint32_t>;   // of a module
 
 Words words_of(const std::string& bytes) {
   Words words(bytes.size() / 4);
@@ -59,11 +59,29 @@ MutableDevice::MutableDevice() {
 
 Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
   frame_.reset();
-  scene_.reset();
-  auto scene = prepare_scene(*device_, geometry, plan, progress);
-  if (!scene) return scene.error();
-  scene_.emplace(std::move(*scene));
-  auto frame = Frame::create(*device_, geometry, *scene_, {});
+  fresh_.reset();
+  const auto found = kept_.find(&geometry);
+  const bool by_mutant = prepares_ && !aside_;
+  if (by_mutant || found == kept_.end()) {
+    auto scene = prepare_scene(*device_, geometry, plan, progress);
+    if (!scene) return scene.error();
+    if (by_mutant) {
+      fresh_.emplace(std::move(*scene));
+    } else {
+      Prepared made{std::move(*scene), {}, {}};
+      for (const bool tool : {false, true}) {
+        const PartitionBuffers& of = tool ? made.scene.tool.partition : made.scene.mockup.partition;
+        if (!of.brick_slot) continue;   // `paper` has none of the tool
+        auto partition = read_partition(*device_, of);
+        if (!partition) return partition.error();
+        (tool ? made.tool : made.mockup) = std::move(*partition);
+      }
+      kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
+    }
+  } else {
+    kept_of_ = &found->second;
+  }
+  auto frame = Frame::create(*device_, geometry, this->scene(), {});
   if (!frame) return frame.error();
   frame_ = std::move(*frame);
   return device_->check_guards();
@@ -75,21 +93,28 @@ Result<void> MutableDevice::query(const LatticePose& pose, const Held* held, Con
 }
 
 Result<VoxelPartition> MutableDevice::partition(bool tool) const {
-  return read_partition(*device_, tool ? scene_->tool.partition : scene_->mockup.partition);
+  if (fresh_) return read_partition(*device_, tool ? fresh_->tool.partition : fresh_->mockup.partition);
+  return tool ? kept_of_->tool : kept_of_->mockup;
 }
 
-Result<void> MutableDevice::swap(const std::string& original, const std::string& mutant) {
-  const Words before = words_of(original), after = words_of(mutant), bare = without_bindings(before);
+Result<void> MutableDevice::swap(const std::string& original, const std::string& mutant, bool prepares) {
+  prepares_ = prepares_ || prepares;
+  mutants_.emplace_back(words_of(original), words_of(mutant));
+  return swap_all(mutants_.back().first, mutants_.back().second);
+}
+
+Result<void> MutableDevice::swap_all(const Words& before, const Words& after) {
+  const Words bare = without_bindings(before);
   std::vector<Key> keys;
-  const std::size_t known = swapped_.size();
-  for (const auto& [key, made] : device_->pipelines) keys.push_back(key);
-  for (const Key& key : keys) {   // buffers, bytes of push constants, number of constants, (id, value) …, words of the module
+  for (const auto& [key, made] : device_->pipelines)
+    if (std::none_of(swapped_.begin(), swapped_.end(), [&](const auto& s) { return s.first == key; })) keys.push_back(key);
+  for (const Key& key : keys) {   // buffers, bytes of push constants, which are uniform, number of constants, (id, value) …, words of the module
     std::vector<SpecConstant> constants;
-    for (std::size_t i = 0; i < key[2]; ++i) constants.push_back({key[3 + 2 * i], key[4 + 2 * i]});
-    const Words code(key.begin() + 3 + 2 * static_cast<std::ptrdiff_t>(key[2]), key.end());
+    for (std::size_t i = 0; i < key[3]; ++i) constants.push_back({key[4 + 2 * i], key[5 + 2 * i]});
+    const Words code(key.begin() + 4 + 2 * static_cast<std::ptrdiff_t>(key[3]), key.end());
     if (code.size() != before.size() || without_bindings(code) != bare) continue;
     const Words changed = bound_alike(before, after, code);
-    const auto made = ComputePipeline::create(*device_, {"mutant", changed.data(), changed.size() * 4}, key[0], key[1], constants);
+    const auto made = ComputePipeline::create(*device_, {"mutant", changed.data(), changed.size() * 4}, key[0], key[1], constants, key[2]);
     if (!made) return made.error();
     Key mutants_key(key.begin(), key.end() - static_cast<std::ptrdiff_t>(code.size()));
     mutants_key.insert(mutants_key.end(), changed.begin(), changed.end());
@@ -97,13 +122,27 @@ Result<void> MutableDevice::swap(const std::string& original, const std::string&
     device_->pipelines[key] = device_->pipelines[mutants_key];
     device_->pipelines.erase(mutants_key);
   }
-  if (swapped_.size() == known) return Error{ErrorCode::kUsage, "no pipeline has been made of this module"};
   return {};
 }
 
 void MutableDevice::restore() {
   for (auto& [key, made] : swapped_) device_->pipelines[key] = std::move(made);
   swapped_.clear();
+  mutants_.clear();
+  prepares_ = false;
+}
+
+void MutableDevice::set_aside() {
+  for (auto& [key, other] : swapped_) device_->pipelines[key].swap(other);
+  aside_ = true;
+}
+
+Result<void> MutableDevice::put_back() {
+  for (auto& [key, other] : swapped_) device_->pipelines[key].swap(other);
+  aside_ = false;
+  for (const auto& [before, after] : mutants_)
+    if (auto r = swap_all(before, after); !r) return r;
+  return {};
 }
 
 }  // namespace palpate::mutation

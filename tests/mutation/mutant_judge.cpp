@@ -1,5 +1,6 @@
 // Judges mutants, one a line of standard input, one line of answer each.
 //   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
+//                         "host" NUMBER             of the host's exact code (model/)
 //   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT; modules that include it
 //                          in: "intact"             whether the unchanged program still answers as at first
 // With --killers as last argument only the killer cases are asked.
@@ -26,6 +27,7 @@
 #include "tests/mutation/mutable_device.h"
 #include "tests/mutation/mutant_switch.h"
 #include "tests/mutation/oracle.h"
+#include "tests/mutation/probes.h"
 #include "tests/mutation/shader_compiler.h"
 
 namespace palpate::mutation {
@@ -47,13 +49,36 @@ void answer(const char* outcome, double seconds, const std::string& where, std::
 
 // ---- the reference, in children
 
+constexpr std::size_t kProbe = SIZE_MAX;   ///< no case but a probe
+
 /// What a child reports through its pipe.
 struct Report {
   std::size_t at = 0;
   char difference[200] = "";
 };
 
-[[noreturn]] void child(const Oracle& oracle, int mutant, int pipe_end, rlim_t seconds) {
+/// What the reference's parts said when nothing was changed.
+class ProbeAnswers {
+ public:
+  explicit ProbeAnswers(const Oracle& oracle) : oracle_(oracle) {
+    for (const Probe& probe : probes()) answers_.push_back(probe.second());
+    for (std::size_t c = 0; c < oracle.size(); ++c) ways_out_.push_back(probe_ways_out(oracle.geometry(c).mockup, oracle.geometry(c).mockup_grid));
+  }
+  /// The probe that says something else now; empty: none.
+  std::string first_difference() const {
+    for (std::size_t i = 0; i < answers_.size(); ++i)
+      if (probes()[i].second() != answers_[i]) return probes()[i].first;
+    for (std::size_t c = 0; c < ways_out_.size(); ++c)
+      if (probe_ways_out(oracle_.geometry(c).mockup, oracle_.geometry(c).mockup_grid) != ways_out_[c]) return "ways_out of " + oracle_.name(c);
+    return {};
+  }
+
+ private:
+  const Oracle& oracle_;
+  std::vector<std::uint64_t> answers_, ways_out_;
+};
+
+[[noreturn]] void child(Oracle& oracle, const ProbeAnswers& probed, int mutant, bool host, int pipe_end, rlim_t seconds) {
   const rlimit time{seconds, seconds + 1}, no_core{0, 0}, memory{rlim_t{4} << 30, rlim_t{4} << 30};
   setrlimit(RLIMIT_CPU, &time);
   setrlimit(RLIMIT_CORE, &no_core);
@@ -61,18 +86,22 @@ struct Report {
   if (std::freopen("/dev/null", "w", stderr) == nullptr) std::_Exit(3);
   active = mutant;
   Report report;
-  const std::string difference = oracle.first_difference_now(report.at);
+  std::string difference = host ? oracle.first_host_difference(report.at) : oracle.first_difference_now(report.at);
+  if (difference.empty() && !host) {
+    report.at = kProbe;
+    difference = probed.first_difference();
+  }
   std::strncpy(report.difference, difference.c_str(), sizeof report.difference - 1);
   if (write(pipe_end, &report, sizeof report) != sizeof report) std::_Exit(3);
   std::_Exit(difference.empty() ? 0 : 1);
 }
 
-void judge_reference(Oracle& oracle, int mutant, double limit) {
+void judge_reference(Oracle& oracle, const ProbeAnswers& probed, int mutant, bool host, double limit) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   const double before = cpu_seconds(RUSAGE_CHILDREN);
   const pid_t pid = fork();
-  if (pid == 0) child(oracle, mutant, ends[1], static_cast<rlim_t>(limit));
+  if (pid == 0) child(oracle, probed, mutant, host, ends[1], static_cast<rlim_t>(limit));
   close(ends[1]);
   Report report;
   const bool reported = read(ends[0], &report, sizeof report) == sizeof report;
@@ -88,6 +117,7 @@ void judge_reference(Oracle& oracle, int mutant, double limit) {
   } else if (WEXITSTATUS(status) == 0) {
     answer("survived", seconds, "", "");
   } else if (reported) {
+    if (report.at == kProbe) return answer("differs", seconds, "probe", report.difference);
     oracle.ask_first(report.at);
     answer("differs", seconds, oracle.name(report.at), report.difference);
   } else {
@@ -106,8 +136,7 @@ void limit_time(double seconds) {
 
 class ShaderJudge {
  public:
-  ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, double limit)
-      : oracle_(oracle), device_(device), root_(std::move(root)), limit_(limit) {}
+  ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root) : oracle_(oracle), device_(device), root_(std::move(root)) {}
 
   void judge(const std::string& line) {
     std::istringstream fields(line);
@@ -123,34 +152,36 @@ class ShaderJudge {
 
     const double before = cpu_seconds(RUSAGE_SELF);
     const auto spent = [&] { return cpu_seconds(RUSAGE_SELF) - before; };
-    std::vector<std::pair<std::string, std::string>> changed;   // SPIR-V before and after
+    // A mutant of a file that many modules include is tried in a few of them first: caught there, it need not be compiled for all.
+    constexpr int kFirst = 3;
     std::istringstream list(names);
-    for (std::string name; list >> name;) {
+    std::size_t at = 0;
+    int changed = 0;
+    std::string difference;
+    bool unasked = false;   // swapped in since the oracle was asked last
+    const auto ask = [&] {
+      difference = oracle_.first_difference_now(at);
+      unasked = false;
+    };
+    for (std::string name; difference.empty() && list >> name;) {
       const std::string& original = this->original(name);
       const auto mutant = compile_shader(root_, name, &change);
-      if (!mutant) return answer("no-program", spent(), "", name);
-      if (*mutant != original) changed.emplace_back(original, *mutant);
+      if (!mutant) {
+        device_.restore();
+        return answer("no-program", spent(), "", name);
+      }
+      if (*mutant == original) continue;
+      const bool of_frames = name.starts_with("shaders/frame/") || name.starts_with("shaders/response/");
+      if (auto r = device_.swap(original, *mutant, !of_frames); !r) difference = r.error().sentence;
+      unasked = true;
+      if (++changed == kFirst && difference.empty()) ask();
     }
-    if (changed.empty()) return answer("no-change", spent(), "", "");
-
-    // A mutant of a file that many modules include is tried in a few of them first: caught there, it need not be compiled for all.
-    limit_time(limit_ + 3 * static_cast<double>(changed.size()));
-    std::size_t at = 0, swapped = 0;
-    std::string difference;
-    for (const std::size_t until : {std::min<std::size_t>(changed.size(), 3), changed.size()}) {
-      if (swapped == until || !difference.empty()) continue;
-      for (; swapped < until && difference.empty(); ++swapped)
-        if (auto r = device_.swap(changed[swapped].first, changed[swapped].second); !r) {
-          device_.restore();
-          // No case runs it, or the sources are not those that this program was built of.
-          if (r.error().code == ErrorCode::kUsage) return answer("not-asked", spent(), "", r.error().sentence);
-          difference = r.error().sentence;
-        }
-      if (difference.empty()) difference = oracle_.first_difference_now(at);
-    }
+    if (unasked && difference.empty()) ask();
+    const std::size_t swapped = device_.swapped();
     device_.restore();
     limit_time(0);
-    if (difference.empty()) return answer("survived", spent(), "", "");
+    if (changed == 0) return answer("no-change", spent(), "", "");
+    if (difference.empty()) return answer(swapped > 0 ? "survived" : "not-asked", spent(), "", "");
     oracle_.ask_first(at);
     answer("differs", spent(), oracle_.name(at), difference);
   }
@@ -165,42 +196,55 @@ class ShaderJudge {
   Oracle& oracle_;
   MutableDevice& device_;
   std::string root_;
-  double limit_;
   std::map<std::string, std::string> originals_;
 };
 
-/// Asks everything once more; how much processor time that takes.
-double rehearse(const Oracle& oracle) {
-  const double begin = cpu_seconds(RUSAGE_SELF);
-  std::size_t at = 0;
-  if (const std::string difference = oracle.first_difference_now(at); !difference.empty())
-    throw std::runtime_error("the unchanged program differs from itself: " + oracle.name(at) + ", " + difference);
-  const double once = cpu_seconds(RUSAGE_SELF) - begin;
-  std::printf("ready\t%zu cases\t%.2f s\n", oracle.size(), once);
+void ready(const Oracle& oracle) {
+  std::printf("ready\t%zu cases\n", oracle.size());
   std::fflush(stdout);
-  return once;
 }
 
 void judge_shaders(const std::string& root, bool killers) {
   MutableDevice device;
-  Oracle oracle(device, killers);
-  ShaderJudge judge(oracle, device, root, 2 + 5 * rehearse(oracle));
+  Oracle oracle(device, killers, [&](bool begins) {
+    if (!begins) {
+      if (auto r = device.put_back(); !r) throw std::runtime_error(r.error().sentence);
+      return;
+    }
+    limit_time(0);   // what the unchanged program takes is nobody's fault
+    device.set_aside();
+  });
+  // A case's first answer has compiled pipelines too, so this is much more than five times what it takes.
+  oracle.before_case = [](double seconds) { limit_time(3 + 5 * seconds); };
+  ShaderJudge judge(oracle, device, root);
+  ready(oracle);
   for (std::string line; std::getline(std::cin, line);) {
     if (line != "intact") {
       judge.judge(line);
       continue;
     }
     std::size_t at = 0;
-    const std::string difference = oracle.first_difference_now(at);
+    const std::string difference = oracle.first_difference_again(at);
+    limit_time(0);
     answer(difference.empty() ? "intact" : "corrupt", 0, oracle.name(at), difference);
   }
 }
 
 void judge_reference(bool killers) {
   const auto backend = make_cpu_backend();
-  Oracle oracle(*backend, killers);
-  const double limit = 2 + 5 * rehearse(oracle);
-  for (std::string line; std::getline(std::cin, line);) judge_reference(oracle, std::stoi(line), limit);
+  Oracle oracle(*backend, killers, [](bool) {});
+  const double begin = cpu_seconds(RUSAGE_SELF);
+  oracle.answer_all();
+  const ProbeAnswers probed(oracle);
+  const double limit = 2 + 5 * (cpu_seconds(RUSAGE_SELF) - begin);
+  std::size_t at = 0;
+  if (const std::string difference = oracle.first_difference_now(at); !difference.empty())
+    throw std::runtime_error("the unchanged program differs from itself: " + oracle.name(at) + ", " + difference);
+  ready(oracle);
+  for (std::string line; std::getline(std::cin, line);) {
+    const bool host = line.starts_with("host ");
+    judge_reference(oracle, probed, std::stoi(host ? line.substr(5) : line), host, limit);
+  }
 }
 
 }  // namespace

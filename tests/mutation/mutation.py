@@ -29,17 +29,27 @@ NO_MUTANT = ("no-program", "no-change")
 SECOND = ("logic", "not", "name")   # kinds that are judged when all others have been
 
 # What is judged first: predicates, then areas, rays, classes; then the rest.
-FIRST = """cpu_ref/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl shaders/lib/seam
+FIRST = """cpu_ref/ model/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl shaders/lib/seam
 shaders/lib/edge_crossing shaders/lib/line_box shaders/lib/tool_ray shaders/lib/direction shaders/lib/pierce shaders/lib/area
 shaders/lib/height_sum shaders/lib/union_find shaders/lib/partition shaders/lib/cells shaders/lib/components shaders/lib/pose
 shaders/lib/voxel_range shaders/lib/ shaders/response/ shaders/brick shaders/component shaders/row shaders/vote shaders/seam
 shaders/frame/ shaders/""".split()
 
 
+# The host's exact code, in the order of CMakeLists.txt.
+HOST = [f"model/{name}.cpp" for name in "boundary edges orientation response side_winding smooth_angle".split()]
+
+
+def of_program(name):
+    """Whether a file's mutants are switches in the judge, not texts that it compiles."""
+    return not name.startswith("shaders/")
+
+
 def sources():
     """Files with mutants, in the order of FIRST."""
     names = [str(p.relative_to(ROOT)) for folder in ("cpu_ref", "shaders") for p in sorted((ROOT / folder).rglob("*"))
              if p.suffix in (".h", ".cpp", ".glsl", ".comp") and "shared" not in p.parts]
+    names += HOST
     return sorted(names, key=lambda n: (next(i for i, f in enumerate(FIRST) if n.startswith(f)), n))
 
 
@@ -77,7 +87,7 @@ def all_jobs(only):
     order = sorted(modules, key=lambda m: (not m.startswith("shaders/frame/"), not m.startswith("shaders/response/"), m))
     first_number = 1
     numbers = {}
-    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")):
+    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST:
         numbers[name] = first_number
         first_number += len(mutants((ROOT / name).read_text(), cpp=True))
     for name in sources():
@@ -85,10 +95,10 @@ def all_jobs(only):
             continue
         text = (ROOT / name).read_text()
         # What surrounds a file changes its mutants' fate seldom; what it is itself always.
-        reference = name.startswith("cpu_ref/")
+        reference = of_program(name)
         for i, m in enumerate(mutants(text, cpp=reference)):
             if reference:
-                command = str(numbers[name] + i)
+                command = ("host " if name in HOST else "") + str(numbers[name] + i)
             else:
                 # Places in bytes, for C++.
                 begin, end = (len(text[:at].encode()) for at in (m.begin, m.end))
@@ -167,7 +177,7 @@ class Judge:
 
 
 def oracle_version():
-    files = sorted([*HERE.glob("oracle*"), *(ROOT / "tests/equivalence").glob("*.cpp"), *(ROOT / "tests/equivalence").glob("*.h")])
+    files = sorted([*HERE.glob("oracle*"), *HERE.glob("probes*"), *(ROOT / "tests/equivalence").glob("*.cpp"), *(ROOT / "tests/equivalence").glob("*.h")])
     return short_hash(*[f.read_bytes() for f in files])
 
 
@@ -186,7 +196,7 @@ def place(job):
     lines = [" ".join(line.split()) for line in (ROOT / job.name).read_text().split("\n")]
     source = lines[m.line - 1]
     twin = lines[:m.line - 1].count(source)
-    nth = len([x for x in mutants((ROOT / job.name).read_text(), cpp=job.name.startswith("cpu_ref/"))
+    nth = len([x for x in mutants((ROOT / job.name).read_text(), cpp=of_program(job.name))
                if x.line == m.line and x.column < m.column and x.key() == m.key()])
     return job.name, source + (f" [{twin + 1}]" if twin else ""), m.key() + (f" (no. {nth + 1})" if nth else "")
 
@@ -244,7 +254,7 @@ def main():
                 batch = work.get_nowait()
             except queue.Empty:
                 break
-            back_end = "cpu" if batch[0].name.startswith("cpu_ref/") else "gpu"
+            back_end = "cpu" if of_program(batch[0].name) else "gpu"
             judge = judges.setdefault(back_end, Judge(options.judge, back_end, options.killers))
             for start in range(0, len(batch), Judge.CHECK_EVERY):   # what is judged is kept when somebody ends us
                 part = batch[start:start + Judge.CHECK_EVERY]

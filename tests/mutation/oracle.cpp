@@ -1,8 +1,11 @@
 #include "tests/mutation/oracle.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 
 #include "model/response.h"
 #include "tests/equivalence/contacts_difference.h"
@@ -22,23 +25,95 @@ void must(const Result<void>& result) {
 
 bool go_on(const char*, double) { return true; }
 
+constexpr std::uint64_t kSeed = 1;
+constexpr double kStiffness = 1000;   // N/m
+
+const char* difference(const LatticeMesh& a, const LatticeMesh& b) {
+  if (a.vertices != b.vertices) return "vertices";
+  if (a.triangles != b.triangles) return "triangles";
+  if (a.flags != b.flags) return "flags";
+  if (a.unit_normal_q30 != b.unit_normal_q30 || a.sample_weight_q30 != b.sample_weight_q30 || a.sample_axis != b.sample_axis) return "normals";
+  if (a.neighbour_begin != b.neighbour_begin || a.neighbours != b.neighbours) return "neighbours";
+  if (a.closed != b.closed) return "closed";
+  return a.box_min != b.box_min || a.box_max != b.box_max ? "box" : "";
+}
+
+const char* difference(const MeshReport& a, const MeshReport& b) {
+  const auto numbers = [](const MeshReport& r) {
+    return std::tuple(r.triangles, r.vertices, r.collapsed, r.duplicate, r.open_edges, r.nonmanifold_edges, r.largest_gap_m, r.notes);
+  };
+  if (numbers(a) != numbers(b) || a.parts.size() != b.parts.size()) return "report";
+  const auto facts = [](const MeshReport::Part& p) { return std::tuple(p.path, p.triangles, p.closed, p.sheet, p.turned, p.orientable); };
+  for (std::size_t i = 0; i < a.parts.size(); ++i)
+    if (facts(a.parts[i]) != facts(b.parts[i])) return "parts";
+  return "";
+}
+
+std::string difference(const SceneGeometry& a, const SceneGeometry& b) {
+  if (const char* what = difference(a.mockup, b.mockup); *what != 0) return std::string("mock-up's ") + what;
+  if (const char* what = difference(a.tool, b.tool); *what != 0) return std::string("tool's ") + what;
+  if (const char* what = difference(a.mockup_report, b.mockup_report); *what != 0) return std::string("mock-up's ") + what;
+  if (const char* what = difference(a.tool_report, b.tool_report); *what != 0) return std::string("tool's ") + what;
+  const auto rest = [](const SceneGeometry& g) {
+    return std::tuple(g.lattice.step_m, g.tool_gc.x, g.tool_gc.y, g.tool_gc.z, g.tool_radius, g.mockup_grid.size, g.sample_spacing,
+                      g.smooth_angle.cos2_numerator, g.smooth_angle.cos2_denominator);
+  };
+  return rest(a) != rest(b) ? "lattice, centre, grid or spacing" : "";
+}
+
+const char* difference(const ContactResponse& a, const ContactResponse& b) {
+  if (a.gc != b.gc) return "gc";
+  if (a.wrench.force != b.wrench.force || a.wrench.torque != b.wrench.torque) return "wrench";
+  if (a.flags != b.flags || a.contact != b.contact || a.areas.size() != b.areas.size()) return "flags, contact or number of areas";
+  const auto facts = [](const AreaResponse& r) {
+    return std::tuple(r.id, r.normal.x, r.normal.y, r.normal.z, r.depth, r.max_depth, r.point.x, r.point.y, r.point.z, r.flags, r.silent);
+  };
+  for (std::size_t i = 0; i < a.areas.size(); ++i)
+    if (facts(a.areas[i]) != facts(b.areas[i]) || a.areas[i].force != b.areas[i].force || a.areas[i].torque != b.areas[i].torque) return "area";
+  return "";
+}
+
+const char* difference(const Held& a, const Held& b) {
+  if (a.last_direction != b.last_direction || a.areas.size() != b.areas.size()) return "held direction or number of areas";
+  for (std::size_t i = 0; i < a.areas.size(); ++i)
+    if (a.areas[i].static_ids != b.areas[i].static_ids || a.areas[i].direction != b.areas[i].direction ||
+        a.areas[i].sheet_sign != b.areas[i].sheet_sign || a.areas[i].silent != b.areas[i].silent)
+      return "held area";
+  return "";
+}
+
+double processor_seconds() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
 }  // namespace
 
-Oracle::Oracle(CollisionBackend& backend, bool killers) : backend_(backend) {
-  std::vector<equivalence::Case> wanted = equivalence::all_cases();
-  std::stable_partition(wanted.begin(), wanted.end(), [](const equivalence::Case& c) { return c.killer; });
-  cases_.reserve(wanted.size());   // back ends keep the geometry's address
+Oracle::Oracle(CollisionBackend& backend, bool killers, std::function<void(bool)> unchanged)
+    : backend_(backend), unchanged_(std::move(unchanged)), wanted_(equivalence::all_cases()) {
+  std::stable_partition(wanted_.begin(), wanted_.end(), [](const equivalence::Case& c) { return c.killer; });
   // The chapter's large scenes ask nothing that small ones don't, at many times the price.
-  for (const equivalence::Case& w : wanted)
-    if (killers ? w.killer : w.family != "chapter") answer(w);
+  std::erase_if(wanted_, [&](const equivalence::Case& w) { return killers ? !w.killer : w.family == "chapter"; });
+  cases_.resize(wanted_.size());   // back ends keep the geometry's address
+  for (std::size_t c = 0; c < cases_.size(); ++c) {
+    cases_[c].name = wanted_[c].name;
+    cases_[c].wanted = &wanted_[c];
+  }
   order_.resize(cases_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
 }
 
-void Oracle::answer(const equivalence::Case& wanted) {
-  constexpr std::uint64_t kSeed = 1;
-  Case& c = cases_.emplace_back();
-  c.name = wanted.name;
+void Oracle::answer_all() {
+  for (Case& c : cases_)
+    if (!c.answered) answer(c);
+}
+
+void Oracle::answer(Case& c) {
+  unchanged_(true);
+  const double begin = processor_seconds();
+  const equivalence::Case& wanted = *c.wanted;
   equivalence::TestScene scene = must(wanted.make(kSeed));
   c.geometry = std::move(scene.geometry);
   c.plan.profile = wanted.profile;
@@ -48,7 +123,6 @@ void Oracle::answer(const equivalence::Case& wanted) {
   if (wanted.profile == Profile::kRefined) c.tool = must(backend_.partition(true));
 
   Held held;
-  ContactResponse response;
   for (int i = 0; i < wanted.poses; ++i) {
     equivalence::Random random(kSeed, static_cast<std::uint64_t>(i));
     equivalence::Known known;
@@ -60,10 +134,14 @@ void Oracle::answer(const equivalence::Case& wanted) {
     q.held = held;
     q.remembers = wanted.held;
     must(backend_.query(q.pose, q.remembers ? &q.held : nullptr, q.answer));
-    respond(q.answer, q.pose, c.geometry, wanted.profile, 1000, response, q.remembers ? &q.held : nullptr);
-    remember(q.answer, response, held);
+    respond(q.answer, q.pose, c.geometry, wanted.profile, kStiffness, q.response, q.remembers ? &q.held : nullptr);
+    remember(q.answer, q.response, held);
+    q.left = held;
     c.queries.push_back(std::move(q));
   }
+  c.answered = true;
+  c.seconds = processor_seconds() - begin;
+  unchanged_(false);
 }
 
 std::string Oracle::ask(const Case& c) const {
@@ -85,10 +163,47 @@ std::string Oracle::ask(const Case& c) const {
   return {};
 }
 
-std::string Oracle::first_difference_now(std::size_t& of) const {
+std::string Oracle::ask_host(const Case& c) const {
+  const auto scene = c.wanted->make(kSeed);
+  if (!scene) return scene.error().sentence;
+  if (std::string different = difference(scene->geometry, c.geometry); !different.empty()) return different;
+  ContactResponse response;
+  Held held;
+  for (std::size_t i = 0; i < c.queries.size(); ++i) {
+    const Query& q = c.queries[i];
+    held = q.held;
+    respond(q.answer, q.pose, c.geometry, c.plan.profile, kStiffness, response, q.remembers ? &q.held : nullptr);
+    if (const char* what = difference(response, q.response); *what != 0) return "pose " + std::to_string(i) + ": response's " + what;
+    remember(q.answer, response, held);
+    if (const char* what = difference(held, q.left); *what != 0) return "pose " + std::to_string(i) + ": " + what;
+  }
+  return {};
+}
+
+std::string Oracle::first_host_difference(std::size_t& of) const {
   for (const std::size_t c : order_) {
     of = c;
-    if (std::string difference = ask(cases_[c]); !difference.empty()) return difference;
+    if (std::string different = ask_host(cases_[c]); !different.empty()) return different;
+  }
+  return {};
+}
+
+std::string Oracle::first_difference_now(std::size_t& of) {
+  for (const std::size_t c : order_) {
+    if (!cases_[c].answered) answer(cases_[c]);
+    of = c;
+    before_case(cases_[c].seconds);
+    if (std::string different = ask(cases_[c]); !different.empty()) return different;
+  }
+  return {};
+}
+
+std::string Oracle::first_difference_again(std::size_t& of) {
+  for (const std::size_t c : order_) {
+    if (!cases_[c].answered) continue;
+    of = c;
+    before_case(cases_[c].seconds);
+    if (std::string different = ask(cases_[c]); !different.empty()) return different;
   }
   return {};
 }

@@ -1,8 +1,10 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "model/collision_backend.h"
+#include "model/response.h"
 #include "tests/equivalence/case.h"
 
 namespace palpate::mutation {
@@ -10,17 +12,31 @@ namespace palpate::mutation {
 /// What a back end answers to the cases of tests/equivalence before anything is changed, to hold its later answers against.
 class Oracle {
  public:
-  /// Asks `backend` all cases but the chapter's large ones, or only the killer cases. Throws std::runtime_error where it fails: then
-  /// there is nothing to compare with.
-  Oracle(CollisionBackend& backend, bool killers);
+  /// Of all cases but the chapter's large ones, or only of the killer cases. `backend` is asked for its answers to a case just before that
+  /// is first compared, between calls of unchanged(true) and unchanged(false), which take a mutant out and put it back in.
+  Oracle(CollisionBackend& backend, bool killers, std::function<void(bool)> unchanged);
+
+  /// Asks for all answers now. Throws std::runtime_error where that fails, as all below do: then there is nothing to compare with.
+  void answer_all();
+
+  /// Called with the seconds of processor time that a case took when nothing was changed, before it is asked again.
+  std::function<void(double)> before_case = [](double) {};
 
   /// Asks again and compares, partitions and answers, until something differs: that, with `of` the case; empty when nothing does.
-  std::string first_difference_now(std::size_t& of) const;
+  std::string first_difference_now(std::size_t& of);
+
+  /// The same of the cases that have been compared before.
+  std::string first_difference_again(std::size_t& of);
+
+  /// The same of what the host does before and after a back end: geometry made again from the meshes, and the answers' response. The back
+  /// end is not asked.
+  std::string first_host_difference(std::size_t& of) const;
 
   /// From now on this case is asked first: it has just caught a mutant, and the next one is often its neighbour.
   void ask_first(std::size_t c);
 
   std::size_t size() const { return cases_.size(); }
+  const SceneGeometry& geometry(std::size_t c) const { return cases_[c].geometry; }
   const std::string& name(std::size_t c) const { return cases_[c].name; }
 
  private:
@@ -29,18 +45,26 @@ class Oracle {
     Held held;
     bool remembers = false;
     Contacts answer;
+    ContactResponse response;
+    Held left;   ///< what the next frame may hold on to
   };
   struct Case {
     std::string name;
+    const equivalence::Case* wanted = nullptr;
+    bool answered = false;
+    double seconds = 0;   ///< of processor time, to answer
     SceneGeometry geometry;
     Plan plan;
     VoxelPartition mockup, tool;
     std::vector<Query> queries;
   };
-  void answer(const equivalence::Case& wanted);
+  void answer(Case& c);
   std::string ask(const Case& c) const;
+  std::string ask_host(const Case& c) const;
 
   CollisionBackend& backend_;
+  std::function<void(bool)> unchanged_;
+  std::vector<equivalence::Case> wanted_;
   std::vector<Case> cases_;
   std::vector<std::size_t> order_;
 };

@@ -1,0 +1,233 @@
+// Small scenes made for one rule each, most of them a tie or a corner of a rule that other families reach by chance or never: found by
+// tests/mutation, where a changed operator went unseen.
+#include "model/generate/turn.h"
+#include "tests/equivalence/case.h"
+#include "tests/equivalence/lattice_shapes.h"
+#include "tests/equivalence/rectangles.h"
+#include "tests/equivalence/touching_poses.h"
+
+namespace palpate::equivalence {
+namespace {
+
+constexpr std::int32_t kVoxel = 64;
+
+using Pose = std::function<LatticePose(const SceneGeometry&, Random&, Known&)>;
+
+LatticePose unturned(const Int3& translation) {
+  LatticePose pose;
+  for (int k = 0; k < 3; ++k) pose.rotation_q30[k][k] = 1 << 30;
+  pose.translation = translation;
+  return pose;
+}
+
+Int3 any(Random& random, std::int32_t reach) { return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)}; }
+
+/// One side (2·axis + upper) of a box.
+Triangles side_of(const Int3& min, const Int3& max, std::size_t side) {
+  const Triangles box = box_of(min, max);
+  return {box[2 * side], box[2 * side + 1]};
+}
+
+Triangles together(std::initializer_list<Triangles> parts) {
+  Triangles all;
+  for (const Triangles& part : parts) append(all, part);
+  return all;
+}
+
+Case rule(const char* name, const char* about, Triangles mockup, Triangles tool, Pose pose, std::optional<RectangleWorld> classes = {}) {
+  Case c;
+  c.name = name;
+  c.family = "rules";
+  c.about = about;
+  c.degenerate = true;
+  c.killer = true;
+  c.poses = 12;
+  c.share = 0.1;
+  c.make = [=](std::uint64_t) -> Result<TestScene> {
+    auto geometry = lattice_scene(mockup, tool, kVoxel, kVoxel / 2);
+    if (!geometry) return geometry.error();
+    TestScene scene;
+    scene.geometry = std::move(*geometry);
+    scene.pose = pose;
+    if (classes) scene.known_class = [world = *classes](const Int3& lower) { return world.class_of(lower, kVoxel); };
+    return scene;
+  };
+  return c;
+}
+Case held(Case c) {
+  c.name += "_held";
+  c.held = true;
+  return c;
+}
+
+Triangles small_box() { return box_of(Int3(-40), Int3(40)); }
+Triangles block() { return box_of(Int3(-512), Int3(512)); }
+
+LatticePose anyhow(const SceneGeometry& geometry, Random& random, Known&) {
+  return random.below(2) == 0 ? aligned_touching_pose(geometry, random) : random_touching_pose(geometry, 0.5, random);
+}
+
+/// The top of a table in two halves: one edge of the left half lies along two of the right. Triangles that touch along it share one
+/// corner at most, and only so are the halves one area.
+Case seam_with_a_common_corner() {
+  Triangles table = block();
+  table.resize(10);   // without its top
+  append(table, {{Int3(-512, -512, 512), Int3(0, -512, 512), Int3(0, 512, 512)}, {Int3(-512, -512, 512), Int3(0, 512, 512), Int3(-512, 512, 512)}});
+  const Int3 ring[5] = {{0, -512, 512}, {512, -512, 512}, {512, 512, 512}, {0, 512, 512}, {0, 100, 512}};
+  for (int i = 0; i < 5; ++i) append(table, {{Int3(300, 3, 512), ring[i], ring[(i + 1) % 5]}});
+  return rule("seam_with_a_common_corner", "a seam between triangles that share a corner joins two halves of a table", table, small_box(),
+              [](const SceneGeometry&, Random& random, Known& known) {
+                known.contact = true;
+                known.areas = 1;
+                return unturned({random.between(-30, 30), random.between(-200, 200), 512 + random.between(-20, 40)});
+              });
+}
+
+/// Rays along an axis see a crossing from the last centre before it: here the only centre that is inside.
+Case inside_of_one_voxel(bool low) {
+  const Int3 min = low ? Int3(50) : Int3(10), max = min + Int3(2 * kVoxel);
+  RectangleWorld classes;
+  classes.add({min, max, 1});
+  return rule(low ? "inside_of_one_voxel_low" : "inside_of_one_voxel", "a box of which one voxel alone is V_int", box_of(min, max), small_box(), anyhow, classes);
+}
+
+/// A box whose V_int voxels are one whole brick, and open, so that each of them casts three ballots.
+Case inside_of_one_brick(bool open) {
+  // The grid begins two voxels before the first box, so that the second's inside begins with a brick.
+  Triangles all;
+  RectangleWorld classes;
+  for (const Int3& first : {Int3(0), Int3(13, 5, 5)}) {
+    const Int3 min = Int3(10) + kVoxel * first, max = min + Int3(9 * kVoxel);
+    append(all, box_of(min, max));
+    classes.add({min, max, 1});
+  }
+  if (open) {   // a fin beside them
+    const Int3 a = kVoxel * Int3(2, 12, 12) + Int3(5);
+    append(all, {{a, a + Int3(0, 128, 0), a + Int3(0, 128, 128)}, {a, a + Int3(0, 128, 128), a + Int3(0, 0, 128)}});
+    classes.add_sheet(a, a + Int3(0, 128, 128));
+  }
+  Case c = rule(open ? "inside_of_one_brick_open" : "inside_of_one_brick", "boxes one of which has a brick's voxels inside and no others", all, small_box(), anyhow, classes);
+  c.poses = 4;
+  return c;
+}
+
+/// Six sheets apart from each other shut a cube of voxels in. Towards +x two of them cancel, towards +z there is one; towards +y a second
+/// one covers `half` of the rows or all. So two thirds, or half, of the ballots are for V_ext.
+Case votes(bool half) {
+  constexpr std::int32_t kLow = -20, kHigh = 4 * kVoxel + 20, kIn = 4;
+  const auto side = [&](int axis, bool upper, std::int32_t off, std::int32_t u_high) {
+    Int3 min(kLow + kIn), max(kHigh - kIn);
+    (upper ? max : min)[axis] = (upper ? kHigh : kLow) + off;
+    if (upper) min[axis] = max[axis] - 100;
+    else max[axis] = min[axis] + 100;
+    if (u_high != 0) max[(axis + 2) % 3] = u_high;
+    return side_of(min, max, static_cast<std::size_t>(2 * axis + (upper ? 1 : 0)));
+  };
+  Triangles all = together({side(0, false, 0, 0), side(0, true, 0, 0), side(1, false, 0, 0), side(1, true, 0, 0), side(2, false, 0, 0), side(2, true, 0, 0),
+                            flipped(side(0, true, 6, 0)), flipped(side(1, true, 6, half ? 2 * kVoxel : 0))});
+  return rule(half ? "votes_tied" : "votes_in_minority", "an enclosed hollow that a third or half of its ballots hold for V_int: it is V_ext", all, small_box(), anyhow);
+}
+
+/// The tool's centre in the plane of a sheet: neither side is nearer.
+Case sheet_through_gc() {
+  return rule("sheet_through_gc", "the tool's centre of mass lies in the sheet's plane: the tie gives the sheet's own side",
+              side_of(Int3(-512, -512, -100), Int3(512, 512, 0), 5), box_of(Int3(-100), Int3(100)), [](const SceneGeometry&, Random& random, Known&) {
+                LatticePose pose = random.below(2) == 0 ? unturned(Int3(0)) : quarter_turns(random);
+                pose.translation = {random.between(-300, 300), random.between(-300, 300), random.below(3) == 0 ? random.between(-1, 1) : 0};
+                return pose;
+              });
+}
+
+/// Two sheets, each with the side that the tool first had.
+Case two_sheets() {
+  return rule("two_sheets", "a frame that meets a second sheet: what is held of the first is not the second's",
+              together({side_of(Int3(-512, -512, -100), Int3(-20, 512, 0), 5), side_of(Int3(20, -512, -100), Int3(512, 512, 50), 5)}), box_of(Int3(-70), Int3(70)),
+              [](const SceneGeometry&, Random& random, Known&) { return unturned({random.between(-100, 100), random.between(-300, 300), random.between(-60, 110)}); });
+}
+
+/// All that is known of a bead in the tool's middle is the way out.
+Case bead() {
+  return rule("bead_in_the_middle", "normals that cancel, in chains: the direction held", box_of(Int3(-60, -50, -40), Int3(60, 50, 40)), box_of(Int3(-256), Int3(256)),
+              [](const SceneGeometry&, Random& random, Known&) { return unturned(any(random, 120)); });
+}
+
+Triangles plate(std::int32_t top) { return box_of(Int3(-512, -512, top - 32), Int3(512, 512, top)); }
+
+/// The tool ends in the back's own plane: its rays leave it where they meet the back.
+Case flush_with_the_back() {
+  return rule("flush_with_the_back", "a tool that ends in a plate's back, a step before it or behind it: pierced only there", plate(0), box_of(Int3(-100, -100, 0), Int3(100, 100, 256)),
+              [](const SceneGeometry&, Random& random, Known&) { return unturned({random.between(-300, 300), random.between(-300, 300), -32 + random.between(-1, 1)}); });
+}
+
+Case two_plates() {
+  return rule("two_plates", "a tool through two plates from either side: only the nearest back is pierced from a front", together({plate(0), plate(-100)}),
+              box_of(Int3(-60, -60, -250), Int3(60, 60, 250)), [](const SceneGeometry&, Random& random, Known&) {
+                LatticePose pose = unturned(Int3(0));
+                if (random.below(2) == 0) pose.rotation_q30[1][1] = pose.rotation_q30[2][2] = -(1 << 30);
+                pose.translation = {random.between(-300, 300), random.between(-300, 300), -60 + random.between(-160, 160)};
+                return pose;
+              });
+}
+
+/// A needle turned about x alone: its long edges run across y and z, and pass the table between lattice points.
+Case needle_leaning() {
+  return rule("needle_leaning", "a needle whose edges have one x: which end comes first is decided by y", block(), box_of(Int3(-1, -2, -300), Int3(2, 1, 300)),
+              [](const SceneGeometry&, Random& random, Known&) {
+                const Turn turn = turn_by((random.unit() - 0.5) / 4);   // up to an eighth of a turn
+                LatticePose pose = unturned({random.between(-450, 450), random.between(-250, 250), 512 + random.between(-100, 200)});
+                pose.rotation_q30[1][1] = pose.rotation_q30[2][2] = static_cast<std::int32_t>(turn.cos * 0x1p30);
+                pose.rotation_q30[2][1] = static_cast<std::int32_t>(turn.sin * 0x1p30);
+                pose.rotation_q30[1][2] = -pose.rotation_q30[2][1];
+                return pose;
+              });
+}
+
+/// The centroid of the one mobile triangle is as far from the large sheet's centre as that sheet's corner, and close to the small sheet.
+Case on_the_sphere() {
+  const Triangles tool{{Int3(-120, -60, -60), Int3(120, -60, 0), Int3(0, 120, 60)}};
+  return rule("on_the_sphere", "a mobile triangle's centroid on an area's sphere, or a step off it",
+              together({side_of(Int3(-512, -512, -100), Int3(512, 512, 0), 5), side_of(Int3(400, 400, -100), Int3(624, 624, 30), 5)}), tool,
+              [](const SceneGeometry&, Random& random, Known&) { return unturned(Int3(512, 512, 0) + (random.below(2) == 0 ? Int3(0) : any(random, 1))); });
+}
+
+/// Two small sheets to the left and right of the centroid, as far from it.
+Case between_two_areas() {
+  const Triangles tool{{Int3(-400, -250, 0), Int3(400, -250, 0), Int3(0, 500, 0)}};
+  return rule("between_two_areas", "a mobile triangle in no area's sphere and as near to one as to the other",
+              together({side_of(Int3(-400, -32, -32), Int3(-300, 32, 32), 1), side_of(Int3(200, -32, -32), Int3(300, 32, 32), 1)}), tool,
+              [](const SceneGeometry&, Random& random, Known&) { return unturned({random.below(2) == 0 ? 0 : random.between(-1, 1), 200 + random.between(-20, 20), random.between(-20, 20)}); });
+}
+
+/// Wholly inside, at points from which several voxels are the nearest way out.
+Case swallowed_at_ties() {
+  return rule("swallowed_at_ties", "wholly inside, as far from one way out as from another: the voxel of the smallest number", block(), box_of(Int3(-20), Int3(20)),
+              [](const SceneGeometry&, Random& random, Known& known) {
+                known.pairs.emplace();
+                known.contact = true;
+                return unturned(kVoxel / 2 * any(random, 6) + (random.below(4) == 0 ? any(random, 1) : Int3(0)));
+              });
+}
+
+/// A tool with a hollow underneath, and one of two overlapping boxes: where the ray's winding first falls to 0 is not the last crossing.
+Case bridge() {
+  return rule("bridge_and_overlap", "tools that rays leave and enter again, and one whose winding is 2 inside", block(),
+              together({box_of(Int3(-200, -100, -100), Int3(-60, 100, 100)), box_of(Int3(60, -100, -100), Int3(200, 100, 100)), box_of(Int3(-220, -80, 60), Int3(220, 80, 200)),
+                        box_of(Int3(-50, -50, 240), Int3(50, 50, 300))}),
+              [](const SceneGeometry& geometry, Random& random, Known&) {
+                if (random.below(3) == 0) return random_touching_pose(geometry, 0.5, random);
+                LatticePose pose = random.below(2) == 0 ? unturned(Int3(0)) : quarter_turns(random);
+                for (int k = 0; k < 3; ++k) pose.translation[k] = random.between(-300, 300);
+                pose.translation[random.between(0, 2)] = 512 + random.between(-100, 100);
+                return pose;
+              });
+}
+
+}  // namespace
+
+std::vector<Case> rule_cases() {
+  return {seam_with_a_common_corner(), inside_of_one_voxel(false), inside_of_one_voxel(true), inside_of_one_brick(false), inside_of_one_brick(true), votes(true), votes(false),
+          sheet_through_gc(), held(two_sheets()), held(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
+          swallowed_at_ties(), bridge()};
+}
+
+}  // namespace palpate::equivalence
