@@ -70,6 +70,7 @@ export class SceneView {
     if (this.running) requestAnimationFrame(this.draw);
     if (!this.dirty) { this.last_draw = NaN; return; }
     this.dirty = false;
+    this.camera.updateMatrixWorld();   // labels are placed by where it is now
     this.before_draw();
     this.renderer.render(this.scene, this.camera);
     this.after_draw(now - this.last_draw);

@@ -40,7 +40,7 @@ let server = null;
 async function start() {
   server = process.env.STAND_IN
     ? spawn(process.execPath, [join(dirname(fileURLToPath(import.meta.url)), 'stand_in.mjs'), process.env.STAND_IN, join(root, 'engine'), root, String(port)], { stdio: ['ignore', 'inherit', 'inherit'] })
-    : spawn(palpate, ['serve', '--listen', `127.0.0.1:${port}`, '--root', root, '--backend', 'cpu'], { stdio: ['ignore', 'ignore', 'inherit'] });
+    : spawn(palpate, ['serve', '--listen', `127.0.0.1:${port}`, '--root', root, '--backend', 'cpu'], { stdio: 'ignore' });
   for (let i = 0; i < 200; ++i) {
     if (await fetch(`${address}readyz`).then((answer) => answer.ok, () => false)) return;
     await new Promise((resolve) => setTimeout(resolve, 100));
@@ -85,6 +85,9 @@ async function main() {
     }, png);
   };
 
+  /** The page has taken what came before, and drawn it. */
+  const shown = () => page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve, 50))); }));
+
   // Nothing is open: the page says so and offers the scene file.
   await page.goto(address);
   await page.click('#empty-list button:has-text("engine/scene.json")');
@@ -123,19 +126,19 @@ async function main() {
     await page.click('#mouse-reset');
     await until('the loop answers', async () => /free|contact/.test(await text('contact')));
     await page.keyboard.press('f');
-    await page.waitForTimeout(500);
+    await shown();
     const box = await page.locator('#canvas canvas').boundingBox();
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     // Over the tool the pointer is a hand: its parts are looked for, for the middle of a clamp may be a hole.
     let grip = null;
-    for (const [dx, dy] of [[0, 0], [0, -60], [60, 0], [-60, 0], [0, 60], [40, -120], [-40, -120]]) {
+    for (const [dx, dy] of [[0, 0], [0, -40], [40, 0], [-40, 0], [0, 40], [40, -90], [-40, -90], [0, -120]]) {
       await page.mouse.move(x + dx, y + dy);
-      await page.waitForTimeout(120);
+      await shown();
       if ((await page.evaluate(() => document.querySelector('#canvas canvas').style.cursor)) === 'grab') { grip = [x + dx, y + dy]; break; }
     }
     check(grip, 'the tool can be taken');
     await page.mouse.down();
-    for (let i = 1; i <= 12; ++i) { await page.mouse.move(grip[0], grip[1] - 12 * i); await page.waitForTimeout(60); }
+    for (let i = 1; i <= 12; ++i) { await page.mouse.move(grip[0], grip[1] - 12 * i); await shown(); }
     await until('the tool that is dragged feels a force', async () => parseFloat(await text('force')) > 0.1);
     await picture('mouse');
     await page.mouse.up();
