@@ -47,7 +47,7 @@ void add_poses(CLI::App& app, BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
-  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it, stability of the force");
+  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it, stability of the force, punctuality of the loop");
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
@@ -75,6 +75,15 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   stability->footer("In virtual time: the shipped law closed over springs, over a bouncing wall, and over the real collision query. critical_k is found by\n"
                     "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and torque, and energy given out.");
   stability->callback([&] { outcome = bench_stability(options, parts); });
+
+  CLI::App* jitter = bench->add_subcommand("jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
+  add_common(*jitter, options);
+  jitter->add_option("--seconds", options.seconds, "how long (60)")->check(CLI::Range(0.1, 86400.0).description(""))->type_name("S");
+  jitter->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  jitter->footer("The session of the (first) scene runs in real time along its path, to and fro, its back end asked as fast as it\n"
+                 "answers. cyclictest (Debian: rt-tests) runs meanwhile with the same period,\n"
+                 "priority and processor, where it is installed. What was not allowed is said. A tick that comes a whole period late is missed.");
+  jitter->callback([&] { outcome = bench_jitter(options, parts); });
 }
 
 }  // namespace palpate

@@ -98,7 +98,6 @@ Result<void> check_options(const RunOptions& options) {
 
 Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (auto done = check_options(options); !done) return done;
-  catch_interrupts();
   Console console;
   Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options.common, Purpose::kSession, parts, console);
   if (!prepared) return prepared.error();
@@ -119,6 +118,9 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (!directory) return directory.error();
   Result<std::unique_ptr<Recorder>> recorder = Recorder::create(directory->string());
   if (!recorder) return recorder.error();
+
+  // Until here no device has been opened, and a signal just ends the program, whatever it is busy with.
+  catch_interrupts();
 
   // The run itself. Whatever ends it, the files are closed and whole.
   SessionOptions session;

@@ -98,14 +98,48 @@ std::uint64_t run_realtime_loop(ControlTick& tick, SafeDevice& device, Collision
   return dropped;
 }
 
+namespace {
+
+/// 0, or why the calling thread couldn't be bound to one processor.
+int bind_to(int processor) {
+  cpu_set_t one{};
+  CPU_SET(static_cast<std::size_t>(processor), &one);
+  return pthread_setaffinity_np(pthread_self(), sizeof(one), &one);
+}
+
+}  // namespace
+
+int loop_processor() {
+  cpu_set_t may{};
+  if (sched_getaffinity(0, sizeof(may), &may) != 0 || CPU_COUNT(&may) < 2) return -1;
+  int last = CPU_SETSIZE - 1;
+  while (!CPU_ISSET(static_cast<std::size_t>(last), &may)) --last;
+  return last;
+}
+
 RealtimeGrant make_realtime() {
   RealtimeGrant grant;
-  const sched_param priority{.sched_priority = 80};   // above what a desktop uses, below the kernel's own threads (chosen)
+  const auto refuse = [&](std::string what, int error, const char* so) {
+    grant.refused += (grant.refused.empty() ? "" : "; ") + std::move(what) + " (" + std::strerror(error) + ")" + so;
+  };
+  const sched_param priority{.sched_priority = kLoopPriority};
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0)
-    grant.refused = std::string("no real-time priority (") + std::strerror(error) + "): ticks are as punctual as the ordinary scheduler makes them";
+    refuse("no real-time priority", error, ": ticks are as punctual as the ordinary scheduler makes them");
+  else if (const int processor = loop_processor(); processor >= 0)   // without priority a bound thread would only wait longer
+    if (const int unbound = bind_to(processor); unbound != 0) refuse("the loop isn't bound to a processor", unbound, "");
   grant.locked = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
-  if (!grant.locked) grant.refused += std::string(grant.refused.empty() ? "" : "; ") + "memory isn't locked (" + std::strerror(errno) + ")";
+  if (!grant.locked) refuse("memory isn't locked", errno, "");
   return grant;
+}
+
+bool may_be_realtime() {
+  int policy = 0;
+  sched_param before{};
+  if (pthread_getschedparam(pthread_self(), &policy, &before) != 0) return false;
+  const sched_param wanted{.sched_priority = kLoopPriority};
+  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) != 0) return false;
+  pthread_setschedparam(pthread_self(), policy, &before);
+  return true;
 }
 
 }  // namespace palpate

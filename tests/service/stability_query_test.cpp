@@ -57,6 +57,35 @@ TEST_P(StabilityQuery, DeeperIsPushedHarderAndThePlanesSayByHowMuch) {
   }
 }
 
+Result<JumpStatistics> jumps_of(const std::string& name, Profile profile, LawKind law, int delay) {
+  for (const ContactCase& what : jumping_motions()) {
+    if (what.name != name) continue;
+    auto prepared = PreparedCase::make(what, profile, reference);
+    if (!prepared) return prepared.error();
+    return jumps(what, **prepared, {.kind = law, .stiffness_n_per_m = 2000, .transitions = delay, .change_n_per_s = 100}, delay);
+  }
+  return bad_value("no motion is called " + name);
+}
+
+TEST(QuickRetreat, NeverPullsWithResultsTwentyMillisecondsOld) {
+  // 1 m/s out of 5 mm. As printed the law pulls by 2000 N/m times what 20 to 39 ms make of it.
+  const auto ours = jumps_of("quick retreat", Profile::kRefined, LawKind::kCorrected, 20), chapter = jumps_of("quick retreat", Profile::kPaper, LawKind::kPrinted, 20);
+  ASSERT_TRUE(ours && chapter);
+  EXPECT_GE(ours->least_push_n, 0);
+  EXPECT_LT(chapter->least_push_n, -1);
+}
+
+TEST(Seam, IsCrossedInStepsThatOneRowOfSamplesBounds) {
+  const auto steps = jumps_of("seam", Profile::kRefined, LawKind::kCorrected, 5);
+  ASSERT_TRUE(steps);
+  std::printf("seam: results step by up to %.4f N, the force by %.4f N a tick\n", steps->response_step_n, steps->force_step_n);
+  // The tool comes in at 10 mm/s, a result each 5 ms: K · 50 µm. What is not the way in, the seam's own, is a row of 22 samples of
+  // the 366 inside, half a millimetre deep on the mean: K · 0.5 mm · 6 %.
+  EXPECT_LE(steps->response_step_n, 0.1 + 0.06);
+  // In a tick: κ and 2K times a way of 38 µm at most, and the rest's 0.1 N (docs/SAFETY.md).
+  EXPECT_LE(steps->force_step_n, 3 * 2000 * 38e-6 + 0.1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Contacts, StabilityQuery, testing::Range(0, 4),
                          [](const auto& tested) { return pressed_contacts()[static_cast<std::size_t>(tested.param)].name; });
 
