@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -41,14 +43,14 @@ std::string text_of(const fs::path& file) {
 /// The program, started; its output goes to files.
 class Program {
  public:
-  Program(const fs::path& folder, const std::vector<std::string>& arguments, bool as_nobody = false)
+  Program(const fs::path& folder, const std::vector<std::string>& arguments, bool as_nobody = false, const std::string& terminal = {})
       : out_(folder / "stdout"), err_(folder / "stderr") {
     std::vector<std::string> words{PALPATE_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    const std::string out = out_, err = err_;
+    const std::string out = out_, err = terminal.empty() ? err_.string() : terminal;
     child_ = ::fork();
     if (child_ != 0) return;
     ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), 1);
@@ -191,6 +193,38 @@ TEST_F(OnTheBus, EveryModelOfTheSpaceMouseIsFoundAndNoOrdinaryMouseOfItsMaker) {
       EXPECT_FALSE(found({0x256f, product})) << std::hex << product;
     }
   }
+}
+
+TEST_F(OnTheBus, OnATerminalTheLiveLineSaysWhatToDo) {
+  fake::FalconModel model({}, true);
+  model.homes_after = 1'000'000;   // nobody homes it
+  plug_falcon(model);
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(terminal, 0);
+  ASSERT_EQ(::grantpt(terminal) | ::unlockpt(terminal), 0);
+  winsize size{.ws_row = 40, .ws_col = 200, .ws_xpixel = 0, .ws_ypixel = 0};
+  ::ioctl(terminal, TIOCSWINSZ, &size);
+  const std::string shown_on = ::ptsname(terminal);
+  ::setenv("TERM", "xterm", 1);
+  Program program(folder_, {"run", PALPATE_SCENE, "--device", "falcon", "--backend", "cpu", "--out", folder_ / "run"}, false, shown_on);
+  ::fcntl(terminal, F_SETFL, O_NONBLOCK);
+  std::string shown;
+  for (int i = 0; i < 6000 && program.alive() && shown.find("home the Falcon: pull the grip") == std::string::npos; ++i) {
+    char bytes[4096];
+    for (ssize_t n; (n = ::read(terminal, bytes, sizeof bytes)) > 0;) shown.append(bytes, static_cast<std::size_t>(n));
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_THAT(shown, HasSubstr(" s  home the Falcon: pull the grip all the way out, then push it all the way in"));
+  program.interrupt();
+  for (int i = 0; i < 3000 && program.alive(); ++i) {   // a full terminal would hold it up
+    char bytes[4096];
+    while (::read(terminal, bytes, sizeof bytes) > 0) {
+    }
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(program.code(), 0);
+  EXPECT_EQ(forces_homed_ + forces_unhomed_, 0);
+  ::close(terminal);
 }
 
 /// Columns of trace.csv.
