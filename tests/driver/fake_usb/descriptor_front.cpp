@@ -120,7 +120,7 @@ void DescriptorFront::deliver() {
     }
     const std::vector<std::uint8_t> packet = calls_.in();
     const std::size_t size = std::min(packet.size(), static_cast<std::size_t>(urb->buffer_length));
-    std::memcpy(urb->buffer, packet.data(), size);
+    if (size > 0) std::memcpy(urb->buffer, packet.data(), size);   // an empty vector has no address
     urb->actual_length = static_cast<int>(size);
     finish(urb, 0);
   }

@@ -22,6 +22,7 @@ usbdevfs_urb& urb_in(UMockdevIoctlData* block) { return *reinterpret_cast<usbdev
 /// Copies a value into a block of the client's, to be written back when the call ends.
 void put(UMockdevIoctlData* block, std::size_t offset, const void* bytes, std::size_t size) {
   std::vector<guint8> copy(size);
+  if (size == 0) return;
   std::memcpy(copy.data(), bytes, size);
   umockdev_ioctl_data_update(block, offset, copy.data(), static_cast<gint>(size));
 }
