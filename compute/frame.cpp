@@ -17,6 +17,7 @@
 #include "compute/frame_recorder.h"
 #include "compute/frame_response.h"
 #include "compute/host_areas.h"
+#include "compute/near_rays.h"
 #include "compute/stage_memory.h"
 
 namespace palpate {
@@ -84,6 +85,8 @@ class RecordedFrame final : public Frame {
   std::unique_ptr<FrameDetection> detection_;
   std::optional<FrameResponse> response_;
   std::optional<HostAreas> host_areas_;   ///< `refined`
+  std::optional<NearRays> near_rays_;     ///< where rays walk
+  std::vector<Int3> directions_;          ///< by counting sample, while the host joins
   HostAreas::Answer joined_;              ///< of the last frame whose areas the host joined, else empty
   /// From the pose to the sets; then, with contact, the whole response, or what follows once the host has joined areas. Null after a
   /// failed record().
@@ -135,6 +138,11 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
     auto areas = HostAreas::make(device_, geometry_, scene_);
     if (!areas) return areas.error();
     host_areas_.emplace(std::move(*areas));
+    if (scene_.rays_walk()) {
+      auto rays = NearRays::make(device_, geometry_.tool, scene_, detection_->order());
+      if (!rays) return rays.error();
+      near_rays_.emplace(std::move(*rays));
+    }
   }
   auto response = FrameResponse::create(device_, refined, scene_.rays_walk());
   if (!response) return response.error();
@@ -356,6 +364,12 @@ bool RecordedFrame::join_on_host(const LatticePose& pose, const Held* held) {
   };
   HostAreas::Answer answer;
   if (!host_areas_->solve(pose, held, lists, answer)) return false;
+  if (near_rays_) {
+    directions_.clear();
+    for (const gpu::FrameSample& sample : lists.samples) directions_.push_back(host_areas_->direction_of(sample, lists));
+    HostList<std::uint32_t> places{{buffers_[gpu::kBindRayPlaces].as<std::uint32_t>(), kRayPlaces}};
+    if (!near_rays_->find(pose, lists.samples, directions_, mapped<gpu::RayList>(gpu::kBindRayLists, gpu::kListSamples), places)) return false;
+  }
   auto& state = *buffers_[gpu::kBindResponseState].as<gpu::ResponseState>();
   state.areas = answer.areas;
   state.requests = state.swallowed_flags = state.swallowed_steps = 0;

@@ -81,6 +81,8 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindBinEntries, "entries of bins", 4 * std::uint64_t{capacity.bin_entries}},
       {kBindWideTriangles, "wide triangles", 4 * std::uint64_t{inside_ ? tool.triangles : 1}},
       {kBindBinState, "state of bins", sizeof(BinState)},
+      {kBindRayLists, "lists of rays", walks_ ? sizeof(RayList) * std::uint64_t{capacity.lists[kListSamples]} : 4, BufferKind::kUpload},
+      {kBindRayPlaces, "tool triangles of rays", walks_ ? 4 * std::uint64_t{kRayPlaces} : 4, BufferKind::kUpload},
       {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
       {kBindHeldStatics, "held triangles", sizeof(HeldStatic) * statics, BufferKind::kUpload},
       {kBindHeldAreas, "held areas", sizeof(HeldDirection) * kMaxFrameAreas, BufferKind::kUpload},

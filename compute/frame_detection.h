@@ -13,6 +13,9 @@
 
 namespace palpate {
 
+/// Tool triangles that the lists of a frame's rays may name; beyond it the device walks for them (chosen: a ray has 1 to 4).
+inline constexpr std::uint32_t kRayPlaces = 1u << 18;
+
 /// The first half of a frame: from the pose to the contact sets, pairs and counting samples (docs/EXACTNESS.md sections 3, 4),
 /// and the frame's last step, which empties what it filled. Makes its own buffers and pipelines.
 class FrameDetection {

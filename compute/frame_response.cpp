@@ -51,7 +51,8 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
 Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, bool walks) {
   FrameResponse out;
   out.refined_ = refined;
-  const std::array<SpecConstant, 3> constants = {{{0, refined ? 1u : 0u}, {1, 0u}, {2, walks ? 1u : 0u}}};
+  out.walks_ = walks;
+  const std::array<SpecConstant, 4> constants = {{{0, refined ? 1u : 0u}, {1, 0u}, {2, walks ? 1u : 0u}, {3, 0u}}};
   const std::array<SpecConstant, 2> numbering = {{{0, refined ? 1u : 0u}, {1, 1u}}};
   struct ShaderPlan {
     FrameShader& shader;
@@ -89,6 +90,12 @@ Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, 
     auto made = make_frame_shader(device, plan.code, 0, constants);
     if (!made) return made.error();
     plan.shader = std::move(*made);
+  }
+  if (walks) {
+    const std::array<SpecConstant, 4> listed = {{{0, 1u}, {1, 0u}, {2, 1u}, {3, 1u}}};
+    auto made = make_frame_shader(device, spirv::heights_trace, 0, listed);
+    if (!made) return made.error();
+    out.heights_listed_ = std::move(*made);
   }
   if (refined) {
     auto made = make_frame_shader(device, spirv::nearest_find, 0, numbering);
@@ -140,9 +147,9 @@ void FrameResponse::record_directions(FrameRecorder& recorder) const {
   recorder.run_dispatch(swallow_march_, kDispatchSwallowed);
 }
 
-void FrameResponse::record_heights(FrameRecorder& recorder) const {
+void FrameResponse::record_heights(FrameRecorder& recorder, const FrameShader& trace) const {
   recorder.stage("rays");
-  recorder.run_dispatch(heights_trace_, kDispatchSamples);
+  recorder.run_dispatch(trace, kDispatchSamples);
   recorder.barrier();
   recorder.run_dispatch(heights_sum_, kDispatchHeightRuns);
   recorder.barrier();
@@ -175,7 +182,7 @@ void FrameResponse::record(FrameRecorder& recorder) const {
   record_areas(recorder);
   if (refined_) {
     record_directions(recorder);
-    record_heights(recorder);
+    record_heights(recorder, heights_trace_);
   } else {
     record_paper(recorder);
   }
@@ -183,7 +190,7 @@ void FrameResponse::record(FrameRecorder& recorder) const {
 }
 
 void FrameResponse::record_after_areas(FrameRecorder& recorder) const {
-  record_heights(recorder);
+  record_heights(recorder, walks_ ? heights_listed_ : heights_trace_);
   recorder.run_dispatch(areas_result_, kDispatchContactOne);
 }
 

@@ -23,19 +23,20 @@ class FrameResponse {
   /// Records every dispatch; all of them have no groups in a frame without contact. Goes after set_decide.comp, and ends with
   /// a barrier due.
   void record(FrameRecorder& recorder) const;
-  /// The same for a frame whose areas and directions the host has written (compute/host_areas.h): rays and what follows. `refined`.
+  /// The same for a frame whose areas and directions the host has written (compute/host_areas.h), and where rays walk their lists, too
+  /// (compute/near_rays.h): rays and what follows. `refined`.
   void record_after_areas(FrameRecorder& recorder) const;
 
  private:
   void record_paper(FrameRecorder& recorder) const;
   void record_directions(FrameRecorder& recorder) const;
-  void record_heights(FrameRecorder& recorder) const;
+  void record_heights(FrameRecorder& recorder, const FrameShader& trace) const;
   void record_areas(FrameRecorder& recorder) const;
 
-  bool refined_ = true;
+  bool refined_ = true, walks_ = false;
   FrameShader begin_, areas_begin_, areas_join_, samples_count_, areas_number_, areas_gather_, held_count_, areas_associate_;
   FrameShader areas_first_, mobile_tiles_, mobile_samples_, mobile_normals_, areas_direct_, nearest_distance_, nearest_number_;
-  FrameShader areas_settle_, heights_trace_, heights_sum_, areas_follow_, pierce_boxes_, pierce_find_, needle_pairs_;
+  FrameShader areas_settle_, heights_trace_, heights_listed_, heights_sum_, areas_follow_, pierce_boxes_, pierce_find_, needle_pairs_;
   FrameShader needle_trace_, points_sum_, swallow_march_, areas_result_;
 };
 

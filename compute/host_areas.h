@@ -38,6 +38,11 @@ class HostAreas {
   /// False: left to the device. `lists` may then be half written.
   bool solve(const LatticePose& pose, const Held* held, const ContactLists& lists, Answer& answer);
 
+  /// After solve(): n_c of the area that a counting sample belongs to.
+  Int3 direction_of(const gpu::FrameSample& sample, const ContactLists& lists) const {
+    return lists.areas[lists.slots[slot(sample.static_id, lists)].area].direction;
+  }
+
   static constexpr std::size_t kMostStatics = 4096;   ///< C_s beyond which the device takes over (chosen)
 
  private:

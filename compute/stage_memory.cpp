@@ -31,7 +31,7 @@ const BufferUse kUses[] = {
              kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces, kBindFineExit, kBindSampleBegin, kBindMockupSamples, kBindToolNear, kBindInsideSamples, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
     {"areas", {kBindNeighbourBegin, kBindNeighbours, kBindSeamBegin, kBindSeams, kBindMockupNormals, kBindToolNormals, kBindToolWeights,
                kBindHeldStatics, kBindHeldAreas, kBindResultMembers, kBindResultPierces}},
-    {"rays", {kBindHeights, kBindFades, kBindNeedleTable, kBindNeedleVertices}},
+    {"rays", {kBindRayLists, kBindRayPlaces, kBindHeights, kBindFades, kBindNeedleTable, kBindNeedleVertices}},
 };
 
 /// What the response adds and no line above names belongs to the areas.

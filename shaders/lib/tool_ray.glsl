@@ -102,6 +102,30 @@ Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
 
 #include "shaders/lib/tool_walk.glsl"
 
+#ifdef TOOL_RAY_LISTS
+// The lowest crossings of a ray that the host has listed, as tool_sweep; `item` is the sample's number. The including shader declares ray_lists[]
+// and ray_places[].
+Levels tool_listed(uint32_t item, ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
+  Levels levels;
+  levels.count = 0u;
+  levels.more = false;
+  total = 0;
+  const RayList list = ray_lists[item];
+  for (uint32_t k = list.begin; k < list.end && !spent(1u); ++k) {
+    const uint32_t place = ray_places[k];
+    const RecordCorners r = record_at(place);
+    const Crossing crossing = ray_crossing(p, d, world_from_tool(r.a), world_from_tool(r.b), world_from_tool(r.c));
+    if (crossing.sign == 0 || crossing.height >= list.stop) continue;
+    total += crossing.sign;
+    if (crossing.height < from || spent(2u * kLevels)) continue;
+    levels_insert(levels, crossing.height, crossing.sign, place);
+  }
+  return levels;
+}
+layout(constant_id = 3) const bool LISTED = false;   // rays have lists
+uint32_t listed_item = 0u;                           // whose
+#endif
+
 // The height of the sample p over the tool: `nearest`: the smallest crossing height; else the smallest one above which the
 // signs add up to 0. kNone: no crossing. `triangle`: of those that are crossed there, the one with the smallest normal.
 uint32_t tool_height(ivec3 p, ivec3 d, bool nearest, out uint32_t triangle) {
@@ -111,6 +135,10 @@ uint32_t tool_height(ivec3 p, ivec3 d, bool nearest, out uint32_t triangle) {
   do {
     int32_t total;
     Levels levels;
+#ifdef TOOL_RAY_LISTS
+    if (LISTED) levels = tool_listed(listed_item, p, d, from, total);
+    else
+#endif
     if (WALK) levels = tool_walk(p, d, from, total);
     else levels = tool_sweep(p, d, from, total);
     if (levels.count == 0u) return kNone;

@@ -33,6 +33,10 @@ EDIT(kBindFades, uint32_t, fades);
 READ(kBindMockupInfo, uint32_t, mockup_info);
 READ(kBindMockupNormals, ivec3, mockup_unit_normals);
 
+READ(kBindRayLists, RayList, ray_lists);
+READ(kBindRayPlaces, uint32_t, ray_places);
+
+#define TOOL_RAY_LISTS
 #include "shaders/lib/tool_ray.glsl"
 #include "shaders/lib/centroid.glsl"
 
@@ -68,6 +72,7 @@ void main() {
   const ivec3 direction = areas[area].direction;
   if (direction == ivec3(0)) return;
   const bool nearest = !REFINED || (scene.tool.closed == 0u && scene.tool.has_internal == 0u);
+  listed_item = i;
   uint32_t exit_triangle;
   heights[i] = tool_height(p, -direction, nearest, exit_triangle);
   if (REFINED && heights[i] != kNone) fades[i] = fade_height(frame_samples[i].static_id, direction, exit_triangle);

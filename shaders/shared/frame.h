@@ -97,6 +97,8 @@ PALPATE_CONSTANT int32_t kBindToolBins = 67;           // ToolBin[bins]; refined
 PALPATE_CONSTANT int32_t kBindBinEntries = 68;         // uint32_t: places in the order of clusters, bin by bin
 PALPATE_CONSTANT int32_t kBindWideTriangles = 69;      // uint32_t: places of triangles that lie in too many bins
 PALPATE_CONSTANT int32_t kBindBinState = 70;           // BinState, one
+PALPATE_CONSTANT int32_t kBindRayLists = 63;                     // RayList[kListSamples]; mapped; where the host joined the areas
+PALPATE_CONSTANT int32_t kBindRayPlaces = 64;                    // uint32_t: places of tool triangles, in the order of clusters; mapped
 PALPATE_CONSTANT int32_t kBindResponseFirst = 72;                // frame_response.h has this one and above
 
 // ---- lists ---------------------------------------------------------------------------------------------------------------
@@ -295,6 +297,12 @@ struct FrameSample {
                                   // triangle's first corner, tells EST and does not count
 };
 PALPATE_CONSTANT uint32_t kCornerProbe = 1u << 31;               // more triangles than this do not fit a lattice mesh
+
+// What a counting sample's ray may cross before it is out of the tool, found by the host (compute/near_rays.h).
+struct RayList {
+  uint32_t begin, end;            // of the ray places
+  uint32_t stop;                  // crossings count below this height
+};
 
 // ---- what it leaves to the host ------------------------------------------------------------------------------------------
 
