@@ -18,8 +18,8 @@ Examples:
 
 CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMember(words).description(""); }
 
-void add_common(CLI::App& app, BenchOptions& options) {
-  app.add_option("scenes", options.scenes, "scene files (JSON)")->required()->type_name("SCENE");
+void add_common(CLI::App& app, BenchOptions& options, bool scenes_required = true) {
+  app.add_option("scenes", options.scenes, "scene files (JSON)")->required(scenes_required)->type_name("SCENE");
   app.add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
   app.add_option_function<std::string>(
          "--profile", [&options](const std::string& word) { options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined; },
@@ -61,6 +61,15 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the tool's box meets nothing). Stages are the\n"
                   "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out.");
   latency->callback([&] { outcome = bench_latency(options, parts); });
+
+  CLI::App* error = bench->add_subcommand("error", "error of the response against time, for every knob: four closed forms, and scenes against a converged run");
+  add_common(*error, options, false);
+  add_poses(*error, options);
+  error->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  error->add_flag("--scenes-only", options.scenes_only, "without the four closed forms");
+  error->footer("Errors are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 over the poses in contact. Times are whole frames.\n"
+                "A scene's truth is the refined profile at a spacing of a 16th of a voxel; the sweep towards it shows its convergence.");
+  error->callback([&] { outcome = bench_error(options, parts); });
 
   CLI::App* peers = bench->add_subcommand("peers", "other collision libraries on the same triangles and poses, in turns with palpate");
   add_common(*peers, options);

@@ -22,12 +22,14 @@ struct BenchOptions {
   std::uint64_t frames = 400;             ///< poses taken from it, evenly
   std::uint64_t rounds = 3;               ///< how often all poses are gone through
   bool cpu_clock = false;                 ///< time the process's own CPU time instead of the wall's
+  bool scenes_only = false;               ///< error: without the closed forms
   std::vector<std::string> peers;         ///< names to measure; empty: all
   double seconds = 60;                    ///< jitter: how long
   std::string out;
 };
 
 Result<void> bench_latency(const BenchOptions& options, const Parts& parts);
+Result<void> bench_error(const BenchOptions& options, const Parts& parts);
 Result<void> bench_peers(const BenchOptions& options, const Parts& parts);
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts);
 Result<void> bench_jitter(const BenchOptions& options, const Parts& parts);

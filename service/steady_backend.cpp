@@ -12,6 +12,8 @@ SteadyBackend::SteadyBackend(std::unique_ptr<CollisionBackend> first, Make make_
 Result<void> SteadyBackend::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
   geometry_ = &geometry;
   plan_ = plan;
+  spare_ready_ = by_spare_ = false;   // what a spare has prepared is another scene
+  full_.clear();
   if (!first_) return prepare_spare(progress);
   bool cancelled = false;
   const Progress watched = [&](const char* what, double done) { return !(cancelled = cancelled || (progress && !progress(what, done))); };

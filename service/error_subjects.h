@@ -1,0 +1,39 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/plan.h"
+#include "model/pose.h"
+#include "model/scene.h"
+
+namespace palpate {
+
+/// What a pose's response should be, world frame.
+struct ContactTruth {
+  Vec3 normal{0};     ///< n_c, unit
+  double depth = 0;   ///< d, m
+  Vec3 point{0};      ///< cp, m
+  Wrench wrench;      ///< of the whole pose, about the tool's centre of mass
+};
+
+/// Bodies and poses at which the error of a response is measured.
+struct ErrorSubject {
+  std::string name;
+  SceneMeshes meshes;
+  GeometrySettings settings;              ///< what is not swept
+  double stiffness_n_per_m = 2000;
+  std::vector<Pose> poses;
+  std::function<ContactTruth(const Pose&)> truth;   ///< closed form; empty: a converged run stands in for it
+  double tessellation_error = 0;          ///< relative, of d: the polyhedron's truth against the round body's; 0 where both are flat
+  std::string about;                      ///< a clause for the report
+};
+
+/// Four contacts with closed forms (METHOD section 8), at places that no symmetry of the sampling grid favours: a sphere in a plane,
+/// d = h(3R − h) / 3(2R − h); a lying cylinder, d = S/2a with the segment S over the width 2a; a cube on its corner, d = h/3; and a sphere in an equal one.
+/// Round bodies in a plane are judged against the polyhedron's own volume over its section; `tessellation_error` tells how far that is from the round one's.
+/// `cells`: the plane's top face is cut into cells × cells × 2 triangles (the plane subjects alone).
+std::vector<ErrorSubject> closed_form_subjects(int cells);
+
+}  // namespace palpate

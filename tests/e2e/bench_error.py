@@ -1,0 +1,58 @@
+"""`palpate bench error`: every knob has its errors and times, against closed forms that this test works out again, and they fall as they should."""
+import csv
+import math
+
+from harness import *
+import json
+
+COLUMNS = ['scene', 'method', 'knob', 'value', 'quantity', 'error_p50', 'error_p99', 'time_us_p50', 'time_us_p99']
+FORMS = ('sphere_plane', 'cylinder_plane', 'corner_plane', 'sphere_sphere')
+
+
+def test_the_closed_forms_converge_and_paper_does_not():
+    folder = Folder()
+    out = folder / 'figures'
+    done = palpate('bench', 'error', '--rounds', '1', '--out', out)
+    expect(done.code == 0, done)
+    with open(out / 'results.csv') as file:
+        rows = list(csv.DictReader(file))
+    expect(list(rows[0])[:len(COLUMNS)] == COLUMNS, rows[0])
+    expect(set(row['scene'] for row in rows) == set(FORMS), 'the four closed forms')
+    for row in rows:
+        expect(0 <= float(row['error_p50']) <= float(row['error_p99']) and 0 < float(row['time_us_p50']) <= float(row['time_us_p99']), row)
+    for form in FORMS:
+        errors = sorted((float(row['value']), float(row['error_p50'])) for row in rows
+                        if (row['scene'], row['method'], row['knob'], row['quantity']) == (form, 'refined', 'sample_spacing', 'd_m'))
+        expect(len(errors) == 5, errors)
+        # Sixteen times closer samples: at least first order.
+        expect(errors[0][1] < errors[-1][1] / 16, f'{form}: {errors}')
+        paper = [float(row['error_p50']) for row in rows if (row['scene'], row['method'], row['quantity']) == (form, 'paper', 'd_m')]
+        expect(min(paper) > errors[0][1], f'{form}: {paper}')
+        # One flat face gives the direction; two spheres give it but for their samples.
+        for row in rows:
+            if (row['scene'], row['method'], row['quantity']) == (form, 'refined', 'n_c_deg') and form != 'sphere_sphere':
+                expect(float(row['error_p99']) < 1e-5, row)
+    results = json.loads((out / 'results.json').read_text())
+    for form in FORMS:
+        expect(float(results[f'order of d, {form}'].split()[0]) >= 1, results[f'order of d, {form}'])
+    expect('<canvas' not in (out / 'report.html').read_text() and 'sphere_sphere' in (out / 'report.html').read_text(), 'a report that draws itself')
+
+
+def test_a_scene_is_judged_against_a_converged_run():
+    folder = Folder()
+    folder.write('block.stl', stl(box((0.08, 0.08, 0.04), (0, 0, -0.02))))
+    folder.write('ball.stl', stl(sphere(0.01)))
+    folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n' + ''.join(f'{0.001 * i},{0.0007 * i},{0.009 - 0.0001 * i},0,0,0,1\n' for i in range(12)))
+    scene = folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
+    done = palpate('bench', 'error', scene, '--poses', folder / 'poses.csv', '--scenes-only', '--rounds', '1', '--out', folder / 'figures')
+    expect(done.code == 0, done)
+    with open(folder / 'figures/results.csv') as file:
+        errors = {float(row['value']): float(row['error_p50']) for row in csv.DictReader(file)
+                  if (row['scene'], row['knob'], row['quantity']) == ('scene', 'sample_spacing', 'd_m')}
+    expect(len(errors) == 4 and errors[min(errors)] < errors[max(errors)] / 4, errors)
+    far = folder.write('far.csv', 'x,y,z,qx,qy,qz,qw\n5,5,5,0,0,0,1\n')
+    refused = palpate('bench', 'error', scene, '--poses', far, '--scenes-only', '--rounds', '1', '--out', folder / 'none')
+    expect(refused.code == 3 and 'none of the 1 poses is in contact' in refused.err, refused)
+
+
+main(globals())
