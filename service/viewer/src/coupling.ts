@@ -29,6 +29,8 @@ export class Coupling {
   readonly torque = new Vector3();
   stiffness = 2000;   // N/m
   radius = 0.05;      // m
+  /** Whether a hand holds the tool: without one no spring pulls, and contact pushes the tool out. */
+  held = false;
   private centre = new Vector3();   // of mass, tool frame
   private rest = 0;
 
@@ -41,6 +43,7 @@ export class Coupling {
     this.let_go();
   }
   let_go(): void {
+    this.held = false;
     this.target_position.copy(this.position);
     this.target_rotation.copy(this.rotation);
   }
@@ -75,6 +78,7 @@ export class Coupling {
       this.torque.add(arm.clone().cross(push));
     }
     // The hand: a spring with a limit, so that nobody presses through a wall.
+    if (!this.held) this.let_go();
     const spring = this.stiffness * SPRING_SHARE;
     const pull = this.gc(this.target_position, this.target_rotation).sub(gc).multiplyScalar(spring);
     pull.clampLength(0, this.stiffness * this.radius * DEEPEST_SHARE);

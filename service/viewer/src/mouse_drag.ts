@@ -47,6 +47,7 @@ export class MouseDrag {
     if (!point) return;
     event.stopImmediatePropagation();
     this.view.canvas.setPointerCapture(event.pointerId);
+    this.coupling.held = true;
     this.holding = event.button === 2 || event.shiftKey ? 'turn' : 'move';
     this.plane.setFromNormalAndCoplanarPoint(this.view.camera.getWorldDirection(new three.Vector3()), point);
     this.last.copy(point);
