@@ -48,7 +48,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   } else if (auto answered = backend_.query(slot.lattice_pose, &held_, slot.contacts); !answered) {
     return answered;
   }
-  respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response);
+  respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response, &held_);
   remember(slot.contacts, slot.response, held_);
 
   result = {};

@@ -86,6 +86,16 @@ TEST(Seam, IsCrossedInStepsThatOneRowOfSamplesBounds) {
   EXPECT_LE(steps->force_step_n, 3 * 2000 * 38e-6 + 0.1);
 }
 
+TEST(PiercedPlate, KeepsItsSideUntilTheToolIsThrough) {
+  const auto steps = jumps_of("pierced plate", Profile::kRefined, LawKind::kCorrected, 5);
+  ASSERT_TRUE(steps);
+  std::printf("pierced plate: results step by up to %.3f N, the force by %.3f N a tick, least push %.3f N\n", steps->response_step_n, steps->force_step_n, steps->least_push_n);
+  // A result each 5 ms, 0.33 mm further: the depth, a mean, goes no further than the tool. What is left where the last of the tool leaves
+  // the front: a cap 0.5 mm high.
+  EXPECT_LE(steps->response_step_n, 2000 * (0.33e-3 + 0.5e-3));
+  EXPECT_GE(steps->least_push_n, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Contacts, StabilityQuery, testing::Range(0, 4),
                          [](const auto& tested) { return pressed_contacts()[static_cast<std::size_t>(tested.param)].name; });
 
