@@ -3,7 +3,7 @@
 //                         "host" NUMBER             of the host's exact code (model/)
 //   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT; modules that include it
 //                          in: "intact"             whether the unchanged program still answers as at first
-// With --killers as last argument only the killer cases are asked.
+// With --killers behind these only the killer cases are asked; names of cases after --without are not asked, nor is any probe then.
 //   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when it is.
 // Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the same),
 // not-asked (no case runs the module, or the sources are not those that this program was built of).
@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -60,12 +61,17 @@ struct Report {
 /// What the reference's parts said when nothing was changed.
 class ProbeAnswers {
  public:
-  explicit ProbeAnswers(const Oracle& oracle) : oracle_(oracle) {
+  ProbeAnswers(const Oracle& oracle, bool ask) : oracle_(oracle) {
+    if (!ask) return;
     for (const Probe& probe : probes()) answers_.push_back(probe.second());
+    for (const Probe& probe : host_probes()) host_.push_back(probe.second());
     for (std::size_t c = 0; c < oracle.size(); ++c) ways_out_.push_back(probe_ways_out(oracle.geometry(c).mockup, oracle.geometry(c).mockup_grid));
   }
   /// The probe that says something else now; empty: none.
-  std::string first_difference() const {
+  std::string first_difference(bool host) const {
+    for (std::size_t i = 0; host && i < host_.size(); ++i)
+      if (host_probes()[i].second() != host_[i]) return host_probes()[i].first;
+    if (host) return {};
     for (std::size_t i = 0; i < answers_.size(); ++i)
       if (probes()[i].second() != answers_[i]) return probes()[i].first;
     for (std::size_t c = 0; c < ways_out_.size(); ++c)
@@ -75,7 +81,7 @@ class ProbeAnswers {
 
  private:
   const Oracle& oracle_;
-  std::vector<std::uint64_t> answers_, ways_out_;
+  std::vector<std::uint64_t> answers_, host_, ways_out_;
 };
 
 [[noreturn]] void child(Oracle& oracle, const ProbeAnswers& probed, int mutant, bool host, int pipe_end, rlim_t seconds) {
@@ -87,9 +93,9 @@ class ProbeAnswers {
   active = mutant;
   Report report;
   std::string difference = host ? oracle.first_host_difference(report.at) : oracle.first_difference_now(report.at);
-  if (difference.empty() && !host) {
+  if (difference.empty()) {
     report.at = kProbe;
-    difference = probed.first_difference();
+    difference = probed.first_difference(host);
   }
   std::strncpy(report.difference, difference.c_str(), sizeof report.difference - 1);
   if (write(pipe_end, &report, sizeof report) != sizeof report) std::_Exit(3);
@@ -204,9 +210,11 @@ void ready(const Oracle& oracle) {
   std::fflush(stdout);
 }
 
-void judge_shaders(const std::string& root, bool killers) {
+using Words = std::vector<std::string>;
+
+void judge_shaders(const std::string& root, bool killers, const Words& without) {
   MutableDevice device;
-  Oracle oracle(device, killers, [&](bool begins) {
+  Oracle oracle(device, killers, without, [&](bool begins) {
     if (!begins) {
       if (auto r = device.put_back(); !r) throw std::runtime_error(r.error().sentence);
       return;
@@ -230,12 +238,12 @@ void judge_shaders(const std::string& root, bool killers) {
   }
 }
 
-void judge_reference(bool killers) {
+void judge_reference(bool killers, const Words& without) {
   const auto backend = make_cpu_backend();
-  Oracle oracle(*backend, killers, [](bool) {});
+  Oracle oracle(*backend, killers, without, [](bool) {});
   const double begin = cpu_seconds(RUSAGE_SELF);
   oracle.answer_all();
-  const ProbeAnswers probed(oracle);
+  const ProbeAnswers probed(oracle, without.empty());
   const double limit = 2 + 5 * (cpu_seconds(RUSAGE_SELF) - begin);
   std::size_t at = 0;
   if (const std::string difference = oracle.first_difference_now(at); !difference.empty())
@@ -252,12 +260,14 @@ void judge_reference(bool killers) {
 
 int main(int count, char** arguments) {
   const std::vector<std::string> words(arguments + 1, arguments + count);
-  const bool killers = !words.empty() && words.back() == "--killers";
+  const bool killers = std::find(words.begin(), words.end(), "--killers") != words.end();
+  const auto left_out = std::find(words.begin(), words.end(), "--without");
+  const std::vector<std::string> without(left_out == words.end() ? left_out : left_out + 1, words.end());
   try {
     if (words.size() >= 2 && words[0] == "gpu")
-      palpate::mutation::judge_shaders(words[1], killers);
+      palpate::mutation::judge_shaders(words[1], killers, without);
     else
-      palpate::mutation::judge_reference(killers);
+      palpate::mutation::judge_reference(killers, without);
     return 0;
   } catch (const std::exception& failure) {
     std::fprintf(stderr, "mutant_judge: %s\n", failure.what());

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Changes every operator of the exact code, one at a time, and asks whether the answers tell.
 
-    mutation.py JUDGE [--only PATH...] [--sample N] [--jobs N] [--cache FILE] [--table FILE]
+    mutation.py JUDGE [--only PATH...] [--sample N] [--jobs N] [--cache FILE] [--table FILE] [--least PERCENT]
 
 JUDGE is the built mutant_judge. Prints a line a file and the survivors; writes the table with --table. A caught mutant stays caught
 until its file changes; a survivor is asked again when the oracle changes, too (--cache remembers). Status 1: a survivor that
-survivors.csv does not explain, or fewer than 95 in 100 caught.
+survivors.csv does not explain (a sample's aside), or fewer caught than --least.
 """
 import argparse
 import collections
@@ -26,6 +26,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 CAUGHT = ("differs", "crashed", "hangs")
 NO_MUTANT = ("no-program", "no-change")
+# How the reason begins when no test could see the mutant.
+CHANGES_NOTHING = ("equivalent: ", "speed only: ", "a sentence of an error", "memory_bytes is no answer", "by design: ")
 SECOND = ("logic", "not", "name")   # kinds that are judged when all others have been
 
 # What is judged first: predicates, then areas, rays, classes; then the rest.
@@ -111,8 +113,8 @@ class Judge:
 
     CHECK_EVERY = 20
 
-    def __init__(self, program, back_end, killers):
-        self.command = [program, back_end, str(ROOT)] + (["--killers"] if killers else [])
+    def __init__(self, program, back_end, killers, without):
+        self.command = [program, back_end, str(ROOT)] + (["--killers"] if killers else []) + (["--without", *without] if without else [])
         self.back_end, self.process = back_end, None
         self.unchecked = []
 
@@ -206,6 +208,8 @@ def main():
     arguments.add_argument("judge")
     arguments.add_argument("--only", nargs="*", default=[])
     arguments.add_argument("--sample", type=int, default=0, help="every so many mutants only, so that this many are judged")
+    arguments.add_argument("--least", type=float, default=95, help="so many in 100 must be caught")
+    arguments.add_argument("--without", nargs="*", default=[], help="cases that are not asked, to see what they are worth (and no probe)")
     arguments.add_argument("--jobs", type=int, default=1)
     arguments.add_argument("--cache", type=pathlib.Path)
     arguments.add_argument("--table", type=pathlib.Path)
@@ -255,7 +259,7 @@ def main():
             except queue.Empty:
                 break
             back_end = "cpu" if of_program(batch[0].name) else "gpu"
-            judge = judges.setdefault(back_end, Judge(options.judge, back_end, options.killers))
+            judge = judges.setdefault(back_end, Judge(options.judge, back_end, options.killers, options.without))
             for start in range(0, len(batch), Judge.CHECK_EVERY):   # what is judged is kept when somebody ends us
                 part = batch[start:start + Judge.CHECK_EVERY]
                 for job in part:
@@ -295,8 +299,22 @@ def main():
     caught = len(real) - len(survivors)
     print(f"{len(done)} judged of {len(jobs)}: {dict(outcomes)}")
     print(f"caught {caught} of {len(real)} ({100 * caught / max(1, len(real)):.1f} %), {len(survivors)} survive, {len(unexplained)} not explained")
-    few = not options.sample and 100 * caught < 95 * len(real)   # of a handful, one may be an explained survivor
-    return 1 if unexplained or few or len(done) < len(jobs) else 0
+    nothing = {id(j) for j in survivors if why.get(place(j), "").startswith(CHANGES_NOTHING)}
+
+    def tell(what, chosen):
+        n, of = sum(j.row[0] in CAUGHT for j in chosen), len(chosen)
+        seen = of - sum(id(j) in nothing for j in chosen)
+        if of:
+            print(f"  {what}: {n} of {of} ({100 * n / of:.1f} %); of the {seen} that change something {100 * n / max(1, seen):.1f} %")
+    tell("all", real)
+    for side, of_side in (("reference", [j for j in real if j.name.startswith("cpu_ref/")]), ("host", [j for j in real if j.name in HOST]),
+                          ("shaders", [j for j in real if not of_program(j.name)])):
+        tell(side, of_side)
+        for kinds in (("relation",), ("sign", "negative"), ("barrier",), ("logic", "not"), ("name",)):
+            tell(f"{side}, {' and '.join(kinds)}", [j for j in of_side if j.mutant.kind in kinds])
+    # A sample has its own threshold, and what survives in it was explained, or not, with all the others.
+    few = 100 * caught < options.least * len(real)
+    return 1 if (unexplained and not options.sample) or few or len(done) < len(jobs) else 0
 
 
 if __name__ == "__main__":

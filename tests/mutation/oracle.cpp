@@ -66,7 +66,7 @@ const char* difference(const ContactResponse& a, const ContactResponse& b) {
   if (a.wrench.force != b.wrench.force || a.wrench.torque != b.wrench.torque) return "wrench";
   if (a.flags != b.flags || a.contact != b.contact || a.areas.size() != b.areas.size()) return "flags, contact or number of areas";
   const auto facts = [](const AreaResponse& r) {
-    return std::tuple(r.id, r.normal.x, r.normal.y, r.normal.z, r.depth, r.max_depth, r.point.x, r.point.y, r.point.z, r.flags, r.silent);
+    return std::tuple(r.id, r.normal.x, r.normal.y, r.normal.z, r.depth, r.max_depth, r.slope, r.point.x, r.point.y, r.point.z, r.flags, r.silent);
   };
   for (std::size_t i = 0; i < a.areas.size(); ++i)
     if (facts(a.areas[i]) != facts(b.areas[i]) || a.areas[i].force != b.areas[i].force || a.areas[i].torque != b.areas[i].torque) return "area";
@@ -91,11 +91,13 @@ double processor_seconds() {
 
 }  // namespace
 
-Oracle::Oracle(CollisionBackend& backend, bool killers, std::function<void(bool)> unchanged)
+Oracle::Oracle(CollisionBackend& backend, bool killers, const std::vector<std::string>& without, std::function<void(bool)> unchanged)
     : backend_(backend), unchanged_(std::move(unchanged)), wanted_(equivalence::all_cases()) {
   std::stable_partition(wanted_.begin(), wanted_.end(), [](const equivalence::Case& c) { return c.killer; });
   // The chapter's large scenes ask nothing that small ones don't, at many times the price.
-  std::erase_if(wanted_, [&](const equivalence::Case& w) { return killers ? !w.killer : w.family == "chapter"; });
+  std::erase_if(wanted_, [&](const equivalence::Case& w) {
+    return (killers ? !w.killer : w.family == "chapter") || std::find(without.begin(), without.end(), w.name) != without.end();
+  });
   cases_.resize(wanted_.size());   // back ends keep the geometry's address
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     cases_[c].name = wanted_[c].name;

@@ -12,9 +12,9 @@ namespace palpate::mutation {
 /// What a back end answers to the cases of tests/equivalence before anything is changed, to hold its later answers against.
 class Oracle {
  public:
-  /// Of all cases but the chapter's large ones, or only of the killer cases. `backend` is asked for its answers to a case just before that
+  /// Of all cases but the chapter's large ones, or only of the killer cases; not of `without`. `backend` is asked for its answers to a case just before that
   /// is first compared, between calls of unchanged(true) and unchanged(false), which take a mutant out and put it back in.
-  Oracle(CollisionBackend& backend, bool killers, std::function<void(bool)> unchanged);
+  Oracle(CollisionBackend& backend, bool killers, const std::vector<std::string>& without, std::function<void(bool)> unchanged);
 
   /// Asks for all answers now. Throws std::runtime_error where that fails, as all below do: then there is nothing to compare with.
   void answer_all();

@@ -1,5 +1,6 @@
 #include "tests/mutation/probes.h"
 
+#include <bit>
 #include <stdexcept>
 
 #include "cpu_ref/box_tree.h"
@@ -10,6 +11,9 @@
 #include "cpu_ref/samples.h"
 #include "cpu_ref/triangle_cube.h"
 #include "cpu_ref/triangle_triangle.h"
+#include "model/geometry_build.h"
+#include "model/response.h"
+#include "model/smooth_angle.h"
 #include "tests/compute/geometry_cases.h"
 
 namespace palpate::mutation {
@@ -217,6 +221,152 @@ std::uint64_t trees() {
   return sum.value();
 }
 
+/// Normals at, just below and just above the angles that have an exact cosine, short and as long as they come.
+std::uint64_t smooth_angles() {
+  Sum sum;
+  for (const double degrees : {-1.0, -1e-9, 0.0, 20.0, 30.0, 45.0, 60.0, 89.9, 90.0, 90.001}) {
+    const auto angle = make_smooth_angle(degrees);
+    sum.add(angle ? 1 : 0);
+    if (!angle) continue;
+    sum.add(angle->cos2_numerator);
+    sum.add(angle->cos2_denominator);
+    LatticePoints points(22);
+    for (int i = 0; i < 4000; ++i) {
+      const int shift = i % 4 == 0 ? 0 : i % 4 == 1 ? 20 : 56;
+      Long3 n[2];
+      for (Long3& v : n)
+        do v = Long3(points.within(3), points.within(3), points.within(3));
+        while (v == Long3(0));
+      for (Long3& v : n)
+        for (int k = 0; k < 3; ++k) v[k] = (v[k] << shift) + (i % 3 == 0 ? points.within(1) : 0);
+      if (n[0] != Long3(0) && n[1] != Long3(0)) sum.add(smooth(n[0], n[1], *angle));
+    }
+  }
+  return sum.value();
+}
+
+/// Handfuls of triangles on a tiny grid: edges of one to four triangles, folds, repeated faces, collapsed ones, two parts.
+std::uint64_t handfuls() {
+  Sum sum;
+  LatticePoints points(23);
+  for (int i = 0; i < 1500; ++i) {
+    Mesh mesh;
+    const int reach = 1 + i % 2;
+    for (int v = 0; v < 7; ++v) mesh.vertices.emplace_back(Int3(points.within(reach), points.within(reach), points.within(reach)));
+    const std::uint32_t count = 4 + static_cast<std::uint32_t>(i % 9);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      std::array<std::uint32_t, 3> corners{};
+      for (auto& corner : corners) corner = static_cast<std::uint32_t>(points.within(3) + 3);
+      mesh.triangles.push_back(corners);
+      if (i % 5 == 0) mesh.triangles.push_back({corners[0], corners[2], corners[1]});
+      if (i % 7 == 0 && t == 0) mesh.triangles.push_back(corners);
+    }
+    // A tetrahedron too, so that something has an inside.
+    mesh.vertices.insert(mesh.vertices.end(), {Vec3(-4, -3, -3), Vec3(5, -3, -3), Vec3(0, 5, -3), Vec3(0, 0, 6)});
+    for (const auto& face : {std::array<std::uint32_t, 3>{7, 9, 8}, {7, 8, 10}, {8, 9, 10}, {9, 7, 10}})
+      if (i % 3 != 0) mesh.triangles.push_back(face);
+    const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
+    mesh.parts = {{"a", 0, all / 2}, {"b", all / 2, all - all / 2}};
+    Lattice lattice;
+    lattice.step_m = 1;
+    MeshReport report;
+    const auto built = build_lattice_mesh(mesh, lattice, SmoothAngle{3, 4}, report);
+    sum.add(built ? 1 : 0);
+    if (!built) continue;
+    for (const auto& t : built->triangles)
+      for (const std::uint32_t v : t) sum.add(v);
+    for (const auto f : built->flags) sum.add(f);
+    for (const auto n : built->neighbours) sum.add(n);
+    for (const auto n : built->neighbour_begin) sum.add(n);
+    sum.add(built->closed);
+    for (const std::uint32_t n : {report.duplicate, report.open_edges, report.nonmanifold_edges, report.collapsed}) sum.add(n);
+    sum.add(static_cast<std::int64_t>(report.largest_gap_m * 0x1p20));
+    for (const auto& part : report.parts) sum.add(part.closed + 2 * part.sheet + 4 * part.turned + 8 * part.orientable);
+  }
+  return sum.value();
+}
+
+/// Responses to answers made up of small numbers: areas with and without rays, direction and voxels, that pierce each other, and that
+/// were loud, silent or not there in the frame before.
+std::uint64_t responses() {
+  Sum sum;
+  LatticePoints points(24);
+  const auto below = [&](int count) { return (points.within(1 << 20) + (1 << 20)) % count; };
+  const auto add = [&](const Vec3& v) {
+    for (int k = 0; k < 3; ++k) sum.add(std::bit_cast<std::int64_t>(v[k]));
+  };
+  SceneGeometry geometry;
+  geometry.lattice.step_m = 0.25;
+  geometry.tool_gc_m = Vec3(3, 4, 5);
+  geometry.tool_centre_m = Vec3(1, -2, 7);
+  LatticePose pose;
+  for (int k = 0; k < 3; ++k) pose.rotation_q30[k][(k + 1) % 3] = 1 << 30;
+  pose.translation = Int3(8, -9, 10);
+  for (int i = 0; i < 4000; ++i) {
+    Contacts contacts;
+    contacts.contact = below(8) != 0;
+    contacts.truncated = below(16) == 0;
+    Held held;
+    const int count = 1 + below(4);
+    for (int a = 0; a < count; ++a) {
+      ContactArea area;
+      area.id = static_cast<std::uint32_t>(4 * a);
+      for (std::uint32_t s = 0; s < 4; ++s)
+        if (below(3) != 0) area.static_ids.push_back(area.id + s);
+      if (below(5) != 0) area.direction = Int3(points.within(2), points.within(2), points.within(2));
+      area.rays = static_cast<std::uint32_t>(below(3));
+      area.max_height = static_cast<std::uint32_t>(below(3)) << 29;
+      area.weight_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(2)} << 30;
+      area.height_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(3)} << 28;
+      area.faded_sum = below(3);
+      area.faded_rest = below(1 << 20);
+      area.weight_slope = points.within(3);
+      area.height_slope = points.within(1000);
+      for (auto& moment : area.moment) moment = {below(1000), points.within(10)};
+      area.voxel_count = static_cast<std::uint32_t>(below(3));
+      for (auto& voxel : area.voxel_sum) voxel = points.within(100);
+      if (area.voxel_count == 0) area.voxel_sum = {};
+      for (int b = 0; b < count; ++b)
+        if (b != a && below(3) == 0) area.pierces.push_back(static_cast<std::uint32_t>(b));
+      contacts.areas.push_back(area);
+    }
+    for (int h = below(4); h > 0; --h) {
+      HeldArea area;
+      for (std::uint32_t s = 0; s < 16; ++s)
+        if (below(3) == 0) area.static_ids.push_back(s);
+      area.direction = Int3(1 << 28, 0, 0);
+      area.silent = below(2) == 0;
+      held.areas.push_back(area);
+    }
+    if (below(5) == 0) {
+      contacts.flags = kFlagSwallowed;
+      if (below(4) != 0) contacts.swallowed_direction = Int3(points.within(2), 1, 0) * below(2);
+      contacts.swallowed_height = static_cast<std::uint32_t>(below(3)) << 20;
+    }
+    ContactResponse response;
+    respond(contacts, pose, geometry, i % 3 == 0 ? Profile::kPaper : Profile::kRefined, 1000, response, i % 4 == 0 ? nullptr : &held);
+    add(response.gc);
+    add(response.wrench.force);
+    add(response.wrench.torque);
+    sum.add(response.flags);
+    sum.add(response.contact);
+    for (const AreaResponse& area : response.areas) {
+      for (const Vec3& v : {area.normal, area.point, area.force, area.torque, Vec3(area.depth, area.max_depth, area.slope)}) add(v);
+      sum.add(area.id);
+      sum.add(area.flags);
+      sum.add(area.silent);
+    }
+    remember(contacts, response, held);
+    sum.add(held.last_direction);
+    for (const HeldArea& area : held.areas) {
+      sum.add(area.direction);
+      sum.add(area.silent);
+      sum.add(static_cast<std::int64_t>(area.static_ids.size()));
+    }
+  }
+  return sum.value();
+}
+
 /// Floods of bricks some of which are told apart, from every corner of the grid.
 std::uint64_t floods() {
   Sum sum;
@@ -258,6 +408,11 @@ const std::vector<Probe>& probes() {
       {"pairs_of_triangles", pairs_of_triangles}, {"boxes", boxes}, {"rays", rays}, {"projections", projections},
       {"samples", samples}, {"directions", directions}, {"trees", trees},
       {"floods", floods}};
+  return all;
+}
+
+const std::vector<Probe>& host_probes() {
+  static const std::vector<Probe> all{{"smooth_angles", smooth_angles}, {"handfuls", handfuls}, {"responses", responses}};
   return all;
 }
 

@@ -14,6 +14,9 @@ namespace palpate::mutation {
 using Probe = std::pair<const char*, std::uint64_t (*)()>;
 const std::vector<Probe>& probes();
 
+/// The same of the host's exact code.
+const std::vector<Probe>& host_probes();
+
 /// The nearest V_ext voxel (EXACTNESS section 6) of points in and round a body's grid, as such a number.
 std::uint64_t probe_ways_out(const LatticeMesh& mesh, const VoxelGrid& grid);
 
