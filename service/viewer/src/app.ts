@@ -126,7 +126,8 @@ export class App {
       await this.picker.refresh();
       const { current, path } = this.picker;
       if (!current) { await this.begin(); return; }
-      if (this.picker.list.scenes.some((scene) => scene.id === current.id && scene.state !== 'failed')) await this.restore(current);
+      const held = this.picker.list.scenes.find((scene) => scene.id === current.id && scene.state !== 'failed');   // perhaps still being prepared
+      if (held) await this.restore(held);
       else if (path) await this.restore(await this.api.open_scene(path));
       else this.say('The server no longer holds this scene. Open it again to go on.', true);
     } catch (error) { this.failed(error); }
