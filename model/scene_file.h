@@ -16,10 +16,11 @@ class DiskCache;
 Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile = std::nullopt);
 
 /// Imports or generates the meshes of a scene, and adds what is odd about them to its warnings. Reports progress; may be cancelled. `limits`
-/// are each mesh file's.
-Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits = {});
+/// are each mesh file's; `folder` as in model/confined_import.h.
+Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits = {}, const std::string& folder = {});
 
 /// import_scene, then the geometry of it; or both from `cache` (may be null), if the same program has made them of the same files before.
-Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits = {}, DiskCache* cache = nullptr);
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits = {}, DiskCache* cache = nullptr,
+                               const std::string& folder = {});
 
 }  // namespace palpate

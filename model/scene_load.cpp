@@ -6,7 +6,7 @@
 #include "model/cache/geometry_cache.h"
 #include "model/generate.h"
 #include "model/generate/solids.h"
-#include "model/mesh_import.h"
+#include "model/confined_import.h"
 #include "model/scene_file.h"
 
 namespace palpate {
@@ -34,9 +34,9 @@ Result<Mesh> generate(const MeshSource& source) {
   return tool ? std::move(scene->tool) : std::move(scene->mockup);
 }
 
-Result<Mesh> mesh_of(const MeshSource& source, const ImportLimits& limits, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
+Result<Mesh> mesh_of(const MeshSource& source, const std::string& folder, const ImportLimits& limits, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
   ImportReport report;
-  Result<Mesh> mesh = source.file.empty() ? generate(source) : import_mesh(source.file, source.scale, report, limits, go_on);
+  Result<Mesh> mesh = source.file.empty() ? generate(source) : import_mesh_below(folder, source.file, source.scale, report, limits, go_on);
   if (!mesh) return mesh;
   for (const std::string& note : report.notes) warnings.push_back(source.file + ": " + note);
   if (!source.part.empty()) mesh = take_part(*mesh, source.part, source_name(source));
@@ -82,7 +82,7 @@ bool tell(const Progress& progress, const char* what, double done) { return !pro
 
 }  // namespace
 
-Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits) {
+Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits, const std::string& folder) {
   const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
   SceneMeshes meshes;
   const double bodies = static_cast<double>(scene.statics.size()) + 1;
@@ -90,13 +90,13 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
     const auto go_on = [&] { return tell(progress, "import", static_cast<double>(i) / bodies); };
     if (!go_on()) return cancelled;
     const StaticBody& body = scene.statics[i];
-    const auto mesh = mesh_of(body.source, limits, go_on, scene.warnings);
+    const auto mesh = mesh_of(body.source, folder, limits, go_on, scene.warnings);
     if (!mesh) return mesh.error();
     place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", meshes.mockup);
   }
   const auto go_on = [&] { return tell(progress, "import", (bodies - 1) / bodies); };
   if (!go_on()) return cancelled;
-  auto tool = mesh_of(scene.tool.source, limits, go_on, scene.warnings);
+  auto tool = mesh_of(scene.tool.source, folder, limits, go_on, scene.warnings);
   if (!tool) return tool.error();
   meshes.tool = std::move(*tool);
   warn_of_size("mock-up", meshes.mockup, scene.warnings);
@@ -104,7 +104,7 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
   return meshes;
 }
 
-Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits, DiskCache* cache) {
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits, DiskCache* cache, const std::string& folder) {
   const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
   const auto start = std::chrono::steady_clock::now();
   const std::optional<ContentKey> key = cache ? geometry_key(scene) : std::nullopt;
@@ -118,7 +118,7 @@ Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const Impo
   const auto warnings_before = static_cast<std::ptrdiff_t>(scene.warnings.size());
   LoadedGeometry loaded;
   {
-    const auto meshes = import_scene(scene, progress, limits);
+    const auto meshes = import_scene(scene, progress, limits, folder);
     if (!meshes) return meshes.error();
     if (!tell(progress, "geometry", 0)) return cancelled;
     auto geometry = build_geometry(meshes->mockup, meshes->tool,

@@ -14,6 +14,7 @@
 
 #include "model/one_line.h"
 #include "service/cli_bench.h"
+#include "service/cli_serve.h"
 #include "service/console.h"
 
 namespace palpate {
@@ -220,6 +221,9 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   CLI::App* devices_app = app.add_subcommand("devices", "list Vulkan and haptic devices, with the reason for each that can't be used");
   devices_app->footer("Of several usable Vulkan devices the best is taken; the back end's name is in the summary of a run.");
   devices_app->callback([&] { outcome = devices_command(parts); });
+
+  ServeOptions serve;
+  add_serve_command(app, serve, parts, outcome);
 
   BenchOptions bench;
   add_bench_command(app, bench, parts, outcome);

@@ -92,6 +92,7 @@ std::uint64_t run_realtime_loop(ControlTick& tick, SafeDevice& device, Collision
       timing.missed_ticks += static_cast<std::uint64_t>(skipped);
       period += skipped;
     }
+    tick.note_timing(late, timing.missed_ticks);
   }
   device.close();   // zero force first
   signals.done.store(true, std::memory_order_release);

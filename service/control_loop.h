@@ -27,6 +27,12 @@ class ControlTick {
   /// Force law, gate and limits, and out; `fresh` is the newest result, or null if there is no new one.
   const TickRecord& act(const LawResult* fresh) noexcept;
 
+  /// Real time: how punctual the tick that follows is; recorded, decides nothing.
+  void note_timing(std::int64_t late_ns, std::uint64_t missed_ticks) noexcept {
+    record_.lateness_us = static_cast<float>(late_ns) / 1000;
+    record_.missed_ticks = missed_ticks;
+  }
+
   bool device_failed() const noexcept { return device_.faulted(); }
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t unready_ticks() const { return unready_ticks_; }   ///< in which the device was opening, loading, homing or at fault

@@ -39,15 +39,7 @@ Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
       return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], shown(field)));
     if (error != std::errc() || stop != end) return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], shown(field)));
   }
-  Pose pose;
-  pose.position = Vec3(value[0], value[1], value[2]);
-  pose.rotation = Quat(value[6], value[3], value[4], value[5]);
-  // Whether it is a pose does not depend on the scene, so any lattice tells; a bad one is refused before meshes are read.
-  SceneGeometry any;
-  any.lattice.step_m = 1;
-  const Result<LatticePose> lattice = to_lattice(pose, any);
-  if (!lattice) return bad_value("is no pose: " + lattice.error().sentence);
-  return pose;
+  return pose_of(value);
 }
 
 std::vector<std::string_view> split(std::string_view text, std::string_view separators, bool merge) {
@@ -63,6 +55,18 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 
 }  // namespace
 
+Result<Pose> pose_of(const std::array<double, 7>& value) {
+  Pose pose;
+  pose.position = Vec3(value[0], value[1], value[2]);
+  pose.rotation = Quat(value[6], value[3], value[4], value[5]);
+  // Whether it is a pose does not depend on the scene, so any lattice tells; a bad one is refused before meshes are read.
+  SceneGeometry any;
+  any.lattice.step_m = 1;
+  const Result<LatticePose> lattice = to_lattice(pose, any);
+  if (!lattice) return bad_value("is no pose: " + lattice.error().sentence);
+  return pose;
+}
+
 Result<Pose> parse_pose(const std::string& text) {
   Result<Pose> pose = to_pose(split(text, " ,\t\n\r", true));
   if (!pose) return bad_value(fmt::format("--pose \"{}\" {}", shown(text), pose.error().sentence));
@@ -72,6 +76,10 @@ Result<Pose> parse_pose(const std::string& text) {
 Result<std::vector<Pose>> read_poses(const std::string& path) {
   std::ifstream in(path);
   if (!in) return bad_value(fmt::format("{}: the poses file can't be opened", path));
+  return read_poses(in, path);
+}
+
+Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) {
   std::string text;
   if (!std::getline(in, text) || trim(text) != kHeader)
     return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, shown(trim(text)), kHeader));

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -14,5 +16,11 @@ Result<Pose> parse_pose(const std::string& text);
 /// Reads `--poses FILE.csv`: the header `x,y,z,qx,qy,qz,qw` to the letter, then a pose a line; blank lines are passed over.
 /// Error (kBadValue): one sentence with file, line and value of the first bad line, and how many there are.
 Result<std::vector<Pose>> read_poses(const std::string& path);
+
+/// The same from a stream that sentences call `name`.
+Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& name);
+
+/// x y z qx qy qz qw as a pose. Error (kBadValue): a clause that says why it is none.
+Result<Pose> pose_of(const std::array<double, 7>& values);
 
 }  // namespace palpate

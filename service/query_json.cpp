@@ -85,16 +85,18 @@ class Writer {
 /// Clocks tell no less than a nanosecond; more digits would be noise of the arithmetic.
 double to_nanoseconds(double us) { return std::round(us * 1000) / 1000; }
 
-void write_area(Writer& json, const ContactArea& area, const AreaResponse& response) {
+void write_area(Writer& json, const QueryLine& line, const ContactArea& area, const AreaResponse& response) {
   json.open('{');
   json.key("id");
   json.integer(area.id);
-  json.key("zones");
-  json.open('[');
-  for (const auto& zone : area.zones) json.ids(zone);
-  json.close(']');
-  json.ids("static", area.static_ids);
-  json.ids("mobile", area.mobile_ids);
+  if (line.sets) {
+    json.key("zones");
+    json.open('[');
+    for (const auto& zone : area.zones) json.ids(zone);
+    json.close(']');
+    json.ids("static", area.static_ids);
+    json.ids("mobile", area.mobile_ids);
+  }
   json.vector("normal", response.normal);
   json.key("depth");
   json.number(response.depth);
@@ -102,6 +104,12 @@ void write_area(Writer& json, const ContactArea& area, const AreaResponse& respo
   json.vector("force", response.force);
   json.vector("torque", response.torque);
   json.flags(response.flags);
+  if (line.heights) {
+    json.key("rays");
+    json.integer(area.rays);
+    json.key("max_depth");
+    json.number(response.max_depth);
+  }
   json.close('}');
 }
 
@@ -116,17 +124,19 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   json.boolean(contacts.contact);
   json.key("pairs");
   json.integer(contacts.pairs);
-  json.ids("cst", contacts.cst);
-  json.ids("bst", contacts.bst);
-  json.ids("cmt", contacts.cmt);
-  json.ids("bmt", contacts.bmt);
-  json.ids("imt", contacts.imt);
-  json.ids("est", contacts.est);
+  if (line.sets) {
+    json.ids("cst", contacts.cst);
+    json.ids("bst", contacts.bst);
+    json.ids("cmt", contacts.cmt);
+    json.ids("bmt", contacts.bmt);
+    json.ids("imt", contacts.imt);
+    json.ids("est", contacts.est);
+  }
   json.key("areas");
   json.open('[');
   // A swallowed tool adds a response that belongs to no area of triangles; a truncated frame has no response at all.
   for (std::size_t i = 0; i < contacts.areas.size(); ++i)
-    write_area(json, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{});
+    write_area(json, line, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{});
   json.close(']');
   json.vector("force", response.wrench.force);
   json.vector("torque", response.wrench.torque);

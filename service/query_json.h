@@ -14,6 +14,8 @@ struct QueryLine {
   double total_us = 0;                  ///< wall time from pose in to wrench and id lists out, µs
   std::optional<std::uint64_t> batch;   ///< `--batch N`: times are the pose's share
   std::optional<std::int64_t> tick;     ///< frames.jsonl: the tick whose pose was judged
+  bool sets = true;                     ///< false: without the lists of ids
+  bool heights = false;                 ///< areas tell their samples, too: `rays` that gave a height, `max_depth`, the largest, in m
 };
 
 /// Appends one JSON object and a line feed to `out`: the fields of `palpate query` in the contract's order (`tick` last).

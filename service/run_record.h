@@ -22,6 +22,8 @@ struct TickRecord {
   std::int32_t stage = 0;            ///< of the path, 0: none
   bool ready = false;                ///< whether the device was: else no force
   const char* guidance = "";         ///< what the person at the device should do now; text that outlives the run
+  float lateness_us = 0;             ///< real time: wake-up of this tick after its time
+  std::uint64_t missed_ticks = 0;    ///< real time: so far
 };
 
 /// One answered query. The references live for the call only.

@@ -42,50 +42,66 @@ std::string prepared_text(const HostedScene& prepared) {
 
 }  // namespace
 
-Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console) {
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts,
+                                                         const std::function<void(const std::string& sentence)>& note) {
   if (name == "cpu") return parts.make_cpu();
   Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu();
   // Who asks for the device gets it or a refusal; else the CPU reference steps in where the device can't go on.
   if (gpu) return std::unique_ptr<CollisionBackend>(std::make_unique<SteadyBackend>(std::move(*gpu), name == "gpu" ? nullptr : parts.make_cpu));
   if (name == "gpu") return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
-  console.note(gpu.error().sentence + "; the CPU reference answers");
+  note(gpu.error().sentence + "; the CPU reference answers");
   return parts.make_cpu();
 }
 
-Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console) {
+  return choose_backend(name, parts, [&console](const std::string& sentence) { console.note(sentence); });
+}
+
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, const PrepareWatch& watch) {
   auto prepared = std::make_unique<HostedScene>();
   Result<Scene> scene = read_scene(options.scene, options.profile);
   if (!scene) return scene.error();
 
   // The back end comes before the meshes: their import may start threads.
-  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, console);
+  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, watch.note);
   if (!backend) return backend.error();
   prepared->backend = std::move(*backend);
 
-  const Progress progress = [&console](const char* what, double done) { return console.progress(what, done); };
-  console.step("reading the meshes");
+  watch.step("reading the meshes");
   const auto load_start = Clock::now();
-  Result<LoadedScene> loaded = load_scene(std::move(*scene), progress, options.import, parts.cache.get());
+  // What a mesh names in turn is not looked for elsewhere, so nothing that was read without that rule may stand in.
+  Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import, watch.folder.empty() ? parts.cache.get() : nullptr, watch.folder);
   if (!loaded) return loaded.error();
   prepared->loaded = std::move(*loaded);
   prepared->load_s = seconds_since(load_start);
-  for (const std::string& warning : prepared->loaded.scene.warnings) console.note(warning);
+  if (watch.admit)
+    if (auto admitted = watch.admit(prepared->loaded); !admitted) return admitted.error();
+  for (const std::string& warning : prepared->loaded.scene.warnings) watch.note(warning);
 
-  console.step("preparing the scene");
+  watch.step("preparing the scene");
   const auto prepare_start = Clock::now();
   PlanFacts facts = facts_of(prepared->loaded, purpose, options.full_plan);
   prepared->plan = decide_plan(facts);
-  if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, progress); !done) return done.error();
-  for (const std::string& note : prepared->backend->take_notes()) console.note(note);
+  if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, watch.progress); !done) return done.error();
+  for (const std::string& note : prepared->backend->take_notes()) watch.note(note);
   if (parts.cache)
-    for (const std::string& note : parts.cache->take_notes()) console.note(note);
+    for (const std::string& note : parts.cache->take_notes()) watch.note(note);
   // Whether there are V_int voxels is known only now.
   facts.internal_voxels = prepared->backend->has_internal_voxels();
   prepared->plan = decide_plan(facts);
   add_memory(*prepared->backend, prepared->plan.stages);
   prepared->prepare_s = seconds_since(prepare_start);
-  console.note(prepared_text(*prepared));
+  watch.note(prepared_text(*prepared));
   return prepared;
+}
+
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
+  return prepare_scene(options, purpose, parts,
+                       PrepareWatch{.note = [&console](const std::string& sentence) { console.note(sentence); },
+                                    .step = [&console](const char* step) { console.step(step); },
+                                    .progress = [&console](const char* what, double done) { return console.progress(what, done); },
+                                    .admit = {},
+                                    .folder = {}});
 }
 
 }  // namespace palpate

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,11 +21,26 @@ struct HostedScene {
 /// Who asks: it decides which facts the plan rests on.
 enum class Purpose : std::uint8_t { kQuery, kSession };
 
-/// Reads the scene, chooses the back end, imports, decides the plan and prepares, with progress on `console`.
-/// Call before any thread exists.
+/// Who follows a preparation. All are called on the preparing thread.
+struct PrepareWatch {
+  std::function<void(const std::string& sentence)> note;
+  std::function<void(const char* step)> step;
+  Progress progress;
+  /// Asked once the triangles are known and before the work begins; may be empty. An error ends the preparation.
+  std::function<Result<void>(const LoadedScene& loaded)> admit;
+  std::string folder;   ///< files that a mesh names in turn must lie below it (model/confined_import.h); empty: anywhere
+};
+
+/// Reads the scene, chooses the back end, imports, decides the plan and prepares.
+/// Call before any thread exists, or with LP_NUM_THREADS set: a Vulkan driver's settings are read from the environment.
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, const PrepareWatch& watch);
+
+/// The same with notes and progress on `console`.
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console);
 
 /// gpu, else cpu with one sentence; or the one that `name` asks for. Error kNoDevice: gpu was asked for and there is none.
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts,
+                                                         const std::function<void(const std::string& sentence)>& note);
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console);
 
 }  // namespace palpate

@@ -20,8 +20,8 @@ struct ChildEnd {
 
 /// Runs `program` on a file until it ends, its limits do, or `go_on` says no; it and what it started are gone afterwards. Its parcel is then
 /// in the file `parcel`. Starts it by posix_spawn: other threads (a Vulkan driver's) may exist. No descriptor is inherited but its own four.
-/// Error kInternal: it can't be started.
+/// `folder`: see model/confined_import.h. Error kInternal: it can't be started.
 Result<ChildEnd> run_import_child(const std::string& program, const std::string& path, double scale, const ImportLimits& limits, int parcel,
-                                  const std::function<bool()>& go_on);
+                                  const std::function<bool()>& go_on, const std::string& folder = {});
 
 }  // namespace palpate

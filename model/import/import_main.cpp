@@ -46,9 +46,9 @@ void limit_myself(rlim_t memory_bytes, rlim_t seconds) {
   }
 }
 
-Result<Mesh> read(const char* path, double scale, ImportReport& report) {
+Result<Mesh> read(const char* path, double scale, const char* folder, ImportReport& report) {
   try {
-    return read_mesh(path, scale, report);
+    return read_mesh(path, scale, report, folder);
   } catch (...) {   // even what is no std::exception
     return bad_value(std::string("'") + path + "' can't be read: the import failed for an unknown reason");
   }
@@ -59,12 +59,12 @@ Result<Mesh> read(const char* path, double scale, ImportReport& report) {
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  if (argc != 5) {
+  if (argc != 6) {
     std::fputs("palpate-import is a part of palpate, which starts it to read a mesh file; use `palpate info FILE`\n", stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
   limit_myself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
   ImportReport report;
-  const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), report), report);
+  const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), argv[5], report), report);
   std::_Exit(written ? 0 : 1);   // taking it all apart first would cost as much as a tenth of the reading
 }

@@ -1,5 +1,6 @@
 #include "model/import/mesh_read.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -18,6 +19,22 @@
 
 namespace palpate {
 namespace {
+
+/// Opens files below a folder, all symbolic links followed, and no others.
+class FilesBelow final : public Assimp::DefaultIOSystem {
+ public:
+  explicit FilesBelow(const std::string& folder) : folder_(folder) {}
+  bool Exists(const char* path) const override { return below(path) && DefaultIOSystem::Exists(path); }
+  Assimp::IOStream* Open(const char* path, const char* mode) override { return below(path) ? DefaultIOSystem::Open(path, mode) : nullptr; }
+
+ private:
+  bool below(const char* path) const {
+    std::error_code error;
+    const std::filesystem::path real = std::filesystem::canonical(path, error);
+    return !error && std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first == folder_.end();
+  }
+  std::filesystem::path folder_;
+};
 
 /// Row-major affine transform in double: assimp's are float, their products need not be.
 struct Transform {
@@ -195,7 +212,7 @@ std::string words_of(std::string text) {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder) {
   report = {path, {}};
   {
     const Result<FileView> file = FileView::open(path);
@@ -206,6 +223,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   try {
     // No post-processing: joining vertices, triangulating or sorting by type would renumber or reorder faces.
     Assimp::Importer importer;
+    if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));   // the importer's own from here on
     if (!importer.IsExtensionSupported(extension_of(path)))
       return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension_of(path)));
     const aiScene* scene = importer.ReadFile(path, 0);

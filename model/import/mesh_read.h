@@ -6,7 +6,7 @@
 namespace palpate {
 
 /// import_mesh (model/mesh_import.h) within this process: what palpate-import does with a file. A file can make the library behind it
-/// crash, hang or take all memory, so nothing but palpate-import and the fuzz targets calls this.
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report);
+/// crash, hang or take all memory, so nothing but palpate-import and the fuzz targets calls this. `folder`: see model/confined_import.h.
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder = {});
 
 }  // namespace palpate

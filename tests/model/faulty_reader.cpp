@@ -48,7 +48,7 @@ namespace {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/) {
   std::string word;
   std::ifstream(path) >> word;
   if (word == "crash") std::raise(SIGSEGV);

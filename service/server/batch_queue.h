@@ -1,0 +1,59 @@
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "model/pose.h"
+#include "service/server/http_message.h"
+#include "service/server/limits.h"
+#include "service/server/metrics.h"
+#include "service/server/scene_store.h"
+#include "service/server/turns.h"
+
+namespace palpate {
+
+/// What a query asked for.
+struct BatchRequest {
+  SceneUse scene;
+  std::vector<Pose> poses;
+  bool sets = true;
+  bool binary = false;   ///< 64 bytes a pose instead of JSON lines
+};
+
+/// Answers the poses of all queries on one thread, a slice of each by turns, and lets loops go first between any two poses. A query whose
+/// client reads slowly is set aside until it has.
+class BatchQueue {
+ public:
+  BatchQueue(Turns& turns, const ServerLimits& limits, Metrics& metrics);
+  ~BatchQueue();   ///< what is under way breaks off
+  BatchQueue(const BatchQueue&) = delete;
+  BatchQueue& operator=(const BatchQueue&) = delete;
+
+  /// Replies once the first poses are answered, or with a problem.
+  void add(BatchRequest request, Reply reply);
+
+ private:
+  struct Batch;
+  class Source;
+  void run();
+  void answer_slice(Batch& batch);
+  void resume(const std::shared_ptr<Batch>& batch);
+
+  Turns& turns_;
+  const ServerLimits& limits_;
+  Metrics& metrics_;
+  std::mutex mutex_;
+  std::condition_variable work_;
+  std::list<std::shared_ptr<Batch>> ring_;   ///< next first
+  bool stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,43 @@
+#pragma once
+#include <atomic>
+
+#include "driver/haptic_device.h"
+
+namespace palpate {
+
+/// A device that can be paused from outside. One of metal goes on telling its pose, with no force, and force fades in again over
+/// kFadeTicks; a simulated one stands still meanwhile. Refers to the device.
+class PausableDevice final : public HapticDevice {
+ public:
+  PausableDevice(HapticDevice& device, bool stands_still) : device_(device), stands_still_(stands_still) {}
+
+  void set_paused(bool paused) noexcept { paused_.store(paused, std::memory_order_relaxed); }   ///< any thread
+
+  std::string name() const override { return device_.name(); }
+  DeviceCapabilities capabilities() const override { return device_.capabilities(); }
+  Result<void> open() override { return device_.open(); }
+  void close() noexcept override { device_.close(); }
+  const char* guidance() const noexcept override { return device_.guidance(); }
+  DeviceSample read() noexcept override { return device_.read(); }
+  Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override { return device_.exertable(wrench, gc); }
+  void write(const Wrench& wrench, const Vec3& gc) noexcept override {
+    if (paused_.load(std::memory_order_relaxed)) {
+      gain_ = 0;
+      if (!stands_still_) device_.write(Wrench{}, gc);
+      return;
+    }
+    gain_ = stands_still_ || gain_ >= kFadeTicks ? kFadeTicks : gain_ + 1;
+    const double share = static_cast<double>(gain_) / kFadeTicks;
+    device_.write({wrench.force * share, wrench.torque * share}, gc);
+  }
+
+ private:
+  static constexpr int kFadeTicks = 200;   ///< as control.fade_in_ms by default
+
+  HapticDevice& device_;
+  bool stands_still_;
+  std::atomic<bool> paused_{false};
+  int gain_ = kFadeTicks;                  ///< SafeDevice fades in after opening
+};
+
+}  // namespace palpate

@@ -1,0 +1,287 @@
+#include "service/server/remote_loops.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "service/collision_frame.h"
+#include "service/query_json.h"
+#include "service/server/json_input.h"
+#include "service/server/pose_body.h"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kPoseMessage = 16 + 7 * sizeof(double);   ///< seq, time, pose
+
+/// A pose on its way, with what comes back as it was sent.
+struct PoseMessage {
+  std::uint64_t seq = 0;
+  double time = 0;
+  Pose pose;
+  bool full = false, binary = false;
+  Clock::time_point arrived{};
+};
+
+std::variant<PoseMessage, Problem> read_message(std::string_view data, bool binary, std::size_t depth) {
+  PoseMessage out;
+  out.arrived = Clock::now();
+  out.binary = binary;
+  if (binary) {
+    if (data.size() != kPoseMessage) return bad_request("a pose message has 72 bytes, not " + std::to_string(data.size()), "message");
+    std::memcpy(&out.seq, data.data(), 8);
+    std::memcpy(&out.time, data.data() + 8, 8);
+    const auto pose = pose_from_bytes(data.data() + 16, "pose");
+    if (const auto* problem = std::get_if<Problem>(&pose)) return *problem;
+    out.pose = std::get<Pose>(pose);
+    return out;
+  }
+  const auto read = read_json_object(data, depth, {"type", "seq", "time", "pose", "full"});
+  if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
+  const auto& json = std::get<nlohmann::json>(read);
+  if (!json.contains("type") || json["type"] != "pose") return bad_request("\"type\" is not \"pose\"", "type");
+  if (!json.contains("seq") || !json["seq"].is_number_unsigned()) return bad_request("\"seq\" is no whole number from 0", "seq");
+  out.seq = json["seq"];
+  if (json.contains("time")) {
+    if (!json["time"].is_number()) return bad_request("\"time\" is no number", "time");
+    out.time = json["time"];
+  }
+  if (json.contains("full")) {
+    if (!json["full"].is_boolean()) return bad_request("\"full\" is neither true nor false", "full");
+    out.full = json["full"];
+  }
+  const auto pose = pose_from_json(json.contains("pose") ? json["pose"] : nlohmann::json(), "pose");
+  if (const auto* problem = std::get_if<Problem>(&pose)) return *problem;
+  out.pose = std::get<Pose>(pose);
+  return out;
+}
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+std::string json(const Vec3& v) { return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z)); }
+
+std::string error_message(const Problem& problem) { return R"({"type":"error","problem":)" + problem.json() + "}"; }
+
+}  // namespace
+
+struct RemoteLoops::Loop {
+  Loop(SceneUse scene, Turns& turns)
+      : use(std::move(scene)),
+        backend(*(*use)->backend, turns),
+        frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile, (*use)->loaded.scene.response.stiffness_n_per_m, true) {}
+
+  // The answering thread's:
+  SceneUse use;
+  BackendInTurns backend;
+  CollisionFrame frame;
+  FrameSlot slot;
+  LawResult result;
+  std::int64_t count = 0;
+
+  // Shared:
+  std::mutex mutex;
+  std::function<void()> wake;
+  std::optional<PoseMessage> pose;
+  std::optional<SocketMessage> reply;
+  std::uint32_t skipped = 0;
+  bool queued = false, closed = false;
+};
+
+/// The connection's end of a loop.
+class RemoteLoops::Socket final : public SocketHandler {
+ public:
+  Socket(RemoteLoops& loops, std::shared_ptr<Loop> loop, std::string hello) : loops_(loops), metrics_(loops.metrics_), loop_(std::move(loop)), hello_(std::move(hello)) { ++metrics_.loops_now; }
+  ~Socket() override {
+    closed();
+    --metrics_.loops_now;   // not by way of the loops: a connection may outlive them when the server stops
+  }
+
+  void start(std::function<void()> wake) override {
+    const std::lock_guard lock(loop_->mutex);
+    loop_->wake = std::move(wake);
+  }
+
+  void message(std::string_view data, bool binary) override {
+    auto read = read_message(data, binary, loops_.limits_.json_depth);
+    {
+      const std::lock_guard lock(loop_->mutex);
+      if (loop_->closed) return;
+      if (const auto* problem = std::get_if<Problem>(&read)) {
+        loop_->reply = SocketMessage{error_message(*problem), nullptr, false, true};
+        loop_->closed = true;
+      } else {
+        if (loop_->pose) {
+          ++loop_->skipped;
+          ++loops_.metrics_.loop_skipped;
+        }
+        loop_->pose = std::get<PoseMessage>(read);
+      }
+    }
+    if (std::holds_alternative<PoseMessage>(read))
+      loops_.submit(loop_);
+    else if (loop_->wake)
+      loop_->wake();
+  }
+
+  std::optional<SocketMessage> next() override {
+    if (!hello_.empty()) return SocketMessage{std::exchange(hello_, {}), nullptr, false, false};
+    const std::lock_guard lock(loop_->mutex);
+    return std::exchange(loop_->reply, std::nullopt);
+  }
+
+  void closed() noexcept override {
+    const std::lock_guard lock(loop_->mutex);
+    loop_->closed = true;
+    loop_->wake = nullptr;
+  }
+
+ private:
+  RemoteLoops& loops_;
+  Metrics& metrics_;
+  std::shared_ptr<Loop> loop_;
+  std::string hello_;
+};
+
+RemoteLoops::RemoteLoops(Turns& turns, const ServerLimits& limits, Metrics& metrics)
+    : turns_(turns), limits_(limits), metrics_(metrics), thread_([this] { run(); }) {}
+
+RemoteLoops::~RemoteLoops() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  work_.notify_all();
+  thread_.join();
+}
+
+std::variant<std::shared_ptr<SocketHandler>, Problem> RemoteLoops::open(SceneUse scene, const std::string& id) {
+  if (metrics_.loops_now >= limits_.loops) return Problem{503, "busy", "there are " + std::to_string(limits_.loops) + " haptic connections already", ""};
+  const LoadedScene& loaded = (*scene)->loaded;
+  const Vec3& gc = loaded.geometry.tool_gc_m;
+  const Pose& start = loaded.scene.start;
+  const Quat& q = start.rotation;
+  std::string hello = dump({{"type", "hello"},
+                            {"scene", id},
+                            {"stiffness", loaded.scene.response.stiffness_n_per_m},
+                            {"watchdog_ms", loaded.scene.control.watchdog_ms},
+                            {"tool_gc", {gc.x, gc.y, gc.z}},
+                            {"start", {start.position.x, start.position.y, start.position.z, q.x, q.y, q.z, q.w}}});
+  return std::make_shared<Socket>(*this, std::make_shared<Loop>(std::move(scene), turns_), std::move(hello));
+}
+
+void RemoteLoops::submit(const std::shared_ptr<Loop>& loop) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(loop->queued, true)) return;   // it will see the newest
+    waiting_.push_back(loop);
+  }
+  work_.notify_one();
+}
+
+void RemoteLoops::run() {
+  for (;;) {
+    std::shared_ptr<Loop> loop;
+    {
+      std::unique_lock lock(mutex_);
+      work_.wait(lock, [&] { return stop_ || !waiting_.empty(); });
+      if (stop_) return;
+      loop = std::move(waiting_.front());
+      waiting_.pop_front();
+      loop->queued = false;
+    }
+    answer(*loop);
+  }
+}
+
+void RemoteLoops::answer(Loop& loop) {
+  std::optional<PoseMessage> pose;
+  std::uint32_t skipped = 0;
+  {
+    const std::lock_guard lock(loop.mutex);
+    if (loop.closed) return;
+    pose = std::exchange(loop.pose, std::nullopt);
+    skipped = std::exchange(loop.skipped, 0u);
+  }
+  if (!pose) return;
+  loop.slot.sample = {loop.count++, pose->pose};
+  const Result<void> solved = loop.frame.solve(loop.slot, loop.result);
+  const double us = std::chrono::duration<double, std::micro>(Clock::now() - pose->arrived).count();
+  ++metrics_.loop_poses;
+  metrics_.loop_s.add(us / 1e6);
+
+  SocketMessage message;
+  const Contacts& contacts = loop.slot.contacts;
+  const ContactResponse& response = loop.slot.response;
+  if (!solved) {
+    ++metrics_.backend_errors;
+    message = {error_message(Problem{500, "internal", solved.error().sentence, ""}), nullptr, false, true};
+  } else if (pose->binary) {
+    std::string& out = message.head;
+    const auto put = [&out](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    const auto put_vector = [&](const Vec3& v) {
+      for (int i = 0; i < 3; ++i) put(double{v[i]});
+    };
+    put(pose->seq);
+    put(pose->time);
+    for (const Vec3& v : {response.wrench.force, response.wrench.torque, response.gc}) put_vector(v);
+    put(static_cast<float>(us));
+    put(skipped);
+    put((contacts.contact ? 1u : 0u) | (contacts.truncated ? 2u : 0u));
+    std::uint32_t planes = 0;
+    for (const AreaResponse& area : response.areas) planes += area.silent ? 0 : 1;
+    put(planes);
+    for (const AreaResponse& area : response.areas) {
+      if (area.silent) continue;
+      put_vector(area.normal);
+      put_vector(area.point);
+      put(area.depth);
+      put((*loop.use)->loaded.scene.response.stiffness_n_per_m);
+    }
+    message.binary = true;
+  } else {
+    std::string& out = message.head;
+    fmt::format_to(std::back_inserter(out),
+                   R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
+                   pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated, contacts.pairs, json(response.gc), json(response.wrench.force),
+                   json(response.wrench.torque));
+    for (std::size_t i = 0; i < response.areas.size(); ++i) {
+      const AreaResponse& area = response.areas[i];
+      fmt::format_to(std::back_inserter(out), R"({}{{"id":{},"normal":{},"point":{},"depth":{},"force":{},"torque":{}}})", i ? "," : "", area.id, json(area.normal),
+                     json(area.point), number(area.depth), json(area.force), json(area.torque));
+    }
+    out += "]";
+    if (pose->full) {
+      out += ",\"frame\":";
+      append_query_line({.pose = pose->seq, .total_us = loop.slot.total_us, .batch = std::nullopt, .tick = loop.slot.sample.tick, .heights = true}, contacts, response, out);
+      out.pop_back();   // the line feed
+    }
+    out += "}";
+  }
+  std::function<void()> wake;
+  {
+    const std::lock_guard lock(loop.mutex);
+    if (loop.closed) return;
+    loop.closed = message.close;
+    loop.reply = std::move(message);   // in place of one that was not sent in time
+    wake = loop.wake;
+  }
+  if (wake) wake();
+}
+
+void add_haptic_route(Router& router, SceneStore& store, RemoteLoops& loops) {
+  router.add({.method = "GET", .pattern = "v1/scenes/*/haptic", .socket = [&](const HttpRequest& request) -> std::variant<std::shared_ptr<SocketHandler>, Problem> {
+                auto use = store.use(request.segments[2], true);
+                if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
+                return loops.open(std::move(std::get<SceneUse>(use)), request.segments[2]);
+              }});
+}
+
+}  // namespace palpate

@@ -1,0 +1,305 @@
+"""`palpate serve`: what a client sees when all goes well."""
+import base64
+import random
+import shutil
+import subprocess
+
+from harness import *
+from server import *
+
+HEADER = 'x,y,z,qx,qy,qz,qw\n'
+STATES = ('queued', 'preparing', 'ready')
+
+
+def glb(triangles):
+    """One mesh, one node, without indices."""
+    points = b''.join(struct.pack('<3f', *p) for t in triangles for p in t)
+    flat = [p for t in triangles for p in t]
+    low, high = [min(p[i] for p in flat) for i in range(3)], [max(p[i] for p in flat) for i in range(3)]
+    head = json.dumps({'asset': {'version': '2.0'}, 'buffers': [{'byteLength': len(points)}], 'bufferViews': [{'buffer': 0, 'byteLength': len(points)}],
+                       'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': len(flat), 'type': 'VEC3', 'min': low, 'max': high}],
+                       'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}], 'nodes': [{'mesh': 0}], 'scenes': [{'nodes': [0]}], 'scene': 0}).encode()
+    head += b' ' * (-len(head) % 4)
+    points += b'\0' * (-len(points) % 4)
+    return struct.pack('<4sII', b'glTF', 2, 28 + len(head) + len(points)) + struct.pack('<I4s', len(head), b'JSON') + head + struct.pack('<I4s', len(points), b'BIN\0') + points
+
+
+def poses(count, seed=7):
+    """Near the block of a Folder, some touching; `seed` can be overridden to look for more."""
+    chance = random.Random(seed)
+    rows = []
+    for _ in range(count):
+        q = [chance.gauss(0, 1) for _ in range(4)]
+        size = math.sqrt(sum(x * x for x in q))
+        rows.append([chance.uniform(-0.1, 0.1), chance.uniform(-0.1, 0.1), chance.uniform(0.01, 0.04), *(x / size for x in q)])
+    return rows
+
+
+def csv(rows):
+    return HEADER + ''.join(','.join(map(repr, row)) + '\n' for row in rows)
+
+
+def without_times(text):
+    return re.sub(rb'"time_us":\{[^}]*\}', b'', text.encode() if isinstance(text, str) else text)
+
+
+def rooted():
+    """A folder with a scene below, and the server's arguments."""
+    folder = Folder()
+    folder.save()
+    return folder, ('--root', folder.path)
+
+
+def named(server, path='scene.json'):
+    return server.ready(server.ask('POST', '/v1/scenes', {'path': path}))
+
+
+def simulated(folder):
+    """A hand that presses the ball 2 mm into the block and stays."""
+    folder.write('path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.03,0,0,0,1,1\n0.3,0,0,0.018,0,0,0,1,1\n60,0,0,0.018,0,0,0,1,1\n')
+    return folder.save(device={'driver': 'simulated', 'path': 'path.csv'})
+
+
+def test_curl_alone_uploads_waits_and_queries_a_thousand_poses():
+    curl = shutil.which('curl')
+    expect(curl, 'curl is missing (scripts/packages.txt)')
+    folder = Folder()
+    folder.write('ball.glb', glb(sphere(0.02)))
+    folder.write('poses.csv', csv(poses(1000)))
+    scene = folder.save('local.json', tool={'mesh': 'ball.glb', 'units': 'm'}, response={})
+
+    def run(*arguments):
+        done = subprocess.run([curl, '-sS', '--max-time', '300', *map(str, arguments)], capture_output=True, timeout=400)
+        expect(done.returncode == 0, done.stderr.decode())
+        return done.stdout
+
+    with Server() as server:
+        base = f'http://127.0.0.1:{server.port}'
+        upload = json.loads(run('-F', f'tool=@{folder / "ball.glb"}', '-F', f'static=@{folder / "block.stl"}', f'{base}/v1/scenes'))
+        expect(upload['state'] in STATES, upload)
+        events = run('-N', f'{base}/v1/scenes/{upload["id"]}/events').decode()
+        expect(events.rstrip().split('event: ')[-1].startswith('ready'), events)
+        answers = run('-H', 'Content-Type: text/csv', '--data-binary', f'@{folder / "poses.csv"}', f'{base}/v1/scenes/{upload["id"]}/query')
+    told = palpate('query', scene, '--poses', folder / 'poses.csv', '--backend', 'cpu')
+    expect(told.code == 0, told)
+    lines = without_times(answers).split(b'\n')
+    expect(len(lines) == 1001 and sum(b'"contact":true' in line for line in lines) > 100, f'{len(lines)} lines')
+    for mine, his in zip(lines, without_times(told.out).split(b'\n'), strict=True):
+        expect(mine == his, f'{mine[:300]} instead of {his[:300]}')
+
+
+def test_a_named_scene_answers_csv_json_and_bytes_alike():
+    folder, arguments = rooted()
+    rows = poses(40)
+    with Server(*arguments) as server:
+        expect(server.ask('GET', '/v1/scenes').json()['available'] == ['scene.json'], 'available')
+        name = named(server)
+        expect(server.ask('POST', '/v1/scenes', {'path': 'scene.json'}).status == 200, 'a ready scene is told at once')
+        query = f'/v1/scenes/{name}/query'
+        by_csv = server.ask('POST', query, csv(rows), {'Content-Type': 'text/csv'})
+        by_json = server.ask('POST', query, {'poses': rows})
+        packed = b''.join(struct.pack('<7d', *row) for row in rows)
+        by_bytes = server.ask('POST', query, packed, {'Content-Type': 'application/vnd.palpate.poses'})
+        expect(without_times(by_csv.body) == without_times(by_json.body) == without_times(by_bytes.body), 'three forms, three answers')
+        lone = server.ask('POST', query, {'pose': rows[0]})
+        expect(without_times(lone.body) == without_times(by_csv.body.split(b'\n')[0] + b'\n'), lone)
+        brief = server.ask('POST', query + '?sets=0', {'poses': rows})
+        wrenches = server.ask('POST', query, packed, {'Content-Type': 'application/vnd.palpate.poses', 'Accept': 'application/vnd.palpate.wrenches'}).body
+        expect(len(wrenches) == 64 * len(rows), len(wrenches))
+        for i, (long, short) in enumerate(zip(by_csv.body.splitlines(), brief.body.splitlines(), strict=True)):
+            long, short = json.loads(long), json.loads(short)
+            expect('cst' not in short and short['force'] == long['force'] and short['pairs'] == long['pairs'], short)
+            *wrench, pairs, flags, areas, bits = struct.unpack_from('<6d4I', wrenches, 64 * i)
+            expect(wrench == long['force'] + long['torque'] and pairs == long['pairs'] and areas == len(long['areas']) and bits & 1 == long['contact'], (wrench, long))
+
+
+def test_the_same_content_has_the_same_id_and_a_scene_can_be_deleted():
+    folder, arguments = rooted()
+    with Server(*arguments) as server:
+        files = {'static': ('block.stl', (folder / 'block.stl').read_bytes()), 'tool': ('ball.stl', (folder / 'ball.stl').read_bytes())}
+        first = server.upload(**files)
+        name = server.ready(first)
+        expect(first.headers['Location'] == f'/v1/scenes/{name}', first.headers)
+        expect(server.upload(**files).json()['id'] == name, 'the same upload')
+        expect(server.upload(**files, stiffness='1500').json()['id'] != name, 'another stiffness is another scene')
+        expect(server.ask('DELETE', f'/v1/scenes/{name}').status == 204, 'delete')
+        expect(server.ask('GET', f'/v1/scenes/{name}').status == 404, 'gone')
+        expect(server.ask('POST', f'/v1/scenes/{name}/query', {'pose': [0, 0, 0, 0, 0, 0, 1]}).status == 404, 'gone')
+
+
+def test_a_scene_file_is_uploaded_with_what_it_names():
+    folder = Folder()
+    folder.write('path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.03,0,0,0,1,1\n1,0,0,0.018,0,0,0,1,1\n')
+    scene = {**folder.scene, 'device': {'driver': 'simulated', 'path': 'path.csv'}}
+    files = [(name, (folder / name).read_bytes()) for name in ('block.stl', 'ball.stl', 'path.csv')]
+    with Server() as server:
+        name = server.ready(server.upload(scene=json.dumps(scene), file=files))
+        told = server.ask('GET', f'/v1/scenes/{name}').json()
+        expect(told['static_triangles'] == 12 and told['driver'] == 'simulated' and told['start'][2] == 0.03, told)
+
+
+def test_geometry_triangles_and_voxels_are_what_was_uploaded():
+    folder, arguments = rooted()
+    with Server(*arguments) as server:
+        name = named(server)
+        body = server.ask('GET', f'/v1/scenes/{name}/geometry').body
+        magic, version, bits, sv, st, tv, tt, zero = struct.unpack_from('<4s7I', body)
+        expect((magic, version, bits, zero) == (b'PGEO', 1, 0, 0) and st == 12 and tt == len(sphere(0.02)), (magic, version, bits, st, tt))
+        expect(len(body) == 32 + 12 * (sv + tv) + 16 * (st + tt), len(body))
+        vertices = struct.unpack_from(f'<{3 * sv}f', body, 32)
+        corners = struct.unpack_from(f'<{3 * st}I', body, 32 + 12 * sv)
+        one = server.ask('GET', f'/v1/scenes/{name}/triangles?ids=0,3-4').body
+        expect(len(one) == 3 * 36, len(one))
+        drawn = [vertices[3 * corners[i] + k] for i in (9, 10, 11) for k in range(3)]
+        expect(list(struct.unpack_from('<9f', one, 36)) == drawn, 'triangle 3')
+        few = server.ask('GET', f'/v1/scenes/{name}/geometry?max_triangles=100').body
+        bits, _, st, _, tt = struct.unpack_from('<5I', few, 8)
+        expect(bits == 1 and st == 12 and 20 < tt <= 100, (bits, st, tt))
+        voxels = server.ask('GET', f'/v1/scenes/{name}/voxels?class=internal').body
+        kind = struct.unpack_from('<4s3I', voxels)
+        size, = struct.unpack_from('<d', voxels, 40)
+        counts = struct.unpack_from('<3I', voxels, 48)
+        n, = struct.unpack_from('<Q', voxels, 64)
+        expect(kind == (b'PVOX', 1, 2, 0) and len(voxels) == 72 + 4 * n and n > 0, (kind, n))
+        expect(0.5 < n * size ** 3 / (0.2 * 0.2 * 0.04) < 1, 'the inside of a block is most of it, less the boundary')
+        ids = struct.unpack_from(f'<{n}I', voxels, 72)
+        expect(max(ids) < counts[0] * counts[1] * counts[2], counts)
+
+
+def test_a_session_runs_is_watched_paused_recorded_and_stopped():
+    folder, arguments = rooted()
+    simulated(folder)
+    with Server(*arguments) as server:
+        name = named(server)
+        started = server.ask('POST', '/v1/sessions', {'scene': name, 'record': 'first'})
+        expect(started.status == 201 and started.json()['state'] == 'running', started)
+        session = f"/v1/sessions/{started.json()['id']}"
+        with WebSocket(server, session + '/stream') as viewer, WebSocket(server, session + '/stream?format=binary') as other:
+            hello = viewer.json()
+            expect(hello['type'] == 'hello' and hello['scene'] == name and other.json()['type'] == 'hello', hello)
+            pressed = None
+            for _ in range(2000):
+                message = viewer.json()
+                expect(message['type'] == 'telemetry' and len(message['pose']) == 7 and math.isfinite(message['lateness_us']), message)
+                if message['frame'] and message['frame']['contact'] and message['force'][2] > 0.1:
+                    pressed = message
+                    break
+            expect(pressed, 'the ball never touched the block')
+            area = pressed['frame']['areas'][0]
+            expect(area['rays'] > 0 and area['max_depth'] >= area['depth'] > 0 and len(pressed['frame_pose']) == 7, area)
+            for _ in range(2000):
+                data = other.receive()
+                magic, version, bits = struct.unpack_from('<4sHH', data)
+                expect(magic == b'PTEL' and version == 1, data[:8])
+                if bits & 3 == 3:
+                    break
+            lengths, areas = struct.unpack_from('<6I', data, 208), struct.unpack_from('<I', data, 232)[0]
+            at = 240 + 4 * sum(lengths) + 56
+            for _ in range(areas):
+                _, _, zones, statics, mobiles, _ = struct.unpack_from('<6I', data, at)
+                at += 24 + 8 * 14 + 4 * (zones + statics + mobiles)
+            expect(at == len(data) and areas > 0 and lengths[0] > 0, (at, len(data)))
+            expect(server.ask('DELETE', f'/v1/scenes/{name}').status == 409, 'a scene in use is kept')
+            expect(server.ask('POST', session + '/pause').json()['state'] == 'paused', 'pause')
+            while not message['paused']:
+                message = viewer.json()
+            still = viewer.json()['pose']
+            expect(viewer.json()['pose'] == still, 'a paused simulation stands still')
+            expect(server.ask('POST', session + '/resume').json()['state'] == 'running', 'resume')
+            stopped = server.ask('DELETE', session).json()
+            expect(stopped['state'] == 'ended' and stopped['summary']['ticks'] > 0 and stopped['summary']['areas_max'] >= 1, stopped)
+            last = message
+            while message is not None:
+                last, message = message, viewer.json()
+            expect(last['type'] == 'bye' and viewer.closed_with == 1000, last)
+        (run,) = server.ask('GET', '/v1/runs').json()['runs']
+        expect(run['name'] == 'first' and run['static_triangles'] == 12 and set(run['files']) == {'frames.jsonl', 'trace.csv', 'summary.json'}, run)
+        trace = server.ask('GET', '/v1/runs/first/trace.csv')
+        expect(len(trace.body) == run['files']['trace.csv'] and trace.body.startswith(b'time_s,'), trace)
+        part = server.ask('GET', '/v1/runs/first/trace.csv', headers={'Range': 'bytes=5-9'})
+        expect(part.status == 206 and part.body == trace.body[5:10], part)
+        expect(server.ask('DELETE', f'/v1/scenes/{name}').status == 204, 'a scene out of use can go')
+
+
+def test_a_remote_loop_gets_wrenches_with_its_own_stamps():
+    folder, arguments = rooted()
+    pressed = [0, 0, 0.018, 0, 0, 0, 1]
+    with Server(*arguments) as server:
+        name = named(server)
+        (line,) = lines_of(palpate('query', folder / 'scene.json', '--pose', ' '.join(map(str, pressed)), '--backend', 'cpu'))
+        with WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
+            hello = loop.json()
+            expect(hello['type'] == 'hello' and hello['stiffness'] == 2000 and hello['watchdog_ms'] > 0, hello)
+            loop.send({'type': 'pose', 'seq': 41, 'time': 12.25, 'pose': pressed, 'full': True})
+            wrench = loop.json()
+            expect(wrench['type'] == 'wrench' and wrench['seq'] == 41 and wrench['time'] == 12.25 and wrench['skipped'] == 0, wrench)
+            expect(wrench['force'] == line['force'] and wrench['torque'] == line['torque'] and wrench['frame']['cst'] == line['cst'], wrench)
+            loop.send(struct.pack('<Qd7d', 42, 1.5, *pressed))
+            data = loop.receive()
+            seq, time_back, *rest = struct.unpack_from('<Qd9d', data)
+            us, skipped, bits, planes = struct.unpack_from('<fIII', data, 88)
+            expect((seq, time_back, skipped, bits) == (42, 1.5, 0, 1) and planes == len(line['areas']) and len(data) == 104 + 64 * planes, (seq, time_back, bits, planes))
+            # Many poses at once: the last is answered, and every one is answered or counted.
+            for i in range(300):
+                loop.send({'type': 'pose', 'seq': 100 + i, 'time': i, 'pose': [0, 0, 0.018 + 0.00001 * i, 0, 0, 0, 1]})
+            answered = skipped = 0
+            while answered == 0 or wrench['seq'] != 399:
+                wrench = loop.json()
+                answered, skipped = answered + 1, skipped + wrench['skipped']
+            expect(answered + skipped <= 300 and server.metric('palpate_loop_poses_total') >= answered, (answered, skipped))
+            loop.send({'type': 'pose', 'seq': 1, 'pose': [0, 0, 0, 0, 0, 0, 0]})
+            refused = loop.json()
+            expect(refused['type'] == 'error' and refused['problem']['status'] == 400 and 'pose' in refused['problem']['field'], refused)
+            expect(loop.receive() is None, 'closed after an error')
+        expect(server.ask('GET', f'/v1/scenes/{name}').json()['users'] in (0, 1), 'users')
+
+
+def test_sigterm_in_mid_session_sends_zero_force_tells_clients_and_exits_0():
+    folder, arguments = rooted()
+    simulated(folder)
+    server = Server(*arguments)
+    name = named(server)
+    session = server.ask('POST', '/v1/sessions', {'scene': name, 'record': 'cut'}).json()['id']
+    with WebSocket(server, f'/v1/sessions/{session}/stream') as viewer, WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
+        expect(loop.json()['type'] == 'hello', 'hello')
+        viewer.json()
+        while not (message := viewer.json())['force'][2] > 0.1:
+            pass
+        server.process.send_signal(signal.SIGTERM)
+        last = None
+        while (message := viewer.json()) is not None:
+            last = message
+        expect(last['type'] == 'bye', last)
+        expect(loop.json() == {'type': 'bye', 'reason': 'the server stops'} and loop.receive() is None and loop.closed_with == 1001, 'the loop is told')
+        expect(server.process.wait(60) == 0, server.log_text()[-2000:])
+    log = server.log_text()
+    expect(log.index('"event":"stopping"') < log.index('"event":"session_over"') < log.index('"event":"stopped"'), log[-1500:])
+    summary = json.loads((folder / 'cut' / 'summary.json').read_text())
+    rows = (folder / 'cut' / 'trace.csv').read_text().splitlines()
+    expect(summary['ticks'] == len(rows) - 1 > 0 and 'failure' not in summary, summary)
+
+
+def test_metrics_health_and_log_tell_what_happened():
+    folder, arguments = rooted()
+    with Server(*arguments) as server:
+        expect(server.ask('GET', '/healthz').status == 200 and server.ask('GET', '/readyz').status == 200, 'alive')
+        name = named(server)
+        server.ask('POST', f'/v1/scenes/{name}/query', {'poses': poses(10)})
+        text = server.ask('GET', '/metrics').body.decode()
+        for line in text.splitlines():
+            expect(re.fullmatch(r'# (HELP|TYPE) palpate_\w+ .+|palpate_\w+(\{[^}]*\})? [-+0-9.e]+', line), line)
+        expect(server.metric('palpate_poses_total') == 10 and server.metric('palpate_scenes_ready') == 1, text)
+        expect(server.metric('palpate_query_seconds_count') == 10, text)
+        for line in server.log_text().splitlines():
+            expect({'time', 'level', 'event'} <= set(json.loads(line)), line)
+
+
+def test_beyond_loopback_without_token_and_tls_is_refused():
+    for arguments in ([], ['--token-file', 'x'], ['--tls-certificate', 'x', '--tls-key', 'y']):
+        expect_refused(palpate('serve', '--listen', '0.0.0.0:0', *arguments), 2, '--token-file', '--tls-certificate')
+    expect_refused(palpate('serve', '--tls-key', 'y'), 2, 'go together')
+    expect_refused(palpate('serve', '--listen', '127.0.0.1'), 3, 'ADDRESS:PORT')
+    expect_refused(palpate('serve', '--root', '/no/such/folder'), 3, '/no/such/folder')
+
+
+main(globals())
