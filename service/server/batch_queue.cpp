@@ -204,7 +204,7 @@ void BatchQueue::answer_slice(Batch& batch) {
       if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
       Result<void> answered;
       {
-        const Turn turn(turns_, Turn::Kind::kBatch);
+        const TurnGuard turn(turns_, TurnGuard::Kind::kBatch);
         answered = answer_pose(scene, request.poses[batch.next], batch.answer);
       }
       if (!answered) {

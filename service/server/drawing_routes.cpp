@@ -157,7 +157,7 @@ class VoxelAnswers {
     if (scene.loops() > 0) return Problem{409, "conflict", "a loop uses the scene, and reading voxels would hold it up; ask when it has ended", "id"};
     std::optional<Result<VoxelPartition>> partition;
     {
-      const Turn turn(turns, Turn::Kind::kLoop);
+      const TurnGuard turn(turns, TurnGuard::Kind::kLoop);
       partition = scene->backend->partition(*tool);
     }
     if (!*partition) return problem_of(partition->error());

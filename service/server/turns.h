@@ -31,13 +31,13 @@ class Turns {
 };
 
 /// A loop's or a batch's turn, given back at the end of its scope.
-class Turn {
+class TurnGuard {
  public:
   enum class Kind : std::uint8_t { kLoop, kBatch };
-  Turn(Turns& turns, Kind kind) : turns_(turns) { kind == Kind::kLoop ? turns.enter_loop() : turns.enter_batch(); }
-  ~Turn() { turns_.leave(); }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
+  TurnGuard(Turns& turns, Kind kind) : turns_(turns) { kind == Kind::kLoop ? turns.enter_loop() : turns.enter_batch(); }
+  ~TurnGuard() { turns_.leave(); }
+  TurnGuard(const TurnGuard&) = delete;
+  TurnGuard& operator=(const TurnGuard&) = delete;
 
  private:
   Turns& turns_;
@@ -52,11 +52,11 @@ class BackendInTurns final : public CollisionBackend {
     return Error{ErrorCode::kInternal, "a back end that is shared is prepared already"};
   }
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
-    const Turn turn(turns_, Turn::Kind::kLoop);
+    const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
     return backend_.query(pose, held, out);
   }
   Result<void> enlarge() override {
-    const Turn turn(turns_, Turn::Kind::kLoop);
+    const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
     return backend_.enlarge();
   }
   Result<VoxelPartition> partition(bool tool) const override { return backend_.partition(tool); }
@@ -65,7 +65,7 @@ class BackendInTurns final : public CollisionBackend {
   std::string device() const override { return backend_.device(); }
   std::uint64_t memory_bytes() const override { return backend_.memory_bytes(); }
   std::vector<std::string> take_notes() override {
-    const Turn turn(turns_, Turn::Kind::kLoop);
+    const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
     return backend_.take_notes();
   }
 

@@ -302,8 +302,8 @@ TEST(DeviceList, SaysWhatItCannotDriveInsteadOfPretending) {
   EXPECT_TRUE(make_haptic_device("simulated", {}, {}, Vec3(0)));
   auto replay = make_haptic_device("replay", {}, {}, Vec3(0));
   ASSERT_FALSE(replay);
-  EXPECT_EQ(replay.error().code, ErrorCode::kNoDevice);
-  EXPECT_THAT(replay.error().sentence, HasSubstr("not available in this version"));
+  EXPECT_EQ(replay.error().code, ErrorCode::kBadValue);
+  EXPECT_THAT(replay.error().sentence, HasSubstr("needs a recorded trace"));
   auto unknown = make_haptic_device("falcom", {}, {}, Vec3(0));
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().code, ErrorCode::kUsage);

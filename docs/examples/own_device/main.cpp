@@ -38,7 +38,7 @@ int main() {
   if (!made) return failed(made.error());
   auto geometry = build_geometry(made->mockup, made->tool, {});
   if (!geometry) return failed(geometry.error());
-  const LoadedScene scene{{}, made->mockup, made->tool, std::move(*geometry)};
+  const LoadedScene scene{.scene = {}, .geometry = std::move(*geometry)};
   const auto backend = make_cpu_backend();
   if (auto ready = backend->prepare(scene.geometry, {}, {}); !ready) return failed(ready.error());
   MyDevice device(made->path);
