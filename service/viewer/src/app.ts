@@ -35,7 +35,7 @@ export class App {
   private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.touch(); }, (error) => this.failed(error), (text) => { this.say(text); this.connection.doubt(); });
   private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
   private mouse: MouseSource | null = null;
-  private mouse_retry = 0;
+  private holding: Promise<void> | null = null;
   private source: Source = 'live';
   private readonly wish = read_address();   // as the page was called, before it is kept up to date
   private live_samples = new Samples();
@@ -101,7 +101,7 @@ export class App {
   }
   private async opened(scene: Scene): Promise<void> {
     this.sessions.leave();
-    this.close_mouse();
+    this.keep_mouse(null);
     this.live_samples.clear();
     this.mouse_samples.clear();
     await this.picture.open(scene);
@@ -118,26 +118,29 @@ export class App {
       return;
     }
     this.hide_banner();
-    await this.found_again();
-  }
-  private async found_again(): Promise<void> {
-    // It may be another process now: what it holds is asked anew, and the scene opened again if it is gone.
     try {
-      await this.picker.refresh();
-      const { current, path } = this.picker;
-      if (!current) { await this.begin(); return; }
-      const held = this.picker.list.scenes.find((scene) => scene.id === current.id && scene.state !== 'failed');   // perhaps still being prepared
-      if (held) await this.restore(held);
-      else if (path) await this.restore(await this.api.open_scene(path));
-      else this.say('The server no longer holds this scene. Open it again to go on.', true);
+      if (!this.picker.current) { await this.begin(); return; }
+      await this.hold();
+      await this.choose(this.source);
+      this.mouse?.link.hurry();
+      this.say('Connected again.');
     } catch (error) { this.failed(error); }
   }
-  /** After a restart: the same scene is not drawn anew; only the source begins again, where it was. */
-  private async restore(scene: Scene): Promise<void> {
-    if (scene.id !== this.picker.current?.id) { await this.picker.open_id(scene.id); return; }
-    for (let now = scene; now.state === 'queued' || now.state === 'preparing'; now = await this.api.scene(scene.id)) await new Promise((resolve) => setTimeout(resolve, 400));
-    await this.choose(this.source);
-    this.say('Connected again.');
+  /** Resolves when the server holds the scene that is shown, ready. It may be another process than before: then the scene is opened again by its path. Whoever asks meanwhile waits for the same. */
+  private hold(): Promise<void> {
+    return (this.holding ??= this.make_held().finally(() => { this.holding = null; }));
+  }
+  private async make_held(): Promise<void> {
+    await this.picker.refresh();
+    const { current, path } = this.picker;
+    if (!current) return;
+    const listed = this.picker.list.scenes.find((scene) => scene.id === current.id && scene.state !== 'failed');   // perhaps still being prepared
+    if (!listed && !path) throw new Error('The server no longer holds this scene. Open it again to go on.');
+    const scene = listed ?? (await this.api.open_scene(path));
+    // The same scene is not drawn anew; the file may have another by now.
+    if (scene.id !== current.id) { await this.picker.open_path(path); return; }
+    const held = await this.picker.prepared(scene, () => this.picker.current === current);
+    if (held.state === 'failed') throw new Error(held.error?.detail ?? 'The scene is failed.');
   }
 
   private async refresh(): Promise<void> {
@@ -161,37 +164,35 @@ export class App {
     this.strips.set_late(...LATE[source]);
     this.remember();
     this.touch();
-    if (source !== 'mouse') this.close_mouse();
+    this.keep_mouse(source === 'mouse' ? this.picker.current : null);
     const scene = this.picker.current;
     try {
-      if (source === 'mouse' && scene && !this.mouse) this.open_mouse(scene);
       if (source === 'live' && scene) await this.sessions.refresh(scene.id);
       if (source === 'run') {
         await this.player.refresh();
         // A run that was recorded with this scene is shown at once.
         const fitting = this.player.playback || !scene ? undefined : this.player.runs.find((run) => run.static_triangles !== null && Player.fits(run, scene));
-        if (fitting) await this.player.load(fitting.name);
+        if (fitting && this.source === 'run') await this.player.load(fitting.name);
       }
     } catch (error) { this.failed(error); }
   }
-  private open_mouse(scene: Scene, at = this.picture.bodies.tool.visible ? this.picture.pose_of_tool() : null): void {
-    this.close_mouse();
-    this.mouse = new MouseSource(this.api, scene, (reason) => this.mouse_lost(reason), at);
-    this.picture.drag.coupling = this.mouse.coupling;
+  /** The mouse moves the tool of this scene, from where it is; null: of none. Only here does a mouse begin and end. */
+  private keep_mouse(scene: Scene | null): void {
+    if (this.mouse?.scene.id === scene?.id) return;
+    this.mouse?.close();
+    this.mouse = scene && new MouseSource(scene, this.picture.bodies.tool.visible ? this.picture.pose_of_tool() : null,
+      () => this.hold_for_mouse(), () => this.api.socket(`v1/scenes/${scene.id}/haptic`), (reason) => this.mouse_lost(reason));
+    this.picture.drag.coupling = this.mouse?.coupling ?? null;
+    element('mouse-pause').textContent = 'Pause';
     this.wake();
   }
-  private close_mouse(): void {
-    clearTimeout(this.mouse_retry);
-    this.mouse?.close();
-    this.mouse = null;
-    this.picture.drag.coupling = null;
+  private async hold_for_mouse(): Promise<void> {
+    if (!this.connection.up) throw new Error('no server');
+    try { await this.hold(); } catch (error) { this.failed(error); throw error; }
   }
   private mouse_lost(reason: string): void {
-    this.close_mouse();
     if (reason) this.say(reason, true);
-    this.connection.doubt();
-    // Perhaps the loop alone ended; when the whole server went, link_changed begins again.
-    this.mouse_retry = window.setTimeout(() => { if (this.source === 'mouse' && this.connection.up) void this.found_again(); }, 1500);
+    if (this.connection.up) this.connection.doubt();   // perhaps the loop alone ended, perhaps the whole server went
   }
   private run_changed(): void {
     this.touch();
@@ -309,7 +310,7 @@ export class App {
     this.check('show-labels', (on) => { this.labels.shown = on; });
     this.check('glass-mockup', (on) => this.picture.bodies.glass('mockup', on));
     this.check('glass-tool', (on) => this.picture.bodies.glass('tool', on));
-    element('mouse-reset').addEventListener('click', () => { if (this.picker.current) this.open_mouse(this.picker.current, this.picker.current.start); });
+    element('mouse-reset').addEventListener('click', () => { this.mouse?.restart(); this.touch(); });
     element('mouse-pause').addEventListener('click', () => this.pause_mouse());
     element('theme').addEventListener('click', () => this.act('theme'));
     element('panel-button').addEventListener('click', () => this.act('panel'));

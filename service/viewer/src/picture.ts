@@ -52,6 +52,7 @@ export class Picture {
   /** Shows a scene that is ready; the camera goes to it. */
   async open(scene: Scene): Promise<void> {
     this.scene = scene;
+    this.bodies.clear();   // what is shown of another scene is no longer true
     this.stores.mockup.reset(scene.id);
     this.stores.tool.reset(scene.id);
     this.voxels.clear();

@@ -39,19 +39,21 @@ export class ScenePicker {
     return this.open(() => this.api.scene(id), id === this.current?.id ? this.path : '');
   }
 
+  /** Waits while a scene is prepared, for as long as `goes_on`, which is shown each state, says so. */
+  async prepared(scene: Scene, goes_on: (scene: Scene) => boolean): Promise<Scene> {
+    while ((scene.state === 'queued' || scene.state === 'preparing' || scene.state === 'evicted') && goes_on(scene)) {
+      // Whoever asks for something of an evicted scene has it prepared again.
+      if (scene.state === 'evicted') await this.api.geometry(scene.id, 100).catch((error: unknown) => { if (!(error instanceof ApiError) || error.status !== 503) throw error; });
+      await new Promise((resolve) => setTimeout(resolve, POLL_MS));
+      scene = await this.api.scene(scene.id);
+    }
+    return scene;
+  }
   /** `first` asks for the scene; then it is waited for, however long that takes, unless another is chosen meanwhile. */
   private async open(first: () => Promise<Scene>, path: string): Promise<void> {
     const turn = ++this.turn;
     try {
-      let scene = await first();
-      for (; scene.state === 'queued' || scene.state === 'preparing' || scene.state === 'evicted'; ) {
-        if (turn !== this.turn) return;
-        // Whoever asks for something of an evicted scene has it prepared again.
-        if (scene.state === 'evicted') await this.api.geometry(scene.id, 100).catch((error: unknown) => { if (!(error instanceof ApiError) || error.status !== 503) throw error; });
-        this.show_progress(scene);
-        await new Promise((resolve) => setTimeout(resolve, POLL_MS));
-        scene = await this.api.scene(scene.id);
-      }
+      const scene = await this.prepared(await first(), (now) => { if (turn === this.turn) this.show_progress(now); return turn === this.turn; });
       if (turn !== this.turn) return;
       if (scene.state !== 'ready') throw new ApiError(409, scene.error, scene.error?.detail ?? `The scene is ${scene.state}.`);
       this.current = scene;
