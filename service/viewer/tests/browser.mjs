@@ -1,5 +1,5 @@
 // The viewer in a real browser, against the real program: node browser.mjs PALPATE WORK [SCREENSHOTS]
-// Exit 77 (skipped) where chromium, or a viewer in the program, is missing. Environment: CHROMIUM; STAND_IN=SITE uses stand_in.mjs instead of `palpate serve`.
+// What it needs and does not find (chromium, the viewer's packages, a viewer in the program) is a failure. Environment: CHROMIUM; STAND_IN=SITE uses stand_in.mjs instead of `palpate serve`.
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -9,9 +9,9 @@ import { fileURLToPath } from 'node:url';
 
 const [palpate, work, pictures] = process.argv.slice(2);
 const browser_path = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const skip = (reason) => { console.log(`skipped: ${reason}`); process.exit(77); };
-if (!existsSync(browser_path)) skip(`no browser at ${browser_path} (Debian: chromium)`);
-if (!existsSync('installed')) skip('the viewer\'s packages are not here: `npm ci` failed when the viewer was built');
+const missing = (reason) => { console.error(`FAILED  ${reason}`); process.exit(1); };
+if (!existsSync(browser_path)) missing(`no browser at ${browser_path} (Debian: chromium; scripts/install-packages browser)`);
+if (!existsSync('installed')) missing('the viewer\'s packages are not here: `npm ci` failed when the viewer was built');
 const { chromium } = createRequire(join(process.cwd(), 'package.json'))('playwright-core');   // run where the build keeps the packages
 
 function check(truth, sentence) {
@@ -55,7 +55,7 @@ const NARROW = pictures ? { width: 760, height: 900 } : { width: 500, height: 64
 let browser = null;
 async function main() {
   await start();
-  if (!(await (await fetch(address)).text()).includes('viewer.js')) { console.log('skipped: this program has no viewer'); return 77; }
+  if (!(await (await fetch(address)).text()).includes('viewer.js')) throw new Error('this program has no viewer');
   browser = await chromium.launch({ executablePath: browser_path, args: ['--headless', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
     '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
   const page = await browser.newPage({ viewport: WIDE, colorScheme: 'light' });
@@ -156,11 +156,10 @@ async function main() {
   errors.length = 0;   // connections refused while it was away
   await drag();
   check(errors.length === 0, `no error after the restart${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
-  return 0;
 }
 
 let status = 1;
-try { status = await main(); } catch (error) {
+try { await main(); status = 0; } catch (error) {
   console.error(`FAILED  ${error.message}`);
   if (pictures && browser) for (const page of browser.contexts().flatMap((context) => context.pages())) await page.screenshot({ path: join(pictures, 'failed.png') }).catch(() => {});
 }
