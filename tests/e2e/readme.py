@@ -1,25 +1,45 @@
-"""Runs every `palpate` command of README.md, in its order, in one empty folder, and holds its scene file against the program's reader."""
+"""Runs every command of README.md, in its order, in one empty folder (all but the two scripts), and holds its scene file against the program's reader."""
 import re
 import shlex
 
 from harness import *
+from server import Server
 
 TEXT = (SOURCE / 'README.md').read_text()
 COMMANDS = [line.split('#')[0].strip() for block in re.findall(r'```sh\n(.*?)```', TEXT, re.S) for line in block.splitlines()]
 
 
-def test_every_palpate_command_of_the_readme_works():
+def test_every_command_of_the_readme_works():
     folder = tempfile.mkdtemp(prefix='palpate-readme-')
-    ours = [c for c in COMMANDS if c.startswith('palpate ')]
-    expect(len(ours) >= 5, COMMANDS)
-    for command in ours:
-        outcome = palpate(*shlex.split(command)[1:], cwd=folder)
-        expect(outcome.code == 0, f'{command}: {outcome}')
-    expect((pathlib.Path(folder) / 'run' / 'report.html').is_file(), 'the report that the README names')
+    here = os.getcwd()
+    os.chdir(folder)
+    server, scene, served = None, None, 0
+    try:
+        for command in COMMANDS:
+            words = shlex.split(command)
+            if command.endswith('&'):
+                expect(words[:2] == ['palpate', 'serve'] and server is None, command)
+                server = Server(*words[2:-1])   # on a free port in place of the usual one
+            elif words[:1] == ['palpate']:
+                outcome = palpate(*words[1:])
+                expect(outcome.code == 0, f'{command}: {outcome}')
+            elif words[:1] == ['curl']:
+                # ID stands for what the upload answered.
+                asked = [word.replace('localhost:8090', f'localhost:{server.port}').replace('/ID/', f'/{scene}/') for word in words[1:]]
+                done = subprocess.run(['curl', '-sS', '--fail', '--max-time', '300', *asked], capture_output=True, timeout=400)
+                expect(done.returncode == 0, f'{command}: {done}')
+                scene = scene or json.loads(done.stdout)['id']
+                served += 1
+        expect(b'"pairs":' in done.stdout and served == 3, done)
+        expect((pathlib.Path(folder) / 'run' / 'report.html').is_file(), 'the report that the README names')
+    finally:
+        os.chdir(here)
+        code = server.stop() if server else None
+    expect(code == 0, f'the server ended with {code}')
 
 
 def test_the_other_commands_are_scripts_that_exist():
-    others = [c.split()[0] for c in COMMANDS if c and not c.startswith('palpate ')]
+    others = [c.split()[0] for c in COMMANDS if c and c.split()[0] not in ('palpate', 'curl')]
     expect(others == ['scripts/demo', 'scripts/test'], others)
     for script in others:
         expect(os.access(SOURCE / script, os.X_OK), script)

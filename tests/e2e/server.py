@@ -186,7 +186,10 @@ class WebSocket:
                 self._frame(10, payload)
             elif code == 8:
                 self.closed_with = struct.unpack('>H', payload[:2])[0] if len(payload) >= 2 else 1005
-                self._frame(8, payload)
+                try:
+                    self._frame(8, payload)
+                except ConnectionError:   # gone already
+                    pass
                 return None
             elif code in (0, 1, 2):
                 kind = kind or code
