@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 /// Steps beside a triangle within which a ray may cross it: the transformed triangle that the device tests is rounded (0.87 steps) and turned by
-/// a rounded matrix (a tenth of a step for tools of PreparedScene::rays_walk()); a double's own rounding is far below.
+/// a rounded matrix (0.3 steps for tools of PreparedScene::rays_walk()); a double's own rounding is far below.
 constexpr double kBeside = 2;
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 constexpr std::int32_t kFiner = 4;                            // a fine voxel's side is that part of a voxel's (chosen: a sample's spacing)
 constexpr std::uint64_t kMostFineVoxels = 4'000'000;          // boundary voxels, estimated (chosen: memory)
 constexpr std::uint64_t kMostFineBricks = 8'000'000;
-constexpr std::int32_t kMostFineRadius = 1 << 26;             // steps: up to it, rotations keep lengths to a tenth of a step
+constexpr std::int32_t kMostFineRadius = 1 << 27;             // steps: up to it, rotations keep lengths to 0.3 steps (lib/tool_walk.glsl)
 constexpr std::uint64_t kMostNearVoxels = std::uint64_t{1} << 29;
 
 /// A partition on the host.

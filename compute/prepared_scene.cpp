@@ -58,8 +58,8 @@ std::uint64_t PreparedScene::memory_bytes() const {
 }
 
 bool PreparedScene::rays_walk() const {
-  constexpr std::int32_t kMostRadius = 1 << 26, kMostVoxel = 1 << 19;
-  return constants.refined != 0 && constants.tool.closed != 0 && constants.tool_radius <= kMostRadius && constants.fine.size <= kMostVoxel;
+  constexpr std::int32_t kMostRadius = 1 << 27;
+  return constants.refined != 0 && constants.tool.closed != 0 && constants.tool_radius <= kMostRadius;
 }
 
 Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,

@@ -1,6 +1,8 @@
 // Small scenes made for one rule each, most of them a tie or a corner of a rule that other families reach by chance or never: found by
 // tests/mutation, where a changed operator went unseen.
+#include "model/generate/solids.h"
 #include "model/generate/turn.h"
+#include "model/pose.h"
 #include "tests/equivalence/case.h"
 #include "tests/equivalence/lattice_shapes.h"
 #include "tests/equivalence/rectangles.h"
@@ -222,12 +224,42 @@ Case bridge() {
               });
 }
 
+/// A spindle along x through a sheet that faces along it: its radius is 0.96 · 2^27 steps, just what the lattice has room for, and rays leave it along
+/// most of its length, through hundreds of its voxels.
+Case long_tool() {
+  constexpr std::int32_t kLong = 129'000'000, kWide = 2'200'000, kLargeVoxel = 1 << 20;
+  Triangles spindle;
+  const Mesh ball = solids::sphere(1, 12, 8);
+  const auto stretched = [&](std::uint32_t vertex) {
+    const Vec3& v = ball.vertices[vertex];
+    return Int3(glm::round(Vec3(v.z * kLong, v.x * kWide, v.y * kWide)));
+  };
+  for (const auto& t : ball.triangles) spindle.push_back({stretched(t[0]), stretched(t[1]), stretched(t[2])});
+  Case c = rule("long_tool", "a tool as large as the lattice has room for, and rays along most of it", {}, {}, {});
+  c.make = [=](std::uint64_t) -> Result<TestScene> {
+    auto geometry = lattice_scene(side_of(Int3(-100, -6'000'000, -6'000'000), Int3(0, 6'000'000, 6'000'000), 1), spindle, kLargeVoxel, kLargeVoxel / 2);
+    if (!geometry) return geometry.error();
+    TestScene scene;
+    scene.geometry = std::move(*geometry);
+    scene.pose = [](const SceneGeometry& of, Random& random, Known&) {
+      palpate::Pose tilted;   // its rotation alone is used
+      tilted.rotation = rotation_about(Vec3(0, random.unit() - 0.5, random.unit() - 0.5) * 0.02) * rotation_about(Vec3(1, 0, 0), random.unit() * 6);
+      LatticePose pose = to_lattice(tilted, of).value();
+      pose.beyond_lattice = false;
+      pose.translation = {random.between(-100'000'000, 100'000'000), random.between(-1'000'000, 1'000'000), random.between(-1'000'000, 1'000'000)};
+      return pose;
+    };
+    return scene;
+  };
+  return c;
+}
+
 }  // namespace
 
 std::vector<Case> rule_cases() {
   return {seam_with_a_common_corner(), inside_of_one_voxel(false), inside_of_one_voxel(true), inside_of_one_brick(false), inside_of_one_brick(true), votes(true), votes(false),
           sheet_through_gc(), held(two_sheets()), held(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
-          swallowed_at_ties(), bridge()};
+          swallowed_at_ties(), bridge(), long_tool()};
 }
 
 }  // namespace palpate::equivalence
