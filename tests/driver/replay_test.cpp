@@ -79,8 +79,8 @@ TEST(Replay, ExertsNothingAndSaysWhatADeviceCould) {
 TEST(Replay, WhatIsNoTraceIsRefusedWithItsLine) {
   const std::string good = "0,0,0,0,0,0,0,1,0,0\n";
   EXPECT_EQ(fault_of(kHeader + good), "");
-  EXPECT_EQ(fault_of(""), ", line 1 is missing; a trace begins with \"time_s,x_m,y_m,z_m,qx,qy,qz,qw\"");
-  EXPECT_THAT(fault_of("time,x\n1,2\n"), HasSubstr(", line 1 is \"time,x\"; a trace begins with"));
+  EXPECT_EQ(fault_of(""), ", line 1 is missing; it must begin with \"time_s,x_m,y_m,z_m,qx,qy,qz,qw\"");
+  EXPECT_THAT(fault_of("time,x\n1,2\n"), HasSubstr(", line 1 is \"time,x\"; it must begin with"));
   EXPECT_EQ(fault_of(kHeader), " has no row below its header");
   EXPECT_EQ(fault_of(kHeader + good + "0.001,0,0,0,0,0\n"), ", line 3 has 6 values; the header has 10") << "a recording cut short";
   EXPECT_EQ(fault_of(kHeader + good + "0.001,0,zero,0,0,0,0,1,0,0\n"), ", line 3: \"zero\" is not a finite number");
@@ -89,10 +89,10 @@ TEST(Replay, WhatIsNoTraceIsRefusedWithItsLine) {
   EXPECT_EQ(fault_of(std::string(kHeader) + "-1,0,0,0,0,0,0,1,0,0\n"), ", line 2: time -1 s is not from 0 to 1000000 s");
   EXPECT_EQ(fault_of(std::string(kHeader) + "0,0,0,0,0,0,0,2,0,0\n"), ", line 2: the rotation's length is 2; a unit quaternion has length 1");
   EXPECT_EQ(fault_of(std::string(kHeader) + "0,1e5,0,0,0,0,0,1,0,0\n"), ", line 2: position 1e+05 m is beyond 10000 m");
-  EXPECT_EQ(fault_of(std::string(kHeader) + "0,0,0,0,0,0,0,1,0,1.5\n"), ", line 2: stage \"1.5\" is not a whole number from 0 to 1000000");
+  EXPECT_EQ(fault_of(std::string(kHeader) + "0,0,0,0,0,0,0,1,0,1.5\n"), ", line 2: stage 1.5 is not a whole number from 0 to 1000000");
   const auto none = read_trace("/nowhere/trace.csv");
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().sentence, "/nowhere/trace.csv: the recorded trace can't be opened");
+  EXPECT_EQ(none.error().sentence, "/nowhere/trace.csv cannot be opened");
   EXPECT_FALSE(read_trace(testing::TempDir())) << "a directory is no trace";
 }
 

@@ -29,15 +29,15 @@ std::string guide_fault(const std::string& text) {
 
 TEST(PathFile, ABadLineIsNamedWithItsValueAndWhatIsAllowed) {
   EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,1,1\r\n0.5,0,0,0,0,0,0,1,2\n"), "");
-  EXPECT_EQ(path_fault("t,x\n"), "p.csv: the first line is \"t,x\"; it must be \"" + kFree.substr(0, kFree.size() - 1) + "\"");
+  EXPECT_EQ(path_fault("t,x\n"), "p.csv, line 1 is \"t,x\"; it must be \"" + kFree.substr(0, kFree.size() - 1) + "\"");
   EXPECT_EQ(path_fault(kFree), "p.csv has no point");
-  EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,1\n"), "p.csv, line 2 has 8 values; it must have 9");
+  EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,1\n"), "p.csv, line 2 has 8 values; the header has 9");
   EXPECT_EQ(path_fault(kFree + "0,nan,0,0,0,0,0,1,1\n"), "p.csv, line 2: \"nan\" is not a finite number");
   EXPECT_EQ(path_fault(kFree + "0,1 m,0,0,0,0,0,1,1\n"), "p.csv, line 2: \"1 m\" is not a finite number");
   EXPECT_EQ(path_fault(kFree + "0,,0,0,0,0,0,1,1\n"), "p.csv, line 2: \"\" is not a finite number");
   EXPECT_EQ(path_fault(kFree + "1,0,0,0,0,0,0,1,1\n1,0,0,0,0,0,0,1,1\n"),
             "p.csv, line 3: time 1 s must be above the one before, 1 s");
-  EXPECT_EQ(path_fault(kFree + "-1,0,0,0,0,0,0,1,1\n"), "p.csv, line 2: time -1 s must be 0 or more");
+  EXPECT_EQ(path_fault(kFree + "-1,0,0,0,0,0,0,1,1\n"), "p.csv, line 2: time -1 s is not from 0 to 1000000 s");
   EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,0.5,1\n"),
             "p.csv, line 2: the rotation's length is 0.5; a unit quaternion has length 1");
   EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,1,1.5\n"), "p.csv, line 2: stage 1.5 is not a whole number from 0 to 1000000");
