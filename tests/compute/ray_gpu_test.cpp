@@ -1,9 +1,11 @@
 #include <boost/multiprecision/cpp_int.hpp>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "tests/compute/code.h"
-#include "tests/compute/geometry_cases.h"
 #include "tests/compute/gpu_test.h"
-#include "tests/compute/shaders/probe_geometry.h"
+#include "tests/compute/probe_cases.h"
 
 namespace palpate {
 namespace {
@@ -54,24 +56,7 @@ Big height(const Int3& point, const Int3& direction, const Int3 (&corner)[3]) {
 }
 
 TEST_F(Rays, CrossWhereThePerturbedRayDoes) {
-  LatticePoints points(2);
-  std::vector<gpu::RayCase> cases(20000);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    auto& c = cases[i];
-    points.choose();
-    points.triangle(c.corner);
-    c.point = points.point();
-    do {
-      // Towards a point of the triangle or of its plane half of the time, so that many cross, also through corners and edges.
-      const Int3 at = i % 2 == 0 ? points.point() : i % 4 == 1 ? c.corner[0] : (c.corner[0] + c.corner[1]) / 2;
-      c.direction = at - c.point;
-      if (i % 16 == 3) c.direction = {i % 32 == 3 ? 1 << 28 : 0, 0, -(1 << 28)};
-      if (i % 11 == 0) c.point = c.corner[2];
-    } while (c.direction == Int3(0) && (c.point = points.point(), true));
-    // The length that a direction has: largest component in [2^28, 2^29).
-    while (std::max({std::abs(c.direction.x), std::abs(c.direction.y), std::abs(c.direction.z)}) < 1 << 28) c.direction *= 2;
-    while (std::max({std::abs(c.direction.x), std::abs(c.direction.y), std::abs(c.direction.z)}) >= 1 << 29) c.direction /= 2;
-  }
+  const auto cases = probe_cases::rays();
   const auto answers = run_probe<gpu::RayAnswer>(spirv::probe_ray, cases);
   std::size_t crossings = 0, along_x = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -81,6 +66,7 @@ TEST_F(Rays, CrossWhereThePerturbedRayDoes) {
     const int expected = crossing_sign(c.point, c.direction, c.corner);
     ASSERT_EQ(answers[i].crossing_sign, expected);
     ASSERT_EQ(answers[i].x_sign, crossing_sign(c.point, {1, 0, 0}, c.corner));
+    ASSERT_EQ(answers[i].culled, 0);   // a cheap test that lets go what is crossed
     if (expected == 0) continue;
     ASSERT_EQ(Big(answers[i].height), height(c.point, c.direction, c.corner));
     ++crossings;
@@ -121,6 +107,60 @@ TEST_F(Rays, ThroughEdgesAndCornersCrossAClosedSurfaceEvenly) {
     ASSERT_GE(along, norm < 8 ? 1 : 0) << p.x << ' ' << p.y << ' ' << p.z;   // on the surface: either
     ASSERT_LE(along, norm > 8 ? 0 : 1) << p.x << ' ' << p.y << ' ' << p.z;
   }
+}
+
+/// Crossing of the segment whose ends are moved alike, by the definition.
+int segment_sign(const gpu::RayCase& c) {
+  const BigPoint p = perturbed(c.point), q = perturbed(c.direction), a = scaled(c.corner[0]), b = scaled(c.corner[1]), d = minus(q, p);
+  const BigPoint n = cross(minus(b, a), minus(scaled(c.corner[2]), a));
+  const int facing = dot(minus(a, p), n).sign();
+  if (dot(minus(a, q), n).sign() == facing) return 0;
+  for (int e = 0; e < 3; ++e)
+    if (dot(d, cross(minus(scaled(c.corner[e]), p), minus(scaled(c.corner[(e + 1) % 3]), p))).sign() != facing) return 0;
+  return facing;
+}
+
+/// The point that an edge and a closed triangle have in common, if their planes cross there in one point: docs/EXACTNESS.md section 7.
+std::optional<Int3> common_point(const gpu::RayCase& c) {
+  __extension__ using Wide = __int128;
+  Int3 p = c.point, q = c.direction;
+  if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q);
+  const auto side = [](const Long3& n, const Int3& v) { return Wide{n.x} * v.x + Wide{n.y} * v.y + Wide{n.z} * v.z; };
+  const Long3 n = LatticePoints::normal(c.corner);
+  const Wide dp = side(n, p - c.corner[0]), dq = side(n, q - c.corner[0]);
+  if (dp == dq || (dp > 0 && dq > 0) || (dp < 0 && dq < 0)) return std::nullopt;
+  bool left = false, right = false;
+  for (int e = 0; e < 3; ++e) {
+    const Int3 line[3] = {p, c.corner[e], c.corner[(e + 1) % 3]};
+    const Wide s = side(LatticePoints::normal(line), q - p);
+    left = left || s > 0;
+    right = right || s < 0;
+  }
+  if (left && right) return std::nullopt;
+  const Wide span = dp > dq ? dp - dq : dq - dp, part = dp > dq ? dp : -dp;
+  const auto ratio = static_cast<std::int64_t>(Big(Big(part) * (1 << 30) / Big(span)));
+  Int3 at;
+  for (int k = 0; k < 3; ++k) at[k] = p[k] + static_cast<int>((std::int64_t{q[k]} - p[k]) * ratio >> 30);
+  return at;
+}
+
+TEST_F(Rays, SegmentsCrossWhereTheirPerturbedEndsSayAndEdgesMeetInTheRoundedPoint) {
+  const auto cases = probe_cases::segments();
+  const auto answers = run_probe<gpu::SegmentAnswer>(spirv::probe_segment, cases);
+  std::size_t crossings = 0, meetings = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SCOPED_TRACE(i);
+    const int sign = segment_sign(cases[i]);
+    ASSERT_EQ(answers[i].crossing_sign, sign);
+    crossings += sign != 0 ? 1u : 0u;
+    const auto at = common_point(cases[i]);
+    ASSERT_EQ(answers[i].meets != 0, at.has_value());
+    if (!at) continue;
+    ASSERT_EQ(answers[i].at, *at);
+    ++meetings;
+  }
+  EXPECT_GT(crossings, cases.size() / 50);
+  EXPECT_GT(meetings, cases.size() / 20);
 }
 
 }  // namespace

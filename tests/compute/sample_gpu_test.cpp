@@ -1,9 +1,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "tests/compute/code.h"
-#include "tests/compute/geometry_cases.h"
 #include "tests/compute/gpu_test.h"
-#include "tests/compute/shaders/probe_geometry.h"
+#include "tests/compute/probe_cases.h"
 
 namespace palpate {
 namespace {
@@ -39,25 +38,8 @@ Big third(const gpu::SampleCase& c, const Long3& n) {
 }
 
 TEST_F(Samples, LieOnTheTriangleAsTheExactQuotientSays) {
-  LatticePoints points(3);
-  std::vector<gpu::SampleCase> cases(40000);
-  std::vector<Long3> normals(cases.size());
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    auto& c = cases[i];
-    points.choose();
-    points.triangle(c.corner);
-    const Long3 n = normals[i] = LatticePoints::normal(c.corner);
-    c.axis = std::abs(n.y) > std::abs(n.x) ? 1 : 0;
-    if (std::abs(n.z) > std::abs(n[c.axis])) c.axis = 2;
-    const int u = (c.axis + 1) % 3, v = (c.axis + 2) % 3;
-    // In the triangle's box, as the frame asks; often at a corner or on an edge.
-    const auto pick = [&](int k) {
-      const auto [low, high] = std::minmax({c.corner[0][k], c.corner[1][k], c.corner[2][k]});
-      return i % 3 == 0 ? c.corner[i % 2][k] : low + static_cast<int>((static_cast<std::int64_t>(high) - low) * (points.within(500) + 500) / 1000);
-    };
-    c.u = pick(u);
-    c.v = pick(v);
-  }
+  std::vector<Long3> normals;
+  const auto cases = probe_cases::samples(&normals);
   const auto answers = run_probe<gpu::SampleAnswer>(spirv::probe_sample, cases);
   std::size_t found = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {

@@ -6,7 +6,9 @@
 #include "cpu_ref/triangle_triangle.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
+#include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
+#include "tests/compute/probe_cases.h"
 
 namespace palpate {
 namespace {
@@ -108,6 +110,31 @@ TEST_F(Seams, AreThoseOfTheDefinitionWherePartsCrossAndCoincide) {
   const auto got = on_device(mesh);
   EXPECT_GT(got.size(), 1000u);
   EXPECT_EQ(got, by_definition());
+}
+
+TEST_F(Seams, TouchInMoreThanTheCommonCornerByTheReferencesPredicates) {
+  const auto cases = probe_cases::seams();
+  const auto answers = run_probe<gpu::SeamAnswer>(spirv::probe_seam, cases);
+  std::size_t touching = 0, alone = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SCOPED_TRACE(i);
+    const auto& c = cases[i];
+    const cpu_ref::Triangle s(c.s[0], c.s[1], c.s[2]), t(c.t[0], c.t[1], c.t[2]);
+    int common = 0, of_s = 0, of_t = 0;
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k)
+        if (c.of_s[j] == c.of_t[k]) ++common, of_s = j, of_t = k;
+    const bool want = common == 0 ? cpu_ref::triangles_intersect(s, t)
+                                  : common == 1 && (cpu_ref::segment_meets_triangle(s[(of_s + 1) % 3], s[(of_s + 2) % 3], t) ||
+                                                    cpu_ref::segment_meets_triangle(t[(of_t + 1) % 3], t[(of_t + 2) % 3], s));
+    ASSERT_EQ(answers[i].touches != 0, want);
+    ASSERT_EQ(answers[i].share_edge != 0, common > 1);
+    ASSERT_FALSE(answers[i].alone != 0 && (want || common != 1));   // the cheap proof proves only what is so
+    touching += want ? 1u : 0u;
+    alone += answers[i].alone != 0 ? 1u : 0u;
+  }
+  EXPECT_GT(touching, cases.size() / 10);
+  EXPECT_GT(alone, cases.size() / 10);
 }
 
 }  // namespace

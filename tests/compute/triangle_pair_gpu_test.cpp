@@ -1,7 +1,6 @@
 #include "tests/compute/code.h"
-#include "tests/compute/geometry_cases.h"
 #include "tests/compute/gpu_test.h"
-#include "tests/compute/shaders/probe_geometry.h"
+#include "tests/compute/probe_cases.h"
 
 namespace palpate {
 namespace {
@@ -64,24 +63,8 @@ bool triangles_meet(const gpu::PairCase& c) {
   return false;
 }
 
-bool flat(const Int3 (&t)[3]) { return LatticePoints::normal(t) == Long3(0); }
-
 TEST_F(TrianglePair, MeetsExactlyWhenSomeEdgeMeetsTheOtherTriangle) {
-  LatticePoints points(1);
-  std::vector<gpu::PairCase> cases(40000);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    auto& c = cases[i];
-    points.choose();
-    points.triangle(c.s);
-    points.triangle(c.t);
-    if (i % 5 == 0) {   // in one plane z = const
-      for (int k = 0; k < 3; ++k) c.s[k].z = c.t[k].z = c.s[0].z;
-    } else if (i % 7 == 0) {
-      c.t[0] = c.s[2];   // a common corner
-    }
-    if (flat(c.s)) points.triangle(c.s);
-    if (flat(c.t)) points.triangle(c.t);
-  }
+  const auto cases = probe_cases::pairs();
   const auto answers = run_probe<std::int32_t>(spirv::probe_triangle_pair, cases);
   std::size_t meeting = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {

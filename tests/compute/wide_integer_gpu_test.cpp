@@ -1,8 +1,6 @@
-#include <random>
-
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
-#include "tests/compute/shaders/probe_wide_integer.h"
+#include "tests/compute/probe_cases.h"
 
 namespace palpate {
 namespace {
@@ -13,38 +11,8 @@ using WideInteger = GpuTest;
 I128 wide(std::int64_t high, std::uint64_t low) { return (static_cast<I128>(high) << 64) + static_cast<I128>(low); }
 int sign(I128 v) { return v < 0 ? -1 : v > 0; }
 
-/// Mostly random; often small, zero or at a bound, where the mistakes are.
-class Numbers {
- public:
-  std::int64_t within(std::int64_t bound) {
-    switch (engine_() % 8) {
-      case 0: return 0;
-      case 1: return bound;
-      case 2: return -bound;
-      case 3: return static_cast<std::int64_t>(engine_() % 5) - 2;
-      default: return std::uniform_int_distribution<std::int64_t>(-bound, bound)(engine_);
-    }
-  }
-  glm::ivec3 point(std::int64_t bound) {
-    return {static_cast<int>(within(bound)), static_cast<int>(within(bound)), static_cast<int>(within(bound))};
-  }
-
- private:
-  std::mt19937_64 engine_{1};
-};
-
 TEST_F(WideInteger, AgreesWithTheCompilersOwn128Bits) {
-  Numbers numbers;
-  std::vector<gpu::WideCase> cases(20000);
-  for (auto& c : cases) {
-    for (auto& n : c.n) n = numbers.within((std::int64_t{1} << 60) + (std::int64_t{1} << 57));   // ≥ 2^60.2
-    c.x = numbers.within(INT64_MAX);
-    c.y = numbers.within(std::int64_t{1} << 61);
-    c.d = numbers.point((1 << 29) + 1);
-    c.a = numbers.point(1 << 28);
-    c.b = numbers.point(1 << 28);
-    c.c = numbers.point(1 << 28);
-  }
+  const auto cases = probe_cases::wide();
   const auto answers = run_probe<gpu::WideAnswer>(spirv::probe_wide_integer, cases);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto& c = cases[i];

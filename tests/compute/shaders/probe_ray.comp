@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"
+#include "shaders/lib/line_box.glsl"
 #include "shaders/lib/ray.glsl"
 #include "tests/compute/shaders/probe_geometry.h"
 
@@ -14,5 +15,8 @@ void main() {
   if (i >= count) return;
   RayCase c = cases[i];
   Crossing crossing = ray_crossing(c.point, c.direction, c.corner[0], c.corner[1], c.corner[2]);
-  answers[i] = RayAnswer(crossing.sign, crossing.height, x_crossing(c.point, c.corner[0], c.corner[1], c.corner[2]));
+  vec3 e = ray_scaled(c.direction);
+  ivec3 low = min(min(c.corner[0], c.corner[1]), c.corner[2]), high = max(max(c.corner[0], c.corner[1]), c.corner[2]);
+  bool kept = ray_may_meet_triangle(c.point, e, c.corner[0], c.corner[1], c.corner[2]) && ray_may_meet_box(c.point, e, low, high);
+  answers[i] = RayAnswer(crossing.sign, crossing.height, x_crossing(c.point, c.corner[0], c.corner[1], c.corner[2]), crossing.sign != 0 && !kept ? 1 : 0);
 }

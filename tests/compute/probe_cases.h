@@ -1,0 +1,253 @@
+#pragma once
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+#include "tests/compute/geometry_cases.h"
+#include "tests/compute/shaders/probe_geometry.h"
+#include "tests/compute/shaders/probe_sums.h"
+#include "tests/compute/shaders/probe_triangle_voxel.h"
+#include "tests/compute/shaders/probe_wide_integer.h"
+
+/// What the tests of shaders/lib ask of the device, one function a probe. The same every time: tests/mutation asks mutants the same.
+namespace palpate::probe_cases {
+
+inline bool flat(const Int3 (&t)[3]) { return LatticePoints::normal(t) == Long3(0); }
+
+inline std::vector<gpu::PairCase> pairs() {
+  LatticePoints points(1);
+  std::vector<gpu::PairCase> cases(40000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    points.choose();
+    points.triangle(c.s);
+    points.triangle(c.t);
+    if (i % 5 == 0) {   // in one plane z = const
+      for (int k = 0; k < 3; ++k) c.s[k].z = c.t[k].z = c.s[0].z;
+    } else if (i % 7 == 0) {
+      c.t[0] = c.s[2];   // a common corner
+    }
+    if (flat(c.s)) points.triangle(c.s);
+    if (flat(c.t)) points.triangle(c.t);
+  }
+  return cases;
+}
+
+/// The largest component in [2^28, 2^29), as a direction of a contact has it; d ≠ 0.
+inline Int3 as_direction(Int3 d) {
+  while (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) < 1 << 28) d *= 2;
+  while (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) >= 1 << 29) d /= 2;
+  return d;
+}
+
+inline std::vector<gpu::RayCase> rays() {
+  LatticePoints points(2);
+  std::vector<gpu::RayCase> cases(20000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    points.choose();
+    points.triangle(c.corner);
+    c.point = points.point();
+    do {
+      // Towards a point of the triangle or of its plane half of the time, so that many cross, also through corners and edges.
+      const Int3 at = i % 2 == 0 ? points.point() : i % 4 == 1 ? c.corner[0] : (c.corner[0] + c.corner[1]) / 2;
+      c.direction = at - c.point;
+      if (i % 16 == 3) c.direction = {i % 32 == 3 ? 1 << 28 : 0, 0, -(1 << 28)};
+      if (i % 11 == 0) c.point = c.corner[2];
+    } while (c.direction == Int3(0) && (c.point = points.point(), true));
+    c.direction = as_direction(c.direction);
+  }
+  return cases;
+}
+
+/// Where `normals` is given, it gets the triangles' raw normals.
+inline std::vector<gpu::SampleCase> samples(std::vector<Long3>* normals_out = nullptr) {
+  LatticePoints points(3);
+  std::vector<gpu::SampleCase> cases(40000);
+  std::vector<Long3> normals(cases.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    points.choose();
+    points.triangle(c.corner);
+    const Long3 n = normals[i] = LatticePoints::normal(c.corner);
+    c.axis = std::abs(n.y) > std::abs(n.x) ? 1 : 0;
+    if (std::abs(n.z) > std::abs(n[c.axis])) c.axis = 2;
+    const int u = (c.axis + 1) % 3, v = (c.axis + 2) % 3;
+    // In the triangle's box, as the frame asks; often at a corner or on an edge.
+    const auto pick = [&](int k) {
+      const auto [low, high] = std::minmax({c.corner[0][k], c.corner[1][k], c.corner[2][k]});
+      return i % 3 == 0 ? c.corner[i % 2][k] : low + static_cast<int>((static_cast<std::int64_t>(high) - low) * (points.within(500) + 500) / 1000);
+    };
+    c.u = pick(u);
+    c.v = pick(v);
+  }
+  if (normals_out != nullptr) *normals_out = std::move(normals);
+  return cases;
+}
+
+class Boxes {
+ public:
+  /// Corners on a coarse lattice round a box of `half` steps: faces, edges and corners are hit exactly all the time.
+  gpu::BoxCase coarse(int half) {
+    const auto at = [&] { return static_cast<int>(engine_() % 9) * half / 2 - 2 * half; };
+    return with_box({at(), at(), at()}, {at(), at(), at()}, {at(), at(), at()}, Int3(0), half);
+  }
+  /// Anywhere within ±2^28, box too; corners often at the bound.
+  gpu::BoxCase large() {
+    std::uniform_int_distribution<int> far(-(1 << 28), 1 << 28), size(4, 1 << 27);
+    const auto at = [&] {
+      const auto pick = engine_() % 6;
+      return pick == 0 ? -(1 << 28) : pick == 1 ? 1 << 28 : far(engine_);
+    };
+    const int half = size(engine_);
+    std::uniform_int_distribution<int> centre(-(1 << 28) + half, (1 << 28) - half);
+    return with_box({at(), at(), at()}, {at(), at(), at()}, {at(), at(), at()},
+                    {centre(engine_), centre(engine_), centre(engine_)}, half);
+  }
+  /// A large triangle whose plane passes within a step or two of a corner of the box: the 92-bit comparison decides.
+  gpu::BoxCase grazing() {
+    gpu::BoxCase c = large();
+    const Int3 corner{engine_() % 2 ? c.lo.x : c.hi.x, engine_() % 2 ? c.lo.y : c.hi.y, engine_() % 2 ? c.lo.z : c.hi.z};
+    const auto near = [&] { return static_cast<int>(engine_() % 3) - 1; };
+    // c on the far side of the corner from a, twice as far or less, clipped to the lattice: the side a–c passes the corner.
+    c.c = glm::clamp(2 * corner - c.a, Int3(-(1 << 28)), Int3(1 << 28));
+    c.c = glm::clamp(c.c + Int3(near(), near(), near()), Int3(-(1 << 28)), Int3(1 << 28));
+    return c;
+  }
+
+ private:
+  static gpu::BoxCase with_box(Int3 a, Int3 b, Int3 c, Int3 centre, int half) { return {a, b, c, centre - half, centre + half}; }
+  std::mt19937_64 engine_{7};
+};
+
+inline std::vector<gpu::BoxCase> boxes() {
+  Boxes source;
+  std::vector<gpu::BoxCase> cases;
+  for (int i = 0; i < 20000; ++i) {
+    for (const auto& c : {source.coarse(2), source.coarse(1 << 20), source.large(), source.grazing()}) {
+      if (!flat({c.a, c.b, c.c})) cases.push_back(c);
+    }
+  }
+  return cases;
+}
+
+/// Mostly random; often small, zero or at a bound, where the mistakes are.
+class Numbers {
+ public:
+  std::int64_t within(std::int64_t bound) {
+    switch (engine_() % 8) {
+      case 0: return 0;
+      case 1: return bound;
+      case 2: return -bound;
+      case 3: return static_cast<std::int64_t>(engine_() % 5) - 2;
+      default: return std::uniform_int_distribution<std::int64_t>(-bound, bound)(engine_);
+    }
+  }
+  glm::ivec3 point(std::int64_t bound) {
+    return {static_cast<int>(within(bound)), static_cast<int>(within(bound)), static_cast<int>(within(bound))};
+  }
+
+ private:
+  std::mt19937_64 engine_{1};
+};
+
+inline std::vector<gpu::WideCase> wide() {
+  Numbers numbers;
+  std::vector<gpu::WideCase> cases(20000);
+  for (auto& c : cases) {
+    for (auto& n : c.n) n = numbers.within((std::int64_t{1} << 60) + (std::int64_t{1} << 57));   // ≥ 2^60.2
+    c.x = numbers.within(INT64_MAX);
+    c.y = numbers.within(std::int64_t{1} << 61);
+    c.d = numbers.point((1 << 29) + 1);
+    c.a = numbers.point(1 << 28);
+    c.b = numbers.point(1 << 28);
+    c.c = numbers.point(1 << 28);
+  }
+  return cases;
+}
+
+/// Triangles without, with one and with two common corners; a third of them in one plane, on a tiny grid most of the time.
+inline std::vector<gpu::SeamCase> seams() {
+  LatticePoints points(4);
+  std::vector<gpu::SeamCase> cases(60000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    do {
+      points.choose();
+      points.triangle(c.s);
+      points.triangle(c.t);
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        c.of_s[static_cast<int>(k)] = k;
+        c.of_t[static_cast<int>(k)] = 3 + k;
+      }
+      const int axis = static_cast<int>(i / 3 % 3);
+      if (i % 3 == 0)
+        for (int k = 0; k < 3; ++k) c.s[k][axis] = c.t[k][axis] = c.s[0][axis];
+      const auto share = [&](std::size_t of_s, std::size_t of_t) {
+        c.t[of_t] = c.s[of_s];
+        c.of_t[static_cast<int>(of_t)] = c.of_s[static_cast<int>(of_s)];
+      };
+      if (i % 8 != 0) share(i % 3, i / 3 % 3);
+      if (i % 16 == 1) share((i + 1) % 3, (i / 3 + 1 + i / 16 % 2) % 3);
+    } while (flat(c.s) || flat(c.t));
+  }
+  return cases;
+}
+
+/// Triangles and segments from `point` to `direction`, often with an end on a corner, an edge's middle or the plane.
+inline std::vector<gpu::RayCase> segments() {
+  LatticePoints points(5);
+  std::vector<gpu::RayCase> cases(40000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    do {
+      points.choose();
+      points.triangle(c.corner);
+      c.point = points.point();
+      c.direction = points.point();
+      if (i % 5 == 0) c.point = c.corner[i % 3];
+      if (i % 7 == 0) c.direction = (c.corner[i % 3] + c.corner[(i + 1) % 3]) / 2;
+      if (i % 11 == 0) c.direction.x = c.point.x;
+      if (i % 33 == 0) c.direction.y = c.point.y;
+    } while (c.direction == c.point);
+  }
+  return cases;
+}
+
+/// Sums of normals of every size, with weights at the bound and a step beside it.
+inline std::vector<gpu::DirectionCase> directions() {
+  LatticePoints points(6);
+  std::vector<gpu::DirectionCase> cases(30000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    const auto places = static_cast<int>(i % 60);
+    for (std::int64_t& component : c.sum) component = points.within(1 << 28) * (std::int64_t{1} << 31) >> places;
+    if (i % 5 == 0) c.sum[i % 3] = (std::int64_t{1} << places) * (i % 2 == 0 ? 1 : -1);
+    std::int64_t most = 0;
+    for (const std::int64_t component : c.sum) most = std::max<std::int64_t>(most, std::llabs(component));
+    c.weight = most < std::int64_t{1} << 59 ? 8 * most + points.within(1) : 0;
+    if (i % 101 == 0) c = {{0, 0, 0}, static_cast<std::int64_t>(i % 2)};
+  }
+  return cases;
+}
+
+/// Heights up to and round each bound of the fade: none, H_0, 2 H_0, 3 H_0; weights up to the largest, √3 in Q30.
+inline std::vector<gpu::HeightCase> heights() {
+  LatticePoints points(7);
+  std::mt19937_64 engine(7);
+  std::vector<gpu::HeightCase> cases(40000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    points.choose();
+    c.point = points.point();
+    c.weight = (1u << 30) + static_cast<std::uint32_t>(engine() % 785'000'000);
+    c.fade = i % 3 == 0 ? static_cast<std::uint32_t>(engine() % 20) : static_cast<std::uint32_t>(engine() % (1u << (1 + engine() % 30)));
+    const std::uint64_t bound = std::uint64_t{c.fade} * (i % 4);
+    const std::uint64_t height = i % 2 == 0 ? bound + engine() % 5 : engine() % (4 * std::uint64_t{c.fade} + 9);
+    c.height = static_cast<std::uint32_t>(std::min<std::uint64_t>(height < 2 ? height : height - engine() % 3, 1u << 31));
+  }
+  return cases;
+}
+
+}  // namespace palpate::probe_cases
