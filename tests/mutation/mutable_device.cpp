@@ -77,10 +77,13 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
         (tool ? made.tool : made.mockup) = std::move(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
+      device_->areas_on_host = !areas_on_host_;   // so that the pipelines of both ways are there to be swapped
+      if (auto other = Frame::create(*device_, geometry, this->scene(), {}); !other) return other.error();
     }
   } else {
     kept_of_ = &found->second;
   }
+  device_->areas_on_host = areas_on_host_;
   auto frame = Frame::create(*device_, geometry, this->scene(), {});
   if (!frame) return frame.error();
   frame_ = std::move(*frame);

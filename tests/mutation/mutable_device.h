@@ -33,6 +33,10 @@ class MutableDevice final : public CollisionBackend {
   /// From the next prepare() on every pipeline of the module `original`, SPIR-V, is one of `mutant`. `prepares`: preparation runs it, so
   /// that nothing kept will do. Error: the driver refuses it.
   Result<void> swap(const std::string& original, const std::string& mutant, bool prepares);
+  /// From the next prepare() on, whether the host joins the areas of small contacts (GpuOptions::areas_on_host). At first it does not: the
+  /// device's own steps answer all contacts.
+  void areas_on_host(bool host) { areas_on_host_ = host; }
+  VulkanDevice& device() { return *device_; }
   /// How many pipelines are swapped. 0: no case so far runs the module.
   std::size_t swapped() const { return swapped_.size(); }
   /// From the next prepare() on all is as it was.
@@ -61,6 +65,7 @@ class MutableDevice final : public CollisionBackend {
   std::unique_ptr<Frame> frame_;
   std::vector<std::pair<Words, Words>> mutants_;   // modules before and after
   bool prepares_ = false, aside_ = false;          // a mutant does; all are set aside
+  bool areas_on_host_ = false;
   std::vector<std::pair<Key, std::shared_ptr<const PipelineObjects>>> swapped_;   // what stood there
 };
 

@@ -2,6 +2,7 @@
 //   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
 //                         "host" NUMBER             of the host's exact code (model/)
 //   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT; modules that include it
+//                          in: "near" NUMBER        the switch of a mutant of what the back end does on the host (compute/)
 //                          in: "intact"             whether the unchanged program still answers as at first
 // With --killers behind these only the killer cases are asked; names of cases after --without are not asked, nor is any probe then.
 //   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when it is.
@@ -23,6 +24,7 @@
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "cpu_ref/cpu_backend.h"
 #include "tests/mutation/mutable_device.h"
@@ -30,6 +32,7 @@
 #include "tests/mutation/oracle.h"
 #include "tests/mutation/probes.h"
 #include "tests/mutation/shader_compiler.h"
+#include "tests/mutation/shader_probes.h"
 
 namespace palpate::mutation {
 namespace {
@@ -142,7 +145,8 @@ void limit_time(double seconds) {
 
 class ShaderJudge {
  public:
-  ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root) : oracle_(oracle), device_(device), root_(std::move(root)) {}
+  ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, bool ask_probes)
+      : oracle_(oracle), device_(device), probes_(device.device()), root_(std::move(root)), ask_probes_(ask_probes) {}
 
   void judge(const std::string& line) {
     std::istringstream fields(line);
@@ -164,9 +168,17 @@ class ShaderJudge {
     std::size_t at = 0;
     int changed = 0;
     std::string difference;
+    bool probed = false;
     bool unasked = false;   // swapped in since the oracle was asked last
+    // The device's own steps for areas and rays first, then what it does when the host has done the first half of them.
     const auto ask = [&] {
       difference = oracle_.first_difference_now(at);
+      if (difference.empty()) {
+        device_.areas_on_host(true);
+        difference = oracle_.first_difference_now(at);
+        device_.areas_on_host(false);
+        if (!difference.empty()) difference += " (areas on the host)";
+      }
       unasked = false;
     };
     for (std::string name; difference.empty() && list >> name;) {
@@ -177,6 +189,16 @@ class ShaderJudge {
         return answer("no-program", spent(), "", name);
       }
       if (*mutant == original) continue;
+      if (name.starts_with("tests/")) {
+        limit_time(kProbeSeconds);
+        difference = ask_probes_ && probes_.has(name) ? probes_.difference(name, original, *mutant) : "";
+        if (!difference.empty()) {
+          ++changed;
+          probed = true;
+          difference = name.substr(name.rfind('/') + 1) + ": " + difference;
+        }
+        continue;
+      }
       const bool of_frames = name.starts_with("shaders/frame/") || name.starts_with("shaders/response/");
       if (auto r = device_.swap(original, *mutant, !of_frames); !r) difference = r.error().sentence;
       unasked = true;
@@ -188,8 +210,25 @@ class ShaderJudge {
     limit_time(0);
     if (changed == 0) return answer("no-change", spent(), "", "");
     if (difference.empty()) return answer(swapped > 0 ? "survived" : "not-asked", spent(), "", "");
+    if (probed) return answer("differs", spent(), "probe", difference);
     oracle_.ask_first(at);
     answer("differs", spent(), oracle_.name(at), difference);
+  }
+
+  /// A mutant of the host's part of a query: the device's modules are the unchanged ones.
+  void judge_near(int mutant) {
+    const double before = cpu_seconds(RUSAGE_SELF);
+    std::size_t at = 0;
+    device_.areas_on_host(true);
+    active = mutant;
+    const std::string difference = oracle_.first_difference_now(at);
+    active = 0;
+    device_.areas_on_host(false);
+    limit_time(0);
+    const double seconds = cpu_seconds(RUSAGE_SELF) - before;
+    if (difference.empty()) return answer("survived", seconds, "", "");
+    oracle_.ask_first(at);
+    answer("differs", seconds, oracle_.name(at), difference);
   }
 
  private:
@@ -199,9 +238,13 @@ class ShaderJudge {
     return code;
   }
 
+  static constexpr double kProbeSeconds = 20;   // a probe takes a tenth of one
+
   Oracle& oracle_;
   MutableDevice& device_;
+  ShaderProbes probes_;
   std::string root_;
+  bool ask_probes_;
   std::map<std::string, std::string> originals_;
 };
 
@@ -214,19 +257,26 @@ using Words = std::vector<std::string>;
 
 void judge_shaders(const std::string& root, bool killers, const Words& without) {
   MutableDevice device;
+  int put_aside = 0;
   Oracle oracle(device, killers, without, [&](bool begins) {
     if (!begins) {
+      active = put_aside;
       if (auto r = device.put_back(); !r) throw std::runtime_error(r.error().sentence);
       return;
     }
     limit_time(0);   // what the unchanged program takes is nobody's fault
+    put_aside = std::exchange(active, 0);
     device.set_aside();
   });
   // A case's first answer has compiled pipelines too, so this is much more than five times what it takes.
   oracle.before_case = [](double seconds) { limit_time(3 + 5 * seconds); };
-  ShaderJudge judge(oracle, device, root);
+  ShaderJudge judge(oracle, device, root, without.empty());
   ready(oracle);
   for (std::string line; std::getline(std::cin, line);) {
+    if (line.starts_with("near ")) {
+      judge.judge_near(std::stoi(line.substr(5)));
+      continue;
+    }
     if (line != "intact") {
       judge.judge(line);
       continue;

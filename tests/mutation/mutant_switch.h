@@ -6,7 +6,7 @@
 
 #include <glm/glm.hpp>
 
-/// Every mutant of the reference in one program: mutants.py writes a copy of the sources in which an operator such as
+/// Every mutant of the reference in one program: sites.py writes a copy of the sources in which an operator such as
 /// `a < b` reads `a < Switch<17, '<', ...>{} < b`, which has the precedence and the association of the original. 
 /// `active` is the number of the one mutant that is on; 0: the program as it is.
 namespace palpate::mutation {

@@ -31,7 +31,7 @@ CHANGES_NOTHING = ("equivalent: ", "speed only: ", "a sentence of an error", "me
 SECOND = ("logic", "not", "name")   # kinds that are judged when all others have been
 
 # What is judged first: predicates, then areas, rays, classes; then the rest.
-FIRST = """cpu_ref/ model/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl shaders/lib/seam
+FIRST = """cpu_ref/ model/ compute/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl shaders/lib/seam
 shaders/lib/edge_crossing shaders/lib/line_box shaders/lib/tool_ray shaders/lib/direction shaders/lib/pierce shaders/lib/area
 shaders/lib/height_sum shaders/lib/union_find shaders/lib/partition shaders/lib/cells shaders/lib/components shaders/lib/pose
 shaders/lib/voxel_range shaders/lib/ shaders/response/ shaders/brick shaders/component shaders/row shaders/vote shaders/seam
@@ -40,6 +40,9 @@ shaders/frame/ shaders/""".split()
 
 # The host's exact code, in the order of CMakeLists.txt.
 HOST = [f"model/{name}.cpp" for name in "boundary edges orientation response side_winding smooth_angle".split()]
+
+# What the device's back end does on the host at a pose. Asked of the device's judge, in its process.
+NEAR = [f"compute/{name}.cpp" for name in "host_areas near_pairs near_rays near_samples".split()]
 
 
 def of_program(name):
@@ -51,7 +54,7 @@ def sources():
     """Files with mutants, in the order of FIRST."""
     names = [str(p.relative_to(ROOT)) for folder in ("cpu_ref", "shaders") for p in sorted((ROOT / folder).rglob("*"))
              if p.suffix in (".h", ".cpp", ".glsl", ".comp") and "shared" not in p.parts]
-    names += HOST
+    names += HOST + NEAR
     return sorted(names, key=lambda n: (next(i for i, f in enumerate(FIRST) if n.startswith(f)), n))
 
 
@@ -84,12 +87,13 @@ class Job:
 
 def all_jobs(only):
     modules = {str(p.relative_to(ROOT)): None for p in (ROOT / "shaders").rglob("*.comp")}
+    modules.update((str(p.relative_to(ROOT)), None) for p in (ROOT / "tests/compute/shaders").glob("*.comp"))
     closure = {m: includes(m) for m in modules}
-    # The parts of a frame first: a mutant caught there need not be compiled for the preparation too.
-    order = sorted(modules, key=lambda m: (not m.startswith("shaders/frame/"), not m.startswith("shaders/response/"), m))
+    # Probes first, they cost least; then the parts of a frame: a mutant caught there need not be compiled for the preparation too.
+    order = sorted(modules, key=lambda m: (not m.startswith("tests/"), not m.startswith("shaders/frame/"), not m.startswith("shaders/response/"), m))
     first_number = 1
     numbers = {}
-    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST:
+    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST + NEAR:
         numbers[name] = first_number
         first_number += len(mutants((ROOT / name).read_text(), cpp=True))
     for name in sources():
@@ -100,7 +104,7 @@ def all_jobs(only):
         reference = of_program(name)
         for i, m in enumerate(mutants(text, cpp=reference)):
             if reference:
-                command = ("host " if name in HOST else "") + str(numbers[name] + i)
+                command = ("host " if name in HOST else "near " if name in NEAR else "") + str(numbers[name] + i)
             else:
                 # Places in bytes, for C++.
                 begin, end = (len(text[:at].encode()) for at in (m.begin, m.end))
@@ -149,7 +153,8 @@ class Judge:
         row = self.ask(job.command)
         if row is None:   # 27: SIGPROF, the limit of processor time
             status = self.process.wait()
-            row = ["hangs" if status == -27 else "crashed", "0", "", f"signal {-status}"]
+            outcome = {-27: "hangs", 77: "no-program"}.get(status, "crashed")   # 77: mutant_switch.h
+            row = [outcome, "0", "", f"signal {-status}"]
             self.process = None
             self.unchecked = []
         elif "did not answer in time" in row[3] and not getattr(job, "again", False):
@@ -179,7 +184,7 @@ class Judge:
 
 
 def oracle_version():
-    files = sorted([*HERE.glob("oracle*"), *HERE.glob("probes*"), *(ROOT / "tests/equivalence").glob("*.cpp"), *(ROOT / "tests/equivalence").glob("*.h")])
+    files = sorted([*HERE.glob("oracle*"), *HERE.glob("probes*"), *HERE.glob("mutable_device*"), *HERE.glob("shader_probes*"), *(ROOT / "tests/compute").glob("*.h"), *(ROOT / "tests/equivalence").glob("*.cpp"), *(ROOT / "tests/equivalence").glob("*.h")])
     return short_hash(*[f.read_bytes() for f in files])
 
 
@@ -258,7 +263,7 @@ def main():
                 batch = work.get_nowait()
             except queue.Empty:
                 break
-            back_end = "cpu" if of_program(batch[0].name) else "gpu"
+            back_end = "cpu" if of_program(batch[0].name) and batch[0].name not in NEAR else "gpu"
             judge = judges.setdefault(back_end, Judge(options.judge, back_end, options.killers, options.without))
             for start in range(0, len(batch), Judge.CHECK_EVERY):   # what is judged is kept when somebody ends us
                 part = batch[start:start + Judge.CHECK_EVERY]
@@ -308,6 +313,7 @@ def main():
             print(f"  {what}: {n} of {of} ({100 * n / of:.1f} %); of the {seen} that change something {100 * n / max(1, seen):.1f} %")
     tell("all", real)
     for side, of_side in (("reference", [j for j in real if j.name.startswith("cpu_ref/")]), ("host", [j for j in real if j.name in HOST]),
+                          ("the device's host", [j for j in real if j.name in NEAR]),
                           ("shaders", [j for j in real if not of_program(j.name)])):
         tell(side, of_side)
         for kinds in (("relation",), ("sign", "negative"), ("barrier",), ("logic", "not"), ("name",)):
