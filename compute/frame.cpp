@@ -17,7 +17,9 @@
 #include "compute/frame_recorder.h"
 #include "compute/frame_response.h"
 #include "compute/host_areas.h"
+#include "compute/host_contact.h"
 #include "compute/near_rays.h"
+#include "compute/posed_tool.h"
 #include "compute/stage_memory.h"
 
 namespace palpate {
@@ -48,7 +50,7 @@ struct Reach {
 class RecordedFrame final : public Frame {
  public:
   RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene)
-      : device_(device), geometry_(geometry), scene_(scene) {}
+      : device_(device), geometry_(geometry), scene_(scene), posed_(geometry.tool) {}
 
   Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
@@ -70,6 +72,7 @@ class RecordedFrame final : public Frame {
   template <class Body>
   Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
   Result<void> run(CommandRecorder& commands, Contacts& out);
+  bool solve_on_host(const Held* held, const NearLists& near, Contacts& out);
   bool join_on_host(const LatticePose& pose, const Held* held);
   void read(Contacts& out);
   Reach reach(const LatticePose& pose) const;
@@ -79,6 +82,7 @@ class RecordedFrame final : public Frame {
   const SceneGeometry& geometry_;
   const PreparedScene& scene_;
   gpu::GridConstants grid_{};
+  PosedTool posed_;
   std::optional<BroadPhase> broad_phase_;
   FrameCapacity capacity_;
   FrameBuffers buffers_;
@@ -86,6 +90,8 @@ class RecordedFrame final : public Frame {
   std::optional<FrameResponse> response_;
   std::optional<HostAreas> host_areas_;   ///< `refined`
   std::optional<NearRays> near_rays_;     ///< where rays walk
+  std::unique_ptr<HostContact> host_contact_;   ///< where small contacts are wholly the host's
+  bool host_solved_ = false;              ///< the last query's contact was
   std::vector<Int3> directions_;          ///< by counting sample, while the host joins
   HostAreas::Answer joined_;              ///< of the last frame whose areas the host joined, else empty
   /// From the pose to the sets; then, with contact, the whole response, or what follows once the host has joined areas. Null after a
@@ -134,7 +140,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, detection_->order());
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
-  if (refined && device_.areas_on_host) {
+  if (refined && device_.host_share != HostShare::kNear) {
     auto areas = HostAreas::make(device_, geometry_, scene_);
     if (!areas) return areas.error();
     host_areas_.emplace(std::move(*areas));
@@ -142,6 +148,11 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
       auto rays = NearRays::make(device_, geometry_.tool, scene_, detection_->order());
       if (!rays) return rays.error();
       near_rays_.emplace(std::move(*rays));
+      if (scene_.samples && device_.host_share == HostShare::kContacts) {
+        auto contact = HostContact::make(device_, geometry_, scene_, detection_->order(), *host_areas_, *near_rays_);
+        if (!contact) return contact.error();
+        host_contact_ = std::move(*contact);
+      }
     }
   }
   auto response = FrameResponse::create(device_, refined, scene_.rays_walk());
@@ -296,9 +307,11 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   if (!pose.beyond_lattice) out.flags = frame_flags_;
   near_full_ = gpu::kNone;
   held_overflow_ = false;
+  host_solved_ = false;
   NearLists near;
   bool rays = false;
   if (!pose.beyond_lattice) {
+    posed_.begin(pose);
     near.triangles.room = mapped<gpu::NearTriangle>(gpu::kBindNearTriangles, gpu::kListNearTriangles);
     near.touch.room = mapped<gpu::TouchCandidate>(gpu::kBindTouchCandidates, gpu::kListTouchCandidates);
     near.pairs.room = mapped<gpu::PairCandidate>(gpu::kBindPairCandidates, gpu::kListPairCandidates);
@@ -311,6 +324,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
+  if (host_contact_ && solve_on_host(held, near, out)) return {};
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
@@ -334,6 +348,23 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   read(out);
   out.times.push_back({"readback", us_since(finished)});
   return {};
+}
+
+/// False: the device has to.
+bool RecordedFrame::solve_on_host(const Held* held, const NearLists& near, Contacts& out) {
+  auto last = Clock::now();
+  const auto stage = [&](const char* name) {
+    const auto now = Clock::now();
+    out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count()});
+    last = now;
+  };
+  if (!host_contact_->solve(posed_, held, near, stage)) return false;
+  decode(host_contact_->output(), out);
+  host_solved_ = true;
+  pairs_ = out.pairs;
+  out.flags |= frame_flags_;
+  stage("readback");
+  return true;
 }
 
 /// Submits, waits, and notes the stages' times.
@@ -366,7 +397,7 @@ bool RecordedFrame::join_on_host(const LatticePose& pose, const Held* held) {
   if (!host_areas_->solve(pose, held, lists, answer)) return false;
   if (near_rays_) {
     directions_.clear();
-    for (const gpu::FrameSample& sample : lists.samples) directions_.push_back(host_areas_->direction_of(sample, lists));
+    for (const gpu::FrameSample& sample : lists.samples) directions_.push_back(lists.areas[host_areas_->area_of(sample.static_id, lists)].direction);
     HostList<std::uint32_t> places{{buffers_[gpu::kBindRayPlaces].as<std::uint32_t>(), kRayPlaces}};
     if (!near_rays_->find(pose, lists.samples, directions_, mapped<gpu::RayList>(gpu::kBindRayLists, gpu::kListSamples), places)) return false;
   }
@@ -395,7 +426,8 @@ void RecordedFrame::read(Contacts& out) {
 
 Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pairs() const {
   std::vector<gpu::ContactPair> found(pairs_);
-  if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(), found.size() * sizeof(gpu::ContactPair)); !r) return r.error();
+  if (host_solved_) found.assign(host_contact_->pairs().begin(), host_contact_->pairs().end());
+  else if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(), found.size() * sizeof(gpu::ContactPair)); !r) return r.error();
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
   for (const gpu::ContactPair& pair : found) out.emplace_back(pair.static_id, pair.mobile);
   std::sort(out.begin(), out.end());

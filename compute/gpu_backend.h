@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,13 @@ struct GpuFault {
   std::atomic<std::int64_t> after{0};     ///< so many of these calls succeed; then all fail
 };
 
+/// How much of a small contact the host works out; what it leaves, and all that is large or rare, the device does. No choice changes a bit.
+enum class HostShare : std::uint8_t {
+  kNear,       ///< lists of what is near
+  kAreas,      ///< then, once the device has found the sets, areas and directions
+  kContacts,   ///< all of it
+};
+
 struct GpuOptions {
   std::string device;             ///< part of a device's name; empty: the best usable one
   bool validation = false;        ///< validation layer with synchronisation checks; a message is an error
@@ -26,7 +34,7 @@ struct GpuOptions {
   std::shared_ptr<DiskCache> cache{};   ///< where prepared scenes are kept; may be null
   std::map<std::string, std::uint32_t> first_capacity{};   ///< for tests: items that a list of a frame holds to begin with, by its name in
                                                            ///< Contacts::truncated_capacity; lists not named here choose for themselves
-  bool areas_on_host = true;      ///< for tests: false leaves the areas of small contacts to the device, too
+  std::optional<HostShare> host_share{};   ///< for tests; empty: kContacts where the device is the host's own processor (lavapipe), else kAreas
   std::shared_ptr<GpuFault> fault{};   ///< for tests
 };
 

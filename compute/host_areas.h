@@ -38,10 +38,10 @@ class HostAreas {
   /// False: left to the device. `lists` may then be half written.
   bool solve(const LatticePose& pose, const Held* held, const ContactLists& lists, Answer& answer);
 
-  /// After solve(): n_c of the area that a counting sample belongs to.
-  Int3 direction_of(const gpu::FrameSample& sample, const ContactLists& lists) const {
-    return lists.areas[lists.slots[slot(sample.static_id, lists)].area].direction;
-  }
+  /// After solve(): the number of the area that a triangle of C_s belongs to.
+  std::uint32_t area_of(std::uint32_t static_id, const ContactLists& lists) const { return lists.slots[slot(static_id, lists)].area; }
+  /// By static id: where HostSets notes the slots of C_s.
+  std::span<std::uint32_t> slots_by_id() { return slot_of_; }
 
   static constexpr std::size_t kMostStatics = 4096;   ///< C_s beyond which the device takes over (chosen)
 

@@ -1,7 +1,6 @@
 #include "compute/near_rays.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -14,21 +13,10 @@ constexpr double kBeside = 2;
 
 }  // namespace
 
-/// A ray in the tool's lattice frame, off by less than 2^-18 of a step.
-struct NearRays::Ray {
-  double from[3], along[3];   ///< at parameter t: from + t · along; t = H / 2^30
-};
-
 Result<NearRays> NearRays::make(VulkanDevice& device, const LatticeMesh& tool, const PreparedScene& scene, std::span<const std::uint32_t> order) {
   NearRays out;
   const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
-  out.grid_ = fine.grid;
-  const Int3 n = fine.grid.bricks;
-  if (auto r = out.slots_.read(device, fine.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r)
-    return r.error();
-  if (auto r = out.bricks_.read(device, fine.bricks, fine.grid.mixed_bricks); !r) return r.error();
-  if (auto r = out.list_begin_.read(device, fine.list_begin, std::size_t{fine.grid.boundary_voxels} + 1); !r) return r.error();
-  if (auto r = out.list_triangles_.read(device, fine.list_triangles, fine.grid.list_entries); !r) return r.error();
+  if (auto r = out.fine_.read(device, fine); !r) return r.error();
   out.place_of_.resize(order.size());
   for (std::uint32_t place = 0; place < order.size(); ++place) out.place_of_[order[place]] = place;
   out.corners_.resize(order.size());
@@ -39,12 +27,10 @@ Result<NearRays> NearRays::make(VulkanDevice& device, const LatticeMesh& tool, c
 }
 
 /// What a voxel lists, without what the ray can't meet and what it has already (from `first` on).
-bool NearRays::take_list(const Ray& ray, std::uint32_t slot, unsigned bit, std::uint32_t first, HostList<std::uint32_t>& places) const {
-  const gpu::Brick& brick = bricks_[slot];
-  const std::uint32_t number = brick.first[bit >> 5] + static_cast<std::uint32_t>(std::popcount(brick.boundary[bit >> 5] & ((1u << (bit & 31)) - 1)));
+bool NearRays::take_list(const Walk& ray, std::uint32_t boundary, std::uint32_t first, HostList<std::uint32_t>& places) const {
   const double* d = ray.along;
-  for (std::uint32_t e = list_begin_[number], end = list_begin_[number + 1]; e < end; ++e) {
-    const std::uint32_t id = list_triangles_[e], place = place_of_[id];
+  for (const std::uint32_t id : fine_.list(boundary)) {
+    const std::uint32_t place = place_of_[id];
     // Seen along the ray and dropped on each of the coordinate planes, the triangle's box must hold the ray.
     double low[3], high[3];
     for (std::size_t c = 0; c < 3; ++c) {
@@ -69,60 +55,70 @@ bool NearRays::take_list(const Ray& ray, std::uint32_t slot, unsigned bit, std::
   return true;
 }
 
-/// Voxel by voxel, until one is V_ext: there the winding is 0, and what was crossed before adds up to the winding at the sample. No triangle is
-/// within a step of a V_ext voxel, so that a crossing is clearly before or behind the voxel's face: RayList::stop.
-bool NearRays::walk(const Ray& ray, gpu::RayList& out, HostList<std::uint32_t>& places) const {
-  Int3 voxel, last = 8 * grid_.bricks - 1;
-  double next[3], each[3], t = 0;   // parameter at the next face along each axis, from face to face, at the present voxel's entry
+NearRays::Turn::Turn(const LatticePose& pose) : translation(pose.translation) {
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) row[c][r] = pose.rotation_q30[r][c] * 0x1p-30;
+}
+
+NearRays::Walk NearRays::begin(const Turn& turn, const Int3& point, const Int3& along) const {
+  const gpu::GridConstants& grid = fine_.grid();
+  const Int3 d = point - turn.translation;
+  Walk walk;
   for (std::size_t k = 0; k < 3; ++k) {
     const int axis = static_cast<int>(k);
-    const double at = (ray.from[k] - grid_.origin[axis]) / grid_.size;
-    voxel[axis] = static_cast<std::int32_t>(std::floor(at));
-    const double face = ray.along[k] > 0 ? voxel[axis] + 1 - at : at - voxel[axis];
-    each[k] = ray.along[k] == 0 ? std::numeric_limits<double>::infinity() : grid_.size / std::abs(ray.along[k]);
-    next[k] = ray.along[k] == 0 ? std::numeric_limits<double>::infinity() : face * each[k];
+    walk.from[k] = turn.row[k][0] * d.x + turn.row[k][1] * d.y + turn.row[k][2] * d.z;
+    walk.along[k] = turn.row[k][0] * along.x + turn.row[k][1] * along.y + turn.row[k][2] * along.z;
+    const double at = (walk.from[k] - grid.origin[axis]) / grid.size;
+    walk.voxel[axis] = static_cast<std::int32_t>(std::floor(at));
+    const double face = walk.along[k] > 0 ? walk.voxel[axis] + 1 - at : at - walk.voxel[axis];
+    walk.each[k] = walk.along[k] == 0 ? std::numeric_limits<double>::infinity() : grid.size / std::abs(walk.along[k]);
+    walk.next[k] = walk.along[k] == 0 ? std::numeric_limits<double>::infinity() : face * walk.each[k];
   }
-  out.begin = places.count;
-  while (true) {
-    bool outside = false;
-    for (int k = 0; k < 3; ++k) outside = outside || voxel[k] < 0 || voxel[k] > last[k];
-    if (outside) break;
-    const std::uint32_t slot = slots_[static_cast<std::size_t>(voxel.x >> 3) + static_cast<std::size_t>(grid_.bricks.x) *
-                                      (static_cast<std::size_t>(voxel.y >> 3) + static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(voxel.z >> 3))];
-    if (slot == gpu::kBrickExternal) break;
-    if (slot != gpu::kBrickInternal) {
-      const auto bit = static_cast<unsigned>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
-      if ((bricks_[slot].boundary[bit >> 5] >> (bit & 31) & 1) != 0) {
-        if (!take_list(ray, slot, bit, out.begin, places)) return false;
-      } else if ((bricks_[slot].internal_[bit >> 5] >> (bit & 31) & 1) == 0) {
-        break;
-      }
-    }
-    const std::size_t k = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
-    t = next[k];
-    next[k] += each[k];
-    voxel[static_cast<int>(k)] += ray.along[k] > 0 ? 1 : -1;
-  }
-  out.end = places.count;
-  out.stop = static_cast<std::uint32_t>(std::min(std::ceil(t * 0x1p30), 4294967295.0));
-  return true;
+  return walk;
 }
+
+/// Into the next voxel.
+void NearRays::step(Walk& walk) const {
+  const std::size_t k = walk.next[0] < walk.next[1] ? (walk.next[0] < walk.next[2] ? 0 : 2) : (walk.next[1] < walk.next[2] ? 1 : 2);
+  walk.t = walk.next[k];
+  walk.next[k] += walk.each[k];
+  walk.voxel[static_cast<int>(k)] += walk.along[k] > 0 ? 1 : -1;
+}
+
+/// Voxel by voxel, until one is V_ext: there the winding is 0, and what was crossed before adds up to the winding at the sample. No triangle is
+/// within a step of a V_ext voxel, so that a crossing is clearly before or behind the voxel's face: RayList::stop.
+bool NearRays::go_on(Walk& walk, std::uint32_t first, HostList<std::uint32_t>& places) const {
+  const Int3 cells = 8 * fine_.grid().bricks;
+  for (;; step(walk)) {
+    for (int k = 0; k < 3; ++k) walk.outside = walk.outside || walk.voxel[k] < 0 || walk.voxel[k] >= cells[k];
+    if (walk.outside) return true;
+    const HostPartition::Voxel voxel = fine_.at(walk.voxel);
+    if (voxel.kind == gpu::kVoxelExternal) return true;
+    if (voxel.boundary != gpu::kNoVoxel && !take_list(walk, voxel.boundary, first, places)) return false;
+  }
+}
+
+bool NearRays::skip_external(Walk& walk) const {
+  const Int3 cells = 8 * fine_.grid().bricks;
+  for (;; step(walk)) {
+    for (int k = 0; k < 3; ++k) walk.outside = walk.outside || walk.voxel[k] < 0 || walk.voxel[k] >= cells[k];
+    if (walk.outside) return false;
+    if (fine_.at(walk.voxel).kind != gpu::kVoxelExternal) return true;
+  }
+}
+
+std::uint32_t NearRays::stop_of(const Walk& walk) { return static_cast<std::uint32_t>(std::min(std::ceil(walk.t * 0x1p30), 4294967295.0)); }
 
 bool NearRays::find(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::span<const Int3> directions, std::span<gpu::RayList> rays,
                     HostList<std::uint32_t>& places) const {
-  double turn[3][3];   // tool from world
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c) turn[c][r] = pose.rotation_q30[r][c] * 0x1p-30;
+  const Turn turn(pose);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     rays[i] = {places.count, places.count, 0};
     if (directions[i] == Int3(0)) continue;
-    const Int3 d = samples[i].point - pose.translation;
-    Ray ray{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      ray.from[k] = turn[k][0] * d.x + turn[k][1] * d.y + turn[k][2] * d.z;
-      ray.along[k] = -(turn[k][0] * directions[i].x + turn[k][1] * directions[i].y + turn[k][2] * directions[i].z);
-    }
-    if (!walk(ray, rays[i], places)) return false;
+    Walk walk = begin(turn, samples[i].point, -directions[i]);
+    if (!go_on(walk, rays[i].begin, places)) return false;
+    rays[i].end = places.count;
+    rays[i].stop = stop_of(walk);
   }
   return true;
 }

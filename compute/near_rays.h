@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/host_copy.h"
+#include "compute/host_partition.h"
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
 #include "model/lattice.h"
@@ -19,19 +19,39 @@ class NearRays {
   /// `order`: ids of the tool's triangles by place. Scene and tool outlive this. Only where PreparedScene::rays_walk().
   static Result<NearRays> make(VulkanDevice& device, const LatticeMesh& tool, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
+  /// The tool from the world, at a pose.
+  struct Turn {
+    explicit Turn(const LatticePose& pose);
+    double row[3][3];
+    Int3 translation;
+  };
+  /// One ray on its way through the tool, in its lattice frame; off by less than 2^-18 of a step.
+  struct Walk {
+    double from[3], along[3];   ///< at parameter t: from + t · along; t = H / 2^30
+    double next[3], each[3];    ///< t at the next face along each axis, and from face to face
+    double t = 0;               ///< at the present voxel's entry
+    Int3 voxel{0};
+    bool outside = false;       ///< it has left the grid
+  };
+  /// The ray from a world lattice point, `along` a direction in the world.
+  Walk begin(const Turn& turn, const Int3& point, const Int3& along) const;
+  /// Goes on to the next V_ext voxel, or out of the grid, and appends what may be crossed before (all ids once, from places[first] on, by place).
+  /// False: no room. After it, crossings below stop_of(walk) are all among them.
+  bool go_on(Walk& walk, std::uint32_t first, HostList<std::uint32_t>& places) const;
+  /// Leaves V_ext voxels behind; false: the grid ends first.
+  bool skip_external(Walk& walk) const;
+  static std::uint32_t stop_of(const Walk& walk);
+
   /// Lists the ray of each sample that leaves it along −direction of its slot's area; direction 0: nothing. False: no room.
   bool find(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::span<const Int3> directions, std::span<gpu::RayList> rays,
             HostList<std::uint32_t>& places) const;
 
  private:
-  struct Ray;
-  bool walk(const Ray& ray, gpu::RayList& out, HostList<std::uint32_t>& places) const;
-  bool take_list(const Ray& ray, std::uint32_t slot, unsigned bit, std::uint32_t first, HostList<std::uint32_t>& places) const;
+  bool take_list(const Walk& ray, std::uint32_t boundary, std::uint32_t first, HostList<std::uint32_t>& places) const;
+  void step(Walk& walk) const;
 
   using Corners = std::array<std::array<double, 3>, 3>;
-  gpu::GridConstants grid_{};
-  HostCopy<std::uint32_t> slots_, list_begin_, list_triangles_;
-  HostCopy<gpu::Brick> bricks_;
+  HostPartition fine_;
   std::vector<std::uint32_t> place_of_;   ///< by id
   std::vector<Corners> corners_;          ///< by id, tool lattice frame
 };

@@ -249,8 +249,8 @@ Result<void> VulkanDevice::make_device() {
       limits_.heap = std::max<std::uint64_t>(limits_.heap, memory_.memoryHeaps[i].size);
   // Buffers leave the driver what it needs itself.
   if (const auto left = address_space_left()) limits_.heap = std::min(limits_.heap, *left - std::min(*left, kDriverAddressSpace / 2));
-  unified_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ||
-             p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+  processor_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  unified_ = processor_ || p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
 
   Features features;
   features.base.features.shaderInt64 = VK_TRUE;
@@ -290,7 +290,7 @@ Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& opt
   if (!made) return Error{made.error().code, "no usable Vulkan device: " + made.error().sentence};
   device->fault_ = options.fault;
   device->guarded = options.guard_buffers;
-  device->areas_on_host = options.areas_on_host;
+  device->host_share = options.host_share.value_or(device->processor_ ? HostShare::kContacts : HostShare::kAreas);
   return device;
 }
 

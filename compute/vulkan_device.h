@@ -68,8 +68,8 @@ class VulkanDevice {
   /// Pipelines made so far, by module and constants; ComputePipeline::create fills it.
   std::map<std::vector<std::uint32_t>, std::shared_ptr<const PipelineObjects>> pipelines;
 
-  /// GpuOptions::areas_on_host.
-  bool areas_on_host = true;
+  /// GpuOptions::host_share, decided.
+  HostShare host_share = HostShare::kAreas;
   /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
   /// `guard_error`: the first that was found broken when its buffer died, or empty.
   bool guarded = false;
@@ -97,6 +97,7 @@ class VulkanDevice {
   Limits limits_;
   std::string name_, driver_;
   bool unified_ = false;
+  bool processor_ = false;   ///< the host's own
   std::shared_ptr<GpuFault> fault_;
   std::mutex message_mutex_;
   std::string message_;

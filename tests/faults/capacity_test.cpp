@@ -15,6 +15,7 @@ using testing::HasSubstr;
 std::unique_ptr<CollisionBackend> gpu(const std::map<std::string, std::uint32_t>& first_capacity) {
   GpuOptions options;
   options.validation = true;
+  options.host_share = HostShare::kNear;   // the lists are the device's
   options.first_capacity = first_capacity;
   auto made = make_gpu_backend(options);
   if (!made) throw std::runtime_error(made.error().sentence);

@@ -52,6 +52,7 @@ Words bound_alike(const Words& original, Words mutant, const Words& numbered) {
 MutableDevice::MutableDevice() {
   GpuOptions options;
   options.guard_buffers = true;
+  options.host_share = HostShare::kAreas;   // so that shaders are asked
   auto device = VulkanDevice::create(options);
   if (!device) throw std::runtime_error(device.error().sentence);
   device_ = std::move(*device);

@@ -1,0 +1,59 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "model/vector.h"
+
+namespace palpate::exact {
+
+/// Exact answers about lattice triangles on the host, as docs/EXACTNESS.md section 1 defines them. Coordinates are within 2^28 and a few
+/// voxels: differences within 2^29 + 1, raw normals within 2^59.2 a component, what is multiplied with them within 2^30, so that every sum
+/// fits 128 bits with room to spare. No function allocates.
+__extension__ using Wide = __int128;
+
+using Corners = std::array<Int3, 3>;
+
+/// (b − a) × (c − a).
+struct Normal {
+  std::int64_t x, y, z;
+  bool operator==(const Normal&) const = default;
+};
+inline Normal cross(const Int3& u, const Int3& v) {
+  return {std::int64_t{u.y} * v.z - std::int64_t{u.z} * v.y, std::int64_t{u.z} * v.x - std::int64_t{u.x} * v.z,
+          std::int64_t{u.x} * v.y - std::int64_t{u.y} * v.x};
+}
+inline Normal raw_normal(const Int3& a, const Int3& b, const Int3& c) { return cross(b - a, c - a); }
+inline Normal raw_normal(const Corners& t) { return raw_normal(t[0], t[1], t[2]); }
+
+inline Wide dot(const Normal& n, const Int3& d) { return Wide{n.x} * d.x + Wide{n.y} * d.y + Wide{n.z} * d.z; }
+
+template <class Integer>
+int sign(Integer v) {
+  return v < 0 ? -1 : v > 0 ? 1 : 0;
+}
+
+/// Whether two closed triangles share a point: touching and coplanar overlap count. Neither may be collapsed; `t_normal` is t's.
+bool triangles_meet(const Corners& s, const Corners& t, const Normal& t_normal);
+
+/// Whether a closed triangle touches the closed cube [low, low + side]. `normal` is the triangle's, not 0.
+bool triangle_touches_cube(const Corners& t, const Normal& normal, const Int3& low, std::int32_t side);
+
+/// A crossing of the perturbed ray.
+struct Crossing {
+  int sign = 0;               ///< +1 leaving through an outward face, −1 entering, 0 none
+  std::uint32_t height = 0;   ///< floor(t · 2^30)
+};
+/// The ray from p along d through a triangle; the largest |component| of d is in [2^28, 2^29).
+Crossing ray_crossing(const Int3& p, const Int3& d, const Corners& t);
+
+/// +1 when the way from p to q, p ≠ q, both perturbed alike, leaves through the triangle's outward face, −1 when it enters, 0 when it does
+/// not cross. A collapsed triangle is not crossed.
+int segment_crossing(const Int3& p, const Int3& q, const Corners& t);
+
+/// Where the edge pq meets the closed triangle t, if their planes cross there in one point (section 7, needles). False: nowhere.
+bool edge_crossing(Int3 p, Int3 q, const Corners& t, Int3& out);
+
+/// A direction from a sum of normals that is not 0 (section 6): shifted until the largest |component| is in [2^28, 2^29), towards 0.
+Int3 normalise(const Normal& sum);
+
+}  // namespace palpate::exact

@@ -1,0 +1,129 @@
+#include "compute/host_heights.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <tuple>
+
+namespace palpate {
+namespace {
+
+using namespace gpu;   // names of shaders/shared/frame.h
+
+}  // namespace
+
+bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, const Int3& along, bool through, std::uint32_t& out) {
+  out = kNone;
+  NearRays::Walk walk = rays_->begin(turn, p, along);
+  HostList<std::uint32_t> places{places_};
+  do {
+    if (!rays_->go_on(walk, 0, places)) return false;
+    const std::uint32_t stop = NearRays::stop_of(walk);
+    levels_.clear();
+    for (const std::uint32_t place : places.room.first(places.count)) {
+      const std::uint32_t id = order_[place];
+      const exact::Crossing crossing = exact::ray_crossing(p, along, tool.corners(id));
+      if (crossing.sign != 0 && crossing.height < stop) levels_.push_back({crossing.height, crossing.sign, id});
+    }
+  } while (through && levels_.empty() && rays_->skip_external(walk));
+  if (levels_.empty()) return true;
+
+  // The smallest height above which the signs add up to 0.
+  std::sort(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.height < b.height; });
+  std::int32_t above = 0;
+  for (const Level& level : levels_) above += level.sign;
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    above -= levels_[i].sign;
+    if (above != 0 || (i + 1 < levels_.size() && levels_[i + 1].height == levels_[i].height)) continue;
+    out = levels_[i].height;
+    return true;
+  }
+  return true;
+}
+
+/// Of the triangles crossed at the last ray's height, the smallest direction of a normal.
+Int3 HostHeights::exit_normal(PosedTool& tool, std::uint32_t height) const {
+  Int3 least(INT32_MAX);
+  for (const Level& level : levels_) {
+    if (level.height != height) continue;
+    const Int3 m = exact::normalise(exact::raw_normal(tool.corners(level.id)));
+    if (std::tie(m.x, m.y, m.z) < std::tie(least.x, least.y, least.z)) least = m;
+  }
+  return least;
+}
+
+/// H_0 of a sample on a static triangle whose ray leaves the tool through a face with the direction m: how much further, in height, the next
+/// sample of the grid lies on the same two faces. `d` is n_c.
+std::uint32_t HostHeights::fade_height(std::uint32_t static_id, const Int3& d, const Int3& m) const {
+  const LatticeMesh& mesh = geometry_->mockup;
+  const Int3 n = mesh.unit_normal_q30[static_id];
+  const int k = mesh.sample_axis[static_id], u = (k + 1) % 3, v = (k + 2) % 3;
+  const std::int64_t across = std::abs(std::int64_t{n[k]});   // ≥ 2^30 / √3
+  const auto along = [&](int w) { return std::abs(std::int64_t{m[w]} * n[k] - std::int64_t{m[k]} * n[w]) / across; };   // products within 2^59
+  const std::int64_t leaving = std::abs(std::int64_t{m.x} * d.x + std::int64_t{m.y} * d.y + std::int64_t{m.z} * d.z) >> 28;
+  const std::int64_t spacing = geometry_->sample_spacing;   // ≤ 2^28
+  const std::int64_t size = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  const std::int64_t most = std::min((spacing << 32) / size, std::int64_t{1} << 30);
+  return static_cast<std::uint32_t>(leaving == 0 ? most : std::min(most, 4 * spacing * std::max(along(u), along(v)) / leaving));
+}
+
+// H ≤ 2^31 and w < 2^31: M = (H·w) >> 30 ≤ 2^32, M·s within 2^60; w' < 2^32. Faded heights are w·H or w·H_0·ν ≤ 2^62.6.
+void HostHeights::add(AreaWork& area, const Int3& point, std::uint32_t height, std::uint32_t w, std::uint32_t fade) {
+  const auto m = static_cast<std::int64_t>(std::uint64_t{height} * w >> 30);
+  area.rays += 1;
+  area.max_height = std::max(area.max_height, height);
+  area.height_sum += m;
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t moment = m * point[k];
+    area.moment_low[k] += moment & 0xFFFFFFFF;
+    area.moment_high[k] += moment >> 32;
+  }
+
+  const std::int64_t whole = w;
+  std::int64_t weight = whole, slope = whole, faded = static_cast<std::int64_t>(std::uint64_t{height} * w >> 10);   // faded: Q20
+  if (fade >= kLeastFade && height / 3 < fade) {   // H < 3 H_0: floor(H/3) < H_0
+    const std::int64_t one = std::int64_t{1} << 18, t = static_cast<std::int64_t>((std::uint64_t{height} << 18) / fade);   // Q18, below 3
+    // 2φ in Q36, 2φ' in Q18, 12ν in Q54. Every term is below 2^63.
+    std::int64_t value = 0, rate = 0, deep = 0;
+    if (height < fade) {
+      value = 2 * t * t;
+      rate = 4 * t;
+      deep = 8 * t * t * t;
+    } else if (height - fade < fade) {
+      value = t * (10 * one - 3 * t) - 5 * one * one;
+      rate = 10 * one - 6 * t;
+      deep = t * (t * (45 * one - 12 * t) - 30 * one * one) + 5 * one * one * one;
+    } else {
+      value = t * (t - 6 * one) + 11 * one * one;
+      rate = 2 * t - 6 * one;
+      deep = t * (t * (4 * t - 27 * one) + 66 * one * one) - 27 * one * one * one;
+    }
+    weight = whole * (value >> 6) >> 31;                // w < 2^31, 2φ < 2^32 in Q30
+    const std::int64_t size = whole * std::abs(rate) >> 18;   // |2φ'| ≤ 4
+    const std::int64_t bend = size * t >> 20, step = (size << 9) / fade;
+    slope = rate < 0 ? weight - bend : weight + bend;
+    area.weight_slope += rate < 0 ? -step : step;
+    const std::int64_t down = fade * ((deep >> 24) / 12) >> 20;   // H_0·ν, Q10: H_0 ≤ 2^30, ν ≤ 3 in Q30
+    faded = whole * (down >> 20) + (whole * (down & 0xFFFFF) >> 20);
+  }
+  area.weight_sum += weight;
+  area.faded_sum += faded >> 20;
+  area.faded_rest += faded & 0xFFFFF;
+  area.height_slope += slope;
+}
+
+bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostAreas& areas, std::vector<RisenSample>& risen) {
+  const NearRays::Turn turn(tool.pose());
+  for (const FrameSample& sample : lists.samples) {
+    const std::uint32_t number = areas.area_of(sample.static_id, lists);
+    AreaWork& area = lists.areas[number];
+    if (area.direction == Int3(0)) continue;
+    std::uint32_t h = kNone;
+    if (!height(tool, turn, sample.point, -area.direction, false, h)) return false;
+    if (h == kNone) continue;
+    add(area, sample.point, h, geometry_->mockup.sample_weight_q30[sample.static_id], fade_height(sample.static_id, area.direction, exit_normal(tool, h)));
+    risen.push_back({number, sample.point, h});
+  }
+  return true;
+}
+
+}  // namespace palpate

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compute/host_areas.h"
+#include "compute/near_rays.h"
+#include "compute/posed_tool.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+
+/// A sample of an area that has a height, for those who ask what its ray meets.
+struct RisenSample {
+  std::uint32_t area;
+  Int3 point;
+  std::uint32_t height;
+};
+
+/// Heights of samples over a closed tool, and their sums (docs/EXACTNESS.md section 7, `refined`), on the host. One thread; make() keeps
+/// references to its arguments; the rest allocates only when a contact is larger than all before.
+class HostHeights {
+ public:
+  HostHeights(const SceneGeometry& geometry, const NearRays& rays, std::span<const std::uint32_t> order)
+      : geometry_(&geometry), rays_(&rays), order_(order), places_(kMostPlaces) {}
+
+  /// Traces every counting sample of an area with a direction and adds its height to the area; `risen` gets those with a height.
+  /// False: a ray may cross more than kMostPlaces triangles.
+  bool sum(PosedTool& tool, const ContactLists& lists, const HostAreas& areas, std::vector<RisenSample>& risen);
+
+  /// A height, or kNone. `through` goes on beyond V_ext voxels of the tool until something is crossed, for points that need not lie inside it.
+  /// False: as sum().
+  bool height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, const Int3& along, bool through, std::uint32_t& out);
+
+  /// A sample at `point` of weight `w` (Q30) has height H; `fade` is its H_0.
+  static void add(gpu::AreaWork& area, const Int3& point, std::uint32_t height, std::uint32_t w, std::uint32_t fade);
+
+  static constexpr std::size_t kMostPlaces = 4096;   ///< triangles that one ray may cross, beyond which the device takes over (chosen)
+
+ private:
+  struct Level {
+    std::uint32_t height;
+    std::int32_t sign;
+    std::uint32_t id;
+  };
+  std::uint32_t fade_height(std::uint32_t static_id, const Int3& d, const Int3& m) const;
+  Int3 exit_normal(PosedTool& tool, std::uint32_t height) const;
+
+  const SceneGeometry* geometry_;
+  const NearRays* rays_;
+  std::span<const std::uint32_t> order_;
+  std::vector<std::uint32_t> places_;
+  std::vector<Level> levels_;   ///< crossings of the last ray, by height
+};
+
+}  // namespace palpate

@@ -1,0 +1,65 @@
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <span>
+
+#include "compute/host_copy.h"
+#include "compute/prepared_scene.h"
+#include "model/vector.h"
+
+namespace palpate {
+
+/// A voxel partition that the host looks things up in (shaders/lib/partition.glsl says the same of it). The buffers outlive this.
+class HostPartition {
+ public:
+  /// Allocates where the buffers are not mapped.
+  Result<void> read(VulkanDevice& device, const PartitionBuffers& from) {
+    grid_ = from.grid;
+    const Int3 n = grid_.bricks;
+    if (auto r = slots_.read(device, from.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r) return r;
+    if (auto r = bricks_.read(device, from.bricks, grid_.mixed_bricks); !r) return r;
+    if (auto r = list_begin_.read(device, from.list_begin, std::size_t{grid_.boundary_voxels} + 1); !r) return r;
+    return list_triangles_.read(device, from.list_triangles, grid_.list_entries);
+  }
+  const gpu::GridConstants& grid() const { return grid_; }
+
+  struct Voxel {
+    std::uint32_t kind = gpu::kVoxelExternal;   ///< kVoxel…
+    std::uint32_t boundary = gpu::kNoVoxel;     ///< the number of a V_bnd voxel
+  };
+  /// Any voxel; beyond the grid it is V_ext.
+  Voxel at(const Int3& v) const {
+    const Int3& n = grid_.bricks;
+    for (int k = 0; k < 3; ++k)
+      if (v[k] < 0 || v[k] >= 8 * n[k]) return {};
+    const std::uint32_t slot = slots_[static_cast<std::size_t>(v.x >> 3) +
+                                      static_cast<std::size_t>(n.x) * (static_cast<std::size_t>(v.y >> 3) + static_cast<std::size_t>(n.y) * static_cast<std::size_t>(v.z >> 3))];
+    if (slot >= gpu::kBrickInternal) return {slot == gpu::kBrickInternal ? gpu::kVoxelInternal : gpu::kVoxelExternal, gpu::kNoVoxel};
+    const auto bit = static_cast<unsigned>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
+    const gpu::Brick& brick = bricks_[slot];
+    const std::uint32_t word = brick.boundary[bit >> 5];
+    if ((word >> (bit & 31) & 1) != 0)
+      return {gpu::kVoxelBoundary, brick.first[bit >> 5] + static_cast<std::uint32_t>(std::popcount(word & ((1u << (bit & 31)) - 1)))};
+    return {(brick.internal_[bit >> 5] >> (bit & 31) & 1) != 0 ? gpu::kVoxelInternal : gpu::kVoxelExternal, gpu::kNoVoxel};
+  }
+  /// The voxel that holds a lattice point.
+  Int3 voxel_of(const Int3& p) const {
+    Int3 v;
+    for (int k = 0; k < 3; ++k) {
+      const std::int64_t d = std::int64_t{p[k]} - grid_.origin[k], q = d / grid_.size;
+      v[k] = static_cast<std::int32_t>(q - (d % grid_.size < 0 ? 1 : 0));
+    }
+    return v;
+  }
+  /// What the V_bnd voxel of this number lists.
+  std::span<const std::uint32_t> list(std::uint32_t boundary) const {
+    return {&list_triangles_[list_begin_[boundary]], &list_triangles_[list_begin_[boundary + 1]]};
+  }
+
+ private:
+  gpu::GridConstants grid_{};
+  HostCopy<std::uint32_t> slots_, list_begin_, list_triangles_;
+  HostCopy<gpu::Brick> bricks_;
+};
+
+}  // namespace palpate

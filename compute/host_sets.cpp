@@ -1,0 +1,148 @@
+#include "compute/host_sets.h"
+
+namespace palpate {
+
+using namespace gpu;   // names of shaders/shared/frame.h
+
+Result<HostSets> HostSets::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
+  HostSets out;
+  out.geometry_ = &geometry;
+  out.order_ = order;
+  const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
+  if (auto r = out.mockup_.read(device, scene.mockup.partition); !r) return r.error();
+  if (auto r = out.fine_.read(device, fine); !r) return r.error();
+  if (auto r = out.fine_exit_.read(device, scene.fine_exit, fine.grid.boundary_voxels); !r) return r.error();
+  out.touched_.resize(scene.mockup.partition.grid.boundary_voxels);
+  out.mobile_at_.resize(order.size());
+  return out;
+}
+
+void HostSets::mark_static(std::uint32_t id, std::uint32_t bit, std::span<std::uint32_t> slot_of, FoundSets& out) const {
+  const std::uint32_t slot = slot_of[id];
+  if (slot < out.statics.size() && out.statics[slot].id == id) {
+    out.statics[slot].state |= bit;
+    return;
+  }
+  slot_of[id] = static_cast<std::uint32_t>(out.statics.size());
+  out.statics.push_back({id, bit, kNone, kNone});
+}
+
+void HostSets::mark_mobile(std::uint32_t id, std::uint32_t bit, FoundSets& out) {
+  const std::uint32_t at = mobile_at_[id];
+  if (at < out.mobiles.size() && out.mobiles[at].id == id) {
+    out.mobiles[at].state |= bit;
+    return;
+  }
+  mobile_at_[id] = static_cast<std::uint32_t>(out.mobiles.size());
+  out.mobiles.push_back({id, bit});
+}
+
+bool HostSets::marked(std::uint32_t id, std::uint32_t bit, const FoundSets& out) const {
+  const std::uint32_t at = mobile_at_[id];
+  return at < out.mobiles.size() && out.mobiles[at].id == id && (out.mobiles[at].state & bit) != 0;
+}
+
+/// The winding at an open sample is what a walk out of the tool crosses, along an axis of its fine grid: shaders/frame/sample_walk.comp has
+/// the proof that each voxel on the way lists all that is crossed in it.
+bool HostSets::inside(PosedTool& tool, const Int3& point) const {
+  const LatticePose& pose = tool.pose();
+  Int3 from = point, at;
+  for (int c = 0; c < 3; ++c) {   // |p − translation| < 2^31: sums within 3 · 2^61
+    std::int64_t sum = std::int64_t{1} << 29;
+    for (int r = 0; r < 3; ++r) sum += pose.rotation_q30[r][c] * (std::int64_t{point[r]} - pose.translation[r]);
+    at[c] = static_cast<std::int32_t>(sum >> 30);
+  }
+  Int3 voxel = fine_.voxel_of(at);
+  HostPartition::Voxel here = fine_.at(voxel);
+  const std::uint32_t exit = fine_exit_[here.boundary];
+  const int axis = static_cast<int>(exit >> 1), up = static_cast<int>(exit & 1);
+  int winding = 0;
+  do {
+    at[axis] = fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up);
+    const Int3 to = transform(pose, at);
+    if (here.boundary != kNoVoxel && from != to)
+      for (const std::uint32_t id : fine_.list(here.boundary)) winding += exact::segment_crossing(from, to, tool.corners(id));
+    from = to;
+    voxel[axis] += 2 * up - 1;
+    here = fine_.at(voxel);
+  } while (here.kind != kVoxelExternal);
+  return winding != 0;
+}
+
+bool HostSets::decide(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, std::size_t most_statics, FoundSets& out) {
+  const LatticeMesh& mockup = geometry_->mockup;
+  out.state = {};
+  out.statics.clear();
+  out.mobiles.clear();
+  out.samples.clear();
+  out.pairs.clear();
+  touched_voxels_.clear();
+
+  // Pairs: CST and CMT. Candidates of one tool triangle follow each other.
+  std::uint32_t place = kNone, id = 0;
+  exact::Normal normal{};
+  const exact::Corners* corners = nullptr;
+  const auto turn_to = [&](std::uint32_t next) {
+    if (next == place) return;
+    place = next;
+    id = order_[place];
+    corners = &tool.corners(id);
+    normal = exact::raw_normal(*corners);
+  };
+  for (const PairCandidate& candidate : near.pairs.room.first(near.pairs.count)) {
+    turn_to(candidate.place);
+    const std::uint32_t s = candidate.static_id;
+    if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, *corners, normal)) continue;
+    out.pairs.push_back({s, id});
+    mark_static(s, kStaticHit, slot_of, out);
+    mark_mobile(id, kMobileHit, out);
+  }
+
+  // Voxels that tool triangles touch: IMT, BMT, and what is listed there: BST. What would tell nothing new is not asked.
+  const GridConstants& grid = mockup_.grid();
+  place = kNone;
+  for (const TouchCandidate& candidate : near.touch.room.first(near.touch.count)) {
+    turn_to(candidate.place);
+    const std::uint32_t bit = candidate.boundary == kNoVoxel ? kMobileInternal : kMobileBoundary;
+    if ((candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) && marked(id, bit, out)) continue;
+    const Int3 voxel(candidate.xy & 0xFFFF, candidate.xy >> 16, candidate.z & ~kWholeBrick);
+    const std::int32_t side = (candidate.z & kWholeBrick) != 0 ? 8 * grid.size : grid.size;
+    if (!exact::triangle_touches_cube(*corners, normal, grid.origin + grid.size * voxel, side)) continue;
+    mark_mobile(id, bit, out);
+    if (candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) continue;
+    touched_[candidate.boundary] = 1;
+    touched_voxels_.push_back(candidate.boundary);
+  }
+  bool room = true;
+  for (const std::uint32_t voxel : touched_voxels_) {
+    touched_[voxel] = 0;
+    if (room)
+      for (const std::uint32_t s : mockup_.list(voxel)) mark_static(s, kStaticListed, slot_of, out);
+    room = room && out.statics.size() <= most_statics;
+  }
+  if (!room) return false;
+
+  // Samples inside the tool: EST. A first corner tells EST and does not count.
+  const auto take = [&](const FrameSample& sample) {
+    mark_static(sample.static_id & ~kCornerProbe, kStaticSampled, slot_of, out);
+    if ((sample.static_id & kCornerProbe) == 0) out.samples.push_back(sample);
+  };
+  for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
+  for (const FrameSample& sample : near.open.room.first(near.open.count))
+    if (inside(tool, sample.point)) take(sample);
+  if (out.statics.size() > most_statics) return false;
+
+  for (const StaticResult& s : out.statics) {
+    const bool hit = (s.state & kStaticHit) != 0;
+    out.state.cst += hit ? 1u : 0u;
+    out.state.bst += !hit && (s.state & kStaticListed) != 0 ? 1u : 0u;
+    out.state.est += !hit && (s.state & kStaticSampled) != 0 ? 1u : 0u;
+  }
+  for (const MobileResult& m : out.mobiles)
+    ((m.state & kMobileHit) != 0 ? out.state.cmt : (m.state & kMobileInternal) != 0 ? out.state.imt : out.state.bmt) += 1;
+  out.state.contact = out.state.cst + out.state.imt + out.state.est != 0 ? 1 : 0;
+  out.state.swallowed = out.state.contact != 0 && out.state.imt != 0 && out.state.cst + out.state.est == 0 && out.samples.empty() ? 1 : 0;
+  return true;
+}
+
+}  // namespace palpate
