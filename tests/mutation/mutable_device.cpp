@@ -52,7 +52,6 @@ Words bound_alike(const Words& original, Words mutant, const Words& numbered) {
 MutableDevice::MutableDevice() {
   GpuOptions options;
   options.guard_buffers = true;
-  options.host_share = HostShare::kAreas;   // so that shaders are asked
   auto device = VulkanDevice::create(options);
   if (!device) throw std::runtime_error(device.error().sentence);
   device_ = std::move(*device);
@@ -78,13 +77,13 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
         (tool ? made.tool : made.mockup) = std::move(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
-      device_->areas_on_host = !areas_on_host_;   // so that the pipelines of both ways are there to be swapped
+      device_->host_share = areas_on_host_ ? HostShare::kNear : HostShare::kAreas;   // so that the pipelines of both ways are there to be swapped
       if (auto other = Frame::create(*device_, geometry, this->scene(), {}); !other) return other.error();
     }
   } else {
     kept_of_ = &found->second;
   }
-  device_->areas_on_host = areas_on_host_;
+  device_->host_share = areas_on_host_ ? HostShare::kAreas : HostShare::kNear;
   auto frame = Frame::create(*device_, geometry, this->scene(), {});
   if (!frame) return frame.error();
   frame_ = std::move(*frame);

@@ -33,7 +33,7 @@ class MutableDevice final : public CollisionBackend {
   /// From the next prepare() on every pipeline of the module `original`, SPIR-V, is one of `mutant`. `prepares`: preparation runs it, so
   /// that nothing kept will do. Error: the driver refuses it.
   Result<void> swap(const std::string& original, const std::string& mutant, bool prepares);
-  /// From the next prepare() on, whether the host joins the areas of small contacts (GpuOptions::areas_on_host). At first it does not: the
+  /// From the next prepare() on, whether the host joins the areas of small contacts (GpuOptions::host_share). At first it does not: the
   /// device's own steps answer all contacts.
   void areas_on_host(bool host) { areas_on_host_ = host; }
   VulkanDevice& device() { return *device_; }
