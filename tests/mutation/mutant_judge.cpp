@@ -4,7 +4,7 @@
 //   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT; modules that include it
 //                          in: "near" NUMBER        the switch of a mutant of what the back end does on the host (compute/)
 //                          in: "intact"             whether the unchanged program still answers as at first
-// With --killers behind these only the killer cases are asked; names of cases after --without are not asked, nor is any probe then.
+// With --killers behind these only the killer cases are asked, with --probes no case of shaders but the probes alone; names of cases after --without are not asked, nor is any probe then.
 //   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when it is.
 // Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the same),
 // not-asked (no case runs the module, or the sources are not those that this program was built of).
@@ -145,8 +145,8 @@ void limit_time(double seconds) {
 
 class ShaderJudge {
  public:
-  ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, bool ask_probes)
-      : oracle_(oracle), device_(device), probes_(device.device()), root_(std::move(root)), ask_probes_(ask_probes) {}
+  ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, bool ask_probes, bool ask_cases)
+      : oracle_(oracle), device_(device), probes_(device.device()), root_(std::move(root)), ask_probes_(ask_probes), ask_cases_(ask_cases) {}
 
   void judge(const std::string& line) {
     std::istringstream fields(line);
@@ -199,6 +199,10 @@ class ShaderJudge {
         }
         continue;
       }
+      if (!ask_cases_) {
+        ++changed;
+        continue;
+      }
       const bool of_frames = name.starts_with("shaders/frame/") || name.starts_with("shaders/response/");
       if (auto r = device_.swap(original, *mutant, !of_frames); !r) difference = r.error().sentence;
       unasked = true;
@@ -244,7 +248,7 @@ class ShaderJudge {
   MutableDevice& device_;
   ShaderProbes probes_;
   std::string root_;
-  bool ask_probes_;
+  bool ask_probes_, ask_cases_;
   std::map<std::string, std::string> originals_;
 };
 
@@ -255,7 +259,7 @@ void ready(const Oracle& oracle) {
 
 using Words = std::vector<std::string>;
 
-void judge_shaders(const std::string& root, bool killers, const Words& without) {
+void judge_shaders(const std::string& root, bool killers, bool probes_alone, const Words& without) {
   MutableDevice device;
   int put_aside = 0;
   Oracle oracle(device, killers, without, [&](bool begins) {
@@ -270,7 +274,7 @@ void judge_shaders(const std::string& root, bool killers, const Words& without) 
   });
   // A case's first answer has compiled pipelines too, so this is much more than five times what it takes.
   oracle.before_case = [](double seconds) { limit_time(3 + 5 * seconds); };
-  ShaderJudge judge(oracle, device, root, without.empty());
+  ShaderJudge judge(oracle, device, root, without.empty(), !probes_alone);
   ready(oracle);
   for (std::string line; std::getline(std::cin, line);) {
     if (line.starts_with("near ")) {
@@ -311,11 +315,12 @@ void judge_reference(bool killers, const Words& without) {
 int main(int count, char** arguments) {
   const std::vector<std::string> words(arguments + 1, arguments + count);
   const bool killers = std::find(words.begin(), words.end(), "--killers") != words.end();
+  const bool probes_alone = std::find(words.begin(), words.end(), "--probes") != words.end();
   const auto left_out = std::find(words.begin(), words.end(), "--without");
   const std::vector<std::string> without(left_out == words.end() ? left_out : left_out + 1, words.end());
   try {
     if (words.size() >= 2 && words[0] == "gpu")
-      palpate::mutation::judge_shaders(words[1], killers, without);
+      palpate::mutation::judge_shaders(words[1], killers, probes_alone, without);
     else
       palpate::mutation::judge_reference(killers, without);
     return 0;

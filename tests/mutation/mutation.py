@@ -5,7 +5,7 @@
 
 JUDGE is the built mutant_judge. Prints a line a file and the survivors; writes the table with --table. A caught mutant stays caught
 until its file changes; a survivor is asked again when the oracle changes, too (--cache remembers). Status 1: a survivor that
-survivors.csv does not explain (a sample's aside), or fewer caught than --least.
+survivors.csv does not explain, or fewer caught than --least of those that change something.
 """
 import argparse
 import collections
@@ -117,8 +117,8 @@ class Judge:
 
     CHECK_EVERY = 20
 
-    def __init__(self, program, back_end, killers, without):
-        self.command = [program, back_end, str(ROOT)] + (["--killers"] if killers else []) + (["--without", *without] if without else [])
+    def __init__(self, program, back_end, flags, without):
+        self.command = [program, back_end, str(ROOT), *flags, *(["--without", *without] if without else [])]
         self.back_end, self.process = back_end, None
         self.unchecked = []
 
@@ -213,12 +213,13 @@ def main():
     arguments.add_argument("judge")
     arguments.add_argument("--only", nargs="*", default=[])
     arguments.add_argument("--sample", type=int, default=0, help="every so many mutants only, so that this many are judged")
-    arguments.add_argument("--least", type=float, default=95, help="so many in 100 must be caught")
+    arguments.add_argument("--least", type=float, default=95, help="so many in 100 of those that change something must be caught")
     arguments.add_argument("--without", nargs="*", default=[], help="cases that are not asked, to see what they are worth (and no probe)")
     arguments.add_argument("--jobs", type=int, default=1)
     arguments.add_argument("--cache", type=pathlib.Path)
     arguments.add_argument("--table", type=pathlib.Path)
     arguments.add_argument("--killers", action="store_true", help="ask the killer cases only: a first pass, whose survivors are asked again")
+    arguments.add_argument("--probes", action="store_true", help="ask shaders' mutants the probes of tests/compute alone: a first pass of seconds")
     arguments.add_argument("--known", action="store_true", help="judge nothing: only what the cache knows")
     options = arguments.parse_args()
 
@@ -226,7 +227,8 @@ def main():
     if options.sample:
         jobs = jobs[::max(1, len(jobs) // options.sample)]
     known = json.loads(options.cache.read_text()) if options.cache and options.cache.exists() else {}
-    version = oracle_version() + (" killers" if options.killers else "")
+    flags = [f"--{name}" for name in ("killers", "probes") if getattr(options, name)]
+    version = oracle_version() + "".join(f" {flag[2:]}" for flag in flags)
     for job in jobs:
         row = known.get(job.key)
         if row and (row[0] in CAUGHT or row[0] in NO_MUTANT or row[4] in (version, oracle_version()) or options.known):
@@ -264,7 +266,7 @@ def main():
             except queue.Empty:
                 break
             back_end = "cpu" if of_program(batch[0].name) and batch[0].name not in NEAR else "gpu"
-            judge = judges.setdefault(back_end, Judge(options.judge, back_end, options.killers, options.without))
+            judge = judges.setdefault(back_end, Judge(options.judge, back_end, flags, options.without))
             for start in range(0, len(batch), Judge.CHECK_EVERY):   # what is judged is kept when somebody ends us
                 part = batch[start:start + Judge.CHECK_EVERY]
                 for job in part:
@@ -318,9 +320,8 @@ def main():
         tell(side, of_side)
         for kinds in (("relation",), ("sign", "negative"), ("barrier",), ("logic", "not"), ("name",)):
             tell(f"{side}, {' and '.join(kinds)}", [j for j in of_side if j.mutant.kind in kinds])
-    # A sample has its own threshold, and what survives in it was explained, or not, with all the others.
-    few = 100 * caught < options.least * len(real)
-    return 1 if (unexplained and not options.sample) or few or len(done) < len(jobs) else 0
+    few = 100 * caught < options.least * (len(real) - len(nothing))
+    return 1 if unexplained or few or len(done) < len(jobs) else 0
 
 
 if __name__ == "__main__":
