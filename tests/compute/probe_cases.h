@@ -215,6 +215,24 @@ inline std::vector<gpu::RayCase> segments() {
   return cases;
 }
 
+/// Points of grids of every size: on faces and a step beside them, within and beyond.
+inline std::vector<gpu::CellCase> cells() {
+  std::mt19937_64 engine(8);
+  std::vector<gpu::CellCase> cases(40000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    c.side = 2 + static_cast<int>(engine() % (std::uint64_t{1} << (1 + i % 16)));
+    const int most = std::min(1 << 15, (1 << 30) / c.side);
+    for (int k = 0; k < 3; ++k) {
+      c.n[k] = 1 + static_cast<int>(engine() % static_cast<std::uint64_t>(std::min(most, 1 << (1 + i / 16 % 10))));
+      if (i % 8 == 0 && k == 0) c.n[k] = most;
+      const auto cell = static_cast<int>(engine() % static_cast<std::uint64_t>(c.n[k] + 3)) - 1;
+      c.d[k] = cell * c.side + (i % 2 == 0 ? static_cast<int>(engine() % 3) - 1 : static_cast<int>(engine() % static_cast<std::uint64_t>(c.side)));
+    }
+  }
+  return cases;
+}
+
 /// Sums of normals of every size, with weights at the bound and a step beside it.
 inline std::vector<gpu::DirectionCase> directions() {
   LatticePoints points(6);

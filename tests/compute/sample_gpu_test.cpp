@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "tests/compute/code.h"
@@ -54,6 +55,29 @@ TEST_F(Samples, LieOnTheTriangleAsTheExactQuotientSays) {
     ASSERT_EQ(Big(answers[i].point[c.axis]), third(c, normals[i]));
   }
   EXPECT_GT(found, cases.size() / 10);
+}
+
+int floor_of(std::int64_t a, std::int64_t b) { return static_cast<int>(a >= 0 ? a / b : -((-a + b - 1) / b)); }
+
+TEST_F(Samples, LieInTheCellsThatIntegersSay) {
+  const auto cases = probe_cases::cells();
+  const auto answers = run_probe<gpu::CellAnswer>(spirv::probe_cells, cases);
+  std::size_t within = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SCOPED_TRACE(i);
+    const auto& c = cases[i];
+    for (int k = 0; k < 3; ++k) {
+      const int cell = std::clamp(floor_of(c.d[k], c.side), -1, c.n[k]);
+      ASSERT_EQ(answers[i].along[k], cell);
+      ASSERT_EQ(answers[i].last[k], floor_of(c.d[k], c.side));
+      ASSERT_EQ(answers[i].first[k], floor_of(std::int64_t{c.d[k]} - 1, c.side));   // cells are closed: a face touches both
+      if (std::int64_t{c.n.x} * c.n.y * c.n.z < std::int64_t{1} << 32) {
+        ASSERT_EQ(answers[i].back[k], std::clamp(cell, 0, c.n[k] - 1));
+      }
+      within += cell >= 0 && cell < c.n[k] ? 1u : 0u;
+    }
+  }
+  EXPECT_GT(within, cases.size());
 }
 
 }  // namespace

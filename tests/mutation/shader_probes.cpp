@@ -27,6 +27,7 @@ ShaderProbes::ShaderProbes(VulkanDevice& device) : device_(device) {
   add<gpu::RayAnswer>("probe_ray", probe_cases::rays());
   add<gpu::SegmentAnswer>("probe_segment", probe_cases::segments());
   add<gpu::SampleAnswer>("probe_sample", probe_cases::samples());
+  add<gpu::CellAnswer>("probe_cells", probe_cases::cells());
   add<gpu::SeamAnswer>("probe_seam", probe_cases::seams());
   add<gpu::DirectionAnswer>("probe_direction", probe_cases::directions());
   add<gpu::HeightAnswer>("probe_heights", probe_cases::heights());

@@ -1,4 +1,4 @@
-// Both sides of the probes of lib/triangle_pair.glsl, lib/seam.glsl, lib/ray.glsl, lib/segment.glsl and lib/sample.glsl.
+// Both sides of the probes of lib/triangle_pair.glsl, lib/seam.glsl, lib/ray.glsl, lib/segment.glsl, lib/sample.glsl, lib/cells.glsl and lib/voxel_range.glsl.
 #ifndef PALPATE_PROBE_GEOMETRY_H
 #define PALPATE_PROBE_GEOMETRY_H
 #include "shaders/shared/base.h"
@@ -57,5 +57,20 @@ struct SampleAnswer {
   ivec3 point;
 };
 PALPATE_ASSERT_SIZE(SampleAnswer, 16);
+
+struct CellCase {
+  ivec3 d;                   // from the grid's origin
+  ivec3 n;                   // cells
+  int32_t side;
+  int32_t unused;
+};
+PALPATE_ASSERT_SIZE(CellCase, 32);
+
+struct CellAnswer {
+  ivec3 along;               // of cell_along
+  ivec3 first, last;         // of first_touched, last_touched by the point
+  ivec3 back;                // of the number of the cell that `along` is clamped to
+};
+PALPATE_ASSERT_SIZE(CellAnswer, 48);
 PALPATE_SHARED_END
 #endif
