@@ -14,6 +14,7 @@
 #include "compute/frame_capacity.h"
 #include "compute/frame_decode.h"
 #include "compute/frame_detection.h"
+#include "compute/frame_plan.h"
 #include "compute/frame_recorder.h"
 #include "compute/frame_response.h"
 #include "compute/host_areas.h"
@@ -41,6 +42,13 @@ Result<void> truncate(Contacts& out, const char* capacity) {
   return {};
 }
 
+bool turned(const LatticePose& pose) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
+  return false;
+}
+
 /// Where the tool is at a pose.
 struct Reach {
   Int3 low{0}, high{0};                        ///< holds the transformed tool and its inside; closed
@@ -49,15 +57,15 @@ struct Reach {
 
 class RecordedFrame final : public Frame {
  public:
-  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene)
-      : device_(device), geometry_(geometry), scene_(scene), posed_(geometry.tool) {}
+  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan)
+      : device_(device), geometry_(geometry), scene_(scene), plan_(frame_plan(plan, scene.mockup.partition.has_internal)), posed_(geometry.tool) {}
 
   Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   Result<void> enlarge() override;
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
-  std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_); }
+  std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
  private:
   /// Room for a list that the host fills.
@@ -81,6 +89,7 @@ class RecordedFrame final : public Frame {
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
   const PreparedScene& scene_;
+  const Plan plan_;
   gpu::GridConstants grid_{};
   PosedTool posed_;
   std::optional<BroadPhase> broad_phase_;
@@ -134,14 +143,14 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   const bool refined = constants.refined != 0;
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
 
-  auto detection = FrameDetection::create(device_, geometry_, scene_);
+  auto detection = FrameDetection::create(device_, geometry_, scene_, plan_);
   if (!detection) return detection.error();
   detection_ = std::move(*detection);
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, detection_->order());
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
   if (refined && device_.host_share != HostShare::kNear) {
-    auto areas = HostAreas::make(device_, geometry_, scene_);
+    auto areas = HostAreas::make(device_, geometry_, scene_, plan_.zones);
     if (!areas) return areas.error();
     host_areas_.emplace(std::move(*areas));
     if (scene_.rays_walk()) {
@@ -155,7 +164,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
       }
     }
   }
-  auto response = FrameResponse::create(device_, refined, scene_.rays_walk());
+  auto response = FrameResponse::create(device_, refined, scene_.rays_walk(), plan_);
   if (!response) return response.error();
   response_.emplace(std::move(*response));
   capacity_ = FrameCapacity::first(constants, first_capacity);
@@ -304,6 +313,10 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   out.times.clear();
   clear(out);
   pairs_ = 0;
+  out.contact_points = plan_.contact_point;
+  out.lists = plan_.telemetry;
+  if (!plan_.transform_rotates && !pose.beyond_lattice && turned(pose))
+    return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
   if (!pose.beyond_lattice) out.flags = frame_flags_;
   near_full_ = gpu::kNone;
   held_overflow_ = false;
@@ -437,8 +450,8 @@ Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pair
 }  // namespace
 
 Result<std::unique_ptr<Frame>> Frame::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                             const std::map<std::string, std::uint32_t>& first_capacity) {
-  auto out = std::make_unique<RecordedFrame>(device, geometry, scene);
+                                             const std::map<std::string, std::uint32_t>& first_capacity, const Plan& plan) {
+  auto out = std::make_unique<RecordedFrame>(device, geometry, scene, plan);
   if (auto r = out->make(first_capacity); !r) return r.error();
   return std::unique_ptr<Frame>(std::move(out));
 }

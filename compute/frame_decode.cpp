@@ -35,24 +35,24 @@ void decode_sets(const FrameOutput& output, Contacts& out) {
   for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) sort_ids(*ids);
 }
 
-void decode_sums(const AreaResult& from, ContactArea& area) {
+void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
   area.id = from.id;
   area.flags = from.flags;
   area.direction = from.direction;
   area.sheet_sign = static_cast<std::int8_t>(from.sheet_sign);
   area.rays = from.rays;
   area.max_height = from.max_height;
-  area.height_sum = from.height_sum;
+  area.height_sum = points ? from.height_sum : 0;
   area.weight_sum = from.weight_sum;
   area.faded_sum = from.faded_sum;
   area.faded_rest = from.faded_rest;
   area.weight_slope = from.weight_slope;
   area.height_slope = from.height_slope;
   for (std::size_t k = 0; k < 3; ++k) {
-    area.moment[k] = {from.moment_low[k], from.moment_high[k]};
-    area.voxel_sum[k] = from.voxel_sum[k];
+    area.moment[k] = points ? WideSum{from.moment_low[k], from.moment_high[k]} : WideSum{};
+    area.voxel_sum[k] = points ? from.voxel_sum[k] : 0;
   }
-  area.voxel_count = from.voxel_count;
+  area.voxel_count = points ? from.voxel_count : 0;
 }
 
 void decode_areas(const FrameOutput& output, Contacts& out) {
@@ -66,11 +66,26 @@ void decode_areas(const FrameOutput& output, Contacts& out) {
   out.areas.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     ContactArea& area = out.areas[i];
-    decode_sums(result.areas[order[i]], area);
+    decode_sums(result.areas[order[i]], out.contact_points, area);
     area.static_ids.clear();
     area.mobile_ids.clear();
     area.zones.clear();
     area.pierces.clear();
+  }
+
+  const auto arrange = [&] {
+    for (const AreaPierce& p : std::span(output.pierces, result.pierce_count)) out.areas[position[p.area]].pierces.push_back(position[p.pierced]);
+    for (ContactArea& area : out.areas) {
+      sort_ids(area.static_ids);
+      sort_ids(area.mobile_ids);
+      sort_ids(area.pierces);
+      std::sort(area.zones.begin(), area.zones.end(), [](const auto& a, const auto& b) { return a.front() < b.front(); });
+    }
+  };
+  if (!out.lists) {   // the next frame holds on to an area by its static triangles
+    for (const StaticResult& s : std::span(output.statics, result.static_count))
+      if (s.area < count) out.areas[position[s.area]].static_ids.push_back(s.id);
+    return arrange();
   }
 
   // Static triangles by area, zone, id; a new zone begins where its label changes.
@@ -89,13 +104,7 @@ void decode_areas(const FrameOutput& output, Contacts& out) {
   }
 
   for (const AreaMember& m : std::span(output.members, result.member_count)) out.areas[position[m.area]].mobile_ids.push_back(m.mobile);
-  for (const AreaPierce& p : std::span(output.pierces, result.pierce_count)) out.areas[position[p.area]].pierces.push_back(position[p.pierced]);
-  for (ContactArea& area : out.areas) {
-    sort_ids(area.static_ids);
-    sort_ids(area.mobile_ids);
-    sort_ids(area.pierces);
-    std::sort(area.zones.begin(), area.zones.end(), [](const auto& a, const auto& b) { return a.front() < b.front(); });
-  }
+  arrange();
 }
 
 }  // namespace
@@ -120,7 +129,7 @@ void decode(const FrameOutput& output, Contacts& out) {
   if (!sets_are_whole(result.state)) return;
   out.contact = result.state.contact != 0;
   out.pairs = result.pair_count;
-  decode_sets(output, out);
+  if (out.lists) decode_sets(output, out);
   if (!out.contact || out.truncated) return;
   out.flags = result.flags;
   out.swallowed_direction = result.swallowed_direction;

@@ -15,7 +15,7 @@ struct FrameOutput {
 
 /// Puts a frame's output in the order that Contacts asks for: ids ascending, areas by id, zones by first id. Writes all of `out`
 /// but its times, reusing its memory. A frame that overflowed becomes a truncated one without areas, and
-/// without sets unless they were complete.
+/// without sets unless they were complete. Where Contacts::lists is false, sets, zones and mobile ids stay empty.
 void decode(const FrameOutput& output, Contacts& out);
 
 /// Empties all of `out` but its times: free of contact.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "compute/frame_plan.h"
 #include "compute/tool_order.h"
 #include "shaders/code.h"
 
@@ -15,8 +16,10 @@ constexpr std::uint32_t kMostBinsBits = 9;
 
 }  // namespace
 
-Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
+Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
+                                                               const Plan& plan) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
+  out->plan_ = plan;
   out->order_ = order_in_space(geometry.tool);
   out->refined_ = scene.constants.refined != 0;
   out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
@@ -121,6 +124,7 @@ Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeM
 }
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
+  const std::vector<SpecConstant> plan = plan_constants(plan_);
   const SpecConstant no_inside[] = {{0, inside_ ? 0u : 1u}};
   const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}}, begin[] = {{0, bins_bits_}};
   struct Made {
@@ -155,7 +159,9 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   };
   for (const Made& m : all) {
     if (!m.wanted) continue;
-    auto shader = make_frame_shader(device, *m.code, m.push_bytes, m.constants);
+    std::vector<SpecConstant> constants(m.constants.begin(), m.constants.end());
+    constants.insert(constants.end(), plan.begin(), plan.end());
+    auto shader = make_frame_shader(device, *m.code, m.push_bytes, constants);
     if (!shader) return shader.error();
     *m.shader = std::move(*shader);
   }
@@ -169,7 +175,7 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   if (!walks_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
 
   // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the tool's partition knows.
-  recorder.stage("imt");
+  recorder.stage(plan_.imt ? "imt" : "bmt");   // one dispatch decides both
   recorder.run_items(voxel_touch_, kListTouchCandidates);
   recorder.stage("pairs");
   recorder.run_items(pair_test_, kListPairCandidates);

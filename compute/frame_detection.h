@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kRayPlaces = 1u << 18;
 class FrameDetection {
  public:
   /// Makes the pipelines.
-  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
+  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan);
 
   /// Makes the buffers of the lists and tables into `buffers`; those that are large enough already stay. Before the first record(), and
   /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
@@ -45,6 +45,7 @@ class FrameDetection {
   Result<void> make_shaders(VulkanDevice& device);
   void record_samples(FrameRecorder& recorder) const;
 
+  Plan plan_;
   bool refined_ = false;
   bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
   bool closed_ = false;   ///< the tool's surface: open samples walk out of it

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <bit>
+#include <vector>
 
+#include "compute/frame_plan.h"
 #include "shaders/code.h"
 
 namespace palpate {
@@ -31,7 +33,7 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
            {kBindResponseState, "response state", sizeof(ResponseState), false, BufferKind::kUpload},
            {kBindAreas, "contact areas", kMaxFrameAreas * sizeof(AreaWork), false, BufferKind::kUpload},
            {kBindSlots, "slots of contact triangles", statics * sizeof(SlotWork), false, BufferKind::kUpload},
-           {kBindParents, "union-find of contact triangles", statics * 2 * sizeof(std::uint32_t)},
+           {kBindParents, "union-find of contact triangles", statics * (plan_.zones ? 2 : 1) * sizeof(std::uint32_t)},
            {kBindMobileWork, "tool triangles of areas", tool_triangles * std::uint64_t{sizeof(MobileWork)}},
            {kBindHeights, "heights", heights * sizeof(std::uint32_t)},
            {kBindFades, "fades of heights", refined * heights * sizeof(std::uint32_t)},
@@ -48,8 +50,15 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
   return {};
 }
 
-Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, bool walks) {
+Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, bool walks, const Plan& plan) {
   FrameResponse out;
+  out.plan_ = plan;
+  const std::vector<SpecConstant> left_out = plan_constants(plan);
+  const auto with_plan = [&](std::span<const SpecConstant> constants) {
+    std::vector<SpecConstant> all(constants.begin(), constants.end());
+    all.insert(all.end(), left_out.begin(), left_out.end());
+    return all;
+  };
   out.refined_ = refined;
   out.walks_ = walks;
   const std::array<SpecConstant, 4> constants = {{{0, refined ? 1u : 0u}, {1, 0u}, {2, walks ? 1u : 0u}, {3, 0u}}};
@@ -57,9 +66,9 @@ Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, 
   struct ShaderPlan {
     FrameShader& shader;
     const ShaderCode& code;
-    bool only_refined = false, only_paper = false;
+    bool only_refined = false, only_paper = false, kept = true;
   };
-  for (const ShaderPlan& plan : std::initializer_list<ShaderPlan>{
+  for (const ShaderPlan& made_for : std::initializer_list<ShaderPlan>{
            {out.begin_, spirv::response_begin},
            {out.areas_begin_, spirv::areas_begin},
            {out.areas_join_, spirv::areas_join},
@@ -82,23 +91,23 @@ Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, 
            {out.pierce_find_, spirv::pierce_find, true},
            {out.needle_pairs_, spirv::needle_pairs, true},
            {out.needle_trace_, spirv::needle_trace, true},
-           {out.points_sum_, spirv::points_sum, false, true},
-           {out.swallow_march_, spirv::swallow_march, true},
+           {out.points_sum_, spirv::points_sum, false, true, plan.contact_point},
+           {out.swallow_march_, spirv::swallow_march, true, false, plan.imt},
            {out.areas_result_, spirv::areas_result},
        }) {
-    if (refined ? plan.only_paper : plan.only_refined) continue;
-    auto made = make_frame_shader(device, plan.code, 0, constants);
+    if (!made_for.kept || (refined ? made_for.only_paper : made_for.only_refined)) continue;
+    auto made = make_frame_shader(device, made_for.code, 0, with_plan(constants));
     if (!made) return made.error();
-    plan.shader = std::move(*made);
+    made_for.shader = std::move(*made);
   }
   if (walks) {
     const std::array<SpecConstant, 4> listed = {{{0, 1u}, {1, 0u}, {2, 1u}, {3, 1u}}};
-    auto made = make_frame_shader(device, spirv::heights_trace, 0, listed);
+    auto made = make_frame_shader(device, spirv::heights_trace, 0, with_plan(listed));
     if (!made) return made.error();
     out.heights_listed_ = std::move(*made);
   }
   if (refined) {
-    auto made = make_frame_shader(device, spirv::nearest_find, 0, numbering);
+    auto made = make_frame_shader(device, spirv::nearest_find, 0, with_plan(numbering));
     if (!made) return made.error();
     out.nearest_number_ = std::move(*made);
   }
@@ -143,6 +152,7 @@ void FrameResponse::record_directions(FrameRecorder& recorder) const {
   recorder.barrier();
   recorder.run_dispatch(areas_settle_, kDispatchNearestOne);
   recorder.barrier();
+  if (!plan_.imt) return;
   recorder.stage("swallowed");
   recorder.run_dispatch(swallow_march_, kDispatchSwallowed);
 }
@@ -167,7 +177,7 @@ void FrameResponse::record_heights(FrameRecorder& recorder, const FrameShader& t
 
 void FrameResponse::record_paper(FrameRecorder& recorder) const {
   recorder.run_dispatch(mobile_normals_, kDispatchMembers);
-  recorder.run_dispatch(points_sum_, kDispatchTouchedVoxels);
+  if (plan_.contact_point) recorder.run_dispatch(points_sum_, kDispatchTouchedVoxels);
   recorder.barrier();
   recorder.run_dispatch(areas_direct_, kDispatchContactOne);
   recorder.barrier();

@@ -4,6 +4,7 @@
 #include "compute/frame_capacity.h"
 #include "compute/frame_recorder.h"
 #include "compute/vulkan_device.h"
+#include "model/plan.h"
 #include "model/result.h"
 #include "shaders/shared/frame_response.h"
 
@@ -13,8 +14,8 @@ namespace palpate {
 /// leaves. Owns pipelines; its buffers live in FrameBuffers. Allocates when made, not when a frame runs.
 class FrameResponse {
  public:
-  /// Makes the pipelines. `walks`: PreparedScene::rays_walk().
-  static Result<FrameResponse> create(VulkanDevice& device, bool refined, bool walks = false);
+  /// Makes the pipelines of what `plan` keeps. `walks`: PreparedScene::rays_walk().
+  static Result<FrameResponse> create(VulkanDevice& device, bool refined, bool walks = false, const Plan& plan = {});
 
   /// Makes the buffers 72 and above in `buffers`; those that are large enough already stay. Before the first record(), and again when the
   /// capacity has grown. Error: one buffer is beyond a limit, or out of memory.
@@ -34,6 +35,7 @@ class FrameResponse {
   void record_areas(FrameRecorder& recorder) const;
 
   bool refined_ = true, walks_ = false;
+  Plan plan_;
   FrameShader begin_, areas_begin_, areas_join_, samples_count_, areas_number_, areas_gather_, held_count_, areas_associate_;
   FrameShader areas_first_, mobile_tiles_, mobile_samples_, mobile_normals_, areas_direct_, nearest_distance_, nearest_number_;
   FrameShader areas_settle_, heights_trace_, heights_listed_, heights_sum_, areas_follow_, pierce_boxes_, pierce_find_, needle_pairs_;

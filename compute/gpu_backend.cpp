@@ -22,10 +22,15 @@ class GpuBackend final : public CollisionBackend {
     frame_.reset();
     scene_.reset();
     if (auto found = scene_for(geometry, plan, progress); !found) return found;
-    auto frame = Frame::create(*device_, geometry, *scene_, first_capacity_);
-    if (!frame) return frame.error();
-    frame_ = std::move(*frame);
-    return device_->check_guards();
+    geometry_ = &geometry;
+    return make_frame(plan);
+  }
+
+  Result<void> replan(const Plan& plan) override {
+    if (!scene_ || (plan.profile == Profile::kRefined) != (scene_->constants.refined != 0))
+      return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
+    frame_.reset();   // two frames' lists may not fit
+    return make_frame(plan);
   }
 
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
@@ -60,6 +65,13 @@ class GpuBackend final : public CollisionBackend {
   }
 
  private:
+  Result<void> make_frame(const Plan& plan) {
+    auto frame = Frame::create(*device_, *geometry_, *scene_, first_capacity_, plan);
+    if (!frame) return frame.error();
+    frame_ = std::move(*frame);
+    return device_->check_guards();
+  }
+
   /// Fills scene_, from the cache if it is there.
   Result<void> scene_for(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
@@ -76,6 +88,7 @@ class GpuBackend final : public CollisionBackend {
   std::unique_ptr<VulkanDevice> device_;
   std::map<std::string, std::uint32_t> first_capacity_;
   std::shared_ptr<DiskCache> cache_;
+  const SceneGeometry* geometry_ = nullptr;   ///< of scene_
   std::optional<PreparedScene> scene_;
   std::unique_ptr<Frame> frame_;
 };

@@ -65,8 +65,9 @@ int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv
 
 }  // namespace
 
-Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
+Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, bool zones) {
   HostAreas out;
+  out.zones_ = zones;
   out.geometry_ = &geometry;
   out.constants_ = scene.constants;
   const std::size_t triangles = geometry.mockup.triangles.size();
@@ -78,7 +79,7 @@ Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geo
     return r.error();
   if (auto r = out.bricks_.read(device, p.bricks, p.grid.mixed_bricks); !r) return r.error();
   out.slot_of_.resize(triangles);
-  out.parents_.resize(2 * std::min(triangles, kMostStatics));
+  out.parents_.resize((zones ? 2 : 1) * std::min(triangles, kMostStatics));
   out.tool_samples_.resize(geometry.tool.triangles.size(), kNone);
   return out;
 }
@@ -93,7 +94,7 @@ void HostAreas::join(std::uint32_t a, std::uint32_t b, const ContactLists& lists
   b = root(b);
   if (a == b) return;
   // The root of a set is its smallest id.
-  if (lists.statics[a >> 1].id > lists.statics[b >> 1].id) std::swap(a, b);
+  if (lists.statics[slot_of_node(a)].id > lists.statics[slot_of_node(b)].id) std::swap(a, b);
   parents_[b] = a;
 }
 
@@ -107,8 +108,8 @@ void HostAreas::join_all(const ContactLists& lists) {
   const LatticeMesh& mesh = geometry_->mockup;
   for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
     slot_of_[lists.statics[i].id] = i;
-    parents_[2 * i] = 2 * i;
-    parents_[2 * i + 1] = 2 * i + 1;
+    parents_[area_node(i)] = area_node(i);
+    if (zones_) parents_[zone_node(i)] = zone_node(i);
   }
   for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
     const std::uint32_t id = lists.statics[i].id;
@@ -116,15 +117,15 @@ void HostAreas::join_all(const ContactLists& lists) {
     for (std::uint32_t e = mesh.neighbour_begin[id]; e < mesh.neighbour_begin[id + 1] && mesh.neighbours[e] >> 1 < id; ++e) {
       const std::uint32_t to = slot(mesh.neighbours[e] >> 1, lists);
       if (to == kNone) continue;
-      join(2 * i, 2 * to, lists);
-      if ((mesh.neighbours[e] & 1) != 0) join(2 * i + 1, 2 * to + 1, lists);
+      join(area_node(i), area_node(to), lists);
+      if (zones_ && (mesh.neighbours[e] & 1) != 0) join(zone_node(i), zone_node(to), lists);
     }
     // Seams are smooth by definition.
     for (std::uint32_t e = seam_begin_[id]; e < seam_begin_[id + 1] && seams_[e] < id; ++e) {
       const std::uint32_t to = slot(seams_[e], lists);
       if (to == kNone) continue;
-      join(2 * i, 2 * to, lists);
-      join(2 * i + 1, 2 * to + 1, lists);
+      join(area_node(i), area_node(to), lists);
+      if (zones_) join(zone_node(i), zone_node(to), lists);
     }
   }
 }
@@ -134,9 +135,9 @@ void HostAreas::gather(const ContactLists& lists) {
   const LatticeMesh& mesh = geometry_->mockup;
   for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
     StaticResult& result = lists.statics[i];
-    const std::uint32_t id = result.id, number = lists.slots[root(2 * i) >> 1].area, samples = lists.slots[i].samples;
+    const std::uint32_t first = slot_of_node(root(area_node(i))), id = result.id, number = lists.slots[first].area, samples = lists.slots[i].samples;
     result.area = number;
-    result.zone = root(2 * i + 1) >> 1;
+    result.zone = zones_ ? slot_of_node(root(zone_node(i))) : first;
     lists.slots[i].area = number;
     AreaWork& area = lists.areas[number];
     for (int k = 0; k < 3; ++k) {
@@ -332,7 +333,7 @@ bool HostAreas::solve(const LatticePose& pose, const Held* held, const ContactLi
   join_all(lists);
   for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
     lists.slots[i] = {kNone, 0};
-    if (parents_[2 * i] != 2 * i) continue;
+    if (parents_[area_node(i)] != area_node(i)) continue;
     if (answer.areas == kMaxFrameAreas) return false;
     lists.slots[i].area = answer.areas;
     AreaWork& area = lists.areas[answer.areas++];

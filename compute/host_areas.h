@@ -30,7 +30,8 @@ struct ContactLists {
 /// One thread; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
 class HostAreas {
  public:
-  static Result<HostAreas> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
+  /// `zones`: the mock-up has edges that are not smooth.
+  static Result<HostAreas> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, bool zones = true);
 
   struct Answer {
     std::uint32_t areas = 0, members = 0;
@@ -46,6 +47,9 @@ class HostAreas {
   static constexpr std::size_t kMostStatics = 4096;   ///< C_s beyond which the device takes over (chosen)
 
  private:
+  std::uint32_t area_node(std::uint32_t slot) const { return zones_ ? 2 * slot : slot; }
+  std::uint32_t zone_node(std::uint32_t slot) const { return 2 * slot + 1; }   ///< where zones are joined
+  std::uint32_t slot_of_node(std::uint32_t node) const { return zones_ ? node >> 1 : node; }
   std::uint32_t root(std::uint32_t node);
   void join(std::uint32_t a, std::uint32_t b, const ContactLists& lists);
   void join_all(const ContactLists& lists);
@@ -64,7 +68,8 @@ class HostAreas {
   HostCopy<std::uint32_t> seam_begin_, seams_, brick_slots_;
   HostCopy<gpu::Brick> bricks_;
   std::vector<std::uint32_t> slot_of_;          ///< by static id; valid where C_s has it there
-  std::vector<std::uint32_t> parents_;          ///< node 2·slot joins areas, 2·slot + 1 zones
+  bool zones_ = true;                           ///< false: every edge is smooth, an area is one zone
+  std::vector<std::uint32_t> parents_;          ///< by node
   std::vector<std::uint32_t> tool_samples_;     ///< by tool triangle: kNone until counted
 };
 

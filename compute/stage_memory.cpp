@@ -46,12 +46,17 @@ constexpr std::uint64_t kPlaceholderBytes = 64;
 
 }  // namespace
 
-std::vector<StageMemory> stage_memory(const FrameBuffers& buffers) {
+std::vector<StageMemory> stage_memory(const FrameBuffers& buffers, bool zones) {
   std::vector<StageMemory> memory;
   for (const BufferUse& use : kUses) memory.push_back({std::string(use.stage), 0});
   for (std::int32_t binding = 0; binding < FrameBuffers::kBindings; ++binding) {
     const auto line = std::find_if(memory.begin(), memory.end(), [&](const StageMemory& m) { return m.stage == stage_of(binding); });
     if (buffers.bytes(binding) > kPlaceholderBytes) line->bytes += buffers.bytes(binding);
+  }
+  // Areas and zones are joined in halves of one buffer.
+  if (const std::uint64_t half = buffers.bytes(kBindParents) / 2; zones && half > kPlaceholderBytes) {
+    std::find_if(memory.begin(), memory.end(), [](const StageMemory& m) { return m.stage == "areas"; })->bytes -= half;
+    memory.push_back({"zones", half});
   }
   return memory;
 }

@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// Bytes of a frame's buffers, its own and the scene's, by the first stage of `palpate plan` that uses them.
-std::vector<StageMemory> stage_memory(const FrameBuffers& buffers);
+/// Bytes of a frame's buffers, its own and the scene's, by the first stage of `palpate plan` that uses them. `zones`: they are joined, too.
+std::vector<StageMemory> stage_memory(const FrameBuffers& buffers, bool zones);
 
 }  // namespace palpate

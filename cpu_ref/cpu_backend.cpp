@@ -40,7 +40,8 @@ class CpuBackend final : public CollisionBackend {
     try {
       auto scene = std::make_unique<Prepared>();
       scene->geometry = &geometry;
-      scene->profile = plan.profile;   // the plan's other lines never change an answer: here everything runs
+      scene->profile = plan.profile;
+      plan_ = plan;
       auto mockup = make_partition(geometry.mockup, geometry.mockup_grid, 0, progress);
       if (!mockup) return mockup.error();
       scene->mockup = std::move(*mockup);
@@ -67,11 +68,18 @@ class CpuBackend final : public CollisionBackend {
     if (!scene_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
     try {
       if (!pose.beyond_lattice) answer(pose, held, out);
+      leave_out(out);
       return {};
     } catch (const std::exception& failure) {
       out = Contacts();
       return Error{ErrorCode::kInternal, std::string("The CPU reference failed: ") + failure.what()};
     }
+  }
+
+  Result<void> replan(const Plan& plan) override {
+    if (!scene_ || plan.profile != scene_->profile) return Error{ErrorCode::kInternal, "The CPU reference has not been prepared for this profile."};
+    plan_ = plan;
+    return {};
   }
 
   Result<VoxelPartition> partition(bool tool) const override {
@@ -129,6 +137,26 @@ class CpuBackend final : public CollisionBackend {
     for (Area& area : areas) out.areas.push_back(std::move(area.out));
   }
 
+  /// Everything is worked out here, so that nothing that a plan changes can change the rest; what nobody asks for is then taken away.
+  void leave_out(Contacts& out) const {
+    out.contact_points = plan_.contact_point;
+    out.lists = plan_.telemetry;
+    if (!out.lists)
+      for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) ids->clear();
+    for (ContactArea& area : out.areas) {
+      if (!out.lists) {
+        area.zones.clear();
+        area.mobile_ids.clear();
+      }
+      if (out.contact_points) continue;
+      area.height_sum = 0;
+      area.moment = {};
+      area.voxel_sum = {};
+      area.voxel_count = 0;
+    }
+  }
+
+  Plan plan_;
   std::unique_ptr<Prepared> scene_;
   BoxTree tool_tree_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;   ///< of the last query, for pairs()

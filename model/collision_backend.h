@@ -33,6 +33,10 @@ class CollisionBackend {
   /// Allocates; takes as long as it takes. A second call replaces the first scene.
   virtual Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) = 0;
 
+  /// The same prepared scene under another plan of the same profile: what it adds is made, what it leaves out is gone. Takes milliseconds; not
+  /// while a query runs. Error: as prepare(), or the profile is another one; the back end may have to be prepared again.
+  virtual Result<void> replan(const Plan&) { return Error{ErrorCode::kInternal, "the " + name() + " back end knows one plan"}; }
+
   /// Answers one pose. `held` may be null (a lone query). Writes `out` whole, reusing its memory.
   /// An error means that the back end itself failed (device lost): the caller sends zero force.
   virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;

@@ -63,6 +63,8 @@ struct Contacts {
   std::vector<std::uint32_t> cst, bst, cmt, bmt, imt, est;   ///< ascending
   std::vector<ContactArea> areas;       ///< ascending id; empty without contact
   std::uint32_t flags = 0;
+  bool contact_points = true;           ///< false: the plan leaves them out; moments, height_sum and voxel_sum are 0
+  bool lists = true;                    ///< false: the plan leaves the six sets, zones and mobile_ids out
   Int3 swallowed_direction{0};          ///< as ContactArea::direction, when flags has kFlagSwallowed
   std::uint32_t swallowed_height = 0;   ///< H along it
   struct StageTime { const char* stage; double us; };

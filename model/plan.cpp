@@ -35,7 +35,11 @@ PlanFacts scene_facts(const Scene& scene, const SceneGeometry& geometry) {
 
 }  // namespace
 
-PlanFacts query_facts(const Scene& scene, const SceneGeometry& geometry) { return scene_facts(scene, geometry); }
+PlanFacts query_facts(const Scene& scene, const SceneGeometry& geometry) {
+  PlanFacts facts = scene_facts(scene, geometry);
+  facts.subscribers = true;
+  return facts;
+}
 
 PlanFacts session_facts(const Scene& scene, const SceneGeometry& geometry, bool subscribers) {
   PlanFacts facts = scene_facts(scene, geometry);
@@ -60,6 +64,7 @@ PlanDecision decide_plan(const PlanFacts& facts) {
   };
   const bool refined = facts.profile == Profile::kRefined;
   plan.profile = facts.profile;
+  plan.spare_absent = !facts.full;
 
   plan.transform_rotates = facts.tool_rotates || facts.full;
   line("transform", true,
@@ -87,19 +92,30 @@ PlanDecision decide_plan(const PlanFacts& facts) {
   line("rays", true, "heights along n_c give the depth");
   if (facts.torque_wanted)
     plan.contact_point = line("contact_point", true, "torque needs the contact point");
-  else if (facts.tool_rotates)
-    plan.contact_point = line("contact_point", true, "no torque axis, but the tool turns about its contact point, which the force follows");
   else
-    plan.contact_point = line("contact_point", false, "the device has no torque axis and the tool does not rotate");
+    plan.contact_point = line("contact_point", false, "the device has no torque axis, and force alone needs no point");
   if (facts.torque_wanted)
     plan.torque = line("torque", true, "torque is asked for");
   else
     plan.torque = line("torque", false, "the device has no torque axis");
   if (facts.subscribers)
-    plan.telemetry = line("telemetry", true, "somebody listens");
+    plan.telemetry = line("telemetry", true, "somebody reads lists of triangles: a viewer, a recording or a query");
   else
-    plan.telemetry = line("telemetry", false, "nobody listens");
+    plan.telemetry = line("telemetry", false, "nobody listens: no lists of triangles are made");
   return decision;
+}
+
+Plan whole_plan_without(Profile profile, const std::string& stage) {
+  Plan plan;
+  plan.profile = profile;
+  plan.est = profile == Profile::kRefined;
+  if (stage == "transform") plan.transform_rotates = false;
+  if (stage == "imt") plan.imt = false;
+  if (stage == "zones") plan.zones = false;
+  if (stage == "contact_point") plan.contact_point = plan.torque = false;
+  if (stage == "torque") plan.torque = false;
+  if (stage == "telemetry") plan.telemetry = false;
+  return plan;
 }
 
 }  // namespace palpate

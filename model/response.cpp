@@ -122,6 +122,7 @@ void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeome
   out.wrench = {};
   out.flags = contacts.flags;
   out.contact = contacts.contact;
+  out.contact_points = contacts.contact_points;
   out.areas.clear();
   if (contacts.truncated || !contacts.contact) return;
 
@@ -138,7 +139,9 @@ void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeome
       response.depth = metres_per_height * (faded_height(area) / static_cast<double>(area.weight_sum));
       response.max_depth = metres_per_height * (static_cast<double>(area.max_height) / kQ30);
       response.slope = slope_of(area, profile);
-      if (profile == Profile::kPaper) {
+      if (!contacts.contact_points) {
+        // stays gc: no torque
+      } else if (profile == Profile::kPaper) {
         if (area.voxel_count > 0)
           response.point = to_metres(lattice, Vec3(area.voxel_sum[0], area.voxel_sum[1], area.voxel_sum[2]) /
                                                   static_cast<double>(area.voxel_count));

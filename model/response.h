@@ -17,7 +17,7 @@ struct AreaResponse {
   double depth = 0;          ///< d, m, ≥ 0; of the area that gives force for a pierced plate: the smallest of its group
   double max_depth = 0;      ///< largest height, m
   double slope = 1;          ///< ∂d/∂h: how d changes as the tool goes deeper along n_c; may leave [0, 1] where samples come in
-  Vec3 point{0};             ///< cp, m
+  Vec3 point{0};             ///< cp, m; gc where the plan leaves it out
   Vec3 force{0};             ///< K d n_c, N; 0 for an area silenced by piercing
   Vec3 torque{0};            ///< (cp − gc) × F, N·m
   std::uint32_t flags = 0;   ///< ContactFlag bits
@@ -29,6 +29,7 @@ struct ContactResponse {
   Wrench wrench;             ///< sum over areas
   std::uint32_t flags = 0;
   bool contact = false;
+  bool contact_points = true;   ///< as Contacts::contact_points; false: no cp, and all torques are 0
   std::vector<AreaResponse> areas;   ///< as Contacts::areas; a swallowed tool gives one area with id 0xFFFFFFFF
 };
 

@@ -168,6 +168,8 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   run_app->add_option("--firmware", run.firmware, "firmware file for a device that needs one")->type_name("FILE");
   run_app->add_option("--duration", run.duration_s, "seconds; without it to the end of the path")
       ->type_name("S");
+  run_app->add_option("--switch", run.switches, "SECONDS:WORD, again and again: then go over to profile paper or refined, or plan full or auto, without a missed tick")
+      ->type_name("S:WORD");
   run_app->add_option("--out", run.out, "directory for the files; default a fresh palpate-run-…")->type_name("DIR");
   run_app->footer(kRunFooter);
   run_app->callback([&] { outcome = run_command(run, parts); });

@@ -46,6 +46,7 @@ struct SceneOptions {
   std::string backend;                ///< "gpu", "cpu" or empty: gpu, else cpu with a sentence
   std::optional<Profile> profile;     ///< in place of the scene's
   bool full_plan = false;
+  bool second_backend = false;        ///< for going over to another plan in mid-run
   ImportLimits import = {};           ///< of each mesh file
 };
 
@@ -55,6 +56,7 @@ struct RunOptions {
   std::string device;                 ///< in place of the scene's; empty: the scene's
   std::string firmware;
   std::optional<double> duration_s;
+  std::vector<std::string> switches;  ///< "SECONDS:WORD", WORD paper, refined, full or auto: what the run goes over to, and when
   std::string out;                    ///< empty: a fresh directory
 };
 

@@ -47,7 +47,7 @@ void add_poses(CLI::App& app, BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
-  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it, stability of the force, punctuality of the loop");
+  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it, plans, errors, stability of the force, punctuality of the loop");
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
@@ -84,6 +84,23 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   stability->footer("In virtual time: the shipped law closed over springs, over a bouncing wall, and over the real collision query. critical_k is found by\n"
                     "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and torque, and energy given out.");
   stability->callback([&] { outcome = bench_stability(options, parts); });
+
+  CLI::App* plan = bench->add_subcommand("plan", "scenes that lack something: the whole plan beside their own, the same bits, time and memory");
+  plan->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  plan->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  plan->add_option("--rounds", options.rounds, "times that all poses are gone through, the two plans in turns (3)")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))
+      ->type_name("N");
+  plan->footer("A row a scene, plan and stage; `total` is the whole frame, its median over the poses in contact, and all memory. A stage that a plan leaves\n"
+               "out has no row. Before anything is written, both plans' answers are held against each other bit by bit.");
+  plan->callback([&] { outcome = bench_plan(options, parts); });
+
+  CLI::App* numerics = bench->add_subcommand("numerics", "stiff and extreme cases beside the same method in plain single and double precision: where each breaks");
+  numerics->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  numerics->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  numerics->footer("Swept: K, scale, offset from the origin, aspect of triangles, depth, sample spacing, gaps, age of results. The error is of the force, relative; for\n"
+                   "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; `breaks` in results.json sums up.");
+  numerics->callback([&] { outcome = bench_numerics(options, parts); });
 
   CLI::App* jitter = bench->add_subcommand("jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
   add_common(*jitter, options);

@@ -32,6 +32,8 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts);
 Result<void> bench_error(const BenchOptions& options, const Parts& parts);
 Result<void> bench_peers(const BenchOptions& options, const Parts& parts);
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts);
+Result<void> bench_plan(const BenchOptions& options, const Parts& parts);
+Result<void> bench_numerics(const BenchOptions& options, const Parts& parts);
 Result<void> bench_jitter(const BenchOptions& options, const Parts& parts);
 
 /// Adds `bench` with its subcommands; `options`, `parts` and `outcome` outlive the parsing.

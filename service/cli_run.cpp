@@ -88,6 +88,31 @@ Result<void> write_text(const fs::path& path, const std::string& text) {
   return {};
 }
 
+/// The plans that the run goes over to, in the order of time.
+Result<std::vector<PlanChange>> read_switches(const RunOptions& options, const LoadedScene& loaded) {
+  std::vector<PlanChange> out;
+  const Scene& scene = loaded.scene;
+  PlanFacts facts = session_facts(scene, loaded.geometry, true);
+  facts.full = options.common.full_plan;
+  for (const std::string& text : options.switches) {
+    const std::size_t colon = text.find(':');
+    const std::string word = colon == std::string::npos ? "" : text.substr(colon + 1);
+    std::size_t read = 0;
+    double seconds = -1;
+    try {
+      seconds = std::stod(text.substr(0, colon), &read);
+    } catch (const std::exception&) {
+    }
+    if (read != std::min(colon, text.size()) || !(seconds >= 0 && seconds < 1e6) || (!out.empty() && seconds * 1000 < static_cast<double>(out.back().tick)))
+      return bad_value(fmt::format("--switch {}: a time in seconds comes first, none before the last one's", text));
+    if (word == "paper" || word == "refined") facts.profile = word == "paper" ? Profile::kPaper : Profile::kRefined;
+    else if (word == "full" || word == "auto") facts.full = word == "full";
+    else return bad_value(fmt::format("--switch {}: after the colon comes paper, refined, full or auto", text));
+    out.push_back({std::llround(seconds * 1000), {decide_plan(facts).plan, facts.torque_wanted}});
+  }
+  return out;
+}
+
 Result<void> check_options(const RunOptions& options) {
   if (options.duration_s && !(std::isfinite(*options.duration_s) && *options.duration_s > 0))
     return bad_value(fmt::format("--duration {} is not a positive number of seconds", *options.duration_s));
@@ -99,7 +124,9 @@ Result<void> check_options(const RunOptions& options) {
 Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (auto done = check_options(options); !done) return done;
   Console console;
-  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options.common, Purpose::kSession, parts, console);
+  SceneOptions common = options.common;
+  common.second_backend = !options.switches.empty();
+  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(common, Purpose::kRecording, parts, console);
   if (!prepared) return prepared.error();
   LoadedScene& loaded = (*prepared)->loaded;
   std::string driver = options.device.empty() ? loaded.scene.device.driver : options.device;
@@ -114,6 +141,8 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   Result<std::unique_ptr<HapticDevice>> device = parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m, options.firmware);
   if (!device) return device.error();
 
+  const Result<std::vector<PlanChange>> switches = read_switches(options, loaded);
+  if (!switches) return switches.error();
   const Result<fs::path> directory = output_directory(options.out, options.common.scene);
   if (!directory) return directory.error();
   Result<std::unique_ptr<Recorder>> recorder = Recorder::create(directory->string());
@@ -127,6 +156,11 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   session.pace = options.asap ? Pace::kAsap : Pace::kRealtime;
   session.duration_s = options.duration_s;
   session.stop = &interrupt_flag();
+  PlanSwitch plans(loaded.geometry, std::move((*prepared)->second));
+  if (!switches->empty()) {
+    session.plans = &plans;
+    session.changes = *switches;
+  }
   ReportSeries series;
   RunWatch watch(**recorder, series, console, loaded.scene);
   const Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);

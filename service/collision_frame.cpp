@@ -23,8 +23,20 @@ void clear(Contacts& contacts) {
 
 }  // namespace
 
-CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques)
-    : geometry_(geometry), backend_(backend), profile_(profile), stiffness_(stiffness), torques_(torques) {}
+CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques, PlanSwitch* plans)
+    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques) {}
+
+/// Goes over to another plan, if one is ready. What is held names triangles, which no plan changes; but another profile begins anew.
+void CollisionFrame::take_plan() noexcept {
+  const PlanTarget* next = plans_ ? plans_->take(backend_) : nullptr;
+  if (!next) return;
+  ++plan_changes_;
+  if (next->plan.profile == profile_ && next->torques == torques_) return;
+  ++felt_changes_;
+  if (next->plan.profile != profile_) held_ = {};
+  profile_ = next->plan.profile;
+  torques_ = next->torques;
+}
 
 Result<void> CollisionFrame::solve(FrameSlot& slot, LawResult& result) noexcept {
   // A library's exception must not pass the control loop's thread, nor end the program with force on.
@@ -38,6 +50,7 @@ Result<void> CollisionFrame::solve(FrameSlot& slot, LawResult& result) noexcept 
 }
 
 Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
+  take_plan();
   const auto start = std::chrono::steady_clock::now();   // recorded, decides nothing
   const auto lattice_pose = to_lattice(slot.sample.pose, geometry_);
   if (!lattice_pose) return lattice_pose.error();
@@ -45,7 +58,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
 
   if (slot.lattice_pose.beyond_lattice) {
     clear(slot.contacts);
-  } else if (auto answered = backend_.query(slot.lattice_pose, &held_, slot.contacts); !answered) {
+  } else if (auto answered = backend_->query(slot.lattice_pose, &held_, slot.contacts); !answered) {
     return answered;
   }
   respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response, &held_);
@@ -53,6 +66,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
 
   result = {};
   result.tick = slot.sample.tick;
+  result.change = felt_changes_;
   result.rotation = slot.sample.pose.rotation;
   result.gc = slot.sample.pose.position + slot.sample.pose.rotation * geometry_.tool_gc_m;
   fill_law_result(slot.response, stiffness_, result);

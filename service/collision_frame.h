@@ -7,6 +7,7 @@
 #include "model/scene_geometry.h"
 #include "service/histogram.h"
 #include "service/law_result.h"
+#include "service/plan_switch.h"
 #include "service/run_record.h"
 
 namespace palpate {
@@ -34,9 +35,10 @@ struct FrameSlot {
 /// Used by one thread at a time. Allocates only as the back end and growing lists do.
 class CollisionFrame {
  public:
-  /// All three outlive this. `torques`: the device has torque axes; without them the plan may have left out
+  /// All outlive this. `plans`: where other plans come from in mid-run, with back ends of their own; may be null. `torques`: the device has torque axes; without them the plan may have left out
   /// contact points, so torques and levers are not used.
-  CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques);
+  CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques,
+                 PlanSwitch* plans = nullptr);
 
   /// Fills `slot` (its sample is set by the caller) and `result`. An error means that the back end failed, by
   /// status or by exception, or that the pose isn't one: the caller sends zero force.
@@ -46,19 +48,24 @@ class CollisionFrame {
   std::uint64_t frames() const { return frame_ns_.total(); }
   std::uint64_t truncated_frames() const { return truncated_frames_; }
   const char* truncated_capacity() const { return truncated_capacity_; }   ///< of the last truncated frame
+  std::uint64_t plan_changes() const { return plan_changes_; }
   std::uint32_t areas_max() const { return areas_max_; }
   std::uint64_t merged_frames() const { return merged_frames_; }           ///< more areas than the force law keeps apart
 
  private:
+  void take_plan() noexcept;
   Result<void> answer(FrameSlot& slot, LawResult& result);
 
   const SceneGeometry& geometry_;
-  CollisionBackend& backend_;
+  CollisionBackend* backend_;
+  PlanSwitch* plans_;
   Profile profile_;
   double stiffness_;
   bool torques_;
   Held held_;
   Histogram frame_ns_;
+  std::uint64_t plan_changes_ = 0;
+  std::uint32_t felt_changes_ = 0;
   std::uint64_t truncated_frames_ = 0, merged_frames_ = 0;
   const char* truncated_capacity_ = "";
   std::uint32_t areas_max_ = 0;

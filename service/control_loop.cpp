@@ -54,6 +54,8 @@ const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
   if (law_.took_fresh()) {
     device_.fresh();
     result_tick_ = fresh->tick;
+    if (fresh->change != change_) device_.restart_fade();   // another profile or device: nothing is as it was felt
+    change_ = fresh->change;
     record_.response = fresh->wrench;
     record_.contact = fresh->contact;
   }

@@ -48,6 +48,7 @@ class ControlTick {
   LawPose pose_;
   TickRecord record_;
   std::int64_t result_tick_ = -1;
+  std::uint32_t change_ = 0;   ///< of the newest result
   std::uint64_t ticks_ = 0, unready_ticks_ = 0;
   Histogram result_age_;
   std::array<bool, kMaxStages> stages_{};

@@ -55,6 +55,12 @@ class Writer {
     for (int i = 0; i < 3; ++i) number(v[i]);
     close(']');
   }
+  void vector_or_null(std::string_view name, const Vec3& v, bool known) {
+    if (known) return vector(name, v);
+    key(name);
+    separate();
+    out_ += "null";
+  }
   void ids(std::span<const std::uint32_t> list) {
     open('[');
     for (const std::uint32_t id : list) integer(id);
@@ -85,7 +91,7 @@ class Writer {
 /// Clocks tell no less than a nanosecond; more digits would be noise of the arithmetic.
 double to_nanoseconds(double us) { return std::round(us * 1000) / 1000; }
 
-void write_area(Writer& json, const QueryLine& line, const ContactArea& area, const AreaResponse& response) {
+void write_area(Writer& json, const QueryLine& line, const ContactArea& area, const AreaResponse& response, bool points) {
   json.open('{');
   json.key("id");
   json.integer(area.id);
@@ -100,9 +106,9 @@ void write_area(Writer& json, const QueryLine& line, const ContactArea& area, co
   json.vector("normal", response.normal);
   json.key("depth");
   json.number(response.depth);
-  json.vector("point", response.point);
+  json.vector_or_null("point", response.point, points);
   json.vector("force", response.force);
-  json.vector("torque", response.torque);
+  json.vector_or_null("torque", response.torque, points);
   json.flags(response.flags);
   if (line.heights) {
     json.key("rays");
@@ -136,10 +142,10 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   json.open('[');
   // A swallowed tool adds a response that belongs to no area of triangles; a truncated frame has no response at all.
   for (std::size_t i = 0; i < contacts.areas.size(); ++i)
-    write_area(json, line, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{});
+    write_area(json, line, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{}, response.contact_points);
   json.close(']');
   json.vector("force", response.wrench.force);
-  json.vector("torque", response.wrench.torque);
+  json.vector_or_null("torque", response.wrench.torque, response.contact_points);
   json.flags(response.flags);
   json.key("truncated");
   json.boolean(contacts.truncated);

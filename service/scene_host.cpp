@@ -18,7 +18,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 PlanFacts facts_of(const LoadedScene& loaded, Purpose purpose, bool full) {
   PlanFacts facts = purpose == Purpose::kQuery ? query_facts(loaded.scene, loaded.geometry)
-                                               : session_facts(loaded.scene, loaded.geometry, false);
+                                               : session_facts(loaded.scene, loaded.geometry, purpose == Purpose::kRecording);
   facts.full = full;
   return facts;
 }
@@ -66,6 +66,11 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, watch.note);
   if (!backend) return backend.error();
   prepared->backend = std::move(*backend);
+  if (options.second_backend) {
+    auto second = choose_backend(options.backend, parts, [](const std::string&) {});
+    if (!second) return second.error();
+    prepared->second = std::move(*second);
+  }
 
   watch.step("reading the meshes");
   const auto load_start = Clock::now();

@@ -14,12 +14,17 @@ namespace palpate {
 struct HostedScene {
   LoadedScene loaded;
   std::unique_ptr<CollisionBackend> backend;
+  std::unique_ptr<CollisionBackend> second;   ///< only if asked for; not prepared
   PlanDecision plan;
   double load_s = 0, prepare_s = 0;   ///< wall time, first-run shader compilation included
 };
 
 /// Who asks: it decides which facts the plan rests on.
-enum class Purpose : std::uint8_t { kQuery, kSession };
+enum class Purpose : std::uint8_t {
+  kQuery,
+  kSession,     ///< a device, and nobody who reads more than forces
+  kRecording,   ///< a session whose frames are recorded
+};
 
 /// Who follows a preparation. All are called on the preparing thread.
 struct PrepareWatch {

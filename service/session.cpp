@@ -100,7 +100,7 @@ struct Run {
       : scene(loaded.scene),
         options(session_options),
         device(safe),
-        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe)),
+        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans),
         tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m),
         observer(run_observer),
         ticks(tick_count(safe, session_options)) {}
@@ -129,11 +129,26 @@ struct Run {
   std::optional<Error> error;
 };
 
+/// Hands out the changes whose tick has come.
+class Changes {
+ public:
+  explicit Changes(const SessionOptions& options) : options_(options) {}
+  template <class Take>
+  void up_to(std::int64_t tick, Take&& take) {
+    for (; options_.plans && next_ < options_.changes.size() && options_.changes[next_].tick <= tick; ++next_) take(*options_.plans, options_.changes[next_].target);
+  }
+
+ private:
+  const SessionOptions& options_;
+  std::size_t next_ = 0;
+};
+
 /// Virtual time: the answer to the pose of tick i arrives at tick i + delay, and then the next query starts.
 /// Nothing here asks a clock, so equal scenes give equal bytes.
 void run_asap(Run& run) {
   const std::int64_t delay = run.scene.control.virtual_delay_ticks;
   FrameSlot slot;
+  Changes changes(run.options);
   LawResult arrived, pending;
   for (std::int64_t i = 0; static_cast<std::uint64_t>(i) < run.ticks; ++i) {
     if (run.options.stop && run.options.stop->load(std::memory_order_relaxed)) {
@@ -146,6 +161,7 @@ void run_asap(Run& run) {
     if (i % delay == 0) {
       arrived = pending;
       if (arrived.tick >= 0) fresh = &arrived;
+      changes.up_to(i, [](PlanSwitch& plans, const PlanTarget& target) { plans.prepare_now(target); });
       slot.sample = sample;
       if (auto solved = run.frame.solve(slot, pending); !solved) {
         run.error = solved.error();
@@ -162,6 +178,7 @@ void run_realtime(Run& run) {
   using TickQueue = boost::lockfree::spsc_queue<TickRecord, boost::lockfree::capacity<kTickQueue>>;
   const auto records = std::make_unique<TickQueue>();
   CollisionWorker worker(run.frame);
+  Changes changes(run.options);
   LoopSignals signals;
   signals.stop = run.options.stop;
   RealtimeGrant granted;
@@ -173,7 +190,10 @@ void run_realtime(Run& run) {
   });
 
   const auto drain = [&] {
-    records->consume_all([&](const TickRecord& record) { run.observer.tick(record); });
+    records->consume_all([&](const TickRecord& record) {
+      changes.up_to(record.tick, [](PlanSwitch& plans, const PlanTarget& target) { plans.request(target); });
+      run.observer.tick(record);
+    });
     while (FrameSlot* slot = worker.next_frame()) {
       run.observer.frame(slot->record());
       worker.release(slot);
@@ -230,11 +250,15 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.dropped_ticks = run.dropped_ticks;
   out.dropped_frames = run.dropped_frames;
   out.stopped = run.timing.stopped;
+  out.plan_changes = run.frame.plan_changes();
   out.failure = failure_of(run);
 
   const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
   if (!run.realtime_note.empty()) note(run.realtime_note);
   for (std::string& sentence : backend.take_notes()) note(std::move(sentence));
+  if (run.options.plans)
+    for (std::string& sentence : run.options.plans->take_notes()) note(std::move(sentence));
+  if (out.plan_changes > 0) note("the session went over to another plan " + std::to_string(out.plan_changes) + (out.plan_changes > 1 ? " times" : " time"));
   if (out.watchdog_ticks > 0)
     note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " + std::to_string(out.watchdog_ticks) +
          " ticks: the watchdog faded the force out");

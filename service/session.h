@@ -10,6 +10,7 @@
 #include "model/collision_backend.h"
 #include "model/result.h"
 #include "model/scene.h"
+#include "service/plan_switch.h"
 #include "service/run_record.h"
 
 namespace palpate {
@@ -19,10 +20,19 @@ enum class Pace : std::uint8_t {
   kAsap,       ///< virtual time: one thread, no clock in anything that decides, the same bytes every time
 };
 
+/// Another plan at a tick of a run.
+struct PlanChange {
+  std::int64_t tick = 0;
+  PlanTarget target;
+};
+
 struct SessionOptions {
   Pace pace = Pace::kRealtime;
   std::optional<double> duration_s{};         ///< empty: to the end of the device's path; without a path: until stop
                                               ///< in real time, one second in virtual time
+  PlanSwitch* plans = nullptr;                ///< where other plans come from in mid-run, asked through it or by `changes`; may be null
+  std::vector<PlanChange> changes{};          ///< ascending; needs `plans`. In virtual time the new plan answers from its tick on, in real time once
+                                              ///< it has been prepared
   const std::atomic<bool>* stop = nullptr;    ///< set it (also from a signal handler) to end the run with zero force
 };
 
@@ -48,6 +58,7 @@ struct SessionSummary {
   std::uint64_t frames = 0;
   std::uint64_t watchdog_ticks = 0;          ///< ticks without a fresh result for longer than the watchdog
   std::uint64_t saturated_ticks = 0;         ///< ticks where a device limit shortened force or torque
+  std::uint64_t plan_changes = 0;            ///< in mid-run
   std::uint64_t dropped_ticks = 0, dropped_frames = 0;   ///< not recorded because the recording thread fell behind
   bool stopped = false;                      ///< ended by `stop`, before its duration
   std::optional<Error> failure;              ///< why the run ended before its time: back end, device fault, exception, recording; with zero force

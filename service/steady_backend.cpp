@@ -24,6 +24,15 @@ Result<void> SteadyBackend::prepare(const SceneGeometry& geometry, const Plan& p
   return prepare_spare(progress);
 }
 
+Result<void> SteadyBackend::replan(const Plan& plan) {
+  if (first_)
+    if (auto done = first_->replan(plan); !done) return done;
+  if (spare_ready_)
+    if (auto done = spare_->replan(plan); !done) return done;
+  plan_ = plan;
+  return {};
+}
+
 Result<void> SteadyBackend::prepare_spare(const Progress& progress) {
   if (!spare_) spare_ = make_spare_();
   if (auto prepared = spare_->prepare(*geometry_, plan_, progress); !prepared) return prepared;

@@ -22,6 +22,8 @@ class SteadyBackend final : public CollisionBackend {
 
   /// The first back end, or, if that fails, the spare. Keeps `plan` for a spare that is needed later.
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override;
+  /// Of the first back end; a spare that has been prepared follows at once, one that will be is prepared for it.
+  Result<void> replan(const Plan& plan) override;
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
 
   Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }

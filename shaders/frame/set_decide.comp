@@ -3,6 +3,7 @@
 // Is there contact, is the tool swallowed, and how many groups the response needs; the sets' counts go to the host. A lone invocation.
 // Reads frame_lists, frame_state; writes dispatches, starts result. An overflow before this leaves the response out.
 #include "shaders/lib/frame.glsl"
+#include "shaders/lib/plan.glsl"
 #include "shaders/shared/frame_response.h"
 
 CONSTANT(kBindScene, SceneConstants, scene);
@@ -35,7 +36,7 @@ void main() {
     dispatches[kDispatchPairs] = frame_lists[kListPairs].items;
     dispatches[kDispatchTouchedVoxels] = frame_lists[kListTouchedVoxels].items;
     dispatches[kDispatchHeldStatics] = groups_for((frame_input.held_statics + kGroupSize - 1u) / kGroupSize);
-    if (scene.refined != 0u && frame_state.imt != 0u && frame_state.cst + frame_state.est == 0u && frame_lists[kListSamples].count == 0u) {
+    if (INTERNAL && scene.refined != 0u && frame_state.imt != 0u && frame_state.cst + frame_state.est == 0u && frame_lists[kListSamples].count == 0u) {
       frame_state.swallowed = 1u;
       dispatches[kDispatchSwallowedOne] = one;
       dispatches[kDispatchSwallowed] = groups_for(frame_input.near_triangles);

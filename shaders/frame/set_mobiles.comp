@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Names the sets of C_m. An invocation a member; counts into frame_state, writes result_mobiles.
 #include "shaders/lib/frame.glsl"
+#include "shaders/lib/plan.glsl"
 
 READ(kBindContactMobiles, uint32_t, contact_mobiles);
 READ(kBindMobileState, uint32_t, mobile_state);
@@ -17,7 +18,7 @@ void main() {
   result_mobiles[item] = MobileResult(mobile, state);
   if ((state & kMobileHit) != 0u)
     atomicAdd(frame_state.cmt, 1u);
-  else if ((state & kMobileInternal) != 0u)
+  else if (INTERNAL && (state & kMobileInternal) != 0u)
     atomicAdd(frame_state.imt, 1u);
   else
     atomicAdd(frame_state.bmt, 1u);

@@ -34,8 +34,9 @@ void main() {
   const int32_t size = scene.mockup.grid.size, side = (z & uint32_t(kWholeBrick)) != 0u ? 8 * size : size;
   const ivec3 low = scene.mockup.grid.origin + size * voxel;
   if (!triangle_touches_box(a, b, c, raw_normal(a, b, c), low, low + side)) return;
-  mark_mobile(r.id, boundary == kNoVoxel ? kMobileInternal : kMobileBoundary);
-  if (boundary == kNoVoxel || (atomicOr(voxel_state[boundary], kVoxelTouched) & kVoxelTouched) != 0u) return;
+  const bool internal = INTERNAL && boundary == kNoVoxel;
+  mark_mobile(r.id, internal ? kMobileInternal : kMobileBoundary);
+  if (internal || (atomicOr(voxel_state[boundary], kVoxelTouched) & kVoxelTouched) != 0u) return;
 
   const uint32_t at = atomicAdd(frame_lists[kListTouchedVoxels].count, 1u);
   if (at < frame_lists[kListTouchedVoxels].capacity) touched_voxels[at] = uvec4(boundary, voxel);

@@ -1,9 +1,11 @@
 // The lattice pose, both ways; the file that includes this has `FrameInput frame_input`.
 #ifndef PALPATE_POSE_GLSL
 #define PALPATE_POSE_GLSL
+#include "shaders/lib/plan.glsl"
 
 // World lattice point of tool lattice point v (model/lattice.h). |v| ≤ 2^28, |R| ≤ 2^30: sums within 3 · 2^58.
 ivec3 world_from_tool(ivec3 v) {
+  if (!ROTATES) return v + frame_input.translation;
   ivec3 p;
   for (int r = 0; r < 3; ++r) {
     const int64_t sum = int64_t(frame_input.rotation_q30[3 * r]) * int64_t(v.x) + int64_t(frame_input.rotation_q30[3 * r + 1]) * int64_t(v.y) +
@@ -15,6 +17,7 @@ ivec3 world_from_tool(ivec3 v) {
 
 // Tool lattice point of world lattice point p (docs/EXACTNESS.md section 4). |p − translation| < 2^31: sums within 3 · 2^61.
 ivec3 tool_from_world(ivec3 p) {
+  if (!ROTATES) return p - frame_input.translation;
   const i64vec3 d = i64vec3(p) - i64vec3(frame_input.translation);
   ivec3 q;
   for (int c = 0; c < 3; ++c) {
@@ -27,6 +30,7 @@ ivec3 tool_from_world(ivec3 p) {
 
 // How far, per tool axis, a world offset of at most `offset` steps an axis can move the tool lattice point: |R^T| · offset and rounding.
 ivec3 tool_reach(int32_t offset) {
+  if (!ROTATES) return ivec3(offset + 2);
   ivec3 reach;
   for (int c = 0; c < 3; ++c) {
     const int64_t sum = int64_t(abs(frame_input.rotation_q30[c])) + int64_t(abs(frame_input.rotation_q30[3 + c])) +

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
+#include "shaders/lib/union_nodes.glsl"
 
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT(kBindParents, uint32_t, parents);
@@ -13,7 +14,7 @@ EDIT(kBindSlots, SlotWork, slots);
 void main() {
   const uint32_t slot = flat_invocation();
   if (slot >= frame_lists[kListContactStatics].count) return;
-  parents[2u * slot] = 2u * slot;
-  parents[2u * slot + 1u] = 2u * slot + 1u;
+  parents[area_node(slot)] = area_node(slot);
+  if (ZONES) parents[zone_node(slot)] = zone_node(slot);
   slots[slot] = SlotWork(kNone, 0u);
 }

@@ -28,8 +28,8 @@ void main() {
   const uint32_t slot = flat_invocation();
   if (slot >= frame_lists[kListContactStatics].count) return;
   const uint32_t id = contact_statics[slot];
-  const uint32_t root = union_root(2u * slot) >> 1;
-  const uint32_t zone = union_root(2u * slot + 1u) >> 1;
+  const uint32_t root = slot_of_node(union_root(area_node(slot)));
+  const uint32_t zone = ZONES ? slot_of_node(union_root(zone_node(slot))) : root;
   const uint32_t area = slots[root].area;
   result_statics[slot].area = area;
   result_statics[slot].zone = zone;

@@ -31,8 +31,8 @@ void main() {
     if (other >= id) break;   // ascending: the rest joins from its own side
     if (static_state[other] == 0u) continue;
     const uint32_t to = static_slot[other];
-    union_join(2u * slot, 2u * to);
-    if ((neighbours[e] & 1u) != 0u) union_join(2u * slot + 1u, 2u * to + 1u);
+    union_join(area_node(slot), area_node(to));
+    if (ZONES && (neighbours[e] & 1u) != 0u) union_join(zone_node(slot), zone_node(to));
   }
   if (!REFINED) return;
   for (uint32_t e = seam_begin[id]; e < seam_begin[id + 1u] && !spent(1u); ++e) {
@@ -40,7 +40,7 @@ void main() {
     if (other >= id) break;
     if (static_state[other] == 0u) continue;
     const uint32_t to = static_slot[other];
-    union_join(2u * slot, 2u * to);
-    union_join(2u * slot + 1u, 2u * to + 1u);
+    union_join(area_node(slot), area_node(to));
+    if (ZONES) union_join(zone_node(slot), zone_node(to));
   }
 }

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
+#include "shaders/lib/union_nodes.glsl"
 
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
@@ -16,7 +17,7 @@ EDIT(kBindSlots, SlotWork, slots);
 
 void main() {
   const uint32_t slot = flat_invocation();
-  if (slot >= frame_lists[kListContactStatics].count || parents[2u * slot] != 2u * slot) return;
+  if (slot >= frame_lists[kListContactStatics].count || parents[area_node(slot)] != area_node(slot)) return;
   const uint32_t area = atomicAdd(response.areas, 1u);
   if (area >= kMaxFrameAreas) {
     atomicOr(frame_state.overflow_other, kOverflowAreas);

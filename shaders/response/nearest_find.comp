@@ -5,6 +5,7 @@
 // Before: areas_direct; for NUMBER the distances.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
+#include "shaders/lib/plan.glsl"
 #include "shaders/shared/frame_response.h"
 
 layout(constant_id = 1) const bool NUMBER = false;
@@ -51,7 +52,7 @@ void main() {
     return;
   }
   for (uint32_t bit = 0u; bit < 512u; ++bit) {
-    const uint32_t word = mockup_bricks[slot].boundary[bit >> 5] | mockup_bricks[slot].internal_[bit >> 5];
+    const uint32_t word = mockup_bricks[slot].boundary[bit >> 5] | (INTERNAL ? mockup_bricks[slot].internal_[bit >> 5] : 0u);
     if ((word >> (bit & 31u) & 1u) != 0u) continue;
     const ivec3 voxel = 8 * at + ivec3(bit & 7u, bit >> 3 & 7u, bit >> 6);
     offer(r, voxel, distance_of(voxel, p));

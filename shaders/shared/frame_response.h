@@ -21,7 +21,7 @@ PALPATE_CONSTANT int32_t kBindHeights = 78;           // uint32_t[samples] (`pap
 PALPATE_CONSTANT int32_t kBindSlotBoxes = 79;         // LatticeBox[C_s / kSlotBox]
 PALPATE_CONSTANT int32_t kBindNeedleTable = 80;       // uint32_t[2^n]: hash of (area, tool vertex) + 1; 0 between frames
 PALPATE_CONSTANT int32_t kBindNeedleVertices = 81;    // kListNeedleVertices: NeedleVertex
-PALPATE_CONSTANT int32_t kBindParents = 82;           // uint32_t[2 · C_s]: union-find, lib/union_find.glsl
+PALPATE_CONSTANT int32_t kBindParents = 82;           // uint32_t[2 · C_s], without zones [C_s]: union-find, lib/union_find.glsl
 PALPATE_CONSTANT int32_t kBindFades = 83;             // uint32_t[samples]: H_0 (not in `paper`)
 
 // ---- lists, dispatches, overflows ----------------------------------------------------------------------------------------

@@ -52,13 +52,19 @@ TEST(Plan, WithoutSharpEdgesThereAreNoZones) {
   EXPECT_FALSE(decide_plan(facts).plan.zones);
 }
 
-TEST(Plan, ADeviceWithoutTorqueAxesNeedsTheContactPointOnlyWhileItsToolRotates) {
+TEST(Plan, ADeviceWithoutTorqueAxesNeedsNeitherContactPointNorTorque) {
   PlanFacts facts;
   facts.torque_wanted = false;
-  EXPECT_TRUE(decide_plan(facts).plan.contact_point);   // the force follows the turning contact point
-  EXPECT_FALSE(decide_plan(facts).plan.torque);
-  facts.tool_rotates = false;
   EXPECT_FALSE(decide_plan(facts).plan.contact_point);
+  EXPECT_FALSE(decide_plan(facts).plan.torque);
+}
+
+TEST(Plan, NobodyListeningNeedsNoLists) {
+  EXPECT_FALSE(decide_plan({}).plan.telemetry);
+  PlanFacts facts;
+  facts.subscribers = true;
+  EXPECT_TRUE(decide_plan(facts).plan.telemetry);
+  EXPECT_TRUE(query_facts({}, {}).subscribers) << "a query's answer names triangles";
 }
 
 TEST(Plan, ProfilePaperHasNoEst) {
@@ -74,6 +80,8 @@ TEST(Plan, TheWholePlanKeepsAllAndSaysWhatItCouldSpare) {
   facts.full = true;
   const PlanDecision decision = decide_plan(facts);
   EXPECT_EQ(decision.plan, Plan{});
+  EXPECT_FALSE(decision.plan.spare_absent);
+  EXPECT_TRUE(decide_plan(poor_facts()).plan.spare_absent);
   for (const PlanStage& line : decision.stages) EXPECT_TRUE(line.kept) << line.stage;
   EXPECT_THAT(stage(decision, "zones").reason, testing::HasSubstr("else"));
 }

@@ -129,4 +129,24 @@ def test_an_interrupt_ends_a_real_time_run_with_whole_files():
         expect((out / 'report.html').read_text().rstrip().endswith('</html>'), 'report')
 
 
+def test_a_run_goes_over_to_another_profile_and_back():
+    folder = Folder()
+    folder.write('block.stl', stl(box((0.08, 0.08, 0.04), (0, 0, -0.02))))
+    folder.write('ball.stl', stl(sphere(0.01)))
+    folder.write('path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.012,0,0,0,1,0\n0.3,0,0,0.004,0,0,0,1,0\n1,0,0,0.004,0,0,0,1,0\n')
+    scene = folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'}, device={'driver': 'simulated', 'path': 'path.csv'})
+    done = palpate('run', scene, '--pace', 'asap', '--switch', '0.5:paper', '--switch', '0.8:refined', '--out', folder / 'out')
+    expect(done.code == 0, done)
+    summary = json.loads((folder / 'out/summary.json').read_text())
+    expect(summary['ticks'] == 1001 and summary['missed_ticks'] == 0, summary)
+    expect(any('2 times' in note for note in summary['notes']), summary['notes'])
+    frames = [json.loads(line) for line in open(folder / 'out/frames.jsonl')]
+    pushes = lambda first, last: [frame['tick'] for frame in frames if first <= frame['tick'] < last and frame['force'][2] > 0]
+    expect(pushes(0, 501) and pushes(801, 1001), 'refined pushes, before and after')
+    expect(pushes(501, 801) == [], f'in paper the rays from the block\'s twelve centroids all miss: {pushes(501, 801)}')
+    expect(any(frame['contact'] for frame in frames if 501 <= frame['tick'] < 801), 'though there is contact')
+    expect_refused(palpate('run', scene, '--pace', 'asap', '--switch', 'soon:paper', '--out', folder / 'none'), 3, 'soon:paper')
+    expect_refused(palpate('run', scene, '--pace', 'asap', '--switch', '0.5:blue', '--out', folder / 'none'), 3, '0.5:blue')
+
+
 main(globals())

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "model/mesh.h"
+#include "model/pose.h"
+
+namespace palpate {
+
+/// What the plain method says of one contact.
+struct PlainAnswer {
+  bool contact = false;
+  Vec3 normal{0};
+  double depth = 0;        ///< m
+  Vec3 force{0};           ///< N
+  std::size_t samples = 0; ///< that gave a height
+};
+
+/// The refined method in floating point throughout, as one would write it first: the tool's vertices transformed, samples on a square grid over each static
+/// triangle, inside or not by the winding along a ray, n_c the mean of the counting samples' normals, heights along −n_c, F = K d n_c. One area;
+/// no lattice, no exact predicate, no tolerance. For comparison alone (`bench numerics`): brute force over all triangles.
+template <class Real>
+PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool, const Pose& pose, double spacing_m, double stiffness_n_per_m);
+
+extern template PlainAnswer plain_response<float>(const Mesh&, const Mesh&, const Pose&, double, double);
+extern template PlainAnswer plain_response<double>(const Mesh&, const Mesh&, const Pose&, double, double);
+
+/// A wall at `wall` m along x, and a tool at `x` whose result is of `x_then`: max(0, K d − K Δx), d the depth then. The force law's arithmetic on one plane.
+template <class Real>
+double plain_extrapolation(double wall, double x_then, double x, double stiffness_n_per_m) {
+  const auto k = static_cast<Real>(stiffness_n_per_m), then = static_cast<Real>(x_then), now = static_cast<Real>(x), at = static_cast<Real>(wall);
+  const Real force = k * (at - then) - k * (now - then);
+  return force > Real(0) ? static_cast<double>(force) : 0.0;
+}
+
+}  // namespace palpate
