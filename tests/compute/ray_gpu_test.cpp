@@ -3,6 +3,7 @@
 #include <tuple>
 #include <utility>
 
+#include "compute/host_exact.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
 #include "tests/compute/probe_cases.h"
@@ -67,8 +68,11 @@ TEST_F(Rays, CrossWhereThePerturbedRayDoes) {
     ASSERT_EQ(answers[i].crossing_sign, expected);
     ASSERT_EQ(answers[i].x_sign, crossing_sign(c.point, {1, 0, 0}, c.corner));
     ASSERT_EQ(answers[i].culled, 0);   // a cheap test that lets go what is crossed
+    const exact::Crossing on_host = exact::ray_crossing(c.point, c.direction, {c.corner[0], c.corner[1], c.corner[2]});
+    ASSERT_EQ(on_host.sign, expected);
     if (expected == 0) continue;
     ASSERT_EQ(Big(answers[i].height), height(c.point, c.direction, c.corner));
+    ASSERT_EQ(on_host.height, answers[i].height);
     ++crossings;
   }
   EXPECT_GT(crossings, cases.size() / 20);
@@ -152,11 +156,16 @@ TEST_F(Rays, SegmentsCrossWhereTheirPerturbedEndsSayAndEdgesMeetInTheRoundedPoin
     SCOPED_TRACE(i);
     const int sign = segment_sign(cases[i]);
     ASSERT_EQ(answers[i].crossing_sign, sign);
+    const exact::Corners corners{cases[i].corner[0], cases[i].corner[1], cases[i].corner[2]};
+    ASSERT_EQ(exact::segment_crossing(cases[i].point, cases[i].direction, corners), sign);
     crossings += sign != 0 ? 1u : 0u;
     const auto at = common_point(cases[i]);
+    Int3 on_host(0);
     ASSERT_EQ(answers[i].meets != 0, at.has_value());
+    ASSERT_EQ(exact::edge_crossing(cases[i].point, cases[i].direction, corners, on_host), at.has_value());
     if (!at) continue;
     ASSERT_EQ(answers[i].at, *at);
+    ASSERT_EQ(on_host, *at);
     ++meetings;
   }
   EXPECT_GT(crossings, cases.size() / 50);

@@ -1,3 +1,4 @@
+#include "compute/host_exact.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
 #include "tests/compute/probe_cases.h"
@@ -68,7 +69,11 @@ TEST_F(TrianglePair, MeetsExactlyWhenSomeEdgeMeetsTheOtherTriangle) {
   const auto answers = run_probe<std::int32_t>(spirv::probe_triangle_pair, cases);
   std::size_t meeting = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    ASSERT_EQ(answers[i] != 0, triangles_meet(cases[i])) << i;
+    const gpu::PairCase& c = cases[i];
+    const exact::Corners s{c.s[0], c.s[1], c.s[2]}, t{c.t[0], c.t[1], c.t[2]};
+    const bool expected = triangles_meet(c);
+    ASSERT_EQ(answers[i] != 0, expected) << i;
+    ASSERT_EQ(exact::triangles_meet(s, t, exact::raw_normal(t)), expected) << i;
     meeting += answers[i] != 0 ? 1u : 0u;
   }
   EXPECT_GT(meeting, cases.size() / 20);

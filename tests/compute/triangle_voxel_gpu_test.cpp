@@ -1,3 +1,4 @@
+#include "compute/host_exact.h"
 #include "cpu_ref/triangle_cube.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
@@ -19,6 +20,8 @@ TEST_F(TriangleVoxel, AgreesWithClippingEdgesInFractions) {
     box.max = c.hi;
     const bool want = cpu_ref::triangle_meets_box(cpu_ref::Triangle(c.a, c.b, c.c), box);
     ASSERT_EQ(answers[i] != 0, want) << "case " << i;
+    const exact::Corners corners{c.a, c.b, c.c};
+    ASSERT_EQ(exact::triangle_touches_cube(corners, exact::raw_normal(corners), c.lo, c.hi.x - c.lo.x), want) << "case " << i;
     touching += want;
   }
   // Both answers were asked for often enough to mean something.

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "compute/gpu_backend.h"
 
 namespace palpate::mutation {
 namespace {
@@ -77,13 +76,15 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
         (tool ? made.tool : made.mockup) = std::move(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
-      device_->host_share = areas_on_host_ ? HostShare::kNear : HostShare::kAreas;   // so that the pipelines of both ways are there to be swapped
-      if (auto other = Frame::create(*device_, geometry, this->scene(), {}); !other) return other.error();
+      for (const HostShare share : {HostShare::kNear, HostShare::kAreas}) {   // so that the pipelines of both ways are there to be swapped
+        device_->host_share = share;
+        if (auto other = Frame::create(*device_, geometry, this->scene(), {}); !other) return other.error();
+      }
     }
   } else {
     kept_of_ = &found->second;
   }
-  device_->host_share = areas_on_host_ ? HostShare::kAreas : HostShare::kNear;
+  device_->host_share = host_share_;
   auto frame = Frame::create(*device_, geometry, this->scene(), {});
   if (!frame) return frame.error();
   frame_ = std::move(*frame);

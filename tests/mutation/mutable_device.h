@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compute/frame.h"
+#include "compute/gpu_backend.h"
 #include "compute/prepared_scene.h"
 #include "compute/vulkan_device.h"
 #include "compute/vulkan_pipeline.h"
@@ -33,9 +34,9 @@ class MutableDevice final : public CollisionBackend {
   /// From the next prepare() on every pipeline of the module `original`, SPIR-V, is one of `mutant`. `prepares`: preparation runs it, so
   /// that nothing kept will do. Error: the driver refuses it.
   Result<void> swap(const std::string& original, const std::string& mutant, bool prepares);
-  /// From the next prepare() on, whether the host joins the areas of small contacts (GpuOptions::host_share). At first it does not: the
-  /// device's own steps answer all contacts.
-  void areas_on_host(bool host) { areas_on_host_ = host; }
+  /// From the next prepare() on, how much of small contacts the host works out (GpuOptions::host_share). At first the least: the device's own
+  /// steps answer all contacts.
+  void host_share(HostShare share) { host_share_ = share; }
   VulkanDevice& device() { return *device_; }
   /// How many pipelines are swapped. 0: no case so far runs the module.
   std::size_t swapped() const { return swapped_.size(); }
@@ -65,7 +66,7 @@ class MutableDevice final : public CollisionBackend {
   std::unique_ptr<Frame> frame_;
   std::vector<std::pair<Words, Words>> mutants_;   // modules before and after
   bool prepares_ = false, aside_ = false;          // a mutant does; all are set aside
-  bool areas_on_host_ = false;
+  HostShare host_share_ = HostShare::kNear;
   std::vector<std::pair<Key, std::shared_ptr<const PipelineObjects>>> swapped_;   // what stood there
 };
 

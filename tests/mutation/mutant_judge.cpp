@@ -29,6 +29,7 @@
 #include "cpu_ref/cpu_backend.h"
 #include "tests/mutation/mutable_device.h"
 #include "tests/mutation/mutant_switch.h"
+#include "tests/mutation/near_probes.h"
 #include "tests/mutation/oracle.h"
 #include "tests/mutation/probes.h"
 #include "tests/mutation/shader_compiler.h"
@@ -174,9 +175,9 @@ class ShaderJudge {
     const auto ask = [&] {
       difference = oracle_.first_difference_now(at);
       if (difference.empty()) {
-        device_.areas_on_host(true);
+        device_.host_share(HostShare::kAreas);
         difference = oracle_.first_difference_now(at);
-        device_.areas_on_host(false);
+        device_.host_share(HostShare::kNear);
         if (!difference.empty()) difference += " (areas on the host)";
       }
       unasked = false;
@@ -223,13 +224,21 @@ class ShaderJudge {
   void judge_near(int mutant) {
     const double before = cpu_seconds(RUSAGE_SELF);
     std::size_t at = 0;
-    device_.areas_on_host(true);
+    if (probed_ == 0) probed_ = near_probe();
+    limit_time(kProbeSeconds);
     active = mutant;
-    const std::string difference = oracle_.first_difference_now(at);
+    const bool probe_differs = ask_probes_ && near_probe() != probed_;
+    std::string difference;
+    for (const HostShare share : {HostShare::kContacts, HostShare::kAreas}) {
+      if (probe_differs || !difference.empty()) break;
+      device_.host_share(share);
+      difference = oracle_.first_difference_now(at);
+    }
     active = 0;
-    device_.areas_on_host(false);
+    device_.host_share(HostShare::kNear);
     limit_time(0);
     const double seconds = cpu_seconds(RUSAGE_SELF) - before;
+    if (probe_differs) return answer("differs", seconds, "probe", "near_probe");
     if (difference.empty()) return answer("survived", seconds, "", "");
     oracle_.ask_first(at);
     answer("differs", seconds, oracle_.name(at), difference);
@@ -249,6 +258,7 @@ class ShaderJudge {
   ShaderProbes probes_;
   std::string root_;
   bool ask_probes_, ask_cases_;
+  std::uint64_t probed_ = 0;   // near_probe() of the unchanged program
   std::map<std::string, std::string> originals_;
 };
 
