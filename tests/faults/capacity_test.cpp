@@ -15,6 +15,7 @@ using testing::HasSubstr;
 std::unique_ptr<CollisionBackend> gpu(const std::map<std::string, std::uint32_t>& first_capacity) {
   GpuOptions options;
   options.validation = true;
+  options.guard_buffers = true;            // a write behind a list that is full is an error
   options.host_share = HostShare::kNear;   // the lists are the device's
   options.first_capacity = first_capacity;
   auto made = make_gpu_backend(options);
@@ -79,6 +80,40 @@ TEST_P(Capacity, TooSmallIsToldByNameAndGrowsToTheReferencesAnswer) {
   }
   EXPECT_EQ(first_difference(out, scene->expected), "") << "(gpu, cpu)";
   EXPECT_LE(times, 20) << "room at least doubles";
+}
+
+/// What the reference's answer needs of the lists whose counts it tells.
+std::map<std::string, std::uint32_t> exact_needs(const Contacts& expected) {
+  std::size_t statics = 0, members = 0;
+  for (const ContactArea& area : expected.areas) {
+    statics += area.static_ids.size();
+    members += area.mobile_ids.size();
+  }
+  return {{"pairs", static_cast<std::uint32_t>(expected.pairs)},
+          {"contact triangles of the mock-up", static_cast<std::uint32_t>(statics)},
+          {"contact triangles of the tool", static_cast<std::uint32_t>(expected.cmt.size() + expected.bmt.size() + expected.imt.size())},
+          {"tool triangles of areas", static_cast<std::uint32_t>(members)}};
+}
+
+TEST(ExactRoom, IsEnoughAndOneLessIsNot) {
+  const auto scene = ball_on_edge();
+  for (const auto& [list, needed] : exact_needs(scene->expected))
+    for (const bool enough : {true, false}) {
+      SCOPED_TRACE(list + (enough ? ": enough" : ": one less"));
+      ASSERT_GT(needed, 1u);
+      const auto backend = gpu({{list, enough ? needed : needed - 1}});
+      const auto prepared = prepare(*backend, *scene);
+      ASSERT_TRUE(prepared) << prepared.error().sentence;
+      Contacts out;
+      const auto answered = backend->query(scene->pose, nullptr, out);
+      ASSERT_TRUE(answered) << answered.error().sentence;
+      EXPECT_EQ(out.truncated, !enough);
+      if (enough) {
+        EXPECT_EQ(first_difference(out, scene->expected), "");
+      } else {
+        EXPECT_EQ(out.truncated_capacity, list);
+      }
+    }
 }
 
 // All of them at once: whatever overflows first hides the rest, and each enlargement brings the next to light.
