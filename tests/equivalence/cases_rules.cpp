@@ -85,6 +85,59 @@ Case seam_with_a_common_corner() {
               });
 }
 
+/// Three triangles in a plane, joined only by seams, the second with the first and the third: each of them is one area with the others.
+Case seams_in_a_row() {
+  const Triangles row = {{Int3(-20, -512, 0), Int3(-20, 512, 0), Int3(-512, 0, 0)}, {Int3(-20, -300, 0), Int3(20, 0, 0), Int3(-20, 300, 0)},
+                         {Int3(20, 512, 0), Int3(20, -512, 0), Int3(512, 0, 0)}};
+  return rule("seams_in_a_row", "three triangles of which the second touches the first and the third: one area", row, small_box(),
+              [](const SceneGeometry&, Random& random, Known& known) {
+                known.contact = true;
+                known.areas = 1;
+                return unturned({random.between(-15, 15), random.between(-30, 30), random.between(-38, 38)});
+              });
+}
+
+/// Two sheets whose triangles are numbered in turn: a neighbour of the next triangle is no neighbour of this one.
+Case numbered_in_turn() {
+  const Triangles sheets = {{Int3(-20, -512, 0), Int3(-20, 512, 0), Int3(-512, 0, 0)}, {Int3(20, 512, 0), Int3(20, -512, 0), Int3(512, 0, 0)},
+                            {Int3(-20, -512, 0), Int3(-10, 0, 0), Int3(-20, 512, 0)}};
+  return rule("numbered_in_turn", "two sheets whose triangles are numbered in turn: two areas", sheets, small_box(),
+              [](const SceneGeometry&, Random& random, Known& known) {
+                known.contact = true;
+                known.areas = 2;
+                return unturned({random.between(-15, 15), random.between(-30, 30), random.between(-38, 38)});
+              });
+}
+
+/// A body between two copies of a convex outline in the plane of `axis` and z, at ±40 along the third axis.
+Triangles prism(const std::vector<std::array<std::int32_t, 2>>& outline, int axis) {
+  const auto corner = [&](std::size_t i, std::int32_t across) {
+    Int3 p(0, 0, outline[i % outline.size()][1]);
+    p[axis] = outline[i % outline.size()][0];
+    p[1 - axis] = across;
+    return p;
+  };
+  Triangles out;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    append(out, {{corner(i, -40), corner(i + 1, -40), corner(i + 1, 40)}, {corner(i, -40), corner(i + 1, 40), corner(i, 40)}});
+    if (i > 0 && i + 1 < outline.size()) append(out, {{corner(0, -40), corner(i + 1, -40), corner(i, -40)}, {corner(0, 40), corner(i, 40), corner(i + 1, 40)}});
+  }
+  return out;
+}
+
+/// Two parts of a tool whose undersides cross in a line, over which samples lie: their rays leave both parts at one height, and the smaller of two
+/// normals says how the samples fade in.
+Case crossed_wedges(int axis) {
+  const Triangles tool = together({prism({{-40, -20}, {40, 20}, {40, 90}, {-40, 90}}, axis), prism({{-40, 10}, {40, -10}, {40, 80}, {-40, 80}}, axis)});
+  return rule(axis == 0 ? "crossed_wedges" : "crossed_wedges_along_y", "rays that leave a tool through two of its parts at one height", block(), tool,
+              [](const SceneGeometry& geometry, Random& random, Known& known) {
+                known.contact = true;
+                const std::int32_t step = geometry.sample_spacing;
+                const std::int32_t line = geometry.tool.box_min.z + 20;   // where the undersides cross
+                return unturned({step * random.between(-5, 5), step * random.between(-5, 5), 512 - line - random.between(1, 19)});
+              });
+}
+
 /// Rays along an axis see a crossing from the last centre before it: here the only centre that is inside.
 Case inside_of_one_voxel(bool low) {
   const Int3 min = low ? Int3(50) : Int3(10), max = min + Int3(2 * kVoxel);
@@ -259,7 +312,7 @@ Case long_tool() {
 std::vector<Case> rule_cases() {
   return {seam_with_a_common_corner(), inside_of_one_voxel(false), inside_of_one_voxel(true), inside_of_one_brick(false), inside_of_one_brick(true), votes(true), votes(false),
           sheet_through_gc(), held(two_sheets()), held(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
-          swallowed_at_ties(), bridge(), long_tool()};
+          swallowed_at_ties(), bridge(), long_tool(), seams_in_a_row(), numbered_in_turn(), crossed_wedges(0), crossed_wedges(1)};
 }
 
 }  // namespace palpate::equivalence
