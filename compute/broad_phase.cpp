@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 namespace palpate {
@@ -12,6 +13,17 @@ constexpr std::size_t kFan = 8;   // children of a node
 // Transformed vertices are rounded by half a step an axis, and doubles by far less than a thousandth: two steps hold both, and
 // voxels are closed.
 constexpr double kMargin = gpu::kCloseSteps + 2.0;
+
+// Four lanes at a time: GCC at -O2 leaves such loops scalar, with a branch for every least and most, which cost more than all the rest.
+constexpr std::size_t kLanes = 4;
+using Floats = float __attribute__((vector_size(16)));
+using Words = std::int32_t __attribute__((vector_size(16)));
+
+Floats lanes(const std::array<float, gpu::kRunSize>& from, std::size_t begin) {
+  Floats out;
+  std::memcpy(&out, &from[begin], sizeof out);
+  return out;
+}
 
 }  // namespace
 
@@ -33,6 +45,8 @@ struct BroadPhase::Search {
   const LatticePose& pose;
   const Turn& turn;
   NearLists& lists;
+  // The pose in voxels of the mock-up's grid, single precision: low = turned + below, high = turned + above.
+  float rotation[3][3], below[3], above[3];
 };
 
 Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
@@ -169,6 +183,12 @@ void BroadPhase::for_bricks(const Reach& reach, Take&& take) const {
     first[k] = static_cast<std::int32_t>(std::max(low, 0.0));   // rounded down
     last[k] = static_cast<std::int32_t>(std::min(high, voxels - 1));
   }
+  for_bricks(first, last, take);
+}
+
+/// The same for voxels first … last.
+template <class Take>
+void BroadPhase::for_bricks(const std::int32_t (&first)[3], const std::int32_t (&last)[3], Take&& take) const {
   constexpr std::uint64_t kRows = 0x0101010101010101u;
   for (std::int32_t z = first[2] >> 3; z <= last[2] >> 3; ++z)
     for (std::int32_t y = first[1] >> 3; y <= last[1] >> 3; ++y)
@@ -210,35 +230,36 @@ void BroadPhase::descend(Search& search, std::size_t level, std::size_t node) {
 
 /// The triangles of a run, each by the box of its corners.
 void BroadPhase::take_run(Search& search, std::size_t run) {
-  const Turn& turn = search.turn;
-  // Coordinates within 2^28, rounded to 24 bits, times entries rounded alike, three products and a sum: below 8 · 2^-24 of the radius.
-  const double margin = kMargin + tool_radius_ * 0x1p-20;
   const RunCorners& corners = runs_[run];
-  std::array<std::array<float, gpu::kRunSize>, 3> low, high;
-  for (std::size_t r = 0; r < 3; ++r) {
-    const auto x = static_cast<float>(turn.rotation[r][0]), y = static_cast<float>(turn.rotation[r][1]), z = static_cast<float>(turn.rotation[r][2]);
-    for (std::size_t i = 0; i < gpu::kRunSize; ++i) {
-      const float a = x * corners[0][i] + y * corners[1][i] + z * corners[2][i];
-      const float b = x * corners[3][i] + y * corners[4][i] + z * corners[5][i];
-      const float c = x * corners[6][i] + y * corners[7][i] + z * corners[8][i];
-      const float least = a < b ? a : b, most = a < b ? b : a;
-      low[r][i] = least < c ? least : c;
-      high[r][i] = most < c ? c : most;
+  std::array<std::array<std::int32_t, gpu::kRunSize>, 3> first, last;
+  std::array<std::int32_t, gpu::kRunSize> may;
+  for (std::size_t i = 0; i < gpu::kRunSize; i += kLanes) {
+    Words meet = Words{} - 1;
+    for (std::size_t r = 0; r < 3; ++r) {
+      const float x = search.rotation[r][0], y = search.rotation[r][1], z = search.rotation[r][2];
+      const Floats a = x * lanes(corners[0], i) + y * lanes(corners[1], i) + z * lanes(corners[2], i);
+      const Floats b = x * lanes(corners[3], i) + y * lanes(corners[4], i) + z * lanes(corners[5], i);
+      const Floats c = x * lanes(corners[6], i) + y * lanes(corners[7], i) + z * lanes(corners[8], i);
+      const Floats least = a < b ? a : b, most = a < b ? b : a, none{}, end = none + static_cast<float>(8 * grid_.bricks[static_cast<int>(r)]);
+      const Floats low = (least < c ? least : c) + search.below[r], high = (most < c ? c : most) + search.above[r];
+      meet &= (high >= none) & (low < end);
+      const Floats from = low < none ? none : low, to = high < none ? none : high;
+      const Words at = __builtin_convertvector(from < end ? from : end - 1, Words), last_at = __builtin_convertvector(to < end ? to : end - 1, Words);   // down
+      std::memcpy(&first[r][i], &at, sizeof at);
+      std::memcpy(&last[r][i], &last_at, sizeof last_at);
     }
+    std::memcpy(&may[i], &meet, sizeof meet);
   }
   for (std::size_t i = 0; i < gpu::kRunSize; ++i) {
-    Reach where;
-    for (std::size_t r = 0; r < 3; ++r) {
-      where.low[r] = static_cast<double>(low[r][i]) + turn.translation[r] - margin;
-      where.high[r] = static_cast<double>(high[r][i]) + turn.translation[r] + margin;
-    }
+    if (may[i] == 0) continue;
+    const std::int32_t from[3] = {first[0][i], first[1][i], first[2][i]}, to[3] = {last[0][i], last[1][i], last[2][i]};
     const auto place = static_cast<std::uint32_t>(run * gpu::kRunSize + i);
-    std::uint32_t first = gpu::kFirstOfTriangle;
+    std::uint32_t head = gpu::kFirstOfTriangle;
     NearPairs::Triangle triangle;
-    for_bricks(where, [&](const Int3& brick, std::uint32_t slot) {
-      if (first != 0 && !pairs_.begin(search.pose, *tool_, order_[place], place, triangle)) return true;
-      if (!search.lists.push(search.lists.triangles, gpu::kListNearTriangles, {place | first, slot, brick.x | brick.y << 16, brick.z})) return true;
-      first = 0;
+    for_bricks(from, to, [&](const Int3& brick, std::uint32_t slot) {
+      if (head != 0 && !pairs_.begin(search.pose, *tool_, order_[place], place, triangle)) return true;
+      if (!search.lists.push(search.lists.triangles, gpu::kListNearTriangles, {place | head, slot, brick.x | brick.y << 16, brick.z})) return true;
+      head = 0;
       return !pairs_.take(triangle, brick, slot, search.lists);
     });
     if (search.lists.full != gpu::kNone) return;
@@ -262,7 +283,16 @@ void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearL
 bool BroadPhase::find(const LatticePose& pose, NearLists& lists) {
   if (levels_.back()[0].half[0] < 0) return false;
   const Turn turn(pose);
-  Search search{pose, turn, lists};
+  Search search{pose, turn, lists, {}, {}, {}};
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = static_cast<float>(turn.rotation[r][c] * per_voxel_);
+    // Coordinates and entries rounded to 24 bits, three products, their sum and the sum with the place: below 16 · 2^-24 of the tool's radius and
+    // the place, in voxels.
+    const double at = (turn.translation[r] - grid_.origin[static_cast<int>(r)]) * per_voxel_;
+    const double margin = kMargin * per_voxel_ + (std::abs(at) + tool_radius_ * per_voxel_) * 0x1p-20;
+    search.below[r] = static_cast<float>(at - margin);
+    search.above[r] = static_cast<float>(at + margin);
+  }
   descend(search, levels_.size() - 1, 0);
   if (lists.full != gpu::kNone) return false;
   if (!has_inside_) return lists.touch.count != 0;

@@ -47,6 +47,8 @@ class BroadPhase {
   Reach reach(const Turn& turn, const Box& box) const;
   template <class Take>
   void for_bricks(const Reach& reach, Take&& take) const;
+  template <class Take>
+  void for_bricks(const std::int32_t (&first)[3], const std::int32_t (&last)[3], Take&& take) const;
   bool meets(const Reach& reach) const;
   void descend(Search& search, std::size_t level, std::size_t node);
   void take_run(Search& search, std::size_t run);

@@ -28,6 +28,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// C_s beyond which the device takes over (chosen): one of its own, and one that is the host's own processor.
+constexpr std::size_t kMostStatics = 4096, kMostStaticsHere = 65536;
+
 double us_since(Clock::time_point from) { return std::chrono::duration<double, std::micro>(Clock::now() - from).count(); }
 
 std::int32_t floor_div(std::int64_t a, std::int64_t b) {
@@ -102,6 +105,7 @@ class RecordedFrame final : public Frame {
   std::unique_ptr<HostContact> host_contact_;   ///< where small contacts are wholly the host's
   bool host_solved_ = false;              ///< the last query's contact was
   std::vector<Int3> directions_;          ///< by counting sample, while the host joins
+  FrameDecoder decoder_;
   HostAreas::Answer joined_;              ///< of the last frame whose areas the host joined, else empty
   /// From the pose to the sets; then, with contact, the whole response, or what follows once the host has joined areas. Null after a
   /// failed record().
@@ -150,7 +154,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
   if (refined && device_.host_share != HostShare::kNear) {
-    auto areas = HostAreas::make(device_, geometry_, scene_, plan_.zones);
+    auto areas = HostAreas::make(device_, geometry_, scene_, device_.host_share == HostShare::kContacts ? kMostStaticsHere : kMostStatics, plan_.zones);
     if (!areas) return areas.error();
     host_areas_.emplace(std::move(*areas));
     if (scene_.rays_walk()) {
@@ -311,7 +315,7 @@ bool RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, 
 Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Contacts& out) {
   const auto start = Clock::now();
   out.times.clear();
-  clear(out);
+  decoder_.clear(out);
   pairs_ = 0;
   out.contact_points = plan_.contact_point;
   out.lists = plan_.telemetry;
@@ -372,7 +376,7 @@ bool RecordedFrame::solve_on_host(const Held* held, const NearLists& near, Conta
     last = now;
   };
   if (!host_contact_->solve(posed_, held, near, stage)) return false;
-  decode(host_contact_->output(), out);
+  decoder_.decode(host_contact_->output(), out);
   host_solved_ = true;
   pairs_ = out.pairs;
   out.flags |= frame_flags_;
@@ -426,7 +430,7 @@ bool RecordedFrame::join_on_host(const LatticePose& pose, const Held* held) {
 void RecordedFrame::read(Contacts& out) {
   auto* result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
   if (joined_.areas != 0) result->member_count = joined_.members;   // the host's list
-  decode({.result = result,
+  decoder_.decode({.result = result,
           .statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(),
           .mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>(),
           .members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>(),

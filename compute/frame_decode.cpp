@@ -4,7 +4,6 @@
 #include <array>
 #include <numeric>
 #include <span>
-#include <tuple>
 
 #include "compute/frame_capacity.h"
 
@@ -13,26 +12,20 @@ namespace {
 
 using namespace gpu;   // names of shaders/shared/frame.h
 
+constexpr std::size_t kMostSpareZones = 4096;   // whose memory is kept (chosen)
+
 /// Whether all that overflowed, if anything, comes after the sets: lists of areas, tables of the response.
 bool sets_are_whole(const FrameState& state) {
   constexpr std::uint32_t kAfterSets = 1u << kListMembers | 1u << kListPierces | ~0u << kListResponseFirst;
   return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & (kOverflowBins | kOverflowLoop)) == 0;
 }
 
-void sort_ids(std::vector<std::uint32_t>& ids) { std::sort(ids.begin(), ids.end()); }
-
-void decode_sets(const FrameOutput& output, Contacts& out) {
-  for (const StaticResult& s : std::span(output.statics, output.result->static_count)) {
-    if ((s.state & kStaticHit) != 0) {
-      out.cst.push_back(s.id);
-      continue;
-    }
-    if ((s.state & kStaticListed) != 0) out.bst.push_back(s.id);
-    if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
-  }
-  for (const MobileResult& m : std::span(output.mobiles, output.result->mobile_count))
-    ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
-  for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) sort_ids(*ids);
+/// Entries by id: id · 2^32 + place, ascending.
+template <class Entry, class Id>
+void order_by_id(std::span<const Entry> entries, Id id, std::vector<std::uint64_t>& out) {
+  out.resize(entries.size());
+  for (std::uint32_t i = 0; i < entries.size(); ++i) out[i] = std::uint64_t{id(entries[i])} << 32 | i;
+  std::sort(out.begin(), out.end());
 }
 
 void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
@@ -55,73 +48,101 @@ void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
   area.voxel_count = points ? from.voxel_count : 0;
 }
 
-void decode_areas(const FrameOutput& output, Contacts& out) {
+}  // namespace
+
+void FrameDecoder::decode_sets(const FrameOutput& output, Contacts& out) {
+  const std::span statics(output.statics, output.result->static_count);
+  order_by_id(statics, [](const StaticResult& s) { return s.id; }, statics_);
+  if (!out.lists) return;
+  for (const std::uint64_t key : statics_) {
+    const StaticResult& s = statics[static_cast<std::uint32_t>(key)];
+    if ((s.state & kStaticHit) != 0) {
+      out.cst.push_back(s.id);
+      continue;
+    }
+    if ((s.state & kStaticListed) != 0) out.bst.push_back(s.id);
+    if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
+  }
+  const std::span mobiles(output.mobiles, output.result->mobile_count);
+  order_by_id(mobiles, [](const MobileResult& m) { return m.id; }, mobiles_);
+  for (const std::uint64_t key : mobiles_) {
+    const MobileResult& m = mobiles[static_cast<std::uint32_t>(key)];
+    ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
+  }
+}
+
+/// One more zone of an area, empty.
+std::vector<std::uint32_t>& FrameDecoder::new_zone(ContactArea& area) {
+  if (spare_zones_.empty()) return area.zones.emplace_back();
+  area.zones.push_back(std::move(spare_zones_.back()));
+  spare_zones_.pop_back();
+  return area.zones.back();
+}
+
+void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
   const FrameResult& result = *output.result;
   const std::uint32_t count = std::min(result.area_count, kMaxFrameAreas);
   std::array<std::uint32_t, kMaxFrameAreas> order{}, position{};
   std::iota(order.begin(), order.begin() + count, 0u);
   std::sort(order.begin(), order.begin() + count, [&](auto a, auto b) { return result.areas[a].id < result.areas[b].id; });
-  for (std::uint32_t i = 0; i < count; ++i) position[order[i]] = i;
-
-  out.areas.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    ContactArea& area = out.areas[i];
-    decode_sums(result.areas[order[i]], out.contact_points, area);
-    area.static_ids.clear();
-    area.mobile_ids.clear();
-    area.zones.clear();
-    area.pierces.clear();
-  }
-
-  const auto arrange = [&] {
-    for (const AreaPierce& p : std::span(output.pierces, result.pierce_count)) out.areas[position[p.area]].pierces.push_back(position[p.pierced]);
-    for (ContactArea& area : out.areas) {
-      sort_ids(area.static_ids);
-      sort_ids(area.mobile_ids);
-      sort_ids(area.pierces);
-      std::sort(area.zones.begin(), area.zones.end(), [](const auto& a, const auto& b) { return a.front() < b.front(); });
+    position[order[i]] = i;
+    if (!spare_areas_.empty()) {
+      out.areas.push_back(std::move(spare_areas_.back()));
+      spare_areas_.pop_back();
+    } else {
+      out.areas.emplace_back();
     }
-  };
-  if (!out.lists) {   // the next frame holds on to an area by its static triangles
-    for (const StaticResult& s : std::span(output.statics, result.static_count))
-      if (s.area < count) out.areas[position[s.area]].static_ids.push_back(s.id);
-    return arrange();
+    decode_sums(result.areas[order[i]], out.contact_points, out.areas.back());
   }
 
-  // Static triangles by area, zone, id; a new zone begins where its label changes.
-  struct Place {
-    std::uint32_t area, zone, id;
-  };
-  std::vector<Place> places;
-  for (const StaticResult& s : std::span(output.statics, result.static_count))
-    if (s.area < count) places.push_back({position[s.area], s.zone, s.id});
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return std::tie(a.area, a.zone, a.id) < std::tie(b.area, b.zone, b.id); });
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    ContactArea& area = out.areas[places[i].area];
-    if (i == 0 || places[i - 1].area != places[i].area || places[i - 1].zone != places[i].zone) area.zones.emplace_back();
-    area.zones.back().push_back(places[i].id);
-    area.static_ids.push_back(places[i].id);
+  // In the order of ids: every list ascends, and zones come by their first ids. A zone's label is the place of one of its triangles.
+  zone_of_.assign(result.static_count, kNone);
+  for (const std::uint64_t key : statics_) {
+    const StaticResult& s = output.statics[static_cast<std::uint32_t>(key)];
+    if (s.area >= count) continue;
+    ContactArea& area = out.areas[position[s.area]];
+    area.static_ids.push_back(s.id);   // the next frame holds on to an area by them
+    if (!out.lists) continue;
+    std::uint32_t& zone = zone_of_[s.zone];
+    if (zone == kNone) {
+      zone = static_cast<std::uint32_t>(area.zones.size());
+      new_zone(area);
+    }
+    area.zones[zone].push_back(s.id);
   }
-
-  for (const AreaMember& m : std::span(output.members, result.member_count)) out.areas[position[m.area]].mobile_ids.push_back(m.mobile);
-  arrange();
+  const std::span members(output.members, out.lists ? result.member_count : 0);
+  order_by_id(members, [](const AreaMember& m) { return m.mobile; }, members_);
+  for (const std::uint64_t key : members_) {
+    const AreaMember& m = members[static_cast<std::uint32_t>(key)];
+    out.areas[position[m.area]].mobile_ids.push_back(m.mobile);
+  }
+  for (const AreaPierce& p : std::span(output.pierces, result.pierce_count)) out.areas[position[p.area]].pierces.push_back(position[p.pierced]);
+  for (ContactArea& area : out.areas) std::sort(area.pierces.begin(), area.pierces.end());
 }
 
-}  // namespace
-
-void clear(Contacts& out) {
+void FrameDecoder::clear(Contacts& out) {
   out.contact = false;
   out.truncated = false;
   out.truncated_capacity = "";
   out.pairs = 0;
   for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) ids->clear();
+  for (ContactArea& area : out.areas) {
+    for (std::vector<std::uint32_t>& zone : area.zones) {
+      zone.clear();
+      if (spare_zones_.size() < kMostSpareZones) spare_zones_.push_back(std::move(zone));
+    }
+    for (auto* ids : {&area.static_ids, &area.mobile_ids, &area.pierces}) ids->clear();
+    area.zones.clear();
+    if (spare_areas_.size() < kMaxFrameAreas) spare_areas_.push_back(std::move(area));
+  }
   out.areas.clear();
   out.flags = 0;
   out.swallowed_direction = Int3(0);
   out.swallowed_height = 0;
 }
 
-void decode(const FrameOutput& output, Contacts& out) {
+void FrameDecoder::decode(const FrameOutput& output, Contacts& out) {
   clear(out);
   const FrameResult& result = *output.result;
   out.truncated = (result.state.overflow | result.state.overflow_other) != 0;
@@ -129,7 +150,7 @@ void decode(const FrameOutput& output, Contacts& out) {
   if (!sets_are_whole(result.state)) return;
   out.contact = result.state.contact != 0;
   out.pairs = result.pair_count;
-  if (out.lists) decode_sets(output, out);
+  decode_sets(output, out);
   if (!out.contact || out.truncated) return;
   out.flags = result.flags;
   out.swallowed_direction = result.swallowed_direction;

@@ -1,4 +1,7 @@
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "model/contacts.h"
 #include "shaders/shared/frame.h"
 
@@ -13,12 +16,25 @@ struct FrameOutput {
   const gpu::AreaPierce* pierces = nullptr;
 };
 
-/// Puts a frame's output in the order that Contacts asks for: ids ascending, areas by id, zones by first id. Writes all of `out`
-/// but its times, reusing its memory. A frame that overflowed becomes a truncated one without areas, and
-/// without sets unless they were complete. Where Contacts::lists is false, sets, zones and mobile ids stay empty.
-void decode(const FrameOutput& output, Contacts& out);
+/// Puts frames' outputs in the order that Contacts asks for: ids ascending, areas by id, zones by first id. Keeps the memory of areas that an
+/// answer no longer has for later ones, so that it allocates only when a contact is larger than all before. One thread.
+class FrameDecoder {
+ public:
+  /// Writes all of `out` but its times. A frame that overflowed becomes a truncated one without areas, and without sets unless they
+  /// were complete. Where Contacts::lists is false, sets, zones and mobile ids stay empty.
+  void decode(const FrameOutput& output, Contacts& out);
+  /// Empties all of `out` but its times: free of contact.
+  void clear(Contacts& out);
 
-/// Empties all of `out` but its times: free of contact.
-void clear(Contacts& out);
+ private:
+  void decode_sets(const FrameOutput& output, Contacts& out);
+  void decode_areas(const FrameOutput& output, Contacts& out);
+  std::vector<std::uint32_t>& new_zone(ContactArea& area);
+
+  std::vector<std::uint64_t> statics_, mobiles_, members_;   ///< id · 2^32 + place in the output, ascending
+  std::vector<std::uint32_t> zone_of_;                       ///< by label: position in its area's zones
+  std::vector<ContactArea> spare_areas_;
+  std::vector<std::vector<std::uint32_t>> spare_zones_;
+};
 
 }  // namespace palpate

@@ -65,11 +65,12 @@ int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv
 
 }  // namespace
 
-Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, bool zones) {
+Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::size_t most_statics, bool zones) {
   HostAreas out;
   out.zones_ = zones;
   out.geometry_ = &geometry;
   out.constants_ = scene.constants;
+  out.per_voxel_ = 1.0 / scene.constants.mockup.grid.size;
   const std::size_t triangles = geometry.mockup.triangles.size();
   const PartitionBuffers& p = scene.mockup.partition;
   const Int3 n = p.grid.bricks;
@@ -79,7 +80,8 @@ Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geo
     return r.error();
   if (auto r = out.bricks_.read(device, p.bricks, p.grid.mixed_bricks); !r) return r.error();
   out.slot_of_.resize(triangles);
-  out.parents_.resize((zones ? 2 : 1) * std::min(triangles, kMostStatics));
+  out.most_statics_ = most_statics;
+  out.parents_.resize((zones ? 2 : 1) * std::min(triangles, most_statics));
   out.tool_samples_.resize(geometry.tool.triangles.size(), kNone);
   return out;
 }
@@ -235,8 +237,10 @@ bool HostAreas::occupied(const Int3& p) const {
   const GridConstants& grid = constants_.mockup.grid;
   Int3 v;
   for (int k = 0; k < 3; ++k) {
-    v[k] = static_cast<std::int32_t>(floor_div(std::int64_t{p[k]} - grid.origin[k], grid.size));
-    if (v[k] < 0 || v[k] >= 8 * grid.bricks[k]) return false;
+    // Half a step from the nearest integer quotient, which is far more than a double rounds.
+    const double along = (static_cast<double>(p[k]) - grid.origin[k] + 0.5) * per_voxel_;
+    if (!(along >= 0 && along < 8 * grid.bricks[k])) return false;
+    v[k] = static_cast<std::int32_t>(along);
   }
   const std::uint32_t slot = brick_slots_[static_cast<std::size_t>(v.x >> 3) + static_cast<std::size_t>(grid.bricks.x) *
                                           (static_cast<std::size_t>(v.y >> 3) + static_cast<std::size_t>(grid.bricks.y) * static_cast<std::size_t>(v.z >> 3))];
@@ -259,6 +263,8 @@ bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile
   };
   const std::int64_t nk = normal(iu, iv), nu = normal(iv, k), nv = normal(k, iu);
   const int facing = nk < 0 ? -1 : 1;
+  // |N_u|, |N_v| ≤ |N_k|, and grid points inside are within the box: products within 2^61.
+  const bool small = std::abs(nk) < std::int64_t{1} << 36 && (u1 - u0 + 2) * spacing < 1 << 25 && (v1 - v0 + 2) * spacing < 1 << 25;
   count = 0;
   for (std::int64_t v = v0 * spacing; v <= v1 * spacing; v += spacing)
     for (std::int64_t u = u0 * spacing; u <= u1 * spacing; u += spacing) {
@@ -266,10 +272,13 @@ bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile
           grid_side(c[iu], c[iv], a[iu], a[iv], u, v) != facing)
         continue;
       // floor(a_k − (N_u (u − a_u) + N_v (v − a_v)) / N_k)
-      const Wide over = -facing * (Wide{nu} * (u - a[iu]) + Wide{nv} * (v - a[iv])), under = Wide{nk} * facing;
-      const Wide q = over / under;
       Int3 p;
-      p[k] = a[k] + static_cast<std::int32_t>(q - (over % under < 0 ? 1 : 0));
+      if (small) {
+        p[k] = a[k] + static_cast<std::int32_t>(floor_div(-facing * (nu * (u - a[iu]) + nv * (v - a[iv])), nk * facing));
+      } else {
+        const Wide over = -facing * (Wide{nu} * (u - a[iu]) + Wide{nv} * (v - a[iv])), under = Wide{nk} * facing, q = over / under;
+        p[k] = a[k] + static_cast<std::int32_t>(q - (over % under < 0 ? 1 : 0));
+      }
       p[iu] = static_cast<std::int32_t>(u);
       p[iv] = static_cast<std::int32_t>(v);
       count += occupied(transform(pose, p)) ? 1u : 0u;
@@ -329,7 +338,7 @@ bool HostAreas::direct(AreaWork& area, const Held* held) const {
 
 bool HostAreas::solve(const LatticePose& pose, const Held* held, const ContactLists& lists, Answer& answer) {
   answer = {};
-  if (lists.statics.size() > kMostStatics) return false;
+  if (lists.statics.size() > most_statics_) return false;
   join_all(lists);
   for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
     lists.slots[i] = {kNone, 0};

@@ -30,8 +30,8 @@ struct ContactLists {
 /// One thread; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
 class HostAreas {
  public:
-  /// `zones`: the mock-up has edges that are not smooth.
-  static Result<HostAreas> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, bool zones = true);
+  /// `most_statics`: C_s beyond which the device takes over. `zones`: the mock-up has edges that are not smooth.
+  static Result<HostAreas> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::size_t most_statics, bool zones);
 
   struct Answer {
     std::uint32_t areas = 0, members = 0;
@@ -44,7 +44,7 @@ class HostAreas {
   /// By static id: where HostSets notes the slots of C_s.
   std::span<std::uint32_t> slots_by_id() { return slot_of_; }
 
-  static constexpr std::size_t kMostStatics = 4096;   ///< C_s beyond which the device takes over (chosen)
+  std::size_t most_statics() const { return most_statics_; }
 
  private:
   std::uint32_t area_node(std::uint32_t slot) const { return zones_ ? 2 * slot : slot; }
@@ -64,7 +64,9 @@ class HostAreas {
   bool occupied(const Int3& p) const;
 
   const SceneGeometry* geometry_ = nullptr;
+  std::size_t most_statics_ = 0;
   gpu::SceneConstants constants_{};
+  double per_voxel_ = 0;                        ///< of the mock-up, voxels a step
   HostCopy<std::uint32_t> seam_begin_, seams_, brick_slots_;
   HostCopy<gpu::Brick> bricks_;
   std::vector<std::uint32_t> slot_of_;          ///< by static id; valid where C_s has it there

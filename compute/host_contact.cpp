@@ -5,7 +5,7 @@ namespace palpate {
 using namespace gpu;   // names of shaders/shared/frame.h
 
 Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                                       std::span<const std::uint32_t> order, HostAreas& areas, const NearRays& rays) {
+                                                       std::span<const std::uint32_t> order, HostAreas& areas, NearRays& rays) {
   std::unique_ptr<HostContact> out(new HostContact(geometry, areas, rays, order));
   auto sets = HostSets::make(device, geometry, scene, order);
   if (!sets) return sets.error();
@@ -16,7 +16,7 @@ Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, con
 }
 
 bool HostContact::decide(PosedTool& tool, const NearLists& near) {
-  return sets_.decide(tool, near, areas_.slots_by_id(), HostAreas::kMostStatics, found_);
+  return sets_.decide(tool, near, areas_.slots_by_id(), areas_.most_statics(), found_);
 }
 
 bool HostContact::join(PosedTool& tool, const Held* held) {

@@ -23,7 +23,7 @@ class HostContact {
  public:
   /// `areas` and `rays` outlive this. Only in `refined`, where samples are listed and rays walk.
   static Result<std::unique_ptr<HostContact>> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                                   std::span<const std::uint32_t> order, HostAreas& areas, const NearRays& rays);
+                                                   std::span<const std::uint32_t> order, HostAreas& areas, NearRays& rays);
 
   /// False: left to the device. `stage(name)` is called at the end of each stage.
   template <class Stage>
@@ -47,7 +47,7 @@ class HostContact {
   static constexpr std::uint32_t kMostCandidates = 1u << 16;   ///< of a kind, beyond which the device takes over (chosen)
 
  private:
-  HostContact(const SceneGeometry& geometry, HostAreas& areas, const NearRays& rays, std::span<const std::uint32_t> order)
+  HostContact(const SceneGeometry& geometry, HostAreas& areas, NearRays& rays, std::span<const std::uint32_t> order)
       : areas_(areas), heights_(geometry, rays, order), follow_(geometry) {}
   bool decide(PosedTool& tool, const NearLists& near);
   bool join(PosedTool& tool, const Held* held);

@@ -82,21 +82,21 @@ bool HostFollow::needles(PosedTool& tool, HostHeights& heights, const ContactLis
     if (low.x > high.x) continue;
     const Int3 middle = (low + high) >> 1;
     std::uint32_t height = kNone;
-    if (!heights.height(tool, turn, middle, -area.direction, true, height)) return false;
+    heights.aim(turn, -area.direction);
+    if (!heights.height(tool, turn, middle, true, height)) return false;
     if (height == kNone) continue;
     HostHeights::add(area, middle, height, kWhole, 0);
     risen.push_back({number, middle, height});
   }
-  take_vertices(tool, lists, area_count);
+  take_vertices(tool, lists);
   return true;
 }
 
 /// (b) Tool vertices near needles: how far along n_c each leaves its area's surface.
-void HostFollow::take_vertices(PosedTool& tool, const ContactLists& lists, std::uint32_t area_count) {
+void HostFollow::take_vertices(PosedTool& tool, const ContactLists& lists) {
   const LatticeMesh& mockup = geometry_->mockup;
   std::sort(vertices_.begin(), vertices_.end());
   vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-  (void)area_count;
   for (const auto& [number, vertex] : vertices_) {
     AreaWork& area = lists.areas[number];
     const Int3 p = transform(tool.pose(), geometry_->tool.vertices[vertex]), d = area.direction;

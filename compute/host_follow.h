@@ -32,7 +32,7 @@ class HostFollow {
     exact::Corners corners;
     Int3 low, high;
   };
-  void take_vertices(PosedTool& tool, const ContactLists& lists, std::uint32_t area_count);
+  void take_vertices(PosedTool& tool, const ContactLists& lists);
   void find_facing(const ContactLists& lists, std::uint32_t own, std::uint32_t area_count, std::span<const RisenSample> rays);
 
   const SceneGeometry* geometry_;

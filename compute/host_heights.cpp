@@ -11,9 +11,9 @@ using namespace gpu;   // names of shaders/shared/frame.h
 
 }  // namespace
 
-bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, const Int3& along, bool through, std::uint32_t& out) {
+bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, bool through, std::uint32_t& out) {
   out = kNone;
-  NearRays::Walk walk = rays_->begin(turn, p, along);
+  NearRays::Walk walk = rays_->begin(turn, p);
   HostList<std::uint32_t> places{places_};
   do {
     if (!rays_->go_on(walk, 0, places)) return false;
@@ -21,7 +21,7 @@ bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3
     levels_.clear();
     for (const std::uint32_t place : places.room.first(places.count)) {
       const std::uint32_t id = order_[place];
-      const exact::Crossing crossing = exact::ray_crossing(p, along, tool.corners(id));
+      const exact::Crossing crossing = exact::ray_crossing(p, along_, tool.corners(id));
       if (crossing.sign != 0 && crossing.height < stop) levels_.push_back({crossing.height, crossing.sign, id});
     }
   } while (through && levels_.empty() && rays_->skip_external(walk));
@@ -113,12 +113,23 @@ void HostHeights::add(AreaWork& area, const Int3& point, std::uint32_t height, s
 
 bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostAreas& areas, std::vector<RisenSample>& risen) {
   const NearRays::Turn turn(tool.pose());
-  for (const FrameSample& sample : lists.samples) {
-    const std::uint32_t number = areas.area_of(sample.static_id, lists);
-    AreaWork& area = lists.areas[number];
+  // Area by area, for an area's rays have one direction.
+  first_of_.assign(kMaxFrameAreas + 1, 0);
+  for (const FrameSample& sample : lists.samples) first_of_[areas.area_of(sample.static_id, lists) + 1] += 1;
+  for (std::size_t i = 0; i < kMaxFrameAreas; ++i) first_of_[i + 1] += first_of_[i];
+  by_area_.resize(lists.samples.size());
+  for (std::uint32_t i = 0; i < lists.samples.size(); ++i) by_area_[first_of_[areas.area_of(lists.samples[i].static_id, lists)]++] = i;
+
+  std::uint32_t number = kNone;
+  for (const std::uint32_t i : by_area_) {
+    const FrameSample& sample = lists.samples[i];
+    const std::uint32_t next = areas.area_of(sample.static_id, lists);
+    AreaWork& area = lists.areas[next];
     if (area.direction == Int3(0)) continue;
+    if (next != number) aim(turn, -area.direction);
+    number = next;
     std::uint32_t h = kNone;
-    if (!height(tool, turn, sample.point, -area.direction, false, h)) return false;
+    if (!height(tool, turn, sample.point, false, h)) return false;
     if (h == kNone) continue;
     add(area, sample.point, h, geometry_->mockup.sample_weight_q30[sample.static_id], fade_height(sample.static_id, area.direction, exit_normal(tool, h)));
     risen.push_back({number, sample.point, h});

@@ -21,16 +21,21 @@ struct RisenSample {
 /// references to its arguments; the rest allocates only when a contact is larger than all before.
 class HostHeights {
  public:
-  HostHeights(const SceneGeometry& geometry, const NearRays& rays, std::span<const std::uint32_t> order)
+  HostHeights(const SceneGeometry& geometry, NearRays& rays, std::span<const std::uint32_t> order)
       : geometry_(&geometry), rays_(&rays), order_(order), places_(kMostPlaces) {}
 
   /// Traces every counting sample of an area with a direction and adds its height to the area; `risen` gets those with a height.
   /// False: a ray may cross more than kMostPlaces triangles.
   bool sum(PosedTool& tool, const ContactLists& lists, const HostAreas& areas, std::vector<RisenSample>& risen);
 
+  /// From now on heights are along this direction of the world.
+  void aim(const NearRays::Turn& turn, const Int3& along) {
+    along_ = along;
+    rays_->aim(turn, along);
+  }
   /// A height, or kNone. `through` goes on beyond V_ext voxels of the tool until something is crossed, for points that need not lie inside it.
   /// False: as sum().
-  bool height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, const Int3& along, bool through, std::uint32_t& out);
+  bool height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, bool through, std::uint32_t& out);
 
   /// A sample at `point` of weight `w` (Q30) has height H; `fade` is its H_0.
   static void add(gpu::AreaWork& area, const Int3& point, std::uint32_t height, std::uint32_t w, std::uint32_t fade);
@@ -47,9 +52,12 @@ class HostHeights {
   Int3 exit_normal(PosedTool& tool, std::uint32_t height) const;
 
   const SceneGeometry* geometry_;
-  const NearRays* rays_;
+  NearRays* rays_;
   std::span<const std::uint32_t> order_;
   std::vector<std::uint32_t> places_;
+  Int3 along_{0};
+  std::vector<std::uint32_t> by_area_;   ///< counting samples, those of an area one after the other
+  std::vector<std::uint32_t> first_of_;  ///< of each area, in it
   std::vector<Level> levels_;   ///< crossings of the last ray, by height
 };
 

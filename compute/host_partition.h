@@ -47,7 +47,7 @@ class HostPartition {
     Int3 v;
     for (int k = 0; k < 3; ++k) {
       const std::int64_t d = std::int64_t{p[k]} - grid_.origin[k], q = d / grid_.size;
-      v[k] = static_cast<std::int32_t>(q - (d % grid_.size < 0 ? 1 : 0));
+      v[k] = static_cast<std::int32_t>(d % grid_.size < 0 ? q - 1 : q);
     }
     return v;
   }

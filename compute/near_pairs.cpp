@@ -23,6 +23,7 @@ Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geo
   const gpu::ivec3& n = mockup.grid.bricks;
   const std::int64_t extent = std::int64_t{8} * mockup.grid.size * std::max({n.x, n.y, n.z});
   while (extent >> out.shift_ > 0xFFFF) ++out.shift_;
+  out.box_step_ = std::ldexp(1.0, static_cast<int>(out.shift_));
   const LatticeMesh& mesh = geometry.mockup;
   out.boxes_.resize(mesh.triangles.size());
   out.seen_by_.resize(mesh.triangles.size());
@@ -73,14 +74,27 @@ bool NearPairs::off_plane(const Triangle& triangle, const Int3& low, std::int32_
   return std::abs(distance) > triangle.normal_size * (half + gpu::kCloseSteps + 1);
 }
 
+/// Whether all of a static triangle's box lies on one side of the triangle's plane. A box is low to high + 1 of its steps; slack as above.
+bool NearPairs::off_plane(const Triangle& triangle, const Box& box) const {
+  const Int3& a = triangle.corners[0];
+  double distance = 0, reach = triangle.normal_size * (gpu::kCloseSteps + 1);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    distance += triangle.normal[k] * (0.5 * box_step_ * (box[k] + box[k + 3] + 1) + (grid_.origin[axis] - a[axis]));
+    reach += std::abs(triangle.normal[k]) * (0.5 * box_step_ * (box[k + 3] - box[k] + 1));
+  }
+  return std::abs(distance) > reach;
+}
+
 bool NearPairs::take_list(const Triangle& triangle, std::uint32_t boundary, NearLists& lists) {
   const Box& t = triangle.box;
   for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end; ++e) {
     const std::uint32_t id = list_triangles_[e];
-    if (seen_by_[id] == looker_) continue;   // one pair lies in many voxels
-    seen_by_[id] = looker_;
     const Box& s = boxes_[id];
     if (s[0] > t[3] || s[1] > t[4] || s[2] > t[5] || t[0] > s[3] || t[1] > s[4] || t[2] > s[5]) continue;
+    if (seen_by_[id] == looker_) continue;   // one pair lies in many voxels
+    seen_by_[id] = looker_;
+    if (off_plane(triangle, s)) continue;
     if (!lists.push(lists.pairs, gpu::kListPairCandidates, {id, triangle.place})) return false;
   }
   return true;

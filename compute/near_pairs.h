@@ -35,10 +35,12 @@ class NearPairs {
   using Box = std::array<std::uint16_t, 6>;
   Box box_of(const Int3& low, const Int3& high) const;
   bool off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const;
+  bool off_plane(const Triangle& triangle, const Box& box) const;
   bool take_list(const Triangle& triangle, std::uint32_t boundary, NearLists& lists);
 
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;   ///< voxels a step
+  double box_step_ = 1;    ///< steps
   unsigned shift_ = 0;     ///< boxes are in units of 2^shift steps
   HostCopy<gpu::Brick> bricks_;
   HostCopy<std::uint32_t> list_begin_, list_triangles_;

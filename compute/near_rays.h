@@ -27,33 +27,49 @@ class NearRays {
   };
   /// One ray on its way through the tool, in its lattice frame; off by less than 2^-18 of a step.
   struct Walk {
-    double from[3], along[3];   ///< at parameter t: from + t · along; t = H / 2^30
-    double next[3], each[3];    ///< t at the next face along each axis, and from face to face
-    double t = 0;               ///< at the present voxel's entry
+    double next[3];       ///< parameter at the next face along each axis; t = H / 2^30
+    double t = 0;         ///< at the present voxel's entry
+    double shadow[2];     ///< where the ray lies, seen along it
     Int3 voxel{0};
-    bool outside = false;       ///< it has left the grid
+    bool outside = false;   ///< it has left the grid
   };
-  /// The ray from a world lattice point, `along` a direction in the world.
-  Walk begin(const Turn& turn, const Int3& point, const Int3& along) const;
+  /// From now on rays go along this direction of the world.
+  void aim(const Turn& turn, const Int3& along);
+  /// The ray from a world lattice point.
+  Walk begin(const Turn& turn, const Int3& point) const;
   /// Goes on to the next V_ext voxel, or out of the grid, and appends what may be crossed before (all ids once, from places[first] on, by place).
   /// False: no room. After it, crossings below stop_of(walk) are all among them.
-  bool go_on(Walk& walk, std::uint32_t first, HostList<std::uint32_t>& places) const;
+  bool go_on(Walk& walk, std::uint32_t first, HostList<std::uint32_t>& places);
   /// Leaves V_ext voxels behind; false: the grid ends first.
   bool skip_external(Walk& walk) const;
   static std::uint32_t stop_of(const Walk& walk);
 
   /// Lists the ray of each sample that leaves it along −direction of its slot's area; direction 0: nothing. False: no room.
   bool find(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::span<const Int3> directions, std::span<gpu::RayList> rays,
-            HostList<std::uint32_t>& places) const;
+            HostList<std::uint32_t>& places);
 
  private:
-  bool take_list(const Walk& ray, std::uint32_t boundary, std::uint32_t first, HostList<std::uint32_t>& places) const;
+  /// A triangle seen along the rays: two coordinates of its box, grown by what a ray may pass beside it; valid for one aim.
+  struct Shadow {
+    std::uint32_t aim = 0;
+    double low[2], high[2];
+  };
+  const Shadow& shadow_of(std::uint32_t id);
+  bool take_list(const Walk& ray, std::uint32_t boundary, std::uint32_t first, HostList<std::uint32_t>& places);
   void step(Walk& walk) const;
 
-  using Corners = std::array<std::array<double, 3>, 3>;
   HostPartition fine_;
+  double per_voxel_ = 0;   ///< voxels a step
+  const LatticeMesh* tool_ = nullptr;
   std::vector<std::uint32_t> place_of_;   ///< by id
-  std::vector<Corners> corners_;          ///< by id, tool lattice frame
+  std::vector<Shadow> shadows_;           ///< by id
+
+  // The present aim.
+  std::uint32_t aim_ = 0;
+  Int3 aimed_{0};
+  double along_[3] = {}, each_[3] = {};   ///< direction in the tool's frame; parameter from face to face
+  std::size_t axis_ = 0;                  ///< of its largest component: rays are seen along it
+  double shear_[2] = {}, beside_[2] = {};   ///< of the other two axes, in turn
 };
 
 }  // namespace palpate
