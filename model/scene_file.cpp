@@ -21,7 +21,8 @@ const std::map<std::string, std::vector<std::string>>& scene_keys() {
       {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
       {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size"}},
-      {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms", "change_n_per_s", "slew_ms", "passivity"}},
+      {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms", "change_n_per_s", "slew_ms", "passivity",
+                   "coupling_n_per_m", "coupling_nm_per_rad"}},
       {"device",
        {"driver", "path", "guide", "stages", "actuated", "mass", "inertia", "damping", "angular_damping", "hand", "max_force",
         "max_torque", "workspace"}},
@@ -160,6 +161,8 @@ void read_control(const SceneObject& scene_json, Profile profile, ControlSetting
   body.number("change_n_per_s", {0, 1e9, " N/s"}, control.change_n_per_s);
   body.number("slew_ms", {0, 1e4, " ms"}, control.slew_ms);
   if (const auto passivity = body.choice("passivity", {"off", "on"})) control.passivity = *passivity == 1;
+  body.number("coupling_n_per_m", {0, 1e6, " N/m"}, control.coupling_n_per_m);
+  body.number("coupling_nm_per_rad", {0, 1e5, " N·m/rad"}, control.coupling_nm_per_rad);
 }
 
 void read_hand(const SceneObject& device_json, DeviceSettings& device) {

@@ -80,8 +80,10 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   peers->callback([&] { outcome = bench_peers(options, parts); });
 
   CLI::App* stability = bench->add_subcommand("stability", "highest stable stiffness of each force law beside theory; steps and energy of the force");
+  stability->add_option("scenes", options.scenes, "scene files (JSON) whose sessions are looked at for jumps, too")->type_name("SCENE");
   stability->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
-  stability->footer("In virtual time: the shipped law closed over springs, over a bouncing wall, and over the real collision query. critical_k is found by\n"
+  stability->footer("In virtual time: the shipped law closed over springs, over a bouncing wall, over tools in six degrees of\n"
+                    "freedom, and over the real collision query. critical_k is found by\n"
                     "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and torque, and energy given out.");
   stability->callback([&] { outcome = bench_stability(options, parts); });
 

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "service/cli_bench.h"
 #include "service/cli_bench_output.h"
 #include "service/console.h"
+#include "service/scene_host.h"
+#include "service/session.h"
+#include "service/stability_bodies.h"
 #include "service/stability_contacts.h"
 
 namespace palpate {
@@ -37,6 +41,7 @@ AxisLoop loop_of(const Cell& cell, double k) {
   if (cell.pushes_only) {
     loop.contact = linear_wall(k, 0, cell.areas);
     loop.load_n = -1;
+    loop.reach_m = 0.1 + 4 / k;   // a soft wall is deep
     loop.start_x = 1e-3;
     loop.settle_ticks = 0;
   } else {
@@ -145,6 +150,116 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
   return {};
 }
 
+/// A whole tool in six degrees of freedom, its contact a formula; then the real query, flat and on four pads.
+Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& table, Chart& chart) {
+  const SimulatedMaker make = [&](const DeviceSettings& device, const Pose& start) {
+    Scene scene;
+    scene.device = device;
+    scene.start = start;
+    return parts.make_device("simulated", scene, Vec3(0), {});
+  };
+  const auto row = [&](const std::string& model, LawKind law, int delay, const DeviceSettings& device, std::size_t areas, double found, double expected) {
+    Cell cell{.law = law, .delay = delay, .n = std::max(delay, 1), .areas = static_cast<std::uint32_t>(areas)};
+    cell.mass = device.mass_kg + device.hand_mass_kg, cell.damping = device.damping_n_s_per_m, cell.hand_damping = device.hand_damping_n_s_per_m;
+    add_cell(table, model, cell, found, expected);
+  };
+  for (const LawKind law : kLaws) chart.series.push_back({name_of(law), {}, {}});
+  chart.series.push_back({"theory without delay", {}, {}});
+  for (const BodyCase& what : body_cases()) {
+    console.step("six degrees of freedom: " + what.name);
+    chart.labels.push_back(what.name);
+    for (const int delay : {1, 5, 10})
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double k = highest_stable_body(make, what, kLaws[i], delay);
+        // The printed law pulls by a scalar K along every way, so no limit of one contact is its own.
+        const double expected = kLaws[i] == LawKind::kPrinted ? std::nan("") : body_theory(what.device, what.pads, kLaws[i] == LawKind::kHold ? (1.5 * delay - 0.5) * kTick : 0);
+        row("body: " + what.name, kLaws[i], delay, what.device, what.pads.size(), k, expected);
+        if (delay == 10) chart.series[i].y.push_back(k);
+      }
+    chart.series[3].y.push_back(body_theory(what.device, what.pads, 0));
+  }
+  const BodyCase plate = body_cases().front();
+  for (const int delay : {1, 5, 10})
+    for (const LawKind law : kLaws)
+      row("body: plate, dropped", law, delay, plate.device, plate.pads.size(), highest_stable_body(make, plate, law, delay, true), std::nan(""));
+  const double limit = 4 * body_theory(plate.device, plate.pads, 0);
+  for (const double spring : {1800.0, 3000.0, 4000.0, 10000.0}) {
+    const double k = highest_stable_body(make, plate, LawKind::kCorrected, 10, false, {spring, 8});
+    row(fmt::format("body: plate, virtual coupling of {:.0f} N/m", spring), LawKind::kCorrected, 10, plate.device, plate.pads.size(), k,
+        spring > limit ? limit * spring / (spring - limit) / 4 : std::nan(""));
+  }
+  for (const ContactCase& what : pressed_contacts()) {
+    if (what.name != "flat" && what.name != "four") continue;
+    auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_cpu);
+    if (!prepared) return prepared.error();
+    console.step("six degrees of freedom over the query: " + what.name);
+    for (const bool held : {false, true}) {
+      const DeviceSettings device = held ? DeviceSettings{} : plate.device;
+      const auto none = highest_stable_body_query(make, what, **prepared, device, LawKind::kHold, 0);
+      const auto late = none ? highest_stable_body_query(make, what, **prepared, device, LawKind::kCorrected, 10) : none;
+      if (!late) return late.error();
+      const std::string model = fmt::format("body over the query: {}{}", what.name, held ? ", held by a hand" : "");
+      const std::size_t areas = what.name == "four" ? 4 : 1;
+      row(model, LawKind::kHold, 0, device, areas, *none, *none);
+      row(model, LawKind::kCorrected, 10, device, areas, *late, *none);
+    }
+  }
+  return {};
+}
+
+/// What a session sends, from tick to tick.
+class StepWatch : public RunObserver {
+ public:
+  Result<void> on_tick(const TickRecord& tick) override {
+    const Wrench step{tick.sent.force - before_.force, tick.sent.torque - before_.torque};
+    force = std::max(force, glm::length(step.force));
+    torque = std::max(torque, glm::length(step.torque));
+    const Vec3 bend = step.force - step_.force;
+    sum_ += glm::dot(bend, bend);
+    before_ = tick.sent;
+    step_ = step;
+    ++ticks_;
+    return {};
+  }
+  double jerk() const { return std::sqrt(sum_ / std::max(ticks_, 1)); }
+  double force = 0, torque = 0;   ///< largest step in a tick, N and N·m
+
+ private:
+  Wrench before_, step_;
+  double sum_ = 0;
+  int ticks_ = 0;
+};
+
+/// Whole scenes in virtual time, with their device, hand and limits: the chapter's profile and law, then as the scene says.
+Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts, Chart& force, Chart& torque) {
+  for (const std::string& file : options.scenes) {
+    StepWatch watch[2];
+    for (const bool own : {false, true}) {
+      SceneOptions common;
+      common.scene = file;
+      common.backend = "cpu";
+      if (!own) common.profile = Profile::kPaper;
+      Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(common, Purpose::kSession, parts, console);
+      if (!prepared) return prepared.error();
+      LoadedScene& loaded = (*prepared)->loaded;
+      if (!own) loaded.scene.control.law = ForceLaw::kPrinted;
+      auto device = parts.make_device("simulated", loaded.scene, loaded.geometry.tool_gc_m, {});
+      if (!device) return device.error();
+      console.step(fmt::format("{}, {}", file, own ? "as it is" : "the chapter's method"));
+      const auto summary = run_session(loaded, *(*prepared)->backend, **device, {.pace = Pace::kAsap}, &watch[own]);
+      if (!summary) return summary.error();
+      if (summary->failure) return *summary->failure;
+      force.series[own].y.push_back(watch[own].force);
+      torque.series[own].y.push_back(watch[own].torque);
+    }
+    const std::string name = std::filesystem::path(file).stem().string();
+    force.labels.push_back(name), torque.labels.push_back(name);
+    facts.more.emplace_back("session, " + name, fmt::format("largest step a tick {:.3f} N and {:.1f} mN·m (chapter {:.3f} and {:.1f}), rms jerk {:.3f} N a tick² ({:.3f})", watch[1].force,
+                                                            1e3 * watch[1].torque, watch[0].force, 1e3 * watch[0].torque, watch[1].jerk(), watch[0].jerk()));
+  }
+  return {};
+}
+
 /// Largest step of force and torque, the chapter's method beside the default.
 Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& facts, Chart& force, Chart& torque) {
   force.series = {{"chapter", {}, {}}, {"default", {}, {}}};
@@ -199,10 +314,13 @@ Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
   measure_formulas(console, table, charts);
   Chart queries = lines("Highest stable K over the real collision query, results 10 ms old", "", "N/m", false, true);
   if (auto done = measure_queries(parts, console, table, queries); !done) return done;
+  Chart bodies = lines("Highest stable K of a tool in six degrees of freedom, results 10 ms old", "", "N/m", false, true);
+  if (auto done = measure_bodies(parts, console, table, bodies); !done) return done;
   Chart force = lines("Largest step of the force between two ticks", "", "N", false, true), torque = lines("Largest step of the torque between two ticks", "", "N·m", false, true);
   if (auto done = measure_jumps(parts, console, facts, force, torque); !done) return done;
+  if (auto done = measure_scenes(options, parts, console, facts, force, torque); !done) return done;
   measure_energy(table, facts);
-  charts.insert(charts.end(), {queries, force, torque});
+  charts.insert(charts.end(), {queries, bodies, force, torque});
   for (const auto& [what, text] : facts.more) console.note(what + ": " + text);
   console.finish();
   return write_bench(options.out, facts, table, charts);

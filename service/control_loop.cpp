@@ -31,8 +31,8 @@ void sleep_until(std::int64_t ns) noexcept {
 
 }  // namespace
 
-ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc)
-    : device_(device), law_(law), tool_gc_(tool_gc) {}
+ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc, const CouplingSettings& coupling)
+    : device_(device), law_(law), coupling_(coupling), coupled_(coupling.on() && law.kind == LawKind::kCorrected), tool_gc_(tool_gc) {}
 
 PoseSample ControlTick::sense(std::int64_t tick) noexcept {
   const DeviceSample sample = device_.read();
@@ -44,13 +44,19 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
   record_.guidance = device_.guidance();
   if (!record_.ready) ++unready_ticks_;
   if (sample.stage > 0 && static_cast<std::size_t>(sample.stage) < kMaxStages) stages_[static_cast<std::size_t>(sample.stage)] = true;
-  pose_ = {tick, sample.pose.position + sample.pose.rotation * tool_gc_, sample.pose.rotation};
-  return {tick, sample.pose};
+  device_gc_ = sample.pose.position + sample.pose.rotation * tool_gc_;
+  pose_ = {tick, device_gc_, sample.pose.rotation};
+  if (!coupled_) return {tick, sample.pose};
+  pose_ = coupling_.follow(law_, pose_);
+  return {tick, {pose_.gc - pose_.rotation * tool_gc_, pose_.rotation}};
 }
 
 const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
   const Wrench wrench = law_.step(pose_, fresh);
-  if (law_.jumped()) device_.restart_fade();   // the device homed, or slipped
+  if (law_.jumped()) {   // the device homed, or slipped
+    device_.restart_fade();
+    coupling_.reset();
+  }
   if (law_.took_fresh()) {
     device_.fresh();
     result_tick_ = fresh->tick;
@@ -59,9 +65,9 @@ const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
     record_.response = fresh->wrench;
     record_.contact = fresh->contact;
   }
-  device_.write(wrench, pose_.gc);
+  device_.write(wrench, device_gc_);   // a spring that couples hands its force and torque on as they are
   record_.sent = device_.sent();
-  record_.uncontrolled = device_.exertable(record_.response, pose_.gc);
+  record_.uncontrolled = device_.exertable(record_.response, device_gc_);
   record_.result_age_ticks = result_tick_ < 0 ? -1 : static_cast<std::int32_t>(pose_.tick - result_tick_);
 
   ++ticks_;

@@ -10,6 +10,7 @@
 #include "service/force_law.h"
 #include "service/histogram.h"
 #include "service/run_record.h"
+#include "service/virtual_coupling.h"
 
 namespace palpate {
 
@@ -19,10 +20,11 @@ inline constexpr std::size_t kMaxStages = 256;   ///< stages that a run can tell
 /// allocation, no lock, no exception.
 class ControlTick {
  public:
-  /// `device` outlives this. `tool_gc` in the tool's frame, m.
-  ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc);
+  /// `device` outlives this. `tool_gc` in the tool's frame, m. A coupling goes with law `corrected` alone.
+  ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc, const CouplingSettings& coupling = {});
 
-  /// Reads the device. `tick` counts 1 ms periods since the start, missed ones too.
+  /// Reads the device. `tick` counts 1 ms periods since the start, missed ones too. Returns where the tool is: where the device is, or, with
+  /// a virtual coupling, where it hangs; that pose is the one to ask about.
   PoseSample sense(std::int64_t tick) noexcept;
   /// Force law, gate and limits, and out; `fresh` is the newest result, or null if there is no new one.
   const TickRecord& act(const LawResult* fresh) noexcept;
@@ -44,8 +46,11 @@ class ControlTick {
  private:
   SafeDevice& device_;
   ForceLawState law_;
+  VirtualCoupling coupling_;
+  bool coupled_;
   Vec3 tool_gc_;
-  LawPose pose_;
+  LawPose pose_;       ///< of the tool
+  Vec3 device_gc_{0};  ///< where the tool would be without a coupling
   TickRecord record_;
   std::int64_t result_tick_ = -1;
   std::uint32_t change_ = 0;   ///< of the newest result

@@ -112,6 +112,14 @@ Wrench ForceLawState::corrected(const LawPose& pose, const LawResult* fresh) {
   return {before.force + share_ * (after.force - before.force), before.torque + share_ * (after.torque - before.torque)};
 }
 
+void ForceLawState::feel(const Vec3& gc, const Quat& rotation, Wrench& force, StiffnessMatrix& stiffness) const {
+  const Wrench before = pushed(from_, gc, rotation, from_grows_), after = pushed(to_, gc, rotation);
+  force = {(1 - share_) * before.force + share_ * after.force, (1 - share_) * before.torque + share_ * after.torque};
+  stiffness = {};
+  add_stiffness(stiffness, from_, 1 - share_, gc, rotation, from_grows_);
+  add_stiffness(stiffness, to_, share_, gc, rotation);
+}
+
 /// From here on: from what is felt now to the new result.
 void ForceLawState::take(const LawPose& pose, const LawResult& result) {
   PlaneSet felt;

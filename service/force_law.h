@@ -63,6 +63,10 @@ class ForceLawState {
   /// same tick), is older than the newest seen, from the future, or not finite is ignored. Call it every tick.
   Wrench step(const LawPose& pose, const LawResult* fresh);
 
+  /// `corrected`: what step() would say at another pose now if no result came and its share stood still, and how that gives way there. The
+  /// force never grows as the tool gives way to it.
+  void feel(const Vec3& gc, const Quat& rotation, Wrench& force, StiffnessMatrix& stiffness) const;
+
   int transitions() const { return transitions_; }   ///< n in use
   bool took_fresh() const { return took_fresh_; }     ///< the last step used a new result
   bool jumped() const { return jumped_; }             ///< `corrected`: the pose went further in a tick than a hand can; all was forgotten

@@ -68,6 +68,19 @@ Wrench pushed(const PlaneSet& set, const Vec3& gc, const Quat& rotation, bool gr
   return sum;
 }
 
+void add_stiffness(StiffnessMatrix& into, const PlaneSet& set, double share, const Vec3& gc, const Quat& rotation, bool grows) {
+  if (set.plane_count == 0 || !(share > 0)) return;
+  const Motion motion(set, gc, rotation);
+  for (std::uint32_t i = 0; i < set.plane_count; ++i) {
+    const ContactPlane& plane = set.planes[i];
+    const double force = force_at(plane, motion, grows);
+    if (!(force > 0) || (!grows && force >= plane.force)) continue;   // held at a bound, it doesn't give way
+    const std::array<double, 6> along{plane.normal.x, plane.normal.y, plane.normal.z, plane.lever.x, plane.lever.y, plane.lever.z};
+    for (std::size_t row = 0; row < 6; ++row)
+      for (std::size_t column = 0; column < 6; ++column) into[row][column] += share * plane.stiffness * along[row] * along[column];
+  }
+}
+
 void add_pushes(PlaneSet& into, const PlaneSet& set, double share, bool grows) {
   if (set.plane_count == 0 || !(share > 0)) return;
   const Motion motion(set, into.gc, into.rotation);

@@ -42,6 +42,8 @@ Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
   row("sample spacing", fmt::format("{}{}", millimetres(step * geometry.sample_spacing), scene.response.sample_spacing_m ? "" : " (auto)"));
   row("control law", scene.control.law == ForceLaw::kPrinted ? "printed" : "corrected");
   row("transitions n", scene.control.transitions ? fmt::format("{}", *scene.control.transitions) : "auto");
+  if (scene.control.coupling_n_per_m > 0 || scene.control.coupling_nm_per_rad > 0)
+    row("virtual coupling", fmt::format("{:g} N/m, {:g} N·m/rad", scene.control.coupling_n_per_m, scene.control.coupling_nm_per_rad));
   row("fade-in", fmt::format("{:g} ms", scene.control.fade_in_ms));
   row("watchdog", fmt::format("{:g} ms", scene.control.watchdog_ms));
   row("device limits", fmt::format("{:g} N, {:g} N·m", scene.device.max_force_n, scene.device.max_torque_nm));

@@ -120,7 +120,8 @@ TEST(Extremes, ForceStaysFiniteAndWithinTheLimitsAndIsZeroWhenNothingCanBeTruste
     const double stiffness = dice.log(1, 1e6);
     const ForceLawSettings law{.kind = dice.one_in(4) ? LawKind::kPrinted : LawKind::kCorrected, .stiffness_n_per_m = stiffness,
                                .transitions = static_cast<int>(12 * dice.unit()), .change_n_per_s = dice.one_in(4) ? 0.0 : 100.0};
-    const auto control = std::make_unique<ControlTick>(safe, law, Vec3(0.01, 0, 0));
+    const auto control = std::make_unique<ControlTick>(
+        safe, law, Vec3(0.01, 0, 0), CouplingSettings{dice.one_in(3) ? dice.log(1, 1e6) : 0, dice.one_in(3) ? dice.log(1e-3, 1e5) : 0});
     const double rarely = dice.log(1, 60);
     const bool empty = dice.one_in(10);
     const std::size_t before = allocations_of_this_thread();

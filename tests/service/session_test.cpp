@@ -119,6 +119,27 @@ TEST(Session, PressesBackWithTheDepthOfTheContact) {
   EXPECT_TRUE(device.closed_at_zero);
 }
 
+TEST(Session, WithAVirtualCouplingAWallFeelsNoStifferThanItsSpring) {
+  LoadedScene scene = half_space_scene();
+  scene.scene.control.coupling_n_per_m = 500;
+  add_dip(scene, 2);
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  Watcher watcher;
+  ASSERT_TRUE(run_session(scene, backend, device, {.pace = Pace::kAsap}, &watcher));
+  int deep = 0;
+  for (const TickRecord& tick : watcher.ticks) {
+    if (!tick.contact || tick.pose.position.z > -2e-3) continue;
+    ++deep;
+    // 1000 and 500 N/m in series.
+    ASSERT_NEAR(tick.sent.force.z, -tick.pose.position.z * 1000 * 500 / 1500, 0.02);
+    // What was asked about is where the tool hangs: a third as deep.
+    ASSERT_NEAR(tick.response.force.z, tick.sent.force.z, 0.3);
+  }
+  EXPECT_GT(deep, 200);
+  EXPECT_TRUE(device.closed_at_zero);
+}
+
 TEST(Session, GivesResultsTheAgeThatTheSceneConfigures) {
   LoadedScene scene = half_space_scene();
   scene.scene.control.virtual_delay_ticks = 7;
@@ -346,6 +367,9 @@ TEST(Session, RefusesSettingsInOneSentenceBeforeTheDeviceIsTouched) {
   EXPECT_THAT(refusal([](Scene& s) { s.control.watchdog_ms = NAN; }), HasSubstr("control.watchdog_ms is nan"));
   EXPECT_THAT(refusal([](Scene& s) { s.control.slew_ms = -1; }), HasSubstr("control.slew_ms is -1"));
   EXPECT_THAT(refusal([](Scene& s) { s.control.change_n_per_s = NAN; }), HasSubstr("control.change_n_per_s is nan"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.coupling_n_per_m = NAN; }), HasSubstr("control.coupling_n_per_m is nan"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.coupling_nm_per_rad = 2, s.control.law = ForceLaw::kPrinted; }),
+              HasSubstr("control.coupling_nm_per_rad is 2, allowed is 0 with law printed"));
   EXPECT_THAT(refusal([](Scene& s) { s.response.stiffness_n_per_m = -1; }), HasSubstr("response.stiffness is -1"));
 }
 
