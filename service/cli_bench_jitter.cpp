@@ -33,6 +33,7 @@ constexpr int kHistogramUs = 100'000;   // cyclictest counts latenesses up to th
 struct Lateness {
   std::uint64_t ticks = 0, missed = 0;
   double p50 = 0, p99 = 0, p999 = 0, max = 0;
+  std::vector<HistogramBin> bins{};   ///< µs
 };
 
 /// cyclictest, begun with the same priority and period; its histogram goes to a file. Ended when this goes.
@@ -107,6 +108,13 @@ Result<Lateness> read_histogram(const std::string& file) {
       if ((seen += counts[us]) >= rank) return static_cast<double>(us);
     return out.max;
   };
+  // In bins of a quarter of an octave, as the loop's own.
+  for (double low = 1; low < kHistogramUs; low *= std::sqrt(std::sqrt(2.0))) {
+    const double high = low * std::sqrt(std::sqrt(2.0));
+    HistogramBin bin{low, high, 0};
+    for (auto us = static_cast<std::uint64_t>(std::ceil(low)); static_cast<double>(us) < high && us < counts.size(); ++us) bin.count += counts[us];
+    if (bin.count > 0) out.bins.push_back(bin);
+  }
   out.p50 = percentile(0.5), out.p99 = percentile(0.99), out.p999 = percentile(0.999);
   return out;
 }
@@ -125,9 +133,12 @@ void repeat(std::vector<PathPoint>& path, double seconds) {
   }
 }
 
-void add(BenchTable& table, BenchChart& chart, const std::string& who, const Lateness& late) {
+void add(BenchTable& table, BenchChart& chart, BenchChart& histogram, const std::string& who, const Lateness& late) {
   table.rows.push_back({who, late.ticks, late.missed, late.p50, late.p99, late.p999, late.max});
   chart.series.push_back({who, {}, {late.p50, late.p99, late.p999, late.max}});
+  BenchChart::Series counts{who, {}, {}};
+  for (const HistogramBin& bin : late.bins) counts.x.push_back(std::sqrt(std::max(bin.low, 0.5) * bin.high)), counts.y.push_back(static_cast<double>(bin.count));
+  histogram.series.push_back(std::move(counts));
 }
 
 }  // namespace
@@ -169,9 +180,14 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
   chart.unit = "µs";
   chart.log_y = true;
   chart.labels = {"p50", "p99", "p99.9", "largest"};
+  BenchChart histogram;
+  histogram.title = "Ticks by their lateness, a point a quarter of an octave";
+  histogram.unit = "ticks";
+  histogram.x_title = "µs after the scheduled time";
+  histogram.log_x = histogram.log_y = true;
   const Percentiles& late = summary->lateness_us;
-  const Lateness own{summary->ticks, summary->missed_ticks, late.p50, late.p99, late.p999, late.max};
-  add(table, chart, "palpate", own);
+  const Lateness own{summary->ticks, summary->missed_ticks, late.p50, late.p99, late.p999, late.max, summary->lateness_bins_us};
+  add(table, chart, histogram, "palpate", own);
   if (!compared) {
     facts.more.emplace_back("cyclictest", "not found (Debian: rt-tests); palpate's loop was measured alone");
   } else if (!beside.end()) {
@@ -179,7 +195,7 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
   } else {
     const Result<Lateness> other = read_histogram(file);
     if (!other) return other.error();
-    add(table, chart, "cyclictest", *other);
+    add(table, chart, histogram, "cyclictest", *other);
     facts.more.emplace_back("beside cyclictest", fmt::format("p99.9 {:.2f} times as late, {} missed against {}", late.p999 / std::max(other->p999, 1.0),
                                                              own.missed, other->missed));
   }
@@ -191,7 +207,7 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
   for (const std::string& note : summary->notes) facts.more.emplace_back("note", note);
   for (const auto& [what, text] : facts.more) console.note(what + ": " + text);
   console.finish();
-  return write_bench(options.out, facts, table, {chart});
+  return write_bench(options.out, facts, table, {chart, histogram});
 }
 
 }  // namespace palpate

@@ -35,6 +35,20 @@ class Histogram {
     return max();
   }
 
+  /// Calls `take(low, high, count)` for what is in [low, high), ascending, without empty ones: each value below 128 by itself or, `coarse`, in one; above in quarters of
+  /// an octave, or as kept.
+  template <class Take>
+  void each(bool coarse, Take take) const {
+    const std::size_t together = coarse ? kPerOctave / 4 : 1;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < counts_.size(); i = next) {
+      next = i + (coarse && i < kExact ? kExact : together);
+      std::uint64_t count = 0;
+      for (std::size_t k = i; k < std::min(next, counts_.size()); ++k) count += counts_[k];
+      if (count > 0) take(low(i), low(next), count);
+    }
+  }
+
  private:
   static constexpr std::size_t kExact = 128, kPerOctave = 64;
 
@@ -42,6 +56,10 @@ class Histogram {
     if (v < kExact) return static_cast<std::size_t>(v);
     const auto shift = static_cast<std::size_t>(std::bit_width(v)) - 7;   // ≥ 1; v >> shift is in [64, 128)
     return kExact + (shift - 1) * kPerOctave + static_cast<std::size_t>(v >> shift) - kPerOctave;
+  }
+  static double low(std::size_t i) {
+    if (i < kExact) return static_cast<double>(i);
+    return std::ldexp(static_cast<double>((i - kExact) % kPerOctave + kPerOctave), static_cast<int>((i - kExact) / kPerOctave + 1));
   }
   static double middle(std::size_t i) {
     if (i < kExact) return static_cast<double>(i);

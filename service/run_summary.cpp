@@ -14,6 +14,11 @@ std::string summary_json(const SessionSummary& summary) {
   using Json = nlohmann::ordered_json;
   const auto percentiles = [](const Percentiles& p) { return Json{{"p50", p.p50}, {"p99", p.p99}, {"max", p.max}}; };
   const Percentiles& late = summary.lateness_us;
+  const auto histogram = [](const std::vector<HistogramBin>& bins) {
+    Json out = Json::array();
+    for (const HistogramBin& bin : bins) out.push_back({bin.low, bin.high, bin.count});
+    return out;
+  };
   Json json = {{"static_triangles", summary.static_triangles},
                      {"tool_triangles", summary.tool_triangles},
                      {"backend", summary.backend},
@@ -29,6 +34,8 @@ std::string summary_json(const SessionSummary& summary) {
                      {"areas_max", summary.areas_max},
                      {"force_max_N", summary.force_max_N},
                      {"torque_max_Nm", summary.torque_max_Nm}};
+  json["lateness_histogram_us"] = histogram(summary.lateness_bins_us);
+  json["result_age_histogram_ticks"] = histogram(summary.result_age_bins_ticks);
   if (!summary.notes.empty()) json["notes"] = summary.notes;
   if (summary.failure) json["failure"] = summary.failure->sentence;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

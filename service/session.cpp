@@ -222,6 +222,12 @@ Percentiles percentiles(const Histogram& histogram, double unit) {
   return {histogram.percentile(0.5) / unit, histogram.percentile(0.99) / unit, histogram.percentile(0.999) / unit, histogram.max() / unit};
 }
 
+std::vector<HistogramBin> bins(const Histogram& histogram, bool coarse, double unit) {
+  std::vector<HistogramBin> out;
+  histogram.each(coarse, [&](double low, double high, std::uint64_t count) { out.push_back({low / unit, high / unit, count}); });
+  return out;
+}
+
 /// Why the run ended before its time, if it did.
 std::optional<Error> failure_of(const Run& run) {
   if (run.error) return Error{run.error->code, run.error->sentence + "; the run has ended with zero force"};
@@ -242,7 +248,9 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.ticks = run.tick.ticks();
   out.missed_ticks = run.timing.missed_ticks;
   out.lateness_us = percentiles(run.timing.lateness_ns, 1000);
+  out.lateness_bins_us = bins(run.timing.lateness_ns, true, 1000);
   out.result_age_ticks = percentiles(run.tick.result_age(), 1);
+  out.result_age_bins_ticks = bins(run.tick.result_age(), false, 1);
   out.frame_us = percentiles(run.frame.frame_ns(), 1000);
   for (std::size_t stage = 0; stage < kMaxStages; ++stage)
     if (run.tick.stages()[stage]) out.stages_reached.push_back(static_cast<int>(stage));

@@ -41,6 +41,12 @@ struct Percentiles {
   double p50 = 0, p99 = 0, p999 = 0, max = 0;
 };
 
+/// `count` values in [low, high).
+struct HistogramBin {
+  double low = 0, high = 0;
+  std::uint64_t count = 0;
+};
+
 /// What summary.json tells, with the names it has there, and a few more.
 struct SessionSummary {
   std::uint64_t static_triangles = 0, tool_triangles = 0;   ///< of the scene's meshes
@@ -50,7 +56,9 @@ struct SessionSummary {
   std::string law;                           ///< "printed" or "corrected"
   std::uint64_t ticks = 0, missed_ticks = 0;
   Percentiles lateness_us;                   ///< real time only: wake-up after the scheduled time
+  std::vector<HistogramBin> lateness_bins_us;   ///< ascending, a quarter of an octave each, without empty ones
   Percentiles result_age_ticks;              ///< over ticks that had a result
+  std::vector<HistogramBin> result_age_bins_ticks;   ///< likewise, an age each
   Percentiles frame_us;                      ///< wall time a query, pose in to wrench out
   std::vector<int> stages_reached;           ///< ascending
   std::uint32_t areas_max = 0;               ///< most areas with a force in one frame

@@ -158,6 +158,37 @@
     law('law-force', 'Force', 'N', 1, 7);
   }
 
+  // ---- punctuality: histograms, each bin as wide as it is on its axis -----------------------------------------------------
+  const late = summary.lateness_histogram_us, ages = summary.result_age_histogram_ticks;
+  byId('lateness-figure').hidden = !late.length;
+  byId('punctual-lead').textContent = late.length
+    ? count(summary.missed_ticks) + ' of ' + count(summary.ticks) + ' ticks were missed. Both axes of the lateness are logarithmic, for one tick in a hundred thousand matters.'
+    : 'In virtual time no tick is late.';
+  const histogram = (id, bins, log) => {
+    if (!bins.length) return;
+    const steps = [];
+    bins.forEach(([low, high, n], i) => {   // a gap falls to the floor
+      if (i > 0 && bins[i - 1][1] < low) steps.push([low, 0.5]);
+      steps.push([low, n], [high, n]);
+      if (i + 1 === bins.length || bins[i + 1][0] > high) steps.push([high, 0.5]);
+    });
+    const chart = new Chart(byId(id), {
+      type: 'line',
+      data: { datasets: lines([{ label: 'ticks', colour: 'accent', points: [[bins[0][0], 0.5], ...steps], width: 1.2, fill: 'start' }]) },
+      options: {
+        animation: false, parsing: false, normalized: true, responsive: true, maintainAspectRatio: false,
+        plugins: { legend: { display: false }, tooltip: { enabled: false } },
+        scales: {
+          x: { type: log ? 'logarithmic' : 'linear', ticks: { maxRotation: 0, callback: (v) => !log || /^1/.test(String(v).replace(/^0\.0*/, '')) ? number(v) : '' } },
+          y: { type: 'logarithmic', min: 0.5, ticks: { callback: (v) => /^10*$/.test(String(v)) ? count(v) : '' }, afterFit: (scale) => { scale.width = 58; } },
+        },
+      },
+    });
+    charts.push(chart);
+  };
+  histogram('lateness', late.map(([low, high, n]) => [Math.max(low, 0.05), high, n]), true);
+  histogram('age', ages.map(([low, high, n]) => [low - 0.5, high - 0.5, n]), false);
+
   // ---- colours follow the reader's light or dark setting ------------------------------------------------------------
   const paint = () => {
     for (const chart of charts) {

@@ -149,4 +149,21 @@ def test_a_run_goes_over_to_another_profile_and_back():
     expect_refused(palpate('run', scene, '--pace', 'asap', '--switch', '0.5:blue', '--out', folder / 'none'), 3, '0.5:blue')
 
 
+def test_a_signal_while_a_scene_is_read_or_prepared_ends_the_program_at_once():
+    folder = Folder()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        for step in ('reading the meshes', 'preparing the scene'):
+            # A million triangles take seconds, and nothing of them is kept from before.
+            scene = folder.save(static=[{'generate': {'name': 'disassembly', 'body': 'mockup', 'triangles': 1000000}}])
+            process = subprocess.Popen([PROGRAM, 'run', str(scene), '--backend', 'cpu', '--out', str(folder / 'never')], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                       stderr=subprocess.PIPE, env={**os.environ, 'XDG_CACHE_HOME': str(folder / f'cache{number}{step[:4]}')})
+            for line in process.stderr:
+                if step.encode() in line:
+                    break
+            process.send_signal(number)
+            stdout, stderr = process.communicate(timeout=60)
+            expect(process.returncode == -number, Outcome(process.returncode, stdout.decode(), stderr.decode()))
+            expect(not (folder / 'never').exists(), 'no device was opened, so there is no run')
+
+
 main(globals())

@@ -7,7 +7,7 @@ TRACE = ('time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_
          'response_force_x_N,response_force_y_N,response_force_z_N,response_torque_x_Nm,response_torque_y_Nm,response_torque_z_Nm,'
          'result_age_ticks,contact,stage')
 SUMMARY = ['static_triangles', 'tool_triangles', 'backend', 'device', 'profile', 'law', 'ticks', 'missed_ticks', 'lateness_us', 'result_age_ticks',
-           'frame_us', 'stages_reached', 'areas_max', 'force_max_N', 'torque_max_Nm']
+           'frame_us', 'stages_reached', 'areas_max', 'force_max_N', 'torque_max_Nm', 'lateness_histogram_us', 'result_age_histogram_ticks']
 
 
 def run(scene, out, *arguments):
@@ -40,4 +40,6 @@ def expect_contract(out):
     expect(list(summary['result_age_ticks']) == ['p50', 'max'] and list(summary['frame_us']) == ['p50', 'p99', 'max'], summary)
     expect(summary['ticks'] == len(trace) - 1 and summary['missed_ticks'] == 0, summary)
     expect(summary['result_age_ticks']['max'] <= 2 * 3, summary['result_age_ticks'])   # virtual_delay_ticks 3, renewed every 3
+    expect(summary['lateness_histogram_us'] == [], 'virtual time is never late')
+    expect(sum(count for _, _, count in summary['result_age_histogram_ticks']) == summary['ticks'] - 3, summary['result_age_histogram_ticks'])
     return summary
