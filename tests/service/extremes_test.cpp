@@ -109,7 +109,7 @@ TEST(Extremes, ForceStaysFiniteAndWithinTheLimitsAndIsZeroWhenNothingCanBeTruste
   const std::int64_t ticks = ticks_to_try();
   constexpr std::int64_t kEpisode = 5000;
   Dice dice(23);
-  Histogram cost_ns, empty_ns;
+  Histogram cost_ns, coupled_ns, empty_ns;
   bool pushed = false;
   for (std::int64_t done = 0; done < ticks; done += kEpisode) {
     WildDevice device(dice);
@@ -120,8 +120,9 @@ TEST(Extremes, ForceStaysFiniteAndWithinTheLimitsAndIsZeroWhenNothingCanBeTruste
     const double stiffness = dice.log(1, 1e6);
     const ForceLawSettings law{.kind = dice.one_in(4) ? LawKind::kPrinted : LawKind::kCorrected, .stiffness_n_per_m = stiffness,
                                .transitions = static_cast<int>(12 * dice.unit()), .change_n_per_s = dice.one_in(4) ? 0.0 : 100.0};
+    const CouplingSettings coupling{dice.one_in(4) ? dice.log(1, 1e6) : 0, dice.one_in(4) ? dice.log(1e-3, 1e5) : 0};
     const auto control = std::make_unique<ControlTick>(
-        safe, law, Vec3(0.01, 0, 0), CouplingSettings{dice.one_in(3) ? dice.log(1, 1e6) : 0, dice.one_in(3) ? dice.log(1e-3, 1e5) : 0});
+        safe, law, Vec3(0.01, 0, 0), coupling);
     const double rarely = dice.log(1, 60);
     const bool empty = dice.one_in(10);
     const std::size_t before = allocations_of_this_thread();
@@ -134,7 +135,7 @@ TEST(Extremes, ForceStaysFiniteAndWithinTheLimitsAndIsZeroWhenNothingCanBeTruste
       const auto start = std::chrono::steady_clock::now();
       control->sense(tick);
       control->act(comes ? &result : nullptr);
-      (empty ? empty_ns : cost_ns).add(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
+      (empty ? empty_ns : coupling.on() ? coupled_ns : cost_ns).add(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
     }
     ASSERT_EQ(allocations_of_this_thread(), before);
     ASSERT_TRUE(device.all_finite && device.within && device.zero_when_untrusted)
@@ -142,9 +143,10 @@ TEST(Extremes, ForceStaysFiniteAndWithinTheLimitsAndIsZeroWhenNothingCanBeTruste
     pushed = pushed || device.pushed;
   }
   EXPECT_TRUE(pushed) << "all that for nothing";
-  std::printf("%lld ticks; a tick: p50 %.2f, p99 %.2f, p99.9 %.2f us; without results p50 %.2f, p99 %.2f us\n", static_cast<long long>(ticks),
-              cost_ns.percentile(0.5) / 1e3, cost_ns.percentile(0.99) / 1e3, cost_ns.percentile(0.999) / 1e3, empty_ns.percentile(0.5) / 1e3,
-              empty_ns.percentile(0.99) / 1e3);
+  const auto us = [](const Histogram& histogram, double share) { return histogram.percentile(share) / 1e3; };
+  std::printf("%lld ticks; a tick: p50 %.2f, p99 %.2f, p99.9 %.2f us; with a virtual coupling p50 %.2f, p99 %.2f us; without results p50 %.2f, p99 %.2f us\n",
+              static_cast<long long>(ticks), us(cost_ns, 0.5), us(cost_ns, 0.99), us(cost_ns, 0.999), us(coupled_ns, 0.5), us(coupled_ns, 0.99), us(empty_ns, 0.5),
+              us(empty_ns, 0.99));
 }
 
 TEST(Extremes, TheCorrectedLawNeitherPullsNorLosesItsNumbersInAClosedLoop) {
