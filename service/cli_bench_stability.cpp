@@ -195,13 +195,11 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
     console.step("six degrees of freedom over the query: " + what.name);
     for (const bool held : {false, true}) {
       const DeviceSettings device = held ? DeviceSettings{} : plate.device;
-      const auto none = highest_stable_body_query(make, what, **prepared, device, LawKind::kHold, 0);
-      const auto late = none ? highest_stable_body_query(make, what, **prepared, device, LawKind::kCorrected, 10) : none;
-      if (!late) return late.error();
-      const std::string model = fmt::format("body over the query: {}{}", what.name, held ? ", held by a hand" : "");
-      const std::size_t areas = what.name == "four" ? 4 : 1;
-      row(model, LawKind::kHold, 0, device, areas, *none, *none);
-      row(model, LawKind::kCorrected, 10, device, areas, *late, *none);
+      for (const LawKind law : {LawKind::kHold, LawKind::kCorrected}) {
+        const auto k = highest_stable_body_query(make, what, **prepared, device, law, 10);
+        if (!k) return k.error();
+        row(fmt::format("body over the query: {}{}", what.name, held ? ", held by a hand" : ""), law, 10, device, what.name == "four" ? 4 : 1, *k, std::nan(""));
+      }
     }
   }
   return {};
