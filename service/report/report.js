@@ -180,7 +180,7 @@
         plugins: { legend: { display: false }, tooltip: { enabled: false } },
         scales: {
           x: { type: log ? 'logarithmic' : 'linear', ticks: { maxRotation: 0, callback: (v) => !log || /^1/.test(String(v).replace(/^0\.0*/, '')) ? number(v) : '' } },
-          y: { type: 'logarithmic', min: 0.5, ticks: { callback: (v) => /^10*$/.test(String(v)) ? count(v) : '' }, afterFit: (scale) => { scale.width = 58; } },
+          y: { type: 'logarithmic', min: 0.5, max: 10 ** Math.ceil(Math.log10(1.2 * Math.max(...bins.map((bin) => bin[2])))), ticks: { callback: (v) => /^10*$/.test(String(v)) ? count(v) : '' }, afterFit: (scale) => { scale.width = 58; } },
         },
       },
     });

@@ -156,7 +156,7 @@ def test_a_signal_while_a_scene_is_read_or_prepared_ends_the_program_at_once():
             # A million triangles take seconds, and nothing of them is kept from before.
             scene = folder.save(static=[{'generate': {'name': 'disassembly', 'body': 'mockup', 'triangles': 1000000}}])
             process = subprocess.Popen([PROGRAM, 'run', str(scene), '--backend', 'cpu', '--out', str(folder / 'never')], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                       stderr=subprocess.PIPE, env={**os.environ, 'XDG_CACHE_HOME': str(folder / f'cache{number}{step[:4]}')})
+                                       stderr=subprocess.PIPE, env={**os.environ, 'PALPATE_CACHE': str(folder / f'cache{number}{step[:4]}')})
             for line in process.stderr:
                 if step.encode() in line:
                     break
