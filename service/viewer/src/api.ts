@@ -11,6 +11,7 @@ const TOKEN_KEY = 'palpate.token';
 export class Api {
   private token: string | null = sessionStorage.getItem(TOKEN_KEY);
 
+  get has_token(): boolean { return this.token !== null; }
   set_token(token: string): void {
     this.token = token;
     sessionStorage.setItem(TOKEN_KEY, token);

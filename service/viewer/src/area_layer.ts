@@ -33,7 +33,7 @@ class Mark {
     this.point.position.copy(at);
     this.point.scale.setScalar(size * 0.03);
     const turn = new three.Quaternion().setFromUnitVectors(new three.Vector3(0, 1, 0), up.lengthSq() > 0.5 ? up : new three.Vector3(0, 1, 0));
-    for (const [bar, height, thick] of [[this.mean, area.height_mean ?? area.depth, 2.4], [this.most, area.height_max ?? 0, 0.8]] as const) {
+    for (const [bar, height, thick] of [[this.mean, area.depth, 2.4], [this.most, area.max_depth ?? 0, 0.8]] as const) {
       bar.visible = show.heights && height > 0;
       bar.position.copy(at).addScaledVector(up, (-height * gain) / 2);   // heights go into the tool's way: against n_c
       bar.quaternion.copy(turn);

@@ -3,10 +3,13 @@
 export const LEVELS = [30_000, 120_000, 400_000, 1_500_000];
 const SLOW_MS = 40;   // chosen: below 25 pictures a second dragging feels sticky
 const FAST_MS = 9;    // chosen: four times as much would still be smooth
+const ENOUGH = 40;    // pictures that tell; where they are slow, those of ENOUGH_MS, and FEWEST at least
+const ENOUGH_MS = 1500;
+const FEWEST = 4;     // one that waits for something else does not decide
 
 /** The level to move to; `total`: triangles of the whole mock-up. */
 export function next_level(level: number, picture_ms: number, total: number): number {
-  if (picture_ms > SLOW_MS && level > 0) return level - 1;
+  if (picture_ms > SLOW_MS && level > 0) return Math.max(0, level - (picture_ms > 4 * SLOW_MS ? 2 : 1));
   if (picture_ms < FAST_MS && level + 1 < LEVELS.length && LEVELS[level] < total) return level + 1;
   return level;
 }
@@ -16,14 +19,16 @@ export class LevelKeeper {
   level = 1;
   private ceiling = LEVELS.length - 1;
   private times: number[] = [];
+  private spent = 0;
 
-  /** Takes the time since the picture before, ms; true when the level changed. */
+  /** Takes the time since the picture before in an unbroken row of them, ms, however long; true when the level changed. */
   take(picture_ms: number, total: number): boolean {
-    if (picture_ms > 500) return false;   // the page was hidden, or nothing moved
     this.times.push(picture_ms);
-    if (this.times.length < 40) return false;
-    const median = this.times.sort((a, b) => a - b)[20];
+    this.spent += picture_ms;
+    if (this.times.length < ENOUGH && (this.times.length < FEWEST || this.spent < ENOUGH_MS)) return false;
+    const median = this.times.sort((a, b) => a - b)[this.times.length >> 1];
     this.times = [];
+    this.spent = 0;
     const next = Math.min(next_level(this.level, median, total), this.ceiling);
     if (next === this.level) return false;
     if (next < this.level) this.ceiling = next;

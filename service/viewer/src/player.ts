@@ -42,6 +42,7 @@ export class Player {
       this.samples = this.columns(playback);
       this.scrubber.max = String(playback.duration);
       element('duration').textContent = `of ${playback.duration.toFixed(2)} s`;
+      this.offer_report(run);
       note.textContent = `${playback.trace.rows.toLocaleString('en')} ticks, ${playback.frames.entries.length.toLocaleString('en')} frames`;
       await this.refresh();
       this.changed();
@@ -49,6 +50,13 @@ export class Player {
       note.textContent = '';
       this.failed(error);
     }
+  }
+
+  /** A link to the run's own page, where there is one; a server that asks for a token would refuse it. */
+  private offer_report(run: Run): void {
+    const place = element('run-report');
+    place.hidden = run.files['report.html'] === undefined || this.api.has_token;
+    place.querySelector('a')!.href = `v1/runs/${encodeURIComponent(run.name)}/report.html`;
   }
 
   /** The whole run for the strips; depth and time belong to the newest frame at each tick. */

@@ -29,7 +29,7 @@ export const MOBILE_KINDS: readonly Kind[] = ['bmt', 'imt', 'cmt'];
 
 export interface Area {
   id: number; zones?: number[][]; static?: number[]; mobile?: number[]; normal: Vec3; depth: number; point: Vec3; force: Vec3; torque: Vec3; flags?: string[];
-  rays?: number; height_mean?: number; height_max?: number;
+  rays?: number; max_depth?: number;
 }
 /** A line of frames.jsonl. */
 export interface Frame extends Record<Kind, number[]> {

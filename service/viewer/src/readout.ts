@@ -48,7 +48,7 @@ export class Readout {
       make('td', { title: `smallest triangle ${area.id}` }, String(area.id)),
       make('td', {}, String(area.zones?.length ?? '–')),
       make('td', {}, figure(area.depth * 1000)),
-      make('td', {}, figure((area.height_max ?? NaN) * 1000)),
+      make('td', {}, figure((area.max_depth ?? NaN) * 1000)),
       make('td', {}, figure(length(area.force))),
       make('td', { class: 'flags' }, (area.flags ?? []).join(', '))));
     element('areas').replaceChildren(...rows);

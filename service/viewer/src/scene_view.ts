@@ -52,6 +52,7 @@ export class SceneView {
     this.camera.add(lamp);
     this.scene.add(sky, this.camera);
     new ResizeObserver(() => this.resize()).observe(host);
+    document.addEventListener('visibilitychange', () => { this.last_draw = NaN; });   // how long nobody looked is no picture's time
     this.resize();
   }
 

@@ -89,6 +89,15 @@ test('level of detail: down when pictures are slow, up when they are fast and th
   const feed = (ms: number) => { for (let i = 0; i < 40; ++i) keeper.take(ms, 1e6); return keeper.level; };
   assert.deepEqual([feed(5), feed(60), feed(5)], [2, 1, 1]);
 });
+test('level of detail: pictures of a second go down after a few, two levels at once; one that waited does not decide', () => {
+  const keeper = new LevelKeeper();
+  keeper.level = 3;
+  assert.deepEqual([1000, 1000, 1000, 1000].map((ms) => keeper.take(ms, 1e7)), [false, false, false, true]);
+  assert.equal(keeper.level, 1);
+  const waited = new LevelKeeper();
+  assert.deepEqual([16, 3000, 16, 16].map((ms) => waited.take(ms, 1e7)), [false, false, false, false]);
+  assert.equal(waited.level, 1);
+});
 test('strips: the newest samples stay, and a range is 1, 2 or 5 times a power of ten', () => {
   const samples = new Samples(8);
   for (let i = 0; i < 11; ++i) samples.add(i, [i, 0, 0, 0, 0, 0, 0, 0, 0]);
