@@ -21,7 +21,8 @@ install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LI
 
 # Headers keep their folders, so that "model/pose.h" means the same here and there.
 install(DIRECTORY model driver service DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT library
-  FILES_MATCHING PATTERN "*.h")
+  FILES_MATCHING PATTERN "*.h" PATTERN "service/server" EXCLUDE PATTERN "service/viewer" EXCLUDE PATTERN "service/report" EXCLUDE PATTERN "service/clients" EXCLUDE
+  PATTERN "service/deploy" EXCLUDE)
 install(FILES compute/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute COMPONENT library)
 install(FILES cpu_ref/cpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/cpu_ref COMPONENT library)
 
@@ -43,6 +44,7 @@ if(TARGET palpate)
     POST_EXCLUDE_REGEXES "/ld-linux" "/libc\\.so" "/libm\\.so")
   install(DIRECTORY scenes DESTINATION share/palpate COMPONENT bundle)
   install(FILES README.md LICENSE CHANGELOG.md driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
+  install(FILES service/deploy/palpate.service service/deploy/nginx.conf DESTINATION share/palpate/deploy COMPONENT bundle)
 endif()
 
 set(CPACK_GENERATOR TGZ)
