@@ -98,6 +98,8 @@ bool glb_stands_alone(const std::string& path) {
   return std::fread(text.data(), 1, json, in.get()) == json && text.find("\"uri\"") == std::string::npos;
 }
 
+}  // namespace
+
 bool stands_alone(const std::string& path) {
   const auto dot = path.rfind('.');
   if (dot == std::string::npos) return false;
@@ -105,6 +107,8 @@ bool stands_alone(const std::string& path) {
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending == "stl" || ending == "ply" || ending == "off" || ending == "3mf" || (ending == "glb" && glb_stands_alone(path));
 }
+
+namespace {
 
 bool add_source(KeyBuilder& key, const MeshSource& source) {
   key.text(source.file);   // its name is in warnings

@@ -18,6 +18,9 @@ struct LoadedGeometry {
 /// read, or may draw on others whose content nobody knows here (.obj, .gltf, a .glb with a "uri", and formats that are not known to stand alone).
 std::optional<ContentKey> geometry_key(const Scene& scene);
 
+/// Whether a mesh file can draw on no other file; false where that isn't known.
+bool stands_alone(const std::string& path);
+
 std::optional<LoadedGeometry> find_geometry(DiskCache& cache, const ContentKey& key);
 /// `seconds`: what loading took.
 void keep_geometry(DiskCache& cache, const ContentKey& key, const LoadedGeometry& loaded, double seconds);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 
+#include "model/cache/geometry_cache.h"
 #include "service/server/content_hash.h"
 #include "service/server/json_input.h"
 #include "service/server/safe_path.h"
@@ -30,9 +32,27 @@ std::set<std::string> named_files(const nlohmann::json& scene) {
   return names;
 }
 
+constexpr std::size_t kMostNeighbours = 4096;   ///< chosen
+
+/// What may stand beside a mesh that draws on other files (a glTF's buffers): which of them does, only its reader knows. Names, sizes and
+/// times of change stand for the files; what sessions record is none of it. False: there are too many.
+bool add_neighbours(ContentHash& hash, const fs::path& mesh) {
+  std::error_code error;
+  std::map<std::string, std::string> files;
+  const fs::path folder = mesh.parent_path();
+  for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, error); !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (!it->is_regular_file(error) || name == "frames.jsonl" || name == "trace.csv" || name == "summary.json" || name == "report.html") continue;
+    if (files.size() == kMostNeighbours) return false;
+    files[it->path().lexically_relative(folder).string()] = std::to_string(it->file_size(error)) + " " + std::to_string(it->last_write_time(error).time_since_epoch().count());
+  }
+  for (const auto& [name, state] : files) hash.add("\n+" + std::to_string(name.size()) + " " + name + " " + state);
+  return true;
+}
+
 }  // namespace
 
-std::variant<SceneContent, Problem> read_scene_content(const fs::path& file, const fs::path& folder, std::optional<Profile> profile, const ServerLimits& limits) {
+std::variant<SceneContent, Problem> read_scene_content(const fs::path& file, const fs::path& folder, std::optional<Profile> profile, const ServerLimits& limits, Neighbours neighbours) {
   std::error_code error;
   if (fs::file_size(file, error) > limits.json_bytes || error)
     return Problem{413, "too-large", "the scene file is larger than " + std::to_string(limits.json_bytes) + " bytes, or no file", "scene"};
@@ -45,7 +65,11 @@ std::variant<SceneContent, Problem> read_scene_content(const fs::path& file, con
   hash.add("palpate scene 1\n");
   hash.add(profile ? (*profile == Profile::kPaper ? "paper\n" : "refined\n") : "as written\n");
   hash.add(text);
-  for (const std::string& name : named_files(std::get<nlohmann::json>(scene))) {
+  std::set<std::string> names = named_files(std::get<nlohmann::json>(scene));
+  if (neighbours == Neighbours::kByContent)
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+      if (entry.is_regular_file(error) && entry.path() != file) names.insert(entry.path().filename().string());
+  for (const std::string& name : names) {
     if (name.find('\0') != std::string::npos) return bad_request("a file's name holds a zero byte", "scene");
     const fs::path wanted = file.parent_path() / name;
     const auto real = path_below(folder, wanted);
@@ -60,6 +84,8 @@ std::variant<SceneContent, Problem> read_scene_content(const fs::path& file, con
     const std::string content = file_hash(real->string());
     if (content.empty()) return Problem{500, "internal", "reading \"" + shown_text(name) + "\" failed", "scene"};
     hash.add(std::string("\n") + std::to_string(name.size()) + " " + name + " " + content);
+    if (neighbours == Neighbours::kByTime && !stands_alone(real->string()) && !name.ends_with(".csv") && !add_neighbours(hash, *real))
+      return bad_request("\"" + shown_text(name) + "\" may draw on the files beside it, and there are more than " + std::to_string(kMostNeighbours) + " of them", "scene");
   }
   SceneContent out;
   out.id = hash.hex().substr(0, 32);

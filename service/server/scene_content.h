@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,8 +23,14 @@ struct SceneContent {
   std::uint64_t disk_bytes = 0;            ///< of an upload
 };
 
+/// What stands for files that a mesh names in turn, as a glTF does its buffers.
+enum class Neighbours : std::uint8_t {
+  kByContent,   ///< all files of `folder` are hashed, which is the scene's alone
+  kByTime       ///< names, sizes and times of change of the files beside such a mesh, and below
+};
+
 /// Reads which files the scene file names, sees that all of them lie below `folder` (a real path), and hashes. Takes as long as reading them.
 std::variant<SceneContent, Problem> read_scene_content(const std::filesystem::path& file, const std::filesystem::path& folder,
-                                                       std::optional<Profile> profile, const ServerLimits& limits);
+                                                       std::optional<Profile> profile, const ServerLimits& limits, Neighbours neighbours);
 
 }  // namespace palpate

@@ -163,7 +163,7 @@ HttpResponse add_named(const std::string& body, SceneStore& store, const ServerL
     return Problem{404, "not-found", "there is no scene file '" + shown_text(path) + "' below the root", "path"};
   }
   if (!fs::is_regular_file(*file, error)) return Problem{404, "not-found", "'" + shown_text(path) + "' is no file", "path"};
-  auto content = read_scene_content(*file, root, profile, limits);
+  auto content = read_scene_content(*file, root, profile, limits, Neighbours::kByTime);
   if (const auto* problem = std::get_if<Problem>(&content)) return *problem;
   std::get<SceneContent>(content).name = fs::relative(*file, root, error).string();
   return added(store, std::move(std::get<SceneContent>(content)));

@@ -99,7 +99,7 @@ class Upload final : public BodySink {
     workers_.post([folder = folder_, text = std::get<std::string>(scene), &limits = limits_, done = done_, reply, bytes = bytes_, name = shown_name()] {
       OpenFile file;
       if (!file.open(folder->path() / kSceneName) || !file.write(text) || !file.close()) return reply(storage("written"));
-      auto content = read_scene_content(folder->path() / kSceneName, folder->path(), std::nullopt, limits);
+      auto content = read_scene_content(folder->path() / kSceneName, folder->path(), std::nullopt, limits, Neighbours::kByContent);
       if (const auto* problem = std::get_if<Problem>(&content)) return reply(*problem);
       auto& made = std::get<SceneContent>(content);
       made.name = name;
