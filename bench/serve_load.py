@@ -1,9 +1,11 @@
 """Load on `palpate serve`, loopback only, bounded: a session alone, then beside batch clients at full rate and viewers.
 
-usage: serve_load.py PROGRAM SCENE.json [--seconds 60] [--batches 4] [--viewers 200] [--backend gpu] [--out DIR]
+usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--out DIR]
 
-Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for both phases, poses a second and p99 of a query's time,
-memory of the server before and after. Python's standard library only; the clients share the machine with the server, as they would in the worst case.
+FOLDER: what `palpate generate` made. Its hand goes to and fro along its path for the whole time; the batches ask poses along that path, a millimetre off at most.
+Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for both phases, queries and poses a second and p99 of a
+query's time, memory of the server over the time. --ordinary: the server has no right to real-time priority, nor to lock memory (as root, by setpriv). Python's
+standard library only. The clients share the machine with the server, as they would in the worst case.
 """
 import argparse
 import http.client
@@ -12,7 +14,9 @@ import os
 import pathlib
 import random
 import re
+import resource
 import selectors
+import shutil
 import signal
 import socket
 import struct
@@ -23,18 +27,51 @@ import time
 
 parser = argparse.ArgumentParser()
 parser.add_argument('program')
-parser.add_argument('scene', type=pathlib.Path)
+parser.add_argument('folder', type=pathlib.Path)
 parser.add_argument('--seconds', type=float, default=60)
 parser.add_argument('--batches', type=int, default=4)
 parser.add_argument('--viewers', type=int, default=200)
+parser.add_argument('--poses', type=int, default=500, help='of a query: about what a planner asks at once')
 parser.add_argument('--backend', default='cpu')
+parser.add_argument('--ordinary', action='store_true')
 parser.add_argument('--out', type=pathlib.Path)
 options = parser.parse_args()
-POSES = 500   # of a query: about what a planner asks at once
 KEY = 'AAAAAAAAAAAAAAAAAAAAAA=='
 
+root = tempfile.TemporaryDirectory()
+shutil.copytree(options.folder, root.name, dirs_exist_ok=True)
+
+
+def lengthen():
+    """The path, to and fro until the session is over; its poses."""
+    file = pathlib.Path(root.name) / 'path.csv'
+    head, *rows = file.read_text().splitlines()
+    times, rest = zip(*((float(time), pose) for time, pose in (row.split(',', 1) for row in rows)))
+    steps = list(zip([b - a for a, b in zip(times, times[1:])], rest[1:], rest))
+    out, now = [f'0,{rest[0]}'], 0.0
+    while now < options.seconds:
+        for step, there, _ in steps:
+            now += step
+            out.append(f'{now:.6f},{there}')
+        for step, _, back in reversed(steps):
+            now += step
+            out.append(f'{now:.6f},{back}')
+    file.write_text('\n'.join([head, *out]) + '\n')
+    return [[float(x) for x in pose.split(',')[:7]] for pose in rest]
+
+
+path = lengthen()
 log = tempfile.TemporaryFile()
-server = subprocess.Popen([options.program, 'serve', '--listen', '127.0.0.1:0', '--root', options.scene.resolve().parent, '--backend', options.backend], stderr=log)
+WITHOUT_RIGHTS = ['setpriv', '--bounding-set', '-sys_nice,-ipc_lock'] if os.geteuid() == 0 else []
+
+
+def without_limits():
+    resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+    resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))
+
+
+server = subprocess.Popen([*(WITHOUT_RIGHTS if options.ordinary else []), options.program, 'serve', '--listen', '127.0.0.1:0', '--root', root.name, '--backend', options.backend], stderr=log,
+                          preexec_fn=without_limits if options.ordinary else None)
 while not (found := re.search(rb'"listening","address":"127.0.0.1:(\d+)"', os.pread(log.fileno(), 100_000, 0))):
     time.sleep(0.05)
 port = int(found[1])
@@ -75,11 +112,17 @@ class Load:
         self.messages = self.bytes = 0
         self.lock = threading.Lock()
         self.threads = []
+        self.memory = []   # KiB, once a second
+
+    def weigh(self):
+        while not self.stop:
+            time.sleep(1)
+            self.memory.append(memory_kib())
 
     def batch(self, seed):
         chance = random.Random(seed)
-        start = scene['start']
-        body = b''.join(struct.pack('<7d', *(start[k] + chance.uniform(-0.02, 0.02) for k in range(3)), *start[3:]) for _ in range(POSES))
+        poses = [chance.choice(path) for _ in range(options.poses)]
+        body = b''.join(struct.pack('<7d', *(x + chance.uniform(-0.001, 0.001) for x in pose[:3]), *pose[3:]) for pose in poses)
         connection = http.client.HTTPConnection('127.0.0.1', port, timeout=600)
         while not self.stop:
             began = time.monotonic()
@@ -107,22 +150,21 @@ class Load:
             key.fileobj.close()
 
     def start(self, session_id):
-        jobs = [(self.batch, (i,)) for i in range(options.batches)] + ([(self.watch, (session_id,))] if options.viewers else [])
+        jobs = [(self.weigh, ())] + [(self.batch, (i,)) for i in range(options.batches)] + ([(self.watch, (session_id,))] if options.viewers else [])
         self.threads = [threading.Thread(target=job, args=arguments, daemon=True) for job, arguments in jobs]
         for thread in self.threads:
             thread.start()
-        time.sleep(5)
-        self.memory_begin = memory_kib()
+        self.begun = time.monotonic()
 
     def end(self):
-        self.memory_end = memory_kib()
         self.stop = True
+        self.seconds = time.monotonic() - self.begun
         for thread in self.threads:
             thread.join(120)
 
 
 try:
-    scene = json.loads(ask('POST', '/v1/scenes', json.dumps({'path': options.scene.name}), {'Content-Type': 'application/json'}))
+    scene = json.loads(ask('POST', '/v1/scenes', json.dumps({'path': 'scene.json'}), {'Content-Type': 'application/json'}))
     while scene['state'] not in ('ready', 'failed'):
         scene = json.loads(ask('GET', f"/v1/scenes/{scene['id']}?wait=30"))
     if scene['state'] == 'failed':
@@ -144,10 +186,13 @@ def figures(state):
             'notes': summary.get('notes', [])}
 
 
-result = {'scene': str(options.scene), 'backend': scene['device'], 'seconds': options.seconds, 'batch_clients': options.batches, 'viewers': options.viewers, 'processors': os.cpu_count(),
-          'load_average': os.getloadavg(), 'alone': figures(alone), 'loaded': figures(loaded), 'poses_per_s': load.poses / options.seconds,
-          'query_s': {'p50': load.times[len(load.times) // 2], 'p99': load.times[int(0.99 * len(load.times))], 'poses': POSES} if load.times else None,
-          'viewer_reads': load.messages, 'viewer_bytes': load.bytes, 'memory_kib': [load.memory_begin, load.memory_end]}
+result = {'scene': options.folder.name, 'backend': scene['device'], 'seconds': options.seconds, 'batch_clients': options.batches, 'viewers': options.viewers, 'processors': os.cpu_count(),
+          'load_average': os.getloadavg(), 'alone': figures(alone), 'loaded': figures(loaded), 'realtime': not options.ordinary, 'poses_per_s': load.poses / load.seconds, 'queries_per_s': len(load.times) / load.seconds,
+          'query_s': {'p50': load.times[len(load.times) // 2], 'p99': load.times[int(0.99 * len(load.times))], 'poses': options.poses} if load.times else None,
+          'viewer_reads': load.messages, 'viewer_bytes': load.bytes,
+          'memory_kib': {'after_5_s': load.memory[min(4, len(load.memory) - 1)], 'half_way': load.memory[len(load.memory) // 2], 'end': load.memory[-1], 'max': max(load.memory)},
+          'missed_ratio': loaded['summary']['missed_ticks'] / max(alone['summary']['missed_ticks'], 1),
+          'age_p99_ratio': loaded['result_age_ticks']['p99'] / max(alone['result_age_ticks']['p99'], 1)}
 print(json.dumps(result, indent=1))
 if options.out:
     options.out.mkdir(parents=True, exist_ok=True)

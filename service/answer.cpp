@@ -4,14 +4,16 @@
 
 namespace palpate {
 
-Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) {
+Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) { return answer_pose(scene.loaded, *scene.backend, pose, out); }
+
+Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  const SceneGeometry& geometry = scene.loaded.geometry;
+  const SceneGeometry& geometry = scene.geometry;
   const Result<LatticePose> lattice = to_lattice(pose, geometry);
   if (!lattice) return lattice.error();
-  if (auto done = scene.backend->query(*lattice, nullptr, out.contacts); !done) return done;
-  const ResponseSettings& settings = scene.loaded.scene.response;
+  if (auto done = backend.query(*lattice, nullptr, out.contacts); !done) return done;
+  const ResponseSettings& settings = scene.scene.response;
   respond(out.contacts, *lattice, geometry, settings.profile, settings.stiffness_n_per_m, out.response);
   out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   return {};

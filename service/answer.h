@@ -15,5 +15,7 @@ struct Answer {
 
 /// Answers one pose; a lone query holds nothing from a frame before. Errors: not a pose; the back end failed.
 Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out);
+/// The same by another back end that has the scene prepared.
+Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out);
 
 }  // namespace palpate

@@ -4,6 +4,8 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstddef>
 
+#include "service/thread_share.h"
+
 namespace palpate {
 namespace {
 
@@ -51,6 +53,8 @@ FrameSlot* CollisionWorker::next_frame() {
 void CollisionWorker::release(FrameSlot* slot) { queues_->free.push(slot); }
 
 void CollisionWorker::run() noexcept {
+  set_nice(kNiceContact);
+  set_slice(kSliceContactUs);
   LawResult result;
   std::uint32_t seen = 0;
   while (!stop_.load(std::memory_order_acquire)) {

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "service/collision_worker.h"
+#include "service/thread_share.h"
 
 namespace palpate {
 namespace {
@@ -132,9 +133,10 @@ RealtimeGrant make_realtime() {
     grant.refused += (grant.refused.empty() ? "" : "; ") + std::move(what) + " (" + std::strerror(error) + ")" + so;
   };
   const sched_param priority{.sched_priority = kLoopPriority};
-  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0)
+  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0) {
     refuse("no real-time priority", error, ": ticks are as punctual as the ordinary scheduler makes them");
-  else if (const int processor = loop_processor(); processor >= 0)   // without priority a bound thread would only wait longer
+    set_slice(kSliceTickUs);
+  } else if (const int processor = loop_processor(); processor >= 0)   // without priority a bound thread would only wait longer
     if (const int unbound = bind_to(processor); unbound != 0) refuse("the loop isn't bound to a processor", unbound, "");
   grant.locked = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
   if (!grant.locked) refuse("memory isn't locked", errno, "");

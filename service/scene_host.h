@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "model/plan.h"
@@ -16,6 +17,10 @@ struct HostedScene {
   std::unique_ptr<CollisionBackend> backend;
   std::unique_ptr<CollisionBackend> second;   ///< only if asked for; not prepared
   PlanDecision plan;
+  /// One more, prepared, for who must not hold up loops that use the first (SceneStore::aside); null until it is wanted.
+  std::unique_ptr<CollisionBackend> aside;
+  bool aside_failed = false;   ///< it could not be prepared
+  std::mutex aside_mutex;      ///< of the two; one query at a time
   double load_s = 0, prepare_s = 0;   ///< wall time, first-run shader compilation included
 };
 

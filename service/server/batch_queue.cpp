@@ -7,6 +7,7 @@
 
 #include "service/answer.h"
 #include "service/query_json.h"
+#include "service/thread_share.h"
 
 namespace palpate {
 namespace {
@@ -93,8 +94,8 @@ class BatchQueue::Source final : public BodySource {
   std::shared_ptr<Batch> batch_;
 };
 
-BatchQueue::BatchQueue(Turns& turns, const ServerLimits& limits, Metrics& metrics)
-    : turns_(turns), limits_(limits), metrics_(metrics), thread_([this] { run(); }) {}
+BatchQueue::BatchQueue(SceneStore& store, const ServerLimits& limits, Metrics& metrics)
+    : store_(store), limits_(limits), metrics_(metrics), thread_([this] { run(); }) {}
 
 BatchQueue::~BatchQueue() {
   {
@@ -129,6 +130,7 @@ void BatchQueue::resume(const std::shared_ptr<Batch>& batch) {
 }
 
 void BatchQueue::run() {
+  set_nice(kNiceBatches);
   for (;;) {
     std::shared_ptr<Batch> batch;
     {
@@ -204,8 +206,13 @@ void BatchQueue::answer_slice(Batch& batch) {
       if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
       Result<void> answered;
       {
-        const TurnGuard turn(turns_, TurnGuard::Kind::kBatch);
-        answered = answer_pose(scene, request.poses[batch.next], batch.answer);
+        const Aside aside = request.scene->loops() > 0 ? store_.aside(*request.scene) : Aside{};
+        if (aside.backend) {
+          answered = answer_pose(scene.loaded, *aside.backend, request.poses[batch.next], batch.answer);
+        } else {
+          const TurnGuard turn(request.scene->turns(), TurnGuard::Kind::kBatch);
+          answered = answer_pose(scene, request.poses[batch.next], batch.answer);
+        }
       }
       if (!answered) {
         ++metrics_.backend_errors;

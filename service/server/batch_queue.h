@@ -15,7 +15,6 @@
 #include "service/server/limits.h"
 #include "service/server/metrics.h"
 #include "service/server/scene_store.h"
-#include "service/server/turns.h"
 
 namespace palpate {
 
@@ -27,11 +26,11 @@ struct BatchRequest {
   bool binary = false;   ///< 64 bytes a pose instead of JSON lines
 };
 
-/// Answers the poses of all queries on one thread, a slice of each by turns, and lets loops go first between any two poses. A query whose
-/// client reads slowly is set aside until it has.
+/// Answers the poses of all queries on one thread, a slice of each by turns. Beside loops on the same scene it uses a back end of its own,
+/// or, where there is no room for one, lets them go first between any two poses. A query whose client reads slowly is set aside until it has.
 class BatchQueue {
  public:
-  BatchQueue(Turns& turns, const ServerLimits& limits, Metrics& metrics);
+  BatchQueue(SceneStore& store, const ServerLimits& limits, Metrics& metrics);
   ~BatchQueue();   ///< what is under way breaks off
   BatchQueue(const BatchQueue&) = delete;
   BatchQueue& operator=(const BatchQueue&) = delete;
@@ -46,7 +45,7 @@ class BatchQueue {
   void answer_slice(Batch& batch);
   void resume(const std::shared_ptr<Batch>& batch);
 
-  Turns& turns_;
+  SceneStore& store_;
   const ServerLimits& limits_;
   Metrics& metrics_;
   std::mutex mutex_;

@@ -142,7 +142,7 @@ HttpResponse triangles(SceneStore& store, const HttpRequest& request) {
 /// Voxels of the classes that were asked for last.
 class VoxelAnswers {
  public:
-  HttpResponse get(SceneStore& store, Turns& turns, const ServerLimits& limits, const HttpRequest& request) {
+  HttpResponse get(SceneStore& store, const ServerLimits& limits, const HttpRequest& request) {
     const auto tool = is_tool(request);
     if (!tool) return bad_body();
     const std::string name = request.query_or("class", "boundary");
@@ -154,10 +154,13 @@ class VoxelAnswers {
     const std::lock_guard lock(mutex_);   // one at a time: a partition is large
     for (const auto& [kept, bytes] : kept_)
       if (kept == key) return binary(bytes);
-    if (scene.loops() > 0) return Problem{409, "conflict", "a loop uses the scene, and reading voxels would hold it up; ask when it has ended", "id"};
     std::optional<Result<VoxelPartition>> partition;
-    {
-      const TurnGuard turn(turns, TurnGuard::Kind::kLoop);
+    if (scene.loops() > 0) {   // reading voxels would hold them up
+      const Aside aside = store.aside(scene);
+      if (!aside.backend) return Problem{409, "conflict", "a loop uses the scene, and there is no memory to read voxels beside it; ask when it has ended", "id"};
+      partition = aside.backend->partition(*tool);
+    } else {
+      const TurnGuard turn(scene.turns(), TurnGuard::Kind::kLoop);
       partition = scene->backend->partition(*tool);
     }
     if (!*partition) return problem_of(partition->error());
@@ -177,7 +180,7 @@ class VoxelAnswers {
 
 }  // namespace
 
-void add_drawing_routes(Router& router, SceneStore& store, Turns& turns, WorkerPool& workers, const ServerLimits& limits) {
+void add_drawing_routes(Router& router, SceneStore& store, WorkerPool& workers, const ServerLimits& limits) {
   router.add({.method = "GET", .pattern = "v1/scenes/*/geometry", .handle = [&](HttpRequest request, Reply reply) {
                 workers.post([&store, request = std::move(request), reply] { reply(geometry(store, request)); });
               }});
@@ -185,7 +188,7 @@ void add_drawing_routes(Router& router, SceneStore& store, Turns& turns, WorkerP
                 workers.post([&store, request = std::move(request), reply] { reply(triangles(store, request)); });
               }});
   router.add({.method = "GET", .pattern = "v1/scenes/*/voxels", .handle = [&, answers = std::make_shared<VoxelAnswers>()](HttpRequest request, Reply reply) {
-                workers.post([&store, &turns, &limits, answers, request = std::move(request), reply] { reply(answers->get(store, turns, limits, request)); });
+                workers.post([&store, &limits, answers, request = std::move(request), reply] { reply(answers->get(store, limits, request)); });
               }});
 }
 

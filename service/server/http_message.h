@@ -87,6 +87,8 @@ class SocketHandler {
   virtual void message(std::string_view data, bool binary) = 0;
   /// What to send now, if anything. Asked again once that has been sent, so who is slow simply misses what a newer message overtook.
   virtual std::optional<SocketMessage> next() = 0;
+  /// The server stops: what is said before the farewell, in place of anything that next() would say. Asked once.
+  virtual std::optional<SocketMessage> last_words() { return std::nullopt; }
   virtual void closed() noexcept = 0;
 };
 

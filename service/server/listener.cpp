@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "service/server/connection.h"
+#include "service/thread_share.h"
 
 namespace palpate {
 namespace {
@@ -119,7 +120,11 @@ Result<void> Listener::start(const ListenOptions& options) {
     return bad_value("--listen " + options.address + ":" + std::to_string(options.port) + " can't be had: " + error.what());
   }
   asio::co_spawn(state_->io, state_->accept_loop(), asio::detached);
-  for (int i = 0; i < kThreads; ++i) state_->threads.emplace_back([this] { state_->io.run(); });
+  for (int i = 0; i < kThreads; ++i)
+    state_->threads.emplace_back([this] {
+      set_nice(kNiceConnections);
+      state_->io.run();
+    });
   return {};
 }
 

@@ -1,12 +1,25 @@
 #include "service/server/metrics.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 
 namespace palpate {
+
+namespace {
+
+double resident_bytes() {
+  std::ifstream in("/proc/self/statm");
+  double total = 0, resident = 0;
+  in >> total >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
 
 void Distribution::add(double seconds) noexcept {
   const auto bucket = static_cast<std::size_t>(std::lower_bound(kBounds.begin(), kBounds.end(), seconds) - kBounds.begin());
@@ -61,6 +74,7 @@ std::string Metrics::text(const std::vector<Gauge>& gauges) {
   put("counter", "palpate_loop_poses_skipped_total", "Poses of haptic connections that a newer one overtook.", number(loop_skipped));
   put("counter", "palpate_session_ticks_total", "Ticks of sessions.", number(session_ticks));
   put("counter", "palpate_session_missed_ticks_total", "Ticks that sessions missed.", number(session_missed_ticks));
+  put("gauge", "process_resident_memory_bytes", "Memory of the process that is in RAM.", resident_bytes());
   put("counter", "palpate_backend_errors_total", "Queries that a back end failed.", number(backend_errors));
   for (const Gauge& gauge : gauges) put("gauge", gauge.name, gauge.help, gauge.value);
 

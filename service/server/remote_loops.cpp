@@ -14,9 +14,12 @@
 #include "service/query_json.h"
 #include "service/server/json_input.h"
 #include "service/server/pose_body.h"
+#include "service/thread_share.h"
 
 namespace palpate {
 namespace {
+
+constexpr std::uint32_t kContact = 1, kTruncated = 2, kStopped = 4;   ///< bits of a binary wrench (docs/SERVICE.md)
 
 using Clock = std::chrono::steady_clock;
 using nlohmann::ordered_json;
@@ -70,12 +73,35 @@ std::string json(const Vec3& v) { return fmt::format("[{},{},{}]", number(v.x), 
 
 std::string error_message(const Problem& problem) { return R"({"type":"error","problem":)" + problem.json() + "}"; }
 
+/// The start of a binary wrench; planes follow it.
+void put_wrench_head(const PoseMessage& pose, const Wrench& wrench, const Vec3& gc, double us, std::uint32_t skipped, std::uint32_t bits, std::uint32_t planes, std::string& out) {
+  const auto put = [&out](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  put(pose.seq);
+  put(pose.time);
+  for (const Vec3& v : {wrench.force, wrench.torque, gc})
+    for (int i = 0; i < 3; ++i) put(double{v[i]});
+  put(static_cast<float>(us));
+  for (const std::uint32_t word : {skipped, bits, planes}) put(word);
+}
+
+/// What a loop hears last: nothing pushes any more.
+SocketMessage zero_wrench(const PoseMessage& pose, const Vec3& gc) {
+  SocketMessage message;
+  message.binary = pose.binary;
+  if (pose.binary)
+    put_wrench_head(pose, {}, gc, 0, 0, kStopped, 0, message.head);
+  else
+    message.head = fmt::format(R"({{"type":"wrench","seq":{},"time":{},"skipped":0,"server_us":0,"contact":false,"truncated":false,"stopped":true,"pairs":0,"gc":{},"force":[0,0,0],"torque":[0,0,0],"areas":[]}})",
+                               pose.seq, number(pose.time), json(gc));
+  return message;
+}
+
 }  // namespace
 
 struct RemoteLoops::Loop {
-  Loop(SceneUse scene, Turns& turns)
+  explicit Loop(SceneUse scene)
       : use(std::move(scene)),
-        backend(*(*use)->backend, turns),
+        backend(*(*use)->backend, use->turns()),
         frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile, (*use)->loaded.scene.response.stiffness_n_per_m, true) {}
 
   // The answering thread's:
@@ -89,7 +115,7 @@ struct RemoteLoops::Loop {
   // Shared:
   std::mutex mutex;
   std::function<void()> wake;
-  std::optional<PoseMessage> pose;
+  std::optional<PoseMessage> pose, newest;   ///< not taken up yet; the last that came
   std::optional<SocketMessage> reply;
   std::uint32_t skipped = 0;
   bool queued = false, closed = false;
@@ -111,30 +137,39 @@ class RemoteLoops::Socket final : public SocketHandler {
 
   void message(std::string_view data, bool binary) override {
     auto read = read_message(data, binary, loops_.limits_.json_depth);
+    std::function<void()> wake;
     {
       const std::lock_guard lock(loop_->mutex);
       if (loop_->closed) return;
       if (const auto* problem = std::get_if<Problem>(&read)) {
         loop_->reply = SocketMessage{error_message(*problem), nullptr, false, true};
         loop_->closed = true;
+        wake = loop_->wake;
       } else {
         if (loop_->pose) {
           ++loop_->skipped;
           ++loops_.metrics_.loop_skipped;
         }
-        loop_->pose = std::get<PoseMessage>(read);
+        loop_->pose = loop_->newest = std::get<PoseMessage>(read);
       }
     }
-    if (std::holds_alternative<PoseMessage>(read))
-      loops_.submit(loop_);
-    else if (loop_->wake)
-      loop_->wake();
+    if (std::holds_alternative<PoseMessage>(read)) return loops_.submit(loop_);
+    if (wake) wake();
   }
 
   std::optional<SocketMessage> next() override {
     if (!hello_.empty()) return SocketMessage{std::exchange(hello_, {}), nullptr, false, false};
     const std::lock_guard lock(loop_->mutex);
     return std::exchange(loop_->reply, std::nullopt);
+  }
+
+  /// No force any more, as the newest pose's answer.
+  std::optional<SocketMessage> last_words() override {
+    const std::lock_guard lock(loop_->mutex);
+    loop_->closed = true;   // an answer under way comes too late
+    if (!loop_->newest) return std::nullopt;
+    const Pose& pose = loop_->newest->pose;
+    return zero_wrench(*loop_->newest, pose.position + pose.rotation * (*loop_->use)->loaded.geometry.tool_gc_m);
   }
 
   void closed() noexcept override {
@@ -150,8 +185,8 @@ class RemoteLoops::Socket final : public SocketHandler {
   std::string hello_;
 };
 
-RemoteLoops::RemoteLoops(Turns& turns, const ServerLimits& limits, Metrics& metrics)
-    : turns_(turns), limits_(limits), metrics_(metrics), thread_([this] { run(); }) {}
+RemoteLoops::RemoteLoops(const ServerLimits& limits, Metrics& metrics)
+    : limits_(limits), metrics_(metrics), thread_([this] { run(); }) {}
 
 RemoteLoops::~RemoteLoops() {
   {
@@ -174,7 +209,7 @@ std::variant<std::shared_ptr<SocketHandler>, Problem> RemoteLoops::open(SceneUse
                             {"watchdog_ms", loaded.scene.control.watchdog_ms},
                             {"tool_gc", {gc.x, gc.y, gc.z}},
                             {"start", {start.position.x, start.position.y, start.position.z, q.x, q.y, q.z, q.w}}});
-  return std::make_shared<Socket>(*this, std::make_shared<Loop>(std::move(scene), turns_), std::move(hello));
+  return std::make_shared<Socket>(*this, std::make_shared<Loop>(std::move(scene)), std::move(hello));
 }
 
 void RemoteLoops::submit(const std::shared_ptr<Loop>& loop) {
@@ -187,6 +222,8 @@ void RemoteLoops::submit(const std::shared_ptr<Loop>& loop) {
 }
 
 void RemoteLoops::run() {
+  set_nice(kNiceContact);
+  set_slice(kSliceContactUs);
   for (;;) {
     std::shared_ptr<Loop> loop;
     {
@@ -229,15 +266,9 @@ void RemoteLoops::answer(Loop& loop) {
     const auto put_vector = [&](const Vec3& v) {
       for (int i = 0; i < 3; ++i) put(double{v[i]});
     };
-    put(pose->seq);
-    put(pose->time);
-    for (const Vec3& v : {response.wrench.force, response.wrench.torque, response.gc}) put_vector(v);
-    put(static_cast<float>(us));
-    put(skipped);
-    put((contacts.contact ? 1u : 0u) | (contacts.truncated ? 2u : 0u));
     std::uint32_t planes = 0;
     for (const AreaResponse& area : response.areas) planes += area.silent ? 0 : 1;
-    put(planes);
+    put_wrench_head(*pose, response.wrench, response.gc, us, skipped, (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u), planes, out);
     for (const AreaResponse& area : response.areas) {
       if (area.silent) continue;
       put_vector(area.normal);

@@ -10,7 +10,6 @@
 #include "service/server/metrics.h"
 #include "service/server/router.h"
 #include "service/server/scene_store.h"
-#include "service/server/turns.h"
 
 namespace palpate {
 
@@ -18,7 +17,7 @@ namespace palpate {
 /// a session's does.
 class RemoteLoops {
  public:
-  RemoteLoops(Turns& turns, const ServerLimits& limits, Metrics& metrics);
+  RemoteLoops(const ServerLimits& limits, Metrics& metrics);
   ~RemoteLoops();
   RemoteLoops(const RemoteLoops&) = delete;
   RemoteLoops& operator=(const RemoteLoops&) = delete;
@@ -33,7 +32,6 @@ class RemoteLoops {
   void run();
   void answer(Loop& loop);
 
-  Turns& turns_;
   const ServerLimits& limits_;
   Metrics& metrics_;
   std::mutex mutex_;

@@ -1,14 +1,11 @@
 #include "service/server/scene_store.h"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "service/server/json_input.h"
+#include "service/thread_share.h"
 
 namespace palpate {
 namespace {
@@ -107,6 +104,7 @@ SceneStore::~SceneStore() {
     const std::lock_guard lock(mutex_);
     stop_ = true;
   }
+  cancel();
   work_.notify_all();
   thread_.join();
 }
@@ -270,8 +268,7 @@ std::vector<Metrics::Gauge> SceneStore::gauges() const {
 }
 
 void SceneStore::prepare_loop() {
-  // Whoever feels a force comes before a scene that is not there yet.
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 10);
+  set_nice(kNicePreparation);   // whoever feels a force comes before a scene that is not there yet
   for (;;) {
     std::shared_ptr<Entry> entry;
     {
@@ -313,7 +310,7 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
     bool go_on = true, tell = false;
     {
       const std::lock_guard lock(mutex_);
-      go_on = !stop_ && !entry->removed;
+      go_on = !stopping_ && !entry->removed;
       if (go_on && now - last >= kProgressEvery) {
         last = now;
         tell = true;
@@ -365,27 +362,64 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   finish(entry, prepared, bytes_of(*prepared));
 }
 
+/// Whether `bytes` more fit into the budget, after evicting scenes out of use.
+bool SceneStore::make_memory_locked(std::uint64_t bytes, std::vector<std::shared_ptr<HostedScene>>& evicted) {
+  std::uint64_t sum = bytes;
+  for (const auto& other : entries_)
+    if (other->prepared) sum += other->bytes;
+  if (bytes <= limits_.memory_bytes)
+    for (const auto& other : entries_) {
+      if (sum <= limits_.memory_bytes) break;
+      if (!other->prepared || other->count->all > 0) continue;
+      sum -= other->bytes;
+      evicted.push_back(std::move(other->prepared));
+      other->prepared.reset();
+      other->state = SceneState::kEvicted;
+      changed(*other);
+      ++metrics_.scenes_evicted;
+      log_.info("scene_evicted", {{"scene", other->content.id}, {"memory_bytes", other->bytes}});
+    }
+  return sum <= limits_.memory_bytes;
+}
+
+Aside SceneStore::aside(const SceneLease& lease) {
+  HostedScene& scene = *lease;
+  Aside aside{std::unique_lock(scene.aside_mutex), scene.aside.get()};
+  if (aside.backend || scene.aside_failed) return aside;
+  const std::uint64_t bytes = scene.backend->memory_bytes();
+  std::shared_ptr<Entry> entry;
+  std::vector<std::shared_ptr<HostedScene>> evicted;   // given back when nobody is locked out
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& known : entries_)
+      if (known->prepared.get() == &scene) entry = known;
+    if (!entry || !make_memory_locked(bytes, evicted)) return aside;
+    entry->bytes += bytes;   // its place is kept while it is made
+  }
+  evicted.clear();
+  const auto note = [&](const std::string& sentence) { log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}}); };
+  auto made = choose_backend(backend_, parts_, note);
+  Result<void> prepared = made ? Result<void>() : made.error();
+  if (made) prepared = (*made)->prepare(scene.loaded.geometry, scene.plan.plan, [this](const char*, double) { return !stopping_; });
+  if (prepared) {
+    scene.aside = std::move(*made);
+    aside.backend = scene.aside.get();
+    log_.info("scene_doubled", {{"scene", entry->content.id}, {"memory_bytes", bytes}});
+    return aside;
+  }
+  scene.aside_failed = true;
+  note("no second back end, so batches and loops take turns: " + prepared.error().sentence);
+  const std::lock_guard lock(mutex_);
+  entry->bytes -= bytes;
+  return aside;
+}
+
 void SceneStore::finish(const std::shared_ptr<Entry>& entry, std::shared_ptr<HostedScene> prepared, std::uint64_t bytes) {
   std::vector<std::shared_ptr<HostedScene>> evicted;   // given back when nobody is locked out
   bool removed = false;
   {
     const std::lock_guard lock(mutex_);
-    std::uint64_t sum = bytes;
-    for (const auto& other : entries_)
-      if (other->prepared) sum += other->bytes;
-    if (bytes <= limits_.memory_bytes)
-      for (const auto& other : entries_) {
-        if (sum <= limits_.memory_bytes) break;
-        if (!other->prepared || other->count->all > 0) continue;
-        sum -= other->bytes;
-        evicted.push_back(std::move(other->prepared));
-        other->prepared.reset();
-        other->state = SceneState::kEvicted;
-        changed(*other);
-        ++metrics_.scenes_evicted;
-        log_.info("scene_evicted", {{"scene", other->content.id}, {"memory_bytes", other->bytes}});
-      }
-    if (sum > limits_.memory_bytes) {
+    if (!make_memory_locked(bytes, evicted)) {
       const bool alone = bytes > limits_.memory_bytes;
       entry->state = SceneState::kFailed;
       entry->error = Problem{alone ? 413u : 503u, alone ? "too-large" : "busy",

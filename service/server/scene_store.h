@@ -20,6 +20,7 @@
 #include "service/server/metrics.h"
 #include "service/server/problem.h"
 #include "service/server/scene_content.h"
+#include "service/server/turns.h"
 
 namespace palpate {
 
@@ -30,6 +31,7 @@ class SceneLease {
  public:
   struct Count {
     std::atomic<int> all{0}, loops{0};
+    Turns turns;
   };
   SceneLease(std::shared_ptr<HostedScene> scene, std::shared_ptr<Count> count, bool loop) : scene_(std::move(scene)), count_(std::move(count)), loop_(loop) {
     ++count_->all;
@@ -43,6 +45,7 @@ class SceneLease {
   SceneLease(const SceneLease&) = delete;
   SceneLease& operator=(const SceneLease&) = delete;
   int loops() const { return count_->loops; }   ///< sessions and haptic connections on the scene
+  Turns& turns() const { return count_->turns; }   ///< at the scene's back end
   HostedScene& operator*() const { return *scene_; }
   HostedScene* operator->() const { return scene_.get(); }
 
@@ -52,6 +55,12 @@ class SceneLease {
   bool loop_;
 };
 using SceneUse = std::shared_ptr<SceneLease>;
+
+/// A back end that no loop uses, while this lives.
+struct Aside {
+  std::unique_lock<std::mutex> lock;
+  CollisionBackend* backend = nullptr;   ///< null: there is no room for one
+};
 
 /// All scenes of a server: queued, prepared one after the other on a thread of its own, kept within the memory budget, evicted when
 /// unused longest. Any thread may call anything; nothing here waits for a preparation but the destructor, which cancels it.
@@ -76,6 +85,13 @@ class SceneStore {
   /// The scene, if it is ready. An evicted one is queued again: 503.
   std::variant<SceneUse, Problem> use(const std::string& id, bool loop);
 
+  /// A back end of the scene for who would hold up its loops otherwise: prepared when it is first asked for, as long as that takes, within
+  /// the memory budget. It goes with the scene.
+  Aside aside(const SceneLease& scene);
+
+  /// Preparations under way end, and none begins.
+  void cancel() noexcept { stopping_ = true; }
+
   /// `changed` is called after any scene's change, on any thread, until the returned handle is gone. It must not call back.
   std::shared_ptr<void> listen(std::function<void()> changed);
 
@@ -88,6 +104,7 @@ class SceneStore {
   void finish(const std::shared_ptr<Entry>& entry, std::shared_ptr<HostedScene> prepared, std::uint64_t bytes);
   void changed(Entry& entry);      // under the mutex
   void notify();
+  bool make_memory_locked(std::uint64_t bytes, std::vector<std::shared_ptr<HostedScene>>& evicted);
   std::optional<Problem> make_room_locked(std::uint64_t disk_bytes, std::vector<std::filesystem::path>& garbage);
   std::shared_ptr<Entry> find_locked(const std::string& id) const;
   View view_of(const Entry& entry) const;
@@ -103,6 +120,7 @@ class SceneStore {
   std::list<std::shared_ptr<Entry>> entries_;   ///< longest unused first
   std::list<std::shared_ptr<Entry>> queue_;
   bool stop_ = false;
+  std::atomic<bool> stopping_{false};   ///< cancel() was called
   struct Listeners {
     std::mutex mutex;
     std::list<std::function<void()>> calls;

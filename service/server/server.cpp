@@ -21,7 +21,6 @@
 #include "service/server/scene_routes.h"
 #include "service/server/scene_store.h"
 #include "service/server/session_host.h"
-#include "service/server/turns.h"
 #include "service/server/worker_pool.h"
 
 namespace palpate {
@@ -124,11 +123,10 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   const AccessRules rules = access_rules(*listen, options.hosts, std::move(*token));
   Router router;
   Listener listener(router, rules, limits, metrics, log);
-  Turns turns;
   SceneStore store(parts, options.backend, limits, metrics, log);
-  BatchQueue batches(turns, limits, metrics);
-  RemoteLoops loops(turns, limits, metrics);
-  SessionHost sessions(parts, store, turns, limits, metrics, log, root);
+  BatchQueue batches(store, limits, metrics);
+  RemoteLoops loops(limits, metrics);
+  SessionHost sessions(parts, store, limits, metrics, log, root);
   WorkerPool workers(kWorkers);
   std::atomic<bool> stopping{false};
   add_info_routes(router, {.parts = parts, .limits = limits, .metrics = metrics, .store = store, .sessions = sessions, .workers = workers, .stopping = stopping, .backend = options.backend});
@@ -136,7 +134,7 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   add_query_route(router, store, batches, workers, limits);
   add_session_routes(router, sessions, workers, limits);
   add_haptic_route(router, store, loops);
-  add_drawing_routes(router, store, turns, workers, limits);
+  add_drawing_routes(router, store, workers, limits);
   add_run_routes(router, workers, root);
 
   if (auto started = listener.start(*listen); !started) return started;
@@ -147,6 +145,7 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   log.info("stopping", nlohmann::ordered_json::object());
   stopping = true;
   sessions.stop_all();   // zero force before anything else
+  store.cancel();
   listener.stop(kGrace);
   log.info("stopped", nlohmann::ordered_json::object());
   return {};

@@ -3,14 +3,13 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "service/recorder.h"
 #include "service/run_summary.h"
 #include "service/server/json_input.h"
 #include "service/server/pausable_device.h"
+#include "service/server/recording.h"
 #include "service/server/safe_path.h"
 #include "service/server/telemetry.h"
 #include "service/session.h"
@@ -35,7 +34,7 @@ struct SessionHost::Session {
   std::unique_ptr<BackendInTurns> backend;
   std::unique_ptr<HapticDevice> device;
   std::unique_ptr<PausableDevice> pausable;
-  std::unique_ptr<Recorder> recorder;
+  std::unique_ptr<Recording> recording;
   std::shared_ptr<Telemetry> telemetry;
   double stiffness = 0, max_force = 0;
   std::vector<std::string> stages;
@@ -80,7 +79,7 @@ struct SessionHost::Session {
                  {"summary", summary}});
   }
 
-  void run(const fs::path& folder, Log& log) {
+  void run(Log& log) {
     SessionOptions options;
     options.duration_s = duration_s;
     options.stop = &stop;
@@ -92,14 +91,13 @@ struct SessionHost::Session {
     }
     std::optional<Error> why;
     if (!outcome) why = outcome.error();
-    if (recorder)
-      if (auto finished = recorder->finish(); !finished && !why) why = finished.error();
-    std::string text = "null";
-    if (outcome) {
-      text = summary_json(*outcome);
-      if (outcome->failure) why = *outcome->failure;
-      if (recorder) std::ofstream(folder / "summary.json") << text;
+    else if (outcome->failure) why = *outcome->failure;
+    if (recording) {
+      const HostedScene& hosted = **use;
+      const auto finished = recording->finish(outcome ? &*outcome : nullptr, hosted.loaded, {"realtime", hosted.load_s, hosted.prepare_s});
+      if (!finished && !why) why = finished.error();
     }
+    const std::string text = outcome ? summary_json(*outcome) : "null";
     {
       const std::lock_guard lock(mutex);
       over = true;
@@ -113,8 +111,8 @@ struct SessionHost::Session {
   }
 };
 
-SessionHost::SessionHost(const Parts& parts, SceneStore& store, Turns& turns, const ServerLimits& limits, Metrics& metrics, Log& log, fs::path root)
-    : parts_(parts), store_(store), turns_(turns), limits_(limits), metrics_(metrics), log_(log), root_(std::move(root)) {}
+SessionHost::SessionHost(const Parts& parts, SceneStore& store, const ServerLimits& limits, Metrics& metrics, Log& log, fs::path root)
+    : parts_(parts), store_(store), limits_(limits), metrics_(metrics), log_(log), root_(std::move(root)) {}
 
 SessionHost::~SessionHost() { stop_all(); }
 
@@ -174,21 +172,21 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
   session->device = std::move(*device);
   session->max_force = session->device->capabilities().max_force_n;
   session->pausable = std::make_unique<PausableDevice>(*session->device, simulated);
-  session->backend = std::make_unique<BackendInTurns>(*scene.backend, turns_);
+  session->backend = std::make_unique<BackendInTurns>(*scene.backend, session->use->turns());
   const fs::path folder = root_ / request.record;
   if (!request.record.empty()) {
     std::error_code error;
     if (!fs::create_directory(folder, error))
       return Problem{error ? 507u : 409u, error ? "storage" : "conflict", "the folder '" + request.record + "' " + (error ? "can't be made: " + error.message() : "is there already"), "record"};
-    auto recorder = Recorder::create(folder.string());
-    if (!recorder) return Problem{507, "storage", recorder.error().sentence, "record"};
-    session->recorder = std::move(*recorder);
+    auto recording = Recording::create(folder);
+    if (!recording) return Problem{507, "storage", recording.error().sentence, "record"};
+    session->recording = std::move(*recording);
     session->record = request.record;
   }
-  session->telemetry = std::make_shared<Telemetry>(metrics_, session->recorder.get());
+  session->telemetry = std::make_shared<Telemetry>(metrics_, session->recording.get());
   session->id = "s" + std::to_string(++count_);
   sessions_.push_back(session);
-  session->thread = std::thread([session = session.get(), folder, this] { session->run(folder, log_); });
+  session->thread = std::thread([session = session.get(), this] { session->run(log_); });
   log_.info("session_started", {{"session", session->id}, {"scene", session->scene}, {"device", session->device_name}});
   return session->json();
 }

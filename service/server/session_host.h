@@ -13,7 +13,6 @@
 #include "service/server/metrics.h"
 #include "service/server/router.h"
 #include "service/server/scene_store.h"
-#include "service/server/turns.h"
 #include "service/server/worker_pool.h"
 
 namespace palpate {
@@ -22,7 +21,7 @@ namespace palpate {
 class SessionHost {
  public:
   /// All outlive this. `root`: where recordings go; empty: nowhere.
-  SessionHost(const Parts& parts, SceneStore& store, Turns& turns, const ServerLimits& limits, Metrics& metrics, Log& log, std::filesystem::path root);
+  SessionHost(const Parts& parts, SceneStore& store, const ServerLimits& limits, Metrics& metrics, Log& log, std::filesystem::path root);
   ~SessionHost();   ///< stops all
 
   struct Request {
@@ -46,7 +45,6 @@ class SessionHost {
 
   const Parts& parts_;
   SceneStore& store_;
-  Turns& turns_;
   const ServerLimits& limits_;
   Metrics& metrics_;
   Log& log_;

@@ -90,8 +90,12 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
     error_code error;
     while (!over_ && !error) {
       woken_ = false;
-      auto message = handler_->next();
-      if (!message && context_.stopping) message = SocketMessage{R"({"type":"bye","reason":"the server stops"})", nullptr, false, true};
+      std::optional<SocketMessage> message;
+      if (!context_.stopping)
+        message = handler_->next();
+      else if (!std::exchange(parting_, true))
+        message = handler_->last_words();
+      if (!message && parting_) message = SocketMessage{R"({"type":"bye","reason":"the server stops"})", nullptr, false, true};
       if (message) {
         socket_.binary(message->binary);
         const std::array<asio::const_buffer, 2> parts = {asio::buffer(message->head), message->tail ? asio::buffer(*message->tail) : asio::const_buffer()};
@@ -113,7 +117,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   asio::steady_timer wake_;
   std::shared_ptr<SocketHandler> handler_;
   ConnectionContext& context_;
-  bool woken_ = false, over_ = false;
+  bool woken_ = false, over_ = false, parting_ = false;
 };
 
 }  // namespace

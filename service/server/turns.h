@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Who may ask a back end now: one at a time in the whole process, loops before batches, loops in the order they came. A pose can't be
+/// Who may ask a back end now: one at a time, loops before batches, loops in the order they came. A pose can't be
 /// interrupted, so a loop waits for one pose of a batch at most. A batch that has seen kLoopTurns of loops go by gets one turn, so that it
 /// isn't starved by loops that always want more.
 class Turns {

@@ -127,6 +127,30 @@ def test_the_same_content_has_the_same_id_and_a_scene_can_be_deleted():
         expect(server.ask('POST', f'/v1/scenes/{name}/query', {'pose': [0, 0, 0, 0, 0, 0, 1]}).status == 404, 'gone')
 
 
+def test_what_a_mesh_draws_on_is_part_of_the_id():
+    def parts(folder, size):
+        """A ball of that radius as a glTF whose points lie in a file of their own."""
+        flat = [p for t in sphere(size) for p in t]
+        points = b''.join(struct.pack('<3f', *p) for p in flat)
+        told = json.dumps({'asset': {'version': '2.0'}, 'buffers': [{'byteLength': len(points), 'uri': 'ball.bin'}], 'bufferViews': [{'buffer': 0, 'byteLength': len(points)}],
+                           'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': len(flat), 'type': 'VEC3', 'min': [-1] * 3, 'max': [1] * 3}],
+                           'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}], 'nodes': [{'mesh': 0}], 'scenes': [{'nodes': [0]}], 'scene': 0})
+        folder.write('ball.gltf', told)
+        folder.write('ball.bin', points)
+        return [(name, (folder / name).read_bytes()) for name in ('block.stl', 'ball.gltf', 'ball.bin')]
+
+    folder = Folder()
+    scene = folder.save(tool={'mesh': 'ball.gltf', 'units': 'm'})
+    with Server('--root', folder.path) as server:
+        ids, radii = [], []
+        for size in (0.02, 0.01):   # as many triangles, as many bytes
+            files = parts(folder, size)
+            for answer in (server.upload(scene=scene.read_text(), file=files), server.ask('POST', '/v1/scenes', {'path': 'scene.json'})):
+                ids.append(server.ready(answer))
+                radii.append(server.ask('GET', f'/v1/scenes/{ids[-1]}').json()['tool_radius'])
+        expect(len(set(ids)) == 4 and radii[0] == radii[1] > 1.5 * radii[2] and radii[2] == radii[3], (ids, radii))
+
+
 def test_a_scene_file_is_uploaded_with_what_it_names():
     folder = Folder()
     folder.write('path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.03,0,0,0,1,1\n1,0,0,0.018,0,0,0,1,1\n')
@@ -191,7 +215,7 @@ def test_a_session_runs_is_watched_paused_recorded_and_stopped():
                 data = other.receive()
                 magic, version, bits = struct.unpack_from('<4sHH', data)
                 expect(magic == b'PTEL' and version == 1, data[:8])
-                if bits & 3 == 3:
+                if bits & 2 and struct.unpack_from('<I', data, 232)[0] > 0:   # the tick's contact is newer than the frame
                     break
             lengths, areas = struct.unpack_from('<6I', data, 208), struct.unpack_from('<I', data, 232)[0]
             at = 240 + 4 * sum(lengths) + 56
@@ -213,7 +237,7 @@ def test_a_session_runs_is_watched_paused_recorded_and_stopped():
                 last, message = message, viewer.json()
             expect(last['type'] == 'bye' and viewer.closed_with == 1000, last)
         (run,) = server.ask('GET', '/v1/runs').json()['runs']
-        expect(run['name'] == 'first' and run['static_triangles'] == 12 and set(run['files']) == {'frames.jsonl', 'trace.csv', 'summary.json'}, run)
+        expect(run['name'] == 'first' and run['static_triangles'] == 12 and set(run['files']) == {'frames.jsonl', 'trace.csv', 'summary.json', 'report.html'}, run)
         trace = server.ask('GET', '/v1/runs/first/trace.csv')
         expect(len(trace.body) == run['files']['trace.csv'] and trace.body.startswith(b'time_s,'), trace)
         part = server.ask('GET', '/v1/runs/first/trace.csv', headers={'Range': 'bytes=5-9'})
@@ -262,6 +286,9 @@ def test_sigterm_in_mid_session_sends_zero_force_tells_clients_and_exits_0():
     session = server.ask('POST', '/v1/sessions', {'scene': name, 'record': 'cut'}).json()['id']
     with WebSocket(server, f'/v1/sessions/{session}/stream') as viewer, WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
         expect(loop.json()['type'] == 'hello', 'hello')
+        loop.send({'type': 'pose', 'seq': 8, 'time': 0.5, 'pose': [0, 0, 0.018, 0, 0, 0, 1]})
+        felt = loop.json()
+        expect(felt['force'][2] > 0.1, felt)
         viewer.json()
         while not (message := viewer.json())['force'][2] > 0.1:
             pass
@@ -270,6 +297,9 @@ def test_sigterm_in_mid_session_sends_zero_force_tells_clients_and_exits_0():
         while (message := viewer.json()) is not None:
             last = message
         expect(last['type'] == 'bye', last)
+        still = loop.json()
+        expect(still['type'] == 'wrench' and still['stopped'] and still['seq'] == 8 and still['force'] == still['torque'] == [0, 0, 0] and still['areas'] == [], still)
+        expect(math.dist(still['gc'], felt['gc']) < 1e-6, still)   # m: the wrench's is rounded to the lattice
         expect(loop.json() == {'type': 'bye', 'reason': 'the server stops'} and loop.receive() is None and loop.closed_with == 1001, 'the loop is told')
         expect(server.process.wait(60) == 0, server.log_text()[-2000:])
     log = server.log_text()
@@ -287,9 +317,12 @@ def test_metrics_health_and_log_tell_what_happened():
         server.ask('POST', f'/v1/scenes/{name}/query', {'poses': poses(10)})
         text = server.ask('GET', '/metrics').body.decode()
         for line in text.splitlines():
-            expect(re.fullmatch(r'# (HELP|TYPE) palpate_\w+ .+|palpate_\w+(\{[^}]*\})? [-+0-9.e]+', line), line)
+            expect(re.fullmatch(r'# (HELP|TYPE) (palpate|process)_\w+ .+|(palpate|process)_\w+(\{[^}]*\})? [-+0-9.e]+', line), line)
         expect(server.metric('palpate_poses_total') == 10 and server.metric('palpate_scenes_ready') == 1, text)
-        expect(server.metric('palpate_query_seconds_count') == 10, text)
+        expect(server.metric('palpate_query_seconds_count') == 10 and server.metric('process_resident_memory_bytes') > 1e6, text)
+        for wanted in ('tick_lateness_seconds_bucket', 'result_age_seconds_bucket', 'session_frame_seconds_bucket', 'stage_seconds_total{stage="pairs"}', 'scene_queue', 'batches', 'scene_memory_bytes',
+                       'backend_errors_total', 'requests_total{route="v1/scenes/*/query",status="200"}', 'session_missed_ticks_total'):
+            expect(f'palpate_{wanted}' in text, f'{wanted} is missing in {text}')
         for line in server.log_text().splitlines():
             expect({'time', 'level', 'event'} <= set(json.loads(line)), line)
 

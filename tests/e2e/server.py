@@ -28,11 +28,11 @@ class Answer:
 
 
 class Server:
-    """`with Server('--root', folder) as server:` — stopped by SIGTERM at the end, which must give exit 0."""
+    """`with Server('--root', folder) as server:` — stopped by SIGTERM at the end, which must give exit 0. `before`: a command that becomes the program."""
 
-    def __init__(self, *arguments, environment=None, preexec=None):
+    def __init__(self, *arguments, environment=None, preexec=None, before=()):
         self.log = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([PROGRAM, 'serve', '--listen', '127.0.0.1:0', '--backend', 'cpu', *map(str, arguments)], stdin=subprocess.DEVNULL,
+        self.process = subprocess.Popen([*before, PROGRAM, 'serve', '--listen', '127.0.0.1:0', '--backend', 'cpu', *map(str, arguments)], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.DEVNULL, stderr=self.log, env={**os.environ, **(environment or {})}, preexec_fn=preexec)
         self.port = None
         end = time.monotonic() + WAIT_S
