@@ -302,6 +302,7 @@ export class App {
     colouring.addEventListener('change', () => { this.picture.contact.colouring = colouring.value as Colouring; this.picture.redraw_contact(); });
     const voxels = element<HTMLSelectElement>('voxels');
     voxels.addEventListener('change', () => {
+      if (voxels.value === 'internal' && !element<HTMLInputElement>('glass-mockup').checked) element('glass-mockup').click();   // or they would be hidden by what they fill
       this.picture.show_voxels((voxels.value || null) as 'boundary' | 'internal' | null).catch((error: unknown) => { voxels.value = ''; this.failed(error); });
     });
     this.check('show-normals', (on) => { this.picture.areas.show.normals = on; });

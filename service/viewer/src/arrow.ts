@@ -19,16 +19,16 @@ export class Arrow {
     this.object.add(this.shaft, this.head);
     this.object.visible = false;
   }
-  /** `direction` is a unit vector; `length` and `width` in metres. An arrow shorter than its head is all head. */
+  /** `direction` is a unit vector; `length` and `width` in metres. A short arrow is thinner, so that it still shows where it points. */
   set(from: three.Vector3, direction: three.Vector3, length: number, width: number): void {
     this.object.visible = length > width * 0.05;
     if (!this.object.visible) return;
-    const head = Math.min(length, width * 7);
+    const thick = width * Math.min(1, Math.max(0.3, length / (width * 14)));
+    const head = Math.min(thick * 7, length * 0.6);
     this.object.position.copy(from);
     this.object.quaternion.setFromUnitVectors(UP, direction);
-    this.shaft.visible = length > head * 1.01;
-    this.shaft.scale.set(width, Math.max(length - head, 1e-9), width);
-    this.head.scale.set(width * Math.min(1, length / (width * 7) + 0.3), head, width * Math.min(1, length / (width * 7) + 0.3));
+    this.shaft.scale.set(thick, length - head, thick);
+    this.head.scale.set(thick, head, thick);
     this.head.position.y = length;
   }
   hide(): void { this.object.visible = false; }

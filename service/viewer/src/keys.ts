@@ -10,6 +10,7 @@ const KEYS: Record<string, Action> = {
 export function listen(act: (action: Action) => void): void {
   window.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (document.querySelector('dialog[open]')) return;   // it has its own, Escape above all
     const target = event.target as HTMLElement;
     const action = KEYS[event.key];
     if (!action) return;

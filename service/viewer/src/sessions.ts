@@ -3,7 +3,7 @@ import type { Api } from './api.js';
 import { element, fill } from './dom.js';
 import { LiveSource } from './live_source.js';
 import type { Moment } from './moment.js';
-import type { Session } from './protocol.js';
+import { ZERO, type Session } from './protocol.js';
 
 export class Sessions {
   live: LiveSource | null = null;
@@ -42,6 +42,7 @@ export class Sessions {
     const live = new LiveSource(this.api, session.id, (moment) => { this.moment = moment; this.took(moment); this.show(); }, (reason) => {
       if (this.live !== live) return;
       this.live = null;
+      if (this.moment) this.took((this.moment = { ...this.moment, force: ZERO, torque: ZERO, note: 'ended' }));
       this.show();
       this.say(reason ? `The session ended: ${reason}` : 'The session ended.');
     });

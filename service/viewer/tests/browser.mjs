@@ -115,10 +115,26 @@ async function main() {
   await until('kinds that are switched off go', async () => (await warm()) === 0);
   for (const key of ['1', '2', '3', 't']) await page.keyboard.press(key);
   check((await page.getAttribute('html', 'data-theme')) === 'dark', 'dark on a key');
+  await page.keyboard.press('?');
+  check(await page.isVisible('#help'), 'the keys are told on a key');
+  await page.keyboard.press('Escape');
+  check(!(await page.isVisible('#help')), 'and Escape takes them away');
   await page.setViewportSize(NARROW);
   await picture('small_dark');
   await page.setViewportSize(WIDE);
   await page.keyboard.press('t');
+
+  // A device of the server's machine: started, watched, with voxels asked for beside it, stopped.
+  await page.click('[data-source=live]');
+  await page.click('#start');
+  await until('telemetry comes', async () => /free|contact/.test(await text('contact')));
+  for (const kind of ['boundary', 'internal', '']) {
+    await page.selectOption('#voxels', kind);
+    await shown();
+    check((await page.inputValue('#voxels')) === kind, `voxels beside a session: ${kind || 'none'}`);
+  }
+  await page.click('#stop');
+  await until('a session that was stopped has ended', async () => (await text('contact')) === 'ended' && (await text('force')) === '0');
 
   // The mouse: the clamp is drawn against its pipe, which pushes back.
   const drag = async () => {

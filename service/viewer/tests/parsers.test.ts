@@ -95,8 +95,11 @@ test('level of detail: pictures of a second go down after a few, two levels at o
   assert.deepEqual([1000, 1000, 1000, 1000].map((ms) => keeper.take(ms, 1e7)), [false, false, false, true]);
   assert.equal(keeper.level, 1);
   const waited = new LevelKeeper();
-  assert.deepEqual([16, 3000, 16, 16].map((ms) => waited.take(ms, 1e7)), [false, false, false, false]);
+  assert.deepEqual([25, 3000, 25, 25].map((ms) => waited.take(ms, 1e7)), [false, false, false, false]);
   assert.equal(waited.level, 1);
+  const stutters = new LevelKeeper();
+  for (let i = 0; i < 8; ++i) stutters.take(i % 2 ? 16 : 500, 1e7);   // two pictures at once, then none for long
+  assert.equal(stutters.level, 0);
 });
 test('strips: the newest samples stay, and a range is 1, 2 or 5 times a power of ten', () => {
   const samples = new Samples(8);
