@@ -14,6 +14,7 @@
 
 #include "model/one_line.h"
 #include "service/cli_bench.h"
+#include "service/cli_tune.h"
 #include "service/cli_serve.h"
 #include "service/console.h"
 
@@ -226,6 +227,9 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
 
   ServeOptions serve;
   add_serve_command(app, serve, parts, outcome);
+
+  TuneOptions tune;
+  add_tune_command(app, tune, parts, outcome);
 
   BenchOptions bench;
   add_bench_command(app, bench, parts, outcome);

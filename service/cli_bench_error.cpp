@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/scene_file.h"
+#include "model/generate/solids.h"
+#include "model/geometry_build.h"
 #include "service/cli_bench.h"
 #include "service/cli_bench_output.h"
-#include "service/cli_bench_poses.h"
+#include "service/error_control.h"
 #include "service/error_sweep.h"
 #include "service/numbers.h"
-#include "service/run_summary.h"
+#include "service/plain_response.h"
+#include "service/scene_host.h"
+#include "service/scene_subject.h"
 
 namespace palpate {
 namespace {
@@ -36,9 +39,14 @@ class ErrorBench {
       if (auto done = closed_forms(); !done) return done;
     for (const std::string& file : options_.scenes)
       if (auto done = scene(file); !done) return done;
+    if (!options_.scenes_only) {
+      tessellation();
+      control();
+      if (auto done = lattice_step(); !done) return done;
+    }
     facts_.more.emplace_back("left out",
-                             "control error over result age and n (bench stability has its jumps), the lattice step against single precision; poses without contact; "
-                             "preparation and first-run compilation, which no time here holds");
+                             "poses without contact; preparation and first-run compilation, which no time here holds; errors of 0, for which a logarithm has no place; "
+                             "spacings that a back end refuses (each with its reason); control over real queries (bench stability has it)");
     console_.finish();
     return write_bench(options_.out, facts_, table_, charts_);
   }
@@ -71,28 +79,105 @@ class ErrorBench {
         if (auto done = measure(fine[k], settings, truths, points[k]); !done) return done;
       }
     }
-    for (std::size_t k = 0; k < coarse.size(); ++k) report(coarse[k].name, points[k], true);
+    for (std::size_t k = 0; k < coarse.size(); ++k) report(coarse[k].name, points[k]);
+    return {};
+  }
+
+  void rows(const std::string& scene, const std::string& method, const std::string& knob, double value, const char* quantity, const std::vector<double>& errors, double us_p50, double us_p99) {
+    table_.rows.push_back({scene, method, knob, value, quantity, percentile(errors, 0.5), percentile(errors, 0.99), us_p50, us_p99});
+  }
+
+  /// What a ball's triangles cost by themselves: no method can be nearer to the round ball than its mesh is.
+  void tessellation() {
+    BenchChart chart{.title = "sphere_plane: error of d by tessellation alone", .unit = "m", .labels = {}, .series = {{"p50", {}, {}}, {"p99", {}, {}}}, .log_x = true, .log_y = true, .x_title = "triangles of the ball"};
+    std::vector<std::pair<double, double>> curve;
+    for (const std::uint64_t triangles : {80u, 320u, 1280u, 5120u, 20480u, 81920u}) {
+      const std::vector<double> errors = tessellation_errors(triangles);
+      rows("sphere_plane", "tessellation", "tool_triangles", static_cast<double>(triangles), "d_m", errors, 0, 0);
+      for (std::size_t k = 0; k < 2; ++k) {
+        chart.series[k].x.push_back(static_cast<double>(triangles));
+        chart.series[k].y.push_back(percentile(errors, k == 0 ? 0.5 : 0.99));
+      }
+      curve.emplace_back(static_cast<double>(triangles), percentile(errors, 0.5));
+    }
+    facts_.more.emplace_back("order of d, tessellation", fmt::format("{:.2f} in the number of triangles: the mesh against the round ball, no method in it", order(curve)));
+    charts_.push_back(std::move(chart));
+  }
+
+  /// What a hand feels against what it should, for results of all ages, by the shipped laws in virtual time.
+  void control() {
+    const auto add = [&](LawKind law, int age, int n, const char* knob, double value, BenchChart& chart) {
+      const ControlError result = control_error(law, age, n);
+      const char* name = law == LawKind::kHold ? "hold" : law == LawKind::kPrinted ? "printed" : "corrected";
+      rows("control", name, knob, value, "F_N", result.errors_n, result.step_us, result.step_us);
+      for (const double fraction : {0.5, 0.99}) {
+        const std::string label = fmt::format("{}, {}", name, fraction == 0.5 ? "p50" : "p99");
+        auto series = std::find_if(chart.series.begin(), chart.series.end(), [&](const auto& s) { return s.label == label; });
+        if (series == chart.series.end()) series = chart.series.insert(series, {label, {}, {}});
+        const double error = percentile(result.errors_n, fraction);
+        if (error <= 0) continue;
+        series->x.push_back(value);
+        series->y.push_back(error);
+      }
+    };
+    BenchChart ages{.title = "control: force felt against force at zero delay, n = age", .unit = "N", .labels = {}, .series = {}, .log_x = true, .log_y = true, .x_title = "age of results, ticks"};
+    BenchChart ramps{.title = "control: the same with results 10 ticks old, over n", .unit = "N", .labels = {}, .series = {}, .log_x = true, .log_y = true, .x_title = "n, ticks"};
+    for (const LawKind law : {LawKind::kHold, LawKind::kPrinted, LawKind::kCorrected}) {
+      for (const int age : {1, 2, 3, 5, 10, 20, 50}) add(law, age, age, "age", age, ages);
+      if (law == LawKind::kHold) continue;
+      for (const int n : {1, 2, 5, 10, 20, 50}) add(law, 10, n, "n", n, ramps);
+    }
+    charts_.push_back(std::move(ages));
+    charts_.push_back(std::move(ramps));
+  }
+
+  /// The mock-up grows by a small box ever further away, so that the lattice's step grows; beside it single and double precision, whose numbers lie as far apart
+  /// as the contact is far from the origin.
+  Result<void> lattice_step() {
+    ErrorSubject corner = closed_form_subjects(1)[2];
+    corner.poses.resize(10);
+    const Mesh near = corner.meshes.mockup;
+    const double voxel = *corner.settings.voxel_size_m;
+    std::vector<std::optional<ContactTruth>> truths;
+    for (const Pose& pose : corner.poses) truths.emplace_back(corner.truth(pose));
+    BenchChart chart{.title = "corner_plane: error of d over the step between numbers", .unit = "m", .labels = {}, .series = {{"palpate", {}, {}}, {"fp32", {}, {}}, {"fp64", {}, {}}}, .log_x = true, .log_y = true, .x_title = "step, m"};
+    const auto put = [&](std::size_t k, const char* method, double step, const std::vector<double>& errors, double us50, double us99) {
+      rows("corner_plane", method, "lattice_step", step, "d_m", errors, us50, us99);
+      chart.series[k].x.push_back(step);
+      chart.series[k].y.push_back(percentile(errors, 0.5));
+    };
+    for (const double far : {0.1, 1.0, 10.0, 100.0, 1000.0}) {
+      corner.meshes.mockup = near;
+      solids::append(corner.meshes.mockup, solids::box(Vec3(far, -1e-3, -1e-2), Vec3(far + 2e-3, 1e-3, -8e-3)), "far");
+      ErrorSetting setting = spacing(corner.settings, voxel / 16);
+      setting.knob = "lattice_step";
+      const auto geometry = build_geometry(corner.meshes.mockup, corner.meshes.tool, setting.geometry);
+      if (!geometry) return geometry.error();
+      const auto answered = answers(corner, setting);
+      if (!answered) return answered.error();
+      const ErrorResult result = judge(*answered, truths);
+      put(0, "palpate", geometry->lattice.step_m, result.errors[0], percentile(result.times_us, 0.5), percentile(result.times_us, 0.99));
+      std::vector<double> single, twice;
+      Mesh moved = near;
+      for (Vec3& v : moved.vertices) v.x += far;
+      for (std::size_t i = 0; i < corner.poses.size(); ++i) {
+        Pose pose = corner.poses[i];
+        pose.position.x += far;
+        single.push_back(std::fabs(plain_response<float>(moved, corner.meshes.tool, pose, voxel / 16, corner.stiffness_n_per_m).depth - truths[i]->depth));
+        twice.push_back(std::fabs(plain_response<double>(moved, corner.meshes.tool, pose, voxel / 16, corner.stiffness_n_per_m).depth - truths[i]->depth));
+      }
+      put(1, "fp32", std::ldexp(1.0, std::ilogb(far) - 23), single, 0, 0);
+      put(2, "fp64", std::ldexp(1.0, std::ilogb(far) - 52), twice, 0, 0);
+    }
+    charts_.push_back(std::move(chart));
     return {};
   }
 
   Result<void> scene(const std::string& file) {
-    auto hosted = prepare_scene({file, backend_->name(), options_.profile, false}, Purpose::kQuery, parts_, console_);
-    if (!hosted) return hosted.error();
-    Result<std::vector<Pose>> poses = bench_poses(options_, **hosted, parts_, console_);
-    if (!poses) return poses.error();
-    Scene read = (*hosted)->loaded.scene;
-    const SceneGeometry& geometry = (*hosted)->loaded.geometry;
-    const double voxel = geometry.mockup_grid.size * geometry.lattice.step_m, fine = geometry.sample_spacing * geometry.lattice.step_m;
-    auto meshes = import_scene(read, [this](const char* what, double done) { return console_.progress(what, done); });
-    if (!meshes) return meshes.error();
-    hosted->reset();
-
-    ErrorSubject subject;
-    subject.name = scene_name(file);
-    subject.meshes = std::move(*meshes);
-    subject.stiffness_n_per_m = read.response.stiffness_n_per_m;
-    subject.settings = {voxel, fine, read.response.smooth_angle_deg, read.tool.centre_of_mass_m};
-    subject.poses = std::move(*poses);
+    auto read = scene_subject(file, options_, backend_->name(), parts_, console_);
+    if (!read) return read.error();
+    const ErrorSubject& subject = read->subject;
+    const double voxel = read->voxel_m, fine = read->spacing_m;
 
     // What stands in for the truth, and how far it has converged. Poses without contact have nothing to judge.
     std::vector<std::optional<ContactTruth>> truths;
@@ -114,7 +199,7 @@ class ErrorBench {
     finer.value = 4 * static_cast<double>(subject.meshes.mockup.triangles.size());
     settings.push_back(finer);
     if (auto done = measure(subject, settings, truths, points); !done) return done;
-    report(subject.name, points, false);
+    report(subject.name, points);
     return {};
   }
 
@@ -153,7 +238,7 @@ class ErrorBench {
     return {};
   }
 
-  void report(const std::string& name, const std::vector<Point>& points, bool closed_form) {
+  void report(const std::string& name, const std::vector<Point>& points) {
     for (const Point& point : points) {
       const double p50 = percentile(point.result.times_us, 0.5), p99 = percentile(point.result.times_us, 0.99);
       for (std::size_t q = 0; q < kErrorQuantities.size(); ++q)
@@ -164,7 +249,7 @@ class ErrorBench {
                                  fmt::format("finds nothing at {} of {} poses; their d, F and T count as lost whole", point.result.lost, point.result.times_us.size()));
     }
     for (const std::size_t q : {std::size_t{0}, std::size_t{3}}) add_chart(name, points, q);
-    if (closed_form) add_order(name, points);
+    add_order(name, points);
     add_lead(name, points);
   }
 
@@ -189,16 +274,22 @@ class ErrorBench {
     charts_.push_back(chart);
   }
 
-  /// Slope of log error over log spacing, by least squares.
   void add_order(const std::string& name, const std::vector<Point>& points) {
+    std::vector<std::pair<double, double>> curve;
+    for (const Point& point : points)
+      if (point.setting.knob == "sample_spacing") curve.emplace_back(point.setting.value, percentile(point.result.errors[0], 0.5));
+    if (curve.size() >= 3) facts_.more.emplace_back("order of d, " + name, fmt::format("{:.2f} in the sample spacing, fitted over {} spacings", order(curve), curve.size()));
+  }
+
+  /// Slope of log error over log knob, by least squares; values of 0 left out.
+  static double order(const std::vector<std::pair<double, double>>& curve) {
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (const Point& point : points) {
-      const double error = percentile(point.result.errors[0], 0.5);
-      if (point.setting.knob != "sample_spacing" || !(error > 0)) continue;
-      const double x = std::log(point.setting.value), y = std::log(error);
+    for (const auto& [value, error] : curve) {
+      if (!(error > 0)) continue;
+      const double x = std::log(value), y = std::log(error);
       n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
     }
-    if (n >= 3) facts_.more.emplace_back("order of d, " + name, fmt::format("{:.2f} in the sample spacing, fitted over {:.0f} spacings", (n * sxy - sx * sy) / (n * sxx - sx * sx), n));
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
   }
 
   /// How much sooner refined is as good in d as the best of paper.
@@ -214,7 +305,7 @@ class ErrorBench {
     facts_.more.emplace_back("refined against paper, " + name,
                              rival == nullptr ? fmt::format("paper's best median error of d, {:.3g} m in {:.0f} µs, is not reached", error(*best), time(*best))
                                               : fmt::format("paper's best median error of d is {:.3g} m in {:.0f} µs; refined has {:.3g} m in {:.0f} µs, {:.1f} times sooner",
-                                                            error(*best), time(*best), error(*rival), time(*rival), time(*best) / time(*rival)));
+                                                            error(*best), time(*best), error(*rival), time(*rival), time(*best) / time(*rival), time(*best) < 10 * time(*rival) ? ": less than ten times, for here paper is fast at what little it can" : ""));
   }
 
   const BenchOptions& options_;

@@ -60,8 +60,8 @@ struct Outcome {
 
 Outcome judged(bool contact, const Vec3& force, double truth) {
   if (!contact) return {1, "no contact"};
-  const double error = glm::length(force - Vec3(0, 0, truth)) / truth;
-  return {error, error < kLost ? "held" : "lost"};
+  const double error = glm::length(force / truth - Vec3(0, 0, 1));   // in this order: a square of 1e164 N is no number
+  return {std::isfinite(error) ? error : 1, error < kLost ? "held" : "lost"};
 }
 
 class NumericsBench {
@@ -86,7 +86,7 @@ class NumericsBench {
       }
       return {};
     };
-    if (auto r = sweep("stiffness", "K, N/m", powers(-6, 300, 34), [](Extreme& e, double k) { e.stiffness = k; }); !r) return r;
+    if (auto r = sweep("stiffness", "K, N/m", powers(-6, 42, 6), [](Extreme& e, double k) { e.stiffness = k; }); !r) return r;
     if (auto r = sweep("scale", "factor", powers(-24, 12, 2), [](Extreme& e, double s) { e.scale = s; }); !r) return r;
     if (auto r = sweep("offset", "m from the origin", powers(-1, 13, 1), [](Extreme& e, double d) { e.offset = d; }); !r) return r;
     if (auto r = sweep("aspect", "length over width of the triangles", {1, 4, 16, 64, 256, 1024, 4096}, [](Extreme& e, double n) { e.strips = static_cast<int>(n); }); !r) return r;
@@ -190,7 +190,7 @@ class NumericsBench {
   void delay() {
     constexpr double kWall = 5, kDeep = 2e-3, kSeconds = 0.5;
     const auto depth_at = [&](double t) { return kDeep * std::sin(3.14159265358979 * t / kSeconds); };
-    for (const int age : {1, 2, 5, 10, 20, 50, 100, 200}) {
+    for (const int age : {1, 2, 5, 10, 20, 50, 100}) {
       double worst[3] = {0, 0, 0};
       const int ticks = static_cast<int>(kSeconds * 1000);
       ForceLawState law({.kind = LawKind::kCorrected, .stiffness_n_per_m = kStiffness, .transitions = 1});

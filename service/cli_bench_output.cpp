@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "generated/commit.h"
+#include "service/chart_svg.h"
 #include "service/report_assets.h"
 
 namespace palpate {
@@ -57,11 +58,11 @@ std::string plain(const BenchCell& cell) {
   return fmt::format("{:.4g}", std::get<double>(cell));
 }
 
-/// As plain, but no exponents, for people.
+/// As plain, but hardly an exponent, for people.
 std::string readable(const BenchCell& cell) {
   const auto* value = std::get_if<double>(&cell);
   if (value == nullptr) return plain(cell);
-  return *value >= 1000 ? fmt::format("{:.0f}", *value) : fmt::format("{:.4g}", *value);
+  return *value >= 1000 && *value < 1e9 ? fmt::format("{:.0f}", *value) : fmt::format("{:.4g}", *value);
 }
 
 std::string csv_text(const std::string& text) {
@@ -188,6 +189,9 @@ Result<void> write_bench(const std::string& directory, const BenchFacts& facts, 
   }
   const Json data{{"facts", head}, {"charts", json_charts(charts)}, {"columns", table.columns}, {"rows", rows}};
   if (auto done = write_text(root / "report.html", page(data)); !done) return done;
+  for (std::size_t i = 0; i < charts.size(); ++i)
+    if (const std::string picture = chart_svg(charts[i]); !picture.empty())
+      if (auto done = write_text(root / fmt::format("chart_{}.svg", i), picture); !done) return done;
   print(table);
   return {};
 }

@@ -46,7 +46,7 @@ std::string device_text(const CollisionBackend& backend, const Parts& parts);
 /// Mean number of processes that wanted to run in the last minute; −1: unknown.
 double load_average();
 
-/// Writes results.csv, results.json and report.html to `directory` (made if missing), each with machine, device, commit and version, and
+/// Writes results.csv, results.json, report.html and chart_N.svg (charts of lines) to `directory` (made if missing), each with machine, device, commit and version, and
 /// prints the table. CSV: `table`'s columns and then machine, device, commit.
 Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table, const std::vector<BenchChart>& charts);
 

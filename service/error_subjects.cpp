@@ -122,6 +122,18 @@ ErrorSubject lens_subject() {
 
 }  // namespace
 
+std::vector<double> tessellation_errors(std::uint64_t triangles) {
+  const double radius = 10 * kMm;
+  const Mesh ball = solids::sphere_of(radius, triangles);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < 30; ++i) {
+    const double h = (0.5 + 0.12 * static_cast<double>(i)) * kMm;
+    const double depth = plane_truth(ball, {place(i) + Vec3(0, 0, radius - h), Quat(1, 0, 0, 0)}).depth;
+    out.push_back(std::fabs(depth - h * (3 * radius - h) / (3 * (2 * radius - h))));
+  }
+  return out;
+}
+
 std::vector<ErrorSubject> closed_form_subjects(int cells) {
   const double sphere_radius = 10 * kMm, cylinder_radius = 8 * kMm, half = 10 * kMm;
   const Quat upright(1, 0, 0, 0), about_z = glm::angleAxis(0.37, Vec3(0, 0, 1));

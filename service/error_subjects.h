@@ -36,4 +36,7 @@ struct ErrorSubject {
 /// `cells`: the plane's top face is cut into cells × cells × 2 triangles (the plane subjects alone).
 std::vector<ErrorSubject> closed_form_subjects(int cells);
 
+/// How far d of a ball of so many triangles in a plane is from the round ball's, at the poses of `sphere_plane`, m: the tessellation's own error.
+std::vector<double> tessellation_errors(std::uint64_t triangles);
+
 }  // namespace palpate

@@ -53,6 +53,7 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
   Answered out;
   out.answers.resize(subject.poses.size());
   out.times_us.assign(subject.poses.size(), HUGE_VAL);
+  out.all_us.resize(subject.poses.size());
   Contacts contacts;
   ContactResponse response;
   for (std::uint64_t round = 0; round <= rounds; ++round)   // the first warms up
@@ -64,7 +65,10 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
       respond(contacts, *pose, *geometry, setting.profile, subject.stiffness_n_per_m, response);
       const double us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
       if (contacts.truncated) return Error{ErrorCode::kInternal, subject.name + ": a frame was truncated: " + contacts.truncated_capacity};
-      if (round > 0) out.times_us[i] = std::min(out.times_us[i], us);
+      if (round > 0) {
+        out.times_us[i] = std::min(out.times_us[i], us);
+        out.all_us[i].push_back(us);
+      }
       if (round == 0) {
         out.answers[i] = summary_of(response);
         for (const ContactArea& area : contacts.areas) out.samples += area.rays;

@@ -31,7 +31,8 @@ struct ErrorResult {
 /// Errors: the geometry can't be built or prepared; the back end failed; interrupted.
 struct Answered {
   std::vector<std::optional<ContactTruth>> answers;
-  std::vector<double> times_us;
+  std::vector<double> times_us;                  ///< the fastest of the rounds
+  std::vector<std::vector<double>> all_us;       ///< every round's
   std::uint64_t samples = 0;
 };
 Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& setting, std::uint64_t rounds, CollisionBackend& backend, const Progress& progress);

@@ -3,7 +3,7 @@
   const data = JSON.parse(document.getElementById('data').textContent);
   const byId = (id) => document.getElementById(id);
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
-  const number = (value) => Math.abs(value) >= 10000 ? Math.round(value).toLocaleString('en') : String(Number(Number(value).toPrecision(3)));
+  const number = (value) => Math.abs(value) >= 1e7 ? Number(value).toExponential(0) : Math.abs(value) >= 10000 ? Math.round(value).toLocaleString('en') : String(Number(Number(value).toPrecision(3)));
 
   document.title = 'palpate bench ' + data.facts.bench;
   byId('title').textContent = 'palpate bench ' + data.facts.bench;

@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "service/cli_bench_output.h"
+
+namespace palpate {
+
+/// A chart of lines as a picture by itself, for documents; bars are left to report.html: empty.
+std::string chart_svg(const BenchChart& chart);
+
+}  // namespace palpate
