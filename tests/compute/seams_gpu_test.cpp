@@ -130,6 +130,7 @@ TEST_F(Seams, TouchInMoreThanTheCommonCornerByTheReferencesPredicates) {
     ASSERT_EQ(answers[i].touches != 0, want);
     ASSERT_EQ(answers[i].share_edge != 0, common > 1);
     ASSERT_FALSE(answers[i].alone != 0 && (want || common != 1));   // the cheap proof proves only what is so
+    ASSERT_EQ(answers[i].culled, 0);
     touching += want ? 1u : 0u;
     alone += answers[i].alone != 0 ? 1u : 0u;
   }

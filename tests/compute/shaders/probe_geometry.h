@@ -42,8 +42,9 @@ struct SeamAnswer {
   int32_t touches;           // of touch_along_a_seam
   int32_t share_edge;
   int32_t alone;             // of meet_in_a_corner_alone
+  int32_t culled;            // 1: they meet, and boxes_meet says that they do not
 };
-PALPATE_ASSERT_SIZE(SeamAnswer, 12);
+PALPATE_ASSERT_SIZE(SeamAnswer, 16);
 
 struct SampleCase {
   ivec3 corner[3];

@@ -15,5 +15,5 @@ void main() {
   SeamCase c = cases[i];
   Triangle s = Triangle(c.s[0], c.s[1], c.s[2]), t = Triangle(c.t[0], c.t[1], c.t[2]);
   answers[i] = SeamAnswer(touch_along_a_seam(s, t, c.of_s, c.of_t) ? 1 : 0, share_an_edge(c.of_s, c.of_t) ? 1 : 0,
-                          meet_in_a_corner_alone(s, t, c.of_s, c.of_t) ? 1 : 0);
+                          meet_in_a_corner_alone(s, t, c.of_s, c.of_t) ? 1 : 0, triangles_meet(s, t) && !boxes_meet(s, t) ? 1 : 0);
 }
