@@ -60,7 +60,7 @@ Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& g
   if (!pairs) return pairs.error();
   out.pairs_ = std::move(*pairs);
   if (out.has_inside_) {
-    auto samples = NearSamples::make(device, scene);
+    auto samples = NearSamples::make(device, geometry, scene);
     if (!samples) return samples.error();
     out.samples_ = std::move(*samples);
   }

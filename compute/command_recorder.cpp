@@ -61,6 +61,7 @@ CommandRecorder& CommandRecorder::operator=(CommandRecorder&& other) noexcept {
   std::swap(stage_limit_, other.stage_limit_);
   std::swap(max_groups_, other.max_groups_);
   std::swap(stages_, other.stages_);
+  std::swap(refused_, other.refused_);
   std::swap(recording_, other.recording_);
   std::swap(pending_, other.pending_);
   return *this;
@@ -71,13 +72,18 @@ void CommandRecorder::begin() {
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   vkBeginCommandBuffer(commands_, &info);   // resets; its only failures are out-of-memory, which end() reports again
   stages_.clear();
+  refused_.reset();
   if (queries_ != VK_NULL_HANDLE) vkCmdResetQueryPool(commands_, queries_, 0, stage_limit_ + 1);
   recording_ = true;
 }
 
-void CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
+bool CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
                            std::uint32_t push_bytes) {
   assert(buffers.size() == pipeline.buffers() && buffers.size() <= kMostBindings && push_bytes == pipeline.push_bytes());
+  if (auto made = pipeline.wait(); !made) {
+    if (!refused_) refused_ = made.error();
+    return false;
+  }
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
   std::array<VkDescriptorBufferInfo, kMostBindings> infos{};
   std::array<VkWriteDescriptorSet, kMostBindings> writes{};
@@ -94,12 +100,12 @@ void CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const Buff
     device_->push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout(), 0, count, writes.data());
   if (push_bytes > 0)
     vkCmdPushConstants(commands_, pipeline.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes, push);
+  return true;
 }
 
 void CommandRecorder::dispatch_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
                                    std::uint32_t push_bytes, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  bind(pipeline, buffers, push, push_bytes);
-  vkCmdDispatch(commands_, x, y, z);
+  if (bind(pipeline, buffers, push, push_bytes)) vkCmdDispatch(commands_, x, y, z);
 }
 
 void CommandRecorder::barrier() {
@@ -143,6 +149,7 @@ Result<void> CommandRecorder::end() {
   barrier();   // the host may read what shaders and copies wrote
   recording_ = false;
   if (const VkResult r = vkEndCommandBuffer(commands_); r != VK_SUCCESS) return vulkan_error("vkEndCommandBuffer", r);
+  if (refused_) return *refused_;
   return device_->take_validation_error();
 }
 

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,13 +66,11 @@ class CommandRecorder {
   template <class Push>
   void dispatch_indirect(const ComputePipeline& pipeline, std::initializer_list<BufferView> buffers, const Push& push,
                          const VulkanBuffer& arguments, std::uint64_t offset) {
-    bind(pipeline, std::span(buffers.begin(), buffers.size()), &push, push_size<Push>());
-    vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
+    dispatch_indirect_raw(pipeline, std::span(buffers.begin(), buffers.size()), &push, push_size<Push>(), arguments, offset);
   }
   void dispatch_indirect_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
                              std::uint32_t push_bytes, const VulkanBuffer& arguments, std::uint64_t offset) {
-    bind(pipeline, buffers, push, push_bytes);
-    vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
+    if (bind(pipeline, buffers, push, push_bytes)) vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
   }
   void dispatch_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
                     std::uint32_t push_bytes, std::uint32_t x, std::uint32_t y, std::uint32_t z);
@@ -110,7 +109,8 @@ class CommandRecorder {
   static constexpr std::uint32_t push_size() {
     return std::is_same_v<Push, NoPush> ? 0 : static_cast<std::uint32_t>(sizeof(Push));
   }
-  void bind(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push, std::uint32_t push_bytes);
+  /// False: there is no such pipeline; end() tells why.
+  bool bind(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push, std::uint32_t push_bytes);
 
   VulkanDevice* device_ = nullptr;
   VkCommandPool pool_ = VK_NULL_HANDLE;
@@ -120,6 +120,7 @@ class CommandRecorder {
   std::uint32_t stage_limit_ = 0;
   std::uint32_t max_groups_ = 1;
   std::vector<const char*> stages_;
+  std::optional<Error> refused_;   ///< a pipeline that could not be made, since begin()
   bool recording_ = false;
   bool pending_ = false;   ///< submitted, and not known to be finished
 };

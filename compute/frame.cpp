@@ -135,7 +135,7 @@ void RecordedFrame::name_scene() {
       {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.sample_weight}, {kBindToolBrickSlot, &t.partition.brick_slot},
       {kBindToolBricks, &t.partition.bricks}, {kBindFineBrickSlot, &fine.brick_slot}, {kBindFineBricks, &fine.bricks},
       {kBindFineListBegin, &fine.list_begin}, {kBindFineListTriangles, &fine.list_triangles}, {kBindFineExit, &scene_.fine_exit},
-      {kBindSampleBegin, &scene_.sample_begin}, {kBindMockupSamples, &scene_.samples}, {kBindToolNear, &scene_.tool_near}};
+      {kBindToolNear, &scene_.tool_near}};
   for (const auto& [binding, buffer] : all)
     if (*buffer) buffers_.name(binding, *buffer);   // `paper` has no partition of the tool
 }
@@ -150,6 +150,10 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   auto detection = FrameDetection::create(device_, geometry_, scene_, plan_);
   if (!detection) return detection.error();
   detection_ = std::move(*detection);
+  // Pipelines are compiled beside what the host builds.
+  auto response = FrameResponse::create(device_, refined, scene_.rays_walk(), plan_);
+  if (!response) return response.error();
+  response_.emplace(std::move(*response));
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, detection_->order());
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
@@ -161,16 +165,13 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
       auto rays = NearRays::make(device_, geometry_.tool, scene_, detection_->order());
       if (!rays) return rays.error();
       near_rays_.emplace(std::move(*rays));
-      if (scene_.samples && device_.host_share == HostShare::kContacts) {
+      if (scene_.samples && scene_.samples->listed() && device_.host_share == HostShare::kContacts) {
         auto contact = HostContact::make(device_, geometry_, scene_, detection_->order(), *host_areas_, *near_rays_);
         if (!contact) return contact.error();
         host_contact_ = std::move(*contact);
       }
     }
   }
-  auto response = FrameResponse::create(device_, refined, scene_.rays_walk(), plan_);
-  if (!response) return response.error();
-  response_.emplace(std::move(*response));
   capacity_ = FrameCapacity::first(constants, first_capacity);
   if (auto r = make_buffers(); !r) return r;
   if (auto r = record(); !r) return r;

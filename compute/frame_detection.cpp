@@ -24,7 +24,7 @@ Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& dev
   out->refined_ = scene.constants.refined != 0;
   out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
-  out->listed_ = static_cast<bool>(scene.samples);
+  out->listed_ = scene.samples && scene.samples->listed();
   out->walks_ = scene.rays_walk();
   // About a bin a triangle.
   while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;

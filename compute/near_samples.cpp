@@ -14,6 +14,11 @@ std::size_t at(const Int3& cell, const Int3& cells) {
          static_cast<std::size_t>(cells.x) * (static_cast<std::size_t>(cell.y) + static_cast<std::size_t>(cells.y) * static_cast<std::size_t>(cell.z));
 }
 
+std::int32_t ceil_div(std::int32_t a, std::int32_t b) {
+  const std::int32_t q = a / b;
+  return q + (q * b < a ? 1 : 0);
+}
+
 /// Every cell takes the largest of those up to `reach` before and behind it along an axis.
 void widen(std::vector<std::uint8_t>& cells, const Int3& n, int axis, std::int32_t reach) {
   const std::vector<std::uint8_t> before = cells;
@@ -53,7 +58,7 @@ struct NearSamples::Search {
   }
 };
 
-Result<NearSamples> NearSamples::make(VulkanDevice& device, const PreparedScene& scene) {
+Result<NearSamples> NearSamples::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
   NearSamples out;
   const PartitionBuffers& m = scene.mockup.partition;
   out.mockup_ = m.grid;
@@ -61,7 +66,10 @@ Result<NearSamples> NearSamples::make(VulkanDevice& device, const PreparedScene&
   out.per_fine_ = 1.0 / out.fine_.size;
   out.per_cube_ = 1.0 / (8.0 * out.fine_.size);
   out.has_near_ = static_cast<bool>(scene.tool_near);
-  out.listed_ = static_cast<bool>(scene.samples);
+  out.listed_ = scene.samples && scene.samples->listed();
+  out.mesh_ = &geometry.mockup;
+  out.spacing_ = geometry.sample_spacing;
+  out.sampled_ = scene.samples;
   const Int3 cubes = out.fine_.bricks;
   const std::size_t count = static_cast<std::size_t>(cubes.x) * static_cast<std::size_t>(cubes.y) * static_cast<std::size_t>(cubes.z);
   const Int3 n = m.grid.bricks;
@@ -70,8 +78,7 @@ Result<NearSamples> NearSamples::make(VulkanDevice& device, const PreparedScene&
   if (auto r = out.list_begin_.read(device, m.list_begin, std::size_t{m.grid.boundary_voxels} + 1); !r) return r.error();
   if (out.listed_) {
     const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
-    if (auto r = out.sample_begin_.read(device, scene.sample_begin, std::size_t{m.grid.list_entries} + 1); !r) return r.error();
-    if (auto r = out.mockup_samples_.read(device, scene.samples, scene.samples.bytes() / sizeof(gpu::FrameSample)); !r) return r.error();
+    if (auto r = out.list_triangles_.read(device, m.list_triangles, m.grid.list_entries); !r) return r.error();
     if (auto r = out.fine_slots_.read(device, fine.brick_slot, count); !r) return r.error();
     if (auto r = out.fine_bricks_.read(device, fine.bricks, out.fine_.mixed_bricks); !r) return r.error();
   }
@@ -150,11 +157,28 @@ std::uint32_t NearSamples::fine_class(const Int3& p) const {
 bool NearSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const {
   const std::uint32_t begin = list_begin_[boundary], end = list_begin_[boundary + 1];
   if (listed_) {
-    for (std::uint32_t i = sample_begin_[begin], last = sample_begin_[end]; i < last; ++i) {
-      const gpu::FrameSample& sample = mockup_samples_[i];
+    const HostSamples& from = *sampled_;
+    const auto take = [&](const gpu::FrameSample& sample) {
       const std::uint32_t voxel_class = fine_class(search.rounded_to_tool(sample.point));
-      if (voxel_class == gpu::kVoxelInternal && !search.lists.push(search.lists.inside, gpu::kListInsideSamples, sample)) return false;
-      if (voxel_class == gpu::kVoxelBoundary && !search.lists.push(search.lists.open, gpu::kListOpenSamples, sample)) return false;
+      if (voxel_class == gpu::kVoxelInternal) return search.lists.push(search.lists.inside, gpu::kListInsideSamples, sample);
+      return voxel_class != gpu::kVoxelBoundary || search.lists.push(search.lists.open, gpu::kListOpenSamples, sample);
+    };
+    const Int3 low = mockup_.origin + mockup_.size * voxel;
+    Int3 grid;   // the voxel's first grid point, axis by axis
+    for (int k = 0; k < 3; ++k) grid[k] = spacing_ * ceil_div(low[k], spacing_);
+    for (std::uint32_t e = begin; e < end; ++e) {
+      const std::uint32_t head = from.begin[e], id = list_triangles_[e], last = from.begin[e + 1] & HostSamples::kBegin;
+      if ((head & HostSamples::kCorner) != 0 && !take({mesh_->corner(id, 0), id | gpu::kCornerProbe})) return false;
+      const int axis = static_cast<int>(head >> HostSamples::kAxisShift), u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+      for (std::uint32_t i = head & HostSamples::kBegin; i < last; ++i) {
+        const std::uint32_t* at = &from.words[from.wide ? 2 * std::size_t{i} : i];
+        const std::uint32_t place = from.wide ? at[1] : *at >> 20;
+        gpu::FrameSample sample{{}, id};
+        sample.point[axis] = low[axis] + static_cast<std::int32_t>(from.wide ? *at : *at & 0xFFFFF);
+        sample.point[u] = grid[u] + spacing_ * static_cast<std::int32_t>(place & 63);
+        sample.point[v] = grid[v] + spacing_ * static_cast<std::int32_t>(place >> 6);
+        if (!take(sample)) return false;
+      }
     }
     return true;
   }

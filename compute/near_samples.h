@@ -1,11 +1,14 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "compute/host_copy.h"
+#include "compute/host_samples.h"
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
 #include "model/lattice.h"
+#include "model/scene_geometry.h"
 
 namespace palpate {
 
@@ -14,8 +17,8 @@ namespace palpate {
 /// allocate.
 class NearSamples {
  public:
-  /// The scene outlives this.
-  static Result<NearSamples> make(VulkanDevice& device, const PreparedScene& scene);
+  /// Geometry and scene outlive this.
+  static Result<NearSamples> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
   /// Appends to lists.inside and open, or to lists.samples, for bricks first … last of the mock-up's grid. Where it has no room, the search ends.
   void find(const LatticePose& pose, const Int3& first, const Int3& last, NearLists& lists) const;
 
@@ -38,9 +41,11 @@ class NearSamples {
   double per_fine_ = 0, per_cube_ = 0;   ///< fine voxels and cubes of them a step
   Level brick_, octant_;
   bool has_near_ = false, listed_ = false;
-  HostCopy<std::uint32_t> slots_, near_, list_begin_, sample_begin_, fine_slots_;
+  HostCopy<std::uint32_t> slots_, near_, list_begin_, list_triangles_, fine_slots_;
   HostCopy<gpu::Brick> bricks_, fine_bricks_;
-  HostCopy<gpu::FrameSample> mockup_samples_;
+  const LatticeMesh* mesh_ = nullptr;
+  std::int32_t spacing_ = 1;
+  std::shared_ptr<const HostSamples> sampled_;
 };
 
 }  // namespace palpate

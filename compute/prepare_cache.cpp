@@ -23,6 +23,13 @@ void archive_numbers(Archive& a, Scene& scene) {
   for (auto* body : {&scene.mockup, &scene.tool}) a(body->seam_entries);
 }
 
+template <class Archive, class Samples>
+void archive_samples(Archive& a, Samples& samples) {
+  a(samples.begin);
+  a(samples.words);
+  a(samples.wide);
+}
+
 }  // namespace
 
 ContentKey prepared_key(const VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan) {
@@ -53,6 +60,9 @@ std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cach
     room = made && upload(device, *made, content.data(), content.size());
     if (room) buffer = std::move(*made);
   });
+  auto samples = std::make_shared<HostSamples>();
+  archive_samples(reader, *samples);
+  scene.samples = std::move(samples);
   if (!reader.complete()) {
     cache.drop(kKind, key, "does not hold what it should");
     return std::nullopt;
@@ -78,6 +88,8 @@ void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key
       writer.borrow({buffer.as<const char>(), buffer.bytes()});
     }
   });
+  static const HostSamples kNone;
+  archive_samples(writer, scene.samples ? *scene.samples : kNone);
   if (whole) cache.keep(kKind, key, writer.pieces(), seconds);
 }
 

@@ -19,6 +19,8 @@ constexpr std::uint64_t kMostFineVoxels = 4'000'000;          // boundary voxels
 constexpr std::uint64_t kMostFineBricks = 8'000'000;
 constexpr std::int32_t kMostFineRadius = 1 << 27;             // steps: up to it, rotations keep lengths to 0.3 steps (lib/tool_walk.glsl)
 constexpr std::uint64_t kMostNearVoxels = std::uint64_t{1} << 29;
+constexpr std::uint64_t kSamplesARun = std::uint64_t{1} << 22;   // listed by one submission (chosen: 16 or 32 MiB; an entry has at most 2^12)
+constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;   // on the host (chosen)
 
 /// A partition on the host.
 struct Classes {
@@ -127,23 +129,47 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
   if (!steps.ok()) return;
   const BodyBuffers& body = out.mockup;
   const PartitionBuffers& p = body.partition;
-  gpu::SampleListPush push{p.grid.origin, p.grid.size, p.grid.bricks, geometry.sample_spacing, p.grid.list_entries};
-  VulkanBuffer begins = steps.buffer("begins of samples", std::uint64_t{push.count} + 1);
+  gpu::SampleListPush push{};
+  push.origin = p.grid.origin;
+  push.size = p.grid.size;
+  push.bricks = p.grid.bricks;
+  push.spacing = geometry.sample_spacing;
+  push.count = p.grid.list_entries;
+  push.wide = p.grid.size > HostSamples::kNarrowVoxel ? 1 : 0;
+  const VulkanBuffer begins = steps.buffer("begins of samples", std::uint64_t{push.count} + 1);
   const VulkanBuffer unused = steps.buffer("unused", 1);
-  if (!steps.ok()) return;
   const auto run = [&](std::uint32_t emit, const VulkanBuffer& samples) {
     steps.run_items(spirv::sample_list, {emit},
                     {body.vertices, body.triangles, body.triangle_info, pairs.entry_voxel, p.list_triangles, p.boundary_place, p.mixed_brick,
                      begins, samples},
                     push, push.count);
   };
-  run(0, unused);
-  const std::uint64_t total = steps.scan("samples", begins, push.count);
-  if (!steps.ok() || total == 0 || total * sizeof(gpu::FrameSample) > steps.device().limits().storage_range) return;
-  out.samples = steps.buffer("samples of the mock-up", total, sizeof(gpu::FrameSample));
   if (!steps.ok()) return;
-  run(1, out.samples);
-  out.sample_begin = std::move(begins);
+  run(0, unused);
+  const std::uint64_t total = steps.scan("samples", begins, push.count), words = push.wide != 0 ? 2 : 1;
+  if (!steps.ok() || total > HostSamples::kBegin || total * words * 4 > kMostSampleBytes) return;
+  auto samples = std::make_shared<HostSamples>();
+  samples->wide = push.wide != 0;
+  samples->begin.resize(std::size_t{p.grid.list_entries} + 1);
+  samples->words.resize(total * words);
+  if (auto r = download(steps.device(), begins, 0, samples->begin.data(), samples->begin.size() * 4); !r) return steps.fail(r.error());
+  // Run by run, so that the device holds few of them at a time.
+  const VulkanBuffer some = steps.buffer("samples of the mock-up", std::min(total, kSamplesARun) * words);
+  const std::vector<std::uint32_t>& begin = samples->begin;
+  for (auto from = begin.begin(), end = begin.end() - 1; from != end && steps.ok();) {
+    const auto to = std::min(std::upper_bound(from + 1, begin.end(), *from + kSamplesARun) - 1, end);
+    push.first = static_cast<std::uint32_t>(from - begin.begin());
+    push.count = static_cast<std::uint32_t>(to - from);
+    push.base = *from;
+    run(1, some);
+    if (!steps.ok()) return;
+    if (auto r = download(steps.device(), some, 0, samples->words.data() + *from * words, (*to - *from) * words * 4); !r) return steps.fail(r.error());
+    steps.progress("samples", 0.95 + 0.05 * static_cast<double>(*to) / static_cast<double>(total + 1));
+    from = to;
+  }
+  if (!steps.ok()) return;
+  if (auto r = download(steps.device(), begins, 0, samples->begin.data(), samples->begin.size() * 4); !r) return steps.fail(r.error());
+  out.samples = std::move(samples);
 }
 
 void refine_tool(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {

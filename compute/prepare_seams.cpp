@@ -23,6 +23,9 @@ Long3 raw_normal(const LatticeMesh& mesh, std::uint32_t t) {
 /// Most pairs of entries of one voxel that are looked at, all voxels together (chosen: a minute of lavapipe on one core).
 constexpr std::uint64_t kMostPairsInVoxels = std::uint64_t{1} << 36;
 
+constexpr std::uint32_t kPairsARun = 1u << 21;     // candidates that there is room for at a time (chosen: 16 MiB; 1.3 to 3 come from a triangle)
+constexpr std::uint32_t kEntriesARun = 1u << 20;   // of the voxels' lists (chosen)
+
 /// Fails where voxels hold so many triangles that comparing them with each other would take for ever.
 void check_pairs(PrepareSteps& steps, const PartitionBuffers& p) {
   if (!steps.ok() || std::uint64_t{p.longest_list} * p.grid.list_entries <= kMostPairsInVoxels) return;
@@ -35,65 +38,104 @@ void check_pairs(PrepareSteps& steps, const PartitionBuffers& p) {
                          " are compared for seams on a device: choose a smaller voxel"));
 }
 
-/// Pairs of triangles that may touch along a seam and whose unit normals don't rule a smooth angle out; each once, ascending.
-std::vector<Pair> candidates(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& listed,
-                             const BodyBuffers& body) {
-  const PartitionBuffers& p = body.partition;
-  gpu::SeamPush push{};
-  // Rounded unit normals err by less than 2^31 in their product, the cosine by less than 2^10: 2^34 is on the safe side.
-  const SmoothAngle& angle = geometry.smooth_angle;
-  const double cosine = std::sqrt(static_cast<double>(angle.cos2_numerator) / static_cast<double>(angle.cos2_denominator));
-  push.least_cosine = static_cast<std::int64_t>(std::ldexp(cosine, 60)) - (std::int64_t{1} << 34);
-  push.count = p.grid.list_entries;
-  // Measured: 1.3 to 3 pairs a triangle; grown to what was found where that is not enough.
-  push.capacity = 4 * static_cast<std::uint32_t>(geometry.mockup.triangles.size()) + 1024;
+/// What finding seams needs beside the lists, for a run of their entries.
+class SeamSearch {
+ public:
+  SeamSearch(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& listed, const BodyBuffers& body);
 
-  const std::uint32_t rounds = (p.longest_list + gpu::kSeamSpan - 1) / gpu::kSeamSpan;
+  /// All pairs that touch along a seam under a smooth angle, each once, the smaller id first, ascending.
+  std::vector<Pair> all();
+
+ private:
+  std::uint32_t find(std::uint32_t first, std::uint32_t count);
+  void keep_touching(std::uint32_t count);
+
+  PrepareSteps& steps_;
+  const LatticeMesh& mesh_;
+  const SmoothAngle& angle_;
+  const VoxelPairs& listed_;
+  const BodyBuffers& body_;
+  VulkanBuffer found_, boxes_, pairs_, some_, answers_;
+  gpu::SeamPush push_{};
+  std::vector<Pair> candidates_;
+  std::vector<std::uint32_t> touches_;
+  std::vector<Pair> seams_;
+};
+
+SeamSearch::SeamSearch(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& listed, const BodyBuffers& body)
+    : steps_(steps), mesh_(geometry.mockup), angle_(geometry.smooth_angle), listed_(listed), body_(body) {
+  const PartitionBuffers& p = body.partition;
+  // Rounded unit normals err by less than 2^31 in their product, the cosine by less than 2^10: 2^34 is on the safe side.
+  const double cosine = std::sqrt(static_cast<double>(angle_.cos2_numerator) / static_cast<double>(angle_.cos2_denominator));
+  push_.least_cosine = static_cast<std::int64_t>(std::ldexp(cosine, 60)) - (std::int64_t{1} << 34);
+  push_.capacity = kPairsARun;
   check_pairs(steps, p);
-  const VulkanBuffer found = steps.buffer("seams", 1);
-  const VulkanBuffer boxes = steps.buffer("boxes of triangles in voxels", push.count);
-  const gpu::GridPush grid{p.grid.origin, p.grid.size, p.grid.bricks, push.count, 0};
-  if (!steps.ok()) return {};
+  found_ = steps.buffer("seams", 1);
+  boxes_ = steps.buffer("boxes of triangles in voxels", p.grid.list_entries);
+  pairs_ = steps.buffer("pairs of triangles at seams", push_.capacity, sizeof(Pair));
+  some_ = steps.buffer("pairs of triangles at seams", push_.capacity, sizeof(Pair));
+  answers_ = steps.buffer("pairs of triangles at seams", push_.capacity);
+  const gpu::GridPush grid{p.grid.origin, p.grid.size, p.grid.bricks, p.grid.list_entries, 0};
+  if (!steps.ok()) return;
   steps.run_items(spirv::seam_box, {},
-                  {body.vertices, body.triangles, listed.entry_voxel, p.list_triangles, p.boundary_place, p.mixed_brick, boxes}, grid,
-                  push.count);
-  while (steps.ok()) {
-    const VulkanBuffer pairs = steps.buffer("pairs of triangles at seams", push.capacity, sizeof(Pair));
-    if (!steps.ok()) break;
-    steps.fill(found, 0);
-    for (push.round = 0; push.round < rounds; ++push.round)
-      steps.run_items(spirv::seam_find, {},
-                      {body.vertices, body.triangles, body.unit_normal, p.list_begin, p.list_triangles, found, pairs, boxes,
-                       listed.entry_voxel},
-                      push,
-                      push.count);
-    const std::uint32_t count = steps.read(found, 0);
-    if (count > push.capacity) {
-      push.capacity = count;
-      continue;
-    }
-    std::vector<Pair> out(count);
-    if (auto r = download(steps.device(), pairs, 0, out.data(), count * sizeof(Pair)); !r) steps.fail(r.error());
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
-  }
-  return {};
+                  {body.vertices, body.triangles, listed.entry_voxel, p.list_triangles, p.boundary_place, p.mixed_brick, boxes_}, grid,
+                  grid.count);
 }
 
-/// Those of the pairs that touch along a seam.
-std::vector<Pair> touching(PrepareSteps& steps, const std::vector<Pair>& pairs, const BodyBuffers& body) {
-  std::vector<Pair> out;
-  const VulkanBuffer in = steps.filled("pairs of triangles at seams", pairs);
-  const VulkanBuffer answers = steps.buffer("pairs of triangles at seams", pairs.size());
-  if (!steps.ok()) return out;
-  steps.run_items(spirv::seam_test, {}, {body.vertices, body.triangles, in, answers}, static_cast<std::uint32_t>(pairs.size()),
-                  pairs.size());
-  std::vector<std::uint32_t> touches(pairs.size());
-  if (auto r = download(steps.device(), answers, 0, touches.data(), touches.size() * 4); !r) steps.fail(r.error());
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (touches[i] != 0) out.push_back(pairs[i]);
-  return out;
+/// Lists candidates with an entry of this run; returns how many there are, which may be more than there is room for.
+std::uint32_t SeamSearch::find(std::uint32_t first, std::uint32_t count) {
+  const PartitionBuffers& p = body_.partition;
+  const std::uint32_t rounds = (p.longest_list + gpu::kSeamSpan - 1) / gpu::kSeamSpan;
+  steps_.fill(found_, 0);
+  push_.first = first;
+  push_.count = count;
+  for (push_.round = 0; push_.round < rounds; ++push_.round) {
+    steps_.run_items(spirv::seam_find, {},
+                     {body_.vertices, body_.triangles, body_.unit_normal, p.list_begin, p.list_triangles, found_, pairs_, boxes_, listed_.entry_voxel},
+                     push_, count);
+    if (push_.round % 64 == 63) steps_.progress("seams", 0.9);
+  }
+  return steps_.read(found_, 0);
+}
+
+/// Takes those of the listed candidates that touch along a seam, exactly.
+void SeamSearch::keep_touching(std::uint32_t count) {
+  candidates_.resize(count);
+  if (auto r = download(steps_.device(), pairs_, 0, candidates_.data(), count * sizeof(Pair)); !r) return steps_.fail(r.error());
+  // Most are found in several voxels, and those lie near each other.
+  std::sort(candidates_.begin(), candidates_.end());
+  candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+  if (auto r = upload(steps_.device(), some_, candidates_.data(), candidates_.size() * sizeof(Pair)); !r) return steps_.fail(r.error());
+  steps_.run_items(spirv::seam_test, {}, {body_.vertices, body_.triangles, some_, answers_}, static_cast<std::uint32_t>(candidates_.size()),
+                   candidates_.size());
+  if (!steps_.ok()) return;
+  touches_.resize(candidates_.size());
+  if (auto r = download(steps_.device(), answers_, 0, touches_.data(), touches_.size() * 4); !r) return steps_.fail(r.error());
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    if (const auto& [s, t] = candidates_[i]; touches_[i] != 0 && smooth(raw_normal(mesh_, s), raw_normal(mesh_, t), angle_)) seams_.push_back(candidates_[i]);
+}
+
+std::vector<Pair> SeamSearch::all() {
+  const std::uint32_t entries = body_.partition.grid.list_entries;
+  std::uint32_t run = kEntriesARun;
+  for (std::uint32_t first = 0; first < entries && steps_.ok();) {
+    const std::uint32_t count = std::min(run, entries - first), pairs = find(first, count);
+    if (!steps_.ok()) break;
+    if (pairs > push_.capacity) {   // half as many at a time; an entry alone has room in any case but one that check_pairs() refuses
+      if (count == 1) {
+        steps_.fail(bad_value(std::to_string(pairs) + " triangles may continue one smoothly, at most " + std::to_string(push_.capacity) + " are possible"));
+        break;
+      }
+      run = count / 2;
+      continue;
+    }
+    if (pairs > 0) keep_touching(pairs);
+    first += count;
+    steps_.progress("seams", 0.9 + 0.05 * first / entries);
+  }
+  std::sort(seams_.begin(), seams_.end());
+  seams_.erase(std::unique(seams_.begin(), seams_.end()), seams_.end());
+  return std::move(seams_);
 }
 
 }  // namespace
@@ -101,12 +143,11 @@ std::vector<Pair> touching(PrepareSteps& steps, const std::vector<Pair>& pairs, 
 void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool refined, const VoxelPairs& pairs, BodyBuffers& body) {
   const LatticeMesh& mesh = geometry.mockup;
   std::vector<Pair> seams;
-  if (refined) {
-    for (const auto& [s, t] : touching(steps, candidates(steps, geometry, pairs, body), body))
-      if (smooth(raw_normal(mesh, s), raw_normal(mesh, t), geometry.smooth_angle)) {
-        seams.push_back({s, t});
-        seams.push_back({t, s});
-      }
+  if (refined && steps.ok()) {
+    seams = SeamSearch(steps, geometry, pairs, body).all();
+    const std::size_t found = seams.size();
+    seams.reserve(2 * found);
+    for (std::size_t i = 0; i < found; ++i) seams.push_back({seams[i][1], seams[i][0]});
     std::sort(seams.begin(), seams.end());
   }
   std::vector<std::uint32_t> begin(mesh.triangles.size() + 1, 0), ids;

@@ -20,6 +20,8 @@ void PrepareSteps::fail(Error error) {
 }
 
 void PrepareSteps::progress(const char* what, double done) {
+  what_ = what;
+  done_ = done;
   if (ok() && progress_ && !progress_(what, done)) fail(Error{ErrorCode::kInternal, "preparation was cancelled"});
 }
 
@@ -61,6 +63,7 @@ const ComputePipeline& PrepareSteps::pipeline(const ShaderCode& code, std::uint3
 
 void PrepareSteps::finish() {
   if (auto r = recorder_->submit_and_wait(); !r) fail(r.error());
+  progress(what_, done_);   // whoever wants to end it waits for one submission at most
 }
 
 void PrepareSteps::fill(const VulkanBuffer& buffer, std::uint32_t word) {

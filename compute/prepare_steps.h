@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <initializer_list>
 #include <map>
@@ -54,7 +55,10 @@ class PrepareSteps {
                  std::initializer_list<BufferView> buffers, const Push& push, std::uint64_t count) {
     if (!ok()) return;
     const auto& shader = pipeline(code, static_cast<std::uint32_t>(buffers.size()), sizeof(Push), constants);
+    if (!device_.kernel_watch) return run([&](CommandRecorder& r) { r.dispatch_items(shader, buffers, push, count); });
+    const auto start = std::chrono::steady_clock::now();
     run([&](CommandRecorder& r) { r.dispatch_items(shader, buffers, push, count); });
+    device_.kernel_watch(code.name, count, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   /// Replaces each of the first `count` numbers by the sum of those before it and puts the total behind them (the buffer
   /// has count + 1 entries). Returns the total; fails when it reaches 2^32 − 1 (`what` says of what there are too many).
@@ -73,6 +77,8 @@ class PrepareSteps {
   const Progress& progress_;
   std::optional<CommandRecorder> recorder_;
   std::optional<Error> error_;
+  const char* what_ = "prepare";   ///< last told
+  double done_ = 0;
   std::map<std::string, ComputePipeline> pipelines_;
   ComputePipeline no_pipeline_;
 };

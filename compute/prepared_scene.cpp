@@ -1,6 +1,7 @@
 #include "compute/prepared_scene.h"
 
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,7 +55,38 @@ void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
 std::uint64_t PreparedScene::memory_bytes() const {
   std::uint64_t sum = 0;
   for_each_buffer(*this, [&](const VulkanBuffer& buffer) { sum += buffer.bytes(); });
-  return sum;
+  return sum + (samples ? samples->bytes() : 0);
+}
+
+Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene) {
+  PreparedScene out;
+  out.constants = scene.constants;
+  out.samples = scene.samples;
+  for (auto body : {&PreparedScene::mockup, &PreparedScene::tool}) (out.*body).seam_entries = (scene.*body).seam_entries;
+  std::vector<const PartitionBuffers*> partitions;
+  for_each_partition(scene, [&](const PartitionBuffers& p) { partitions.push_back(&p); });
+  std::size_t i = 0;
+  for_each_partition(out, [&](PartitionBuffers& p) {
+    const PartitionBuffers& from = *partitions[i++];
+    p.grid = from.grid;
+    p.longest_list = from.longest_list;
+    p.has_internal = from.has_internal;
+  });
+  std::vector<const VulkanBuffer*> buffers;
+  for_each_buffer(scene, [&](const VulkanBuffer& buffer) { buffers.push_back(&buffer); });
+  i = 0;
+  std::optional<Error> failed;
+  for_each_buffer(out, [&](VulkanBuffer& buffer) {
+    const VulkanBuffer& from = *buffers[i++];
+    if (failed || !from) return;
+    auto made = VulkanBuffer::alias(device, from);
+    if (made)
+      buffer = std::move(*made);
+    else
+      failed = made.error();
+  });
+  if (failed) return *failed;
+  return out;
 }
 
 bool PreparedScene::rays_walk() const {

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 
+#include "compute/host_samples.h"
 #include "compute/vulkan_buffer.h"
 #include "compute/vulkan_device.h"
 #include "model/collision_backend.h"
@@ -49,8 +51,7 @@ struct PreparedScene {
   PartitionBuffers fine;          ///< of a closed tool, in finer voxels; may be empty: then the tool's own serves
   VulkanBuffer fine_exit;         ///< uint32, one a boundary voxel of it: kBindFineExit
   VulkanBuffer tool_near;         ///< bits: kBindToolNear; may be empty: all are near
-  VulkanBuffer sample_begin;      ///< uint32, one an entry of the mock-up's lists, + 1; may be empty
-  VulkanBuffer samples;           ///< gpu::FrameSample; may be empty: frames work them out
+  std::shared_ptr<const HostSamples> samples;   ///< may be null or empty: frames work them out
   std::uint64_t memory_bytes() const;
   /// Whether rays walk through the tool's fine partition: it is closed, and the bounds of shaders/lib/tool_walk.glsl hold.
   bool rays_walk() const;
@@ -75,12 +76,15 @@ void for_each_buffer(Scene& scene, Visit visit) {
   for_each_partition(scene, [&](auto& p) {
     for (auto* buffer : {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) visit(*buffer);
   });
-  for (auto* buffer : {&scene.fine_exit, &scene.tool_near, &scene.sample_begin, &scene.samples}) visit(*buffer);
+  for (auto* buffer : {&scene.fine_exit, &scene.tool_near}) visit(*buffer);
 }
 
 /// Builds both bodies and their partitions. Errors: memory (kBadValue, one sentence), cancelled, device lost.
 Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
                                     const Progress& progress);
+
+/// The same scene for another device that shares host memory (VulkanDevice::shares_memory): no copy is made.
+Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene);
 
 /// Reads a partition back.
 Result<VoxelPartition> read_partition(VulkanDevice& device, const PartitionBuffers& partition);

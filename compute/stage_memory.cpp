@@ -28,7 +28,7 @@ const BufferUse kUses[] = {
                kBindResult, kBindResultStatics, kBindResultMobiles}},
     {"bst", {kBindVoxelState, kBindTouchedVoxels, kBindStaticChunks}},
     {"est", {kBindMockupWeights, kBindToolBrickSlot, kBindToolBricks, kBindFineBrickSlot, kBindFineBricks,
-             kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces, kBindFineExit, kBindSampleBegin, kBindMockupSamples, kBindToolNear, kBindInsideSamples, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
+             kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces, kBindFineExit, kBindToolNear, kBindInsideSamples, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
     {"areas", {kBindNeighbourBegin, kBindNeighbours, kBindSeamBegin, kBindSeams, kBindMockupNormals, kBindToolNormals, kBindToolWeights,
                kBindHeldStatics, kBindHeldAreas, kBindResultMembers, kBindResultPierces}},
     {"rays", {kBindRayLists, kBindRayPlaces, kBindHeights, kBindFades, kBindNeedleTable, kBindNeedleVertices}},

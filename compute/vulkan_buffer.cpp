@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -19,20 +20,33 @@ std::string mebibytes(std::uint64_t bytes) {
 }  // namespace
 
 Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind) {
-  bytes = std::max<std::uint64_t>(4, (bytes + 3) & ~std::uint64_t{3});
+  return make(device, what, std::max<std::uint64_t>(4, (bytes + 3) & ~std::uint64_t{3}), kind, nullptr);
+}
+
+Result<VulkanBuffer> VulkanBuffer::alias(VulkanDevice& device, const VulkanBuffer& of) {
+  if (!of.pages_ || !device.shares_memory()) return Error{ErrorCode::kInternal, "a buffer of " + device.name() + " can't be shared"};
+  return make(device, "a shared buffer", of.bytes_, BufferKind::kDevice, &of);
+}
+
+Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind, const VulkanBuffer* of) {
   const auto& limits = device.limits();
   if (bytes > limits.storage_range)
     return bad_value(std::string(what) + " need " + mebibytes(bytes) + ", more than the " + mebibytes(limits.storage_range) +
                      " that a shader may see in one buffer on " + device.name());
-  if (bytes > limits.allocation || device.allocated + bytes > limits.heap)
+  if (of == nullptr && (bytes > limits.allocation || device.allocated + bytes > limits.heap))
     return bad_value(std::string(what) + " need " + mebibytes(bytes) + " beside " + mebibytes(device.allocated) +
                      " in use, more than the " + mebibytes(limits.heap) + " of memory of " + device.name());
 
   VulkanBuffer out;
   out.device_ = &device;
   out.bytes_ = bytes;
+  const bool shares = device.shares_memory();
+  VkExternalMemoryBufferCreateInfo external{};
+  external.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO;
+  external.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
   VkBufferCreateInfo create{};
   create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  create.pNext = shares ? &external : nullptr;
   create.size = bytes + (device.guarded ? BufferGuard::kBytes : 0);
   create.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
@@ -58,20 +72,35 @@ Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what
   const std::uint64_t before = device.guarded ? BufferGuard::before(needs.alignment) : 0;
   allocate.allocationSize = before + needs.size;
   allocate.memoryTypeIndex = static_cast<std::uint32_t>(type);
+  VkImportMemoryHostPointerInfoEXT import{};
   VkResult allocated = device.injected(GpuFault::Call::kAllocate);
+  if (shares && allocated == VK_SUCCESS) {
+    const std::uint64_t page = device.page();
+    allocate.allocationSize = (allocate.allocationSize + page - 1) / page * page;
+    out.pages_ = of != nullptr ? of->pages_ : std::shared_ptr<void>(std::aligned_alloc(page, allocate.allocationSize), std::free);
+    if (!out.pages_) allocated = VK_ERROR_OUT_OF_HOST_MEMORY;
+    import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT;
+    import.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
+    import.pHostPointer = out.pages_.get();
+    allocate.pNext = &import;
+  }
   if (allocated == VK_SUCCESS) allocated = vkAllocateMemory(device.handle(), &allocate, nullptr, &out.memory_);
   if (allocated != VK_SUCCESS)
     return Error{ErrorCode::kInternal, std::string(what) + " need " + mebibytes(bytes) + " beside " + mebibytes(device.allocated) + " in use, which " +
                                            device.name() + " with " + mebibytes(limits.heap) + " of memory could not give (" +
                                            vulkan_error("vkAllocateMemory", allocated).sentence + ")"};
-  device.allocated += bytes;
+  if (of == nullptr) {
+    out.counted_ = bytes;
+    const std::uint64_t now = device.allocated += bytes;
+    device.most_allocated = std::max<std::uint64_t>(device.most_allocated, now);
+  }
   if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, before); r != VK_SUCCESS)
     return vulkan_error("vkBindBufferMemory", r);
   if (map)
     if (const VkResult r = vkMapMemory(device.handle(), out.memory_, 0, VK_WHOLE_SIZE, 0, &out.mapped_); r != VK_SUCCESS)
       return vulkan_error("vkMapMemory", r);
   if (device.guarded) {
-    out.guard_ = std::make_unique<BufferGuard>(device, what, out.memory_, out.mapped_, before, bytes);
+    if (of == nullptr) out.guard_ = std::make_unique<BufferGuard>(device, what, out.memory_, out.mapped_, before, bytes);
     if (map) out.mapped_ = static_cast<char*>(out.mapped_) + before;
   }
   return out;
@@ -80,7 +109,7 @@ Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what
 VulkanBuffer::~VulkanBuffer() {
   if (device_ == nullptr) return;
   guard_.reset();
-  if (memory_ != VK_NULL_HANDLE) device_->allocated -= bytes_;
+  device_->allocated -= counted_;
   vkDestroyBuffer(device_->handle(), buffer_, nullptr);
   vkFreeMemory(device_->handle(), memory_, nullptr);
 }
@@ -92,6 +121,8 @@ VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
   std::swap(buffer_, other.buffer_);
   std::swap(memory_, other.memory_);
   std::swap(bytes_, other.bytes_);
+  std::swap(counted_, other.counted_);
+  std::swap(pages_, other.pages_);
   std::swap(mapped_, other.mapped_);
   std::swap(guard_, other.guard_);
   return *this;

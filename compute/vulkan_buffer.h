@@ -27,6 +27,8 @@ class VulkanBuffer {
   /// Errors: larger than a shader may see, or a buffer or the device's memory may be (kBadValue); the device had no memory left (kInternal).
   /// Contents are undefined.
   static Result<VulkanBuffer> create(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind);
+  /// The same memory as a buffer of another device that shares host memory (VulkanDevice::shares_memory), which keeps as long as either lives.
+  static Result<VulkanBuffer> alias(VulkanDevice& device, const VulkanBuffer& of);
   ~VulkanBuffer();
   VulkanBuffer(VulkanBuffer&& other) noexcept;
   VulkanBuffer& operator=(VulkanBuffer&& other) noexcept;
@@ -44,11 +46,15 @@ class VulkanBuffer {
   }
 
  private:
+  static Result<VulkanBuffer> make(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind, const VulkanBuffer* of);
+
   VulkanDevice* device_ = nullptr;
   VkBuffer buffer_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   std::uint64_t bytes_ = 0;
+  std::uint64_t counted_ = 0;            ///< bytes in VulkanDevice::allocated; none for an alias
   void* mapped_ = nullptr;
+  std::shared_ptr<void> pages_;          ///< host memory that the device imported, where it shares such
   std::unique_ptr<BufferGuard> guard_;   ///< in tests
 };
 

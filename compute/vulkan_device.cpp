@@ -36,14 +36,12 @@ std::string version_text(std::uint32_t v) {
          std::to_string(VK_API_VERSION_PATCH(v));
 }
 
-bool has_push_descriptors(VkPhysicalDevice device) {
+bool has_extension(VkPhysicalDevice device, const char* name) {
   std::uint32_t count = 0;
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> extensions(count);
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-  return std::any_of(extensions.begin(), extensions.end(), [](const VkExtensionProperties& e) {
-    return std::strcmp(e.extensionName, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) == 0;
-  });
+  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
 /// The compute queue family: one without graphics if there is one. −1: none.
@@ -72,7 +70,7 @@ std::string refusal(VkPhysicalDevice device) {
   if (!f.v12.shaderBufferInt64Atomics) return "it has no 64-bit integer atomics on buffers";
   if (!f.v12.scalarBlockLayout) return "it has no scalar block layout";
   if (!f.v13.synchronization2) return "it has no synchronization2";
-  if (!has_push_descriptors(device)) return "it has no push descriptors";
+  if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return "it has no push descriptors";
   if (p.limits.maxPerStageDescriptorStorageBuffers < kBindings)
     return "a shader may use " + std::to_string(p.limits.maxPerStageDescriptorStorageBuffers) + " storage buffers, " +
            std::to_string(kBindings) + " are needed";
@@ -251,6 +249,14 @@ Result<void> VulkanDevice::make_device() {
   if (const auto left = address_space_left()) limits_.heap = std::min(limits_.heap, *left - std::min(*left, kDriverAddressSpace / 2));
   processor_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   unified_ = processor_ || p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+  const bool shares = processor_ && has_extension(physical_, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
+  if (shares) {
+    VkPhysicalDeviceExternalMemoryHostPropertiesEXT host{};
+    host.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_MEMORY_HOST_PROPERTIES_EXT;
+    VkPhysicalDeviceProperties2 of_host{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &host, {}};
+    vkGetPhysicalDeviceProperties2(physical_, &of_host);
+    page_ = host.minImportedHostPointerAlignment;
+  }
 
   Features features;
   features.base.features.shaderInt64 = VK_TRUE;
@@ -265,14 +271,14 @@ Result<void> VulkanDevice::make_device() {
   queue.queueFamilyIndex = queue_family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  const char* extension = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+  const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
   VkDeviceCreateInfo create{};
   create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   create.pNext = &features.base;
   create.queueCreateInfoCount = 1;
   create.pQueueCreateInfos = &queue;
-  create.enabledExtensionCount = 1;
-  create.ppEnabledExtensionNames = &extension;
+  create.enabledExtensionCount = shares ? 2 : 1;
+  create.ppEnabledExtensionNames = extensions;
   if (const VkResult r = vkCreateDevice(physical_, &create, nullptr, &device_); r != VK_SUCCESS)
     return vulkan_error("vkCreateDevice", r);
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
@@ -306,6 +312,7 @@ std::vector<VulkanDeviceInfo> VulkanDevice::list() {
 VulkanDevice::~VulkanDevice() {
   if (device_ != VK_NULL_HANDLE) {
     vkDeviceWaitIdle(device_);
+    compilers.reset();
     pipelines.clear();
     vkDestroyDevice(device_, nullptr);
   }

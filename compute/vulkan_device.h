@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -10,13 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "compute/compilers.h"
 #include "compute/gpu_backend.h"
 #include "model/result.h"
 
 namespace palpate {
 
 class BufferGuard;
-struct PipelineObjects;
+struct PendingPipeline;
 
 /// The sentence for a Vulkan call that failed: "vkQueueSubmit2 failed: device lost".
 Error vulkan_error(const char* call, VkResult result);
@@ -50,6 +52,11 @@ class VulkanDevice {
   /// Device memory is host memory (lavapipe, integrated GPUs): buffers are written in place, without staging.
   bool unified() const { return unified_; }
 
+  /// Buffers lie in host memory that several devices may import at once (lavapipe): what one has made, another can use without a copy.
+  bool shares_memory() const { return page_ != 0; }
+  /// Alignment of such memory, bytes.
+  std::uint64_t page() const { return page_; }
+
   /// Index of a memory type with all of `wanted`, preferring those that have `preferred` too; or −1.
   int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags preferred) const;
 
@@ -64,9 +71,16 @@ class VulkanDevice {
 
   /// Bytes of device memory now held by buffers.
   std::atomic<std::uint64_t> allocated{0};
+  /// The most that this has been.
+  std::uint64_t most_allocated = 0;
 
-  /// Pipelines made so far, by module and constants; ComputePipeline::create fills it.
-  std::map<std::vector<std::uint32_t>, std::shared_ptr<const PipelineObjects>> pipelines;
+  /// Pipelines made or being made, by module and constants; ComputePipeline::create fills it.
+  std::map<std::vector<std::uint32_t>, std::shared_ptr<PendingPipeline>> pipelines;
+  /// Makes them, while whoever asked goes on; null before the first.
+  std::unique_ptr<Compilers> compilers;
+
+  /// For benches: told how long each kernel of preparation took on how many items; may be empty.
+  std::function<void(const char* kernel, std::uint64_t items, double seconds)> kernel_watch;
 
   /// GpuOptions::host_share, decided.
   HostShare host_share = HostShare::kAreas;
@@ -98,6 +112,7 @@ class VulkanDevice {
   std::string name_, driver_;
   bool unified_ = false;
   bool processor_ = false;   ///< the host's own
+  std::uint64_t page_ = 0;   ///< 0: does not share memory
   std::shared_ptr<GpuFault> fault_;
   std::mutex message_mutex_;
   std::string message_;

@@ -82,11 +82,15 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   std::vector<std::uint32_t> key{buffers, push_bytes, uniform, static_cast<std::uint32_t>(constants.size())};
   for (const SpecConstant& c : constants) key.insert(key.end(), {c.id, c.value});
   key.insert(key.end(), code.words, code.words + code.bytes / 4);
-  std::shared_ptr<const PipelineObjects>& kept = device.pipelines[std::move(key)];
+  std::shared_ptr<PendingPipeline>& kept = device.pipelines[std::move(key)];
   if (!kept) {
-    auto made = make_objects(device, code, buffers, push_bytes, constants, uniform);
-    if (!made) return made.error();
-    kept = std::move(*made);
+    auto promise = std::make_shared<std::promise<MadePipeline>>();
+    kept = std::make_shared<PendingPipeline>(PendingPipeline{promise->get_future().share()});
+    if (!device.compilers) device.compilers = std::make_unique<Compilers>();
+    device.compilers->add([&device, name = code.name, words = std::vector<std::uint32_t>(code.words, code.words + code.bytes / 4), buffers, push_bytes,
+                           values = std::vector<SpecConstant>(constants.begin(), constants.end()), uniform, promise] {
+      promise->set_value(make_objects(device, {name, words.data(), words.size() * 4}, buffers, push_bytes, values, uniform));
+    });
   }
   ComputePipeline out;
   out.made_ = kept;
@@ -95,6 +99,11 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   out.uniform_ = uniform;
   out.name_ = code.name;
   return out;
+}
+
+Result<void> ComputePipeline::wait() const {
+  if (const MadePipeline& made = made_->made.get(); !made) return made.error();
+  return {};
 }
 
 PipelineObjects::~PipelineObjects() {

@@ -2,6 +2,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <span>
 
@@ -29,9 +30,15 @@ struct PipelineObjects {
   ~PipelineObjects();
 };
 
+/// A pipeline that is being made.
+struct PendingPipeline {
+  std::shared_future<Result<std::shared_ptr<const PipelineObjects>>> made;
+};
+
 /// A compute pipeline whose set 0 is `buffers` buffers, bindings 0 … buffers − 1 (push descriptors), with `push_bytes` of push
 /// constants. Bit i of `uniform`: binding i is a uniform buffer, else a storage buffer. Copies share what the driver made; so do all that one device was ever asked for with the
-/// same module and constants, so that a second scene compiles nothing.
+/// same module and constants, so that a second scene compiles nothing. create() comes back at once: the driver works on while pipelines are
+/// asked for, several at a time, and wait() tells what came of it.
 class ComputePipeline {
  public:
   ComputePipeline() = default;
@@ -39,15 +46,19 @@ class ComputePipeline {
                                         std::uint32_t push_bytes = 0, std::span<const SpecConstant> constants = {},
                                         std::uint32_t uniform = 0);
 
-  VkPipeline handle() const { return made_->pipeline; }
-  VkPipelineLayout layout() const { return made_->layout; }
+  /// Waits until the pipeline is there. An error: the driver refused, or the module does not fit.
+  Result<void> wait() const;
+  VkPipeline handle() const { return objects().pipeline; }        ///< after wait() has succeeded
+  VkPipelineLayout layout() const { return objects().layout; }   ///< likewise
   std::uint32_t buffers() const { return buffers_; }
   std::uint32_t push_bytes() const { return push_bytes_; }
   bool uniform(std::uint32_t binding) const { return (uniform_ >> binding & 1u) != 0; }
   const char* name() const { return name_; }
 
  private:
-  std::shared_ptr<const PipelineObjects> made_;
+  const PipelineObjects& objects() const { return **made_->made.get(); }
+
+  std::shared_ptr<const PendingPipeline> made_;
   std::uint32_t buffers_ = 0;
   std::uint32_t push_bytes_ = 0;
   std::uint32_t uniform_ = 0;

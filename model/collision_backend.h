@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,9 +38,24 @@ class CollisionBackend {
   /// while a query runs. Error: as prepare(), or the profile is another one; the back end may have to be prepared again.
   virtual Result<void> replan(const Plan&) { return Error{ErrorCode::kInternal, "the " + name() + " back end knows one plan"}; }
 
+  /// The most memory that prepare() will need on the device for this scene, known before it begins; 0: nobody knows. More than that was
+  /// never seen; prepare() refuses at once what can't fit.
+  virtual std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const {
+    (void)geometry, (void)plan;
+    return 0;
+  }
+
   /// Answers one pose. `held` may be null (a lone query). Writes `out` whole, reusing its memory.
   /// An error means that the back end itself failed (device lost): the caller sends zero force.
   virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
+
+  /// Answers many poses with whatever can work on them side by side: out[i] is what query(poses[i], nullptr, out[i]) would make of it but for the
+  /// times. As many `out` as `poses`. The first call that is worth it may take time and memory to set helpers up; it may start threads.
+  virtual Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (auto answered = query(poses[i], nullptr, out[i]); !answered) return answered;
+    return {};
+  }
 
   /// Makes room for what truncated the last query, so that the same pose can be asked again. Takes time and memory: not for a loop that
   /// somebody waits for. Error: there is no more room, or what ran out is not room; the back end goes on answering as before.

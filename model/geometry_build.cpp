@@ -125,9 +125,13 @@ Result<Vec3> centre_of_mass(const std::optional<Vec3>& asked, const LatticeMesh&
 
 }  // namespace
 
-Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice, const SmoothAngle& angle, MeshReport& report) {
+Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice, const SmoothAngle& angle, MeshReport& report,
+                                       const std::function<bool()>& go_on) {
+  const Error ended{ErrorCode::kInternal, "loading was cancelled"};
+  const auto stop = [&] { return go_on && !go_on(); };
   Result<LatticeMesh> welded = snap_and_weld(mesh, lattice);
   if (!welded) return welded.error();
+  if (stop()) return ended;
   LatticeMesh out = std::move(*welded);
   report = {};
   report.triangles = static_cast<std::uint32_t>(out.triangles.size());
@@ -135,11 +139,14 @@ Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice,
   for (const std::uint8_t flags : out.flags) report.collapsed += flags & kTriangleCollapsed ? 1 : 0;
 
   const EdgeTable edges(out);
+  if (stop()) return ended;
   if (const Result<void> bearable = check_crowded_edges(edges, out); !bearable) return bearable.error();
   const std::vector<std::uint32_t> part_of = list_parts(mesh, out, lattice, report);
   describe_shells(orient(edges, part_of, out), part_of, out, report);
+  if (stop()) return ended;
   examine_edges(edges, lattice.step_m, part_of, out, report);
   describe_surface(report, out);
+  if (stop()) return ended;
   make_normals(out);
   if (const Result<void> found = find_neighbours(edges, angle, out); !found) return found.error();
   return out;
@@ -162,7 +169,7 @@ bool within_reach(const SceneGeometry& geometry) {
 
 /// build_geometry on a lattice that has been chosen.
 Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const Mesh& tool, const Box& tool_box,
-                               const GeometrySettings& settings, const SmoothAngle& angle) {
+                               const GeometrySettings& settings, const SmoothAngle& angle, const std::function<bool()>& go_on) {
   SceneGeometry out;
   out.smooth_angle = angle;
   out.lattice = lattice;
@@ -172,7 +179,8 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
 
   // Both bodies.
   const auto body = [&](const Mesh& mesh, const Lattice& frame, const char* what, MeshReport& report) -> Result<LatticeMesh> {
-    Result<LatticeMesh> built = build_lattice_mesh(mesh, frame, out.smooth_angle, report);
+    Result<LatticeMesh> built = build_lattice_mesh(mesh, frame, out.smooth_angle, report, go_on);
+    if (!built && built.error().code == ErrorCode::kInternal) return built;
     if (!built) return bad_value(fmt::format("{}: {}", what, built.error().sentence));
     return built;
   };
@@ -210,7 +218,7 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
 
 }  // namespace
 
-Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings) {
+Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings, const std::function<bool()>& go_on) {
   const Result<SmoothAngle> angle = make_smooth_angle(settings.smooth_angle_deg);
   if (!angle) return angle.error();
   const Result<Box> mockup_box = bounding_box(mockup, "mock-up");
@@ -231,7 +239,7 @@ Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const
   for (int attempt = 0; attempt < 4; ++attempt) {
     const Result<Lattice> lattice = choose_lattice(*mockup_box, arm, voxel);
     if (!lattice) return lattice.error();
-    Result<SceneGeometry> built = build_on(*lattice, mockup, tool, *tool_box, settings, *angle);
+    Result<SceneGeometry> built = build_on(*lattice, mockup, tool, *tool_box, settings, *angle, go_on);
     if (!built || within_reach(*built)) return built;
     // Memory asked for larger voxels than a 24th of the tool (a tiny tool in a vast mock-up): make room for them.
     voxel = 1.25 * built->mockup_grid.size * lattice->step_m;

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "model/mesh.h"
@@ -16,11 +17,13 @@ struct GeometrySettings {
 };
 
 /// Chooses the lattice, snaps, welds, orients (METHOD section 2) both bodies, and sets both grids.
-/// `mockup` in the world frame, `tool` in its own, metres. Errors (kBadValue): empty after snapping, too large for a limit.
-Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings);
+/// `mockup` in the world frame, `tool` in its own, metres. `go_on` is asked between steps; false ends it. Errors (kBadValue): empty after snapping,
+/// too large for a limit; kInternal: ended.
+Result<SceneGeometry> build_geometry(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings, const std::function<bool()>& go_on = {});
 
 /// One body on a lattice of its own, for `info` and tests: as build_geometry does it for a mock-up.
-Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice, const SmoothAngle& angle, MeshReport& report);
+Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice, const SmoothAngle& angle, MeshReport& report,
+                                       const std::function<bool()>& go_on = {});
 
 /// The finest power-of-two step for which everything stays within kLatticeReach.
 Result<Lattice> choose_lattice(const Mesh& mockup, const Mesh& tool);

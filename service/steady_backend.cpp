@@ -71,6 +71,16 @@ Result<void> SteadyBackend::query(const LatticePose& pose, const Held* held, Con
   return spare_->query(pose, held, out);
 }
 
+Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
+  if (!first_) return CollisionBackend::query_batch(poses, out);   // pose by pose
+  // Whatever is wrong with the batch shows again, and is dealt with, pose by pose.
+  const Result<void> answered = first_->query_batch(poses, out);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (!answered || out[i].truncated)
+      if (auto again = query(poses[i], nullptr, out[i]); !again) return again;
+  return {};
+}
+
 std::uint64_t SteadyBackend::memory_bytes() const {
   return (first_ ? first_->memory_bytes() : 0) + (spare_ ? spare_->memory_bytes() : 0);
 }

@@ -24,7 +24,11 @@ class SteadyBackend final : public CollisionBackend {
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override;
   /// Of the first back end; a spare that has been prepared follows at once, one that will be is prepared for it.
   Result<void> replan(const Plan& plan) override;
+  std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override {
+    return first_ ? first_->preparation_bytes(geometry, plan) : 0;
+  }
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
+  Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override;
 
   Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override { return by_spare_ ? spare_->pairs() : now().pairs(); }

@@ -1,7 +1,7 @@
 #version 460
-// One invocation: an entry of the mock-up's lists, a triangle in a voxel. Counts (EMIT 0) or lists (EMIT 1) the triangle's samples
-// that lie in the voxel, and its first corner if that lies in it.
-// Reads the mock-up and its partition. Writes begins[], samples.
+// One invocation: an entry of the mock-up's lists, from `first` on, a triangle in a voxel. Counts the triangle's samples that lie in the
+// voxel (EMIT 0), or lists them, and whether its first corner lies in it (EMIT 1; form: compute/host_samples.h).
+// Reads the mock-up and its partition. Writes begins[]; EMIT 1 also samples[], from those of number `base` on.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"
 #include "shaders/shared/scene.h"
@@ -18,7 +18,7 @@ layout(scalar, set = 0, binding = 4) readonly buffer List { uint32_t list_triang
 layout(scalar, set = 0, binding = 5) readonly buffer Place { uint32_t boundary_place[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Mixed { uint32_t mixed_brick[]; };
 layout(scalar, set = 0, binding = 7) buffer Begin { uint32_t begins[]; };
-layout(scalar, set = 0, binding = 8) writeonly buffer Samples { FrameSample samples[]; };
+layout(scalar, set = 0, binding = 8) writeonly buffer Samples { uint32_t samples[]; };
 layout(push_constant, scalar) uniform Push { SampleListPush push; };
 
 int32_t floor_div(int32_t a, int32_t b) {
@@ -30,8 +30,8 @@ int32_t floor_div(int32_t a, int32_t b) {
 #include "shaders/lib/sample.glsl"
 
 void main() {
-  const uint32_t entry = item_index();
-  if (entry >= push.count) return;
+  if (item_index() >= push.count) return;
+  const uint32_t entry = item_index() + push.first;
   const uint32_t place = boundary_place[entry_voxel[entry]], bit = place & 511u;
   const ivec3 voxel = 8 * cell_of_number(mixed_brick[place >> 9], push.bricks) + ivec3(bit & 7u, bit >> 3 & 7u, bit >> 6);
   const ivec3 low = push.origin + push.size * voxel, high = low + push.size - 1;   // the last lattice point of the half-open cube
@@ -45,10 +45,8 @@ void main() {
   t.normal = raw_normal(t.a, t.b, t.c);
   uint32_t count = 0u;
   const uint32_t begin = EMIT != 0u ? begins[entry] : 0u;
-  if (all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) {
-    if (EMIT != 0u) samples[begin] = FrameSample(t.a, id | kCornerProbe);
-    count = 1u;
-  }
+  const ivec2 low_seen = seen_along(t.axis, low);
+  const ivec2 grid = push.spacing * ivec2(-floor_div(-low_seen.x, push.spacing), -floor_div(-low_seen.y, push.spacing));
   // Grid points of the voxel that lie in the triangle's box; at most 64 an axis, as a voxel is at most 64 spacings.
   const ivec2 from = seen_along(t.axis, max(low, min(min(t.a, t.b), t.c)));
   const ivec2 to = seen_along(t.axis, min(high, max(max(t.a, t.b), t.c)));
@@ -58,9 +56,19 @@ void main() {
       if (!grid_point_inside(t, ivec2(u, v))) continue;
       const ivec3 point = sample_point(t, ivec2(u, v));
       if (point[t.axis] < low[t.axis] || point[t.axis] > high[t.axis]) continue;
-      if (EMIT != 0u) samples[begin + count] = FrameSample(point, id);
+      if (EMIT != 0u) {
+        const uint32_t place = uint32_t((u - grid.x) / push.spacing) | uint32_t((v - grid.y) / push.spacing) << 6;
+        const uint32_t height = uint32_t(point[t.axis] - low[t.axis]), at = begin - push.base + count;
+        if (push.wide != 0u) {
+          samples[2u * at] = height;
+          samples[2u * at + 1u] = place;
+        } else {
+          samples[at] = height | place << 20;
+        }
+      }
       count += 1u;
     }
   }
-  if (EMIT == 0u) begins[entry] = count;
+  const bool corner = all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high));
+  begins[entry] = EMIT == 0u ? count : begin | (corner ? kSampleCorner : 0u) | uint32_t(t.axis) << kSampleAxisShift;
 }

@@ -1,4 +1,4 @@
-// One invocation: an entry of a voxel's list and, behind it in the list, the kSeamSpan entries of round `round`. Appends the
+// One invocation: an entry of a voxel's list, from `first` on, and, behind it in the list, the kSeamSpan entries of round `round`. Appends the
 // pairs that may touch along a seam under a smooth angle: boxes meet (in tenths of the voxel, then exactly), no common edge, unit normals near enough (the host
 // decides exactly), and two with one common corner only where that is not easily seen to be all they share. A pair is found
 // once in each voxel that both touch. `found` counts all, written or not.
@@ -30,6 +30,7 @@ bool boxes_share(uint32_t a, uint32_t b) {
 void main() {
   uint32_t entry = item_index();
   if (entry >= push.count) return;
+  entry += push.first;
   uint32_t end = list_begin[entry_voxel[entry] + 1u];
   uint32_t first = entry + 1u + push.round * kSeamSpan;
   if (first >= end) return;

@@ -75,6 +75,7 @@ std::vector<std::string> DiskCache::take_notes() {
 }
 
 std::optional<DiskCache::Entry> DiskCache::find(const std::string& kind, const ContentKey& key) {
+  if (anew_) return std::nullopt;
   const fs::path path = path_of(kind, key);
   std::error_code error;
   if (!fs::exists(path, error)) return std::nullopt;

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -47,6 +48,9 @@ class DiskCache {
   /// Drops an entry whose checksum is right and whose content is not.
   void drop(const std::string& kind, const ContentKey& key, const std::string& why);
 
+  /// For benches: while `on`, nothing is found, and what is made is kept as ever.
+  void begin_anew(bool on) { anew_ = on; }
+
   /// What went wrong since the last call, a sentence each.
   std::vector<std::string> take_notes();
 
@@ -56,6 +60,7 @@ class DiskCache {
   void make_room();
 
   Settings settings_;
+  std::atomic<bool> anew_{false};
   std::mutex mutex_;
   std::vector<std::string> notes_;
 };

@@ -56,8 +56,6 @@ PALPATE_CONSTANT int32_t kBindFineBricks = 24;
 PALPATE_CONSTANT int32_t kBindFineListBegin = 25;
 PALPATE_CONSTANT int32_t kBindFineListTriangles = 26;
 PALPATE_CONSTANT int32_t kBindFineExit = 27;           // uint32_t, by V_bnd voxel of it: the axis step (0 … 5: −x, +x, −y …) that leads out to V_ext
-PALPATE_CONSTANT int32_t kBindSampleBegin = 28;        // uint32_t, by entry of the mock-up's lists, + 1: its samples
-PALPATE_CONSTANT int32_t kBindMockupSamples = 29;      // FrameSample, with kCornerProbe too
 PALPATE_CONSTANT int32_t kBindToolNear = 30;           // a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet the tool's solid
 PALPATE_CONSTANT int32_t kBindFinePlaces = 31;         // uint32_t: kBindFineListTriangles as places in the order of clusters; of a closed tool (refined)
 

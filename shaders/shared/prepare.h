@@ -63,10 +63,10 @@ PALPATE_ASSERT_SIZE(EnclosedPush, 8);
 
 struct SeamPush {
   int64_t least_cosine;   // Q60; pairs below can't be smooth
-  uint32_t count;         // entries
+  uint32_t count;         // entries of this run
   uint32_t round;
   uint32_t capacity;      // pairs
-  uint32_t unused;
+  uint32_t first;         // entry
 };
 PALPATE_ASSERT_SIZE(SeamPush, 24);
 
@@ -76,9 +76,16 @@ struct SampleListPush {
   int32_t size;
   ivec3 bricks;
   int32_t spacing;
-  uint32_t count;            // entries
+  uint32_t count;            // entries of this run
+  uint32_t first;            // entry
+  uint32_t base;             // number of its first sample
+  uint32_t wide;             // as HostSamples::wide
 };
-PALPATE_ASSERT_SIZE(SampleListPush, 36);
+PALPATE_ASSERT_SIZE(SampleListPush, 48);
+
+// begins[] after the samples were written (compute/host_samples.h).
+PALPATE_CONSTANT uint32_t kSampleCorner = 1u << 29;
+PALPATE_CONSTANT uint32_t kSampleAxisShift = 30u;
 
 PALPATE_SHARED_END
 #endif

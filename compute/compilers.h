@@ -1,0 +1,24 @@
+#pragma once
+#include <functional>
+#include <memory>
+
+namespace palpate {
+
+/// Runs jobs on a few threads of its own, in the order of their coming; threads come with the jobs and go when none is left. For
+/// compiling pipelines side by side. add() by one thread at a time.
+class Compilers {
+ public:
+  Compilers();
+  /// Waits for all jobs.
+  ~Compilers();
+  Compilers(const Compilers&) = delete;
+  Compilers& operator=(const Compilers&) = delete;
+
+  void add(std::function<void()> job);
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace palpate
