@@ -37,7 +37,7 @@ def test_the_closed_forms_converge_and_paper_does_not():
     alone = {(row['method'], row['knob'], float(row['value'])): float(row['error_p50']) for row in rows}
     expect(alone['tessellation', 'tool_triangles', 81920] < alone['tessellation', 'tool_triangles', 80] / 100, 'tessellation')
     steps = {method: [error for (m, knob, _), error in sorted(alone.items()) if (m, knob) == (method, 'lattice_step')] for method in ('palpate', 'fp32')}
-    expect(max(steps['palpate']) < 1e-4 and len(steps['palpate']) == 5 == len(steps['fp32']), steps)
+    expect(max(steps['palpate']) < 1e-4 and len(steps['palpate']) == 4 == len(steps['fp32']), steps)
     for age in (2, 5, 10, 20, 50):
         expect(alone['corrected', 'age', age] < alone['hold', 'age', age], f'age {age}')
     results = json.loads((out / 'results.json').read_text())
@@ -56,7 +56,7 @@ def test_a_scene_is_judged_against_a_converged_run():
     expect(done.code == 0, done)
     with open(folder / 'figures/results.csv') as file:
         errors = {float(row['value']): float(row['error_p50']) for row in csv.DictReader(file)
-                  if (row['scene'], row['knob'], row['quantity']) == ('scene', 'sample_spacing', 'd_m')}
+                  if (row['knob'], row['quantity']) == ('sample_spacing', 'd_m')}   # one scene, called like its folder
     expect(len(errors) == 4 and errors[min(errors)] < errors[max(errors)] / 4, errors)
     far = folder.write('far.csv', 'x,y,z,qx,qy,qz,qw\n5,5,5,0,0,0,1\n')
     refused = palpate('bench', 'error', scene, '--poses', far, '--scenes-only', '--rounds', '1', '--out', folder / 'none')
