@@ -165,7 +165,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
       auto rays = NearRays::make(device_, geometry_.tool, scene_, detection_->order());
       if (!rays) return rays.error();
       near_rays_.emplace(std::move(*rays));
-      if (scene_.samples && scene_.samples->listed() && device_.host_share == HostShare::kContacts) {
+      if (device_.host_share == HostShare::kContacts) {
         auto contact = HostContact::make(device_, geometry_, scene_, detection_->order(), *host_areas_, *near_rays_);
         if (!contact) return contact.error();
         host_contact_ = std::move(*contact);

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "compute/host_exact.h"
+
 namespace palpate {
 namespace {
 
@@ -53,14 +55,6 @@ Int3 normalise(const Sum& s) {
     out[static_cast<int>(i)] = static_cast<std::int32_t>(s[i] < 0 ? -size : size);
   }
   return out;
-}
-
-/// Side of the edge from p to q on which the grid point (u, v), moved by (ε, ε²), lies.
-int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv, std::int64_t u, std::int64_t v) {
-  const std::int64_t side = (qu - pu) * (v - pv) - (qv - pv) * (u - pu);
-  if (side != 0) return side < 0 ? -1 : 1;
-  if (qv != pv) return pv > qv ? 1 : -1;
-  return qu > pu ? 1 : qu < pu ? -1 : 0;
 }
 
 }  // namespace
@@ -268,8 +262,8 @@ bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile
   count = 0;
   for (std::int64_t v = v0 * spacing; v <= v1 * spacing; v += spacing)
     for (std::int64_t u = u0 * spacing; u <= u1 * spacing; u += spacing) {
-      if (grid_side(a[iu], a[iv], b[iu], b[iv], u, v) != facing || grid_side(b[iu], b[iv], c[iu], c[iv], u, v) != facing ||
-          grid_side(c[iu], c[iv], a[iu], a[iv], u, v) != facing)
+      if (exact::grid_side(a[iu], a[iv], b[iu], b[iv], u, v) != facing || exact::grid_side(b[iu], b[iv], c[iu], c[iv], u, v) != facing ||
+          exact::grid_side(c[iu], c[iv], a[iu], a[iv], u, v) != facing)
         continue;
       // floor(a_k − (N_u (u − a_u) + N_v (v − a_v)) / N_k)
       Int3 p;

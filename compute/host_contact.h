@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -21,14 +22,14 @@ namespace palpate {
 /// only when a contact is larger than all before.
 class HostContact {
  public:
-  /// `areas` and `rays` outlive this. Only in `refined`, where samples are listed and rays walk.
+  /// `areas` and `rays` outlive this. Only in `refined`, where rays walk.
   static Result<std::unique_ptr<HostContact>> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
                                                    std::span<const std::uint32_t> order, HostAreas& areas, NearRays& rays);
 
   /// False: left to the device. `stage(name)` is called at the end of each stage.
   template <class Stage>
   bool solve(PosedTool& tool, const Held* held, const NearLists& near, Stage stage) {
-    if (near.touch.count > kMostCandidates || near.pairs.count > kMostCandidates || near.inside.count + near.open.count > kMostCandidates) return false;
+    if (std::max({near.touch.count, near.pairs.count, near.inside.count, near.open.count, near.samples.count}) > kMostCandidates) return false;
     if (!decide(tool, near)) return false;
     stage("sets");
     if (found_.state.contact == 0) return finish(0);

@@ -140,6 +140,13 @@ bool edge_crossing(Int3 p, Int3 q, const Corners& t, Int3& out) {
   return true;
 }
 
+int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv, std::int64_t u, std::int64_t v) {
+  const std::int64_t side = (qu - pu) * (v - pv) - (qv - pv) * (u - pu);
+  if (side != 0) return side < 0 ? -1 : 1;
+  if (qv != pv) return pv > qv ? 1 : -1;
+  return qu > pu ? 1 : qu < pu ? -1 : 0;
+}
+
 Int3 normalise(const Normal& sum) {
   const std::int64_t parts[3] = {sum.x, sum.y, sum.z};
   const std::int64_t largest = std::max({std::abs(sum.x), std::abs(sum.y), std::abs(sum.z)});

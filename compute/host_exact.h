@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -52,6 +53,42 @@ int segment_crossing(const Int3& p, const Int3& q, const Corners& t);
 
 /// Where the edge pq meets the closed triangle t, if their planes cross there in one point (section 7, needles). False: nowhere.
 bool edge_crossing(Int3 p, Int3 q, const Corners& t, Int3& out);
+
+/// Side of the edge from p to q on which the grid point (u, v), moved by (ε, ε²), lies (section 4). Coordinates within 2^28 and a spacing.
+int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv, std::int64_t u, std::int64_t v);
+
+/// Calls take(sample) for each sample of a triangle (section 4) in the closed box [low, high], seen along the triangle's sample axis k.
+template <class Take>
+void for_samples(const Corners& t, int k, std::int32_t spacing, const Int3& low, const Int3& high, Take&& take) {
+  const int iu = (k + 1) % 3, iv = (k + 2) % 3;
+  const auto first = [&](int axis) {   // the first grid line not before the box
+    const std::int64_t at = std::max(low[axis], std::min({t[0][axis], t[1][axis], t[2][axis]}));
+    const std::int64_t q = at / spacing;
+    return spacing * (at % spacing > 0 ? q + 1 : q);
+  };
+  const auto last = [&](int axis) { return std::int64_t{std::min(high[axis], std::max({t[0][axis], t[1][axis], t[2][axis]}))}; };
+  const std::int64_t u0 = first(iu), u1 = last(iu), v0 = first(iv), v1 = last(iv);
+  if (u0 > u1 || v0 > v1) return;
+  const Normal n = raw_normal(t);
+  const std::int64_t parts[3] = {n.x, n.y, n.z}, nk = parts[k];
+  const int facing = nk < 0 ? -1 : 1;
+  for (std::int64_t v = v0; v <= v1; v += spacing)
+    for (std::int64_t u = u0; u <= u1; u += spacing) {
+      bool within = true;
+      for (std::size_t e = 0; e < 3 && within; ++e) {
+        const Int3 &p = t[e], &q = t[(e + 1) % 3];
+        within = grid_side(p[iu], p[iv], q[iu], q[iv], u, v) == facing;
+      }
+      if (!within) continue;
+      // floor(a_k − (N_u (u − a_u) + N_v (v − a_v)) / N_k)
+      const Wide over = -facing * (Wide{parts[iu]} * (u - t[0][iu]) + Wide{parts[iv]} * (v - t[0][iv])), under = Wide{nk} * facing, q = over / under;
+      Int3 p;
+      p[k] = t[0][k] + static_cast<std::int32_t>(over % under < 0 ? q - 1 : q);
+      p[iu] = static_cast<std::int32_t>(u);
+      p[iv] = static_cast<std::int32_t>(v);
+      if (p[k] >= low[k] && p[k] <= high[k]) take(p);
+    }
+}
 
 /// A direction from a sum of normals that is not 0 (section 6): shifted until the largest |component| is in [2^28, 2^29), towards 0.
 Int3 normalise(const Normal& sum);

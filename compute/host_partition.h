@@ -55,6 +55,8 @@ class HostPartition {
   std::span<const std::uint32_t> list(std::uint32_t boundary) const {
     return {&list_triangles_[list_begin_[boundary]], &list_triangles_[list_begin_[boundary + 1]]};
   }
+  /// Entry `i` of all lists together.
+  std::uint32_t listed(std::uint32_t i) const { return list_triangles_[i]; }
 
  private:
   gpu::GridConstants grid_{};

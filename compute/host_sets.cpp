@@ -1,5 +1,7 @@
 #include "compute/host_sets.h"
 
+#include <glm/common.hpp>
+
 namespace palpate {
 
 using namespace gpu;   // names of shaders/shared/frame.h
@@ -42,16 +44,40 @@ bool HostSets::marked(std::uint32_t id, std::uint32_t bit, const FoundSets& out)
   return at < out.mobiles.size() && out.mobiles[at].id == id && (out.mobiles[at].state & bit) != 0;
 }
 
-/// The winding at an open sample is what a walk out of the tool crosses, along an axis of its fine grid: shaders/frame/sample_walk.comp has
-/// the proof that each voxel on the way lists all that is crossed in it.
-bool HostSets::inside(PosedTool& tool, const Int3& point) const {
-  const LatticePose& pose = tool.pose();
-  Int3 from = point, at;
-  for (int c = 0; c < 3; ++c) {   // |p − translation| < 2^31: sums within 3 · 2^61
+/// The tool lattice point of a world lattice point (section 4). |p − translation| < 2^31: sums within 3 · 2^61.
+Int3 HostSets::tool_point(const LatticePose& pose, const Int3& point) const {
+  Int3 at;
+  for (int c = 0; c < 3; ++c) {
     std::int64_t sum = std::int64_t{1} << 29;
     for (int r = 0; r < 3; ++r) sum += pose.rotation_q30[r][c] * (std::int64_t{point[r]} - pose.translation[r]);
     at[c] = static_cast<std::int32_t>(sum >> 30);
   }
+  return at;
+}
+
+bool HostSets::inside(PosedTool& tool, const Int3& point) const {
+  const std::uint32_t kind = fine_.at(fine_.voxel_of(tool_point(tool.pose(), point))).kind;
+  return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(tool, point));
+}
+
+/// Samples and first corners of listed triangles in a voxel, where preparation has not listed them.
+template <class Take>
+void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
+  const LatticeMesh& mesh = geometry_->mockup;
+  const Int3 low = mockup_.grid().origin + mockup_.grid().size * chunk.voxel, high = low + mockup_.grid().size - 1;   // half-open
+  for (std::uint32_t i = chunk.begin; i < chunk.end; ++i) {
+    const std::uint32_t id = mockup_.listed(i);
+    const exact::Corners t{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
+    if (t[0] == glm::clamp(t[0], low, high)) take(FrameSample{t[0], id | kCornerProbe});
+    exact::for_samples(t, mesh.sample_axis[id], geometry_->sample_spacing, low, high, [&](const Int3& p) { take(FrameSample{p, id}); });
+  }
+}
+
+/// Whether the winding at an open sample is not 0. It is what a walk out of the tool crosses, along an axis of its fine grid:
+/// shaders/frame/sample_walk.comp has the proof that each voxel on the way lists all that is crossed in it.
+bool HostSets::walks_out(PosedTool& tool, const Int3& point) const {
+  const LatticePose& pose = tool.pose();
+  Int3 from = point, at = tool_point(pose, point);
   Int3 voxel = fine_.voxel_of(at);
   HostPartition::Voxel here = fine_.at(voxel);
   const std::uint32_t exit = fine_exit_[here.boundary];
@@ -129,7 +155,11 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, std::span<std::uin
   };
   for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
   for (const FrameSample& sample : near.open.room.first(near.open.count))
-    if (inside(tool, sample.point)) take(sample);
+    if (walks_out(tool, sample.point)) take(sample);
+  for (const SampleChunk& chunk : near.samples.room.first(near.samples.count))
+    scan(chunk, [&](const FrameSample& sample) {
+      if (inside(tool, sample.point)) take(sample);
+    });
   if (out.statics.size() > most_statics) return false;
 
   for (const StaticResult& s : out.statics) {

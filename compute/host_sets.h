@@ -25,7 +25,7 @@ struct FoundSets {
 /// One thread; make() keeps references to its arguments; decide() allocates only when a contact is larger than all before.
 class HostSets {
  public:
-  /// `order`: ids of the tool's triangles by place. Only where samples are listed and rays walk.
+  /// `order`: ids of the tool's triangles by place. Only where rays walk.
   static Result<HostSets> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
   /// `slot_of`: by static id; the slots of C_s are written there. False: C_s has more than `most_statics`; `out` is then half written.
@@ -35,7 +35,11 @@ class HostSets {
   void mark_static(std::uint32_t id, std::uint32_t bit, std::span<std::uint32_t> slot_of, FoundSets& out) const;
   void mark_mobile(std::uint32_t id, std::uint32_t bit, FoundSets& out);
   bool marked(std::uint32_t id, std::uint32_t bit, const FoundSets& out) const;
+  Int3 tool_point(const LatticePose& pose, const Int3& point) const;
+  bool walks_out(PosedTool& tool, const Int3& point) const;
   bool inside(PosedTool& tool, const Int3& point) const;
+  template <class Take>
+  void scan(const gpu::SampleChunk& chunk, Take&& take) const;
 
   const SceneGeometry* geometry_ = nullptr;
   std::span<const std::uint32_t> order_;
