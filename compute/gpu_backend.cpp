@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kWorthHelpers = 128;   // poses of all batches so far from which on threads are set up for them (chosen: their cost is some 200 poses')
+constexpr std::size_t kWorthHelpers = 128;   // poses of all batches so far from which on threads are set up for them (chosen)
 constexpr unsigned kMostHelpers = 7;         // each takes a frame's memory (chosen)
 
 /// The Vulkan back end: a device, the scene on it, and the frame that answers queries.

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-// Measured: entries of the lists are 0.6 to 1.1 times what areas and edges let expect (docs/PERFORMANCE.md).
+// Entries of the lists over what areas and edges let expect (chosen; tests hold the whole against what was taken).
 constexpr double kMoreEntries = 1.3;
 constexpr double kFixed = double(96 << 20);   // runs of pairs and samples, tables of short scenes
 
