@@ -1,4 +1,7 @@
 #pragma once
+#include <span>
+#include <vector>
+
 #include "model/contacts.h"
 #include "model/pose.h"
 #include "model/response.h"
@@ -12,6 +15,17 @@ struct Answer {
   ContactResponse response;
   double total_us = 0;   ///< wall time from pose in to wrench and id lists out
 };
+
+/// What many poses got together.
+struct BatchAnswer {
+  std::vector<LatticePose> poses;
+  std::vector<Contacts> contacts;
+  std::vector<ContactResponse> responses;
+  double total_us = 0;   ///< wall time of all
+};
+
+/// Answers poses side by side where the back end can; each as answer_pose would, but for the times. Errors likewise.
+Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out);
 
 /// Answers one pose; a lone query holds nothing from a frame before. Errors: not a pose; the back end failed.
 Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out);

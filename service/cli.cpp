@@ -184,7 +184,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   pose->excludes(poses);
   add_backend(*query_app, query.common);
   add_method(*query_app, query.common);
-  query_app->add_option("--batch", query.batch, "time N poses together; time_us is then a pose's share (each pose is still a submission of its own)")
+  query_app->add_option("--batch", query.batch, "answer N poses together, on all cores; time_us is then a pose's share")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");

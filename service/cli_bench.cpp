@@ -47,7 +47,7 @@ void add_poses(CLI::App& app, BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
-  CLI::App* bench = app.add_subcommand("bench", "measure: latency of a frame, other libraries beside it, plans, errors, stability of the force, punctuality of the loop");
+  CLI::App* bench = app.add_subcommand("bench", "measure: a frame, batches, growth, preparation, other libraries, plans, the force's error and stability, the loop's punctuality");
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
@@ -61,6 +61,38 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the tool's box meets nothing). Stages are the\n"
                   "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out.");
   latency->callback([&] { outcome = bench_latency(options, parts); });
+
+  const auto one_backend = [&options](CLI::App& to) {
+    to.add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  };
+  CLI::App* throughput = bench->add_subcommand("throughput", "poses a second against the size of a batch, beside poses asked singly");
+  add_common(*throughput, options);
+  add_poses(*throughput, options);
+  one_backend(*throughput);
+  throughput->footer("Batches of 1 to 1,024 poses, in turns with the same poses asked singly. Always the wall's clock: a batch takes all cores.\n"
+                     "share_of_stages: time of a pose in the batch over the sum of a single query's stages.");
+  throughput->callback([&] { outcome = bench_throughput(options, parts); });
+
+  CLI::App* scale = bench->add_subcommand("scale", "a frame's time against the number of triangles: around the same contact, finer, of the tool");
+  add_common(*scale, options, false);
+  add_poses(*scale, options);
+  one_backend(*scale);
+  scale->add_option("--most", options.most_triangles, "triangles of the largest mock-up, 100,000 to 10,000,000 (1,000,000)")
+      ->check(CLI::Range(std::uint64_t{100'000}, std::uint64_t{10'000'000}).description(""))
+      ->type_name("N");
+  scale->footer("Scenes are made, not named; their files stay below DIR/scenes. peak_bytes is the most memory that the process had while it read, prepared and measured.");
+  scale->callback([&] { outcome = bench_scale(options, parts); });
+
+  CLI::App* prepare = bench->add_subcommand("prepare", "a scene's first start by stage, its start from the cache, and other libraries' trees beside them");
+  add_common(*prepare, options);
+  one_backend(*prepare);
+  prepare->add_option_function<std::string>(
+             "--clock", [&options](const std::string& word) { options.cpu_clock = word == "cpu"; }, "wall, or cpu: time that this process itself ran (wall)")
+      ->check(one_of({"wall", "cpu"}))
+      ->type_name("wall|cpu");
+  prepare->footer("The first start finds nothing in the cache and keeps what it makes; the second finds it. Shaders that the driver has compiled before are not compiled again.\n"
+                  "Trees are built by a build with -DPALPATE_BENCH_PEERS=ON alone.");
+  prepare->callback([&] { outcome = bench_prepare(options, parts); });
 
   CLI::App* error = bench->add_subcommand("error", "error of the response against time, for every knob: four closed forms, and scenes against a converged run");
   add_common(*error, options, false);

@@ -24,11 +24,15 @@ struct BenchOptions {
   bool cpu_clock = false;                 ///< time the process's own CPU time instead of the wall's
   bool scenes_only = false;               ///< error: without the closed forms
   std::vector<std::string> peers;         ///< names to measure; empty: all
+  std::uint64_t most_triangles = 1'000'000;  ///< scale: of the largest mock-up
   double seconds = 60;                    ///< jitter: how long
   std::string out;
 };
 
 Result<void> bench_latency(const BenchOptions& options, const Parts& parts);
+Result<void> bench_throughput(const BenchOptions& options, const Parts& parts);
+Result<void> bench_scale(const BenchOptions& options, const Parts& parts);
+Result<void> bench_prepare(const BenchOptions& options, const Parts& parts);
 Result<void> bench_error(const BenchOptions& options, const Parts& parts);
 Result<void> bench_peers(const BenchOptions& options, const Parts& parts);
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts);

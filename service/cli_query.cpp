@@ -19,25 +19,18 @@ namespace {
 constexpr std::size_t kWarmUpPoses = 32;
 
 /// Gives every answer of a batch the mean of the batch's times.
-void share_times(std::vector<Answer>& batch) {
-  const double count = static_cast<double>(batch.size());
-  double total = 0;
+void share_times(std::vector<Contacts>& batch) {
   std::vector<Contacts::StageTime> sums;
-  for (const Answer& answer : batch) {
-    total += answer.total_us;
-    for (const auto& time : answer.contacts.times) {
+  for (const Contacts& contacts : batch)
+    for (const auto& time : contacts.times) {
       const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return std::string_view(sum.stage) == time.stage; });
       if (found == sums.end())
         sums.push_back(time);
       else
         found->us += time.us;
     }
-  }
-  for (auto& sum : sums) sum.us /= count;
-  for (Answer& answer : batch) {
-    answer.total_us = total / count;
-    answer.contacts.times = sums;
-  }
+  for (auto& sum : sums) sum.us /= static_cast<double>(batch.size());
+  for (Contacts& contacts : batch) contacts.times = sums;
 }
 
 Result<void> put(const std::string& text) {
@@ -74,32 +67,40 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     for (const std::string& note : notes) console.note(note);
   }
 
-  std::vector<Answer> batch(std::min<std::uint64_t>(options.batch.value_or(1), poses.size()));
+  Answer answer;
   for (std::size_t i = 0; i < std::min(kWarmUpPoses, poses.size()); ++i) {
-    if (auto done = answer_pose(scene, poses[i], batch.front()); !done) return done;
-    if (batch.front().contacts.contact) break;
+    if (auto done = answer_pose(scene, poses[i], answer); !done) return done;
+    if (answer.contacts.contact) break;
   }
 
   std::string text;
   std::size_t truncated = 0;
   const char* capacity = "";
-  for (std::size_t first = 0; first < poses.size(); first += batch.size()) {
-    batch.resize(std::min(batch.size(), poses.size() - first));
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (auto done = answer_pose(scene, poses[first + i], batch[i]); !done) return done;
-      if (options.export_directory.empty()) continue;
-      if (auto done = export_pairs(options.export_directory, *scene.backend, first + i); !done) return done;
-    }
-    if (options.batch) share_times(batch);
+  const auto print = [&](std::size_t pose, double total_us, const Contacts& contacts, const ContactResponse& response) {
+    append_query_line({pose, total_us, options.batch, std::nullopt}, contacts, response, text);
+    if (!contacts.truncated) return;
+    ++truncated;
+    capacity = contacts.truncated_capacity;
+  };
+  // Pairs are exported pose by pose: a back end knows those of its last answer alone.
+  const bool together = options.batch && options.export_directory.empty();
+  BatchAnswer batch;
+  for (std::size_t first = 0, count = 0; first < poses.size(); first += count) {
     text.clear();
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      append_query_line({first + i, batch[i].total_us, options.batch, std::nullopt}, batch[i].contacts, batch[i].response, text);
-      if (!batch[i].contacts.truncated) continue;
-      ++truncated;
-      capacity = batch[i].contacts.truncated_capacity;
+    if (together) {
+      count = std::min<std::size_t>(*options.batch, poses.size() - first);
+      if (auto done = answer_batch(scene, {poses.data() + first, count}, batch); !done) return done;
+      share_times(batch.contacts);
+      for (std::size_t i = 0; i < count; ++i) print(first + i, batch.total_us / static_cast<double>(count), batch.contacts[i], batch.responses[i]);
+    } else {
+      count = 1;
+      if (auto done = answer_pose(scene, poses[first], answer); !done) return done;
+      if (!options.export_directory.empty())
+        if (auto done = export_pairs(options.export_directory, *scene.backend, first); !done) return done;
+      print(first, answer.total_us, answer.contacts, answer.response);
     }
     if (auto done = put(text); !done) return done;
-    if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + batch.size(), poses.size())};
+    if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
   }
   for (const std::string& note : scene.backend->take_notes()) console.note(note);
   if (truncated > 0) console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated, poses.size(), capacity));

@@ -35,9 +35,9 @@ int main(int argc, char** argv) {
   const auto cache = folder ? std::make_shared<palpate::DiskCache>(palpate::DiskCache::Settings{.folder = *folder}) : nullptr;
   const palpate::Parts parts{
       .make_gpu =
-          [&cache] {
+          [&cache](bool cached) {
             palpate::GpuOptions options;
-            options.cache = cache;
+            options.cache = cached ? cache : nullptr;
             return palpate::make_gpu_backend(options);
           },
       .make_cpu = palpate::make_cpu_backend,

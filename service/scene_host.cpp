@@ -14,6 +14,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::uint64_t kWorthTelling = std::uint64_t{256} << 20;   // of memory (chosen)
+
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 PlanFacts facts_of(const LoadedScene& loaded, Purpose purpose, bool full) {
@@ -43,9 +45,9 @@ std::string prepared_text(const HostedScene& prepared) {
 }  // namespace
 
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts,
-                                                         const std::function<void(const std::string& sentence)>& note) {
+                                                         const std::function<void(const std::string& sentence)>& note, bool cached) {
   if (name == "cpu") return parts.make_cpu();
-  Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu();
+  Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu(cached);
   // Who asks for the device gets it or a refusal; else the CPU reference steps in where the device can't go on.
   if (gpu) return std::unique_ptr<CollisionBackend>(std::make_unique<SteadyBackend>(std::move(*gpu), name == "gpu" ? nullptr : parts.make_cpu));
   if (name == "gpu") return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
@@ -63,19 +65,18 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   if (!scene) return scene.error();
 
   // The back end comes before the meshes: their import may start threads.
-  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, watch.note);
+  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, watch.note, watch.cached);
   if (!backend) return backend.error();
   prepared->backend = std::move(*backend);
   if (options.second_backend) {
-    auto second = choose_backend(options.backend, parts, [](const std::string&) {});
+    auto second = choose_backend(options.backend, parts, [](const std::string&) {}, watch.cached);
     if (!second) return second.error();
     prepared->second = std::move(*second);
   }
 
   watch.step("reading the meshes");
   const auto load_start = Clock::now();
-  // What a mesh names in turn is not looked for elsewhere, so nothing that was read without that rule may stand in.
-  Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import, watch.folder.empty() ? parts.cache.get() : nullptr, watch.folder);
+  Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import, watch.cached ? parts.cache.get() : nullptr, watch.folder);
   if (!loaded) return loaded.error();
   prepared->loaded = std::move(*loaded);
   prepared->load_s = seconds_since(load_start);
@@ -87,6 +88,9 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   const auto prepare_start = Clock::now();
   PlanFacts facts = facts_of(prepared->loaded, purpose, options.full_plan);
   prepared->plan = decide_plan(facts);
+  // Only meshes that name no other file are kept, so that `folder` has nothing to say about them.
+  if (const std::uint64_t bytes = prepared->backend->preparation_bytes(prepared->loaded.geometry, prepared->plan.plan); bytes >= kWorthTelling)
+    watch.note(fmt::format("preparing takes up to {} on {}", bytes_text(bytes), prepared->backend->device()));
   if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, watch.progress); !done) return done.error();
   for (const std::string& note : prepared->backend->take_notes()) watch.note(note);
   if (parts.cache)
@@ -106,6 +110,7 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
                                     .step = [&console](const char* step) { console.step(step); },
                                     .progress = [&console](const char* what, double done) { return console.progress(what, done); },
                                     .admit = {},
+                                    .cached = true,
                                     .folder = {}});
 }
 

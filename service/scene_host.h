@@ -38,6 +38,7 @@ struct PrepareWatch {
   Progress progress;
   /// Asked once the triangles are known and before the work begins; may be empty. An error ends the preparation.
   std::function<Result<void>(const LoadedScene& loaded)> admit;
+  bool cached = true;   ///< false, for a stranger's scene: the cache's keys are no match for someone who wants two scenes to have the same
   std::string folder;   ///< files that a mesh names in turn must lie below it (model/confined_import.h); empty: anywhere
 };
 
@@ -50,7 +51,7 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
 
 /// gpu, else cpu with one sentence; or the one that `name` asks for. Error kNoDevice: gpu was asked for and there is none.
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts,
-                                                         const std::function<void(const std::string& sentence)>& note);
+                                                         const std::function<void(const std::string& sentence)>& note, bool cached = true);
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console);
 
 }  // namespace palpate

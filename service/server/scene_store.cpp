@@ -295,6 +295,7 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   std::vector<std::string> warnings;
   PrepareWatch watch;
   watch.folder = entry->content.folder.string();
+  watch.cached = !entry->content.uploaded;
   watch.note = [&](const std::string& sentence) { log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}}); };
   watch.step = [&](const char* step) {
     {
@@ -398,7 +399,7 @@ Aside SceneStore::aside(const SceneLease& lease) {
   }
   evicted.clear();
   const auto note = [&](const std::string& sentence) { log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}}); };
-  auto made = choose_backend(backend_, parts_, note);
+  auto made = choose_backend(backend_, parts_, note, !entry->content.uploaded);
   Result<void> prepared = made ? Result<void>() : made.error();
   if (made) prepared = (*made)->prepare(scene.loaded.geometry, scene.plan.plan, [this](const char*, double) { return !stopping_; });
   if (prepared) {

@@ -1,4 +1,7 @@
 """`palpate query`: fields, answers that are known, both back ends, exported geometry."""
+import signal
+import subprocess
+
 from harness import *
 
 FIELDS = ['pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'truncated', 'time_us']
@@ -62,6 +65,35 @@ def test_a_tool_equal_to_the_mock_up_is_answered():
     expect(line['cst'] == list(range(12)) and line['cmt'] == list(range(12)), line)   # every face lies on its twin
     expect(line['pairs'] >= 12, line['pairs'])
     expect(all(math.isfinite(v) for v in line['force'] + line['torque']), line['force'])
+
+
+def test_a_batch_on_all_cores_prints_what_single_queries_do():
+    folder = Folder()
+    scene = generated(folder)
+    folder.write('poses.csv', HEADER + ''.join(f'{0.002 * (i % 100) - 0.1},{0.001 * (i % 13)},0,0,0,0,1\n' for i in range(200)))
+    alone = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv'))
+    batch = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--batch', '200'))
+    expect(any(line['contact'] for line in alone), 'some touch')
+    for a, b in zip(alone, batch, strict=True):
+        expect(b.pop('batch') == 200, b)
+        expect(without_time(a) == without_time(b), f"pose {a['pose']} differs")
+
+
+def test_an_interrupt_ends_preparation():
+    folder = Folder()
+    made = palpate('generate', 'contacts', '--triangles', '300000', '--tool-triangles', '1000', '--out', folder / 'large')
+    expect(made.code == 0, made)
+    process = subprocess.Popen([PROGRAM, 'query', folder / 'large' / 'scene.json', '--pose', '0 0 0 0 0 0 1'], stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    said = b''
+    while b'preparing the scene' not in said:
+        line = process.stderr.readline()
+        expect(line, f'ended before it prepared: {said}')
+        said += line
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=TIMEOUT_S)
+    expect(process.returncode == 1 and out == b'', f'exit {process.returncode}: {err}')
+    expect(b'cancelled' in err.splitlines()[-1], err)
 
 
 def test_batch_is_named_and_changes_only_times():
