@@ -1,7 +1,11 @@
 // The program: the one place that knows every back end and driver by name.
+#include <cstdlib>
+#include <string>
+
 #include "compute/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
 #include "driver/device_list.h"
+#include "model/one_line.h"
 #include "service/cli.h"
 #include "service/peer.h"
 
@@ -28,6 +32,17 @@ Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const
   return device;
 }
 
+/// Who decides small contacts, where PALPATE_HOST_SHARE says so (docs/PERFORMANCE.md): the device alone, for measuring and checking it.
+Result<std::optional<HostShare>> wanted_host_share() {
+  const char* const text = std::getenv("PALPATE_HOST_SHARE");
+  const std::string name = text ? text : "";
+  if (name.empty()) return std::optional<HostShare>();
+  if (name == "near") return std::optional(HostShare::kNear);
+  if (name == "areas") return std::optional(HostShare::kAreas);
+  if (name == "contacts") return std::optional(HostShare::kContacts);
+  return bad_value("PALPATE_HOST_SHARE is \"" + one_line(name) + "\", allowed are near, areas and contacts");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -35,8 +50,11 @@ int main(int argc, char** argv) {
   const auto cache = folder ? std::make_shared<palpate::DiskCache>(palpate::DiskCache::Settings{.folder = *folder}) : nullptr;
   const palpate::Parts parts{
       .make_gpu =
-          [&cache](bool cached) {
+          [&cache](bool cached) -> palpate::Result<std::unique_ptr<palpate::CollisionBackend>> {
             palpate::GpuOptions options;
+            const auto share = wanted_host_share();
+            if (!share) return share.error();
+            options.host_share = *share;
             options.cache = cached ? cache : nullptr;
             return palpate::make_gpu_backend(options);
           },

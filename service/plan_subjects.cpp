@@ -109,7 +109,7 @@ std::vector<PlanSubject> plan_subjects() {
     s.tool = solids::sphere(4 * kMm, 16, 8);
     s.poses = presses(-6 * kMm, 9 * kMm, true);
   });
-  add("large_contact", "a smooth mock-up with more triangles in contact than the host joins", [&](PlanSubject& s) {
+  add("large_contact", "a smooth mock-up with many triangles in contact", [&](PlanSubject& s) {
     s.mockup = round_block(30 * kMm, 120'000);
     s.tool = ball;
     s.torque_wanted = false;
@@ -128,7 +128,7 @@ std::vector<PlanSubject> plan_subjects() {
     s.profile = Profile::kPaper;
     s.mockup = block(2);
   });
-  add("large_sheet", "a sheet with more triangles in contact than the host joins, no rotation, no torque", [&](PlanSubject& s) {
+  add("large_sheet", "a sheet of many triangles, no rotation, no torque", [&](PlanSubject& s) {
     s.mockup = bent_sheet(40 * kMm, 320);
     s.tool = ball;
     s.tool_rotates = s.torque_wanted = false;

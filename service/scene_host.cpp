@@ -51,6 +51,7 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
   // Who asks for the device gets it or a refusal; else the CPU reference steps in where the device can't go on.
   if (gpu) return std::unique_ptr<CollisionBackend>(std::make_unique<SteadyBackend>(std::move(*gpu), name == "gpu" ? nullptr : parts.make_cpu));
   if (name == "gpu") return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
+  if (gpu.error().code == ErrorCode::kBadValue) return gpu.error();   // a wish that can't be met, not a device that is missing
   note(gpu.error().sentence + "; the CPU reference answers");
   return parts.make_cpu();
 }

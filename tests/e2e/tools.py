@@ -77,6 +77,17 @@ def test_without_a_vulkan_device_the_cpu_answers_and_says_so():
     expect('Vulkan driver' in palpate('devices', **NO_DRIVER).out, 'devices says why')
 
 
+def test_who_decides_small_contacts_changes_no_answer():
+    folder = Folder()
+    query = ['query', folder.save(), '--backend', 'gpu', '--pose', '0 0 0.019 0 0 0 1']
+    answers = [palpate(*query, PALPATE_HOST_SHARE=share) for share in ('near', 'areas', 'contacts')]
+    first = lines_of(answers[0])[0]
+    expect(first['contact'], first)
+    for answer in answers:
+        expect({**lines_of(answer)[0], 'time_us': 0} == {**first, 'time_us': 0}, 'the same answer')
+    expect_refused(palpate(*query[:2], *query[4:], PALPATE_HOST_SHARE='all'), 3, 'PALPATE_HOST_SHARE', 'near, areas and contacts')
+
+
 def test_plan_gives_a_reason_for_each_of_the_thirteen_stages():
     folder = Folder()
     outcome = palpate('plan', folder.save(), '--json')
@@ -84,7 +95,7 @@ def test_plan_gives_a_reason_for_each_of_the_thirteen_stages():
     stages = json.loads(outcome.out)['stages']
     expect([s['stage'] for s in stages] == STAGES, stages)
     for s in stages:
-        expect(list(s) == ['stage', 'kept', 'reason', 'memory_bytes'] and s['reason'] and isinstance(s['kept'], bool), s)
+        expect(list(s) == ['stage', 'kept', 'reason', 'memory_bytes', 'saved_bytes', 'saved_us'] and s['reason'] and isinstance(s['kept'], bool), s)
         expect(s['memory_bytes'] >= 0 and (s['kept'] or s['memory_bytes'] == 0), f'a stage left out costs nothing: {s}')
     kept = {s['stage']: s['kept'] for s in stages}
     expect(kept['imt'], 'a block is solid')
