@@ -120,6 +120,7 @@ Result<void> MutableDevice::swap_all(const Words& before, const Words& after) {
     const Words changed = bound_alike(before, after, code);
     const auto made = ComputePipeline::create(*device_, {"mutant", changed.data(), changed.size() * 4}, key[0], key[1], constants, key[2]);
     if (!made) return made.error();
+    if (auto there = made->wait(); !there) return there.error();
     Key mutants_key(key.begin(), key.end() - static_cast<std::ptrdiff_t>(code.size()));
     mutants_key.insert(mutants_key.end(), changed.begin(), changed.end());
     swapped_.emplace_back(key, device_->pipelines[key]);

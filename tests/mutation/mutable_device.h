@@ -67,7 +67,7 @@ class MutableDevice final : public CollisionBackend {
   std::vector<std::pair<Words, Words>> mutants_;   // modules before and after
   bool prepares_ = false, aside_ = false;          // a mutant does; all are set aside
   HostShare host_share_ = HostShare::kNear;
-  std::vector<std::pair<Key, std::shared_ptr<const PipelineObjects>>> swapped_;   // what stood there
+  std::vector<std::pair<Key, std::shared_ptr<PendingPipeline>>> swapped_;   // what stood there
 };
 
 }  // namespace palpate::mutation
