@@ -176,11 +176,13 @@ class HttpConnection {
     if (sink_fits) sink = route->sink(request);
     const std::optional<Problem> problem = co_await read_body(parser, limit, large, sink.get(), request.body);
     if (problem) {
+      sink.reset();   // what it wrote is gone before the client can try again
       if (problem->status == 0) co_return false;
       refusal_ = *problem;
       co_return co_await refuse();
     }
     HttpResponse response = co_await answer(*route, request, sink.get());
+    sink.reset();
     co_return co_await send(response, head_only) && keep_alive_;
   }
 

@@ -29,14 +29,15 @@ constexpr const char* kSceneName = "scene.json";
 class Folder {
  public:
   explicit Folder(fs::path path) : path_(std::move(path)) {}
-  ~Folder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
+  ~Folder() { drop(); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
   const fs::path& path() const { return path_; }
   fs::path take() { return std::exchange(path_, {}); }
+  void drop() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(take(), ignored);
+  }
 
  private:
   fs::path path_;
@@ -74,6 +75,12 @@ Problem storage(const char* what) {
   return {507, "storage", std::string("the upload can't be ") + what + ": " + std::strerror(why), ""};
 }
 
+std::optional<Problem> write_file(const fs::path& path, std::string_view text) {
+  OpenFile file;
+  if (!file.open(path) || !file.write(text) || !file.close()) return storage("written");
+  return std::nullopt;
+}
+
 class Upload final : public BodySink {
  public:
   Upload(const std::string& boundary, const fs::path& folder, const ServerLimits& limits, Metrics& metrics, WorkerPool& workers,
@@ -97,10 +104,14 @@ class Upload final : public BodySink {
     const auto scene = scene_text();
     if (const auto* problem = std::get_if<Problem>(&scene)) return reply(*problem);
     workers_.post([folder = folder_, text = std::get<std::string>(scene), &limits = limits_, done = done_, reply, bytes = bytes_, name = shown_name()] {
-      OpenFile file;
-      if (!file.open(folder->path() / kSceneName) || !file.write(text) || !file.close()) return reply(storage("written"));
+      // Who is told no may try again at once, with the room that this one took.
+      const auto refuse = [&](const Problem& problem) {
+        folder->drop();
+        reply(problem);
+      };
+      if (const auto problem = write_file(folder->path() / kSceneName, text)) return refuse(*problem);
       auto content = read_scene_content(folder->path() / kSceneName, folder->path(), std::nullopt, limits, Neighbours::kByContent);
-      if (const auto* problem = std::get_if<Problem>(&content)) return reply(*problem);
+      if (const auto* problem = std::get_if<Problem>(&content)) return refuse(*problem);
       auto& made = std::get<SceneContent>(content);
       made.name = name;
       made.uploaded = true;
