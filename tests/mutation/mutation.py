@@ -245,10 +245,9 @@ def main():
     def save():
         if options.cache:
             with lock:
-                text = json.dumps(known)
-            temporary = options.cache.with_suffix(".new")
-            temporary.write_text(text)
-            temporary.replace(options.cache)
+                temporary = options.cache.with_suffix(".new")
+                temporary.write_text(json.dumps(known))
+                temporary.replace(options.cache)
 
     work = queue.Queue()
     # By file, so that a judge that has just seen a file's killer asks it first.
