@@ -18,8 +18,8 @@ double size(const Vec3& v) { return std::sqrt(glm::dot(v, v)); }
 
 double longest_lever(const PlaneSet& set) {
   double longest = 0;
-  for (std::uint32_t i = 0; i < set.plane_count; ++i) longest = std::max(longest, size(set.planes[i].lever));
-  return longest;
+  for (std::uint32_t i = 0; i < set.plane_count; ++i) longest = std::max(longest, glm::dot(set.planes[i].lever, set.planes[i].lever));
+  return std::sqrt(longest);
 }
 
 bool usable(const LawResult& result) { return sound(result) && finite(result.wrench); }
@@ -113,11 +113,12 @@ Wrench ForceLawState::corrected(const LawPose& pose, const LawResult* fresh) {
 }
 
 void ForceLawState::feel(const Vec3& gc, const Quat& rotation, Wrench& force, StiffnessMatrix& stiffness) const {
-  const Wrench before = pushed(from_, gc, rotation, from_grows_), after = pushed(to_, gc, rotation);
-  force = {(1 - share_) * before.force + share_ * after.force, (1 - share_) * before.torque + share_ * after.torque};
+  force = {};
   stiffness = {};
-  add_stiffness(stiffness, from_, 1 - share_, gc, rotation, from_grows_);
-  add_stiffness(stiffness, to_, share_, gc, rotation);
+  add_pushed(force, stiffness, from_, 1 - share_, gc, rotation, from_grows_);
+  add_pushed(force, stiffness, to_, share_, gc, rotation);
+  for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t column = 0; column < row; ++column) stiffness[column][row] = stiffness[row][column];
 }
 
 /// From here on: from what is felt now to the new result.
@@ -129,11 +130,11 @@ void ForceLawState::take(const LawPose& pose, const LawResult& result) {
   add_pushes(felt, from_, 1 - share_, from_grows_);
   PlaneSet next = result;
   std::array<LawPose, kMaxLawPlanes> seen;
-  seen.fill({result.tick, result.gc, result.rotation});
+  for (std::uint32_t i = 0; i < next.plane_count; ++i) seen[i] = {result.tick, result.gc, result.rotation};
   remember(result, next, seen);
   from_ = felt;
   to_ = next;
-  seen_ = seen;
+  std::copy_n(seen.begin(), next.plane_count, seen_.begin());
   share_ = 0;
   from_grows_ = true;
 }

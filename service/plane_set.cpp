@@ -45,8 +45,11 @@ ContactPlane merged(const ContactPlane& a, const ContactPlane& b) {
 void add(PlaneSet& into, const ContactPlane& plane) {
   std::uint32_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = 0; i < into.plane_count; ++i)
+  for (std::uint32_t i = 0; i < into.plane_count; ++i) {
+    const double turn = into.planes[i].normal.x - plane.normal.x;
+    if (turn * turn >= least) continue;   // a part of it is too much already
     if (const double unlike = unlikeness(into.planes[i], plane); unlike < least) least = unlike, nearest = i;
+  }
   if (into.plane_count > 0 && (least < kAlike || into.plane_count == kMaxLawPlanes)) {
     into.planes[nearest] = merged(into.planes[nearest], plane);
   } else {
@@ -68,17 +71,25 @@ Wrench pushed(const PlaneSet& set, const Vec3& gc, const Quat& rotation, bool gr
   return sum;
 }
 
-void add_stiffness(StiffnessMatrix& into, const PlaneSet& set, double share, const Vec3& gc, const Quat& rotation, bool grows) {
+void add_pushed(Wrench& push, StiffnessMatrix& slope, const PlaneSet& set, double share, const Vec3& gc, const Quat& rotation, bool grows) {
   if (set.plane_count == 0 || !(share > 0)) return;
   const Motion motion(set, gc, rotation);
+  Wrench sum;
   for (std::uint32_t i = 0; i < set.plane_count; ++i) {
     const ContactPlane& plane = set.planes[i];
     const double force = force_at(plane, motion, grows);
-    if (!(force > 0) || (!grows && force >= plane.force)) continue;   // held at a bound, it doesn't give way
+    if (!(force > 0)) continue;
+    sum.force += force * plane.normal;
+    sum.torque += force * plane.lever;
+    if (!grows && force >= plane.force) continue;   // held at its bound, it doesn't give way
     const std::array<double, 6> along{plane.normal.x, plane.normal.y, plane.normal.z, plane.lever.x, plane.lever.y, plane.lever.z};
-    for (std::size_t row = 0; row < 6; ++row)
-      for (std::size_t column = 0; column < 6; ++column) into[row][column] += share * plane.stiffness * along[row] * along[column];
+    for (std::size_t row = 0; row < 6; ++row) {
+      const double gives = share * plane.stiffness * along[row];
+      for (std::size_t column = 0; column <= row; ++column) slope[row][column] += gives * along[column];
+    }
   }
+  push.force += share * sum.force;
+  push.torque += share * sum.torque;
 }
 
 void add_pushes(PlaneSet& into, const PlaneSet& set, double share, bool grows) {

@@ -33,8 +33,9 @@ Wrench pushed(const PlaneSet& set, const Vec3& gc, const Quat& rotation, bool gr
 /// Force and torque that give way by so much for a displacement of gc and a small turn: rows and columns x y z rx ry rz, N/m, N and N·m.
 using StiffnessMatrix = std::array<std::array<double, 6>, 6>;
 
-/// Adds `share` times how `pushed` gives way at this pose, −∂(force, torque)/∂(gc, turn): Σ κ J Jᵀ over the planes that push.
-void add_stiffness(StiffnessMatrix& into, const PlaneSet& set, double share, const Vec3& gc, const Quat& rotation, bool grows = true);
+/// Adds `share` times what `pushed` says, and how that gives way at this pose, −∂(force, torque)/∂(gc, turn): Σ κ J Jᵀ over the planes that
+/// push, the lower triangle alone (column ≤ row).
+void add_pushed(Wrench& push, StiffnessMatrix& slope, const PlaneSet& set, double share, const Vec3& gc, const Quat& rotation, bool grows = true);
 
 /// Adds `share` of another set's pushes, as they are at the pose of `into`; the wrench of the sum is exact there. Planes that
 /// point and turn alike become one, and so do the two most alike when there are more than kMaxLawPlanes: along their summed
