@@ -1,11 +1,14 @@
-"""Load on `palpate serve`, loopback only, bounded: a session alone, then beside batch clients at full rate and viewers.
+"""Load on `palpate serve`, loopback only, bounded: a session alone, then beside batch clients at full rate and viewers, then alone again.
 
-usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--out DIR]
+usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--beside] [--out DIR]
 
-FOLDER: what `palpate generate` made. Its hand goes to and fro along its path for the whole time; the batches ask poses along that path, a millimetre off at most.
-Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for both phases, queries and poses a second and p99 of a
-query's time, memory of the server over the time. --ordinary: the server has no right to real-time priority, nor to lock memory (as root, by setpriv). Python's
-standard library only. The clients share the machine with the server, as they would in the worst case.
+FOLDER: what `palpate generate contacts` made. Its hand goes to and fro along its path for the whole time; the batches ask poses along that path, a millimetre off at most.
+Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for all three phases, and how late cyclictest was meanwhile, with
+the loop's own right to priority; queries and poses a second and p99 of a query's time, memory of the server over the time. --ordinary: the server has no right to real-time priority,
+nor to lock memory (as root, by setpriv). Python's standard library only.
+
+The clients of a server are on other machines. These are on the server's, so that they give way (nice 19) and leave the loop's processor, the last, alone: else their own work would be
+measured. --beside: they take what they get, as programs on the hand's own machine would.
 """
 import argparse
 import http.client
@@ -34,6 +37,7 @@ parser.add_argument('--viewers', type=int, default=200)
 parser.add_argument('--poses', type=int, default=500, help='of a query: about what a planner asks at once')
 parser.add_argument('--backend', default='cpu')
 parser.add_argument('--ordinary', action='store_true')
+parser.add_argument('--beside', action='store_true', help='clients like any other program of this machine')
 parser.add_argument('--out', type=pathlib.Path)
 options = parser.parse_args()
 KEY = 'AAAAAAAAAAAAAAAAAAAAAA=='
@@ -46,6 +50,8 @@ def lengthen():
     """The path, to and fro until the session is over; its poses."""
     file = pathlib.Path(root.name) / 'path.csv'
     head, *rows = file.read_text().splitlines()
+    if not head.startswith('time_s,x_m,y_m,z_m,qx,qy,qz,qw'):
+        raise SystemExit(f'{file.name} of {options.folder} has no poses, which the batches are made of: take a scene whose tool is free')
     times, rest = zip(*((float(time), pose) for time, pose in (row.split(',', 1) for row in rows)))
     steps = list(zip([b - a for a, b in zip(times, times[1:])], rest[1:], rest))
     out, now = [f'0,{rest[0]}'], 0.0
@@ -62,6 +68,7 @@ def lengthen():
 
 path = lengthen()
 log = tempfile.TemporaryFile()
+PROCESSORS = sorted(os.sched_getaffinity(0))
 WITHOUT_RIGHTS = ['setpriv', '--bounding-set', '-sys_nice,-ipc_lock'] if os.geteuid() == 0 else []
 
 
@@ -92,14 +99,43 @@ def memory_kib():
     return int(re.search(r'VmRSS:\s+(\d+)', pathlib.Path(f'/proc/{server.pid}/status').read_text())[1])
 
 
+class Background:
+    """cyclictest beside what is measured, as late as the machine makes it; nothing where there is none (nor where it is refused, which it is without any right)."""
+
+    def __init__(self, seconds):
+        self.file = tempfile.TemporaryFile('w+')
+        words = ['cyclictest', '--quiet', '--threads=1', '--interval=1000', f'--loops={int(seconds * 1000)}', '--histogram=20000']
+        words += ['--policy=other'] if options.ordinary else ['--mlockall', '--policy=fifo', '--priority=80', f'--affinity={PROCESSORS[-1]}']
+        try:
+            self.process = subprocess.Popen(words, stdout=self.file, stderr=subprocess.DEVNULL)
+        except OSError:
+            self.process = None
+
+    def end(self):
+        if not self.process or self.process.wait(60) != 0:
+            return None
+        self.file.seek(0)
+        text = self.file.read()
+        counts = [(int(us), int(count)) for us, count in re.findall(r'^(\d+) (\d+)$', text, re.M) if int(count)]
+        total, seen, percentiles = sum(count for _, count in counts), 0, {}
+        for us, count in counts:
+            seen += count
+            for share in (0.5, 0.99, 0.999):
+                if seen >= share * total:
+                    percentiles.setdefault(f'p{str(100 * share).rstrip("0").rstrip(".").replace(".", "")}', us)
+        return {'ticks': total, 'missed_ticks': sum(count * (us // 1000) for us, count in counts), **percentiles, 'max': int(re.search(r'# Max Latencies: (\d+)', text)[1])}
+
+
 def session(seconds, during=None):
     """A session of that length; its summary."""
+    background = Background(seconds)
     started = json.loads(ask('POST', '/v1/sessions', json.dumps({'scene': scene['id'], 'duration_s': seconds})))
     begun = time.monotonic()
     if during:
         during(started['id'])
     while (state := json.loads(ask('GET', f"/v1/sessions/{started['id']}")))['state'] == 'running':
         time.sleep(min(1, max(0.05, seconds - (time.monotonic() - begun))))
+    state['cyclictest_us'] = background.end()
     return state
 
 
@@ -113,6 +149,12 @@ class Load:
         self.lock = threading.Lock()
         self.threads = []
         self.memory = []   # KiB, once a second
+
+    def on_another_machine(self, job, arguments):
+        if not options.beside:
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 19)
+            os.sched_setaffinity(threading.get_native_id(), PROCESSORS[:-1] or PROCESSORS)
+        job(*arguments)
 
     def weigh(self):
         while not self.stop:
@@ -151,7 +193,7 @@ class Load:
 
     def start(self, session_id):
         jobs = [(self.weigh, ())] + [(self.batch, (i,)) for i in range(options.batches)] + ([(self.watch, (session_id,))] if options.viewers else [])
-        self.threads = [threading.Thread(target=job, args=arguments, daemon=True) for job, arguments in jobs]
+        self.threads = [threading.Thread(target=self.on_another_machine, args=job, daemon=True) for job in jobs]
         for thread in self.threads:
             thread.start()
         self.begun = time.monotonic()
@@ -173,6 +215,8 @@ try:
     load = Load()
     loaded = session(options.seconds, load.start)
     load.end()
+    metrics = ask('GET', '/metrics').decode()
+    again = session(options.seconds)
 finally:
     server.send_signal(signal.SIGTERM)
     server.wait(60)
@@ -183,16 +227,25 @@ load.times.sort()
 def figures(state):
     summary = state['summary']
     return {'ticks': summary['ticks'], 'missed_ticks': summary['missed_ticks'], 'result_age_ticks': state['result_age_ticks'], 'lateness_us': summary['lateness_us'], 'frame_us': summary['frame_us'],
-            'notes': summary.get('notes', [])}
+            'cyclictest_us': state['cyclictest_us'], 'notes': summary.get('notes', [])}
+
+
+def metric(name):
+    return int(float(re.search(rf'^{name} (\S+)$', metrics, re.M)[1]))
+
+
+def before_and_after(value):
+    return (value(alone) + value(again)) / 2
 
 
 result = {'scene': options.folder.name, 'backend': scene['device'], 'seconds': options.seconds, 'batch_clients': options.batches, 'viewers': options.viewers, 'processors': os.cpu_count(),
-          'load_average': os.getloadavg(), 'alone': figures(alone), 'loaded': figures(loaded), 'realtime': not options.ordinary, 'poses_per_s': load.poses / load.seconds, 'queries_per_s': len(load.times) / load.seconds,
+          'load_average': os.getloadavg(), 'realtime': not options.ordinary, 'clients_beside': options.beside,
+          'alone': figures(alone), 'loaded': figures(loaded), 'alone_again': figures(again), 'poses_per_s': load.poses / load.seconds, 'queries_per_s': len(load.times) / load.seconds,
           'query_s': {'p50': load.times[len(load.times) // 2], 'p99': load.times[int(0.99 * len(load.times))], 'poses': options.poses} if load.times else None,
-          'viewer_reads': load.messages, 'viewer_bytes': load.bytes,
+          'viewer_reads': load.messages, 'viewer_bytes': load.bytes, 'telemetry_sent': metric('palpate_telemetry_sent_total'), 'telemetry_dropped': metric('palpate_telemetry_dropped_total'),
           'memory_kib': {'after_5_s': load.memory[min(4, len(load.memory) - 1)], 'half_way': load.memory[len(load.memory) // 2], 'end': load.memory[-1], 'max': max(load.memory)},
-          'missed_ratio': loaded['summary']['missed_ticks'] / max(alone['summary']['missed_ticks'], 1),
-          'age_p99_ratio': loaded['result_age_ticks']['p99'] / max(alone['result_age_ticks']['p99'], 1)}
+          'missed_ratio': loaded['summary']['missed_ticks'] / max(before_and_after(lambda state: state['summary']['missed_ticks']), 1),
+          'age_p99_ratio': loaded['result_age_ticks']['p99'] / max(before_and_after(lambda state: state['result_age_ticks']['p99']), 1)}
 print(json.dumps(result, indent=1))
 if options.out:
     options.out.mkdir(parents=True, exist_ok=True)

@@ -21,6 +21,7 @@
 #include "service/control_loop.h"
 #include "service/scene_host.h"
 #include "service/session.h"
+#include "service/thread_share.h"
 
 extern char** environ;   // NOLINT: POSIX names it so
 
@@ -168,6 +169,7 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
   console.step(fmt::format("{:.0f} s at 1 kHz", options.seconds));
   SessionOptions session;
   session.duration_s = options.seconds;
+  session.room = true;
   session.stop = &interrupt_flag();
   const Result<SessionSummary> summary = run_session(scene.loaded, *scene.backend, **device, session, nullptr);
   if (!summary) return summary.error();

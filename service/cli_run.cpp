@@ -155,6 +155,7 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   SessionOptions session;
   session.pace = options.asap ? Pace::kAsap : Pace::kRealtime;
   session.duration_s = options.duration_s;
+  session.room = true;
   session.stop = &interrupt_flag();
   PlanSwitch plans(loaded.geometry, std::move((*prepared)->second));
   if (!switches->empty()) {

@@ -53,6 +53,7 @@ FrameSlot* CollisionWorker::next_frame() {
 void CollisionWorker::release(FrameSlot* slot) { queues_->free.push(slot); }
 
 void CollisionWorker::run() noexcept {
+  const ForHand for_hand;
   set_nice(kNiceContact);
   set_slice(kSliceContactUs);
   LawResult result;

@@ -119,19 +119,12 @@ int bind_to(int processor) {
 
 }  // namespace
 
-int loop_processor() {
-  cpu_set_t may{};
-  if (sched_getaffinity(0, sizeof(may), &may) != 0 || CPU_COUNT(&may) < 2) return -1;
-  int last = CPU_SETSIZE - 1;
-  while (!CPU_ISSET(static_cast<std::size_t>(last), &may)) --last;
-  return last;
-}
-
 RealtimeGrant make_realtime() {
   RealtimeGrant grant;
   const auto refuse = [&](std::string what, int error, const char* so) {
     grant.refused += (grant.refused.empty() ? "" : "; ") + std::move(what) + " (" + std::strerror(error) + ")" + so;
   };
+  set_exact_sleep();
   const sched_param priority{.sched_priority = kLoopPriority};
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0) {
     refuse("no real-time priority", error, ": ticks are as punctual as the ordinary scheduler makes them");

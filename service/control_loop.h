@@ -94,12 +94,9 @@ struct RealtimeGrant {
 /// Of SCHED_FIFO: above what a desktop uses, below the kernel's own threads (chosen).
 inline constexpr int kLoopPriority = 80;
 
-/// Asks for SCHED_FIFO for the calling thread, for a processor of its own (the last of those that it may run on, so that it isn't moved about),
+/// Asks for SCHED_FIFO for the calling thread, for a processor of its own (loop_processor, so that it isn't moved about),
 /// and for the process's present pages to stay in memory.
 RealtimeGrant make_realtime();
-
-/// The processor that make_realtime binds to; −1: there is but one.
-int loop_processor();
 
 /// Whether SCHED_FIFO would be granted. Leaves the thread as it was.
 bool may_be_realtime();

@@ -18,6 +18,7 @@
 #include "service/collision_frame.h"
 #include "service/collision_worker.h"
 #include "service/control_loop.h"
+#include "service/thread_share.h"
 
 namespace palpate {
 namespace {
@@ -187,12 +188,16 @@ void run_realtime(Run& run) {
   LoopSignals signals;
   signals.stop = run.options.stop;
   RealtimeGrant granted;
+  std::optional<LoopRoom> room;
+  if (run.options.room) room.emplace();
   worker.start();
   std::thread loop([&] {
+    const ForHand for_hand;
     granted = make_realtime();
     const TickSink sink = [](void* queue, const TickRecord& record) noexcept { return static_cast<TickQueue*>(queue)->push(record); };
     run.dropped_ticks = run_realtime_loop(run.tick, run.device, worker, run.ticks, signals, run.timing, sink, records.get());
   });
+  if (run.options.give_way) set_nice(kNiceConnections);   // the other two have been made: a thread begins at its maker's level
 
   const auto drain = [&] {
     records->consume_all([&](const TickRecord& record) {

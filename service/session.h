@@ -33,6 +33,8 @@ struct SessionOptions {
   PlanSwitch* plans = nullptr;                ///< where other plans come from in mid-run, asked through it or by `changes`; may be null
   std::vector<PlanChange> changes{};          ///< ascending; needs `plans`. In virtual time the new plan answers from its tick on, in real time once
                                               ///< it has been prepared
+  bool room = false;                          ///< in real time: the process's other threads stay off the loop's processor meanwhile (LoopRoom, service/thread_share.h)
+  bool give_way = false;                      ///< in real time: the calling thread, which records, runs at lower priority from then on, for good
   const std::atomic<bool>* stop = nullptr;    ///< set it (also from a signal handler) to end the run with zero force
 };
 

@@ -14,4 +14,30 @@ void set_nice(int level) noexcept;
 inline constexpr int kSliceTickUs = 100, kSliceContactUs = 400;
 void set_slice(int microseconds) noexcept;
 
+/// Its sleeps end when they should, not up to 50 µs later so that the processor wakes less often (needs no right).
+void set_exact_sleep() noexcept;
+
+/// The last of the processors that the calling thread may run on: a control loop's; −1: there is but one.
+int loop_processor() noexcept;
+
+/// The calling thread works for a hand while this lives: it may run on all of the process's processors, whatever LoopRoom says.
+class ForHand {
+ public:
+  ForHand() noexcept;
+  ~ForHand();
+  ForHand(const ForHand&) = delete;
+  ForHand& operator=(const ForHand&) = delete;
+};
+
+/// While one lives, all threads of the process that are not ForHand, drivers' and those yet to come included, stay off the control loops' processor:
+/// neither they nor what the kernel does for them (network packets, page tables) keep a tick or its contact waiting. No right is needed. Nothing
+/// happens where there is but one processor. Takes a lock and reads /proc: not for the loop itself.
+class LoopRoom {
+ public:
+  LoopRoom();
+  ~LoopRoom();
+  LoopRoom(const LoopRoom&) = delete;
+  LoopRoom& operator=(const LoopRoom&) = delete;
+};
+
 }  // namespace palpate

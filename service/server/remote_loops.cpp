@@ -222,6 +222,7 @@ void RemoteLoops::submit(const std::shared_ptr<Loop>& loop) {
 }
 
 void RemoteLoops::run() {
+  const ForHand for_hand;
   set_nice(kNiceContact);
   set_slice(kSliceContactUs);
   for (;;) {

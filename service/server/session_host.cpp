@@ -83,6 +83,7 @@ struct SessionHost::Session {
     SessionOptions options;
     options.duration_s = duration_s;
     options.stop = &stop;
+    options.room = options.give_way = true;
     Result<SessionSummary> outcome = Error{};
     try {
       outcome = run_session(use->operator*().loaded, *backend, *pausable, options, telemetry.get());
