@@ -1,9 +1,12 @@
 // The program itself, unmodified, on an emulated USB bus: the real libusb finds, opens and loses the devices.
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -77,6 +80,7 @@ class Program {
     return code_;
   }
   void interrupt() { ::kill(child_, SIGINT); }
+  void terminate() { ::kill(child_, SIGTERM); }
   std::string out() const { return text_of(out_); }
   std::string err() const { return text_of(err_); }
 
@@ -128,6 +132,19 @@ class OnTheBus : public testing::Test {
     return false;
   }
 
+  /// The model's grip: at `way_m_` from the middle, outwards, on its way to `wanted_m_` by 0.02 mm a report.
+  void hold(fake::FalconModel& model) {
+    model.encoders = [this](int) {
+      way_m_ += std::clamp(wanted_m_ - way_m_, -2e-5, 2e-5);
+      const auto angles = falcon::angles_of_position(falcon::kCentre + Vec3(0, 0, way_m_));
+      falcon::Encoders counts{};
+      if (angles)
+        for (std::size_t i = 0; i < 3; ++i) counts[i] = static_cast<std::int16_t>(std::lround(falcon::counts_of_angle((*angles)[i])));
+      return counts;
+    };
+  }
+
+  double way_m_ = 0, wanted_m_ = 0;
   fake::Testbed bed_;
   std::unique_ptr<fake::TestbedFront> front_;
   fs::path folder_;
@@ -254,22 +271,13 @@ TEST_F(OnTheBus, TheChaptersSceneIsFeltLostAndFeltAgain) {
   fake::FalconModel model;
   model.firmware_size = kFirmwareBytes;
   model.homes_after = 200;
-  // The hand: at the middle, then 12 mm further out, 0.02 mm a report. There the clamp meets the pipe.
-  double way_m = 0, wanted_m = 0;
-  model.encoders = [&](int) {
-    way_m += std::clamp(wanted_m - way_m, -2e-5, 2e-5);
-    const auto angles = falcon::angles_of_position(falcon::kCentre + Vec3(0, 0, way_m));
-    falcon::Encoders counts{};
-    if (angles)
-      for (std::size_t i = 0; i < 3; ++i) counts[i] = static_cast<std::int16_t>(std::lround(falcon::counts_of_angle((*angles)[i])));
-    return counts;
-  };
+  hold(model);   // then 12 mm further out: there the clamp meets the pipe
   plug_falcon(model);
   Program program(folder_, {"run", PALPATE_SCENE, "--device", "falcon", "--firmware", firmware(), "--backend", "cpu", "--out", folder_ / "run"});
   ASSERT_TRUE(comes(program, [&] { return model.homed(); })) << program.err();
   EXPECT_EQ(model.loads(), 1);
-  front_->locked([&] { return wanted_m = 0.012; });
-  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone && way_m > 0.0119; })) << "no contact force: " << program.err();
+  front_->locked([&] { return wanted_m_ = 0.012; });
+  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone && way_m_ > 0.0119; })) << "no contact force: " << program.err();
   const int reports = front_->locked([&] { return model.reports(); });
   ASSERT_TRUE(comes(program, [&] { return model.reports() > reports + 500; }));   // faded in
 
@@ -325,6 +333,62 @@ TEST_F(OnTheBus, TheChaptersSceneIsFeltLostAndFeltAgain) {
   const std::vector<double> replayed = ticks_of(folder_ / "again" / "trace.csv").z;
   ASSERT_EQ(replayed.size(), 200u);
   EXPECT_EQ(replayed.front(), ticks.z.front());
+}
+
+/// What follows `before` in `text`, up to `end`; empty: it is not there yet.
+std::string between(const std::string& text, const std::string& before, char end) {
+  const auto at = text.find(before);
+  return at == std::string::npos ? "" : text.substr(at + before.size(), text.find(end, at + before.size()) - at - before.size());
+}
+
+/// A server's whole answer on this machine.
+std::string ask(const std::string& port, const std::string& method, const std::string& path, const std::string& body = "") {
+  const int link = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(port)));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::string answer;
+  const std::string request = method + " " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\nContent-Length: " +
+                              std::to_string(body.size()) + "\r\n\r\n" + body;
+  if (::connect(link, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 && ::send(link, request.data(), request.size(), MSG_NOSIGNAL) > 0) {
+    char piece[4096];
+    for (ssize_t got = 0; (got = ::recv(link, piece, sizeof piece, 0)) > 0;) answer.append(piece, static_cast<std::size_t>(got));
+  }
+  ::close(link);
+  return answer;
+}
+
+// The server with a session on the Falcon, while the clamp presses on the pipe.
+TEST_F(OnTheBus, AServerThatIsToldToStopSendsZeroFirst) {
+  fake::FalconModel model({}, true);
+  model.homes_after = 200;
+  hold(model);
+  plug_falcon(model);
+  const fs::path scene = PALPATE_SCENE;
+  Program program(folder_, {"serve", "--listen", "127.0.0.1:0", "--root", scene.parent_path(), "--backend", "cpu"});
+  std::string port;
+  ASSERT_TRUE(comes(program, [&] { return !(port = between(program.err(), R"("address":"127.0.0.1:)", '"')).empty(); })) << program.err();
+  const std::string id = between(ask(port, "POST", "/v1/scenes", "{\"path\":\"" + scene.filename().string() + "\"}"), "\"id\":\"", '"');
+  ASSERT_TRUE(comes(program, [&] { return between(ask(port, "GET", "/v1/scenes/" + id + "?wait=10"), "\"state\":\"", '"') == "ready"; })) << program.err();
+  const std::string session = ask(port, "POST", "/v1/sessions", "{\"scene\":\"" + id + R"(","device":"falcon"})");
+  ASSERT_THAT(session, HasSubstr(R"("state":"running")"));
+  ASSERT_TRUE(comes(program, [&] { return model.homed(); })) << program.err();
+  front_->locked([&] { return wanted_m_ = 0.012; });
+  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone && way_m_ > 0.0119; })) << "no contact force: " << program.err();
+  EXPECT_EQ(forces_unhomed_, 0) << "force before homing";
+
+  program.terminate();
+  // What tells the world that the session is over comes after the zero, not before.
+  ASSERT_TRUE(comes(program, [&] { return program.err().find("\"event\":\"session_over\"") != std::string::npos; }) || program.code() == 0) << program.err();
+  const int forces = front_->locked([&] { return forces_homed_; });
+  EXPECT_EQ(front_->locked([&] { return model.motors(); }), kNone);
+  EXPECT_EQ(program.code(), 0) << program.err();
+  EXPECT_EQ(front_->locked([&] { return model.motors(); }), kNone);
+  EXPECT_EQ(front_->locked([&] { return forces_homed_; }), forces) << "force after the session's end";
+  const std::string log = program.err();
+  EXPECT_LT(log.find("\"event\":\"stopping\""), log.find("\"event\":\"session_over\""));
+  EXPECT_LT(log.find("\"event\":\"session_over\""), log.find("\"event\":\"stopped\""));
 }
 
 }  // namespace
