@@ -12,14 +12,6 @@ namespace {
 
 constexpr double kTick = 1e-3;   // s
 
-/// splitmix64 (Steele, Lea, Flood 2014): a number for every (seed, query), the same everywhere.
-std::uint64_t scrambled(std::uint64_t seed, std::uint64_t query) {
-  std::uint64_t z = seed * 0x9E3779B97F4A7C15u + (query + 1) * 0xD1B54A32D192ED03u;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  return z ^ (z >> 31);
-}
-
 double rounded(double value, double step) { return step > 0 ? step * std::round(value / step) : value; }
 
 struct Range {
@@ -30,21 +22,6 @@ struct Range {
 
 }  // namespace
 
-int Delivery::duration(std::uint64_t query) const {
-  switch (kind) {
-    case Kind::kFixed:
-    case Kind::kLost:
-      return delay;
-    case Kind::kRandom:
-      return 1 + static_cast<int>(scrambled(seed, query) % static_cast<std::uint64_t>(std::max(2 * delay - 1, 1)));
-    case Kind::kBursty:
-      return query % 8 == 7 ? 4 * delay : delay;
-  }
-  return delay;
-}
-
-bool Delivery::lost(std::uint64_t query) const { return kind == Kind::kLost && scrambled(seed, query) % 4 == 0; }
-
 AxisLoop::Outcome AxisLoop::run(int ticks) const {
   Outcome out;
   out.least_force_n = std::numeric_limits<double>::infinity();
@@ -53,32 +30,12 @@ AxisLoop::Outcome AxisLoop::run(int ticks) const {
   std::array<double, 64> on_its_way{};
   double x = start_x, speed = start_speed, felt = 0, work = 0;
   Range second, last;
-  LawResult pending, arrived;
-  std::int64_t due = 0;            // tick at which the query under way ends
-  std::uint64_t query = 0;
-  bool asked = false;
+  Courier courier(delivery);
   for (int i = 0; i < ticks; ++i) {
     Pose pose = at_rest;
     const double seen = rounded(x, encoder_step_m);
     pose.position += seen * axis;
-    const auto ask = [&] {
-      pending = {};
-      contact(seen, pose, pending);
-      pending.tick = i;
-      pending.gc = pose.position;
-      pending.rotation = pose.rotation;
-      due = i + delivery.duration(query);
-      asked = true;
-    };
-    const LawResult* fresh = nullptr;
-    const auto deliver = [&] {
-      if (!delivery.lost(query)) arrived = pending, fresh = &arrived;
-      ++query;
-      asked = false;
-    };
-    if (asked && i >= due) deliver();
-    if (!asked) ask();
-    if (due == i) deliver();       // no delay at all
+    const LawResult* fresh = courier.at(i, pose, [&](LawResult& result) { contact(seen, pose, result); });
 
     double force = glm::dot(state.step({i, pose.position, pose.rotation}, fresh).force, axis);
     if (i < settle_ticks) {

@@ -2,25 +2,10 @@
 #include <cstdint>
 #include <functional>
 
+#include "service/delivery.h"
 #include "service/force_law.h"
 
 namespace palpate {
-
-/// When answers come, in ticks of virtual time. One query at a time: the next begins at the tick at which the last one ends.
-struct Delivery {
-  enum class Kind : std::uint8_t {
-    kFixed,    ///< every query takes `delay`; 0: answered in the same tick
-    kRandom,   ///< 1 … 2·delay − 1, evenly
-    kBursty,   ///< `delay`, but every eighth four times that
-    kLost,     ///< `delay`, and one answer in four never comes
-  };
-  Kind kind = Kind::kFixed;
-  int delay = 1;
-  std::uint64_t seed = 1;
-
-  int duration(std::uint64_t query) const;   ///< ticks that query number `query` takes
-  bool lost(std::uint64_t query) const;
-};
 
 /// The yardstick of stability: a device held by a hand, free along one axis, against a contact, under a force law, in virtual time.
 ///

@@ -75,34 +75,14 @@ AxisLoop::Outcome BodyLoop::run(int ticks) const {
   }
   const auto control = std::make_unique<ControlTick>(safe, law, Vec3(0), coupling);
   Ranges second, last;
-  LawResult pending, arrived;
-  std::int64_t due = 0;
-  std::uint64_t query = 0;
-  bool asked = false;
+  Courier courier(delivery);
   double work = 0;
   const Wrench balance{-load.force, -load.torque};
   Vec3 felt(0);
   Pose before = at_rest;
   for (int i = 0; i < ticks; ++i) {
     const Pose tool = control->sense(i).pose;
-    const auto ask = [&] {
-      pending = {};
-      contact(tool, pending);
-      pending.tick = i;
-      pending.gc = tool.position;
-      pending.rotation = tool.rotation;
-      due = i + delivery.duration(query);
-      asked = true;
-    };
-    const LawResult* fresh = nullptr;
-    const auto deliver = [&] {
-      if (!delivery.lost(query)) arrived = pending, fresh = &arrived;
-      ++query;
-      asked = false;
-    };
-    if (asked && i >= due) deliver();
-    if (!asked) ask();
-    if (due == i) deliver();   // no delay at all
+    const LawResult* fresh = courier.at(i, tool, [&](LawResult& result) { contact(tool, result); });
 
     const Pose pose = loaded.read().pose;
     loaded.own = i < settle_ticks ? &balance : nullptr;

@@ -5,7 +5,7 @@
 
 namespace palpate {
 
-/// A chart of lines as a picture by itself, for documents; bars are left to report.html: empty.
+/// A chart of lines or a map as a picture by itself, for documents; bars are left to report.html: empty.
 std::string chart_svg(const BenchChart& chart);
 
 }  // namespace palpate

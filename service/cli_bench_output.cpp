@@ -104,9 +104,9 @@ Json json_charts(const std::vector<BenchChart>& charts) {
   Json out = Json::array();
   for (const BenchChart& chart : charts) {
     Json series = Json::array();
-    for (const auto& s : chart.series) series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}});
+    for (const auto& s : chart.series) series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}, {"expected", s.expected}});
     out.push_back({{"title", chart.title}, {"unit", chart.unit}, {"labels", chart.labels}, {"series", series}, {"stacked", chart.stacked},
-                   {"log_x", chart.log_x}, {"log_y", chart.log_y}, {"x_title", chart.x_title}});
+                   {"log_x", chart.log_x}, {"log_y", chart.log_y}, {"x_title", chart.x_title}, {"picture", chart.map ? chart_svg(chart) : ""}});
   }
   return out;
 }

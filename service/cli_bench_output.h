@@ -19,17 +19,20 @@ struct BenchTable {
   std::vector<std::vector<BenchCell>> rows;
 };
 
-/// A picture of the report. Bars: `labels` and a value a label in each series' y. Lines: points (x, y).
+/// A picture of the report. Bars: `labels` and a value a label in each series' y. Lines: points (x, y). A map: `labels` are its columns,
+/// each series a row of it, the colour of a cell the logarithm of its value.
 struct BenchChart {
   struct Series {
     std::string label;
     std::vector<double> x, y;
+    bool expected = false;   ///< lines: what theory says of the series before it, in its ink, dashed
   };
   std::string title, unit;
   std::vector<std::string> labels;   ///< empty: lines
   std::vector<Series> series;
   bool stacked = false, log_x = false, log_y = false;
-  std::string x_title;
+  std::string x_title, y_title = {};   ///< y_title: of a map
+  bool map = false;
 };
 
 /// What figures belong to.
@@ -46,7 +49,7 @@ std::string device_text(const CollisionBackend& backend, const Parts& parts);
 /// Mean number of processes that wanted to run in the last minute; −1: unknown.
 double load_average();
 
-/// Writes results.csv, results.json, report.html and chart_N.svg (charts of lines) to `directory` (made if missing), each with machine, device, commit and version, and
+/// Writes results.csv, results.json, report.html and chart_N.svg (lines and maps) to `directory` (made if missing), each with machine, device, commit and version, and
 /// prints the table. CSV: `table`'s columns and then machine, device, commit.
 Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table, const std::vector<BenchChart>& charts);
 

@@ -86,12 +86,12 @@ Chart lines(std::string title, std::string x_title, std::string unit, bool log_x
 
 constexpr LawKind kLaws[] = {LawKind::kHold, LawKind::kPrinted, LawKind::kCorrected};
 
-/// The design's table and the maps round it: one thing changed at a time.
+/// Table and curves: one thing changed at a time.
 void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& charts) {
   const auto sweep = [&](const std::string& model, const char* x_title, const std::vector<double>& values, auto set) {
     Chart chart = lines("Highest stable K, " + model, x_title, "N/m", true, true);
     for (const LawKind law : kLaws) {
-      Chart::Series series{name_of(law), {}, {}}, expected{std::string(name_of(law)) + ", theory", {}, {}};
+      Chart::Series series{name_of(law), {}, {}}, expected{std::string(name_of(law)) + ", theory", {}, {}, true};
       for (const double value : values) {
         Cell cell{.law = law};
         set(cell, value);
@@ -124,6 +124,33 @@ void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& c
       cell.delivery = kind;
       cell.pushes_only = true;
     });
+}
+
+/// Two things changed at a time: age of the results against n, and against the mass.
+void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& charts) {
+  const std::vector<int> delays{1, 2, 5, 10, 20, 50};
+  const auto map = [&](const std::string& model, LawKind law, const char* y_title, const std::vector<double>& values, auto set) {
+    Chart chart = lines(fmt::format("Highest stable K, {}, {}", model, name_of(law)), "age of results c, ticks", "N/m", false, false);
+    chart.map = true;
+    chart.y_title = y_title;
+    for (const int delay : delays) chart.labels.push_back(std::to_string(delay));
+    for (const double value : values) {
+      Chart::Series row{fmt::format("{:g}", value), {}, {}};
+      for (const int delay : delays) {
+        Cell cell{.law = law, .delay = delay, .n = delay};
+        set(cell, value);
+        row.y.push_back(critical(cell));
+        add_cell(table, model, cell, row.y.back(), cell.pushes_only || cell.n != cell.delay ? std::nan("") : theory(cell));
+      }
+      chart.series.push_back(std::move(row));
+    }
+    charts.push_back(std::move(chart));
+    console.step(fmt::format("map: {}, {}", model, name_of(law)));
+  };
+  for (const LawKind law : {LawKind::kPrinted, LawKind::kCorrected}) {
+    map("linear", law, "n, ticks", {1, 2, 5, 10, 20, 50}, [](Cell& cell, double n) { cell.n = static_cast<int>(n); });
+    map("unilateral", law, "mass, kg (n = c)", {0.02, 0.05, 0.2, 0.5, 2, 5}, [](Cell& cell, double m) { cell.mass = m, cell.pushes_only = true; });
+  }
 }
 
 /// The real collision query in the loop: results 10 ticks old against none.
@@ -310,6 +337,7 @@ Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
   BenchTable table{{"law", "stiffness_model", "delay_ticks", "n", "mass_kg", "damping", "hand_damping", "areas", "critical_k", "theory_k"}, {}};
   std::vector<Chart> charts;
   measure_formulas(console, table, charts);
+  measure_maps(console, table, charts);
   Chart queries = lines("Highest stable K over the real collision query, results 10 ms old", "", "N/m", false, true);
   if (auto done = measure_queries(parts, console, table, queries); !done) return done;
   Chart bodies = lines("Highest stable K of a tool in six degrees of freedom, results 10 ms old", "", "N/m", false, true);

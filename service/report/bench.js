@@ -26,11 +26,12 @@
     for (const chart of charts) chart.destroy();
     charts.length = 0;
     for (const [index, spec] of data.charts.entries()) {
+      if (spec.picture) continue;
       const bars = spec.labels.length > 0;
       const datasets = spec.series.map((s, i) => {
-        const ink = colour(palette[i % palette.length]);
+        const ink = colour(palette[(s.expected ? i - 1 : i) % palette.length]);   // what theory expects goes in the ink of what it is of
         return { label: s.label, data: bars ? s.y : s.x.map((x, k) => ({ x, y: s.y[k] })), backgroundColor: ink, borderColor: ink,
-                 borderWidth: bars ? 0 : 2, pointRadius: bars || s.x.length > 40 ? 0 : 3, borderRadius: 2, maxBarThickness: 34 };
+                 borderWidth: bars ? 0 : 2, borderDash: s.expected ? [6, 4] : [], pointRadius: bars || s.expected || s.x.length > 40 ? 0 : 3, borderRadius: 2, maxBarThickness: 34 };
       });
       const axis = (title, log) => ({
         type: log ? 'logarithmic' : 'linear', title: { display: Boolean(title), text: title, color: colour('soft') },
@@ -55,6 +56,13 @@
     unit.textContent = spec.unit;
     caption.append(unit);
     const frame = document.createElement('div');
+    if (spec.picture) {
+      frame.innerHTML = spec.picture;
+      frame.className = 'picture';
+      figure.append(frame);   // it has its title in it
+      byId('charts').append(figure);
+      continue;
+    }
     const canvas = document.createElement('canvas');
     canvas.id = 'chart' + index;
     frame.append(canvas);
