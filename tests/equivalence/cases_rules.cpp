@@ -307,12 +307,138 @@ Case long_tool() {
   return c;
 }
 
+/// Closed shells one in another: a ray from the middle crosses them all before its winding is 0.
+Case nested_tool(bool open) {
+  Triangles tool;
+  for (std::int32_t half = 40; half <= 108; half += 4) append(tool, box_of(Int3(-half), Int3(half)));
+  if (open) tool.pop_back();
+  return rule(open ? "nested_tool_open" : "nested_tool", "eighteen shells one in another: rays with more crossings than are kept at once", block(), tool,
+              [](const SceneGeometry&, Random& random, Known&) {
+                LatticePose pose = random.below(2) == 0 ? unturned(Int3(0)) : quarter_turns(random);
+                pose.translation = {random.between(-300, 300), random.between(-300, 300), 512 + random.between(-60, 100)};
+                return pose;
+              });
+}
+
+/// An open tool's points are judged by rays along x: here through small triangles and then large ones, from points in planes of its faces.
+Case open_box_and_boxes() {
+  Triangles tool = box_of(Int3(0, -128, -128), Int3(256, 128, 128));
+  tool.erase(tool.begin(), tool.begin() + 2);   // without its lower side along x
+  for (std::int32_t i = 0; i < 8; ++i) append(tool, box_of(Int3(-160, 32 * i - 128, -32 * (i % 4)), Int3(-64, 32 * i - 104, 64 - 32 * (i % 4))));
+  return rule("open_box_and_boxes", "an open tool with an inside: rays through many small triangles and few large ones, along faces and edges", block(), tool,
+              [](const SceneGeometry& geometry, Random& random, Known&) {
+                if (random.below(4) == 0) return random_touching_pose(geometry, 0.5, random);
+                LatticePose pose = random.below(3) != 0 ? unturned(Int3(0)) : quarter_turns(random);
+                pose.translation = 32 * any(random, 8) + Int3(0, 0, 512);
+                if (random.below(2) == 0) pose.translation.z = 512 + random.between(-120, 120);
+                return pose;
+              });
+}
+
+LatticePose leaning(Random& random, const Int3& translation) {
+  const Turn turn = turn_by((random.unit() - 0.5) / 4);
+  LatticePose pose = unturned(translation);
+  pose.rotation_q30[1][1] = pose.rotation_q30[2][2] = static_cast<std::int32_t>(turn.cos * 0x1p30);
+  pose.rotation_q30[2][1] = static_cast<std::int32_t>(turn.sin * 0x1p30);
+  pose.rotation_q30[1][2] = -pose.rotation_q30[2][1];
+  return pose;
+}
+
+/// A needle without one of its triangles; with a box far from the table, it still has an inside.
+Case needle_open(bool with_inside) {
+  Triangles tool = box_of(Int3(-1, -2, -300), Int3(2, 1, 300));
+  tool.pop_back();
+  if (with_inside) append(tool, box_of(Int3(-150, -150, 330), Int3(150, 150, 630)));
+  return rule(with_inside ? "needle_open_with_inside" : "needle_open", "a needle with a hole: how its heights are found depends on whether the tool has an inside", block(), tool,
+              [](const SceneGeometry&, Random& random, Known&) { return leaning(random, {random.between(-300, 300), random.between(-250, 250), 512 + random.between(-100, 250)}); });
+}
+
+/// What a needle's rays pierce, through surfaces of many triangles.
+Case needle_through_plates() {
+  return rule("needle_through_plates", "a needle through two plates: its own samples look for what they pierce", together({plate(0), plate(-100)}),
+              box_of(Int3(-1, -2, -250), Int3(2, 1, 250)), [](const SceneGeometry&, Random& random, Known&) {
+                return leaning(random, {random.between(-300, 300), random.between(-300, 300), -60 + random.between(-200, 200)});
+              });
+}
+
+/// The tip of a cone of more triangles than a workgroup has invocations.
+Case needle_in_a_fan() {
+  constexpr int kRim = 100;
+  Triangles cone;
+  const auto rim = [](int i) {
+    const Turn turn = turn_by(static_cast<double>(i % kRim) / kRim);
+    return Int3(static_cast<std::int32_t>(turn.cos * 512), static_cast<std::int32_t>(turn.sin * 512), -100);
+  };
+  for (int i = 0; i < kRim; ++i) append(cone, {{Int3(0), rim(i), rim(i + 1)}, {Int3(0, 0, -300), rim(i + 1), rim(i)}});
+  return rule("needle_in_a_fan", "a needle in a cone's tip, where a hundred triangles meet", cone, box_of(Int3(-1, -2, -300), Int3(2, 1, 300)),
+              [](const SceneGeometry&, Random& random, Known&) {
+                LatticePose pose = leaning(random, any(random, 3));
+                pose.translation.z = random.between(-250, 290);
+                return pose;
+              });
+}
+
+/// `n` by `n` cells a face.
+Triangles fine_plate(std::int32_t top, std::uint32_t n) {
+  Triangles out;
+  const Mesh mesh = solids::box(Vec3(-512, -512, top - 32), Vec3(512, 512, top), {n, n, 1});
+  const auto at = [&](std::uint32_t vertex) { return Int3(glm::round(mesh.vertices[vertex])); };
+  for (const auto& t : mesh.triangles) out.push_back({at(t[0]), at(t[1]), at(t[2])});
+  return out;
+}
+
+Case fine_plates() {
+  return rule("fine_plates", "the same through plates of many triangles: what a ray leaves is among the last of them, too", together({fine_plate(0, 8), fine_plate(-100, 8)}),
+              box_of(Int3(-200, -200, -250), Int3(200, 200, 250)), [](const SceneGeometry&, Random& random, Known&) {
+                LatticePose pose = unturned({random.between(-300, 300), random.between(-300, 300), -60 + random.between(-240, 240)});
+                if (random.below(2) == 0) pose.rotation_q30[1][1] = pose.rotation_q30[2][2] = -(1 << 30);
+                return pose;
+              });
+}
+
+Case paper(Case c) {
+  c.name += "_paper";
+  c.profile = Profile::kPaper;
+  return c;
+}
+
+/// The top of the block ends with a brick of voxels: above it are whole bricks of V_ext, and of those the nearest voxel is asked.
+Case swallowed_below_a_brick() {
+  return rule("swallowed_below_a_brick", "the nearest way out is in a brick that is V_ext as a whole, two or four of its voxels as near as each other",
+              box_of(Int3(-512), Int3(512, 512, 352)), box_of(Int3(-20), Int3(20)), [](const SceneGeometry&, Random& random, Known& known) {
+                known.pairs.emplace();
+                known.contact = true;
+                const Int3 at = kVoxel * any(random, 3) + (random.below(3) == 0 ? any(random, 1) : Int3(0));
+                return unturned({at.x, at.y, 352 - 21 - random.between(0, 80)});
+              });
+}
+
+/// The mock-up is a block and a bead in it, which no sample is on.
+Triangles block_with_bead() { return together({block(), box_of(Int3(-1, 1, 3), Int3(7, 9, 11))}); }
+
+Case bead_in_a_swallowed_tool() {
+  return rule("bead_in_a_swallowed_tool", "wholly inside, but for a bead in the tool that has no sample: EST and IMT, no pair", block_with_bead(), small_box(),
+              [](const SceneGeometry&, Random& random, Known& known) {
+                known.pairs.emplace();
+                known.contact = true;
+                return unturned(any(random, 20));
+              });
+}
+
+Case bead_beside_a_swallowed_part() {
+  return rule("bead_beside_a_swallowed_part", "one part of the tool on a bead without samples, the other wholly inside: pairs and IMT, no sample", block_with_bead(),
+              together({box_of(Int3(-3), Int3(3)), box_of(Int3(200, -3, -3), Int3(206, 3, 3))}),
+              [](const SceneGeometry&, Random& random, Known&) { return unturned(Int3(3, 5, 7) + any(random, 5)); });
+}
+
 }  // namespace
 
 std::vector<Case> rule_cases() {
   return {seam_with_a_common_corner(), inside_of_one_voxel(false), inside_of_one_voxel(true), inside_of_one_brick(false), inside_of_one_brick(true), votes(true), votes(false),
           sheet_through_gc(), held(two_sheets()), held(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
-          swallowed_at_ties(), bridge(), long_tool(), seams_in_a_row(), numbered_in_turn(), crossed_wedges(0), crossed_wedges(1)};
+          swallowed_at_ties(), bridge(), long_tool(), seams_in_a_row(), numbered_in_turn(), crossed_wedges(0), crossed_wedges(1),
+          nested_tool(false), nested_tool(true), open_box_and_boxes(), needle_open(false), needle_open(true), needle_through_plates(), needle_in_a_fan(), fine_plates(),
+          paper(two_sheets()), swallowed_below_a_brick(), bead_in_a_swallowed_tool(), bead_beside_a_swallowed_part()};
 }
 
 }  // namespace palpate::equivalence
