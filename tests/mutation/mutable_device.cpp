@@ -4,6 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "compute/frame_capacity.h"
 
 namespace palpate::mutation {
 namespace {
@@ -56,6 +57,14 @@ MutableDevice::MutableDevice() {
   device_ = std::move(*device);
 }
 
+/// Lists are as long as any small case needs, not as a frame makes them at first: half of a case's time went into filling their guards.
+Result<std::unique_ptr<Frame>> MutableDevice::make_frame(const SceneGeometry& geometry) {
+  constexpr std::uint32_t kRoom = 1u << 14;
+  std::map<std::string, std::uint32_t> room = first_capacity_;
+  for (std::uint32_t list = 0; list_name(list) != nullptr; ++list) room.emplace(list_name(list), kRoom);
+  return Frame::create(*device_, geometry, scene(), room);
+}
+
 Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
   frame_.reset();
   fresh_.reset();
@@ -67,7 +76,8 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
     if (by_mutant) {
       fresh_.emplace(std::move(*scene));
     } else {
-      Prepared made{std::move(*scene), {}, {}};
+      Prepared made{std::move(*scene), {}, {}, {}};
+      made.samples = made.scene.samples;
       for (const bool tool : {false, true}) {
         const PartitionBuffers& of = tool ? made.scene.tool.partition : made.scene.mockup.partition;
         if (!of.brick_slot) continue;   // `paper` has none of the tool
@@ -76,16 +86,19 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
         (tool ? made.tool : made.mockup) = std::move(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
-      for (const HostShare share : {HostShare::kNear, HostShare::kAreas}) {   // so that the pipelines of both ways are there to be swapped
-        device_->host_share = share;
-        if (auto other = Frame::create(*device_, geometry, this->scene(), {}); !other) return other.error();
-      }
+      for (const bool without : {true, false})   // so that the pipelines of all ways are there to be swapped
+        for (const HostShare share : {HostShare::kNear, HostShare::kAreas}) {
+          kept_of_->scene.samples = without ? nullptr : kept_of_->samples;
+          device_->host_share = share;
+          if (auto other = make_frame(geometry); !other) return other.error();
+        }
     }
   } else {
     kept_of_ = &found->second;
   }
+  if (!fresh_) kept_of_->scene.samples = without_samples_ ? nullptr : kept_of_->samples;
   device_->host_share = host_share_;
-  auto frame = Frame::create(*device_, geometry, this->scene(), {});
+  auto frame = make_frame(geometry);
   if (!frame) return frame.error();
   frame_ = std::move(*frame);
   return device_->check_guards();

@@ -37,6 +37,10 @@ class MutableDevice final : public CollisionBackend {
   /// From the next prepare() on, how much of small contacts the host works out (GpuOptions::host_share). At first the least: the device's own
   /// steps answer all contacts.
   void host_share(HostShare share) { host_share_ = share; }
+  /// From the next prepare() on, whether frames work the mock-up's samples out, as where there is no room for their list.
+  void without_samples(bool without) { without_samples_ = without; }
+  /// From the next prepare() on, items that these lists hold (GpuOptions::first_capacity); empty: enough.
+  void first_capacity(const std::map<std::string, std::uint32_t>& items) { first_capacity_ = items; }
   VulkanDevice& device() { return *device_; }
   /// How many pipelines are swapped. 0: no case so far runs the module.
   std::size_t swapped() const { return swapped_.size(); }
@@ -56,17 +60,21 @@ class MutableDevice final : public CollisionBackend {
   struct Prepared {
     PreparedScene scene;
     VoxelPartition mockup, tool;
+    std::shared_ptr<const HostSamples> samples;   // the scene's, also while it goes without
   };
+  Result<std::unique_ptr<Frame>> make_frame(const SceneGeometry& geometry);
   const PreparedScene& scene() const { return fresh_ ? *fresh_ : kept_of_->scene; }
 
   std::unique_ptr<VulkanDevice> device_;
   std::map<const SceneGeometry*, Prepared> kept_;
-  const Prepared* kept_of_ = nullptr;      // of the geometry prepared last, unless a mutant prepared it
+  Prepared* kept_of_ = nullptr;            // of the geometry prepared last, unless a mutant prepared it
   std::optional<PreparedScene> fresh_;     // by a mutant
   std::unique_ptr<Frame> frame_;
   std::vector<std::pair<Words, Words>> mutants_;   // modules before and after
   bool prepares_ = false, aside_ = false;          // a mutant does; all are set aside
   HostShare host_share_ = HostShare::kNear;
+  bool without_samples_ = false;
+  std::map<std::string, std::uint32_t> first_capacity_;
   std::vector<std::pair<Key, std::shared_ptr<PendingPipeline>>> swapped_;   // what stood there
 };
 

@@ -171,14 +171,26 @@ class ShaderJudge {
     std::string difference;
     bool probed = false;
     bool unasked = false;   // swapped in since the oracle was asked last
-    // The device's own steps for areas and rays first, then what it does when the host has done the first half of them.
+    bool in_frames = false, scans = false;
+    // The device's own steps for areas and rays first, then what it does when the host has done the first half of them: both prepare alike.
     const auto ask = [&] {
       difference = oracle_.first_difference_now(at);
-      if (difference.empty()) {
+      if (difference.empty() && in_frames) {
         device_.host_share(HostShare::kAreas);
         difference = oracle_.first_difference_now(at);
         device_.host_share(HostShare::kNear);
         if (!difference.empty()) difference += " (areas on the host)";
+      }
+      if (difference.empty() && in_frames) {
+        difference = oracle_.first_overflow_difference(at, [&](const char* name_of, std::uint32_t items) {
+          device_.first_capacity(*name_of != 0 ? std::map<std::string, std::uint32_t>{{name_of, items}} : std::map<std::string, std::uint32_t>{});
+        });
+      }
+      if (difference.empty() && scans) {
+        device_.without_samples(true);
+        difference = oracle_.first_difference_now(at);
+        device_.without_samples(false);
+        if (!difference.empty()) difference += " (samples not listed)";
       }
       unasked = false;
     };
@@ -205,6 +217,8 @@ class ShaderJudge {
         continue;
       }
       const bool of_frames = name.starts_with("shaders/frame/") || name.starts_with("shaders/response/");
+      in_frames = in_frames || of_frames;
+      scans = scans || name == "shaders/frame/sample_scan.comp";
       if (auto r = device_.swap(original, *mutant, !of_frames); !r) difference = r.error().sentence;
       unasked = true;
       if (++changed == kFirst && difference.empty()) ask();
@@ -229,11 +243,14 @@ class ShaderJudge {
     active = mutant;
     const bool probe_differs = ask_probes_ && near_probe() != probed_;
     std::string difference;
-    for (const HostShare share : {HostShare::kContacts, HostShare::kAreas}) {
-      if (probe_differs || !difference.empty()) break;
-      device_.host_share(share);
-      difference = oracle_.first_difference_now(at);
-    }
+    for (const bool without_samples : {false, true})
+      for (const HostShare share : {HostShare::kContacts, HostShare::kAreas}) {
+        if (probe_differs || !difference.empty() || (without_samples && share == HostShare::kAreas)) break;
+        device_.host_share(share);
+        device_.without_samples(without_samples);
+        difference = oracle_.first_difference_now(at);
+      }
+    device_.without_samples(false);
     active = 0;
     device_.host_share(HostShare::kNear);
     limit_time(0);

@@ -2,6 +2,7 @@
 
 #include "compute/host_exact.h"
 #include "compute/host_heights.h"
+#include "tests/compute/follow_cases.h"
 #include "tests/compute/probe_cases.h"
 
 namespace palpate::mutation {
@@ -36,6 +37,7 @@ std::uint64_t near_probe() {
   static const auto segments = probe_cases::segments();
   static const auto directions = probe_cases::directions();
   static const auto heights = probe_cases::heights();
+  static const auto contacts = follow_cases::contacts();
   Sum sum;
   for (const auto& c : pairs) sum.add(exact::triangles_meet(corners(c.s), corners(c.t), exact::raw_normal(corners(c.t))));
   for (const auto& c : boxes) {
@@ -67,6 +69,11 @@ std::uint64_t near_probe() {
       sum.add(area.moment_high[k]);
     }
   }
+  for (const auto& contact : contacts)
+    for (const gpu::AreaPierce& p : follow_cases::pierces(*contact)) {
+      sum.add(p.area);
+      sum.add(p.pierced);
+    }
   return sum.value();
 }
 

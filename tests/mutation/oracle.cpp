@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <tuple>
 
@@ -136,6 +137,7 @@ void Oracle::answer(Case& c) {
     q.held = held;
     q.remembers = wanted.held;
     must(backend_.query(q.pose, q.remembers ? &q.held : nullptr, q.answer));
+    if (q.answer.truncated && c.name != "too_many_areas") throw std::runtime_error(c.name + ": no room in " + q.answer.truncated_capacity);
     respond(q.answer, q.pose, c.geometry, wanted.profile, kStiffness, q.response, q.remembers ? &q.held : nullptr);
     remember(q.answer, q.response, held);
     q.left = held;
@@ -207,6 +209,58 @@ std::string Oracle::first_difference_again(std::size_t& of) {
     before_case(cases_[c].seconds);
     if (std::string different = ask(cases_[c]); !different.empty()) return different;
   }
+  return {};
+}
+
+/// Of each of the first poses, what is told: nothing, or which list was too small.
+std::string Oracle::tell_overflow(const Overflow& o, std::vector<std::string>& told) {
+  constexpr std::size_t kPoses = 5;
+  const Case& c = cases_[o.of];
+  if (auto r = backend_.prepare(c.geometry, c.plan, go_on); !r) return "prepare: " + r.error().sentence;
+  told.clear();
+  Contacts answer;
+  for (const Query& q : std::span(c.queries).first(std::min(kPoses, c.queries.size()))) {
+    if (auto r = backend_.query(q.pose, q.remembers ? &q.held : nullptr, answer); !r) return r.error().sentence;
+    told.push_back(answer.truncated ? answer.truncated_capacity : first_difference(answer, q.answer));
+  }
+  return {};
+}
+
+std::string Oracle::first_overflow_difference(std::size_t& of, const std::function<void(const char*, std::uint32_t)>& set_room) {
+  if (overflows_.empty()) {
+    constexpr std::pair<const char*, const char*> kAsked[] = {
+        {"bricks of near triangles", "ball_on_block"}, {"voxels to touch", "ball_on_block"}, {"touched voxels", "ball_on_block"}, {"lists of touched voxels", "ball_on_block"},
+        {"pairs to test", "ball_on_block"}, {"pairs", "ball_on_block"}, {"contact triangles of the mock-up", "ball_on_block"},
+        {"contact triangles of the tool", "ball_on_block"}, {"samples found inside", "ball_on_block"}, {"samples near the tool's surface", "ball_on_block"},
+        {"samples", "ball_on_block"}, {"tool triangles of areas", "ball_on_block"}, {"tiles of tool samples", "ball_on_block"}, {"pierced areas", "two_plates"},
+        {"needle vertices", "needle"}, {"needle table", "needle"}, {"bins of the tool's shadow", "open_ball"}, {"samples near the tool's surface", "open_ball"}};
+    for (const auto& [list, name] : kAsked)
+      for (const std::uint32_t room : {1u, 3u})
+        for (std::size_t c = 0; c < cases_.size(); ++c)
+          if (cases_[c].name == name) overflows_.push_back({list, room, c, {}});
+    for (const Overflow& o : overflows_)
+      if (!cases_[o.of].answered) answer(cases_[o.of]);
+    unchanged_(true);
+    for (Overflow& o : overflows_) {
+      set_room(o.list, o.room);
+      if (const std::string failure = tell_overflow(o, o.told); !failure.empty()) throw std::runtime_error(std::string(o.list) + ": " + failure);
+    }
+    set_room("", 0);
+    unchanged_(false);
+  }
+  std::vector<std::string> told;
+  for (const Overflow& o : overflows_) {
+    of = o.of;
+    set_room(o.list, o.room);
+    before_case(cases_[o.of].seconds);
+    std::string different = tell_overflow(o, told);
+    if (different.empty() && told != o.told) different = "what is told";
+    if (!different.empty()) {
+      set_room("", 0);
+      return std::string(o.list) + " of " + std::to_string(o.room) + ": " + different;
+    }
+  }
+  set_room("", 0);
   return {};
 }
 

@@ -28,6 +28,10 @@ class Oracle {
   /// The same of the cases that have been compared before.
   std::string first_difference_again(std::size_t& of);
 
+  /// Asks a few cases with one list of a frame after the other made too small, and compares what is told of it.
+  /// `set_room(list, items)` is called before; an empty name: room for all.
+  std::string first_overflow_difference(std::size_t& of, const std::function<void(const char*, std::uint32_t)>& set_room);
+
   /// The same of what the host does before and after a back end: geometry made again from the meshes, and the answers' response. The back
   /// end is not asked.
   std::string first_host_difference(std::size_t& of) const;
@@ -58,6 +62,14 @@ class Oracle {
     VoxelPartition mockup, tool;
     std::vector<Query> queries;
   };
+  /// A pose's answer when a list is too small.
+  struct Overflow {
+    const char* list;
+    std::uint32_t room;
+    std::size_t of;
+    std::vector<std::string> told;   ///< of each pose
+  };
+  std::string tell_overflow(const Overflow& o, std::vector<std::string>& told);
   void answer(Case& c);
   std::string ask(const Case& c) const;
   std::string ask_host(const Case& c) const;
@@ -67,6 +79,7 @@ class Oracle {
   std::vector<equivalence::Case> wanted_;
   std::vector<Case> cases_;
   std::vector<std::size_t> order_;
+  std::vector<Overflow> overflows_;
 };
 
 }  // namespace palpate::mutation
