@@ -172,7 +172,9 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
       }
     }
   }
-  capacity_ = FrameCapacity::first(constants, first_capacity);
+  std::optional<std::uint64_t> samples;
+  if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
+  capacity_ = FrameCapacity::first({.scene = constants, .samples = samples, .host_decides = host_contact_ != nullptr}, first_capacity);
   if (auto r = make_buffers(); !r) return r;
   if (auto r = record(); !r) return r;
   return warm_up(device_, pipelines_);   // no frame should wait for a compiler

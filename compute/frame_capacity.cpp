@@ -8,11 +8,10 @@ namespace {
 
 using namespace gpu;   // names of shaders/shared/frame.h
 
-// Chosen: a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of them; they begin with what a binding of 128 MiB
-// holds at most.
-constexpr std::uint64_t kSmallList = 1u << 17;
-constexpr std::uint64_t kLargeList = 1u << 20;
-constexpr std::uint64_t kMostPairs = 1u << 22;
+// Chosen. The host leaves to the device what has more than 2^16 candidates of a kind (compute/host_contact.h), which takes tens of milliseconds:
+// room to be made costs little beside. Where the device decides, a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of the second.
+constexpr std::uint64_t kHostDecides = 1u << 16, kDeviceDecides = 1u << 18;
+constexpr std::uint64_t kMostItems = 1u << 22;   // to begin with; a binding of 128 MiB holds that many of 32 bytes
 constexpr std::uint64_t kBinEntries = 12;   // a triangle, on average
 
 /// Tables and the bins, which are no lists: their names and the bits that say they are full.
@@ -41,29 +40,33 @@ std::uint32_t doubled(std::uint32_t capacity) {
 
 }  // namespace
 
-FrameCapacity FrameCapacity::first(const SceneConstants& scene, const std::map<std::string, std::uint32_t>& wanted) {
+FrameCapacity FrameCapacity::first(const FrameDemand& demand, const std::map<std::string, std::uint32_t>& wanted) {
+  const SceneConstants& scene = demand.scene;
   const bool refined = scene.refined != 0;
-  const std::uint64_t tool = scene.tool.triangles, voxels = scene.mockup.grid.boundary_voxels, entries = scene.mockup.grid.list_entries;
-  const std::uint64_t pairs = std::clamp<std::uint64_t>(32 * tool, 2 * kSmallList, kMostPairs);
+  const std::uint64_t usual = demand.host_decides ? kHostDecides : kDeviceDecides, per_triangle = demand.host_decides ? 4 : 16;
+  const std::uint64_t tool = scene.tool.triangles, mockup = scene.mockup.triangles, voxels = scene.mockup.grid.boundary_voxels;
+  const std::uint64_t entries = scene.mockup.grid.list_entries, all_voxels = voxels + (scene.mockup.has_internal != 0 ? kMostItems : 0);
+  // Of every list: what is usual, more for a large tool, and never more than there is.
+  const auto room = [&](std::uint64_t a_tool_triangle, std::uint64_t most) { return items(std::min(std::max(usual, a_tool_triangle * tool), most), kMostItems); };
+  // Samples and first corners.
+  const std::uint64_t samples = !refined ? 1 : demand.samples ? *demand.samples + mockup : kMostItems;
   FrameCapacity out;
   auto& l = out.lists;
-  l[kListNearTriangles] = items(std::max(kSmallList, 8 * tool), kMostPairs);
-  l[kListTouchCandidates] = items(std::max(kLargeList, 32 * tool), kMostPairs);
-  l[kListTouchedVoxels] = items(voxels, kLargeList);
-  l[kListStaticChunks] = items(voxels + entries / kStaticChunk, kLargeList);
-  l[kListPairCandidates] = items(pairs, kMostPairs);
-  l[kListPairs] = items(pairs, kMostPairs);
-  l[kListContactStatics] = items(scene.mockup.triangles, kLargeList);
+  l[kListNearTriangles] = room(per_triangle / 4, tool * (1 + scene.mockup.grid.mixed_bricks + (scene.mockup.has_internal != 0 ? kMostItems : 0)));
+  l[kListTouchCandidates] = room(per_triangle, tool * all_voxels);
+  l[kListTouchedVoxels] = room(per_triangle, voxels);
+  l[kListStaticChunks] = room(per_triangle, voxels + entries / kStaticChunk);
+  l[kListPairCandidates] = room(per_triangle, tool * mockup);   // both below 2^32
+  l[kListPairs] = room(per_triangle, tool * mockup);
+  l[kListContactStatics] = room(0, mockup);
   l[kListContactMobiles] = items(tool, ~0u);
-  l[kListSampleChunks] = items(refined ? voxels + entries / kSampleChunk : 1, kMostPairs);
-  l[kListInsideSamples] = items(refined ? kLargeList : 1, kLargeList);
-  l[kListOpenSamples] = items(refined ? kLargeList : 1, kLargeList);
-  l[kListSamples] = items(refined ? kLargeList : 1, kLargeList);
-  l[kListMembers] = items(std::max(kSmallList, 4 * tool), kMostPairs);
+  l[kListSampleChunks] = demand.samples || !refined ? 1 : room(per_triangle, voxels + entries / kSampleChunk);
+  l[kListInsideSamples] = l[kListOpenSamples] = l[kListSamples] = room(0, samples);
+  l[kListMembers] = room(2, tool * kMaxFrameAreas);
   l[kListPierces] = kMaxFrameAreas * kMaxFrameAreas;
-  l[kListMobileTiles] = refined ? 1u << 18 : 1;
+  l[kListMobileTiles] = refined ? room(2, ~0u) : 1;
   l[kListNeedleVertices] = refined ? 1u << 15 : 1;
-  out.bin_entries = items(refined ? std::max(kSmallList, kBinEntries * tool) : 1, ~0u);
+  out.bin_entries = items(refined && scene.tool.closed == 0 ? std::max(kHostDecides, kBinEntries * tool) : 1, ~0u);
   // Half full at most, so that probing stays short.
   out.needle_table = doubled(l[kListNeedleVertices]);
   const auto put = [&](const char* name, std::uint32_t& capacity) {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "shaders/shared/frame.h"
@@ -10,14 +11,22 @@
 
 namespace palpate {
 
-/// How many items each list of a frame holds. Chosen so that usual contacts fit; what has overflowed grows when asked.
+/// What a frame of a scene can ask for.
+struct FrameDemand {
+  const gpu::SceneConstants& scene;
+  std::optional<std::uint64_t> samples;   ///< of the mock-up, where preparation has listed them and the host searches among them
+  bool host_decides = false;              ///< small contacts are wholly the host's: the device sees only what is large
+};
+
+/// How many items each list of a frame holds. Chosen so that usual contacts fit, and no more than the scene can ask for; what has overflowed
+/// grows when asked.
 struct FrameCapacity {
   std::array<std::uint32_t, gpu::kListCount> lists{};   ///< by kList…; at least 1 for each list that the profile has
   std::uint32_t needle_table = 1;                       ///< entries of a hash table; rounded up to a power of two
   std::uint32_t bin_entries = 1;                        ///< places in all bins of the tool's shadow together
 
-  /// What a frame of this scene begins with. `wanted` overrides lists and tables by their names (overflow_name), for tests.
-  static FrameCapacity first(const gpu::SceneConstants& scene, const std::map<std::string, std::uint32_t>& wanted);
+  /// What a frame begins with. `wanted` overrides lists and tables by their names (overflow_name), for tests.
+  static FrameCapacity first(const FrameDemand& demand, const std::map<std::string, std::uint32_t>& wanted);
 
   /// Makes room for what a frame ran out of: at least double, and all that was `asked` for. False: what it ran out of is no
   /// matter of memory (areas, steps of one invocation).

@@ -19,6 +19,7 @@ struct HostSamples {
   static constexpr int kAxisShift = 30;
   static constexpr std::int32_t kNarrowVoxel = 1 << 20;   ///< steps: the largest that a height of 20 bits is enough for
 
+  std::uint64_t count() const { return words.size() / (wide ? 2 : 1); }
   bool listed() const { return !begin.empty(); }
   std::uint64_t bytes() const { return 4 * (std::uint64_t{begin.size()} + words.size()); }
 };
