@@ -23,7 +23,7 @@ struct GpuFault {
 enum class HostShare : std::uint8_t {
   kNear,       ///< lists of what is near
   kAreas,      ///< then, once the device has found the sets, areas and directions
-  kContacts,   ///< all of it
+  kContacts,   ///< all of it; in preparation samples and candidates of seams, too
 };
 
 struct GpuOptions {

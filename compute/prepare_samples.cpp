@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/prepare_on_host.h"
 #include "model/geometry_build.h"
 #include "shaders/code.h"
 #include "shaders/shared/frame.h"
@@ -125,8 +126,27 @@ void find_near(PrepareSteps& steps, const PartitionBuffers& p, std::int32_t voxe
 
 }  // namespace
 
+namespace {
+
+void list_samples_on_host(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
+  const auto host = HostPreparation::make(steps.device(), geometry.mockup, out.mockup.partition);
+  if (!host) return steps.fail(host.error());
+  auto samples = std::make_shared<HostSamples>();
+  const auto outcome = host->list_samples(
+      geometry.sample_spacing, kMostSampleBytes,
+      [&](double done) {
+        steps.progress("samples", 0.95 + 0.05 * done);
+        return steps.ok();
+      },
+      *samples);
+  if (outcome == HostPreparation::Outcome::kDone) out.samples = std::move(samples);
+}
+
+}  // namespace
+
 void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& pairs, PreparedScene& out) {
   if (!steps.ok()) return;
+  if (steps.device().host_share == HostShare::kContacts) return list_samples_on_host(steps, geometry, out);
   const BodyBuffers& body = out.mockup;
   const PartitionBuffers& p = body.partition;
   gpu::SampleListPush push{};

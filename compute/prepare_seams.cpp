@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "compute/prepare_on_host.h"
 #include "shaders/code.h"
 #include "shaders/shared/prepare.h"
 
@@ -24,7 +26,6 @@ Long3 raw_normal(const LatticeMesh& mesh, std::uint32_t t) {
 constexpr std::uint64_t kMostPairsInVoxels = std::uint64_t{1} << 36;
 
 constexpr std::uint32_t kPairsARun = 1u << 21;     // candidates that there is room for at a time (chosen: 16 MiB; 1.3 to 3 come from a triangle)
-constexpr std::uint32_t kEntriesARun = 1u << 20;   // of the voxels' lists (chosen)
 
 /// Fails where voxels hold so many triangles that comparing them with each other would take for ever.
 void check_pairs(PrepareSteps& steps, const PartitionBuffers& p) {
@@ -47,8 +48,11 @@ class SeamSearch {
   std::vector<Pair> all();
 
  private:
+  bool find_on_host();
+  void find_all();
+  void make_boxes();
   std::uint32_t find(std::uint32_t first, std::uint32_t count);
-  void keep_touching(std::uint32_t count);
+  void keep_touching(std::span<const Pair> candidates);
 
   PrepareSteps& steps_;
   const LatticeMesh& mesh_;
@@ -70,16 +74,21 @@ SeamSearch::SeamSearch(PrepareSteps& steps, const SceneGeometry& geometry, const
   push_.least_cosine = static_cast<std::int64_t>(std::ldexp(cosine, 60)) - (std::int64_t{1} << 34);
   push_.capacity = kPairsARun;
   check_pairs(steps, p);
-  found_ = steps.buffer("seams", 1);
-  boxes_ = steps.buffer("boxes of triangles in voxels", p.grid.list_entries);
-  pairs_ = steps.buffer("pairs of triangles at seams", push_.capacity, sizeof(Pair));
   some_ = steps.buffer("pairs of triangles at seams", push_.capacity, sizeof(Pair));
   answers_ = steps.buffer("pairs of triangles at seams", push_.capacity);
+}
+
+/// What find() needs.
+void SeamSearch::make_boxes() {
+  const PartitionBuffers& p = body_.partition;
+  found_ = steps_.buffer("seams", 1);
+  boxes_ = steps_.buffer("boxes of triangles in voxels", p.grid.list_entries);
+  pairs_ = steps_.buffer("pairs of triangles at seams", push_.capacity, sizeof(Pair));
   const gpu::GridPush grid{p.grid.origin, p.grid.size, p.grid.bricks, p.grid.list_entries, 0};
-  if (!steps.ok()) return;
-  steps.run_items(spirv::seam_box, {},
-                  {body.vertices, body.triangles, listed.entry_voxel, p.list_triangles, p.boundary_place, p.mixed_brick, boxes_}, grid,
-                  grid.count);
+  if (!steps_.ok()) return;
+  steps_.run_items(spirv::seam_box, {},
+                   {body_.vertices, body_.triangles, listed_.entry_voxel, p.list_triangles, p.boundary_place, p.mixed_brick, boxes_}, grid,
+                   grid.count);
 }
 
 /// Lists candidates with an entry of this run; returns how many there are, which may be more than there is room for.
@@ -98,26 +107,39 @@ std::uint32_t SeamSearch::find(std::uint32_t first, std::uint32_t count) {
   return steps_.read(found_, 0);
 }
 
-/// Takes those of the listed candidates that touch along a seam, exactly.
-void SeamSearch::keep_touching(std::uint32_t count) {
-  candidates_.resize(count);
-  if (auto r = download(steps_.device(), pairs_, 0, candidates_.data(), count * sizeof(Pair)); !r) return steps_.fail(r.error());
-  // Most are found in several voxels, and those lie near each other.
-  std::sort(candidates_.begin(), candidates_.end());
-  candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
-  if (auto r = upload(steps_.device(), some_, candidates_.data(), candidates_.size() * sizeof(Pair)); !r) return steps_.fail(r.error());
-  steps_.run_items(spirv::seam_test, {}, {body_.vertices, body_.triangles, some_, answers_}, static_cast<std::uint32_t>(candidates_.size()),
-                   candidates_.size());
+/// Takes those of up to kPairsARun candidates that touch along a seam, exactly.
+void SeamSearch::keep_touching(std::span<const Pair> candidates) {
+  if (auto r = upload(steps_.device(), some_, candidates.data(), candidates.size() * sizeof(Pair)); !r) return steps_.fail(r.error());
+  steps_.run_items(spirv::seam_test, {}, {body_.vertices, body_.triangles, some_, answers_}, static_cast<std::uint32_t>(candidates.size()),
+                   candidates.size());
   if (!steps_.ok()) return;
-  touches_.resize(candidates_.size());
+  touches_.resize(candidates.size());
   if (auto r = download(steps_.device(), answers_, 0, touches_.data(), touches_.size() * 4); !r) return steps_.fail(r.error());
-  for (std::size_t i = 0; i < candidates_.size(); ++i)
-    if (const auto& [s, t] = candidates_[i]; touches_[i] != 0 && smooth(raw_normal(mesh_, s), raw_normal(mesh_, t), angle_)) seams_.push_back(candidates_[i]);
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (const auto& [s, t] = candidates[i]; touches_[i] != 0 && smooth(raw_normal(mesh_, s), raw_normal(mesh_, t), angle_)) seams_.push_back(candidates[i]);
 }
 
-std::vector<Pair> SeamSearch::all() {
+/// False: the shaders have to, a few at a time.
+bool SeamSearch::find_on_host() {
+  if (!steps_.ok()) return true;
+  const auto host = HostPreparation::make(steps_.device(), mesh_, body_.partition);
+  if (!host) {
+    steps_.fail(host.error());
+    return true;
+  }
+  const auto outcome = host->find_seams(push_.least_cosine, [&](std::span<const Pair> candidates, double done) {
+    for (; !candidates.empty() && steps_.ok(); candidates = candidates.subspan(std::min<std::size_t>(candidates.size(), kPairsARun)))
+      keep_touching(candidates.first(std::min<std::size_t>(candidates.size(), kPairsARun)));
+    steps_.progress("seams", 0.9 + 0.05 * done);
+    return steps_.ok();
+  });
+  return outcome != HostPreparation::Outcome::kTooMany;
+}
+
+void SeamSearch::find_all() {
+  make_boxes();
   const std::uint32_t entries = body_.partition.grid.list_entries;
-  std::uint32_t run = kEntriesARun;
+  std::uint32_t run = seam_entries_a_run(body_.partition.longest_list);
   for (std::uint32_t first = 0; first < entries && steps_.ok();) {
     const std::uint32_t count = std::min(run, entries - first), pairs = find(first, count);
     if (!steps_.ok()) break;
@@ -129,16 +151,32 @@ std::vector<Pair> SeamSearch::all() {
       run = count / 2;
       continue;
     }
-    if (pairs > 0) keep_touching(pairs);
+    if (pairs > 0) {
+      candidates_.resize(pairs);
+      if (auto r = download(steps_.device(), pairs_, 0, candidates_.data(), pairs * sizeof(Pair)); !r) return steps_.fail(r.error());
+      // Most are found in several voxels, and those lie near each other.
+      std::sort(candidates_.begin(), candidates_.end());
+      candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+      keep_touching(candidates_);
+    }
     first += count;
     steps_.progress("seams", 0.9 + 0.05 * first / entries);
   }
+}
+
+std::vector<Pair> SeamSearch::all() {
+  if (steps_.device().host_share != HostShare::kContacts || !find_on_host()) find_all();
   std::sort(seams_.begin(), seams_.end());
   seams_.erase(std::unique(seams_.begin(), seams_.end()), seams_.end());
   return std::move(seams_);
 }
 
 }  // namespace
+
+std::uint32_t seam_entries_a_run(std::uint32_t longest_list) {
+  constexpr std::uint32_t kEntriesARun = 1u << 20;   // chosen
+  return std::clamp(~0u / std::max(longest_list, 1u), 1u, kEntriesARun);
+}
 
 void find_seams(PrepareSteps& steps, const SceneGeometry& geometry, bool refined, const VoxelPairs& pairs, BodyBuffers& body) {
   const LatticeMesh& mesh = geometry.mockup;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <string_view>
 
 #include "service/cli_bench.h"
 #include "service/cli_bench_output.h"
@@ -42,16 +44,21 @@ class StageWatch {
 struct Start {
   std::unique_ptr<HostedScene> scene;
   StageWatch stages;
-  double seconds = 0;
+  double seconds = 0, prepare_s = 0;   ///< the whole, and what comes after reading
   std::uint64_t peak = 0;
 };
 
 Result<Start> start(const BenchOptions& options, const std::string& file, bool anew, const Parts& parts, Console& console) {
-  Start out{nullptr, StageWatch(options.cpu_clock), 0, 0};
+  Start out{nullptr, StageWatch(options.cpu_clock), 0, 0, 0};
   if (parts.cache) parts.cache->begin_anew(anew);
   restart_peak_memory();
+  std::optional<Stopwatch> preparing;
   const PrepareWatch watch{.note = [&](const std::string& sentence) { console.note(sentence); },
-                           .step = [&](const char* step) { console.step(step), out.stages.at(step); },
+                           .step = [&](const char* step) {
+                             console.step(step);
+                             out.stages.at(step);
+                             if (std::string_view(step) == "preparing the scene") preparing.emplace(options.cpu_clock);
+                           },
                            .progress = [&](const char* what, double done) { out.stages.at(what); return console.progress(what, done); },
                            .admit = {},
                            .cached = true,
@@ -59,6 +66,7 @@ Result<Start> start(const BenchOptions& options, const std::string& file, bool a
   const Stopwatch whole(options.cpu_clock);
   auto made = prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false}, Purpose::kQuery, parts, watch);
   out.seconds = whole.us() * 1e-6;
+  if (preparing) out.prepare_s = preparing->us() * 1e-6;
   out.stages.end();
   if (parts.cache) parts.cache->begin_anew(false);
   if (!made) return made.error();
@@ -97,8 +105,8 @@ Result<void> bench_prepare(const BenchOptions& options, const Parts& parts) {
       const double kept = static_cast<double>(scene.backend->memory_bytes()) / triangles;
       const std::string who = anew ? "palpate, first start" : "palpate, from the cache";
       lines.push_back({who, "whole start", begun->seconds, kept, begun->peak});
-      lines.push_back({who, "meshes and lattice", scene.load_s, none, none});
-      lines.push_back({who, "preparation", scene.prepare_s, none, none});
+      lines.push_back({who, "meshes and lattice", begun->seconds - begun->prepare_s, none, none});
+      lines.push_back({who, "preparation", begun->prepare_s, none, none});
       for (const auto& [stage, seconds] : begun->stages.seconds)
         if (seconds > 0.0005) lines.push_back({who, "- " + stage, seconds, none, none});
       if (!anew) continue;

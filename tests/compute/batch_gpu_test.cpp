@@ -1,6 +1,8 @@
 // A batch is the same answers, sooner; preparation takes what was foretold.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <span>
 
 #include "compute/gpu_backend.h"
@@ -92,6 +94,59 @@ TEST(Batch, EndsWithTheErrorOfAPoseThatFails) {
   const auto lost = backend->query_batch(scene.poses, out);
   ASSERT_FALSE(lost);
   EXPECT_NE(lost.error().sentence.find("the device was lost"), std::string::npos) << lost.error().sentence;
+}
+
+/// Triangles of all sizes and directions, slivers among them.
+Mesh soup(std::size_t triangles) {
+  Mesh mesh;
+  std::mt19937 random(20);
+  std::uniform_real_distribution<double> place(-0.5, 0.5), power(-3.5, 0);
+  for (std::size_t i = 0; i < triangles; ++i) {
+    const Vec3 at(place(random), place(random), place(random));
+    const double size = std::pow(10, power(random)), thin = i % 3 == 0 ? 0.001 : 1;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const Vec3 along(place(random), place(random), place(random)), across(place(random), place(random), place(random));
+    mesh.vertices.insert(mesh.vertices.end(), {at, at + size * along, at + size * thin * across});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  mesh.parts = {{"", 0, static_cast<std::uint32_t>(triangles)}};
+  return mesh;
+}
+
+TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShaders) {
+  struct Mockup {
+    const char* name;
+    Mesh mesh;
+    double voxel_m, spacing_m;
+    bool wide;   ///< heights in a voxel of more than 2^20 steps
+  };
+  const auto contacts = generate_scene("contacts", 8000, 1000), disassembly = generate_scene("disassembly", 4000, 1000);
+  ASSERT_TRUE(contacts && disassembly);
+  for (const Mockup& mockup : {Mockup{"contacts", contacts->mockup, 0, 0, true}, Mockup{"disassembly", disassembly->mockup, 0, 0, true},
+                               Mockup{"soup", soup(500), 0.003, 0.0011, false}, Mockup{"soup, large voxels", soup(2000), 0.25, 0.0091, true}}) {
+    SCOPED_TRACE(mockup.name);
+    GeometrySettings settings;
+    if (mockup.voxel_m > 0) settings.voxel_size_m = mockup.voxel_m;
+    if (mockup.spacing_m > 0) settings.sample_spacing_m = mockup.spacing_m;
+    const auto geometry = build_geometry(mockup.mesh, contacts->tool, settings);
+    ASSERT_TRUE(geometry) << geometry.error().sentence;
+    std::shared_ptr<const HostSamples> by[2];
+    for (const HostShare share : {HostShare::kAreas, HostShare::kContacts}) {
+      GpuOptions options;
+      options.host_share = share;
+      auto device = VulkanDevice::create(options);
+      ASSERT_TRUE(device);
+      const auto prepared = prepare_scene(**device, *geometry, Plan{}, {});
+      ASSERT_TRUE(prepared) << prepared.error().sentence;
+      by[share == HostShare::kContacts ? 1 : 0] = prepared->samples;
+    }
+    ASSERT_TRUE(by[0] && by[1]);
+    EXPECT_GT(by[0]->count(), 10'000u);
+    EXPECT_EQ(by[0]->wide, mockup.wide);
+    EXPECT_EQ(by[1]->wide, mockup.wide);
+    EXPECT_EQ(by[1]->begin, by[0]->begin);
+    EXPECT_EQ(by[1]->words, by[0]->words);
+  }
 }
 
 TEST(Preparation, TakesNoMoreThanForetoldAndNotFarLess) {

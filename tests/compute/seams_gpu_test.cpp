@@ -2,6 +2,7 @@
 #include <array>
 #include <set>
 
+#include "compute/prepare_seams.h"
 #include "compute/prepared_scene.h"
 #include "cpu_ref/triangle_triangle.h"
 #include "model/generate/solids.h"
@@ -17,13 +18,20 @@ using Pair = std::array<std::uint32_t, 2>;
 
 class Seams : public GpuTest {
  protected:
-  /// All seams of a mock-up on the device, each pair both ways, as the CSR has them.
+  /// All seams of a mock-up on the device, each pair both ways, as the CSR has them; the same whoever looks for candidates.
   std::vector<Pair> on_device(const Mesh& mockup) {
     GeometrySettings settings;
     settings.voxel_size_m = 0.01;
     auto geometry = build_geometry(mockup, solids::box(Vec3(-0.01), Vec3(0.01)), settings);
     EXPECT_TRUE(geometry) << geometry.error().sentence;
     geometry_ = std::move(*geometry);
+    const auto by_host = found(HostShare::kContacts), by_shaders = found(HostShare::kAreas);
+    EXPECT_EQ(by_host, by_shaders);
+    return by_host;
+  }
+
+  std::vector<Pair> found(HostShare share) {
+    device().host_share = share;
     auto scene = prepare_scene(device(), geometry_, Plan{}, {});
     EXPECT_TRUE(scene) << scene.error().sentence;
     const std::size_t triangles = geometry_.mockup.triangles.size();
@@ -110,6 +118,17 @@ TEST_F(Seams, AreThoseOfTheDefinitionWherePartsCrossAndCoincide) {
   const auto got = on_device(mesh);
   EXPECT_GT(got.size(), 1000u);
   EXPECT_EQ(got, by_definition());
+}
+
+// An entry makes fewer pairs than its list is long; 92,683 triangles in one voxel make 2^32 + 55,607 together.
+TEST(SeamRuns, HaveNoMorePairsThan32BitsCount) {
+  for (const std::uint64_t longest : {0ull, 1ull, 256ull, 4095ull, 4096ull, 4097ull, 92'683ull, 0xFFFFFFFFull}) {
+    const std::uint64_t entries = seam_entries_a_run(static_cast<std::uint32_t>(longest));
+    EXPECT_LT(entries * longest, std::uint64_t{1} << 32) << longest;
+    EXPECT_GE(entries, 1u);
+  }
+  EXPECT_EQ(seam_entries_a_run(92'683), 46'340u);
+  EXPECT_EQ(seam_entries_a_run(300), 1u << 20);
 }
 
 TEST_F(Seams, TouchInMoreThanTheCommonCornerByTheReferencesPredicates) {

@@ -1,0 +1,276 @@
+#include "compute/prepare_on_host.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "compute/host_exact.h"
+#include "compute/host_shares.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::uint32_t kEntriesAShare = 1u << 14;   // of the voxels' lists (chosen: milliseconds)
+constexpr std::uint32_t kSharesARun = 64;            // of seams (chosen)
+constexpr std::size_t kMostPairsAShare = (std::size_t{128} << 20) / 8 / kSharesARun;
+
+std::int64_t floor_div(std::int64_t a, std::int64_t b) {   // b > 0
+  const std::int64_t q = a / b;
+  return q - (a % b < 0 ? 1 : 0);
+}
+
+/// The first multiple of `spacing` not below v.
+std::int64_t grid_from(std::int64_t v, std::int64_t spacing) { return -floor_div(-v, spacing) * spacing; }
+
+/// Twice the area that edge pq spans with a grid point, times the triangle's facing, and more than 0 exactly where grid_side() says inside: a
+/// point on the edge is moved by (ε, ε²). Steps along u and v are constant. Differences within 2^29 + 1.
+struct EdgeSide {
+  std::int64_t at, along_u, along_v;
+  EdgeSide(const Int3& p, const Int3& q, int iu, int iv, int facing, std::int64_t u, std::int64_t v, std::int64_t spacing) {
+    const std::int64_t du = std::int64_t{q[iu]} - p[iu], dv = std::int64_t{q[iv]} - p[iv];
+    const int on_edge = dv != 0 ? (dv < 0 ? 1 : -1) : (du > 0 ? 1 : du < 0 ? -1 : 0);
+    at = facing * (du * (v - p[iv]) - dv * (u - p[iu])) + (on_edge == facing ? 1 : 0);
+    along_u = -facing * dv * spacing;
+    along_v = facing * du * spacing;
+  }
+};
+
+}  // namespace
+
+Result<HostPreparation> HostPreparation::make(VulkanDevice& device, const LatticeMesh& mesh, const PartitionBuffers& lists) {
+  HostPreparation out;
+  out.mesh_ = &mesh;
+  out.grid_ = lists.grid;
+  if (auto r = out.list_begin_.read(device, lists.list_begin, std::size_t{lists.grid.boundary_voxels} + 1); !r) return r.error();
+  if (auto r = out.list_triangles_.read(device, lists.list_triangles, lists.grid.list_entries); !r) return r.error();
+  if (auto r = out.boundary_place_.read(device, lists.boundary_place, lists.grid.boundary_voxels); !r) return r.error();
+  if (auto r = out.mixed_brick_.read(device, lists.mixed_brick, lists.grid.mixed_bricks); !r) return r.error();
+  return out;
+}
+
+std::vector<std::uint32_t> HostPreparation::shares_of(std::uint32_t entries) const {
+  std::vector<std::uint32_t> begins{0};
+  std::uint32_t last = 0;
+  for (std::uint32_t voxel = 0; voxel < grid_.boundary_voxels; ++voxel) {
+    if (list_begin_[voxel + 1] - last < entries) continue;
+    last = list_begin_[voxel + 1];
+    begins.push_back(voxel + 1);
+  }
+  if (begins.back() != grid_.boundary_voxels) begins.push_back(grid_.boundary_voxels);
+  return begins;
+}
+
+/// Lowest lattice point of a boundary voxel.
+Int3 HostPreparation::low_of(std::uint32_t boundary) const {
+  const std::uint32_t place = boundary_place_[boundary], brick = mixed_brick_[place >> 9], bit = place & 511;
+  const auto nx = static_cast<std::uint32_t>(grid_.bricks.x), ny = static_cast<std::uint32_t>(grid_.bricks.y);
+  return grid_.origin + grid_.size * (8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
+}
+
+/// Appends the samples of all entries of a voxel to `words`; `begin` gets each entry's begin in `words` with its corner and axis.
+void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing, std::uint32_t* begin, std::vector<std::uint32_t>& words, bool wide) const {
+  const Int3 low = low_of(boundary), high = low + (grid_.size - 1);   // the last lattice point of the half-open cube
+  for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end; ++e) {
+    const std::uint32_t id = list_triangles_[e];
+    const exact::Corners t{mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)};
+    const int k = mesh_->sample_axis[id], iu = (k + 1) % 3, iv = (k + 2) % 3;
+    const bool corner = glm::all(glm::greaterThanEqual(t[0], low)) && glm::all(glm::lessThanEqual(t[0], high));
+    *begin++ = static_cast<std::uint32_t>(words.size() / (wide ? 2 : 1)) | (corner ? HostSamples::kCorner : 0u) | static_cast<std::uint32_t>(k) << HostSamples::kAxisShift;
+
+    const Int3 least = glm::min(glm::min(t[0], t[1]), t[2]), most = glm::max(glm::max(t[0], t[1]), t[2]);
+    const std::int64_t u0 = grid_from(std::max(low[iu], least[iu]), spacing), v0 = grid_from(std::max(low[iv], least[iv]), spacing);
+    const std::int64_t u1 = std::min(high[iu], most[iu]), v1 = std::min(high[iv], most[iv]);
+    if (u0 > u1 || v0 > v1) continue;
+    const exact::Normal n = exact::raw_normal(t);
+    const std::int64_t parts[3] = {n.x, n.y, n.z}, nk = parts[k];
+    if (nk == 0) continue;   // collapsed
+    const int facing = nk < 0 ? -1 : 1;
+    const std::int64_t grid_u = grid_from(low[iu], spacing), grid_v = grid_from(low[iv], spacing), under = facing * nk;
+    // |N_u|, |N_v| ≤ |N_k|: with differences below 2^extent the height's two products and their sum fit 64 bits.
+    const std::int64_t extent = std::max(most[iu] - least[iu], most[iv] - least[iv]);
+    const bool fits = extent == 0 || under <= (INT64_MAX >> 1) / extent;
+    EdgeSide a(t[0], t[1], iu, iv, facing, u0, v0, spacing), b(t[1], t[2], iu, iv, facing, u0, v0, spacing), c(t[2], t[0], iu, iv, facing, u0, v0, spacing);
+    for (std::int64_t v = v0; v <= v1; v += spacing) {
+      std::int64_t at_a = a.at, at_b = b.at, at_c = c.at;
+      for (std::int64_t u = u0; u <= u1; u += spacing, at_a += a.along_u, at_b += b.along_u, at_c += c.along_u) {
+        if (at_a <= 0 || at_b <= 0 || at_c <= 0) continue;
+        // floor(a_k − (N_u (u − a_u) + N_v (v − a_v)) / N_k), from the voxel's low side
+        std::int64_t height = std::int64_t{t[0][k]} - low[k];
+        const std::int64_t du = u - t[0][iu], dv = v - t[0][iv];
+        if (fits) {
+          height += floor_div(-facing * (parts[iu] * du + parts[iv] * dv), under);
+        } else {
+          const exact::Wide over = -facing * (exact::Wide{parts[iu]} * du + exact::Wide{parts[iv]} * dv), q = over / under;
+          height += static_cast<std::int64_t>(over % under < 0 ? q - 1 : q);
+        }
+        if (height < 0 || height >= grid_.size) continue;
+        const auto place = static_cast<std::uint32_t>((u - grid_u) / spacing) | static_cast<std::uint32_t>((v - grid_v) / spacing) << 6;
+        if (wide) {
+          words.push_back(static_cast<std::uint32_t>(height));
+          words.push_back(place);
+        } else {
+          words.push_back(static_cast<std::uint32_t>(height) | place << 20);
+        }
+      }
+      a.at += a.along_v;
+      b.at += b.along_v;
+      c.at += c.along_v;
+    }
+  }
+}
+
+HostPreparation::Outcome HostPreparation::list_samples(std::int32_t spacing, std::uint64_t most_bytes, const GoOn& go_on, HostSamples& out) const {
+  const std::vector<std::uint32_t> shares = shares_of(kEntriesAShare);
+  const auto count = static_cast<std::uint32_t>(shares.size() - 1);
+  out.wide = grid_.size > HostSamples::kNarrowVoxel;
+  out.begin.resize(std::size_t{grid_.list_entries} + 1);
+  std::vector<std::vector<std::uint32_t>> words(count);
+  std::atomic<std::uint64_t> total{0};
+  const std::uint64_t size = out.wide ? 2 : 1, most = std::min<std::uint64_t>(most_bytes / 4, size * HostSamples::kBegin);
+  const bool done = in_shares(
+      count,
+      [&](std::uint32_t share) {
+        if (total > most) return;
+        for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) sample_voxel(voxel, spacing, &out.begin[list_begin_[voxel]], words[share], out.wide);
+        total += words[share].size();
+      },
+      [&](std::uint32_t begun) { return go_on(0.9 * begun / count); });
+  if (!done) return Outcome::kCancelled;
+  if (total > most) return Outcome::kTooMany;
+  out.words.reserve(total);
+  for (std::uint32_t share = 0; share < count; ++share) {
+    // Begins were counted from the share's first; they stay below kCorner.
+    const auto base = static_cast<std::uint32_t>(out.words.size() / size);
+    for (std::uint32_t e = list_begin_[shares[share]], end = list_begin_[shares[share + 1]]; e < end; ++e) out.begin[e] += base;
+    out.words.insert(out.words.end(), words[share].begin(), words[share].end());
+    words[share] = {};
+  }
+  out.begin.back() = static_cast<std::uint32_t>(total / size);
+  return go_on(1) ? Outcome::kDone : Outcome::kCancelled;
+}
+
+// ---- seams ---------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// A triangle in a voxel.
+struct Listed {
+  std::uint32_t id;
+  std::array<std::uint32_t, 3> vertex;
+  std::array<Int3, 3> corner;
+  Int3 low, high;
+};
+
+/// Tenth of the voxel that holds a point, 0 … 9; what lies beyond counts as at its side.
+std::uint32_t tenth(std::int64_t at, std::int64_t size) { return static_cast<std::uint32_t>(std::clamp<std::int64_t>(10 * at / size, 0, 9)); }
+
+/// A plane through the common corner c that has the rest of s on one side, touching allowed, and the rest of t strictly on the other: then they
+/// meet nowhere else. m is within 2^30 + 4 a component, differences within 2^29: sums within 2^61.
+bool apart(const Int3& c, const Int3& s1, const Int3& s2, const Int3& t1, const Int3& t2, const std::int64_t (&m)[3]) {
+  const auto side = [&](const Int3& p) { return m[0] * (p.x - c.x) + m[1] * (p.y - c.y) + m[2] * (p.z - c.z); };
+  return side(s1) >= 0 && side(s2) >= 0 && side(t1) < 0 && side(t2) < 0;
+}
+
+/// Whether two triangles with one common corner (place i in s, j in t) are easily seen to meet nowhere else.
+bool meet_in_a_corner_alone(const Listed& s, const Listed& t, std::size_t i, std::size_t j) {
+  const Int3 &c = s.corner[i], &s1 = s.corner[(i + 1) % 3], &s2 = s.corner[(i + 2) % 3], &t1 = t.corner[(j + 1) % 3], &t2 = t.corner[(j + 2) % 3];
+  std::int64_t m[3];
+  for (int k = 0; k < 3; ++k) m[k] = std::int64_t{s1[k]} + s2[k] - t1[k] - t2[k];
+  if (apart(c, s1, s2, t1, t2, m)) return true;
+  // Sides of very different lengths: their directions instead. Floats propose, integers decide.
+  const auto direction = [&](const Int3& p) {
+    const double x = p.x - c.x, y = p.y - c.y, z = p.z - c.z, scale = 1 / std::sqrt(x * x + y * y + z * z);
+    return std::array<double, 3>{x * scale, y * scale, z * scale};
+  };
+  const auto d1 = direction(s1), d2 = direction(s2), e1 = direction(t1), e2 = direction(t2);
+  for (std::size_t k = 0; k < 3; ++k) m[k] = static_cast<std::int64_t>((d1[k] + d2[k] - e1[k] - e2[k]) * 0x1p26);
+  return apart(c, s1, s2, t1, t2, m);
+}
+
+/// Whether they may touch beyond an edge or a corner that they have in common.
+bool may_touch(const Listed& s, const Listed& t) {
+  for (int k = 0; k < 3; ++k)
+    if (s.low[k] > t.high[k] || t.low[k] > s.high[k]) return false;
+  std::size_t common = 0, at_s = 0, at_t = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      if (s.vertex[i] == t.vertex[j]) ++common, at_s = i, at_t = j;
+  return common == 0 || (common == 1 && !meet_in_a_corner_alone(s, t, at_s, at_t));
+}
+
+}  // namespace
+
+struct HostPreparation::Search {
+  std::vector<Listed> listed;
+  std::vector<std::uint32_t> masks;     // of each: tenths of the voxel that its box takes, as in shaders/seam_box.comp
+  std::vector<Int3> normals;            // of each, Q30
+  std::vector<std::uint64_t> found;     // the larger id above the smaller: in memory a Pair
+};
+
+void HostPreparation::seams_of(std::uint32_t boundary, std::int64_t least_cosine, Search& search) const {
+  const Int3 voxel = low_of(boundary);
+  search.listed.clear();
+  search.masks.clear();
+  search.normals.clear();
+  for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end; ++e) {
+    const std::uint32_t id = list_triangles_[e];
+    Listed t{id, mesh_->triangles[id], {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)}, {}, {}};
+    t.low = glm::min(glm::min(t.corner[0], t.corner[1]), t.corner[2]);
+    t.high = glm::max(glm::max(t.corner[0], t.corner[1]), t.corner[2]);
+    std::uint32_t mask = 0;
+    for (int k = 0; k < 3; ++k)
+      mask |= ((2u << tenth(std::int64_t{t.high[k]} - voxel[k], grid_.size)) - (1u << tenth(std::int64_t{t.low[k]} - voxel[k], grid_.size))) << (10 * k);
+    search.listed.push_back(t);
+    search.masks.push_back(mask);
+    search.normals.push_back(mesh_->unit_normal_q30[id]);
+  }
+  const std::size_t count = search.listed.size();
+  for (std::size_t i = 0; i < count && search.found.size() <= kMostPairsAShare; ++i) {
+    const std::uint32_t mask = search.masks[i];
+    const Int3 n = search.normals[i];
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const std::uint32_t both = mask & search.masks[j];
+      if ((both & 0x3FFu) == 0 || (both & 0xFFC00u) == 0 || (both & 0x3FF00000u) == 0) continue;
+      const Int3& m = search.normals[j];
+      if (std::int64_t{n.x} * m.x + std::int64_t{n.y} * m.y + std::int64_t{n.z} * m.z < least_cosine) continue;
+      const Listed &s = search.listed[i], &t = search.listed[j];
+      if (may_touch(s, t)) search.found.push_back(std::uint64_t{t.id} << 32 | s.id);
+    }
+  }
+}
+
+HostPreparation::Outcome HostPreparation::find_seams(std::int64_t least_cosine, const std::function<bool(std::span<const Pair>, double)>& take) const {
+  static_assert(std::endian::native == std::endian::little);
+  const std::vector<std::uint32_t> shares = shares_of(kEntriesAShare);
+  const auto count = static_cast<std::uint32_t>(shares.size() - 1);
+  std::vector<std::vector<Pair>> found(kSharesARun);
+  std::atomic<bool> too_many{false};
+  const auto search = [&](std::uint32_t share, std::vector<Pair>& out) {
+    Search mine;
+    for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) {
+      seams_of(voxel, least_cosine, mine);
+      if (mine.found.size() > kMostPairsAShare) too_many = true;
+      if (too_many) return;
+    }
+    // Most are found in several voxels, and those lie near each other.
+    std::sort(mine.found.begin(), mine.found.end());
+    mine.found.erase(std::unique(mine.found.begin(), mine.found.end()), mine.found.end());
+    out.resize(mine.found.size());
+    std::memcpy(out.data(), mine.found.data(), out.size() * sizeof(Pair));
+  };
+  std::vector<Pair> all;
+  for (std::uint32_t first = 0; first < count; first += kSharesARun) {
+    const std::uint32_t run = std::min(kSharesARun, count - first);
+    in_shares(run, [&](std::uint32_t i) { search(first + i, found[i]); }, [](std::uint32_t) { return true; });
+    if (too_many) return Outcome::kTooMany;
+    all.clear();
+    for (std::uint32_t i = 0; i < run; ++i) all.insert(all.end(), found[i].begin(), found[i].end());
+    if (!take(all, static_cast<double>(first + run) / count)) return Outcome::kCancelled;
+  }
+  return Outcome::kDone;
+}
+
+}  // namespace palpate
