@@ -70,10 +70,12 @@ Int3 HostPreparation::low_of(std::uint32_t boundary) const {
   return grid_.origin + grid_.size * (8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
 }
 
-/// Appends the samples of all entries of a voxel to `words`; `begin` gets each entry's begin in `words` with its corner and axis.
-void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing, std::uint32_t* begin, std::vector<std::uint32_t>& words, bool wide) const {
+/// Appends the samples of a voxel's entries to `words`, until there are more than `most_words`; `begin` gets each entry's begin in `words` with its
+/// corner and axis.
+void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing, std::uint64_t most_words, std::uint32_t* begin, std::vector<std::uint32_t>& words,
+                                   bool wide) const {
   const Int3 low = low_of(boundary), high = low + (grid_.size - 1);   // the last lattice point of the half-open cube
-  for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end; ++e) {
+  for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end && words.size() <= most_words; ++e) {
     const std::uint32_t id = list_triangles_[e];
     const exact::Corners t{mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)};
     const int k = mesh_->sample_axis[id], iu = (k + 1) % 3, iv = (k + 2) % 3;
@@ -134,7 +136,7 @@ HostPreparation::Outcome HostPreparation::list_samples(std::int32_t spacing, std
       count,
       [&](std::uint32_t share) {
         if (total > most) return;
-        for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) sample_voxel(voxel, spacing, &out.begin[list_begin_[voxel]], words[share], out.wide);
+        for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) sample_voxel(voxel, spacing, most, &out.begin[list_begin_[voxel]], words[share], out.wide);
         total += words[share].size();
       },
       [&](std::uint32_t begun) { return go_on(0.9 * begun / count); });

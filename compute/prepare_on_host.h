@@ -39,7 +39,7 @@ class HostPreparation {
   std::vector<std::uint32_t> shares_of(std::uint32_t entries) const;
   Int3 low_of(std::uint32_t boundary) const;
   void seams_of(std::uint32_t boundary, std::int64_t least_cosine, Search& search) const;
-  void sample_voxel(std::uint32_t boundary, std::int32_t spacing, std::uint32_t* begin, std::vector<std::uint32_t>& words, bool wide) const;
+  void sample_voxel(std::uint32_t boundary, std::int32_t spacing, std::uint64_t most_words, std::uint32_t* begin, std::vector<std::uint32_t>& words, bool wide) const;
 
   const LatticeMesh* mesh_ = nullptr;
   gpu::GridConstants grid_{};
