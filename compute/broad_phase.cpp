@@ -1,9 +1,11 @@
 #include "compute/broad_phase.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
+
+#include "compute/processor.h"
 
 namespace palpate {
 namespace {
@@ -14,16 +16,7 @@ constexpr std::size_t kFan = 8;   // children of a node
 // voxels are closed.
 constexpr double kMargin = gpu::kCloseSteps + 2.0;
 
-// Four lanes at a time: GCC at -O2 leaves such loops scalar, with a branch for every least and most, which cost more than all the rest.
-constexpr std::size_t kLanes = 4;
-using Floats = float __attribute__((vector_size(16)));
-using Words = std::int32_t __attribute__((vector_size(16)));
-
-Floats lanes(const std::array<float, gpu::kRunSize>& from, std::size_t begin) {
-  Floats out;
-  std::memcpy(&out, &from[begin], sizeof out);
-  return out;
-}
+static_assert(kFan == kEight && gpu::kRunSize == kEight);
 
 }  // namespace
 
@@ -42,17 +35,14 @@ struct BroadPhase::Turn {
 };
 
 struct BroadPhase::Search {
-  const LatticePose& pose;
-  const Turn& turn;
+  PosedTool& tool;
   NearLists& lists;
-  // The pose in voxels of the mock-up's grid, single precision: low = turned + below, high = turned + above.
-  float rotation[3][3], below[3], above[3];
+  VoxelTurn voxels;
 };
 
 Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
   const PartitionBuffers& mockup = scene.mockup.partition;
   BroadPhase out;
-  out.tool_ = &geometry.tool;
   out.order_ = order;
   out.has_inside_ = scene.constants.refined != 0 && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
@@ -73,10 +63,8 @@ Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& g
 }
 
 void BroadPhase::make_levels(const LatticeMesh& tool, std::span<const std::uint32_t> order) {
-  // What is no triangle lies far beyond every grid, wherever the tool is turned.
-  constexpr float kNowhere = 1e30f;
   runs_.resize((order.size() + gpu::kRunSize - 1) / gpu::kRunSize);
-  for (RunCorners& run : runs_)
+  for (EightTriangles& run : runs_)
     for (auto& coordinate : run) coordinate.fill(kNowhere);
   std::vector<Int3> low, high;
   for (std::size_t place = 0; place < order.size(); ++place) {
@@ -94,14 +82,19 @@ void BroadPhase::make_levels(const LatticeMesh& tool, std::span<const std::uint3
     }
   }
   while (true) {
-    std::vector<Box>& level = levels_.emplace_back(low.size());
+    std::vector<EightBoxes>& level = levels_.emplace_back((low.size() + kFan - 1) / kFan);
+    for (EightBoxes& group : level)
+      for (std::size_t k = 0; k < 3; ++k) {
+        group.centre[k].fill(kNowhere);
+        group.half[k].fill(0);
+      }
     for (std::size_t i = 0; i < low.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
         const double l = low[i][static_cast<int>(k)], h = high[i][static_cast<int>(k)];
-        level[i].centre[k] = l > h ? 0 : (l + h) / 2;
-        level[i].half[k] = l > h ? -1 : (h - l) / 2;
+        if (l > h) continue;
+        level[i / kFan].centre[k][i % kFan] = static_cast<float>((l + h) / 2);
+        level[i / kFan].half[k][i % kFan] = static_cast<float>((h - l) / 2);
       }
-    if (low.size() <= 1) return;
     const std::size_t above = (low.size() + kFan - 1) / kFan;
     for (std::size_t i = 0; i < above; ++i) {
       for (std::size_t child = i * kFan + 1; child < std::min((i + 1) * kFan, low.size()); ++child) {
@@ -113,6 +106,13 @@ void BroadPhase::make_levels(const LatticeMesh& tool, std::span<const std::uint3
     }
     low.resize(above);
     high.resize(above);
+    if (above > 1) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double l = low[0][static_cast<int>(k)], h = high[0][static_cast<int>(k)];
+      whole_.centre[k] = l > h ? 0 : (l + h) / 2;
+      whole_.half[k] = l > h ? -1 : (h - l) / 2;
+    }
+    return;
   }
 }
 
@@ -171,22 +171,7 @@ BroadPhase::Reach BroadPhase::reach(const Turn& turn, const Box& box) const {
   return out;
 }
 
-/// Calls take(brick coordinates, slot) for each brick with an occupied voxel in reach, until it returns true.
-template <class Take>
-void BroadPhase::for_bricks(const Reach& reach, Take&& take) const {
-  std::int32_t first[3], last[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int axis = static_cast<int>(k);
-    const double voxels = grid_.bricks[axis] * 8;
-    const double low = (reach.low[k] - grid_.origin[axis]) * per_voxel_, high = (reach.high[k] - grid_.origin[axis]) * per_voxel_;
-    if (high < 0 || low >= voxels) return;
-    first[k] = static_cast<std::int32_t>(std::max(low, 0.0));   // rounded down
-    last[k] = static_cast<std::int32_t>(std::min(high, voxels - 1));
-  }
-  for_bricks(first, last, take);
-}
-
-/// The same for voxels first … last.
+/// Calls take(brick coordinates, slot) for each brick with an occupied voxel among first … last, until it returns true.
 template <class Take>
 void BroadPhase::for_bricks(const std::int32_t (&first)[3], const std::int32_t (&last)[3], Take&& take) const {
   constexpr std::uint64_t kRows = 0x0101010101010101u;
@@ -210,54 +195,68 @@ void BroadPhase::for_bricks(const std::int32_t (&first)[3], const std::int32_t (
 }
 
 bool BroadPhase::meets(const Reach& reach) const {
+  std::int32_t first[3], last[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    const double voxels = grid_.bricks[axis] * 8;
+    const double low = (reach.low[k] - grid_.origin[axis]) * per_voxel_, high = (reach.high[k] - grid_.origin[axis]) * per_voxel_;
+    if (high < 0 || low >= voxels) return false;
+    first[k] = static_cast<std::int32_t>(std::max(low, 0.0));   // rounded down
+    last[k] = static_cast<std::int32_t>(std::min(high, voxels - 1));
+  }
   bool any = false;
-  for_bricks(reach, [&](const Int3&, std::uint32_t) { return any = true; });
+  for_bricks(first, last, [&](const Int3&, std::uint32_t) { return any = true; });
   return any;
 }
 
-void BroadPhase::descend(Search& search, std::size_t level, std::size_t node) {
-  const Box& box = levels_[level][node];
-  if (box.half[0] < 0 || search.lists.full != gpu::kNone) return;
-  const Reach where = reach(search.turn, box);
-  if (level > 0) {
-    if (!meets(where)) return;
-    for (std::size_t child = node * kFan; child < std::min((node + 1) * kFan, levels_[level - 1].size()); ++child)
-      descend(search, level - 1, child);
-    return;
+/// Of eight nodes those that come near an occupied voxel: a bit each.
+unsigned BroadPhase::meeting(const Search& search, const EightBoxes& nodes) const {
+  EightRanges voxels;
+  voxels_of(search.voxels, nodes, voxels);
+  unsigned out = 0;
+  for (std::size_t i = 0; i < kFan; ++i) {
+    if (voxels.may[i] == 0) continue;
+    const std::int32_t first[3] = {voxels.first[0][i], voxels.first[1][i], voxels.first[2][i]}, last[3] = {voxels.last[0][i], voxels.last[1][i], voxels.last[2][i]};
+    for_bricks(first, last, [&](const Int3&, std::uint32_t) {
+      out |= 1u << i;
+      return true;
+    });
   }
-  if (meets(where)) take_run(search, node);
+  return out;
+}
+
+/// From the whole tool to runs of triangles.
+void BroadPhase::descend(Search& search) {
+  struct Open {
+    std::uint32_t level, number;
+  };
+  std::array<Open, kFan * 12> open;   // 8^12 runs are more than a mesh can have; a level leaves at most eight groups waiting
+  std::size_t count = 0;
+  open[count++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
+  while (count != 0 && search.lists.full == gpu::kNone) {
+    const Open group = open[--count];
+    const unsigned nodes = meeting(search, levels_[group.level][group.number]);
+    if (group.level == 0) {
+      for (unsigned rest = nodes; rest != 0; rest &= rest - 1) take_run(search, kFan * group.number + static_cast<unsigned>(std::countr_zero(rest)));
+      continue;
+    }
+    for (unsigned i = kFan; i-- > 0;)
+      if ((nodes >> i & 1) != 0) open[count++] = {group.level - 1, static_cast<std::uint32_t>(kFan) * group.number + i};
+  }
 }
 
 /// The triangles of a run, each by the box of its corners.
 void BroadPhase::take_run(Search& search, std::size_t run) {
-  const RunCorners& corners = runs_[run];
-  std::array<std::array<std::int32_t, gpu::kRunSize>, 3> first, last;
-  std::array<std::int32_t, gpu::kRunSize> may;
-  for (std::size_t i = 0; i < gpu::kRunSize; i += kLanes) {
-    Words meet = Words{} - 1;
-    for (std::size_t r = 0; r < 3; ++r) {
-      const float x = search.rotation[r][0], y = search.rotation[r][1], z = search.rotation[r][2];
-      const Floats a = x * lanes(corners[0], i) + y * lanes(corners[1], i) + z * lanes(corners[2], i);
-      const Floats b = x * lanes(corners[3], i) + y * lanes(corners[4], i) + z * lanes(corners[5], i);
-      const Floats c = x * lanes(corners[6], i) + y * lanes(corners[7], i) + z * lanes(corners[8], i);
-      const Floats least = a < b ? a : b, most = a < b ? b : a, none{}, end = none + static_cast<float>(8 * grid_.bricks[static_cast<int>(r)]);
-      const Floats low = (least < c ? least : c) + search.below[r], high = (most < c ? c : most) + search.above[r];
-      meet &= (high >= none) & (low < end);
-      const Floats from = low < none ? none : low, to = high < none ? none : high;
-      const Words at = __builtin_convertvector(from < end ? from : end - 1, Words), last_at = __builtin_convertvector(to < end ? to : end - 1, Words);   // down
-      std::memcpy(&first[r][i], &at, sizeof at);
-      std::memcpy(&last[r][i], &last_at, sizeof last_at);
-    }
-    std::memcpy(&may[i], &meet, sizeof meet);
-  }
+  EightRanges voxels;
+  voxels_of(search.voxels, runs_[run], voxels);
   for (std::size_t i = 0; i < gpu::kRunSize; ++i) {
-    if (may[i] == 0) continue;
-    const std::int32_t from[3] = {first[0][i], first[1][i], first[2][i]}, to[3] = {last[0][i], last[1][i], last[2][i]};
+    if (voxels.may[i] == 0) continue;
+    const std::int32_t first[3] = {voxels.first[0][i], voxels.first[1][i], voxels.first[2][i]}, last[3] = {voxels.last[0][i], voxels.last[1][i], voxels.last[2][i]};
     const auto place = static_cast<std::uint32_t>(run * gpu::kRunSize + i);
     std::uint32_t head = gpu::kFirstOfTriangle;
     NearPairs::Triangle triangle;
-    for_bricks(from, to, [&](const Int3& brick, std::uint32_t slot) {
-      if (head != 0 && !pairs_.begin(search.pose, *tool_, order_[place], place, triangle)) return true;
+    for_bricks(first, last, [&](const Int3& brick, std::uint32_t slot) {
+      if (head != 0 && !pairs_.begin(search.tool.corners(order_[place]), place, triangle)) return true;
       if (!search.lists.push(search.lists.triangles, gpu::kListNearTriangles, {place | head, slot, brick.x | brick.y << 16, brick.z})) return true;
       head = 0;
       return !pairs_.take(triangle, brick, slot, search.lists);
@@ -280,23 +279,26 @@ void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearL
   samples_.find(pose, first, last, lists);
 }
 
-bool BroadPhase::find(const LatticePose& pose, NearLists& lists) {
-  if (levels_.back()[0].half[0] < 0) return false;
+bool BroadPhase::find(PosedTool& tool, NearLists& lists) {
+  const LatticePose& pose = tool.pose();
+  if (whole_.half[0] < 0) return false;
   const Turn turn(pose);
-  Search search{pose, turn, lists, {}, {}, {}};
+  const Reach whole = reach(turn, whole_);
+  if (!meets(whole) && !always_samples_) return false;
+  Search search{tool, lists, {}};
   for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = static_cast<float>(turn.rotation[r][c] * per_voxel_);
-    // Coordinates and entries rounded to 24 bits, three products, their sum and the sum with the place: below 16 · 2^-24 of the tool's radius and
-    // the place, in voxels.
+    for (std::size_t c = 0; c < 3; ++c) search.voxels.rotation[r][c] = static_cast<float>(turn.rotation[r][c] * per_voxel_);
+    // Coordinates and entries rounded to 24 bits, three products, their sum, a box's half besides its centre, and the sum with the place: below
+    // 16 · 2^-24 of the tool's radius and the place, in voxels.
     const double at = (turn.translation[r] - grid_.origin[static_cast<int>(r)]) * per_voxel_;
     const double margin = kMargin * per_voxel_ + (std::abs(at) + tool_radius_ * per_voxel_) * 0x1p-20;
-    search.below[r] = static_cast<float>(at - margin);
-    search.above[r] = static_cast<float>(at + margin);
+    search.voxels.below[r] = static_cast<float>(at - margin);
+    search.voxels.above[r] = static_cast<float>(at + margin);
+    search.voxels.end[r] = static_cast<float>(8 * grid_.bricks[static_cast<int>(r)]);
   }
-  descend(search, levels_.size() - 1, 0);
+  on_this_processor([&] { descend(search); });
   if (lists.full != gpu::kNone) return false;
   if (!has_inside_) return lists.touch.count != 0;
-  const Reach whole = reach(turn, levels_.back()[0]);
   bool meet = always_samples_ || lists.pairs.count != 0;
   // A whole connected part of the mock-up may lie inside the tool.
   for (std::size_t i = 0; i < parts_.size() && !meet; ++i) {

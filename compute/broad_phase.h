@@ -7,7 +7,9 @@
 #include "compute/near_lists.h"
 #include "compute/near_pairs.h"
 #include "compute/near_samples.h"
+#include "compute/posed_tool.h"
 #include "compute/prepared_scene.h"
+#include "compute/turned_boxes.h"
 #include "model/lattice.h"
 #include "model/result.h"
 #include "model/scene_geometry.h"
@@ -25,16 +27,14 @@ class BroadPhase {
   static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
   /// Fills the lists: tool triangles with the bricks in which they may come within kCloseSteps of a V_bnd or V_int voxel, those voxels,
-  /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. `pose` must not be
+  /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be
   /// beyond the lattice.
-  bool find(const LatticePose& pose, NearLists& lists);
+  bool find(PosedTool& tool, NearLists& lists);
 
  private:
   struct Box {
     std::array<double, 3> centre, half;   ///< steps, tool lattice frame; half < 0: empty
   };
-  /// Corners of a run, single precision: coordinate k of corner c of triangle i is at [3 c + k][i].
-  using RunCorners = std::array<std::array<float, gpu::kRunSize>, 9>;
   struct Reach {
     std::array<double, 3> low, high;      ///< steps, world; closed
   };
@@ -46,24 +46,23 @@ class BroadPhase {
   void find_parts(const LatticeMesh& mockup, std::int32_t tool_radius);
   Reach reach(const Turn& turn, const Box& box) const;
   template <class Take>
-  void for_bricks(const Reach& reach, Take&& take) const;
-  template <class Take>
   void for_bricks(const std::int32_t (&first)[3], const std::int32_t (&last)[3], Take&& take) const;
   bool meets(const Reach& reach) const;
-  void descend(Search& search, std::size_t level, std::size_t node);
+  void descend(Search& search);
+  unsigned meeting(const Search& search, const EightBoxes& nodes) const;
   void take_run(Search& search, std::size_t run);
   void find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const;
 
-  const LatticeMesh* tool_ = nullptr;
   std::span<const std::uint32_t> order_;
   NearPairs pairs_;
   NearSamples samples_;
   double inside_margin_ = 0;      ///< steps
   bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
   bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
-  /// Boxes of runs, of 8 runs, of 64 …; the last level is the whole tool.
-  std::vector<std::vector<Box>> levels_;
-  std::vector<RunCorners> runs_;
+  Box whole_{};
+  /// Boxes of runs, of 8 runs, of 64 …; eight nodes together; the last level is one such group.
+  std::vector<std::vector<EightBoxes>> levels_;
+  std::vector<EightTriangles> runs_;
   std::int32_t tool_radius_ = 0;
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;   ///< voxels a step

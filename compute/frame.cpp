@@ -338,7 +338,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
     near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
     near.inside.room = mapped<gpu::FrameSample>(gpu::kBindInsideSamples, gpu::kListInsideSamples);
     near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
-    rays = broad_phase_->find(pose, near);
+    rays = broad_phase_->find(posed_, near);
   }
   out.times.push_back({"cull", us_since(start)});
   near_full_ = near.full;
@@ -414,7 +414,7 @@ bool RecordedFrame::join_on_host(const LatticePose& pose, const Held* held) {
       .members = mapped<gpu::AreaMember>(gpu::kBindResultMembers, gpu::kListMembers),
   };
   HostAreas::Answer answer;
-  if (!host_areas_->solve(pose, held, lists, answer)) return false;
+  if (!host_areas_->solve(posed_, held, lists, answer)) return false;
   if (near_rays_) {
     directions_.clear();
     for (const gpu::FrameSample& sample : lists.samples) directions_.push_back(lists.areas[host_areas_->area_of(sample.static_id, lists)].direction);

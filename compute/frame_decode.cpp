@@ -6,6 +6,7 @@
 #include <span>
 
 #include "compute/frame_capacity.h"
+#include "compute/sort_keys.h"
 
 namespace palpate {
 namespace {
@@ -22,10 +23,10 @@ bool sets_are_whole(const FrameState& state) {
 
 /// Entries by id: id · 2^32 + place, ascending.
 template <class Entry, class Id>
-void order_by_id(std::span<const Entry> entries, Id id, std::vector<std::uint64_t>& out) {
+void order_by_id(std::span<const Entry> entries, Id id, std::vector<std::uint64_t>& out, std::vector<std::uint64_t>& spare) {
   out.resize(entries.size());
   for (std::uint32_t i = 0; i < entries.size(); ++i) out[i] = std::uint64_t{id(entries[i])} << 32 | i;
-  std::sort(out.begin(), out.end());
+  sort_keys(out, spare);
 }
 
 void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
@@ -52,7 +53,7 @@ void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
 
 void FrameDecoder::decode_sets(const FrameOutput& output, Contacts& out) {
   const std::span statics(output.statics, output.result->static_count);
-  order_by_id(statics, [](const StaticResult& s) { return s.id; }, statics_);
+  order_by_id(statics, [](const StaticResult& s) { return s.id; }, statics_, spare_keys_);
   if (!out.lists) return;
   for (const std::uint64_t key : statics_) {
     const StaticResult& s = statics[static_cast<std::uint32_t>(key)];
@@ -64,7 +65,7 @@ void FrameDecoder::decode_sets(const FrameOutput& output, Contacts& out) {
     if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
   }
   const std::span mobiles(output.mobiles, output.result->mobile_count);
-  order_by_id(mobiles, [](const MobileResult& m) { return m.id; }, mobiles_);
+  order_by_id(mobiles, [](const MobileResult& m) { return m.id; }, mobiles_, spare_keys_);
   for (const std::uint64_t key : mobiles_) {
     const MobileResult& m = mobiles[static_cast<std::uint32_t>(key)];
     ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
@@ -112,7 +113,7 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
     area.zones[zone].push_back(s.id);
   }
   const std::span members(output.members, out.lists ? result.member_count : 0);
-  order_by_id(members, [](const AreaMember& m) { return m.mobile; }, members_);
+  order_by_id(members, [](const AreaMember& m) { return m.mobile; }, members_, spare_keys_);
   for (const std::uint64_t key : members_) {
     const AreaMember& m = members[static_cast<std::uint32_t>(key)];
     out.areas[position[m.area]].mobile_ids.push_back(m.mobile);

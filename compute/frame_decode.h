@@ -32,6 +32,7 @@ class FrameDecoder {
   std::vector<std::uint32_t>& new_zone(ContactArea& area);
 
   std::vector<std::uint64_t> statics_, mobiles_, members_;   ///< id · 2^32 + place in the output, ascending
+  std::vector<std::uint64_t> spare_keys_;
   std::vector<std::uint32_t> zone_of_;                       ///< by label: position in its area's zones
   std::vector<ContactArea> spare_areas_;
   std::vector<std::vector<std::uint32_t>> spare_zones_;

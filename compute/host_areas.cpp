@@ -15,6 +15,8 @@ __extension__ using Wide = __int128;
 using Sum = std::array<std::int64_t, 3>;
 
 constexpr std::int64_t kMostGridPoints = 4096;   // of one tool triangle, beyond which the device takes over (chosen)
+constexpr std::size_t kMostListed = 1u << 19;    // samples of a tool, 6 MiB: beyond, they are worked out when asked for (chosen)
+constexpr std::uint32_t kAhead = 8;              // triangles whose data are called for before their turn: they lie far apart (chosen)
 
 std::int64_t floor_div(std::int64_t a, std::int64_t b) {   // b > 0
   const std::int64_t q = a / b;
@@ -77,6 +79,7 @@ Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geo
   out.most_statics_ = most_statics;
   out.parents_.resize((zones ? 2 : 1) * std::min(triangles, most_statics));
   out.tool_samples_.resize(geometry.tool.triangles.size(), kNone);
+  out.list_tool_samples();
   return out;
 }
 
@@ -107,8 +110,15 @@ void HostAreas::join_all(const ContactLists& lists) {
     parents_[area_node(i)] = area_node(i);
     if (zones_) parents_[zone_node(i)] = zone_node(i);
   }
-  for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
+  const auto count = static_cast<std::uint32_t>(lists.statics.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t id = lists.statics[i].id;
+    if (i + 2 * kAhead < count) {
+      const std::uint32_t later = lists.statics[i + 2 * kAhead].id;
+      __builtin_prefetch(&mesh.neighbour_begin[later]);
+      __builtin_prefetch(&seam_begin_[later]);
+    }
+    if (i + kAhead < count) __builtin_prefetch(mesh.neighbours.data() + mesh.neighbour_begin[lists.statics[i + kAhead].id]);
     // Ascending: beyond its own number the others join from their side.
     for (std::uint32_t e = mesh.neighbour_begin[id]; e < mesh.neighbour_begin[id + 1] && mesh.neighbours[e] >> 1 < id; ++e) {
       const std::uint32_t to = slot(mesh.neighbours[e] >> 1, lists);
@@ -129,7 +139,17 @@ void HostAreas::join_all(const ContactLists& lists) {
 /// Every slot adds its triangle to its area.
 void HostAreas::gather(const ContactLists& lists) {
   const LatticeMesh& mesh = geometry_->mockup;
-  for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
+  const auto count = static_cast<std::uint32_t>(lists.statics.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (i + 2 * kAhead < count) {
+      const std::uint32_t later = lists.statics[i + 2 * kAhead].id;
+      __builtin_prefetch(&mesh.triangles[later]);
+      __builtin_prefetch(&mesh.unit_normal_q30[later]);
+      __builtin_prefetch(&mesh.sample_weight_q30[later]);
+      __builtin_prefetch(&mesh.flags[later]);
+    }
+    if (i + kAhead < count)
+      for (const std::uint32_t vertex : mesh.triangles[lists.statics[i + kAhead].id]) __builtin_prefetch(&mesh.vertices[vertex]);
     StaticResult& result = lists.statics[i];
     const std::uint32_t first = slot_of_node(root(area_node(i))), id = result.id, number = lists.slots[first].area, samples = lists.slots[i].samples;
     result.area = number;
@@ -160,10 +180,10 @@ void HostAreas::gather(const ContactLists& lists) {
 }
 
 /// Gives every tool triangle of C_m to the areas whose spheres hold its rounded centroid, else to the nearest.
-bool HostAreas::associate(const LatticePose& pose, const ContactLists& lists, Answer& answer) {
-  const LatticeMesh& tool = geometry_->tool;
+bool HostAreas::associate(PosedTool& tool, const ContactLists& lists, Answer& answer) {
   for (const MobileResult& mobile : lists.mobiles) {
-    const Int3 sum = transform(pose, tool.corner(mobile.id, 0)) + transform(pose, tool.corner(mobile.id, 1)) + transform(pose, tool.corner(mobile.id, 2));
+    const exact::Corners& t = tool.corners(mobile.id);
+    const Int3 sum = t[0] + t[1] + t[2];
     const Int3 g(floor_div(sum.x, 3), floor_div(sum.y, 3), floor_div(sum.z, 3));
     bool held = false;
     std::uint32_t nearest = kNone;
@@ -243,8 +263,9 @@ bool HostAreas::occupied(const Int3& p) const {
   return ((bricks_[slot].boundary[bit >> 5] | bricks_[slot].internal_[bit >> 5]) >> (bit & 31) & 1) != 0;
 }
 
-/// Samples of a tool triangle that lie in V_bnd or V_int voxels of the mock-up. False: too many grid points.
-bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile, std::uint32_t& count) const {
+/// Calls take(sample) for each sample of a tool triangle, in the tool's lattice frame. False: too many grid points.
+template <class Take>
+bool HostAreas::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   const LatticeMesh& tool = geometry_->tool;
   const Int3 a = tool.corner(mobile, 0), b = tool.corner(mobile, 1), c = tool.corner(mobile, 2);
   const int k = tool.sample_axis[mobile], iu = (k + 1) % 3, iv = (k + 2) % 3;
@@ -259,7 +280,6 @@ bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile
   const int facing = nk < 0 ? -1 : 1;
   // |N_u|, |N_v| ≤ |N_k|, and grid points inside are within the box: products within 2^61.
   const bool small = std::abs(nk) < std::int64_t{1} << 36 && (u1 - u0 + 2) * spacing < 1 << 25 && (v1 - v0 + 2) * spacing < 1 << 25;
-  count = 0;
   for (std::int64_t v = v0 * spacing; v <= v1 * spacing; v += spacing)
     for (std::int64_t u = u0 * spacing; u <= u1 * spacing; u += spacing) {
       if (exact::grid_side(a[iu], a[iv], b[iu], b[iv], u, v) != facing || exact::grid_side(b[iu], b[iv], c[iu], c[iv], u, v) != facing ||
@@ -275,8 +295,32 @@ bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile
       }
       p[iu] = static_cast<std::int32_t>(u);
       p[iv] = static_cast<std::int32_t>(v);
-      count += occupied(transform(pose, p)) ? 1u : 0u;
+      take(p);
     }
+  return true;
+}
+
+/// Lists the tool's samples, which do not depend on the pose, where they are few enough.
+void HostAreas::list_tool_samples() {
+  const std::size_t triangles = geometry_->tool.triangles.size();
+  own_sample_begin_.assign(1, 0);
+  for (std::uint32_t id = 0; id < triangles; ++id) {
+    const bool few = geometry_->tool.collapsed(id) || for_tool_samples(id, [&](const Int3& p) { own_samples_.push_back(p); });
+    if (!few || own_samples_.size() > kMostListed) {
+      own_sample_begin_.clear();
+      own_samples_ = {};
+      return;
+    }
+    own_sample_begin_.push_back(static_cast<std::uint32_t>(own_samples_.size()));
+  }
+}
+
+/// Samples of a tool triangle that lie in V_bnd or V_int voxels of the mock-up. False: too many grid points.
+bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile, std::uint32_t& count) const {
+  count = 0;
+  const auto take = [&](const Int3& p) { count += occupied(transform(pose, p)) ? 1u : 0u; };
+  if (own_sample_begin_.empty()) return for_tool_samples(mobile, take);
+  for (std::uint32_t i = own_sample_begin_[mobile]; i < own_sample_begin_[mobile + 1]; ++i) take(own_samples_[i]);
   return true;
 }
 
@@ -330,7 +374,8 @@ bool HostAreas::direct(AreaWork& area, const Held* held) const {
   return true;
 }
 
-bool HostAreas::solve(const LatticePose& pose, const Held* held, const ContactLists& lists, Answer& answer) {
+bool HostAreas::solve(PosedTool& tool, const Held* held, const ContactLists& lists, Answer& answer) {
+  const LatticePose& pose = tool.pose();
   answer = {};
   if (lists.statics.size() > most_statics_) return false;
   join_all(lists);
@@ -348,7 +393,7 @@ bool HostAreas::solve(const LatticePose& pose, const Held* held, const ContactLi
   }
   for (const FrameSample& sample : lists.samples) lists.slots[slot(sample.static_id, lists)].samples += 1;
   gather(lists);
-  if (!associate(pose, lists, answer)) return false;
+  if (!associate(tool, lists, answer)) return false;
   const std::span<AreaWork> areas = lists.areas.first(answer.areas);
   for (std::uint32_t number = 0; number < answer.areas; ++number) begin_area(areas[number], number, pose, held, lists);
   if (!sum_tool_normals(pose, lists, answer)) return false;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compute/host_copy.h"
+#include "compute/posed_tool.h"
 #include "compute/prepared_scene.h"
 #include "model/contacts.h"
 #include "model/lattice.h"
@@ -37,7 +38,7 @@ class HostAreas {
     std::uint32_t areas = 0, members = 0;
   };
   /// False: left to the device. `lists` may then be half written.
-  bool solve(const LatticePose& pose, const Held* held, const ContactLists& lists, Answer& answer);
+  bool solve(PosedTool& tool, const Held* held, const ContactLists& lists, Answer& answer);
 
   /// After solve(): the number of the area that a triangle of C_s belongs to.
   std::uint32_t area_of(std::uint32_t static_id, const ContactLists& lists) const { return lists.slots[slot(static_id, lists)].area; }
@@ -56,8 +57,11 @@ class HostAreas {
   std::uint32_t slot(std::uint32_t id, const ContactLists& lists) const;
   void gather(const ContactLists& lists);
   std::uint32_t match_held(std::uint32_t area, const Held& held, const ContactLists& lists) const;
-  bool associate(const LatticePose& pose, const ContactLists& lists, Answer& answer);
+  bool associate(PosedTool& tool, const ContactLists& lists, Answer& answer);
   void begin_area(gpu::AreaWork& area, std::uint32_t number, const LatticePose& pose, const Held* held, const ContactLists& lists) const;
+  template <class Take>
+  bool for_tool_samples(std::uint32_t mobile, Take&& take) const;
+  void list_tool_samples();
   bool count_tool_samples(const LatticePose& pose, std::uint32_t mobile, std::uint32_t& count) const;
   bool sum_tool_normals(const LatticePose& pose, const ContactLists& lists, const Answer& answer);
   bool direct(gpu::AreaWork& area, const Held* held) const;
@@ -72,6 +76,8 @@ class HostAreas {
   std::vector<std::uint32_t> slot_of_;          ///< by static id; valid where C_s has it there
   bool zones_ = true;                           ///< false: every edge is smooth, an area is one zone
   std::vector<std::uint32_t> parents_;          ///< by node
+  std::vector<std::uint32_t> own_sample_begin_; ///< by tool triangle, and one more; empty: not listed
+  std::vector<Int3> own_samples_;               ///< of the tool, in its lattice frame
   std::vector<std::uint32_t> tool_samples_;     ///< by tool triangle: kNone until counted
 };
 

@@ -22,7 +22,7 @@ bool HostContact::decide(PosedTool& tool, const NearLists& near) {
 bool HostContact::join(PosedTool& tool, const Held* held) {
   slots_.resize(found_.statics.size());
   lists_ = {.mobiles = found_.mobiles, .samples = found_.samples, .statics = found_.statics, .areas = work_, .slots = slots_, .members = members_};
-  return areas_.solve(tool.pose(), held, lists_, answer_);
+  return areas_.solve(tool, held, lists_, answer_);
 }
 
 bool HostContact::trace(PosedTool& tool) {

@@ -64,6 +64,18 @@ bool edge_parts(const Int3& f, const Int3& p, const Int3& q, std::int64_t e) {
   return parted(of_p.x, of_q.x, e * (y + z)) || parted(of_p.y, of_q.y, e * (z + x)) || parted(of_p.z, of_q.z, e * (x + y));
 }
 
+/// Of a number that is not negative, off by less than 2^-52 of it.
+double rounded(Wide v) { return static_cast<double>(static_cast<std::uint64_t>(v >> 64)) * 0x1p64 + static_cast<double>(static_cast<std::uint64_t>(v)); }
+
+/// floor(2^30 · distance / slope), at most 2^31. The quotient of doubles is off by less than 2^-50 of it, so by 2^-19.
+std::uint32_t height_of(Wide distance, Wide slope) {
+  constexpr double kError = 0x1p-18;
+  const double height = rounded(distance) * 0x1p30 / rounded(slope) + 1;   // 1: rounded towards 0 below
+  const auto least = static_cast<std::int64_t>(height - kError), most = static_cast<std::int64_t>(height + kError);
+  if (least == most) return static_cast<std::uint32_t>(least - 1);
+  return static_cast<std::uint32_t>((distance << 30) / slope);   // both are below 2^91
+}
+
 bool before(const Int3& a, const Int3& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
 
 }  // namespace
@@ -91,11 +103,21 @@ bool triangles_meet(const Corners& s, const Corners& t, const Normal& t_normal) 
   return false;
 }
 
-bool triangle_touches_cube(const Corners& t, const Normal& normal, const Int3& low, std::int32_t side) {
+bool triangle_touches_cube(const Corners& t, const Box& box, const Int3& low, std::int32_t side) {
+  const Int3 high = low + side;
+  int beyond = 0;   // axes along which the triangle's box leaves the cube
+  for (int k = 0; k < 3; ++k) {
+    if (box.low[k] > high[k] || box.high[k] < low[k]) return false;
+    beyond += box.low[k] < low[k] || box.high[k] > high[k] ? 1 : 0;
+  }
+  // Along one axis it has a point within the cube's reach, like every connected set with such a box, and along the others all of it is.
+  if (beyond <= 1) return true;
+  for (const Int3& corner : t)
+    if (corner == glm::clamp(corner, low, high)) return true;
+
+  const Normal normal = raw_normal(t);
   const Int3 centre = 2 * low + side;
   const Int3 p = 2 * t[0] - centre, q = 2 * t[1] - centre, r = 2 * t[2] - centre;
-  for (int k = 0; k < 3; ++k)
-    if (std::min({p[k], q[k], r[k]}) > side || std::max({p[k], q[k], r[k]}) < -side) return false;
   // The triangle's plane: |n·p| ≤ |n|·e.
   const Wide distance = dot(normal, p), reach = Wide{side} * (Wide{std::abs(normal.x)} + std::abs(normal.y) + std::abs(normal.z));
   if (distance > reach || -distance > reach) return false;
@@ -112,8 +134,7 @@ Crossing ray_crossing(const Int3& p, const Int3& d, const Corners& t) {
   const int side = sign(distance);
   if (side == 0) return {first_sign(n) == -facing ? facing : 0, 0};
   if (side != facing) return {};
-  // Both are below 2^91, and the quotient is at most 2^31.
-  return {facing, static_cast<std::uint32_t>((distance * facing << 30) / (slope * facing))};
+  return {facing, height_of(distance * facing, slope * facing)};
 }
 
 int segment_crossing(const Int3& p, const Int3& q, const Corners& t) {

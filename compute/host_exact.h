@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
+#include <glm/common.hpp>
 
 #include "model/vector.h"
 
@@ -36,8 +38,14 @@ int sign(Integer v) {
 /// Whether two closed triangles share a point: touching and coplanar overlap count. Neither may be collapsed; `t_normal` is t's.
 bool triangles_meet(const Corners& s, const Corners& t, const Normal& t_normal);
 
-/// Whether a closed triangle touches the closed cube [low, low + side]. `normal` is the triangle's, not 0.
-bool triangle_touches_cube(const Corners& t, const Normal& normal, const Int3& low, std::int32_t side);
+/// A closed box.
+struct Box {
+  Int3 low, high;
+};
+inline Box box_of(const Corners& t) { return {glm::min(glm::min(t[0], t[1]), t[2]), glm::max(glm::max(t[0], t[1]), t[2])}; }
+
+/// Whether a closed triangle, not collapsed, touches the closed cube [low, low + side]. `box` is the triangle's.
+bool triangle_touches_cube(const Corners& t, const Box& box, const Int3& low, std::int32_t side);
 
 /// A crossing of the perturbed ray.
 struct Crossing {
@@ -61,10 +69,13 @@ int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv
 template <class Take>
 void for_samples(const Corners& t, int k, std::int32_t spacing, const Int3& low, const Int3& high, Take&& take) {
   const int iu = (k + 1) % 3, iv = (k + 2) % 3;
+  const double per_spacing = 1.0 / spacing;
   const auto first = [&](int axis) {   // the first grid line not before the box
     const std::int64_t at = std::max(low[axis], std::min({t[0][axis], t[1][axis], t[2][axis]}));
-    const std::int64_t q = at / spacing;
-    return spacing * (at % spacing > 0 ? q + 1 : q);
+    auto q = static_cast<std::int64_t>(static_cast<double>(at) * per_spacing);   // off by one at most
+    while (q * spacing < at) ++q;
+    while ((q - 1) * spacing >= at) --q;
+    return q * spacing;
   };
   const auto last = [&](int axis) { return std::int64_t{std::min(high[axis], std::max({t[0][axis], t[1][axis], t[2][axis]}))}; };
   const std::int64_t u0 = first(iu), u1 = last(iu), v0 = first(iv), v1 = last(iv);
@@ -72,6 +83,8 @@ void for_samples(const Corners& t, int k, std::int32_t spacing, const Int3& low,
   const Normal n = raw_normal(t);
   const std::int64_t parts[3] = {n.x, n.y, n.z}, nk = parts[k];
   const int facing = nk < 0 ? -1 : 1;
+  // Of a small triangle: |N_u|, |N_v| ≤ |N_k|, so that sums are within 2^62.
+  const bool small = std::abs(nk) < std::int64_t{1} << 36 && u1 - u0 < 1 << 24 && v1 - v0 < 1 << 24 && std::abs(u0 - t[0][iu]) < 1 << 24 && std::abs(v0 - t[0][iv]) < 1 << 24;
   for (std::int64_t v = v0; v <= v1; v += spacing)
     for (std::int64_t u = u0; u <= u1; u += spacing) {
       bool within = true;
@@ -81,9 +94,14 @@ void for_samples(const Corners& t, int k, std::int32_t spacing, const Int3& low,
       }
       if (!within) continue;
       // floor(a_k − (N_u (u − a_u) + N_v (v − a_v)) / N_k)
-      const Wide over = -facing * (Wide{parts[iu]} * (u - t[0][iu]) + Wide{parts[iv]} * (v - t[0][iv])), under = Wide{nk} * facing, q = over / under;
       Int3 p;
-      p[k] = t[0][k] + static_cast<std::int32_t>(over % under < 0 ? q - 1 : q);
+      if (small) {
+        const std::int64_t over = -facing * (parts[iu] * (u - t[0][iu]) + parts[iv] * (v - t[0][iv])), under = nk * facing, q = over / under;
+        p[k] = t[0][k] + static_cast<std::int32_t>(over % under < 0 ? q - 1 : q);
+      } else {
+        const Wide over = -facing * (Wide{parts[iu]} * (u - t[0][iu]) + Wide{parts[iv]} * (v - t[0][iv])), under = Wide{nk} * facing, q = over / under;
+        p[k] = t[0][k] + static_cast<std::int32_t>(over % under < 0 ? q - 1 : q);
+      }
       p[iu] = static_cast<std::int32_t>(u);
       p[iv] = static_cast<std::int32_t>(v);
       if (p[k] >= low[k] && p[k] <= high[k]) take(p);

@@ -150,7 +150,8 @@ void HostFollow::pierces(const ContactLists& lists, std::uint32_t area_count, st
   for (std::uint32_t area = area_count; area > 0; --area) first_slot_[area] = first_slot_[area - 1];
   first_slot_[0] = 0;
 
-  std::sort(risen.begin(), risen.end(), [](const RisenSample& a, const RisenSample& b) { return a.area < b.area; });
+  const auto by_area = [](const RisenSample& a, const RisenSample& b) { return a.area < b.area; };
+  if (!std::is_sorted(risen.begin(), risen.end(), by_area)) std::sort(risen.begin(), risen.end(), by_area);   // needles come last
   for (auto begin = risen.begin(); begin != risen.end();) {
     const std::uint32_t own = begin->area;
     const auto end = std::find_if(begin, risen.end(), [own](const RisenSample& ray) { return ray.area != own; });

@@ -41,11 +41,15 @@ bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3
 }
 
 /// Of the triangles crossed at the last ray's height, the smallest direction of a normal.
-Int3 HostHeights::exit_normal(PosedTool& tool, std::uint32_t height) const {
+Int3 HostHeights::exit_normal(PosedTool& tool, std::uint32_t height) {
   Int3 least(INT32_MAX);
   for (const Level& level : levels_) {
     if (level.height != height) continue;
-    const Int3 m = exact::normalise(exact::raw_normal(tool.corners(level.id)));
+    if (level.id != left_) {
+      left_ = level.id;
+      left_normal_ = exact::normalise(exact::raw_normal(tool.corners(level.id)));
+    }
+    const Int3& m = left_normal_;
     if (std::tie(m.x, m.y, m.z) < std::tie(least.x, least.y, least.z)) least = m;
   }
   return least;
@@ -64,6 +68,16 @@ std::uint32_t HostHeights::fade_height(std::uint32_t static_id, const Int3& d, c
   const std::int64_t size = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
   const std::int64_t most = std::min((spacing << 32) / size, std::int64_t{1} << 30);
   return static_cast<std::uint32_t>(leaving == 0 ? most : std::min(most, 4 * spacing * std::max(along(u), along(v)) / leaving));
+}
+
+std::uint32_t HostHeights::fade_of(std::uint32_t static_id, const Int3& d, const Int3& m) {
+  if (static_id != faded_ || m != faded_m_ || d != faded_d_) {
+    fade_ = fade_height(static_id, d, m);
+    faded_ = static_id;
+    faded_m_ = m;
+    faded_d_ = d;
+  }
+  return fade_;
 }
 
 // H ≤ 2^31 and w < 2^31: M = (H·w) >> 30 ≤ 2^32, M·s within 2^60; w' < 2^32. Faded heights are w·H or w·H_0·ν ≤ 2^62.6.
@@ -113,6 +127,7 @@ void HostHeights::add(AreaWork& area, const Int3& point, std::uint32_t height, s
 
 bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostAreas& areas, std::vector<RisenSample>& risen) {
   const NearRays::Turn turn(tool.pose());
+  left_ = kNone;
   // Area by area, for an area's rays have one direction.
   first_of_.assign(kMaxFrameAreas + 1, 0);
   for (const FrameSample& sample : lists.samples) first_of_[areas.area_of(sample.static_id, lists) + 1] += 1;
@@ -131,7 +146,7 @@ bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostArea
     std::uint32_t h = kNone;
     if (!height(tool, turn, sample.point, false, h)) return false;
     if (h == kNone) continue;
-    add(area, sample.point, h, geometry_->mockup.sample_weight_q30[sample.static_id], fade_height(sample.static_id, area.direction, exit_normal(tool, h)));
+    add(area, sample.point, h, geometry_->mockup.sample_weight_q30[sample.static_id], fade_of(sample.static_id, area.direction, exit_normal(tool, h)));
     risen.push_back({number, sample.point, h});
   }
   return true;

@@ -49,7 +49,8 @@ class HostHeights {
     std::uint32_t id;
   };
   std::uint32_t fade_height(std::uint32_t static_id, const Int3& d, const Int3& m) const;
-  Int3 exit_normal(PosedTool& tool, std::uint32_t height) const;
+  Int3 exit_normal(PosedTool& tool, std::uint32_t height);
+  std::uint32_t fade_of(std::uint32_t static_id, const Int3& d, const Int3& m);
 
   const SceneGeometry* geometry_;
   NearRays* rays_;
@@ -59,6 +60,12 @@ class HostHeights {
   std::vector<std::uint32_t> by_area_;   ///< counting samples, those of an area one after the other
   std::vector<std::uint32_t> first_of_;  ///< of each area, in it
   std::vector<Level> levels_;   ///< crossings of the last ray, by height
+  // Neighbouring samples lie on one triangle and leave through one: the last answers.
+  std::uint32_t left_ = gpu::kNone;      ///< tool triangle
+  Int3 left_normal_{0};                  ///< its direction at this pose
+  std::uint32_t faded_ = gpu::kNone;     ///< static triangle, with m and D …
+  Int3 faded_m_{0}, faded_d_{0};
+  std::uint32_t fade_ = 0;               ///< … has this H_0
 };
 
 }  // namespace palpate

@@ -15,6 +15,7 @@ class HostPartition {
   /// Allocates where the buffers are not mapped.
   Result<void> read(VulkanDevice& device, const PartitionBuffers& from) {
     grid_ = from.grid;
+    per_voxel_ = 1.0 / grid_.size;
     const Int3 n = grid_.bricks;
     if (auto r = slots_.read(device, from.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r) return r;
     if (auto r = bricks_.read(device, from.bricks, grid_.mixed_bricks); !r) return r;
@@ -46,8 +47,10 @@ class HostPartition {
   Int3 voxel_of(const Int3& p) const {
     Int3 v;
     for (int k = 0; k < 3; ++k) {
-      const std::int64_t d = std::int64_t{p[k]} - grid_.origin[k], q = d / grid_.size;
-      v[k] = static_cast<std::int32_t>(d % grid_.size < 0 ? q - 1 : q);
+      // Half a step from the nearest integer quotient, which is far more than a double rounds.
+      const double along = (static_cast<double>(p[k]) - grid_.origin[k] + 0.5) * per_voxel_;
+      v[k] = static_cast<std::int32_t>(along);
+      if (along < 0) --v[k];
     }
     return v;
   }
@@ -60,6 +63,7 @@ class HostPartition {
 
  private:
   gpu::GridConstants grid_{};
+  double per_voxel_ = 0;   ///< voxels a step
   HostCopy<std::uint32_t> slots_, list_begin_, list_triangles_;
   HostCopy<gpu::Brick> bricks_;
 };

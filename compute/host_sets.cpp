@@ -1,10 +1,17 @@
 #include "compute/host_sets.h"
 
+#include <algorithm>
 #include <glm/common.hpp>
 
 namespace palpate {
 
 using namespace gpu;   // names of shaders/shared/frame.h
+
+namespace {
+
+constexpr std::size_t kAhead = 12;   // entries of a list whose data are called for before their turn: they lie far apart (chosen)
+
+}  // namespace
 
 Result<HostSets> HostSets::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
   HostSets out;
@@ -95,8 +102,62 @@ bool HostSets::walks_out(PosedTool& tool, const Int3& point) const {
   return winding != 0;
 }
 
-bool HostSets::decide(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, std::size_t most_statics, FoundSets& out) {
+/// CST and CMT.
+void HostSets::decide_pairs(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, FoundSets& out) {
   const LatticeMesh& mockup = geometry_->mockup;
+  const std::span<const PairCandidate> candidates = near.pairs.room.first(near.pairs.count);
+  std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
+  for (std::size_t begin = 0; begin < candidates.size(); begin += PairFilter::kLanes) {
+    for (std::size_t i = begin + 2 * PairFilter::kLanes; i < std::min(begin + 3 * PairFilter::kLanes, candidates.size()); ++i)
+      __builtin_prefetch(&mockup.triangles[candidates[i].static_id]);
+    for (std::size_t i = begin + PairFilter::kLanes; i < std::min(begin + 2 * PairFilter::kLanes, candidates.size()); ++i)
+      for (const std::uint32_t vertex : mockup.triangles[candidates[i].static_id]) __builtin_prefetch(&mockup.vertices[vertex]);
+    const std::span<const PairCandidate> now = candidates.subspan(begin, std::min(PairFilter::kLanes, candidates.size() - begin));
+    for (std::size_t lane = 0; lane < now.size(); ++lane) {
+      const std::uint32_t s = now[lane].static_id;
+      filter_.put(lane, {mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, tool.corners(order_[now[lane].place]));
+    }
+    filter_.judge(verdicts);
+    for (std::size_t lane = 0; lane < now.size(); ++lane) {
+      if (verdicts[lane] == PairFilter::kApart) continue;
+      const std::uint32_t s = now[lane].static_id, id = order_[now[lane].place];
+      if (verdicts[lane] == PairFilter::kUnknown) {
+        const exact::Corners& t = tool.corners(id);
+        if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, t, exact::raw_normal(t))) continue;
+      }
+      out.pairs.push_back({s, id});
+      mark_static(s, kStaticHit, slot_of, out);
+      mark_mobile(id, kMobileHit, out);
+    }
+  }
+}
+
+/// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is not asked.
+void HostSets::decide_voxels(PosedTool& tool, const NearLists& near, FoundSets& out) {
+  const GridConstants& grid = mockup_.grid();
+  std::uint32_t place = kNone, id = 0;   // candidates of one tool triangle follow each other
+  const exact::Corners* corners = nullptr;
+  exact::Box box{};
+  for (const TouchCandidate& candidate : near.touch.room.first(near.touch.count)) {
+    if (candidate.place != place) {
+      place = candidate.place;
+      id = order_[place];
+      corners = &tool.corners(id);
+      box = exact::box_of(*corners);
+    }
+    const std::uint32_t bit = candidate.boundary == kNoVoxel ? kMobileInternal : kMobileBoundary;
+    if ((candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) && marked(id, bit, out)) continue;
+    const Int3 voxel(candidate.xy & 0xFFFF, candidate.xy >> 16, candidate.z & ~kWholeBrick);
+    const std::int32_t side = (candidate.z & kWholeBrick) != 0 ? 8 * grid.size : grid.size;
+    if (!exact::triangle_touches_cube(*corners, box, grid.origin + grid.size * voxel, side)) continue;
+    mark_mobile(id, bit, out);
+    if (candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) continue;
+    touched_[candidate.boundary] = 1;
+    touched_voxels_.push_back(candidate.boundary);
+  }
+}
+
+bool HostSets::decide(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, std::size_t most_statics, FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();
@@ -104,46 +165,18 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, std::span<std::uin
   out.pairs.clear();
   touched_voxels_.clear();
 
-  // Pairs: CST and CMT. Candidates of one tool triangle follow each other.
-  std::uint32_t place = kNone, id = 0;
-  exact::Normal normal{};
-  const exact::Corners* corners = nullptr;
-  const auto turn_to = [&](std::uint32_t next) {
-    if (next == place) return;
-    place = next;
-    id = order_[place];
-    corners = &tool.corners(id);
-    normal = exact::raw_normal(*corners);
-  };
-  for (const PairCandidate& candidate : near.pairs.room.first(near.pairs.count)) {
-    turn_to(candidate.place);
-    const std::uint32_t s = candidate.static_id;
-    if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, *corners, normal)) continue;
-    out.pairs.push_back({s, id});
-    mark_static(s, kStaticHit, slot_of, out);
-    mark_mobile(id, kMobileHit, out);
-  }
-
-  // Voxels that tool triangles touch: IMT, BMT, and what is listed there: BST. What would tell nothing new is not asked.
-  const GridConstants& grid = mockup_.grid();
-  place = kNone;
-  for (const TouchCandidate& candidate : near.touch.room.first(near.touch.count)) {
-    turn_to(candidate.place);
-    const std::uint32_t bit = candidate.boundary == kNoVoxel ? kMobileInternal : kMobileBoundary;
-    if ((candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) && marked(id, bit, out)) continue;
-    const Int3 voxel(candidate.xy & 0xFFFF, candidate.xy >> 16, candidate.z & ~kWholeBrick);
-    const std::int32_t side = (candidate.z & kWholeBrick) != 0 ? 8 * grid.size : grid.size;
-    if (!exact::triangle_touches_cube(*corners, normal, grid.origin + grid.size * voxel, side)) continue;
-    mark_mobile(id, bit, out);
-    if (candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) continue;
-    touched_[candidate.boundary] = 1;
-    touched_voxels_.push_back(candidate.boundary);
-  }
+  decide_pairs(tool, near, slot_of, out);
+  decide_voxels(tool, near, out);
   bool room = true;
   for (const std::uint32_t voxel : touched_voxels_) {
     touched_[voxel] = 0;
-    if (room)
-      for (const std::uint32_t s : mockup_.list(voxel)) mark_static(s, kStaticListed, slot_of, out);
+    if (room) {
+      const std::span<const std::uint32_t> list = mockup_.list(voxel);
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        if (i + kAhead < list.size()) __builtin_prefetch(&slot_of[list[i + kAhead]]);
+        mark_static(list[i], kStaticListed, slot_of, out);
+      }
+    }
     room = room && out.statics.size() <= most_statics;
   }
   if (!room) return false;

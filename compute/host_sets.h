@@ -5,6 +5,7 @@
 
 #include "compute/host_partition.h"
 #include "compute/near_lists.h"
+#include "compute/pair_filter.h"
 #include "compute/posed_tool.h"
 #include "compute/prepared_scene.h"
 #include "model/scene_geometry.h"
@@ -32,6 +33,8 @@ class HostSets {
   bool decide(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, std::size_t most_statics, FoundSets& out);
 
  private:
+  void decide_pairs(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, FoundSets& out);
+  void decide_voxels(PosedTool& tool, const NearLists& near, FoundSets& out);
   void mark_static(std::uint32_t id, std::uint32_t bit, std::span<std::uint32_t> slot_of, FoundSets& out) const;
   void mark_mobile(std::uint32_t id, std::uint32_t bit, FoundSets& out);
   bool marked(std::uint32_t id, std::uint32_t bit, const FoundSets& out) const;
@@ -44,6 +47,7 @@ class HostSets {
   const SceneGeometry* geometry_ = nullptr;
   std::span<const std::uint32_t> order_;
   HostPartition mockup_, fine_;
+  PairFilter filter_;
   HostCopy<std::uint32_t> fine_exit_;
   std::vector<std::uint8_t> touched_;           ///< by V_bnd voxel; 0 between frames
   std::vector<std::uint32_t> touched_voxels_;   ///< of this frame

@@ -3,13 +3,23 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
+
+#include "compute/processor.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::int32_t kFewVoxels = 64;   // beyond, a look at the brick as a whole comes first (chosen)
+constexpr std::int32_t kParts = 256;      // of a voxel's side: a byte says which
 
-std::int32_t raised(std::int64_t v) { return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, 0, 0xFFFF)); }
+// Sixteen boxes at a time.
+constexpr std::size_t kLanes = 16;
+using Bytes = std::uint8_t __attribute__((vector_size(kLanes)));
+
+std::uint8_t in_voxel(std::int32_t part) { return static_cast<std::uint8_t>(std::clamp(part, 0, kParts - 1)); }
+
+inline void load(const std::uint8_t* from, Bytes& out) { std::memcpy(&out, from, sizeof out); }
 
 }  // namespace
 
@@ -17,47 +27,70 @@ Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geo
   NearPairs out;
   out.grid_ = mockup.grid;
   out.per_voxel_ = 1.0 / mockup.grid.size;
+  out.per_part_ = static_cast<double>(kParts) / mockup.grid.size;
+  // Boxes of parts reach a part further than their highs. A test is off by less than a sixteenth of a half part: sums in single precision
+  // below 2048 half parts by less than 2^-10, and doubles before that by far less.
+  out.slack_ = 1 + static_cast<float>(2 * out.per_part_ * (gpu::kCloseSteps + 1)) + 0x1p-4F;
   if (auto r = out.bricks_.read(device, mockup.bricks, mockup.grid.mixed_bricks); !r) return r.error();
   if (auto r = out.list_begin_.read(device, mockup.list_begin, std::size_t{mockup.grid.boundary_voxels} + 1); !r) return r.error();
   if (auto r = out.list_triangles_.read(device, mockup.list_triangles, mockup.grid.list_entries); !r) return r.error();
-  const gpu::ivec3& n = mockup.grid.bricks;
-  const std::int64_t extent = std::int64_t{8} * mockup.grid.size * std::max({n.x, n.y, n.z});
-  while (extent >> out.shift_ > 0xFFFF) ++out.shift_;
-  out.box_step_ = std::ldexp(1.0, static_cast<int>(out.shift_));
-  const LatticeMesh& mesh = geometry.mockup;
-  out.boxes_.resize(mesh.triangles.size());
-  out.seen_by_.resize(mesh.triangles.size());
-  for (std::uint32_t id = 0; id < out.boxes_.size(); ++id) {
-    const Int3 a = mesh.corner(id, 0), b = mesh.corner(id, 1), c = mesh.corner(id, 2);
-    out.boxes_[id] = out.box_of(glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c));
-  }
+  out.seen_by_.resize(geometry.mockup.triangles.size());
+  std::vector<std::uint32_t> slots(static_cast<std::size_t>(mockup.grid.bricks.x) * static_cast<std::size_t>(mockup.grid.bricks.y) *
+                                   static_cast<std::size_t>(mockup.grid.bricks.z));
+  if (auto r = download(device, mockup.brick_slot, 0, slots.data(), slots.size() * 4); !r) return r.error();
+  out.make_boxes(geometry.mockup, slots);
   return out;
 }
 
-/// Rounding down is monotone, and so is clamping to the grid, which holds the mock-up: boxes that meet still do.
-NearPairs::Box NearPairs::box_of(const Int3& low, const Int3& high) const {
-  Box out;
-  for (int k = 0; k < 3; ++k) {
-    out[static_cast<std::size_t>(k)] = static_cast<std::uint16_t>(raised((std::int64_t{low[k]} - grid_.origin[k]) >> shift_));
-    out[static_cast<std::size_t>(k) + 3] = static_cast<std::uint16_t>(raised((std::int64_t{high[k]} - grid_.origin[k]) >> shift_));
-  }
-  return out;
+/// Monotone, as are a double's rounding, a clamp far beyond the grid, and a conversion: boxes that meet in a voxel still do.
+std::int32_t NearPairs::part_of(std::int32_t coordinate, std::size_t axis) const {
+  return static_cast<std::int32_t>(std::clamp((static_cast<double>(coordinate) - grid_.origin[static_cast<int>(axis)]) * per_part_, -0x1p30, 0x1p30));
 }
 
-bool NearPairs::begin(const LatticePose& pose, const LatticeMesh& tool, std::uint32_t id, std::uint32_t place, Triangle& out) {
+void NearPairs::make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_t> slots) {
+  boxes_.resize(6 * std::size_t{grid_.list_entries} + kLanes);   // the last sixteen are read whole
+  Int3 brick;
+  std::size_t place = 0;
+  for (brick.z = 0; brick.z < grid_.bricks.z; ++brick.z)
+    for (brick.y = 0; brick.y < grid_.bricks.y; ++brick.y)
+      for (brick.x = 0; brick.x < grid_.bricks.x; ++brick.x, ++place) {
+        if (slots[place] >= gpu::kBrickInternal) continue;
+        const gpu::Brick& voxels = bricks_[slots[place]];
+        for (std::uint32_t word = 0; word < 16; ++word) {
+          std::uint32_t boundary = voxels.first[word];
+          for (std::uint32_t rest = voxels.boundary[word]; rest != 0; rest &= rest - 1, ++boundary) {
+            const auto bit = static_cast<std::int32_t>(word << 5) + std::countr_zero(rest);
+            const Int3 base = kParts * (8 * brick + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
+            const std::size_t begin = list_begin_[boundary], count = list_begin_[boundary + 1] - begin;
+            for (std::size_t i = 0; i < count; ++i) {
+              const std::uint32_t id = list_triangles_[begin + i];
+              const exact::Box box = exact::box_of({mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)});
+              for (std::size_t k = 0; k < 3; ++k) {
+                const int axis = static_cast<int>(k);
+                boxes_[6 * begin + k * count + i] = in_voxel(part_of(box.low[axis], k) - base[axis]);
+                boxes_[6 * begin + (k + 3) * count + i] = in_voxel(part_of(box.high[axis], k) - base[axis]);
+              }
+            }
+          }
+        }
+      }
+}
+
+bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, Triangle& out) {
+  const exact::Normal n = exact::raw_normal(corners);
+  if (n == exact::Normal{}) return false;
   out.place = place;
-  for (int k = 0; k < 3; ++k) out.corners[static_cast<std::size_t>(k)] = transform(pose, tool.corner(id, k));
-  const auto& [a, b, c] = out.corners;
-  // Differences within 2^29 + 1: each component is exact within 2^60.
-  const std::int64_t u[3] = {b.x - a.x, b.y - a.y, b.z - a.z}, v[3] = {c.x - a.x, c.y - a.y, c.z - a.z};
-  const std::int64_t n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  if (n[0] == 0 && n[1] == 0 && n[2] == 0) return false;
-  out.normal_size = 0;
+  out.box = exact::box_of(corners);
+  out.corner = corners[0];
+  out.normal = {static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)};
+  out.normal_size = std::abs(out.normal[0]) + std::abs(out.normal[1]) + std::abs(out.normal[2]);
+  const double each = 1 / out.normal_size;
   for (std::size_t k = 0; k < 3; ++k) {
-    out.normal[k] = static_cast<double>(n[k]);
-    out.normal_size += std::abs(out.normal[k]);
+    const int axis = static_cast<int>(k);
+    out.facing[k] = static_cast<float>(out.normal[k] * each);
+    out.parts[k] = part_of(out.box.low[axis] - gpu::kCloseSteps, k);
+    out.parts[k + 3] = part_of(out.box.high[axis] + gpu::kCloseSteps, k);
   }
-  out.box = box_of(glm::min(glm::min(a, b), c) - gpu::kCloseSteps, glm::max(glm::max(a, b), c) + gpu::kCloseSteps);
   if (++looker_ == 0) {   // once in 2^32 triangles
     std::fill(seen_by_.begin(), seen_by_.end(), 0u);
     looker_ = 1;
@@ -69,47 +102,69 @@ bool NearPairs::begin(const LatticePose& pose, const LatticeMesh& tool, std::uin
 /// doubles: with distances below 2^30 the sum is off by less than 2^-20 of the normal's size.
 bool NearPairs::off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const {
   const double half = 0.5 * side;
-  const Int3& a = triangle.corners[0];
+  const Int3& a = triangle.corner;
   const double distance = triangle.normal[0] * (low.x - a.x + half) + triangle.normal[1] * (low.y - a.y + half) + triangle.normal[2] * (low.z - a.z + half);
   return std::abs(distance) > triangle.normal_size * (half + gpu::kCloseSteps + 1);
 }
 
-/// Whether all of a static triangle's box lies on one side of the triangle's plane. A box is low to high + 1 of its steps; slack as above.
-bool NearPairs::off_plane(const Triangle& triangle, const Box& box) const {
-  const Int3& a = triangle.corners[0];
-  double distance = 0, reach = triangle.normal_size * (gpu::kCloseSteps + 1);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int axis = static_cast<int>(k);
-    distance += triangle.normal[k] * (0.5 * box_step_ * (box[k] + box[k + 3] + 1) + (grid_.origin[axis] - a[axis]));
-    reach += std::abs(triangle.normal[k]) * (0.5 * box_step_ * (box[k + 3] - box[k] + 1));
+/// Of the static triangles that a voxel lists, those whose boxes there meet the triangle's and its plane. Where two triangles are within kCloseSteps
+/// of each other, the static one is so in some voxel that lists it, and there all of this lets it pass.
+bool NearPairs::take_list(const Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists) {
+  std::array<Bytes, 6> own;
+  float plane = 0;   // of the voxel's low corner, in half parts
+  {
+    double distance = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      own[k] = Bytes{} + in_voxel(triangle.parts[k] - kParts * voxel[axis]);
+      own[k + 3] = Bytes{} + in_voxel(triangle.parts[k + 3] - kParts * voxel[axis]);
+      distance += triangle.normal[k] * (grid_.origin[axis] + grid_.size * voxel[axis] - triangle.corner[axis]);
+    }
+    plane = static_cast<float>(distance / triangle.normal_size * (2 * per_part_)) + (triangle.facing[0] + triangle.facing[1] + triangle.facing[2]);
   }
-  return std::abs(distance) > reach;
-}
-
-bool NearPairs::take_list(const Triangle& triangle, std::uint32_t boundary, NearLists& lists) {
-  const Box& t = triangle.box;
-  for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end; ++e) {
-    const std::uint32_t id = list_triangles_[e];
-    const Box& s = boxes_[id];
-    if (s[0] > t[3] || s[1] > t[4] || s[2] > t[5] || t[0] > s[3] || t[1] > s[4] || t[2] > s[5]) continue;
-    if (seen_by_[id] == looker_) continue;   // one pair lies in many voxels
-    seen_by_[id] = looker_;
-    if (off_plane(triangle, s)) continue;
-    if (!lists.push(lists.pairs, gpu::kListPairCandidates, {id, triangle.place})) return false;
+  const float x = triangle.facing[0], y = triangle.facing[1], z = triangle.facing[2];
+  const std::size_t begin = list_begin_[boundary], count = list_begin_[boundary + 1] - begin;
+  const std::uint8_t* boxes = &boxes_[6 * begin];
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    std::array<Bytes, 6> its;
+    for (std::size_t k = 0; k < 6; ++k) load(boxes + k * count + first, its[k]);
+    const Bytes meet = (Bytes)(its[0] <= own[3]) & (Bytes)(its[1] <= own[4]) & (Bytes)(its[2] <= own[5]) & (Bytes)(own[0] <= its[3]) & (Bytes)(own[1] <= its[4]) &
+                       (Bytes)(own[2] <= its[5]);
+    std::array<std::uint64_t, 2> found;
+    std::memcpy(found.data(), &meet, sizeof meet);
+    for (std::size_t half = 0; half < 2; ++half)
+      for (std::uint64_t rest = found[half] & 0x0101010101010101u; rest != 0; rest &= rest - 1) {
+        const std::size_t i = first + 8 * half + static_cast<std::size_t>(std::countr_zero(rest) >> 3);
+        if (i >= count) break;
+        // The box lies on one side of the plane when its middle is further from it than it reaches.
+        const std::uint8_t* s = boxes + i;
+        const int low[3] = {s[0], s[count], s[2 * count]}, high[3] = {s[3 * count], s[4 * count], s[5 * count]};
+        const float middle = plane + x * static_cast<float>(low[0] + high[0]) + y * static_cast<float>(low[1] + high[1]) + z * static_cast<float>(low[2] + high[2]);
+        const float reach = std::abs(x) * static_cast<float>(high[0] - low[0]) + std::abs(y) * static_cast<float>(high[1] - low[1]) +
+                            std::abs(z) * static_cast<float>(high[2] - low[2]) + slack_;
+        if (std::abs(middle) > reach) continue;
+        const std::uint32_t id = list_triangles_[begin + i];
+        if (seen_by_[id] == looker_) continue;   // one pair lies in many voxels
+        seen_by_[id] = looker_;
+        if (!lists.push(lists.pairs, gpu::kListPairCandidates, {id, triangle.place})) return false;
+      }
   }
   return true;
 }
 
 bool NearPairs::take(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
+  return on_this_processor([&] { return take_brick(triangle, brick, slot, lists); });
+}
+
+bool NearPairs::take_brick(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
   const std::int32_t size = grid_.size;
   const Int3 origin = grid_.origin + 8 * size * brick;
   if (slot == gpu::kBrickInternal) {
     if (off_plane(triangle, origin, 8 * size)) return true;
     return lists.push(lists.touch, gpu::kListTouchCandidates, {triangle.place, gpu::kNoVoxel, brick.x * 8 | brick.y * 8 << 16, brick.z * 8 | gpu::kWholeBrick});
   }
-  const auto& [a, b, c] = triangle.corners;
   Int3 first, last;
-  const Int3 low = glm::min(glm::min(a, b), c) - (gpu::kCloseSteps + 1) - origin, high = glm::max(glm::max(a, b), c) + (gpu::kCloseSteps + 1) - origin;
+  const Int3 low = triangle.box.low - (gpu::kCloseSteps + 1) - origin, high = triangle.box.high + (gpu::kCloseSteps + 1) - origin;
   for (int k = 0; k < 3; ++k) {
     if (low[k] > 8 * size || high[k] < 0) return true;
     // A quotient that is rounded wrongly is within 2^-20 of a voxel's side of the right one: the step added above covers it.
@@ -133,7 +188,7 @@ bool NearPairs::take(const Triangle& triangle, const Int3& brick, std::uint32_t 
         const std::uint32_t number = listed ? voxels.first[word] + static_cast<std::uint32_t>(std::popcount(boundary & (bit - 1))) : gpu::kNoVoxel;
         const Int3 voxel = 8 * brick + Int3(x, y, z);
         if (!lists.push(lists.touch, gpu::kListTouchCandidates, {triangle.place, number, voxel.x | voxel.y << 16, voxel.z})) return false;
-        if (listed && !take_list(triangle, number, lists)) return false;
+        if (listed && !take_list(triangle, voxel, number, lists)) return false;
       }
     }
   return true;

@@ -1,12 +1,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compute/host_copy.h"
+#include "compute/host_exact.h"
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
-#include "model/lattice.h"
 #include "model/lattice_mesh.h"
 #include "model/scene_geometry.h"
 
@@ -21,31 +22,35 @@ class NearPairs {
   /// A tool triangle at a pose.
   struct Triangle {
     std::uint32_t place;             ///< in the order of clusters
-    std::array<Int3, 3> corners;     ///< world lattice, exact
+    exact::Box box;                  ///< of its corners
+    Int3 corner;                     ///< one of them
     std::array<double, 3> normal;    ///< raw, rounded once
     double normal_size;              ///< sum of its components' sizes
-    std::array<std::uint16_t, 6> box;  ///< low and high, grown by kCloseSteps, in the boxes' steps
+    std::array<float, 3> facing;     ///< the same, its sizes' sum 1
+    std::array<std::int32_t, 6> parts;  ///< low and high, grown by kCloseSteps, in parts of a voxel from the grid's origin on
   };
-  /// False: collinear, it meets nothing.
-  bool begin(const LatticePose& pose, const LatticeMesh& tool, std::uint32_t id, std::uint32_t place, Triangle& out);
+  /// `corners` in the world. False: collinear, it meets nothing.
+  bool begin(const exact::Corners& corners, std::uint32_t place, Triangle& out);
   /// Appends what lies in one brick. False: a list had no room.
   bool take(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
 
  private:
-  using Box = std::array<std::uint16_t, 6>;
-  Box box_of(const Int3& low, const Int3& high) const;
+  std::int32_t part_of(std::int32_t coordinate, std::size_t axis) const;
+  void make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_t> slots);
   bool off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const;
-  bool off_plane(const Triangle& triangle, const Box& box) const;
-  bool take_list(const Triangle& triangle, std::uint32_t boundary, NearLists& lists);
+  bool take_brick(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
+  bool take_list(const Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists);
 
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;   ///< voxels a step
-  double box_step_ = 1;    ///< steps
-  unsigned shift_ = 0;     ///< boxes are in units of 2^shift steps
+  double per_part_ = 0;    ///< parts of a voxel a step
+  float slack_ = 0;        ///< of a test against a plane, half parts
   HostCopy<gpu::Brick> bricks_;
   HostCopy<std::uint32_t> list_begin_, list_triangles_;
-  std::vector<Box> boxes_;               ///< by static triangle
-  std::vector<std::uint32_t> seen_by_;   ///< by static triangle: the last tool triangle that looked at it
+  /// Boxes of triangles, each as far as it lies in a voxel that lists it, in parts of the voxel: for the list of n from `begin` on, six times n bytes
+  /// from 6 · begin on, all lows along x, then y and z, then highs.
+  std::vector<std::uint8_t> boxes_;
+  std::vector<std::uint32_t> seen_by_;   ///< by static triangle: the last tool triangle that took it
   std::uint32_t looker_ = 0;             ///< number of the present one
 };
 

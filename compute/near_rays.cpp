@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "compute/processor.h"
+
 namespace palpate {
 namespace {
 
@@ -104,14 +106,16 @@ void NearRays::step(Walk& walk) const {
 /// Voxel by voxel, until one is V_ext: there the winding is 0, and what was crossed before adds up to the winding at the sample. No triangle is
 /// within a step of a V_ext voxel, so that a crossing is clearly before or behind the voxel's face: RayList::stop.
 bool NearRays::go_on(Walk& walk, std::uint32_t first, HostList<std::uint32_t>& places) {
-  const Int3 cells = 8 * fine_.grid().bricks;
-  for (;; step(walk)) {
-    for (int k = 0; k < 3; ++k) walk.outside = walk.outside || walk.voxel[k] < 0 || walk.voxel[k] >= cells[k];
-    if (walk.outside) return true;
-    const HostPartition::Voxel voxel = fine_.at(walk.voxel);
-    if (voxel.kind == gpu::kVoxelExternal) return true;
-    if (voxel.boundary != gpu::kNoVoxel && !take_list(walk, voxel.boundary, first, places)) return false;
-  }
+  return on_this_processor([&] {
+    const Int3 cells = 8 * fine_.grid().bricks;
+    for (;; step(walk)) {
+      for (int k = 0; k < 3; ++k) walk.outside = walk.outside || walk.voxel[k] < 0 || walk.voxel[k] >= cells[k];
+      if (walk.outside) return true;
+      const HostPartition::Voxel voxel = fine_.at(walk.voxel);
+      if (voxel.kind == gpu::kVoxelExternal) return true;
+      if (voxel.boundary != gpu::kNoVoxel && !take_list(walk, voxel.boundary, first, places)) return false;
+    }
+  });
 }
 
 bool NearRays::skip_external(Walk& walk) const {

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "compute/processor.h"
+
 namespace palpate {
 namespace {
 
@@ -222,15 +224,17 @@ void NearSamples::find(const LatticePose& pose, const Int3& first, const Int3& l
     for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = pose.rotation_q30[r][c] * 0x1p-30;
     search.translation[r] = pose.translation[static_cast<int>(r)];
   }
-  Int3 b;
-  for (b.z = first.z; b.z <= last.z; ++b.z)
-    for (b.y = first.y; b.y <= last.y; ++b.y)
-      for (b.x = first.x; b.x <= last.x; ++b.x) {
-        const std::uint32_t slot = slots_[at(b, mockup_.bricks)];
-        if (slot >= gpu::kBrickInternal) continue;
-        take_brick(search, b, slot);
-        if (lists.full != gpu::kNone) return;
-      }
+  on_this_processor([&] {
+    Int3 b;
+    for (b.z = first.z; b.z <= last.z; ++b.z)
+      for (b.y = first.y; b.y <= last.y; ++b.y)
+        for (b.x = first.x; b.x <= last.x; ++b.x) {
+          const std::uint32_t slot = slots_[at(b, mockup_.bricks)];
+          if (slot >= gpu::kBrickInternal) continue;
+          take_brick(search, b, slot);
+          if (lists.full != gpu::kNone) return;
+        }
+  });
 }
 
 }  // namespace palpate

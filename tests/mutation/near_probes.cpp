@@ -42,7 +42,7 @@ std::uint64_t near_probe() {
   for (const auto& c : pairs) sum.add(exact::triangles_meet(corners(c.s), corners(c.t), exact::raw_normal(corners(c.t))));
   for (const auto& c : boxes) {
     const exact::Corners t{c.a, c.b, c.c};
-    sum.add(exact::triangle_touches_cube(t, exact::raw_normal(t), c.lo, c.hi.x - c.lo.x));
+    sum.add(exact::triangle_touches_cube(t, exact::box_of(t), c.lo, c.hi.x - c.lo.x));
   }
   for (const auto& c : rays) {
     const exact::Crossing crossing = exact::ray_crossing(c.point, c.direction, corners(c.corner));

@@ -1,0 +1,38 @@
+#include "compute/pair_filter.h"
+
+#include <cstring>
+
+#include "compute/processor.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kLanes = PairFilter::kLanes;
+using Coordinates = PairFilter::Coordinates;
+
+// What is computed differs from its exact value by less than 170 · 2^-53 · M³ (pair_filter_lanes.h); M³ itself is rounded three times.
+constexpr double kBound = 0x1p-45;
+
+namespace plain {
+constexpr std::size_t kWidth = 2;
+#include "compute/pair_filter_lanes.h"
+}
+#if PALPATE_TWO_CODES
+PALPATE_SECOND_CODE_BEGIN
+namespace second {
+constexpr std::size_t kWidth = 4;
+#include "compute/pair_filter_lanes.h"
+}
+PALPATE_SECOND_CODE_END
+#endif
+
+}  // namespace
+
+void PairFilter::judge(std::array<Verdict, kLanes>& out) const {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::judge_lanes(s_, t_, out.data());
+#endif
+  plain::judge_lanes(s_, t_, out.data());
+}
+
+}  // namespace palpate

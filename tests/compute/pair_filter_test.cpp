@@ -1,0 +1,99 @@
+#include "compute/pair_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "tests/compute/geometry_cases.h"
+
+namespace palpate {
+namespace {
+
+using exact::Corners;
+
+struct Pair {
+  Corners s, t;
+};
+
+std::vector<PairFilter::Verdict> judge(const std::vector<Pair>& pairs) {
+  PairFilter filter;
+  std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
+  std::vector<PairFilter::Verdict> out;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += PairFilter::kLanes) {
+    const std::size_t count = std::min(PairFilter::kLanes, pairs.size() - begin);
+    for (std::size_t lane = 0; lane < count; ++lane) filter.put(lane, pairs[begin + lane].s, pairs[begin + lane].t);
+    filter.judge(verdicts);
+    out.insert(out.end(), verdicts.begin(), verdicts.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  return out;
+}
+
+TEST(PairFilter, NeverSaysWhatIsNotSo) {
+  LatticePoints points(1);
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 40'000; ++i) {
+    points.choose();
+    Int3 s[3], t[3];
+    points.triangle(s);
+    points.triangle(t);
+    pairs.push_back({{s[0], s[1], s[2]}, {t[0], t[1], t[2]}});
+  }
+  const std::vector<PairFilter::Verdict> verdicts = judge(pairs);
+  std::array<std::size_t, 3> count{};
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    ++count[verdicts[i]];
+    if (verdicts[i] == PairFilter::kUnknown) continue;
+    ASSERT_EQ(verdicts[i] == PairFilter::kMeet, exact::triangles_meet(pairs[i].s, pairs[i].t, exact::raw_normal(pairs[i].t))) << "pair " << i;
+  }
+  // Half of them lie on grids where corners, edges and planes coincide.
+  EXPECT_GT(count[PairFilter::kMeet], 3'000u);
+  EXPECT_GT(count[PairFilter::kApart], 10'000u);
+  EXPECT_GT(count[PairFilter::kUnknown], 2'000u);
+}
+
+TEST(PairFilter, DecidesAllOfGeneralPosition) {
+  LatticePoints points(2);
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 4'000; ++i) {
+    Corners c[2];
+    for (Corners& corners : c)
+      for (Int3& corner : corners) corner = Int3(points.within(1 << 28), points.within(1 << 28), points.within(1 << 28));
+    pairs.push_back({c[0], c[1]});
+  }
+  for (const PairFilter::Verdict verdict : judge(pairs)) EXPECT_NE(verdict, PairFilter::kUnknown);
+}
+
+/// A triangle, and itself moved off its plane so that each of its corners has `side` as the sixfold volume with it.
+Pair lifted(std::int32_t side) {
+  constexpr std::int32_t p = 1 << 20;
+  // The normal is (p + 1, −p (p + 1), p).
+  const Corners t{Int3(0), Int3(p, 1, 0), Int3(0, 1, p + 1)};
+  Pair out{t, t};
+  for (Int3& corner : out.s) corner += Int3(side, 0, -side);
+  return out;
+}
+
+TEST(PairFilter, SaysNothingWithinItsBound) {
+  // M is 2^20 and a little, the bound 2^-45 M^3: 2^15 and a little.
+  for (const std::int32_t side : {0, 1, -1, 1 << 10, -(1 << 10), (1 << 15) - 1, 1 - (1 << 15)}) {
+    const Pair pair = lifted(side);
+    const auto n = exact::raw_normal(pair.t);
+    for (const Int3& corner : pair.s) ASSERT_EQ(exact::dot(n, corner - pair.t[0]), side);
+    EXPECT_EQ(judge({pair})[0], PairFilter::kUnknown) << side;
+    EXPECT_EQ(exact::triangles_meet(pair.s, pair.t, n), side == 0) << side;
+  }
+  for (const std::int32_t side : {1 << 16, -(1 << 16), 1 << 19}) EXPECT_EQ(judge({lifted(side)})[0], PairFilter::kApart) << side;
+}
+
+TEST(PairFilter, ReachesTheEndsOfTheLattice) {
+  constexpr std::int32_t end = 1 << 28;
+  const Corners t{Int3(-end, -end, 0), Int3(end, -end, 0), Int3(0, end, 0)};
+  EXPECT_EQ(judge({{{Int3(0, 0, -end), Int3(1, 0, end), Int3(0, 1, end)}, t}})[0], PairFilter::kMeet);
+  EXPECT_EQ(judge({{{Int3(end, end, -end), Int3(end, end, end), Int3(end - 1, end, end)}, t}})[0], PairFilter::kApart);
+  EXPECT_EQ(judge({{{Int3(-end, -end, 0), Int3(-end, -end, end), Int3(-end, end, end)}, t}})[0], PairFilter::kUnknown);   // they share a corner
+}
+
+}  // namespace
+}  // namespace palpate
