@@ -1,6 +1,6 @@
 """Load on `palpate serve`, loopback only, bounded: a session alone, then beside batch clients at full rate and viewers, then alone again.
 
-usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--beside] [--out DIR]
+usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--alone-seconds 60] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--beside] [--out DIR]
 
 FOLDER: what `palpate generate contacts` made. Its hand goes to and fro along its path for the whole time; the batches ask poses along that path, a millimetre off at most.
 Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for all three phases, and how late cyclictest was meanwhile, with
@@ -32,6 +32,7 @@ parser = argparse.ArgumentParser()
 parser.add_argument('program')
 parser.add_argument('folder', type=pathlib.Path)
 parser.add_argument('--seconds', type=float, default=60)
+parser.add_argument('--alone-seconds', type=float, help='of each of the two phases alone; default as --seconds')
 parser.add_argument('--batches', type=int, default=4)
 parser.add_argument('--viewers', type=int, default=200)
 parser.add_argument('--poses', type=int, default=500, help='of a query: about what a planner asks at once')
@@ -40,6 +41,7 @@ parser.add_argument('--ordinary', action='store_true')
 parser.add_argument('--beside', action='store_true', help='clients like any other program of this machine')
 parser.add_argument('--out', type=pathlib.Path)
 options = parser.parse_args()
+ALONE_S = options.alone_seconds or options.seconds
 KEY = 'AAAAAAAAAAAAAAAAAAAAAA=='
 
 root = tempfile.TemporaryDirectory()
@@ -55,7 +57,7 @@ def lengthen():
     times, rest = zip(*((float(time), pose) for time, pose in (row.split(',', 1) for row in rows)))
     steps = list(zip([b - a for a, b in zip(times, times[1:])], rest[1:], rest))
     out, now = [f'0,{rest[0]}'], 0.0
-    while now < options.seconds:
+    while now < max(options.seconds, ALONE_S):
         for step, there, _ in steps:
             now += step
             out.append(f'{now:.6f},{there}')
@@ -211,12 +213,12 @@ try:
         scene = json.loads(ask('GET', f"/v1/scenes/{scene['id']}?wait=30"))
     if scene['state'] == 'failed':
         raise SystemExit(scene['error']['detail'])
-    alone = session(options.seconds)
+    alone = session(ALONE_S)
     load = Load()
     loaded = session(options.seconds, load.start)
     load.end()
     metrics = ask('GET', '/metrics').decode()
-    again = session(options.seconds)
+    again = session(ALONE_S)
 finally:
     server.send_signal(signal.SIGTERM)
     server.wait(60)
@@ -234,6 +236,10 @@ def metric(name):
     return int(float(re.search(rf'^{name} (\S+)$', metrics, re.M)[1]))
 
 
+def missed_share(state):
+    return state['summary']['missed_ticks'] / state['summary']['ticks']
+
+
 def before_and_after(value):
     return (value(alone) + value(again)) / 2
 
@@ -244,7 +250,7 @@ result = {'scene': options.folder.name, 'backend': scene['device'], 'seconds': o
           'query_s': {'p50': load.times[len(load.times) // 2], 'p99': load.times[int(0.99 * len(load.times))], 'poses': options.poses} if load.times else None,
           'viewer_reads': load.messages, 'viewer_bytes': load.bytes, 'telemetry_sent': metric('palpate_telemetry_sent_total'), 'telemetry_dropped': metric('palpate_telemetry_dropped_total'),
           'memory_kib': {'after_5_s': load.memory[min(4, len(load.memory) - 1)], 'half_way': load.memory[len(load.memory) // 2], 'end': load.memory[-1], 'max': max(load.memory)},
-          'missed_ratio': loaded['summary']['missed_ticks'] / max(before_and_after(lambda state: state['summary']['missed_ticks']), 1),
+          'missed_ratio': missed_share(loaded) / max(before_and_after(missed_share), 1 / alone['summary']['ticks']),
           'age_p99_ratio': loaded['result_age_ticks']['p99'] / max(before_and_after(lambda state: state['result_age_ticks']['p99']), 1)}
 print(json.dumps(result, indent=1))
 if options.out:

@@ -52,7 +52,12 @@ export class App {
     listen((action) => this.act(action));
     this.apply_theme(localStorage.getItem('palpate.theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => { if (!localStorage.getItem('palpate.theme')) this.apply_theme(event.matches ? 'dark' : 'light'); });
-    if (innerWidth <= 860) document.body.classList.add('no-panel');
+    // As in theme.css: a narrow panel lies over the picture, and opens when it is asked for.
+    const narrow = matchMedia('(max-width: 860px)');
+    const fold = () => { document.body.classList.toggle('no-panel', narrow.matches); };
+    fold();
+    narrow.addEventListener('change', fold);
+    this.picture.levelled = () => this.show_scales();
     new ResizeObserver(() => { this.touch(); }).observe(element('strips'));
     this.strips.seek = (time) => { this.player.playback?.seek(time); this.run_changed(); };
     void this.choose(['live', 'mouse', 'run'].includes(this.wish.source ?? '') ? (this.wish.source as Source) : 'live');
@@ -141,6 +146,7 @@ export class App {
     if (scene.id !== current.id) { await this.picker.open_path(path); return; }
     const held = await this.picker.prepared(scene, () => this.picker.current === current);
     if (held.state === 'failed') throw new Error(held.error?.detail ?? 'The scene is failed.');
+    if (!listed) await this.picker.refresh();   // the list was without it
   }
 
   private async refresh(): Promise<void> {

@@ -28,6 +28,8 @@ export class Picture {
   scene: Scene | null = null;
   drawn_triangles = 0;
   reduced = false;
+  /** Called when another level is drawn. */
+  levelled: () => void = () => {};
   private readonly stores: { mockup: TriangleStore; tool: TriangleStore };
   private shown_frame: Frame | null = null;
   private loading: AbortController | null = null;
@@ -90,6 +92,7 @@ export class Picture {
       this.stores.mockup.set_body(geometry.mockup, !geometry.reduced);
       this.stores.tool.set_body(geometry.tool, !geometry.reduced);
       this.redraw_contact();
+      this.levelled();
     } catch (error) {
       if (!loading.signal.aborted) this.failed(error);
     }

@@ -171,6 +171,7 @@ async function main() {
   await until('the page finds the server again', async () => (await page.getAttribute('#link', 'data-state')) === 'up');
   errors.length = 0;   // connections refused while it was away
   await drag();
+  await until('the list names the scene again', async () => (await page.inputValue('#scene')).startsWith('id:'));
   check(errors.length === 0, `no error after the restart${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
 }
 
