@@ -38,7 +38,8 @@ Json generated(const char* name, const char* body, std::uint64_t triangles) {
   return {{"generate", {{"name", name}, {"body", body}, {"triangles", triangles}}}};
 }
 
-Json scene_of(const Case& c, bool paper) {
+/// `spacing_m` > 0: of samples, instead of what the program would choose.
+Json scene_of(const Case& c, bool paper, double spacing_m) {
   const bool around = std::string_view(c.series) == "around";
   Json statics = Json::array({generated("disassembly", "mockup", around ? kContact : c.triangles)});
   if (around && c.triangles > kContact) {
@@ -48,13 +49,15 @@ Json scene_of(const Case& c, bool paper) {
   }
   Json tool = generated("disassembly", "tool", c.tool);
   tool["mass"] = 0.25;
-  return {{"static", statics}, {"tool", tool}, {"response", {{"profile", paper ? "paper" : "refined"}}}, {"device", {{"driver", "simulated"}}}};
+  Json response = {{"profile", paper ? "paper" : "refined"}};
+  if (spacing_m > 0) response["sample_spacing"] = spacing_m;
+  return {{"static", statics}, {"tool", tool}, {"response", response}, {"device", {{"driver", "simulated"}}}};
 }
 
 struct Figures {
   TimeTable times;
   std::uint64_t triangles = 0, tool = 0, kept = 0, peak = 0;
-  double prepare_s = 0;
+  double prepare_s = 0, voxel_m = 0, spacing_m = 0;
   std::string device, backend;
 };
 
@@ -81,6 +84,8 @@ Result<Figures> measure(const BenchOptions& options, const std::string& file, co
   out.kept = scene.backend->memory_bytes();
   out.peak = peak_memory();
   out.prepare_s = scene.prepare_s;
+  out.voxel_m = scene.loaded.geometry.lattice.step_m * scene.loaded.geometry.mockup_grid.size;
+  out.spacing_m = scene.loaded.geometry.lattice.step_m * scene.loaded.geometry.sample_spacing;
   out.backend = scene.backend->name();
   out.device = device_text(*scene.backend, parts);
   return out;
@@ -92,29 +97,34 @@ Result<void> bench_scale(const BenchOptions& options, const Parts& parts) {
   catch_interrupts();
   Console console;
   BenchFacts facts{.command = "scale", .device = {}, .more = {}};
-  BenchTable table{{"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us", "times_the_first", "prepare_s", "kept_bytes", "peak_bytes", "backend"}, {}};
+  BenchTable table{{"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us", "times_the_first", "times_the_last", "voxel_mm", "prepare_s", "kept_bytes", "peak_bytes", "backend"}, {}};
   BenchChart growth{.title = "Median of a frame in contact", .unit = "µs", .labels = {}, .series = {}, .log_x = true, .log_y = true, .x_title = "triangles of the mock-up, or of the tool"};
   const std::filesystem::path folder = std::filesystem::path(options.out) / "scenes";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", folder.string(), error.message()));
   const double load = load_average();
-  std::map<std::string, double> first;   // by series and kind of frame: the median of its smallest scene
+  std::map<std::string, double> first, last;   // by series and kind of frame: the median of its smallest scene, and of the scene before
+  double around_spacing_m = 0;   // of the first: other samples would be another contact
   for (const Case& c : cases(options.most_triangles)) {
+    const bool around = std::string_view(c.series) == "around";
     const std::filesystem::path file = folder / fmt::format("{}_{}_{}.json", c.series, c.triangles, c.tool);
     {
       std::ofstream out(file, std::ios::trunc);
-      out << scene_of(c, options.profile == Profile::kPaper).dump(1) << "\n";
+      out << scene_of(c, options.profile == Profile::kPaper, around ? around_spacing_m : 0).dump(1) << "\n";
       if (!out.flush()) return bad_value(file.string() + ": the file can't be written");
     }
     const Result<Figures> figures = measure(options, file.string(), parts, console);
     if (!figures) return figures.error();
+    if (around && around_spacing_m == 0) around_spacing_m = figures->spacing_m;
     for (std::size_t kind = 0; kind < 4; ++kind) {
       const TimePercentiles p = percentiles(figures->times.times(kind, "total"));
       if (p.count == 0) continue;
-      const double smallest = first.emplace(fmt::format("{} {}", c.series, kind), p.p50).first->second;
+      const std::string line = fmt::format("{} {}", c.series, kind);
+      const double smallest = first.emplace(line, p.p50).first->second, before = last.emplace(line, p.p50).first->second;
+      last[line] = p.p50;
       table.rows.push_back({std::string(c.series), figures->triangles, figures->tool, std::string(kFrameKindNames[kind]), std::uint64_t{p.count}, p.p50, p.p99,
-                            p.p50 / smallest, figures->prepare_s, figures->kept, figures->peak, figures->backend});
+                            p.p50 / smallest, p.p50 / before, 1000 * figures->voxel_m, figures->prepare_s, figures->kept, figures->peak, figures->backend});
       if (kind != 0) continue;
       if (growth.series.empty() || growth.series.back().label != c.series) growth.series.push_back({c.series, {}, {}});
       growth.series.back().x.push_back(static_cast<double>(std::string_view(c.series) == "tool" ? figures->tool : figures->triangles));
@@ -122,7 +132,7 @@ Result<void> bench_scale(const BenchOptions& options, const Parts& parts) {
     }
     facts.device = figures->device;
   }
-  facts.more.emplace_back("around", fmt::format("the disassembly of {} triangles, and others {} m aside that are never touched", kContact, kAside_m));
+  facts.more.emplace_back("around", fmt::format("the disassembly of {} triangles, and others {} m aside that are never touched; the samples of the first for all", kContact, kAside_m));
   facts.more.emplace_back("finer", "the same surfaces in more triangles");
   facts.more.emplace_back("tool", fmt::format("the mock-up of {} triangles, the tool's surface in more", kContact));
   facts.more.emplace_back("clock", options.cpu_clock ? "CPU time of this process" : "wall");
