@@ -71,6 +71,7 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
   const auto found = kept_.find(&geometry);
   const bool by_mutant = prepares_ && !aside_;
   if (by_mutant || found == kept_.end()) {
+    device_->host_share = HostShare::kNear;   // all of preparation by the device's modules
     auto scene = prepare_scene(*device_, geometry, plan, progress);
     if (!scene) return scene.error();
     if (by_mutant) {
