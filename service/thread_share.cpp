@@ -47,6 +47,19 @@ class Places {
     moved_.erase(this_thread());
   }
 
+  /// All threads but `before` work for a hand.
+  void rest_for_hand(const std::set<int>& before) {
+    const std::lock_guard lock(mutex_);
+    each_thread([&](pid_t thread) {
+      if (!before.contains(thread)) for_hand_.insert(thread);
+    });
+  }
+  static std::set<int> threads() {
+    std::set<int> out;
+    each_thread([&](pid_t thread) { out.insert(thread); });
+    return out;
+  }
+
   void room(bool wanted) {
     const std::lock_guard lock(mutex_);
     if (wanted) {
@@ -54,6 +67,7 @@ class Places {
       // A thread's own mask counts, not the process's: a program may have been given its processors by taskset or a control group.
       processor_ = ::sched_getaffinity(0, sizeof all_, &all_) == 0 ? loop_processor() : -1;
       if (processor_ < 0) return;
+      std::erase_if(for_hand_, [now = threads()](pid_t thread) { return !now.contains(thread); });   // a driver's, gone with its device
       // Once more for threads that were made meanwhile by ones not moved yet; from then on each inherits its maker's place.
       for (int i = 0; i < 2; ++i)
         each_thread([this](pid_t thread) { move_off(thread); });
@@ -127,6 +141,13 @@ ForHand::ForHand() noexcept {
   }
 }
 ForHand::~ForHand() { Places::instance().for_hand(false); }
+MakesForHand::MakesForHand() : before_(Places::threads()) {}
+MakesForHand::~MakesForHand() {
+  try {
+    Places::instance().rest_for_hand(before_);
+  } catch (...) {   // no memory: they are moved as all others are
+  }
+}
 LoopRoom::LoopRoom() { Places::instance().room(true); }
 LoopRoom::~LoopRoom() { Places::instance().room(false); }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 
 namespace palpate {
 
@@ -27,6 +28,19 @@ class ForHand {
   ~ForHand();
   ForHand(const ForHand&) = delete;
   ForHand& operator=(const ForHand&) = delete;
+};
+
+/// The same, and for as long as they last the threads that the process makes meanwhile: a driver's, which a loop's back end needs.
+class MakesForHand {
+ public:
+  MakesForHand();
+  ~MakesForHand();
+  MakesForHand(const MakesForHand&) = delete;
+  MakesForHand& operator=(const MakesForHand&) = delete;
+
+ private:
+  ForHand self_;
+  std::set<int> before_;   ///< threads
 };
 
 /// While one lives, all threads of the process that are not ForHand, drivers' and those yet to come included, stay off the control loops' processor:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "service/server/json_input.h"
 #include "service/thread_share.h"
@@ -268,7 +269,6 @@ std::vector<Metrics::Gauge> SceneStore::gauges() const {
 }
 
 void SceneStore::prepare_loop() {
-  set_nice(kNicePreparation);   // whoever feels a force comes before a scene that is not there yet
   for (;;) {
     std::shared_ptr<Entry> entry;
     {
@@ -281,7 +281,12 @@ void SceneStore::prepare_loop() {
       changed(*entry);
     }
     notify();
-    prepare_one(entry);
+    // On a thread of its own: it gives way once the back end is made, and no thread can take that back without rights.
+    try {
+      std::thread([&] { prepare_one(entry); }).join();
+    } catch (const std::system_error&) {   // there can be no more threads
+      prepare_one(entry);
+    }
     notify();
   }
 }
@@ -297,7 +302,14 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   watch.folder = entry->content.folder.string();
   watch.cached = !entry->content.uploaded;
   watch.note = [&](const std::string& sentence) { log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}}); };
+  // A driver's threads begin at their maker's share, and answer for loops later; the rest of the preparation gives way: whoever feels a force comes before
+  // a scene that is not there yet.
+  std::optional<MakesForHand> making(std::in_place);
   watch.step = [&](const char* step) {
+    if (making) {   // the first step comes after the back end
+      making.reset();
+      set_nice(kNicePreparation);
+    }
     {
       const std::lock_guard lock(mutex_);
       entry->step = step;

@@ -105,6 +105,24 @@ TEST_F(LoopRoomTest, LeavesWhoWorksForAHandWhereItIs) {
   within.does([&] { two.reset(); });
 }
 
+TEST_F(LoopRoomTest, LeavesADriversThreadsWhereTheyAre) {
+  Worker preparation, other;
+  std::unique_ptr<Worker> before, within;
+  const auto make = [&](std::unique_ptr<Worker>& driver) {
+    preparation.does([&] {
+      const MakesForHand making;
+      driver = std::make_unique<Worker>();
+    });
+  };
+  make(before);
+  const LoopRoom room;
+  make(within);
+  EXPECT_TRUE(same(before->may(), all));
+  EXPECT_TRUE(same(within->may(), all));
+  EXPECT_TRUE(same(preparation.may(), rest)) << "it gives way again";
+  EXPECT_TRUE(same(other.may(), rest));
+}
+
 TEST_F(LoopRoomTest, GivesAThreadItsOwnPlaceBack) {
   Worker bound;
   cpu_set_t own{};
