@@ -77,6 +77,7 @@ std::string map_svg(const BenchChart& chart) {
   for (const auto& row : chart.series)
     for (const double value : row.y)
       if (value > 0) low = std::min(low, value), high = std::max(high, value);
+  if (chart.map_low > 0 && chart.map_high > chart.map_low) low = chart.map_low, high = chart.map_high;
   const double width = (kWidth - kLeft - kRight) / static_cast<double>(chart.labels.size()), bottom = kTop + kRow * static_cast<double>(chart.series.size());
   std::string out = head(chart, bottom + 50);
   for (std::size_t r = 0; r < chart.series.size(); ++r) {

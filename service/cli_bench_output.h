@@ -33,6 +33,7 @@ struct BenchChart {
   bool stacked = false, log_x = false, log_y = false;
   std::string x_title, y_title = {};   ///< y_title: of a map
   bool map = false;
+  double map_low = 0, map_high = 0;   ///< of a map's colours; 0: from its values
 };
 
 /// What figures belong to.

@@ -130,8 +130,9 @@ void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& c
 void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& charts) {
   const std::vector<int> delays{1, 2, 5, 10, 20, 50};
   const auto map = [&](const std::string& model, LawKind law, const char* y_title, const std::vector<double>& values, auto set) {
-    Chart chart = lines(fmt::format("Highest stable K, {}, {}", model, name_of(law)), "age of results c, ticks", "N/m", false, false);
+    Chart chart = lines(fmt::format("Highest stable K, {}, {} ({:g}: at most)", model, name_of(law), kLow), "age of results c, ticks", "N/m", false, false);
     chart.map = true;
+    chart.map_low = kLow, chart.map_high = kHigh;   // the same for all, so that they can be held beside each other
     chart.y_title = y_title;
     for (const int delay : delays) chart.labels.push_back(std::to_string(delay));
     for (const double value : values) {

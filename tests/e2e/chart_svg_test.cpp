@@ -33,6 +33,8 @@ TEST(ChartSvg, AMapHasACellAValueAndDarkensWithIt) {
   for (const char* value : {">10<", ">100<", ">1000<", ">20<", ">200<", ">0<", ">n 1<", ">n 2<", ">5<"}) EXPECT_NE(picture.find(value), std::string::npos) << value;
   EXPECT_EQ(count(picture, "rgb(255,247,203)"), 2u) << "the least value and none";
   EXPECT_EQ(count(picture, "rgb(37,52,148)"), 1u) << "the largest";
+  chart.map_low = 1000, chart.map_high = 1e6;
+  EXPECT_EQ(count(chart_svg(chart), "rgb(255,247,203)"), 6u) << "the least of the scale, and what is below";
 }
 
 TEST(ChartSvg, LeavesBarsToTheReport) {
