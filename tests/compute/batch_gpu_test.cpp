@@ -7,6 +7,7 @@
 
 #include "compute/gpu_backend.h"
 #include "compute/prepare_estimate.h"
+#include "compute/prepare_on_host.h"
 #include "compute/prepared_scene.h"
 #include "model/generate.h"
 #include "model/geometry_build.h"
@@ -139,6 +140,15 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShaders) {
       const auto prepared = prepare_scene(**device, *geometry, Plan{}, {});
       ASSERT_TRUE(prepared) << prepared.error().sentence;
       by[share == HostShare::kContacts ? 1 : 0] = prepared->samples;
+      const auto host = HostPreparation::make(**device, geometry->mockup, prepared->mockup.partition);
+      ASSERT_TRUE(host);
+      const auto listing = [&](std::uint64_t most_bytes, bool go_on) {
+        HostSamples out;
+        return host->list_samples(geometry->sample_spacing, most_bytes, [&](double) { return go_on; }, out);
+      };
+      EXPECT_EQ(listing(std::uint64_t{1} << 30, true), HostPreparation::Outcome::kDone);
+      EXPECT_EQ(listing(4000, true), HostPreparation::Outcome::kTooMany);
+      EXPECT_EQ(listing(std::uint64_t{1} << 30, false), HostPreparation::Outcome::kCancelled);
     }
     ASSERT_TRUE(by[0] && by[1]);
     EXPECT_GT(by[0]->count(), 10'000u);

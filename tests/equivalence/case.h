@@ -50,6 +50,13 @@ struct Case {
   double share = 1;                ///< of a campaign's poses, relative to other cases: less where a pose takes long
 };
 
+/// The same in profile `paper`.
+inline Case paper(Case c) {
+  c.name += "_paper";
+  c.profile = Profile::kPaper;
+  return c;
+}
+
 inline constexpr int kChain = 8;   ///< poses of a chain of a `held` case
 
 /// All cases, in the order of their hashes.

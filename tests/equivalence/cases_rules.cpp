@@ -396,12 +396,6 @@ Case fine_plates() {
               });
 }
 
-Case paper(Case c) {
-  c.name += "_paper";
-  c.profile = Profile::kPaper;
-  return c;
-}
-
 /// The top of the block ends with a brick of voxels: above it are whole bricks of V_ext, and of those the nearest voxel is asked.
 Case swallowed_below_a_brick() {
   return rule("swallowed_below_a_brick", "the nearest way out is in a brick that is V_ext as a whole, two or four of its voxels as near as each other",

@@ -97,11 +97,6 @@ Case solid(const char* name, const char* about, std::function<Mesh()> mockup, st
   c.make = [=](std::uint64_t) { return mesh_scene(mockup(), tool(), settings, pose); };
   return c;
 }
-Case paper(Case c) {
-  c.name += "_paper";
-  c.profile = Profile::kPaper;
-  return c;
-}
 Case held(Case c) {
   c.name += "_held";
   c.held = true;

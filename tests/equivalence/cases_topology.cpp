@@ -192,11 +192,6 @@ Case killer(Case c) {
   c.killer = true;
   return c;
 }
-Case paper(Case c) {
-  c.name += "_paper";
-  c.profile = Profile::kPaper;
-  return c;
-}
 
 /// A bead wholly within the tool: no pair, all of it in EST, one area.
 Case swallowed_bead() {

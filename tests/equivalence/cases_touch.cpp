@@ -60,11 +60,6 @@ Case touch(const char* name, const char* about, Shape shape, TouchLayout layout)
   };
   return c;
 }
-Case paper(Case c) {
-  c.name += "_paper";
-  c.profile = Profile::kPaper;
-  return c;
-}
 Case killer(Case c) {
   c.killer = true;
   c.poses = 40;
