@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "compute/host_exact.h"
+#include "compute/nearest_external.h"
 
 namespace palpate {
 namespace {
@@ -345,9 +346,9 @@ bool HostAreas::sum_tool_normals(const LatticePose& pose, const ContactLists& li
   return true;
 }
 
-/// n_c by the rules of section 6. False: only the nearest V_ext voxel is left.
-bool HostAreas::direct(AreaWork& area, const Held* held) const {
-  if ((area.state & kAreaProximity) != 0) return true;
+/// n_c by the rules of section 6.
+void HostAreas::direct(AreaWork& area, const Held* held) const {
+  if ((area.state & kAreaProximity) != 0) return;
   if (constants_.tool.closed == 0 && constants_.tool.has_internal == 0) area.flags |= kFlagToolOpen;
   struct Rule {
     Sum sum;
@@ -363,15 +364,19 @@ bool HostAreas::direct(AreaWork& area, const Held* held) const {
   for (const Rule* rule : rules) {
     if (usable(rule->sum, rule->weight)) {
       area.direction = normalise(rule->sum);
-      return true;
+      return;
     }
     if (rule->tells && rule->weight > 0) area.flags |= kFlagCancelled;
   }
-  if (area.held_area == kNone || held->areas[area.held_area].direction == Int3(0)) return false;
-  const Int3 d = held->areas[area.held_area].direction;
+  Int3 d = area.held_area == kNone ? Int3(0) : held->areas[area.held_area].direction;
+  if (d != Int3(0)) {
+    area.flags |= kFlagHeld;
+  } else {
+    d = way_to_nearest_external(constants_.mockup.grid, brick_slots_, bricks_, (area.box_low + area.box_high) >> 1);
+    area.flags |= d == Int3(0) ? kFlagNoDirection : kFlagNearestExternal;
+    if (d == Int3(0)) return;
+  }
   area.direction = normalise({d.x, d.y, d.z});
-  area.flags |= kFlagHeld;
-  return true;
 }
 
 bool HostAreas::solve(PosedTool& tool, const Held* held, const ContactLists& lists, Answer& answer) {
@@ -397,7 +402,8 @@ bool HostAreas::solve(PosedTool& tool, const Held* held, const ContactLists& lis
   const std::span<AreaWork> areas = lists.areas.first(answer.areas);
   for (std::uint32_t number = 0; number < answer.areas; ++number) begin_area(areas[number], number, pose, held, lists);
   if (!sum_tool_normals(pose, lists, answer)) return false;
-  return std::all_of(areas.begin(), areas.end(), [&](AreaWork& area) { return direct(area, held); });
+  for (AreaWork& area : areas) direct(area, held);
+  return true;
 }
 
 }  // namespace palpate

@@ -64,7 +64,7 @@ class HostAreas {
   void list_tool_samples();
   bool count_tool_samples(const LatticePose& pose, std::uint32_t mobile, std::uint32_t& count) const;
   bool sum_tool_normals(const LatticePose& pose, const ContactLists& lists, const Answer& answer);
-  bool direct(gpu::AreaWork& area, const Held* held) const;
+  void direct(gpu::AreaWork& area, const Held* held) const;
   bool occupied(const Int3& p) const;
 
   const SceneGeometry* geometry_ = nullptr;

@@ -11,33 +11,35 @@ using namespace gpu;   // names of shaders/shared/frame.h
 
 }  // namespace
 
+/// Notes a crossing below `stop`.
+void HostHeights::cross(PosedTool& tool, const Int3& p, std::uint32_t id, std::uint32_t stop) {
+  const exact::Crossing crossing = exact::ray_crossing(p, along_, tool.corners(id));
+  if (crossing.sign != 0 && crossing.height < stop) levels_.push_back({crossing.height, crossing.sign, id});
+}
+
 bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, bool through, std::uint32_t& out) {
-  out = kNone;
   NearRays::Walk walk = rays_->begin(turn, p);
   HostList<std::uint32_t> places{places_};
   do {
     if (!rays_->go_on(walk, 0, places)) return false;
     const std::uint32_t stop = NearRays::stop_of(walk);
     levels_.clear();
-    for (const std::uint32_t place : places.room.first(places.count)) {
-      const std::uint32_t id = order_[place];
-      const exact::Crossing crossing = exact::ray_crossing(p, along_, tool.corners(id));
-      if (crossing.sign != 0 && crossing.height < stop) levels_.push_back({crossing.height, crossing.sign, id});
-    }
+    for (const std::uint32_t place : places.room.first(places.count)) cross(tool, p, order_[place], stop);
   } while (through && levels_.empty() && rays_->skip_external(walk));
-  if (levels_.empty()) return true;
+  out = lowest_exit();
+  return true;
+}
 
-  // The smallest height above which the signs add up to 0.
+/// The smallest height above which the signs of the last ray's crossings add up to 0, or kNone.
+std::uint32_t HostHeights::lowest_exit() {
   std::sort(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.height < b.height; });
   std::int32_t above = 0;
   for (const Level& level : levels_) above += level.sign;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     above -= levels_[i].sign;
-    if (above != 0 || (i + 1 < levels_.size() && levels_[i + 1].height == levels_[i].height)) continue;
-    out = levels_[i].height;
-    return true;
+    if (above == 0 && (i + 1 == levels_.size() || levels_[i + 1].height != levels_[i].height)) return levels_[i].height;
   }
-  return true;
+  return kNone;
 }
 
 /// Of the triangles crossed at the last ray's height, the smallest direction of a normal.
@@ -135,19 +137,32 @@ bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostArea
   by_area_.resize(lists.samples.size());
   for (std::uint32_t i = 0; i < lists.samples.size(); ++i) by_area_[first_of_[areas.area_of(lists.samples[i].static_id, lists)]++] = i;
 
-  std::uint32_t number = kNone;
-  for (const std::uint32_t i : by_area_) {
-    const FrameSample& sample = lists.samples[i];
-    const std::uint32_t next = areas.area_of(sample.static_id, lists);
-    AreaWork& area = lists.areas[next];
+  // first_of_ has moved: an area's samples begin where the area before has ended.
+  std::uint32_t begin = 0;
+  for (std::uint32_t number = 0; number < kMaxFrameAreas; ++number) {
+    const std::span<const std::uint32_t> own(by_area_.data() + begin, first_of_[number] - begin);
+    begin = first_of_[number];
+    if (own.empty()) continue;
+    AreaWork& area = lists.areas[number];
     if (area.direction == Int3(0)) continue;
-    if (next != number) aim(turn, -area.direction);
-    number = next;
-    std::uint32_t h = kNone;
-    if (!height(tool, turn, sample.point, false, h)) return false;
-    if (h == kNone) continue;
-    add(area, sample.point, h, geometry_->mockup.sample_weight_q30[sample.static_id], fade_of(sample.static_id, area.direction, exit_normal(tool, h)));
-    risen.push_back({number, sample.point, h});
+    points_.clear();
+    for (const std::uint32_t i : own) points_.push_back(lists.samples[i].point);
+    aim(turn, -area.direction);
+    const bool seen = rays_->look(turn, points_);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      std::uint32_t h = kNone;
+      if (seen) {
+        levels_.clear();
+        rays_->for_seen(k, [&](std::uint32_t id) { cross(tool, points_[k], id, kNone); });
+        h = lowest_exit();
+      } else if (!height(tool, turn, points_[k], false, h)) {
+        return false;
+      }
+      if (h == kNone) continue;
+      const std::uint32_t id = lists.samples[own[k]].static_id;
+      add(area, points_[k], h, geometry_->mockup.sample_weight_q30[id], fade_of(id, area.direction, exit_normal(tool, h)));
+      risen.push_back({number, points_[k], h});
+    }
   }
   return true;
 }

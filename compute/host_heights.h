@@ -48,6 +48,8 @@ class HostHeights {
     std::int32_t sign;
     std::uint32_t id;
   };
+  void cross(PosedTool& tool, const Int3& p, std::uint32_t id, std::uint32_t stop);
+  std::uint32_t lowest_exit();
   std::uint32_t fade_height(std::uint32_t static_id, const Int3& d, const Int3& m) const;
   Int3 exit_normal(PosedTool& tool, std::uint32_t height);
   std::uint32_t fade_of(std::uint32_t static_id, const Int3& d, const Int3& m);
@@ -59,6 +61,7 @@ class HostHeights {
   Int3 along_{0};
   std::vector<std::uint32_t> by_area_;   ///< counting samples, those of an area one after the other
   std::vector<std::uint32_t> first_of_;  ///< of each area, in it
+  std::vector<Int3> points_;             ///< of one area's samples
   std::vector<Level> levels_;   ///< crossings of the last ray, by height
   // Neighbouring samples lie on one triangle and leave through one: the last answers.
   std::uint32_t left_ = gpu::kNone;      ///< tool triangle

@@ -7,6 +7,7 @@
 #include "compute/host_partition.h"
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
+#include "compute/shadow_grid.h"
 #include "model/lattice.h"
 #include "model/lattice_mesh.h"
 
@@ -29,7 +30,7 @@ class NearRays {
   struct Walk {
     double next[3];       ///< parameter at the next face along each axis; t = H / 2^30
     double t = 0;         ///< at the present voxel's entry
-    double shadow[2];     ///< where the ray lies, seen along it
+    std::array<double, 2> shadow;   ///< where the ray lies, seen along it
     Int3 voxel{0};
     bool outside = false;   ///< it has left the grid
   };
@@ -44,17 +45,31 @@ class NearRays {
   bool skip_external(Walk& walk) const;
   static std::uint32_t stop_of(const Walk& walk);
 
+  /// Whether to look at the whole tool along the rays from these points costs less than to walk from each. Then for_seen() says what they may cross.
+  bool look(const Turn& turn, std::span<const Int3> points);
+  /// After look() in this aim: calls take(id) for triangles that the ray from point `i` may cross, each once; all that it crosses are among them.
+  template <class Take>
+  void for_seen(std::size_t i, Take&& take) const {
+    const Seen& ray = rays_[i];
+    for (const std::uint32_t triangle : grid_.at(ray.shadow)) {
+      const ShadowGrid::Triangle& met = grid_.triangle(triangle);
+      if (met.shadow.ahead >= ray.ahead && met.shadow.holds(ray.shadow)) take(met.id);
+    }
+  }
+
   /// Lists the ray of each sample that leaves it along −direction of its slot's area; direction 0: nothing. False: no room.
   bool find(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::span<const Int3> directions, std::span<gpu::RayList> rays,
             HostList<std::uint32_t>& places);
 
  private:
-  /// A triangle seen along the rays: two coordinates of its box, grown by what a ray may pass beside it; valid for one aim.
-  struct Shadow {
-    std::uint32_t aim = 0;
-    double low[2], high[2];
+  /// A point seen along the rays: where across them, and how far ahead.
+  struct Seen {
+    std::array<double, 2> shadow;
+    double ahead;
   };
-  const Shadow& shadow_of(std::uint32_t id);
+  Seen see(const double (&p)[3]) const;
+  RayShadow cast(const Seen& a, const Seen& b, const Seen& c) const;
+  const RayShadow& shadow_of(std::uint32_t id);
   bool take_list(const Walk& ray, std::uint32_t boundary, std::uint32_t first, HostList<std::uint32_t>& places);
   void step(Walk& walk) const;
 
@@ -62,7 +77,8 @@ class NearRays {
   double per_voxel_ = 0;   ///< voxels a step
   const LatticeMesh* tool_ = nullptr;
   std::vector<std::uint32_t> place_of_;   ///< by id
-  std::vector<Shadow> shadows_;           ///< by id
+  std::vector<RayShadow> shadows_;        ///< by id …
+  std::vector<std::uint32_t> cast_in_;    ///< … and the aim they are of
 
   // The present aim.
   std::uint32_t aim_ = 0;
@@ -70,6 +86,10 @@ class NearRays {
   double along_[3] = {}, each_[3] = {};   ///< direction in the tool's frame; parameter from face to face
   std::size_t axis_ = 0;                  ///< of its largest component: rays are seen along it
   double shear_[2] = {}, beside_[2] = {};   ///< of the other two axes, in turn
+  double towards_ = 1;                      ///< 1 or −1: whether rays climb or descend along `axis_`
+
+  std::vector<Seen> rays_, vertices_;       ///< of look(): where rays begin; the tool's vertices
+  ShadowGrid grid_;
 };
 
 }  // namespace palpate
