@@ -1,44 +1,16 @@
-#include <array>
-#include <bitset>
 #include <random>
 
 #include "compute/prepare_steps.h"
 #include "shaders/code.h"
 #include "shaders/shared/scene.h"
+#include "tests/compute/brick_floods.h"
 #include "tests/compute/gpu_test.h"
 
 namespace palpate {
 namespace {
 
 using BrickLabel = GpuTest;
-using Voxels = std::bitset<512>;   // set: boundary; bit x + 8y + 64z
-
-/// Component of each voxel that is not boundary, numbered in the order of their first voxels, by depth-first search.
-std::array<int, 512> components_of(const Voxels& boundary, int& count) {
-  std::array<int, 512> component;
-  component.fill(-1);
-  count = 0;
-  for (int seed = 0; seed < 512; ++seed) {
-    if (boundary[static_cast<std::size_t>(seed)] || component[static_cast<std::size_t>(seed)] >= 0) continue;
-    std::vector<int> open{seed};
-    component[static_cast<std::size_t>(seed)] = count;
-    while (!open.empty()) {
-      const int at = open.back();
-      open.pop_back();
-      for (int axis = 0; axis < 3; ++axis)
-        for (const int step : {-1, 1}) {
-          const int along = (at >> (3 * axis) & 7) + step;
-          if (along < 0 || along > 7) continue;
-          const int next = at + step * (1 << (3 * axis));
-          if (boundary[static_cast<std::size_t>(next)] || component[static_cast<std::size_t>(next)] >= 0) continue;
-          component[static_cast<std::size_t>(next)] = count;
-          open.push_back(next);
-        }
-    }
-    ++count;
-  }
-  return component;
-}
+using Voxels = BrickVoxels;
 
 TEST_F(BrickLabel, EqualsADepthFirstSearch) {
   std::vector<Voxels> cases(2);   // all open; and all boundary:
