@@ -27,6 +27,7 @@
 #include <utility>
 
 #include "cpu_ref/cpu_backend.h"
+#include "tests/mutation/module_probes.h"
 #include "tests/mutation/mutable_device.h"
 #include "tests/mutation/mutant_switch.h"
 #include "tests/mutation/near_probes.h"
@@ -147,7 +148,7 @@ void limit_time(double seconds) {
 class ShaderJudge {
  public:
   ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, bool ask_probes, bool ask_cases)
-      : oracle_(oracle), device_(device), probes_(device.device()), root_(std::move(root)), ask_probes_(ask_probes), ask_cases_(ask_cases) {}
+      : oracle_(oracle), device_(device), probes_(device.device()), modules_(device.device()), root_(std::move(root)), ask_probes_(ask_probes), ask_cases_(ask_cases) {}
 
   void judge(const std::string& line) {
     std::istringstream fields(line);
@@ -212,6 +213,16 @@ class ShaderJudge {
         }
         continue;
       }
+      if (ask_probes_ && modules_.has(name)) {
+        limit_time(kProbeSeconds);
+        difference = modules_.difference(name, original, *mutant);
+        if (!difference.empty()) {
+          ++changed;
+          probed = true;
+          difference = name.substr(name.rfind('/') + 1) + " alone: " + difference;
+          continue;
+        }
+      }
       if (!ask_cases_) {
         ++changed;
         continue;
@@ -273,6 +284,7 @@ class ShaderJudge {
   Oracle& oracle_;
   MutableDevice& device_;
   ShaderProbes probes_;
+  ModuleProbes modules_;
   std::string root_;
   bool ask_probes_, ask_cases_;
   std::uint64_t probed_ = 0;   // near_probe() of the unchanged program
