@@ -205,7 +205,7 @@ inline std::vector<ModuleRun> joins() {
     }
     for (const std::uint32_t count : {items, most_of(items), items / 2})
       runs.push_back({"component_join", {l.slot, words_of(l.bricks), l.first, l.labels, parents_of_rows(l, rows), {0}},
-                      push_of(grid_of(l, count)), items + kMore, {}, 4});
+                      push_of(grid_of(l, count)), items + kMore, {}, 1, 4});
   }
   // Two bricks side by side along y, in the middle, all others full; one hangs under more nodes than a walk follows.
   Labyrinth l;
@@ -219,7 +219,7 @@ inline std::vector<ModuleRun> joins() {
   l.slot[a] = l.slot[b] = gpu::kBrickExternal;
   Words parent(l.nodes());
   for (std::uint32_t i = 1; i < parent.size(); ++i) parent[i] = i <= 1 + a ? i - 1 : i;
-  runs.push_back({"component_join", {l.slot, words_of(l.bricks), l.first, l.labels, parent, {0}}, push_of(grid_of(l, 3 * l.count())), 3 * l.count(), {}, 4});
+  runs.push_back({"component_join", {l.slot, words_of(l.bricks), l.first, l.labels, parent, {0}}, push_of(grid_of(l, 3 * l.count())), 3 * l.count(), {}, 1, 4});
   return runs;
 }
 

@@ -260,7 +260,7 @@ inline std::vector<ModuleRun> seams() {
   const auto search = [&](std::uint32_t first, std::uint32_t count, std::uint32_t round, std::uint32_t capacity, std::int64_t least_cosine) {
     const gpu::SeamPush push{least_cosine, count, round, capacity, first};
     runs.push_back({"seam_find", {words_of(soup.vertices), words_of(soup.triangles), words_of(normals), begin, ids, {0}, Words(2 * 30'000, kUntouched), box, voxel}, push_of(push),
-                    count + kMore, {}, -1, 6});
+                    count + kMore, {}, 1, -1, 6});
   };
   const std::uint32_t longest = 133;   // first entry of the longest list
   search(0, 170, 0, 30'000, kOne / 2);

@@ -23,7 +23,7 @@ inline std::vector<ModuleRun> scans() {
   for (const std::uint32_t count : {1u, 63u, 64u, 65u, 128u, 4096u, 70'000u})
     for (const std::uint32_t below : {10u, 0xFFFFFFFFu}) {
       const std::uint32_t chunks = (count + gpu::kScanChunk - 1) / gpu::kScanChunk;
-      runs.push_back({"scan_chunks", {random_words(random, count + 200, below), Words(chunks + 4, kUntouched)}, {count}, chunks + 70});
+      runs.push_back({"scan_chunks", {random_words(random, count + 200, below), Words(chunks + 4, kUntouched)}, {count}, chunks + 70, {}, chunks > 100 ? 3u : 1u});
       for (const std::uint32_t has_bases : {0u, 1u})
         runs.push_back({"scan_apply", {random_words(random, count + 200, below), random_words(random, chunks + 4, 1000)}, {count, has_bases}, chunks + 70});
     }

@@ -59,6 +59,7 @@ struct ModuleRun {
   Words push;
   std::uint32_t items = 0;     ///< at least so many invocations are run, in whole workgroups
   Words constants = {};        ///< ids 0, 1, …
+  std::uint32_t rows = 1;      ///< of workgroups: over two axes, as where one is too short
   int forest = -1;             ///< binding of parents: which node is hung under which is nobody's business, each one's root is
   int pairs = -1;              ///< binding of pairs in no order
 };
@@ -101,7 +102,8 @@ inline Result<std::vector<Words>> run_module(VulkanDevice& device, const ShaderC
   auto recorder = CommandRecorder::create(device);
   if (!recorder) return recorder.error();
   recorder->begin();
-  recorder->dispatch_raw(*pipeline, views, run.push.data(), static_cast<std::uint32_t>(run.push.size() * 4), (run.items + gpu::kItemGroup - 1) / gpu::kItemGroup, 1, 1);
+  const std::uint32_t groups = (run.items + gpu::kItemGroup - 1) / gpu::kItemGroup;
+  recorder->dispatch_raw(*pipeline, views, run.push.data(), static_cast<std::uint32_t>(run.push.size() * 4), (groups + run.rows - 1) / run.rows, run.rows, 1);
   if (auto r = recorder->submit_and_wait(); !r) return r.error();
   std::vector<Words> after = run.buffers;
   for (std::size_t i = 0; i < after.size(); ++i)
