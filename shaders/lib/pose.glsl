@@ -27,16 +27,4 @@ ivec3 tool_from_world(ivec3 p) {
   }
   return q;
 }
-
-// How far, per tool axis, a world offset of at most `offset` steps an axis can move the tool lattice point: |R^T| · offset and rounding.
-ivec3 tool_reach(int32_t offset) {
-  if (!ROTATES) return ivec3(offset + 2);
-  ivec3 reach;
-  for (int c = 0; c < 3; ++c) {
-    const int64_t sum = int64_t(abs(frame_input.rotation_q30[c])) + int64_t(abs(frame_input.rotation_q30[3 + c])) +
-                        int64_t(abs(frame_input.rotation_q30[6 + c]));
-    reach[c] = int32_t((sum * int64_t(offset)) >> 30) + 2;
-  }
-  return reach;
-}
 #endif

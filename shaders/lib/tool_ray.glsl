@@ -29,10 +29,9 @@ bool normal_before(uint32_t first, uint32_t second) {
   return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);
 }
 
-// Crossing heights of one sweep, ascending, equal ones merged.
+// The lowest crossing heights of one sweep, ascending, equal ones merged. Where all places are taken there may be more above the last.
 struct Levels {
   uint32_t count;
-  bool more;                   // some did not fit: they are above the last
   uint32_t height[kLevels];
   int32_t sign_sum[kLevels];
   uint32_t triangle[kLevels];  // of those that meet there, the one with the smallest normal
@@ -46,7 +45,6 @@ void levels_insert(inout Levels levels, uint32_t height, int32_t sign_of_crossin
     if (normal_before(triangle, levels.triangle[at])) levels.triangle[at] = triangle;
     return;
   }
-  if (levels.count == kLevels) levels.more = true;
   if (at == kLevels) return;
   const uint32_t last = min(levels.count, kLevels - 1u);
   for (uint32_t i = last; i > at; --i) {
@@ -68,7 +66,6 @@ const uint32_t kCandidates = 16u;   // triangles put by for the exact test (chos
 Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   Levels levels;
   levels.count = 0u;
-  levels.more = false;
   total = 0;
   const vec3 e = ray_scaled(d);
   const uint32_t triangles = scene.tool.triangles;
@@ -108,7 +105,6 @@ Levels tool_sweep(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
 Levels tool_listed(uint32_t item, ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   Levels levels;
   levels.count = 0u;
-  levels.more = false;
   total = 0;
   const RayList list = ray_lists[item];
   for (uint32_t k = list.begin; k < list.end && !spent(1u); ++k) {
@@ -149,8 +145,8 @@ uint32_t tool_height(ivec3 p, ivec3 d, bool nearest, out uint32_t triangle) {
       triangle = levels.triangle[i];
       if (passed == total) return levels.height[i];
     }
-    if (!levels.more) return kNone;   // only when the budget is spent: above the last crossing nothing is left
-    from = levels.height[levels.count - 1u] + 1u;
+    if (levels.count < kLevels) return kNone;   // only when the budget is spent: above the last crossing nothing is left
+    from = levels.height[kLevels - 1u] + 1u;
   } while (!spent(1u));
   return kNone;
 }

@@ -30,7 +30,6 @@ const uint32_t kPutBy = 8u;   // triangles put by for the exact test (chosen: a 
 Levels tool_walk(ivec3 p, ivec3 d, uint32_t from, out int32_t total) {
   Levels levels;
   levels.count = 0u;
-  levels.more = false;
   total = 0;
   const i64vec3 off = i64vec3(p) - i64vec3(frame_input.translation), along = i64vec3(d);
   i64vec3 base;   // Q30; |off| < 2^31: within 3 · 2^61

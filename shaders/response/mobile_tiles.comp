@@ -38,7 +38,7 @@ void main() {
   const int32_t v_first = floor_div(low[v], s), v_last = floor_div(high[v], s);
   const uint32_t across = uint32_t(u_last - u_first) / uint32_t(kMobileTile) + 1u;
   const uint32_t down = uint32_t(v_last - v_first) / uint32_t(kMobileTile) + 1u;
-  if (across >= kLoopBudget || down >= kLoopBudget || across * down >= kLoopBudget) {
+  if (uint64_t(across) * uint64_t(down) >= uint64_t(kLoopBudget)) {
     atomicOr(frame_state.overflow_other, kOverflowLoop);
     return;
   }

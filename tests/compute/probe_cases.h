@@ -4,7 +4,9 @@
 #include <random>
 #include <vector>
 
+#include "shaders/shared/frame.h"
 #include "tests/compute/geometry_cases.h"
+#include "tests/compute/shaders/probe_frame.h"
 #include "tests/compute/shaders/probe_geometry.h"
 #include "tests/compute/shaders/probe_sums.h"
 #include "tests/compute/shaders/probe_triangle_voxel.h"
@@ -265,6 +267,55 @@ inline std::vector<gpu::HeightCase> heights() {
     const std::uint64_t height = i % 2 == 0 ? bound + engine() % 5 : engine() % (4 * std::uint64_t{c.fade} + 9);
     c.height = static_cast<std::uint32_t>(std::min<std::uint64_t>(height < 2 ? height : height - engine() % 3, 1u << 31));
   }
+  return cases;
+}
+
+/// Points up to 2^28 and rotations whose rows are no longer than one; every third for a plan in which nothing turns.
+inline std::vector<gpu::PoseCase> poses() {
+  std::mt19937_64 engine(9);
+  const auto within = [&](std::int32_t reach) { return static_cast<std::int32_t>(engine() % (2 * static_cast<std::uint64_t>(reach) + 1)) - reach; };
+  std::vector<gpu::PoseCase> cases(10000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    c.rotates = i % 3 == 0 ? 0 : 1;
+    const std::int32_t reach = 1 << (1 + i % 28);
+    for (int k = 0; k < 3; ++k) {
+      c.point[k] = within(reach);
+      c.translation[k] = within(1 << 28);
+      for (int j = 0; j < 3; ++j) c.rotation_q30[static_cast<std::size_t>(3 * k + j)] = i % 2 == 0 ? within(600'000'000) : (j + k) % 3 == static_cast<int>(i % 3) ? 1 << 30 : 0;
+    }
+  }
+  return cases;
+}
+
+/// Grids of one to three bricks an axis; points and voxels in them, on their ends, and beside them.
+inline std::vector<gpu::PartitionCase> partitions() {
+  std::mt19937_64 engine(10);
+  std::vector<gpu::PartitionCase> cases(20000);
+  for (auto& c : cases) {
+    c.grid = {};
+    c.grid.size = 8 << engine() % 8;
+    for (int k = 0; k < 3; ++k) {
+      c.grid.origin[k] = static_cast<std::int32_t>(engine() % 2001) - 1000;
+      c.grid.bricks[k] = 1 + static_cast<std::int32_t>(engine() % 3);
+      const std::int32_t voxels = 8 * c.grid.bricks[k];
+      const std::uint64_t choice = engine() % 8;
+      c.voxel[k] = choice == 0 ? -1 : choice == 1 ? voxels : choice == 2 ? 0 : choice == 3 ? voxels - 1 : static_cast<std::int32_t>(engine() % static_cast<std::uint64_t>(voxels));
+      const auto voxel = static_cast<std::int32_t>(engine() % static_cast<std::uint64_t>(voxels + 4)) - 2;
+      c.point[k] = c.grid.origin[k] + voxel * c.grid.size + (engine() % 2 == 0 ? static_cast<std::int32_t>(engine() % 3) - 1 : c.grid.size / 2);
+    }
+  }
+  return cases;
+}
+
+/// Numbers of workgroups: few, round every multiple of a row, and any.
+inline std::vector<std::uint32_t> groups() {
+  std::mt19937_64 engine(11);
+  std::vector<std::uint32_t> cases;
+  for (std::uint32_t n = 0; n < 100; ++n) cases.push_back(n);
+  for (std::uint32_t rows = 1; rows < 65535; rows += rows < 20 ? 1 : rows / 3)
+    for (const std::uint32_t n : {rows * gpu::kMaxGroupsX - 1, rows * gpu::kMaxGroupsX, rows * gpu::kMaxGroupsX + 1}) cases.push_back(n);
+  for (int i = 0; i < 1000; ++i) cases.push_back(static_cast<std::uint32_t>(engine() % (std::uint64_t{1} << (1 + i % 32))) & 0xFFFF0000u);
   return cases;
 }
 

@@ -68,5 +68,6 @@ std::vector<Case> chapter_cases();
 std::vector<Case> touch_cases();
 std::vector<Case> topology_cases();
 std::vector<Case> rule_cases();
+std::vector<Case> limit_cases();   // of family rules, too
 
 }  // namespace palpate::equivalence

@@ -6,64 +6,11 @@
 #include "tests/equivalence/case.h"
 #include "tests/equivalence/lattice_shapes.h"
 #include "tests/equivalence/rectangles.h"
+#include "tests/equivalence/rule_case.h"
 #include "tests/equivalence/touching_poses.h"
 
 namespace palpate::equivalence {
 namespace {
-
-constexpr std::int32_t kVoxel = 64;
-
-using Pose = std::function<LatticePose(const SceneGeometry&, Random&, Known&)>;
-
-LatticePose unturned(const Int3& translation) {
-  LatticePose pose;
-  for (int k = 0; k < 3; ++k) pose.rotation_q30[k][k] = 1 << 30;
-  pose.translation = translation;
-  return pose;
-}
-
-Int3 any(Random& random, std::int32_t reach) { return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)}; }
-
-/// One side (2·axis + upper) of a box.
-Triangles side_of(const Int3& min, const Int3& max, std::size_t side) {
-  const Triangles box = box_of(min, max);
-  return {box[2 * side], box[2 * side + 1]};
-}
-
-Triangles together(std::initializer_list<Triangles> parts) {
-  Triangles all;
-  for (const Triangles& part : parts) append(all, part);
-  return all;
-}
-
-Case rule(const char* name, const char* about, Triangles mockup, Triangles tool, Pose pose, std::optional<RectangleWorld> classes = {}) {
-  Case c;
-  c.name = name;
-  c.family = "rules";
-  c.about = about;
-  c.degenerate = true;
-  c.killer = true;
-  c.poses = 12;
-  c.share = 0.1;
-  c.make = [=](std::uint64_t) -> Result<TestScene> {
-    auto geometry = lattice_scene(mockup, tool, kVoxel, kVoxel / 2);
-    if (!geometry) return geometry.error();
-    TestScene scene;
-    scene.geometry = std::move(*geometry);
-    scene.pose = pose;
-    if (classes) scene.known_class = [world = *classes](const Int3& lower) { return world.class_of(lower, kVoxel); };
-    return scene;
-  };
-  return c;
-}
-Case held(Case c) {
-  c.name += "_held";
-  c.held = true;
-  return c;
-}
-
-Triangles small_box() { return box_of(Int3(-40), Int3(40)); }
-Triangles block() { return box_of(Int3(-512), Int3(512)); }
 
 LatticePose anyhow(const SceneGeometry& geometry, Random& random, Known&) {
   return random.below(2) == 0 ? aligned_touching_pose(geometry, random) : random_touching_pose(geometry, 0.5, random);
@@ -333,15 +280,6 @@ Case open_box_and_boxes() {
                 if (random.below(2) == 0) pose.translation.z = 512 + random.between(-120, 120);
                 return pose;
               });
-}
-
-LatticePose leaning(Random& random, const Int3& translation) {
-  const Turn turn = turn_by((random.unit() - 0.5) / 4);
-  LatticePose pose = unturned(translation);
-  pose.rotation_q30[1][1] = pose.rotation_q30[2][2] = static_cast<std::int32_t>(turn.cos * 0x1p30);
-  pose.rotation_q30[2][1] = static_cast<std::int32_t>(turn.sin * 0x1p30);
-  pose.rotation_q30[1][2] = -pose.rotation_q30[2][1];
-  return pose;
 }
 
 /// A needle without one of its triangles; with a box far from the table, it still has an inside.

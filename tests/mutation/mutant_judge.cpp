@@ -27,6 +27,7 @@
 #include <utility>
 
 #include "cpu_ref/cpu_backend.h"
+#include "tests/mutation/limits.h"
 #include "tests/mutation/module_probes.h"
 #include "tests/mutation/mutable_device.h"
 #include "tests/mutation/mutant_switch.h"
@@ -148,7 +149,7 @@ void limit_time(double seconds) {
 class ShaderJudge {
  public:
   ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, bool ask_probes, bool ask_cases)
-      : oracle_(oracle), device_(device), probes_(device.device()), modules_(device.device()), root_(std::move(root)), ask_probes_(ask_probes), ask_cases_(ask_cases) {}
+      : oracle_(oracle), device_(device), probes_(device.device()), modules_(device.device()), limits_(oracle, device, root), root_(std::move(root)), ask_probes_(ask_probes), ask_cases_(ask_cases) {}
 
   void judge(const std::string& line) {
     std::istringstream fields(line);
@@ -172,17 +173,18 @@ class ShaderJudge {
     std::string difference;
     bool probed = false;
     bool unasked = false;   // swapped in since the oracle was asked last
-    bool in_frames = false, scans = false;
+    std::vector<std::string> of_frames;   // changed modules that frames run
+    bool scans = false;
     // The device's own steps for areas and rays first, then what it does when the host has done the first half of them: both prepare alike.
     const auto ask = [&] {
       difference = oracle_.first_difference_now(at);
-      if (difference.empty() && in_frames) {
+      if (difference.empty() && !of_frames.empty()) {
         device_.host_share(HostShare::kAreas);
         difference = oracle_.first_difference_now(at);
         device_.host_share(HostShare::kNear);
         if (!difference.empty()) difference += " (areas on the host)";
       }
-      if (difference.empty() && in_frames) {
+      if (difference.empty() && !of_frames.empty()) {
         difference = oracle_.first_overflow_difference(at, [&](const char* name_of, std::uint32_t items) {
           device_.first_capacity(*name_of != 0 ? std::map<std::string, std::uint32_t>{{name_of, items}} : std::map<std::string, std::uint32_t>{});
         });
@@ -227,15 +229,16 @@ class ShaderJudge {
         ++changed;
         continue;
       }
-      const bool of_frames = name.starts_with("shaders/frame/") || name.starts_with("shaders/response/");
-      in_frames = in_frames || of_frames;
+      const bool of_frame = name.starts_with("shaders/frame/") || name.starts_with("shaders/response/");
+      if (of_frame) of_frames.push_back(name);
       scans = scans || name == "shaders/frame/sample_scan.comp";
-      if (auto r = device_.swap(original, *mutant, !of_frames); !r) difference = r.error().sentence;
+      if (auto r = device_.swap(original, *mutant, !of_frame); !r) difference = r.error().sentence;
       unasked = true;
       if (++changed == kFirst && difference.empty()) ask();
     }
     if (unasked && difference.empty()) ask();
     const std::size_t swapped = device_.swapped();
+    if (difference.empty() && swapped > 0 && !of_frames.empty()) difference = limits_.first_difference(change, of_frames, at);
     device_.restore();
     limit_time(0);
     if (changed == 0) return answer("no-change", spent(), "", "");
@@ -285,6 +288,7 @@ class ShaderJudge {
   MutableDevice& device_;
   ShaderProbes probes_;
   ModuleProbes modules_;
+  Limits limits_;
   std::string root_;
   bool ask_probes_, ask_cases_;
   std::uint64_t probed_ = 0;   // near_probe() of the unchanged program

@@ -184,7 +184,7 @@ class Judge:
 
 
 def oracle_version():
-    files = sorted([*HERE.glob("oracle*"), *HERE.glob("probes*"), *HERE.glob("mutable_device*"), *HERE.glob("*_probes*"), *(ROOT / "tests/compute").glob("*.h"), *(ROOT / "tests/equivalence").glob("*.cpp"), *(ROOT / "tests/equivalence").glob("*.h")])
+    files = sorted([*HERE.glob("oracle*"), *HERE.glob("limits*"), *HERE.glob("probes*"), *HERE.glob("mutable_device*"), *HERE.glob("*_probes*"), *(ROOT / "tests/compute").glob("*.h"), *(ROOT / "tests/equivalence").glob("*.cpp"), *(ROOT / "tests/equivalence").glob("*.h")])
     return short_hash(*[f.read_bytes() for f in files])
 
 

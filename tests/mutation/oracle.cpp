@@ -137,7 +137,7 @@ void Oracle::answer(Case& c) {
     q.held = held;
     q.remembers = wanted.held;
     must(backend_.query(q.pose, q.remembers ? &q.held : nullptr, q.answer));
-    if (q.answer.truncated && c.name != "too_many_areas") throw std::runtime_error(c.name + ": no room in " + q.answer.truncated_capacity);
+    if (q.answer.truncated && !c.name.starts_with("too_many_")) throw std::runtime_error(c.name + ": no room in " + q.answer.truncated_capacity);
     respond(q.answer, q.pose, c.geometry, wanted.profile, kStiffness, q.response, q.remembers ? &q.held : nullptr);
     remember(q.answer, q.response, held);
     q.left = held;
@@ -212,10 +212,16 @@ std::string Oracle::first_difference_again(std::size_t& of) {
   return {};
 }
 
-/// Of each of the first poses, what is told: nothing, or which list was too small.
-std::string Oracle::tell_overflow(const Overflow& o, std::vector<std::string>& told) {
+std::optional<std::size_t> Oracle::find(const std::string& name) const {
+  const auto found = std::find_if(cases_.begin(), cases_.end(), [&](const Case& c) { return c.name == name; });
+  if (found == cases_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - cases_.begin());
+}
+
+std::string Oracle::tell(std::size_t of, std::vector<std::string>& told) {
   constexpr std::size_t kPoses = 5;
-  const Case& c = cases_[o.of];
+  if (!cases_[of].answered) answer(cases_[of]);
+  const Case& c = cases_[of];
   if (auto r = backend_.prepare(c.geometry, c.plan, go_on); !r) return "prepare: " + r.error().sentence;
   told.clear();
   Contacts answer;
@@ -233,7 +239,7 @@ std::string Oracle::first_overflow_difference(std::size_t& of, const std::functi
         {"pairs to test", "ball_on_block"}, {"pairs", "ball_on_block"}, {"contact triangles of the mock-up", "ball_on_block"},
         {"contact triangles of the tool", "ball_on_block"}, {"samples found inside", "ball_on_block"}, {"samples near the tool's surface", "ball_on_block"},
         {"samples", "ball_on_block"}, {"tool triangles of areas", "ball_on_block"}, {"tiles of tool samples", "ball_on_block"}, {"pierced areas", "two_plates"},
-        {"needle vertices", "needle"}, {"needle table", "needle"}, {"bins of the tool's shadow", "open_ball"}, {"samples near the tool's surface", "open_ball"}};
+        {"needle vertices", "needle"}, {"needle table", "needle"}, {"bins of the tool's shadow", "open_ball"}, {"samples near the tool's surface", "open_ball"}, {"lists with samples", "sheet_tool"}};
     for (const auto& [list, name] : kAsked)
       for (const std::uint32_t room : {1u, 3u})
         for (std::size_t c = 0; c < cases_.size(); ++c)
@@ -243,7 +249,7 @@ std::string Oracle::first_overflow_difference(std::size_t& of, const std::functi
     unchanged_(true);
     for (Overflow& o : overflows_) {
       set_room(o.list, o.room);
-      if (const std::string failure = tell_overflow(o, o.told); !failure.empty()) throw std::runtime_error(std::string(o.list) + ": " + failure);
+      if (const std::string failure = tell(o.of, o.told); !failure.empty()) throw std::runtime_error(std::string(o.list) + ": " + failure);
     }
     set_room("", 0);
     unchanged_(false);
@@ -253,7 +259,7 @@ std::string Oracle::first_overflow_difference(std::size_t& of, const std::functi
     of = o.of;
     set_room(o.list, o.room);
     before_case(cases_[o.of].seconds);
-    std::string different = tell_overflow(o, told);
+    std::string different = tell(o.of, told);
     if (different.empty() && told != o.told) different = "what is told";
     if (!different.empty()) {
       set_room("", 0);

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,17 @@ class Oracle {
   /// `set_room(list, items)` is called before; an empty name: room for all.
   std::string first_overflow_difference(std::size_t& of, const std::function<void(const char*, std::uint32_t)>& set_room);
 
-  /// The same of what the host does before and after a back end: geometry made again from the meshes, and the answers' response. The back
+  /// The case of this name, if it is asked.
+  std::optional<std::size_t> find(const std::string& name) const;
+
+  /// Asks the first poses of a case as the back end stands: of each, what is told: nothing, which list was too small, or what differs. Returns what
+  /// failed; empty: nothing.
+  std::string tell(std::size_t of, std::vector<std::string>& told);
+
+  /// Of processor time, that a case took when nothing was changed.
+  double seconds(std::size_t of) const { return cases_[of].seconds; }
+
+  /// As first_difference_now() of what the host does before and after a back end: geometry made again from the meshes, and the answers' response. The back
   /// end is not asked.
   std::string first_host_difference(std::size_t& of) const;
 
@@ -69,7 +80,6 @@ class Oracle {
     std::size_t of;
     std::vector<std::string> told;   ///< of each pose
   };
-  std::string tell_overflow(const Overflow& o, std::vector<std::string>& told);
   void answer(Case& c);
   std::string ask(const Case& c) const;
   std::string ask_host(const Case& c) const;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -12,9 +13,15 @@ struct TextChange {
   std::string text;
 };
 
-/// SPIR-V of a shader, given by its name from `root`, with or without a change in it or in what it includes: word for word what
+/// A constant of the shaders' text (`name = number`) that has another value.
+struct SmallConstant {
+  std::string name;
+  std::uint32_t value = 0;
+};
+
+/// SPIR-V of a shader, given by its name from `root`, with or without a change in it or in what it includes, or another value of a constant there: word for word what
 /// glslangValidator makes of it in the build. In this process, because starting glslangValidator takes 20 times as long as a shader.
 /// Empty when it doesn't compile.
-std::optional<std::string> compile_shader(const std::string& root, const std::string& name, const TextChange* change);
+std::optional<std::string> compile_shader(const std::string& root, const std::string& name, const TextChange* change, const SmallConstant* constant = nullptr);
 
 }  // namespace palpate::mutation

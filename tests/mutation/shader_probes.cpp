@@ -31,6 +31,9 @@ ShaderProbes::ShaderProbes(VulkanDevice& device) : device_(device) {
   add<gpu::SeamAnswer>("probe_seam", probe_cases::seams());
   add<gpu::DirectionAnswer>("probe_direction", probe_cases::directions());
   add<gpu::HeightAnswer>("probe_heights", probe_cases::heights());
+  add<gpu::PoseAnswer>("probe_pose", probe_cases::poses());
+  add<gpu::PartitionAnswer>("probe_partition", probe_cases::partitions());
+  add<gpu::GroupsAnswer>("probe_groups", probe_cases::groups());
 }
 
 std::string ShaderProbes::run(const Probe& probe, const std::string& code, Bytes& answers) {
@@ -51,7 +54,10 @@ std::string ShaderProbes::run(const Probe& probe, const std::string& code, Bytes
   auto recorder = CommandRecorder::create(device_);
   if (!recorder) return recorder.error().sentence;
   recorder->begin();
-  recorder->dispatch_items(*pipeline, {*from, *to}, probe.count, std::size_t{probe.count});
+  // In rows, as where there are more workgroups than a row of a dispatch may have.
+  constexpr std::uint32_t kRow = 5;
+  const std::uint32_t groups = (probe.count + gpu::kItemGroup - 1) / gpu::kItemGroup;
+  recorder->dispatch(*pipeline, {*from, *to}, probe.count, kRow, (groups + kRow - 1) / kRow, 1);
   if (auto r = recorder->submit_and_wait(); !r) return r.error().sentence;
   answers.resize(probe.answer_bytes);
   if (auto r = download(device_, *to, 0, answers.data(), answers.size()); !r) return r.error().sentence;

@@ -1,0 +1,172 @@
+#include "tests/mutation/limits.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+namespace palpate::mutation {
+namespace {
+
+using Limit = Limits::Limit;
+
+const std::vector<Limit>& limits() {
+  static const std::vector<Limit> all = {
+      {"", "kMaxGroupsX", 3, true, {"ball_on_block", "ball_on_block_paper", "many_areas", "needle", "open_ball", "box_swallowed_held", "bead_in_the_middle_held"}},
+      {"shaders/lib/tool_ray.glsl", "kLevels", 2, false, {"nested_tool", "nested_tool_open", "bridge_and_overlap", "crossed_wedges"}},
+      {"shaders/lib/tool_ray.glsl", "kCandidates", 2, false, {"nested_tool_open", "open_ball", "crossed_wedges"}},
+      {"shaders/lib/tool_walk.glsl", "kPutBy", 1, false, {"nested_tool", "bridge_and_overlap", "ball_on_block"}},
+      {"shaders/lib/tool_walk.glsl", "kLevels", 2, false, {"nested_tool", "bridge_and_overlap"}},
+      {"shaders/lib/sample_chunks.glsl", "kLoopBudget", 0, false, {"sheet_tool"}},
+      {"shaders/frame/sample_winding.comp", "kLoopBudget", 0, false, {"open_ball", "open_box_and_boxes"}},
+      {"shaders/frame/voxel_touch.comp", "kLoopBudget", 0, false, {"ball_on_block", "ball_on_block_paper"}},
+      {"shaders/response/mobile_tiles.comp", "kLoopBudget", 0, false, {"ball_on_block", "ball_over_bead"}},
+      {"shaders/response/points_sum.comp", "kLoopBudget", 0, false, {"ball_on_block_paper", "two_sheets_paper"}},
+      {"shaders/response/points_sum.comp", "kLoopBudget", 3, false, {"ball_on_block_paper", "two_sheets_paper"}},
+      {"shaders/response/needle_trace.comp", "kLoopBudget", 1, false, {"needle_in_a_bud"}},
+      {"shaders/response/needle_pairs.comp", "kNeedleProbes", 0, false, {"needle", "needle_leaning"}, "needle table"},
+      {"shaders/lib/sample_chunks.glsl", "", 0, false, {"sheet_tool"}, "lists with samples"},
+      {"shaders/frame/bins_fill.comp", "", 0, false, {"open_ball"}, "bins of the tool's shadow"},
+      {"shaders/frame/sample_scan.comp", "", 0, false, {"sheet_tool", "ball_on_block"}, "samples", true},
+      {"shaders/frame/sample_scan.comp", "", 0, false, {"ball_on_block"}, "samples near the tool's surface", true},
+      {"shaders/frame/sample_scan.comp", "", 0, false, {"between_the_samples"}, "samples near the tool's surface", true},
+      {"shaders/frame/sample_walk.comp", "", 0, false, {"ball_on_block"}, "samples"},
+      {"shaders/frame/sample_winding.comp", "", 0, false, {"open_ball"}, "samples"}};
+  return all;
+}
+
+constexpr std::uint32_t kFullTable = 64, kMost = 30000;
+constexpr double kNoHurry = 600;   // seconds: what the unchanged modules take is nobody's fault
+
+}  // namespace
+
+const std::string& Limits::original(const std::string& name) {
+  std::string& code = originals_[name];
+  if (code.empty()) code = compile_shader(root_, name, nullptr).value();
+  return code;
+}
+
+std::vector<Limits::Module> Limits::with(const Limit& limit, std::uint32_t value, const std::vector<std::string>& names) {
+  std::vector<Module> out;
+  if (*limit.constant == 0) return out;
+  const SmallConstant constant{limit.constant, value};
+  for (const std::string& name : names) {
+    std::string& code = small_[constant.name + " " + std::to_string(value) + " " + name];
+    if (code.empty()) code = compile_shader(root_, name, nullptr, &constant).value();
+    if (code != original(name)) out.push_back({name, original(name), code});
+  }
+  return out;
+}
+
+std::string Limits::swap(const std::vector<Module>& modules) {
+  device_.restore();
+  for (const Module& m : modules)
+    if (auto r = device_.swap(m.before, m.after, false); !r) return r.error().sentence;
+  return {};
+}
+
+Limits::Told Limits::tell(const Limit& limit, std::uint32_t value, std::size_t of) {
+  if (*limit.list != 0) device_.first_capacity({{limit.list, *limit.constant == 0 ? value : kFullTable}});
+  device_.without_samples(limit.unlisted);
+  Told all;
+  for (const HostShare share : {HostShare::kNear, HostShare::kAreas}) {
+    device_.host_share(share);
+    Told told;
+    if (std::string failure = oracle_.tell(of, told); !failure.empty()) told.push_back(failure);
+    all.insert(all.end(), told.begin(), told.end());
+  }
+  device_.host_share(HostShare::kNear);
+  device_.without_samples(false);
+  device_.first_capacity({});
+  return all;
+}
+
+std::vector<Limits::Told> Limits::known(const Limit& limit, std::uint32_t value, const std::vector<Module>& modules, const std::vector<std::size_t>& of) {
+  std::string key = std::string(limit.constant) + "|" + limit.list + (limit.unlisted ? "|unlisted " : "| ") + std::to_string(value);
+  for (const Module& m : modules) key += " " + m.name;
+  std::vector<Told> out;
+  bool swapped = false;
+  for (const std::size_t c : of) {
+    auto [at, fresh] = known_.try_emplace(key + " " + oracle_.name(c));
+    if (fresh) {
+      if (const std::string failure = std::exchange(swapped, true) ? "" : swap(modules); !failure.empty()) throw std::runtime_error(failure);
+      at->second = tell(limit, value, c);
+    }
+    out.push_back(at->second);
+  }
+  return out;
+}
+
+std::uint32_t Limits::smallest(const Limit& limit, const std::vector<std::string>& names, std::size_t of) {
+  const auto enough = [&](std::uint32_t value) {
+    const Told told = known(limit, value, with(limit, value, names), {of})[0];
+    return std::all_of(told.begin(), told.end(), [](const std::string& t) { return t.empty(); });
+  };
+  std::uint32_t low = 1, high = 1;   // the smallest is within [low, high]
+  while (high < kMost && !enough(high)) low = high + 1, high *= 2;
+  while (low < high) {
+    const std::uint32_t middle = low + (high - low) / 2;
+    if (enough(middle)) high = middle;
+    else low = middle + 1;
+  }
+  return high;
+}
+
+std::string Limits::ask(const Limit& limit, std::uint32_t value, const TextChange& change, const std::vector<std::string>& modules,
+                        const std::vector<std::size_t>& of, std::size_t& at) {
+  std::vector<Module> all = with(limit, value, limit.everywhere ? numbering_ : modules);
+  if (all.empty() && *limit.constant != 0) return {};
+  const std::vector<Told> expected = known(limit, value, all, of);
+  const SmallConstant constant{limit.constant, value};
+  for (const std::string& m : modules) {
+    auto found = std::find_if(all.begin(), all.end(), [&](const Module& c) { return c.name == m; });
+    if (found == all.end()) found = all.insert(all.end(), Module{m, original(m), {}});
+    found->after = compile_shader(root_, m, &change, *limit.constant != 0 ? &constant : nullptr).value();
+  }
+  std::string difference = swap(all);
+  for (std::size_t i = 0; i < of.size() && difference.empty(); ++i) {
+    at = of[i];
+    oracle_.before_case(oracle_.seconds(at));
+    if (tell(limit, value, at) != expected[i])
+      difference = std::string("what is told with ") + (*limit.constant != 0 ? limit.constant : limit.list) + " of " + std::to_string(value);
+  }
+  device_.restore();
+  oracle_.before_case(kNoHurry);
+  return difference;
+}
+
+std::string Limits::first_difference(const TextChange& change, const std::vector<std::string>& modules, std::size_t& of) {
+  if (numbering_.empty()) {
+    for (const char* folder : {"shaders/frame", "shaders/response"})
+      for (const auto& entry : std::filesystem::directory_iterator(root_ + "/" + folder)) {
+        std::ifstream file(entry.path());
+        const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+        if (text.find("groups_for(") != std::string::npos) numbering_.push_back(std::string(folder) + "/" + entry.path().filename().string());
+      }
+    std::sort(numbering_.begin(), numbering_.end());
+  }
+  oracle_.before_case(kNoHurry);
+  for (const Limit& limit : limits()) {
+    // A change in shaders/lib is in too many modules at once; probes ask those that number workgroups.
+    if (*limit.file != 0 ? change.file != limit.file : change.file.starts_with("shaders/lib/")) continue;
+    std::vector<std::size_t> cases;
+    for (const char* name : limit.cases)
+      if (const auto found = oracle_.find(name)) cases.push_back(*found);
+    if (limit.value != 0) {
+      if (std::string difference = ask(limit, limit.value, change, modules, cases, of); !difference.empty()) return difference;
+      continue;
+    }
+    for (const std::size_t c : cases) {
+      const std::uint32_t enough = smallest(limit, modules, c);
+      for (const std::uint32_t value : {enough, enough - 1})
+        if (value != 0)
+          if (std::string difference = ask(limit, value, change, modules, {c}, of); !difference.empty()) return difference;
+    }
+  }
+  device_.restore();
+  return {};
+}
+
+}  // namespace palpate::mutation
