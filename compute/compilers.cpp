@@ -19,6 +19,7 @@ Compilers::Compilers() : state_(std::make_shared<State>()) {}
 
 Compilers::~Compilers() {
   std::unique_lock lock(state_->mutex);
+  state_->jobs.clear();
   state_->idle.wait(lock, [this] { return state_->threads == 0; });
 }
 

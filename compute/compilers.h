@@ -9,7 +9,7 @@ namespace palpate {
 class Compilers {
  public:
   Compilers();
-  /// Waits for all jobs.
+  /// Drops the jobs that have not begun, and waits for the others.
   ~Compilers();
   Compilers(const Compilers&) = delete;
   Compilers& operator=(const Compilers&) = delete;

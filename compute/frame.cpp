@@ -64,6 +64,7 @@ class RecordedFrame final : public Frame {
       : device_(device), geometry_(geometry), scene_(scene), plan_(frame_plan(plan, scene.mockup.partition.has_internal)), posed_(geometry.tool) {}
 
   Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
+  Result<void> finish() override;
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   Result<void> enlarge() override;
@@ -77,9 +78,11 @@ class RecordedFrame final : public Frame {
     return {buffers_[binding].as<T>(), capacity_.lists[list]};
   }
   void name_scene();
+  Result<void> make_pipelines();
   Result<void> make_buffers();
   Result<void> set_capacities();
   Result<void> record();
+  Result<void> record_again() { return finished_ ? record() : Result<void>{}; }
   template <class Body>
   Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
   Result<void> run(CommandRecorder& commands, Contacts& out);
@@ -113,6 +116,7 @@ class RecordedFrame final : public Frame {
   double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
+  bool finished_ = false;           ///< pipelines are there and commands recorded
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;         ///< that the last query counted
   std::uint32_t near_full_ = gpu::kNone;   ///< the list for which the last query found more than there is room for on the host
@@ -147,13 +151,11 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   const bool refined = constants.refined != 0;
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
 
-  auto detection = FrameDetection::create(device_, geometry_, scene_, plan_);
-  if (!detection) return detection.error();
-  detection_ = std::move(*detection);
-  // Pipelines are compiled beside what the host builds.
-  auto response = FrameResponse::create(device_, refined, scene_.rays_walk(), plan_);
-  if (!response) return response.error();
-  response_.emplace(std::move(*response));
+  detection_ = FrameDetection::make(geometry_, scene_, plan_);
+  // Pipelines are compiled beside: where the device decides, beside what the host builds; else beside the first queries, which don't need them.
+  const bool host_decides = refined && device_.host_share == HostShare::kContacts && scene_.rays_walk();
+  if (!host_decides)
+    if (auto r = make_pipelines(); !r) return r;
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, detection_->order());
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
@@ -165,7 +167,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
       auto rays = NearRays::make(device_, geometry_.tool, scene_, detection_->order());
       if (!rays) return rays.error();
       near_rays_.emplace(std::move(*rays));
-      if (device_.host_share == HostShare::kContacts) {
+      if (host_decides) {
         auto contact = HostContact::make(device_, geometry_, scene_, detection_->order(), *host_areas_, *near_rays_);
         if (!contact) return contact.error();
         host_contact_ = std::move(*contact);
@@ -174,10 +176,28 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   }
   std::optional<std::uint64_t> samples;
   if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
-  capacity_ = FrameCapacity::first({.scene = constants, .samples = samples, .host_decides = host_contact_ != nullptr}, first_capacity);
+  capacity_ = FrameCapacity::first({.scene = constants, .samples = samples, .host_decides = host_decides}, first_capacity);
+  if (host_decides)
+    if (auto r = make_pipelines(); !r) return r;
   if (auto r = make_buffers(); !r) return r;
+  return host_decides ? Result<void>{} : finish();
+}
+
+/// Asks for them: they are made by other threads.
+Result<void> RecordedFrame::make_pipelines() {
+  if (auto r = detection_->make_shaders(device_); !r) return r;
+  auto response = FrameResponse::create(device_, scene_.constants.refined != 0, scene_.rays_walk(), plan_);
+  if (!response) return response.error();
+  response_.emplace(std::move(*response));
+  return {};
+}
+
+Result<void> RecordedFrame::finish() {
+  if (finished_) return {};
   if (auto r = record(); !r) return r;
-  return warm_up(device_, pipelines_);   // no frame should wait for a compiler
+  if (auto r = warm_up(device_, pipelines_); !r) return r;   // no frame of a loop should wait for a compiler
+  finished_ = true;
+  return {};
 }
 
 Result<void> RecordedFrame::make_buffers() {
@@ -210,10 +230,10 @@ Result<void> RecordedFrame::enlarge() {
     // Buffers that have grown already do no harm: the lists' capacities are what counts.
     capacity_ = before;
     if (auto r = set_capacities(); !r) return r;
-    if (auto r = record(); !r) return r;
+    if (auto r = record_again(); !r) return r;
     return made;
   }
-  return record();
+  return record_again();
 }
 
 /// A command buffer with what `body(FrameRecorder&)` records.
@@ -345,6 +365,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
   if (host_contact_ && solve_on_host(held, near, out)) return {};
+  if (auto r = finish(); !r) return r;
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end

@@ -24,7 +24,8 @@ class Frame {
   /// `first_capacity` is GpuOptions::first_capacity. `plan`: what it leaves out has no pipeline, dispatch or buffer.
   static Result<std::unique_ptr<Frame>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
                                                const std::map<std::string, std::uint32_t>& first_capacity, const Plan& plan = {});
-  /// As CollisionBackend::query and enlarge.
+  /// As CollisionBackend::finish_preparing, query and enlarge.
+  virtual Result<void> finish() = 0;
   virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
   virtual Result<void> enlarge() = 0;
   /// As CollisionBackend::pairs.

@@ -16,8 +16,7 @@ constexpr std::uint32_t kMostBinsBits = 9;
 
 }  // namespace
 
-Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                                               const Plan& plan) {
+std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
   out->plan_ = plan;
   out->order_ = order_in_space(geometry.tool);
@@ -28,7 +27,6 @@ Result<std::unique_ptr<FrameDetection>> FrameDetection::create(VulkanDevice& dev
   out->walks_ = scene.rays_walk();
   // About a bin a triangle.
   while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;
-  if (auto r = out->make_shaders(device); !r) return r.error();
   return out;
 }
 

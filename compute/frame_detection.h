@@ -20,9 +20,10 @@ inline constexpr std::uint32_t kRayPlaces = 1u << 18;
 /// and the frame's last step, which empties what it filled. Makes its own buffers and pipelines.
 class FrameDetection {
  public:
-  /// Makes the pipelines.
-  static Result<std::unique_ptr<FrameDetection>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan);
+  static std::unique_ptr<FrameDetection> make(const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan);
 
+  /// Asks for the pipelines, which are then made beside what follows. Before record().
+  Result<void> make_shaders(VulkanDevice& device);
   /// Makes the buffers of the lists and tables into `buffers`; those that are large enough already stay. Before the first record(), and
   /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
   Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const FrameCapacity& capacity,
@@ -42,7 +43,6 @@ class FrameDetection {
   FrameDetection() = default;
   Result<void> upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const;
   Result<void> upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const;
-  Result<void> make_shaders(VulkanDevice& device);
   void record_samples(FrameRecorder& recorder) const;
 
   Plan plan_;

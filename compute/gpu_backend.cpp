@@ -46,6 +46,12 @@ class GpuBackend final : public CollisionBackend {
     return make_frame(plan);
   }
 
+  Result<void> finish_preparing() override {
+    if (!frame_) return Error{ErrorCode::kInternal, "no scene has been prepared"};
+    if (auto r = frame_->finish(); !r) return r;
+    return device_->check_guards();
+  }
+
   std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override { return estimate_preparation(geometry, plan); }
 
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {

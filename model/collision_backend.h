@@ -31,8 +31,12 @@ class CollisionBackend {
   virtual ~CollisionBackend() = default;
 
   /// Builds the voxel partition and whatever else a query needs. `geometry` must outlive the back end.
-  /// Allocates; takes as long as it takes. A second call replaces the first scene.
+  /// Allocates; takes as long as it takes. A second call replaces the first scene. What only rare queries need may still be made beside when
+  /// this comes back; the first of them waits for it.
   virtual Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) = 0;
+
+  /// Waits for what prepare() or replan() left to be made beside, so that no query has to: before a loop begins. Error: it can't be made.
+  virtual Result<void> finish_preparing() { return {}; }
 
   /// The same prepared scene under another plan of the same profile: what it adds is made, what it leaves out is gone. Takes milliseconds; not
   /// while a query runs. Error: as prepare(), or the profile is another one; the back end may have to be prepared again.

@@ -57,6 +57,7 @@ void PlanSwitch::prepare(const PlanTarget& target) {
   Result<void> prepared = Error{ErrorCode::kInternal, ""};
   try {
     prepared = spare_->prepare(geometry_, target.plan, [&](const char*, double) { return !stopped(); });
+    if (prepared) prepared = spare_->finish_preparing();
   } catch (const std::exception& failure) {
     prepared = Error{ErrorCode::kInternal, failure.what()};
   }

@@ -300,6 +300,7 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
 Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& backend, HapticDevice& device,
                                    const SessionOptions& options, RunObserver* observer) {
   if (auto fine = check(scene.scene, options); !fine) return fine.error();
+  if (auto finished = backend.finish_preparing(); !finished) return finished.error();
   const ControlSettings& control = scene.scene.control;
   const auto in_ticks = [](double ms) { return static_cast<int>(std::lround(ms / 1000 / kTickSeconds)); };
   SafetySettings safety;

@@ -24,6 +24,14 @@ Result<void> SteadyBackend::prepare(const SceneGeometry& geometry, const Plan& p
   return prepare_spare(progress);
 }
 
+Result<void> SteadyBackend::finish_preparing() {
+  if (!first_) return {};
+  const Result<void> finished = first_->finish_preparing();
+  if (finished || !make_spare_) return finished;
+  first_failed(finished.error());
+  return prepare_spare([](const char*, double) { return true; });
+}
+
 Result<void> SteadyBackend::replan(const Plan& plan) {
   if (first_)
     if (auto done = first_->replan(plan); !done) return done;
@@ -60,10 +68,7 @@ Result<void> SteadyBackend::query(const LatticePose& pose, const Held* held, Con
     // More areas than a frame may have is truncation by definition, whoever answers.
     if (answered && (!out.truncated || std::strcmp(out.truncated_capacity, "areas") == 0)) return answered;
     if (!make_spare_) return answered;
-    if (!answered) {
-      note("the " + first_->name() + " back end has failed: " + answered.error().sentence);
-      first_.reset();
-    }
+    if (!answered) first_failed(answered.error());
   }
   if (!spare_ready_)
     if (auto prepared = prepare_spare([](const char*, double) { return true; }); !prepared) return prepared;
@@ -79,6 +84,11 @@ Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std:
     if (!answered || out[i].truncated)
       if (auto again = query(poses[i], nullptr, out[i]); !again) return again;
   return {};
+}
+
+void SteadyBackend::first_failed(const Error& error) {
+  note("the " + first_->name() + " back end has failed: " + error.sentence);
+  first_.reset();
 }
 
 std::uint64_t SteadyBackend::memory_bytes() const {

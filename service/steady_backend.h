@@ -22,6 +22,8 @@ class SteadyBackend final : public CollisionBackend {
 
   /// The first back end, or, if that fails, the spare. Keeps `plan` for a spare that is needed later.
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override;
+  /// A first back end that can't is a failed one.
+  Result<void> finish_preparing() override;
   /// Of the first back end; a spare that has been prepared follows at once, one that will be is prepared for it.
   Result<void> replan(const Plan& plan) override;
   std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override {
@@ -43,6 +45,7 @@ class SteadyBackend final : public CollisionBackend {
   const CollisionBackend& now() const { return first_ ? *first_ : *spare_; }
   Result<void> ask_first(const LatticePose& pose, const Held* held, Contacts& out);
   Result<void> prepare_spare(const Progress& progress);
+  void first_failed(const Error& error);
   void note(std::string sentence);   ///< each sentence once
 
   std::unique_ptr<CollisionBackend> first_, spare_;   ///< first_ is gone once it has failed

@@ -347,6 +347,8 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   try {
     auto made = prepare_scene(options, Purpose::kQuery, parts_, watch);
     if (made)
+      if (auto finished = (*made)->backend->finish_preparing(); !finished) made = finished.error();   // sessions ask it, too
+    if (made)
       prepared = std::move(*made);
     else
       problem = problem_of(made.error());
@@ -414,6 +416,7 @@ Aside SceneStore::aside(const SceneLease& lease) {
   auto made = choose_backend(backend_, parts_, note, !entry->content.uploaded);
   Result<void> prepared = made ? Result<void>() : made.error();
   if (made) prepared = (*made)->prepare(scene.loaded.geometry, scene.plan.plan, [this](const char*, double) { return !stopping_; });
+  if (prepared) prepared = (*made)->finish_preparing();
   if (prepared) {
     scene.aside = std::move(*made);
     aside.backend = scene.aside.get();

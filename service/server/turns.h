@@ -51,6 +51,10 @@ class BackendInTurns final : public CollisionBackend {
   Result<void> prepare(const SceneGeometry&, const Plan&, const Progress&) override {
     return Error{ErrorCode::kInternal, "a back end that is shared is prepared already"};
   }
+  Result<void> finish_preparing() override {
+    const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
+    return backend_.finish_preparing();
+  }
   Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
     const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
     return backend_.query(pose, held, out);

@@ -6,10 +6,11 @@
 namespace palpate {
 namespace {
 
-/// Answers with the scene that it has prepared as the number of pairs; may find every frame too large.
+/// Answers with the scene that it has prepared as the number of pairs; may find every frame too large, or never be ready.
 class Teller final : public CollisionBackend {
  public:
-  explicit Teller(bool truncates) : truncates_(truncates) {}
+  explicit Teller(bool truncates, bool finishes = true) : truncates_(truncates), finishes_(finishes) {}
+  Result<void> finish_preparing() override { return finishes_ ? Result<void>{} : Error{ErrorCode::kInternal, "a shader can't be compiled"}; }
   Result<void> prepare(const SceneGeometry& geometry, const Plan&, const Progress&) override {
     scene_ = static_cast<std::uint64_t>(geometry.sample_spacing);
     return {};
@@ -28,7 +29,7 @@ class Teller final : public CollisionBackend {
   std::uint64_t memory_bytes() const override { return 0; }
 
  private:
-  bool truncates_;
+  bool truncates_, finishes_;
   std::uint64_t scene_ = 0;
 };
 
@@ -44,6 +45,23 @@ TEST(SteadyBackend, ANewSceneIsNewToTheSpareToo) {
     EXPECT_FALSE(out.truncated);
     EXPECT_EQ(out.pairs, static_cast<std::uint64_t>(scene));
   }
+}
+
+TEST(SteadyBackend, AFirstThatIsNeverReadyIsReplacedBeforeALoopBegins) {
+  SceneGeometry geometry;
+  geometry.sample_spacing = 3;
+  SteadyBackend backend(std::make_unique<Teller>(true, false), [] { return std::make_unique<Teller>(false); });
+  ASSERT_TRUE(backend.prepare(geometry, {}, {}));
+  EXPECT_EQ(backend.name(), "first");
+  ASSERT_TRUE(backend.finish_preparing());
+  EXPECT_EQ(backend.name(), "spare");
+  const auto notes = backend.take_notes();
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_NE(notes[0].find("a shader can't be compiled"), std::string::npos) << notes[0];
+
+  SteadyBackend alone(std::make_unique<Teller>(true, false), nullptr);
+  ASSERT_TRUE(alone.prepare(geometry, {}, {}));
+  EXPECT_FALSE(alone.finish_preparing());
 }
 
 }  // namespace
