@@ -34,7 +34,7 @@ void direct_refined(uint32_t area) {
   }
   if (chosen == i64vec3(0l)) {
     const uint32_t held = areas[area].held_area;
-    if (held != kNone && held_areas[held].direction != ivec3(0)) {
+    if (held != kNone) {   // an area without a direction is not held
       chosen = i64vec3(held_areas[held].direction);
       flags |= kAreaFlagHeld;
     } else {

@@ -46,9 +46,9 @@ struct Span {
 };
 
 void take_edges(ivec3 from[3], ivec3 to[3], inout Span span) {
-  for (int k = 0; k < 3; ++k) {
+  for (uint32_t k = 0u; k < 3u; ++k) {
     ivec3 e;
-    if (!edge_crossing(from[k], from[(k + 1) % 3], to[0], to[1], to[2], e)) continue;
+    if (!edge_crossing(from[k], from[(k + 1u) % 3u], to[0], to[1], to[2], e)) continue;
     span.low = span.any ? min(span.low, e) : e;
     span.high = span.any ? max(span.high, e) : e;
     span.any = true;
