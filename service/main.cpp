@@ -6,8 +6,8 @@
 #include "cpu_ref/cpu_backend.h"
 #include "driver/device_list.h"
 #include "model/one_line.h"
-#include "service/cli.h"
-#include "service/peer.h"
+#include "service/cli/cli.h"
+#include "service/bench/peer.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "service/peer.h"
+#include "service/bench/peer.h"
 
 namespace palpate::peers {
 

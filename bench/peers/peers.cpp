@@ -1,4 +1,4 @@
-#include "service/peer.h"
+#include "service/bench/peer.h"
 
 #include "bench/peers/make.h"
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "service/answer.h"
+#include "service/cli/answer.h"
 #include "service/query_json.h"
 #include "service/thread_share.h"
 

@@ -2,7 +2,7 @@
 #include <atomic>
 #include <string>
 
-#include "service/cli.h"
+#include "service/cli/cli.h"
 #include "service/server/limits.h"
 #include "service/server/metrics.h"
 #include "service/server/router.h"

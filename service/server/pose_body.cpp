@@ -5,7 +5,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "service/pose_input.h"
+#include "service/cli/pose_input.h"
 #include "service/server/json_input.h"
 
 namespace palpate {

@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "service/run_summary.h"
+#include "service/report/run_summary.h"
 
 namespace palpate {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "model/scene.h"
 #include "service/recorder.h"
-#include "service/report.h"
-#include "service/report_series.h"
+#include "service/report/report.h"
+#include "service/report/report_series.h"
 
 namespace palpate {
 

@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "service/cli.h"
-#include "service/scene_host.h"
+#include "service/cli/cli.h"
+#include "service/cli/scene_host.h"
 #include "service/server/limits.h"
 #include "service/server/log.h"
 #include "service/server/metrics.h"

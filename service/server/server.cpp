@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "service/console.h"
+#include "service/cli/console.h"
 #include "service/server/batch_queue.h"
 #include "service/server/drawing_routes.h"
 #include "service/server/info_routes.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "service/cli.h"
+#include "service/cli/cli.h"
 #include "service/server/limits.h"
 #include "service/server/listener.h"
 

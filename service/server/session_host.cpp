@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "service/run_summary.h"
+#include "service/report/run_summary.h"
 #include "service/server/json_input.h"
 #include "service/server/pausable_device.h"
 #include "service/server/recording.h"

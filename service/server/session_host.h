@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "service/cli.h"
+#include "service/cli/cli.h"
 #include "service/server/limits.h"
 #include "service/server/log.h"
 #include "service/server/metrics.h"

@@ -1,4 +1,4 @@
-#include "service/chart_svg.h"
+#include "service/bench/chart_svg.h"
 
 #include <gtest/gtest.h>
 

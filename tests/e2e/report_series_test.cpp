@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "service/report_series.h"
+#include "service/report/report_series.h"
 
 namespace palpate {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "model/path_file.h"
-#include "service/pose_input.h"
+#include "service/cli/pose_input.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/input_file.h"
 

@@ -10,7 +10,7 @@
 #include "driver/limits.h"
 #include "driver/simulated_device.h"
 #include "model/rotation.h"
-#include "service/stability_bodies.h"
+#include "service/bench/stability_bodies.h"
 #include "tests/driver/allocation_count.h"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "cpu_ref/cpu_backend.h"
-#include "service/stability_contacts.h"
+#include "service/bench/stability_contacts.h"
 
 namespace palpate {
 namespace {

@@ -1,0 +1,57 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "model/collision_backend.h"
+#include "model/result.h"
+#include "service/cli/cli.h"
+
+namespace palpate {
+
+/// A value of a row; an empty string is "none" (null in JSON, nothing in CSV).
+using BenchCell = std::variant<std::string, double, std::uint64_t>;
+
+struct BenchTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<BenchCell>> rows;
+};
+
+/// A picture of the report. Bars: `labels` and a value a label in each series' y. Lines: points (x, y). A map: `labels` are its columns,
+/// each series a row of it, the colour of a cell the logarithm of its value.
+struct BenchChart {
+  struct Series {
+    std::string label;
+    std::vector<double> x, y;
+    bool expected = false;   ///< lines: what theory says of the series before it, in its ink, dashed
+  };
+  std::string title, unit;
+  std::vector<std::string> labels;   ///< empty: lines
+  std::vector<Series> series;
+  bool stacked = false, log_x = false, log_y = false;
+  std::string x_title, y_title = {};   ///< y_title: of a map
+  bool map = false;
+  double map_low = 0, map_high = 0;   ///< of a map's colours; 0: from its values
+};
+
+/// What figures belong to.
+struct BenchFacts {
+  std::string command;   ///< "latency"
+  std::string device;    ///< the back ends' devices and drivers
+  std::vector<std::pair<std::string, std::string>> more;   ///< of this bench: scenes, poses, versions of libraries
+};
+
+/// Name and driver of the back end's device, "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6 (LLVM 15.0.6)". Call after the
+/// back end was made: listing devices is not allowed before.
+std::string device_text(const CollisionBackend& backend, const Parts& parts);
+
+/// Mean number of processes that wanted to run in the last minute; −1: unknown.
+double load_average();
+
+/// Writes results.csv, results.json, report.html and chart_N.svg (lines and maps) to `directory` (made if missing), each with machine, device, commit and version, and
+/// prints the table. CSV: `table`'s columns and then machine, device, commit.
+Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table, const std::vector<BenchChart>& charts);
+
+}  // namespace palpate

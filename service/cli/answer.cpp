@@ -1,0 +1,42 @@
+#include "service/cli/answer.h"
+
+#include <chrono>
+
+namespace palpate {
+
+Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) { return answer_pose(scene.loaded, *scene.backend, pose, out); }
+
+Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const SceneGeometry& geometry = scene.geometry;
+  const Result<LatticePose> lattice = to_lattice(pose, geometry);
+  if (!lattice) return lattice.error();
+  if (auto done = backend.query(*lattice, nullptr, out.contacts); !done) return done;
+  const ResponseSettings& settings = scene.scene.response;
+  respond(out.contacts, *lattice, geometry, settings.profile, settings.stiffness_n_per_m, out.response);
+  out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  return {};
+}
+
+Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const SceneGeometry& geometry = scene.loaded.geometry;
+  out.poses.clear();
+  for (const Pose& pose : poses) {
+    const Result<LatticePose> lattice = to_lattice(pose, geometry);
+    if (!lattice) return lattice.error();
+    out.poses.push_back(*lattice);
+  }
+  out.contacts.resize(poses.size());
+  out.responses.resize(poses.size());
+  if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
+  const ResponseSettings& settings = scene.loaded.scene.response;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m, out.responses[i]);
+  out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  return {};
+}
+
+}  // namespace palpate

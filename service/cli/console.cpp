@@ -1,0 +1,112 @@
+#include "service/cli/console.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace palpate {
+namespace {
+
+std::atomic<bool> interrupt_seen{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+extern "C" void on_interrupt(int number) {
+  interrupt_seen.store(true, std::memory_order_relaxed);
+  std::signal(number, SIG_DFL);   // a second signal ends a program that hangs
+}
+
+std::size_t terminal_columns() {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  return 80;
+}
+
+/// The first `columns` characters of a UTF-8 text.
+std::string_view cut(std::string_view text, std::size_t columns) {
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool starts_character = (static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u;
+    if (starts_character && shown++ == columns) return text.substr(0, i);
+  }
+  return text;
+}
+
+void put(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+constexpr int kBarCells = 30;
+constexpr std::chrono::milliseconds kRedraw{50};
+
+std::string bar(double done) {
+  const int full = std::clamp(static_cast<int>(std::lround(done * kBarCells)), 0, kBarCells);
+  std::string cells;
+  for (int i = 0; i < kBarCells; ++i) cells += i < full ? "█" : "░";
+  return cells;
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+bool interrupted() noexcept { return interrupt_seen.load(std::memory_order_relaxed); }
+const std::atomic<bool>& interrupt_flag() noexcept { return interrupt_seen; }
+
+Console::Console() {
+  const char* term = std::getenv("TERM");
+  terminal_ = isatty(STDERR_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
+}
+
+Console::~Console() { finish(); }
+
+void Console::note(std::string_view sentence) {
+  finish();
+  put(fmt::format("palpate: {}\n", sentence));
+}
+
+void Console::step(std::string_view name) {
+  step_ = name;
+  if (!terminal_) put(fmt::format("palpate: {}\n", name));
+}
+
+bool Console::progress(const char* what, double done) {
+  const auto now = std::chrono::steady_clock::now();
+  if (terminal_ && (!drawn_ || done >= 1 || now - last_draw_ >= kRedraw)) {
+    last_draw_ = now;
+    draw(fmt::format("{} {:3.0f} %  {}: {}", bar(done), 100 * std::clamp(done, 0.0, 1.0), step_, what));
+  }
+  return !interrupted();
+}
+
+bool Console::wants_live() const { return terminal_ && std::chrono::steady_clock::now() - last_draw_ >= kRedraw; }
+
+void Console::live(std::string_view line) {
+  if (!terminal_) return;
+  last_draw_ = std::chrono::steady_clock::now();
+  draw(line);
+}
+
+void Console::finish() {
+  if (!drawn_) return;
+  drawn_ = false;
+  put("\r\033[K");
+}
+
+void Console::draw(std::string_view line) {
+  drawn_ = true;
+  put(fmt::format("\r\033[K{}", cut(line, terminal_columns() - 1)));
+}
+
+}  // namespace palpate

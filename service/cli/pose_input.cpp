@@ -1,0 +1,106 @@
+#include "service/cli/pose_input.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <string_view>
+
+#include "model/one_line.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::array<const char*, 7> kFields = {"x", "y", "z", "qx", "qy", "qz", "qw"};
+constexpr std::string_view kHeader = "x,y,z,qx,qy,qz,qw";
+
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// A value as a sentence may show it.
+std::string shown(std::string_view text) { return one_line(std::string(text.substr(0, 80))) + (text.size() > 80 ? "…" : ""); }
+
+/// Seven fields to a pose; the error says which field, without naming the file.
+Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
+  if (fields.size() != kFields.size())
+    return bad_value(fmt::format("has {} values instead of 7 (x y z qx qy qz qw)", fields.size()));
+  std::array<double, 7> value{};
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    std::string_view field = trim(fields[i]);
+    if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);   // from_chars knows no plus sign
+    const char* end = field.data() + field.size();
+    const auto [stop, error] = std::from_chars(field.data(), end, value[i]);
+    if (error == std::errc::result_out_of_range && stop == end)
+      return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], shown(field)));
+    if (error != std::errc() || stop != end) return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], shown(field)));
+  }
+  return pose_of(value);
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators, bool merge) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const auto end = text.find_first_of(separators);
+    const std::string_view field = text.substr(0, end);
+    if (!merge || !field.empty()) fields.push_back(field);
+    if (end == std::string_view::npos) return fields;
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+Result<Pose> pose_of(const std::array<double, 7>& value) {
+  Pose pose;
+  pose.position = Vec3(value[0], value[1], value[2]);
+  pose.rotation = Quat(value[6], value[3], value[4], value[5]);
+  // Whether it is a pose does not depend on the scene, so any lattice tells; a bad one is refused before meshes are read.
+  SceneGeometry any;
+  any.lattice.step_m = 1;
+  const Result<LatticePose> lattice = to_lattice(pose, any);
+  if (!lattice) return bad_value("is no pose: " + lattice.error().sentence);
+  return pose;
+}
+
+Result<Pose> parse_pose(const std::string& text) {
+  Result<Pose> pose = to_pose(split(text, " ,\t\n\r", true));
+  if (!pose) return bad_value(fmt::format("--pose \"{}\" {}", shown(text), pose.error().sentence));
+  return pose;
+}
+
+Result<std::vector<Pose>> read_poses(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) return bad_value(fmt::format("{}: the poses file can't be opened", path));
+  return read_poses(in, path);
+}
+
+Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) {
+  std::string text;
+  if (!std::getline(in, text) || trim(text) != kHeader)
+    return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, shown(trim(text)), kHeader));
+
+  std::vector<Pose> poses;
+  std::string first_error;
+  std::size_t bad_lines = 0;
+  for (std::size_t line = 2; std::getline(in, text); ++line) {
+    const std::string_view row = trim(text);
+    if (row.empty()) continue;
+    Result<Pose> pose = to_pose(split(row, ",", false));
+    if (pose)
+      poses.push_back(*pose);
+    else if (bad_lines++ == 0)
+      first_error = fmt::format("{}, line {}: it {}", path, line, pose.error().sentence);
+  }
+  if (in.bad()) return bad_value(fmt::format("{}: reading the poses file failed", path));
+  if (bad_lines > 1) first_error += fmt::format(" ({} lines are bad)", bad_lines);
+  if (bad_lines > 0) return bad_value(std::move(first_error));
+  if (poses.empty()) return bad_value(fmt::format("{}: the poses file has no pose", path));
+  return poses;
+}
+
+}  // namespace palpate

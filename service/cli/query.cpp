@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+#include "service/cli/answer.h"
+#include "service/cli/cli.h"
+#include "service/cli/console.h"
+#include "service/cli/export_geometry.h"
+#include "service/cli/pose_input.h"
+#include "service/query_json.h"
+#include "service/cli/scene_host.h"
+
+namespace palpate {
+namespace {
+
+/// Poses that are answered and thrown away, so that every pipeline has run once with a contact (chosen).
+constexpr std::size_t kWarmUpPoses = 32;
+
+/// Gives every answer of a batch the mean of the batch's times.
+void share_times(std::vector<Contacts>& batch) {
+  std::vector<Contacts::StageTime> sums;
+  for (const Contacts& contacts : batch)
+    for (const auto& time : contacts.times) {
+      const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return std::string_view(sum.stage) == time.stage; });
+      if (found == sums.end())
+        sums.push_back(time);
+      else
+        found->us += time.us;
+    }
+  for (auto& sum : sums) sum.us /= static_cast<double>(batch.size());
+  for (Contacts& contacts : batch) contacts.times = sums;
+}
+
+Result<void> put(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
+  return Error{ErrorCode::kInternal, "standard output can't be written"};
+}
+
+}  // namespace
+
+Result<void> query_command(const QueryOptions& options, const Parts& parts) {
+  if (!options.pose && !options.poses)
+    return Error{ErrorCode::kUsage, "query needs --pose or --poses (see palpate query --help)"};
+  // All poses are read first: a bad one costs no preparation and leaves standard output empty.
+  std::vector<Pose> poses;
+  if (options.pose) {
+    const Result<Pose> pose = parse_pose(*options.pose);
+    if (!pose) return pose.error();
+    poses.push_back(*pose);
+  } else {
+    Result<std::vector<Pose>> read = read_poses(*options.poses);
+    if (!read) return read.error();
+    poses = std::move(*read);
+  }
+
+  catch_interrupts();
+  Console console;
+  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options.common, Purpose::kQuery, parts, console);
+  if (!prepared) return prepared.error();
+  HostedScene& scene = **prepared;
+
+  if (!options.export_directory.empty()) {
+    std::vector<std::string> notes;
+    if (auto done = export_geometry(options.export_directory, scene.loaded.geometry, *scene.backend, poses, notes); !done) return done;
+    for (const std::string& note : notes) console.note(note);
+  }
+
+  Answer answer;
+  for (std::size_t i = 0; i < std::min(kWarmUpPoses, poses.size()); ++i) {
+    if (auto done = answer_pose(scene, poses[i], answer); !done) return done;
+    if (answer.contacts.contact) break;
+  }
+
+  std::string text;
+  std::size_t truncated = 0;
+  const char* capacity = "";
+  const auto print = [&](std::size_t pose, double total_us, const Contacts& contacts, const ContactResponse& response) {
+    append_query_line({pose, total_us, options.batch, std::nullopt}, contacts, response, text);
+    if (!contacts.truncated) return;
+    ++truncated;
+    capacity = contacts.truncated_capacity;
+  };
+  // Pairs are exported pose by pose: a back end knows those of its last answer alone.
+  const bool together = options.batch && options.export_directory.empty();
+  BatchAnswer batch;
+  for (std::size_t first = 0, count = 0; first < poses.size(); first += count) {
+    text.clear();
+    if (together) {
+      count = std::min<std::size_t>(*options.batch, poses.size() - first);
+      if (auto done = answer_batch(scene, {poses.data() + first, count}, batch); !done) return done;
+      share_times(batch.contacts);
+      for (std::size_t i = 0; i < count; ++i) print(first + i, batch.total_us / static_cast<double>(count), batch.contacts[i], batch.responses[i]);
+    } else {
+      count = 1;
+      if (auto done = answer_pose(scene, poses[first], answer); !done) return done;
+      if (!options.export_directory.empty())
+        if (auto done = export_pairs(options.export_directory, *scene.backend, first); !done) return done;
+      print(first, answer.total_us, answer.contacts, answer.response);
+    }
+    if (auto done = put(text); !done) return done;
+    if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
+  }
+  for (const std::string& note : scene.backend->take_notes()) console.note(note);
+  if (truncated > 0) console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated, poses.size(), capacity));
+  return {};
+}
+
+}  // namespace palpate

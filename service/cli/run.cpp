@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "service/cli/cli.h"
+#include "service/cli/console.h"
+#include "service/recorder.h"
+#include "service/report/report.h"
+#include "service/report/run_summary.h"
+#include "service/cli/scene_host.h"
+#include "service/session.h"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a run shows and keeps: files, the report's curves, the live line.
+class RunWatch : public RunObserver {
+ public:
+  RunWatch(Recorder& recorder, ReportSeries& series, Console& console, const Scene& scene)
+      : recorder_(recorder), series_(series), console_(console), scene_(scene) {}
+
+  Result<void> on_tick(const TickRecord& tick) override {
+    if (auto done = recorder_.on_tick(tick); !done) return done;
+    guide(tick);
+    if (!console_.wants_live()) return series_.on_tick(tick);
+    if (*tick.guidance != 0)
+      console_.live(fmt::format("{:7.2f} s  {}", tick.time_s, tick.guidance));
+    else
+      console_.live(fmt::format("{:7.2f} s  {:5.2f} N  {:6.3f} N·m  {} areas  frame {:.2f} ms  result {} ticks old  {}", tick.time_s,
+                                glm::length(tick.sent.force), glm::length(tick.sent.torque), areas_, frame_us_ / 1000, tick.result_age_ticks,
+                                tick.stage > 0 ? "stage " + stage_text(tick.stage, scene_.stage_names) : ""));
+    return series_.on_tick(tick);
+  }
+
+  Result<void> on_frame(const FrameRecord& frame) override {
+    areas_ = frame.contacts.areas.size();
+    frame_us_ = frame.total_us;
+    if (auto done = recorder_.on_frame(frame); !done) return done;
+    return series_.on_frame(frame);
+  }
+
+ private:
+  /// What the person at the device should do: on a terminal it takes the live line's place, elsewhere each new sentence is a line.
+  void guide(const TickRecord& tick) {
+    const std::string_view said = tick.guidance;
+    if (said == guidance_) return;
+    guidance_ = said;
+    if (!console_.terminal()) console_.note(said.empty() ? "the haptic device is ready" : said);
+  }
+
+  Recorder& recorder_;
+  ReportSeries& series_;
+  Console& console_;
+  const Scene& scene_;
+  std::size_t areas_ = 0;
+  double frame_us_ = 0;
+  std::string_view guidance_;   // text that outlives the run
+};
+
+/// `wanted`, or a directory palpate-run-SCENE[-N] that did not exist before.
+Result<fs::path> output_directory(const std::string& wanted, const std::string& scene) {
+  std::error_code error;
+  if (!wanted.empty()) {
+    fs::create_directories(wanted, error);
+    if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", wanted, error.message()));
+    return fs::path(wanted);
+  }
+  const std::string base = "palpate-run-" + scene_name(scene);
+  for (int n = 1; n < 10000; ++n) {
+    const fs::path candidate = n == 1 ? base : fmt::format("{}-{}", base, n);
+    if (fs::create_directory(candidate, error)) return candidate;
+    if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", candidate.string(), error.message()));
+  }
+  return bad_value(fmt::format("{}-N: there are 10,000 of them already; name one with --out", base));
+}
+
+Result<void> write_text(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.flush();
+  if (!out) return bad_value(fmt::format("{}: the file can't be written", path.string()));
+  return {};
+}
+
+/// The plans that the run goes over to, in the order of time.
+Result<std::vector<PlanChange>> read_switches(const RunOptions& options, const LoadedScene& loaded) {
+  std::vector<PlanChange> out;
+  const Scene& scene = loaded.scene;
+  PlanFacts facts = session_facts(scene, loaded.geometry, true);
+  facts.full = options.common.full_plan;
+  for (const std::string& text : options.switches) {
+    const std::size_t colon = text.find(':');
+    const std::string word = colon == std::string::npos ? "" : text.substr(colon + 1);
+    std::size_t read = 0;
+    double seconds = -1;
+    try {
+      seconds = std::stod(text.substr(0, colon), &read);
+    } catch (const std::exception&) {
+    }
+    if (read != std::min(colon, text.size()) || !(seconds >= 0 && seconds < 1e6) || (!out.empty() && seconds * 1000 < static_cast<double>(out.back().tick)))
+      return bad_value(fmt::format("--switch {}: a time in seconds comes first, none before the last one's", text));
+    if (word == "paper" || word == "refined") facts.profile = word == "paper" ? Profile::kPaper : Profile::kRefined;
+    else if (word == "full" || word == "auto") facts.full = word == "full";
+    else return bad_value(fmt::format("--switch {}: after the colon comes paper, refined, full or auto", text));
+    out.push_back({std::llround(seconds * 1000), {decide_plan(facts).plan, facts.torque_wanted}});
+  }
+  return out;
+}
+
+Result<void> check_options(const RunOptions& options) {
+  if (options.duration_s && !(std::isfinite(*options.duration_s) && *options.duration_s > 0))
+    return bad_value(fmt::format("--duration {} is not a positive number of seconds", *options.duration_s));
+  return {};
+}
+
+}  // namespace
+
+Result<void> run_command(const RunOptions& options, const Parts& parts) {
+  if (auto done = check_options(options); !done) return done;
+  Console console;
+  SceneOptions common = options.common;
+  common.second_backend = !options.switches.empty();
+  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(common, Purpose::kRecording, parts, console);
+  if (!prepared) return prepared.error();
+  LoadedScene& loaded = (*prepared)->loaded;
+  std::string driver = options.device.empty() ? loaded.scene.device.driver : options.device;
+  if (constexpr std::string_view replay = "replay:"; driver.starts_with(replay)) {
+    loaded.scene.device.replay_file = driver.substr(replay.size());
+    driver = "replay";
+  }
+  if (options.asap && driver != "simulated" && driver != "replay")
+    return Error{ErrorCode::kUsage, fmt::format("--pace asap is virtual time, which the device '{}' can't keep: simulated and replay can", driver)};
+  if (!options.firmware.empty() && driver != "falcon")
+    return Error{ErrorCode::kUsage, fmt::format("--firmware is for the device falcon, and the device is {}", driver)};
+  Result<std::unique_ptr<HapticDevice>> device = parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m, options.firmware);
+  if (!device) return device.error();
+
+  const Result<std::vector<PlanChange>> switches = read_switches(options, loaded);
+  if (!switches) return switches.error();
+  const Result<fs::path> directory = output_directory(options.out, options.common.scene);
+  if (!directory) return directory.error();
+  Result<std::unique_ptr<Recorder>> recorder = Recorder::create(directory->string());
+  if (!recorder) return recorder.error();
+
+  // Until here no device has been opened, and a signal just ends the program, whatever it is busy with.
+  catch_interrupts();
+
+  // The run itself. Whatever ends it, the files are closed and whole.
+  SessionOptions session;
+  session.pace = options.asap ? Pace::kAsap : Pace::kRealtime;
+  session.duration_s = options.duration_s;
+  session.room = true;
+  session.stop = &interrupt_flag();
+  PlanSwitch plans(loaded.geometry, std::move((*prepared)->second));
+  if (!switches->empty()) {
+    session.plans = &plans;
+    session.changes = *switches;
+  }
+  ReportSeries series;
+  RunWatch watch(**recorder, series, console, loaded.scene);
+  const Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
+  console.finish();
+  const Result<void> recorded = (*recorder)->finish();
+  if (!summary) return summary.error();
+  if (!recorded) return recorded;
+
+  const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s};
+  if (auto done = write_text(*directory / "summary.json", summary_json(*summary)); !done) return done;
+  if (auto done = write_text(*directory / "report.html", report_page(*summary, loaded, facts, series)); !done) return done;
+  for (const std::string& note : summary->notes) console.note(note);
+  if (summary->stopped) console.note("stopped before the end, with zero force and complete files");
+  if (summary->failure) return *summary->failure;
+  fmt::print("{}{:<14} {}\n", summary_text(*summary, loaded.scene.stage_names), "files", directory->string());
+  fmt::print("{:<14} {}\n", "report", (*directory / "report.html").string());
+  return {};
+}
+
+}  // namespace palpate

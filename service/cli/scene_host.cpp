@@ -1,0 +1,118 @@
+#include "service/cli/scene_host.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "model/scene_file.h"
+#include "service/cli/numbers.h"
+#include "service/steady_backend.h"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kWorthTelling = std::uint64_t{256} << 20;   // of memory (chosen)
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+PlanFacts facts_of(const LoadedScene& loaded, Purpose purpose, bool full) {
+  PlanFacts facts = purpose == Purpose::kQuery ? query_facts(loaded.scene, loaded.geometry)
+                                               : session_facts(loaded.scene, loaded.geometry, purpose == Purpose::kRecording);
+  facts.full = full;
+  return facts;
+}
+
+/// What each stage keeps on the back end; one that doesn't tell stages apart keeps all for finding pairs.
+void add_memory(const CollisionBackend& backend, std::vector<PlanStage>& stages) {
+  std::vector<StageMemory> memory = backend.memory_by_stage();
+  if (memory.empty()) memory.push_back({"pairs", backend.memory_bytes()});
+  for (const StageMemory& line : memory)
+    for (PlanStage& stage : stages)
+      if (stage.stage == line.stage) stage.memory_bytes += line.bytes;
+}
+
+std::string prepared_text(const HostedScene& prepared) {
+  const SceneGeometry& geometry = prepared.loaded.geometry;
+  return fmt::format("mock-up {} triangles, tool {}, voxels of {:.3g} mm, {} on {}; {} in {:.2f} s, prepared in {:.2f} s",
+                     count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()),
+                     1000 * geometry.lattice.step_m * geometry.mockup_grid.size, bytes_text(prepared.backend->memory_bytes()),
+                     prepared.backend->device(), prepared.loaded.from_cache ? "known from before, read" : "read", prepared.load_s, prepared.prepare_s);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts,
+                                                         const std::function<void(const std::string& sentence)>& note, bool cached) {
+  if (name == "cpu") return parts.make_cpu();
+  Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu(cached);
+  // Who asks for the device gets it or a refusal; else the CPU reference steps in where the device can't go on.
+  if (gpu) return std::unique_ptr<CollisionBackend>(std::make_unique<SteadyBackend>(std::move(*gpu), name == "gpu" ? nullptr : parts.make_cpu));
+  if (name == "gpu") return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
+  if (gpu.error().code == ErrorCode::kBadValue) return gpu.error();   // a wish that can't be met, not a device that is missing
+  note(gpu.error().sentence + "; the CPU reference answers");
+  return parts.make_cpu();
+}
+
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console) {
+  return choose_backend(name, parts, [&console](const std::string& sentence) { console.note(sentence); });
+}
+
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, const PrepareWatch& watch) {
+  auto prepared = std::make_unique<HostedScene>();
+  Result<Scene> scene = read_scene(options.scene, options.profile);
+  if (!scene) return scene.error();
+
+  // The back end comes before the meshes: their import may start threads.
+  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, watch.note, watch.cached);
+  if (!backend) return backend.error();
+  prepared->backend = std::move(*backend);
+  if (options.second_backend) {
+    auto second = choose_backend(options.backend, parts, [](const std::string&) {}, watch.cached);
+    if (!second) return second.error();
+    prepared->second = std::move(*second);
+  }
+
+  watch.step("reading the meshes");
+  const auto load_start = Clock::now();
+  Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import, watch.cached ? parts.cache.get() : nullptr, watch.folder);
+  if (!loaded) return loaded.error();
+  prepared->loaded = std::move(*loaded);
+  prepared->load_s = seconds_since(load_start);
+  if (watch.admit)
+    if (auto admitted = watch.admit(prepared->loaded); !admitted) return admitted.error();
+  for (const std::string& warning : prepared->loaded.scene.warnings) watch.note(warning);
+
+  watch.step("preparing the scene");
+  const auto prepare_start = Clock::now();
+  PlanFacts facts = facts_of(prepared->loaded, purpose, options.full_plan);
+  prepared->plan = decide_plan(facts);
+  // Only meshes that name no other file are kept, so that `folder` has nothing to say about them.
+  if (const std::uint64_t bytes = prepared->backend->preparation_bytes(prepared->loaded.geometry, prepared->plan.plan); bytes >= kWorthTelling)
+    watch.note(fmt::format("preparing takes up to {} on {}", bytes_text(bytes), prepared->backend->device()));
+  if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, watch.progress); !done) return done.error();
+  for (const std::string& note : prepared->backend->take_notes()) watch.note(note);
+  if (parts.cache)
+    for (const std::string& note : parts.cache->take_notes()) watch.note(note);
+  // Whether there are V_int voxels is known only now.
+  facts.internal_voxels = prepared->backend->has_internal_voxels();
+  prepared->plan = decide_plan(facts);
+  add_memory(*prepared->backend, prepared->plan.stages);
+  prepared->prepare_s = seconds_since(prepare_start);
+  watch.note(prepared_text(*prepared));
+  return prepared;
+}
+
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
+  return prepare_scene(options, purpose, parts,
+                       PrepareWatch{.note = [&console](const std::string& sentence) { console.note(sentence); },
+                                    .step = [&console](const char* step) { console.step(step); },
+                                    .progress = [&console](const char* what, double done) { return console.progress(what, done); },
+                                    .admit = {},
+                                    .cached = true,
+                                    .folder = {}});
+}
+
+}  // namespace palpate

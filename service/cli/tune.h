@@ -1,0 +1,19 @@
+#pragma once
+#include "service/bench/bench.h"
+
+namespace CLI {
+class App;
+}
+
+namespace palpate {
+
+struct TuneOptions {
+  BenchOptions bench;      ///< scene, poses, frames, rounds, back ends
+  double budget_us = 0;
+  bool json = false;
+};
+
+/// Adds `tune`; all arguments outlive the parsing.
+void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, Result<void>& outcome);
+
+}  // namespace palpate

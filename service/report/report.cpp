@@ -1,0 +1,90 @@
+#include "service/report/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "service/report/report_assets.h"
+#include "service/cli/numbers.h"
+#include "service/report/run_summary.h"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// The rows of summary_text, which both the terminal and the page show.
+Json summary_rows(const SessionSummary& summary, const std::vector<std::string>& stage_names) {
+  Json rows = Json::array();
+  for (const auto& [name, value] : summary_lines(summary, stage_names)) rows.push_back({name, value});
+  return rows;
+}
+
+std::string millimetres(double metres) { return fmt::format("{:.4g} mm", metres * 1000); }
+
+Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
+  const Scene& scene = loaded.scene;
+  const SceneGeometry& geometry = loaded.geometry;
+  const double step = geometry.lattice.step_m;
+  Json rows = Json::array();
+  const auto row = [&](const char* name, const std::string& value) { rows.push_back({name, value}); };
+  row("scene", scene.file);
+  row("pace", facts.pace == "asap" ? fmt::format("asap: virtual time, results {} ticks old", scene.control.virtual_delay_ticks) : "realtime");
+  row("profile", scene.response.profile == Profile::kPaper ? "paper" : "refined");
+  row("stiffness K", fmt::format("{:g} N/m", scene.response.stiffness_n_per_m));
+  row("smooth angle", fmt::format("{:g}°", scene.response.smooth_angle_deg));
+  row("lattice step", fmt::format("{:.4g} nm", step * 1e9));
+  row("voxel", fmt::format("{}{}", millimetres(step * geometry.mockup_grid.size), scene.response.voxel_size_m ? "" : " (auto)"));
+  row("sample spacing", fmt::format("{}{}", millimetres(step * geometry.sample_spacing), scene.response.sample_spacing_m ? "" : " (auto)"));
+  row("control law", scene.control.law == ForceLaw::kPrinted ? "printed" : "corrected");
+  row("transitions n", scene.control.transitions ? fmt::format("{}", *scene.control.transitions) : "auto");
+  if (scene.control.coupling_n_per_m > 0 || scene.control.coupling_nm_per_rad > 0)
+    row("virtual coupling", fmt::format("{:g} N/m, {:g} N·m/rad", scene.control.coupling_n_per_m, scene.control.coupling_nm_per_rad));
+  row("fade-in", fmt::format("{:g} ms", scene.control.fade_in_ms));
+  row("watchdog", fmt::format("{:g} ms", scene.control.watchdog_ms));
+  row("device limits", fmt::format("{:g} N, {:g} N·m", scene.device.max_force_n, scene.device.max_torque_nm));
+  row("load, prepare", fmt::format("{:.2f} s, {:.2f} s", facts.load_s, facts.prepare_s));
+  return rows;
+}
+
+/// In a script element `</` would end it early; in a JSON string the slash may be escaped.
+std::string script_safe(std::string json) {
+  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.insert(at + 1, "\\");
+  return json;
+}
+
+}  // namespace
+
+std::string report_page(const SessionSummary& summary, const LoadedScene& loaded, const ReportFacts& facts, const ReportSeries& series) {
+  const std::string subtitle =
+      fmt::format("{:.1f} s in {} with the {} device; contact found by {} on {}", static_cast<double>(summary.ticks) * 1e-3,
+                  facts.pace == "asap" ? "virtual time" : "real time", summary.haptic_device, summary.backend == "gpu" ? "Vulkan" : "the CPU", summary.device);
+  std::string data = "{\"name\":" + dump(scene_name(loaded.scene.file));
+  data += ",\"subtitle\":" + dump(subtitle);
+  data += ",\"notes\":" + dump(summary.notes);
+  data += ",\"summary\":" + summary_json(summary);
+  data += ",\"summary_rows\":" + dump(summary_rows(summary, loaded.scene.stage_names));
+  data += ",\"settings\":" + dump(settings_rows(loaded, facts));
+  data += "," + series.json(loaded.scene.stage_names) + "}";
+
+  // The template's places, in one pass, so that nothing inserted is searched again.
+  const std::vector<std::pair<std::string_view, std::string>> places = {
+      {"@CSS@", std::string(assets::report_css)},
+      {"@CHART_JS@", std::string(assets::chart_js)},
+      {"@DATA@", script_safe(std::move(data))},
+      {"@SCRIPT@", std::string(assets::report_js)}};
+  std::string_view rest = assets::report_html;
+  std::string page;
+  for (const auto& [name, text] : places) {
+    const std::size_t at = rest.find(name);
+    page.append(rest.substr(0, at)).append(text);
+    rest.remove_prefix(at + name.size());
+  }
+  return page.append(rest);
+}
+
+}  // namespace palpate

@@ -1,0 +1,191 @@
+#include "service/report/report_series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "service/report/run_summary.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::array<char, 3> kAxes = {'x', 'y', 'z'};
+
+void append_point(double x, double y, std::string& out) {
+  if (out.back() != '[') out.push_back(',');
+  // Five digits are finer than a pixel. A value that is not finite is a gap.
+  if (std::isfinite(y))
+    fmt::format_to(std::back_inserter(out), "[{:.7g},{:.5g}]", x, y);
+  else
+    fmt::format_to(std::back_inserter(out), "[{:.7g},null]", x);
+}
+
+}  // namespace
+
+void Envelope::push(double x, double y) {
+  if (bins_.empty() || bins_.back().count >= bin_size_) {
+    if (bins_.size() == kBins) merge_pairs();
+    if (bins_.empty() || bins_.back().count >= bin_size_) {
+      bins_.push_back({x, x, x, y, y, y, 1});
+      return;
+    }
+  }
+  Bin& bin = bins_.back();
+  if (y < bin.min) bin.min = y, bin.min_x = x;
+  if (y > bin.max) bin.max = y, bin.max_x = x;
+  bin.sum += y;
+  ++bin.count;
+}
+
+void Envelope::merge_pairs() {
+  for (std::size_t i = 0; i < bins_.size() / 2; ++i) {
+    Bin merged = bins_[2 * i];
+    const Bin& other = bins_[2 * i + 1];
+    if (other.min < merged.min) merged.min = other.min, merged.min_x = other.min_x;
+    if (other.max > merged.max) merged.max = other.max, merged.max_x = other.max_x;
+    merged.sum += other.sum;
+    merged.count += other.count;
+    bins_[i] = merged;
+  }
+  static_assert(kBins % 2 == 0);
+  bins_.resize(bins_.size() / 2);
+  bin_size_ *= 2;
+}
+
+void Envelope::append_extremes(std::string& out) const {
+  out.push_back('[');
+  for (const Bin& bin : bins_) {
+    const bool rising = bin.min_x <= bin.max_x;
+    append_point(rising ? bin.min_x : bin.max_x, rising ? bin.min : bin.max, out);
+    if (bin.min != bin.max) append_point(rising ? bin.max_x : bin.min_x, rising ? bin.max : bin.min, out);
+  }
+  out.push_back(']');
+}
+
+void Envelope::append_means(std::string& out) const {
+  out.push_back('[');
+  for (const Bin& bin : bins_) append_point(bin.first_x, bin.sum / bin.count, out);
+  out.push_back(']');
+}
+
+void Highlight::push(const TickRecord& tick) {
+  recent_.push_back(tick);
+  if (recent_.size() > kTicks) recent_.pop_front();
+  const double force = glm::length(tick.response.force);
+  if (force > strongest_) {
+    strongest_ = force;
+    until_complete_ = kTicks / 2 + 1;
+  }
+  if (until_complete_ > 0 && --until_complete_ == 0) best_.assign(recent_.begin(), recent_.end());
+}
+
+std::vector<TickRecord> Highlight::ticks() const {
+  if (until_complete_ > 0) return {recent_.begin(), recent_.end()};   // the run ended soon after
+  return best_;
+}
+
+Result<void> ReportSeries::on_tick(const TickRecord& tick) {
+  for (int i = 0; i < 3; ++i) {
+    const char axis = kAxes[static_cast<std::size_t>(i)];
+    curves_[fmt::format("response_force_{}", axis)].push(tick.time_s, tick.response.force[i]);
+    curves_[fmt::format("response_torque_{}", axis)].push(tick.time_s, tick.response.torque[i]);
+    curves_[fmt::format("sent_force_{}", axis)].push(tick.time_s, tick.sent.force[i]);
+    curves_[fmt::format("sent_torque_{}", axis)].push(tick.time_s, tick.sent.torque[i]);
+  }
+  highlight_.push(tick);
+  if (sections_.empty() || sections_.back().stage != tick.stage) sections_.push_back({tick.stage, tick.time_s, tick.time_s});
+  sections_.back().end_s = tick.time_s + kTickSeconds;
+
+  if (figures_.empty()) figures_[tick.stage] = early_;
+  StageFigures& figures = figures_[tick.stage];
+  ++figures.ticks;
+  figures.force_max_n = std::max(figures.force_max_n, glm::length(tick.response.force));
+  figures.torque_max_nm = std::max(figures.torque_max_nm, glm::length(tick.response.torque));
+  return {};
+}
+
+Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
+  const double time_s = static_cast<double>(frame.tick) * kTickSeconds;
+  const Contacts& contacts = frame.contacts;
+  const auto count = [&](const char* name, std::size_t n) { curves_[name].push(time_s, static_cast<double>(n)); };
+  count("cst", contacts.cst.size());
+  count("bst", contacts.bst.size());
+  count("est", contacts.est.size());
+  count("cmt", contacts.cmt.size());
+  count("bmt", contacts.bmt.size());
+  count("imt", contacts.imt.size());
+  const auto with_force = std::count_if(frame.response.areas.begin(), frame.response.areas.end(), [](const AreaResponse& area) { return area.force != Vec3(0); });
+  count("areas", static_cast<std::size_t>(with_force));
+  curves_["frame_us"].push(time_s, frame.total_us);
+  for (const Contacts::StageTime& time : contacts.times) {
+    auto [curve, is_new] = stage_us_.try_emplace(time.stage);
+    if (is_new) time_stages_.emplace_back(time.stage);
+    curve->second.push(time_s, time.us);
+  }
+  for (auto& [stage, curve] : stage_us_)   // no time spent is a time, too: a curve must not run straight on to the stage's next turn
+    if (std::none_of(contacts.times.begin(), contacts.times.end(), [&](const Contacts::StageTime& time) { return time.stage == stage; })) curve.push(time_s, 0);
+
+  // A frame belongs to the stage of its tick, whose record may still be on its way: the newest stage stands in, the first one for now.
+  StageFigures& figures = sections_.empty() ? early_ : figures_[sections_.back().stage];
+  ++figures.frames;
+  figures.areas_max = std::max(figures.areas_max, static_cast<std::size_t>(with_force));
+  figures.triangles_max = std::max(figures.triangles_max, contacts.cst.size() + contacts.bst.size() + contacts.est.size() + contacts.cmt.size() + contacts.bmt.size() + contacts.imt.size());
+  figures.frame_us_sum += frame.total_us;
+  figures.frame_us_max = std::max(figures.frame_us_max, frame.total_us);
+  return {};
+}
+
+std::string ReportSeries::json(const std::vector<std::string>& stage_names) const {
+  std::string out = "\"curves\":{";
+  const auto name = [&](const std::string& text) {
+    if (out.back() != '{') out.push_back(',');
+    out += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + ":";
+  };
+  for (const auto& [key, curve] : curves_) {
+    name(key);
+    curve.append_extremes(out);
+  }
+  if (const auto frame_us = curves_.find("frame_us"); frame_us != curves_.end()) {
+    name("frame_us_mean");
+    frame_us->second.append_means(out);
+  }
+  out += "},\"stage_us\":{";
+  for (const std::string& stage : time_stages_) {
+    name(stage);
+    stage_us_.at(stage).append_means(out);
+  }
+  out += "},\"highlight\":[";
+  for (const TickRecord& tick : highlight_.ticks()) {
+    if (out.back() != '[') out.push_back(',');
+    fmt::format_to(std::back_inserter(out), "[{:.7g}", tick.time_s);
+    for (const Wrench* wrench : {&tick.uncontrolled, &tick.sent})
+      for (const Vec3* v : {&wrench->force, &wrench->torque})
+        for (int i = 0; i < 3; ++i) fmt::format_to(std::back_inserter(out), ",{:.6g}", std::isfinite((*v)[i]) ? (*v)[i] : 0.0);
+    out.push_back(']');
+  }
+  out += "],\"stages\":";
+  nlohmann::json stages = nlohmann::json::array();
+  for (const Section& section : sections_)
+    stages.push_back({{"stage", section.stage}, {"name", section.stage > 0 ? stage_text(section.stage, stage_names) : ""}, {"begin", section.begin_s}, {"end", section.end_s}});
+  out += stages.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  out += ",\"stage_figures\":";
+  nlohmann::json rows = nlohmann::json::array();
+  for (const auto& [stage, figures] : figures_)
+    rows.push_back({{"stage", stage},
+                    {"name", stage > 0 ? stage_text(stage, stage_names) : "between"},
+                    {"seconds", static_cast<double>(figures.ticks) * kTickSeconds},
+                    {"force_max", figures.force_max_n},
+                    {"torque_max", figures.torque_max_nm},
+                    {"areas_max", figures.areas_max},
+                    {"triangles_max", figures.triangles_max},
+                    {"frame_us_mean", figures.frames > 0 ? figures.frame_us_sum / static_cast<double>(figures.frames) : 0.0},
+                    {"frame_us_max", figures.frame_us_max}});
+  out += rows.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return out;
+}
+
+}  // namespace palpate
