@@ -190,9 +190,11 @@ Case one_back_of_two_plates() {
 }
 
 /// Parts of a tool above each other, the faces between them in the planes between its voxels: a gap too narrow for a free voxel, and none at all.
-Case stacked_tool() {
-  return rule("stacked_tool", "rays that leave a part of the tool and enter the next within a voxel, or where they leave; at the very faces of voxels", block(),
-              together({box_of(Int3(0), Int3(192, 192, 64)), box_of(Int3(0, 0, 70), Int3(192, 192, 128)), box_of(Int3(0, 0, 128), Int3(192, 192, 192)), box_of(Int3(0, 0, 198), Int3(192, 192, 256))}),
+Case stacked_tool(bool open) {
+  Triangles tool = together({box_of(Int3(0), Int3(192, 192, 64)), box_of(Int3(0, 0, 70), Int3(192, 192, 128)), box_of(Int3(0, 0, 128), Int3(192, 192, 192)), box_of(Int3(0, 0, 198), Int3(192, 192, 256))});
+  if (open) append(tool, together({box_of(Int3(320, 0, 0), Int3(640, 192, 256)), {{Int3(230, 20, 100), Int3(270, 30, 90), Int3(240, 60, 130)}}}));   // with an inside; a fin
+  return rule(open ? "stacked_tool_open" : "stacked_tool",
+              open ? "the same of a tool with a fin" : "rays that leave a part of the tool and enter the next within a voxel, or where they leave; at the very faces of voxels", block(), tool,
               [](const SceneGeometry&, Random& random, Known&) {
                 LatticePose pose = random.below(3) != 0 ? unturned(Int3(0)) : quarter_turns(random);
                 if (random.below(3) == 0) pose = unturned(Int3(0)), pose.rotation_q30[1][1] = pose.rotation_q30[2][2] = -(1 << 30);
@@ -287,7 +289,7 @@ Case large_sheet_among_small() {
 
 std::vector<Case> limit_cases() {
   return {needle_in_a_bud(32), needle_in_a_bud(50), needle_with_a_foot(), swallowed_round_a_cavity(), swallowed_from_afar(), folds_in_a_row(), too_many_folds(),
-          smooth_bead_in_a_tool(), pierced_near_corners(), one_back_of_two_plates(), stacked_tool(), between_the_samples(), samples_on_last_rows(),
+          smooth_bead_in_a_tool(), pierced_near_corners(), one_back_of_two_plates(), stacked_tool(false), stacked_tool(true), between_the_samples(), samples_on_last_rows(),
           open_at_its_low_end(), beads_in_balance(), sheets_in_a_row(), large_sheet_among_small()};
 }
 

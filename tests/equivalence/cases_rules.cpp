@@ -74,9 +74,11 @@ Triangles prism(const std::vector<std::array<std::int32_t, 2>>& outline, int axi
 
 /// Two parts of a tool whose undersides cross in a line, over which samples lie: their rays leave both parts at one height, and the smaller of two
 /// normals says how the samples fade in.
-Case crossed_wedges(int axis) {
-  const Triangles tool = together({prism({{-40, -20}, {40, 20}, {40, 90}, {-40, 90}}, axis), prism({{-40, 10}, {40, -10}, {40, 80}, {-40, 80}}, axis)});
-  return rule(axis == 0 ? "crossed_wedges" : "crossed_wedges_along_y", "rays that leave a tool through two of its parts at one height", block(), tool,
+Case crossed_wedges(int axis, bool as_steep) {
+  const Triangles tool = as_steep ? together({prism({{-40, -20}, {40, 20}, {40, 90}, {-40, 90}}, axis), prism({{-30, -20}, {30, 20}, {30, 80}, {-30, 80}}, axis)})
+                                  : together({prism({{-40, -20}, {40, 20}, {40, 90}, {-40, 90}}, axis), prism({{-40, 10}, {40, -10}, {40, 80}, {-40, 80}}, axis)});
+  return rule(as_steep ? "crossed_wedges_one_y" : axis == 0 ? "crossed_wedges" : "crossed_wedges_along_y",
+              as_steep ? "the same where the two normals differ in z alone" : "rays that leave a tool through two of its parts at one height", block(), tool,
               [](const SceneGeometry& geometry, Random& random, Known& known) {
                 known.contact = true;
                 const std::int32_t step = geometry.sample_spacing;
@@ -255,11 +257,14 @@ Case long_tool() {
 }
 
 /// Closed shells one in another: a ray from the middle crosses them all before its winding is 0.
-Case nested_tool(bool open) {
+enum class Nested { kClosed, kOpen, kOpenWithInside };   // the last has whole voxels within its innermost shell
+Case nested_tool(Nested kind) {
   Triangles tool;
-  for (std::int32_t half = 40; half <= 108; half += 4) append(tool, box_of(Int3(-half), Int3(half)));
-  if (open) tool.pop_back();
-  return rule(open ? "nested_tool_open" : "nested_tool", "eighteen shells one in another: rays with more crossings than are kept at once", block(), tool,
+  const std::int32_t first = kind == Nested::kOpenWithInside ? 100 : 40;
+  for (std::int32_t half = first; half <= first + (first == 40 ? 68 : 36); half += 4) append(tool, box_of(Int3(-half), Int3(half)));
+  if (kind != Nested::kClosed) tool.pop_back();
+  return rule(kind == Nested::kClosed ? "nested_tool" : kind == Nested::kOpen ? "nested_tool_open" : "nested_tool_open_with_inside",
+              first == 40 ? "eighteen shells one in another: rays with more crossings than are kept at once" : "ten shells, open: rays look at the whole tool more than once", block(), tool,
               [](const SceneGeometry&, Random& random, Known&) {
                 LatticePose pose = random.below(2) == 0 ? unturned(Int3(0)) : quarter_turns(random);
                 pose.translation = {random.between(-300, 300), random.between(-300, 300), 512 + random.between(-60, 100)};
@@ -393,8 +398,8 @@ Case bead_beside_a_swallowed_part() {
 std::vector<Case> rule_cases() {
   return {seam_with_a_common_corner(), inside_of_one_voxel(false), inside_of_one_voxel(true), inside_of_one_brick(false), inside_of_one_brick(true), votes(true), votes(false),
           sheet_through_gc(), held(two_sheets()), held(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
-          swallowed_at_ties(), bridge(), long_tool(), seams_in_a_row(), numbered_in_turn(), crossed_wedges(0), crossed_wedges(1),
-          nested_tool(false), nested_tool(true), open_box_and_boxes(), needle_open(false), needle_open(true), needle_through_plates(), needle_in_a_fan(), fine_plates(),
+          swallowed_at_ties(), bridge(), long_tool(), seams_in_a_row(), numbered_in_turn(), crossed_wedges(0, false), crossed_wedges(1, false), crossed_wedges(1, true),
+          nested_tool(Nested::kClosed), nested_tool(Nested::kOpen), nested_tool(Nested::kOpenWithInside), open_box_and_boxes(), needle_open(false), needle_open(true), needle_through_plates(), needle_in_a_fan(), fine_plates(),
           paper(two_sheets()), open_tubes(), swallowed_below_a_brick(), bead_in_a_swallowed_tool(), bead_beside_a_swallowed_part()};
 }
 

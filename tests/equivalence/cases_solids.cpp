@@ -159,6 +159,8 @@ std::vector<Case> solid_cases() {
       killer(held(through_plate)),
       through_plate,
       killer(solid("open_ball", "a tool with holes that still has an inside", big_box, [] { return without_every(ball(), 7); }, near)),
+      shared(killer(solid("open_fine_ball", "the same of many triangles, of which rays may meet some in each of several clusters", big_box,
+                          [] { return without_every(solids::sphere(0.012, 24, 12), 7); }, near)), 0.5, 8),
       killer(solid("sheet_tool", "a tool without inside: tool_open", big_box, square_sheet, near)),
       killer(held(on_sheet)),
       on_sheet,

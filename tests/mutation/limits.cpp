@@ -15,8 +15,9 @@ using Limit = Limits::Limit;
 const std::vector<Limit>& limits() {
   static const std::vector<Limit> all = {
       {"", "kMaxGroupsX", 3, true, {"ball_on_block", "ball_on_block_paper", "needle", "folds_in_a_row", "open_ball", "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
-      {"shaders/lib/tool_ray.glsl", "kLevels", 2, false, {"nested_tool", "nested_tool_open", "bridge_and_overlap", "crossed_wedges"}},
-      {"shaders/lib/tool_ray.glsl", "kCandidates", 2, false, {"nested_tool_open", "open_ball", "crossed_wedges"}},
+      {"shaders/lib/tool_ray.glsl", "kLevels", 2, false, {"nested_tool", "nested_tool_open_with_inside", "bridge_and_overlap", "crossed_wedges"}},
+      {"shaders/lib/tool_ray.glsl", "kLevels", 1, false, {"stacked_tool", "stacked_tool_open"}},
+      {"shaders/lib/tool_ray.glsl", "kCandidates", 2, false, {"nested_tool_open_with_inside", "stacked_tool_open", "open_ball"}},
       {"shaders/lib/tool_walk.glsl", "kPutBy", 1, false, {"nested_tool", "bridge_and_overlap", "ball_on_block"}},
       {"shaders/lib/tool_walk.glsl", "kLevels", 2, false, {"nested_tool", "bridge_and_overlap"}},
       {"shaders/lib/sample_chunks.glsl", "kLoopBudget", 0, false, {"sheet_tool"}},

@@ -145,6 +145,11 @@ Result<void> MutableDevice::swap_all(const Words& before, const Words& after) {
 }
 
 void MutableDevice::restore() {
+  // What a mutant wrote round a frame's buffers goes with them; round a prepared scene's it stays, and is told again.
+  if (!mutants_.empty() && !device_->guard_error.empty()) {
+    frame_.reset();
+    device_->guard_error.clear();
+  }
   for (auto& [key, made] : swapped_) device_->pipelines[key] = std::move(made);
   swapped_.clear();
   mutants_.clear();
