@@ -14,27 +14,28 @@ using Limit = Limits::Limit;
 
 const std::vector<Limit>& limits() {
   static const std::vector<Limit> all = {
-      {"", "kMaxGroupsX", 3, true, {"ball_on_block", "ball_on_block_paper", "needle", "folds_in_a_row", "open_ball", "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
-      {"shaders/lib/tool_ray.glsl", "kLevels", 2, false, {"nested_tool", "nested_tool_open_with_inside", "bridge_and_overlap", "crossed_wedges"}},
-      {"shaders/lib/tool_ray.glsl", "kLevels", 1, false, {"stacked_tool", "stacked_tool_open"}},
-      {"shaders/lib/tool_ray.glsl", "kCandidates", 2, false, {"nested_tool_open_with_inside", "stacked_tool_open", "open_ball"}},
-      {"shaders/lib/tool_walk.glsl", "kPutBy", 1, false, {"nested_tool", "bridge_and_overlap", "ball_on_block"}},
-      {"shaders/lib/tool_walk.glsl", "kLevels", 2, false, {"nested_tool", "bridge_and_overlap"}},
-      {"shaders/lib/sample_chunks.glsl", "kLoopBudget", 0, false, {"sheet_tool"}},
-      {"shaders/frame/sample_winding.comp", "kLoopBudget", 0, false, {"open_ball", "open_box_and_boxes"}},
-      {"shaders/frame/voxel_touch.comp", "kLoopBudget", 0, false, {"ball_on_block", "ball_on_block_paper"}},
-      {"shaders/response/mobile_tiles.comp", "kLoopBudget", 0, false, {"ball_on_block", "ball_over_bead"}},
-      {"shaders/response/points_sum.comp", "kLoopBudget", 0, false, {"ball_on_block_paper", "two_sheets_paper"}},
-      {"shaders/response/points_sum.comp", "kLoopBudget", 3, false, {"ball_on_block_paper", "two_sheets_paper"}},
-      {"shaders/response/needle_trace.comp", "kLoopBudget", 1, false, {"needle_in_a_bud"}},
-      {"shaders/response/needle_pairs.comp", "kNeedleProbes", 0, false, {"needle", "needle_leaning"}, "needle table"},
-      {"shaders/lib/sample_chunks.glsl", "", 0, false, {"sheet_tool"}, "lists with samples"},
-      {"shaders/frame/bins_fill.comp", "", 0, false, {"open_ball"}, "bins of the tool's shadow"},
-      {"shaders/frame/sample_scan.comp", "", 0, false, {"sheet_tool", "ball_on_block"}, "samples", true},
-      {"shaders/frame/sample_scan.comp", "", 0, false, {"ball_on_block"}, "samples near the tool's surface", true},
-      {"shaders/frame/sample_scan.comp", "", 0, false, {"between_the_samples"}, "samples near the tool's surface", true},
-      {"shaders/frame/sample_walk.comp", "", 0, false, {"ball_on_block"}, "samples"},
-      {"shaders/frame/sample_winding.comp", "", 0, false, {"open_ball"}, "samples"}};
+      {"", "kMaxGroupsX", 3, {"groups_for("}, {"ball_on_block", "ball_on_block_paper", "needle", "folds_in_a_row", "open_ball", "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
+      {"shaders/lib/tool_ray.glsl", "kLevels", 2, {}, {"nested_tool", "nested_tool_open_with_inside", "bridge_and_overlap", "crossed_wedges"}},
+      {"shaders/lib/tool_ray.glsl", "kLevels", 1, {}, {"stacked_tool", "stacked_tool_open"}},
+      {"shaders/lib/tool_ray.glsl", "kCandidates", 2, {}, {"nested_tool_open_with_inside", "stacked_tool_open", "open_ball"}},
+      {"shaders/lib/tool_walk.glsl", "kPutBy", 1, {}, {"nested_tool", "bridge_and_overlap", "ball_on_block"}},
+      {"shaders/lib/tool_walk.glsl", "kLevels", 2, {}, {"nested_tool", "bridge_and_overlap"}},
+      {"shaders/lib/pierce.glsl", "kSlotBox", 1, {"kSlotBox", "find_pierced("}, {"pierced_near_corners", "fine_plates", "needle_through_plates"}},
+      {"shaders/lib/sample_chunks.glsl", "kLoopBudget", 0, {}, {"sheet_tool"}},
+      {"shaders/frame/sample_winding.comp", "kLoopBudget", 0, {}, {"open_ball", "open_box_and_boxes"}},
+      {"shaders/frame/voxel_touch.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_on_block_paper"}},
+      {"shaders/response/mobile_tiles.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_over_bead"}},
+      {"shaders/response/points_sum.comp", "kLoopBudget", 0, {}, {"ball_on_block_paper", "two_sheets_paper"}},
+      {"shaders/response/points_sum.comp", "kLoopBudget", 3, {}, {"ball_on_block_paper", "two_sheets_paper"}},
+      {"shaders/response/needle_trace.comp", "kLoopBudget", 1, {}, {"needle_in_a_bud"}},
+      {"shaders/response/needle_pairs.comp", "kNeedleProbes", 0, {}, {"needle", "needle_leaning"}, "needle table"},
+      {"shaders/lib/sample_chunks.glsl", "", 0, {}, {"sheet_tool"}, "lists with samples"},
+      {"shaders/frame/bins_fill.comp", "", 0, {}, {"open_ball"}, "bins of the tool's shadow"},
+      {"shaders/frame/sample_scan.comp", "", 0, {}, {"sheet_tool", "ball_on_block"}, "samples", true},
+      {"shaders/frame/sample_scan.comp", "", 0, {}, {"ball_on_block"}, "samples near the tool's surface", true},
+      {"shaders/frame/sample_scan.comp", "", 0, {}, {"between_the_samples"}, "samples near the tool's surface", true},
+      {"shaders/frame/sample_walk.comp", "", 0, {}, {"ball_on_block"}, "samples"},
+      {"shaders/frame/sample_winding.comp", "", 0, {}, {"open_ball"}, "samples"}};
   return all;
 }
 
@@ -58,6 +59,20 @@ std::vector<Limits::Module> Limits::with(const Limit& limit, std::uint32_t value
     if (code.empty()) code = compile_shader(root_, name, nullptr, &constant).value();
     if (code != original(name)) out.push_back({name, original(name), code});
   }
+  return out;
+}
+
+std::vector<std::string> Limits::having(const std::vector<const char*>& words) {
+  if (texts_.empty()) {
+    for (const char* folder : {"shaders/frame", "shaders/response"})
+      for (const auto& entry : std::filesystem::directory_iterator(root_ + "/" + folder)) {
+        std::ifstream file(entry.path());
+        texts_[std::string(folder) + "/" + entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+      }
+  }
+  std::vector<std::string> out;
+  for (const auto& [name, text] : texts_)
+    if (std::any_of(words.begin(), words.end(), [&, &of = text](const char* word) { return of.find(word) != std::string::npos; })) out.push_back(name);
   return out;
 }
 
@@ -117,7 +132,7 @@ std::uint32_t Limits::smallest(const Limit& limit, const std::vector<std::string
 
 std::string Limits::ask(const Limit& limit, std::uint32_t value, const TextChange& change, const std::vector<std::string>& modules,
                         const std::vector<std::size_t>& of, std::size_t& at) {
-  std::vector<Module> all = with(limit, value, limit.everywhere ? numbering_ : modules);
+  std::vector<Module> all = with(limit, value, limit.words.empty() ? modules : having(limit.words));
   if (all.empty() && *limit.constant != 0) return {};
   const std::vector<Told> expected = known(limit, value, all, of);
   const SmallConstant constant{limit.constant, value};
@@ -139,15 +154,6 @@ std::string Limits::ask(const Limit& limit, std::uint32_t value, const TextChang
 }
 
 std::string Limits::first_difference(const TextChange& change, const std::vector<std::string>& modules, std::size_t& of) {
-  if (numbering_.empty()) {
-    for (const char* folder : {"shaders/frame", "shaders/response"})
-      for (const auto& entry : std::filesystem::directory_iterator(root_ + "/" + folder)) {
-        std::ifstream file(entry.path());
-        const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-        if (text.find("groups_for(") != std::string::npos) numbering_.push_back(std::string(folder) + "/" + entry.path().filename().string());
-      }
-    std::sort(numbering_.begin(), numbering_.end());
-  }
   oracle_.before_case(kNoHurry);
   for (const Limit& limit : limits()) {
     // A change in shaders/lib is in too many modules at once; probes ask those that number workgroups.

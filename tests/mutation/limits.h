@@ -21,7 +21,7 @@ class Limits {
     const char* file;         ///< a change in it asks for this; "": any of frame/ and response/
     const char* constant;     ///< "": the room in `list` instead
     std::uint32_t value;      ///< 0: the smallest with which no pose of the case is cut short, and one less
-    bool everywhere;          ///< all modules have the constant that say how many workgroups run, or only those that are changed
+    std::vector<const char*> words;   ///< all modules of frames have the constant that have one of these words; none: those that are changed
     std::vector<const char*> cases;
     const char* list = "";    ///< a list or table that is small, too
     bool unlisted = false;    ///< without preparation's list of samples
@@ -40,6 +40,8 @@ class Limits {
   const std::string& original(const std::string& name);
   /// Of `names`, the modules that a constant changes.
   std::vector<Module> with(const Limit& limit, std::uint32_t value, const std::vector<std::string>& names);
+  /// Modules of frames that have one of these words.
+  std::vector<std::string> having(const std::vector<const char*>& words);
   std::string swap(const std::vector<Module>& modules);
   Told tell(const Limit& limit, std::uint32_t value, std::size_t of);
   /// What the unchanged modules tell of cases.
@@ -53,7 +55,7 @@ class Limits {
   Oracle& oracle_;
   MutableDevice& device_;
   std::string root_;
-  std::vector<std::string> numbering_;   // modules of frames that say how many workgroups run
+  std::map<std::string, std::string> texts_;   // of modules of frames
   std::map<std::string, std::string> originals_, small_;   // SPIR-V of modules; with a constant
   std::map<std::string, Told> known_;
 };
