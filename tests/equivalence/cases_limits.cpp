@@ -193,9 +193,9 @@ Case crossed_backs() {
 
 /// Parts of a tool above each other, the faces between them in the planes between its voxels: a gap too narrow for a free voxel, and none at all.
 Case stacked_tool(bool open) {
-  Triangles tool = together({box_of(Int3(0), Int3(192, 192, 64)), box_of(Int3(0, 0, 70), Int3(192, 192, 128)), box_of(Int3(0, 0, 128), Int3(192, 192, 192)), box_of(Int3(0, 0, 198), Int3(192, 192, 256))});
+  Triangles tool = together({box_of(Int3(0, 0, 3), Int3(192, 192, 64)), box_of(Int3(0, 0, 70), Int3(192, 192, 128)), box_of(Int3(0, 0, 128), Int3(192, 192, 192)), box_of(Int3(0, 0, 198), Int3(192, 192, 256))});
   if (open) append(tool, together({box_of(Int3(320, 0, 0), Int3(640, 192, 256)), {{Int3(230, 20, 100), Int3(270, 30, 90), Int3(240, 60, 130)}}}));   // with an inside; a fin
-  return rule(open ? "stacked_tool_open" : "stacked_tool",
+  Case c = rule(open ? "stacked_tool_open" : "stacked_tool",
               open ? "the same of a tool with a fin" : "rays that leave a part of the tool and enter the next within a voxel, or where they leave; at the very faces of voxels", block(), tool,
               [](const SceneGeometry&, Random& random, Known&) {
                 LatticePose pose = random.below(3) != 0 ? unturned(Int3(0)) : quarter_turns(random);
@@ -203,6 +203,8 @@ Case stacked_tool(bool open) {
                 pose.translation = {random.between(-200, 200), random.between(-200, 200), 512 + random.between(-220, 220)};
                 return pose;
               });
+  c.poses = 24;
+  return c;
 }
 
 /// Triangles too small for a sample. First corners on the first and on the last points of voxels, along each axis.
