@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/generate/solids.h"
 #include "tests/equivalence/case.h"
 #include "tests/equivalence/lattice_shapes.h"
 #include "tests/equivalence/rule_case.h"
@@ -56,6 +57,17 @@ Case needle_in_a_bud(int rim) {
                 pose.translation.z += random.between(-34, 24);
                 return pose;
               });
+}
+
+/// A needle of short pieces: where the table meets it between two, more of its corners are near than elsewhere.
+Case needle_of_pieces() {
+  Triangles needle;
+  const Mesh mesh = solids::box(Vec3(-1, -2, -300), Vec3(2, 1, 300), {1, 1, 20});
+  const auto at = [&](std::uint32_t vertex) { return Int3(glm::round(mesh.vertices[vertex])); };
+  for (const auto& t : mesh.triangles) needle.push_back({at(t[0]), at(t[1]), at(t[2])});
+  return rule("needle_of_pieces", "a needle of which now more corners are asked for their heights, and now fewer", block(), needle, [](const SceneGeometry&, Random& random, Known&) {
+    return unturned({32 * random.between(-10, 10) + 9, 32 * random.between(-10, 10) + 11, 512 + 15 * random.between(-12, 12)});
+  });
 }
 
 /// A needle with a wide foot behind a thin plate: rays from its sides pass free voxels before they meet the foot.
@@ -292,7 +304,7 @@ Case large_sheet_among_small() {
 }  // namespace
 
 std::vector<Case> limit_cases() {
-  return {needle_in_a_bud(32), needle_in_a_bud(50), needle_with_a_foot(), swallowed_round_a_cavity(), swallowed_from_afar(), folds_in_a_row(), too_many_folds(),
+  return {needle_in_a_bud(32), needle_in_a_bud(50), needle_of_pieces(), needle_with_a_foot(), swallowed_round_a_cavity(), swallowed_from_afar(), folds_in_a_row(), too_many_folds(),
           smooth_bead_in_a_tool(), pierced_near_corners(), crossed_backs(), stacked_tool(false), stacked_tool(true), between_the_samples(), samples_on_last_rows(),
           open_at_its_low_end(), beads_in_balance(), sheets_in_a_row(), large_sheet_among_small()};
 }

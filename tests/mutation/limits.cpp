@@ -14,7 +14,7 @@ using Limit = Limits::Limit;
 
 const std::vector<Limit>& limits() {
   static const std::vector<Limit> all = {
-      {"", "kMaxGroupsX", 3, {"groups_for("}, {"ball_on_block", "ball_on_block_paper", "needle", "folds_in_a_row", "open_ball", "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
+      {"", "kMaxGroupsX", 3, {"groups_for("}, {"ball_on_block", "ball_on_block_paper", "needle_of_pieces", "folds_in_a_row", "open_ball", "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
       {"shaders/lib/tool_ray.glsl", "kLevels", 2, {}, {"nested_tool", "nested_tool_open_with_inside", "bridge_and_overlap", "crossed_wedges"}},
       {"shaders/lib/tool_ray.glsl", "kLevels", 1, {}, {"stacked_tool", "stacked_tool_open"}},
       {"shaders/lib/tool_ray.glsl", "kCandidates", 2, {}, {"nested_tool_open_with_inside", "stacked_tool_open", "open_ball"}},
