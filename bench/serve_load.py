@@ -1,9 +1,10 @@
-"""Load on `palpate serve`, loopback only, bounded: a session alone, then beside batch clients at full rate and viewers, then alone again.
+"""Load on `palpate serve`, loopback only, bounded: a session alone, beside batch clients at full rate and viewers, and alone again; and, to tell what the load costs from what a busy
+machine costs, beside a program that does nothing but turn in a circle on each processor but the loop's, before the load and after it.
 
 usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--alone-seconds 60] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--beside] [--out DIR]
 
 FOLDER: what `palpate generate contacts` made. Its hand goes to and fro along its path for the whole time; the batches ask poses along that path, a millimetre off at most.
-Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for all three phases, and how late cyclictest was meanwhile, with
+Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for all five phases (alone, busy, loaded, busy again, alone again), and how late cyclictest was meanwhile, with
 the loop's own right to priority; queries and poses a second and p99 of a query's time, memory of the server over the time. --ordinary: the server has no right to real-time priority,
 nor to lock memory (as root, by setpriv). Python's standard library only.
 
@@ -141,6 +142,18 @@ def session(seconds, during=None):
     return state
 
 
+class Busy:
+    """The processors that are not the loop's, kept busy by programs of no memory and no system call, which know nothing of the server."""
+
+    def __enter__(self):
+        self.processes = [subprocess.Popen(['nice', '-n', '19', 'sh', '-c', 'while :; do :; done'], preexec_fn=lambda cpu=cpu: os.sched_setaffinity(0, {cpu})) for cpu in PROCESSORS[:-1]]
+
+    def __exit__(self, *ignored):
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+
 class Load:
     """Batch clients on threads, viewers on one more."""
 
@@ -214,10 +227,14 @@ try:
     if scene['state'] == 'failed':
         raise SystemExit(scene['error']['detail'])
     alone = session(ALONE_S)
+    with Busy():
+        busy = session(ALONE_S)
     load = Load()
     loaded = session(options.seconds, load.start)
     load.end()
     metrics = ask('GET', '/metrics').decode()
+    with Busy():
+        busy_again = session(ALONE_S)
     again = session(ALONE_S)
 finally:
     server.send_signal(signal.SIGTERM)
@@ -240,17 +257,18 @@ def missed_share(state):
     return state['summary']['missed_ticks'] / state['summary']['ticks']
 
 
-def before_and_after(value):
-    return (value(alone) + value(again)) / 2
+def before_and_after(value, before=None, after=None):
+    return (value(before or alone) + value(after or again)) / 2
 
 
 result = {'scene': options.folder.name, 'backend': scene['device'], 'seconds': options.seconds, 'batch_clients': options.batches, 'viewers': options.viewers, 'processors': os.cpu_count(),
           'load_average': os.getloadavg(), 'realtime': not options.ordinary, 'clients_beside': options.beside,
-          'alone': figures(alone), 'loaded': figures(loaded), 'alone_again': figures(again), 'poses_per_s': load.poses / load.seconds, 'queries_per_s': len(load.times) / load.seconds,
+          'alone': figures(alone), 'busy': figures(busy), 'loaded': figures(loaded), 'busy_again': figures(busy_again), 'alone_again': figures(again), 'poses_per_s': load.poses / load.seconds, 'queries_per_s': len(load.times) / load.seconds,
           'query_s': {'p50': load.times[len(load.times) // 2], 'p99': load.times[int(0.99 * len(load.times))], 'poses': options.poses} if load.times else None,
           'viewer_reads': load.messages, 'viewer_bytes': load.bytes, 'telemetry_sent': metric('palpate_telemetry_sent_total'), 'telemetry_dropped': metric('palpate_telemetry_dropped_total'),
           'memory_kib': {'after_5_s': load.memory[min(4, len(load.memory) - 1)], 'half_way': load.memory[len(load.memory) // 2], 'end': load.memory[-1], 'max': max(load.memory)},
           'missed_ratio': missed_share(loaded) / max(before_and_after(missed_share), 1 / alone['summary']['ticks']),
+          'missed_ratio_to_busy': missed_share(loaded) / max(before_and_after(missed_share, busy, busy_again), 1 / alone['summary']['ticks']),
           'age_p99_ratio': loaded['result_age_ticks']['p99'] / max(before_and_after(lambda state: state['result_age_ticks']['p99']), 1)}
 print(json.dumps(result, indent=1))
 if options.out:

@@ -3,7 +3,9 @@
 #include <array>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstddef>
+#include <optional>
 
+#include "service/control_loop.h"
 #include "service/thread_share.h"
 
 namespace palpate {
@@ -53,7 +55,9 @@ FrameSlot* CollisionWorker::next_frame() {
 void CollisionWorker::release(FrameSlot* slot) { queues_->free.push(slot); }
 
 void CollisionWorker::run() noexcept {
-  const ForHand for_hand;
+  // It shares the loop's processor only where the loop goes before it whatever happens.
+  std::optional<ForHand> for_hand;
+  if (may_be_realtime()) for_hand.emplace();
   set_nice(kNiceContact);
   set_slice(kSliceContactUs);
   LawResult result;

@@ -129,7 +129,8 @@ RealtimeGrant make_realtime() {
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0) {
     refuse("no real-time priority", error, ": ticks are as punctual as the ordinary scheduler makes them");
     set_slice(kSliceTickUs);
-  } else if (const int processor = loop_processor(); processor >= 0)   // without priority a bound thread would only wait longer
+  }
+  if (const int processor = loop_processor(); processor >= 0)
     if (const int unbound = bind_to(processor); unbound != 0) refuse("the loop isn't bound to a processor", unbound, "");
   grant.locked = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
   if (!grant.locked) refuse("memory isn't locked", errno, "");
