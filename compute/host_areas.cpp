@@ -368,15 +368,14 @@ void HostAreas::direct(AreaWork& area, const Held* held) const {
     }
     if (rule->tells && rule->weight > 0) area.flags |= kFlagCancelled;
   }
-  Int3 d = area.held_area == kNone ? Int3(0) : held->areas[area.held_area].direction;
-  if (d != Int3(0)) {
+  if (area.held_area != kNone) {
     area.flags |= kFlagHeld;
-  } else {
-    d = way_to_nearest_external(constants_.mockup.grid, brick_slots_, bricks_, (area.box_low + area.box_high) >> 1);
-    area.flags |= d == Int3(0) ? kFlagNoDirection : kFlagNearestExternal;
-    if (d == Int3(0)) return;
+    area.direction = held->areas[area.held_area].direction;
+    return;
   }
-  area.direction = normalise({d.x, d.y, d.z});
+  const Int3 d = way_to_nearest_external(constants_.mockup.grid, brick_slots_, bricks_, (area.box_low + area.box_high) >> 1);
+  area.flags |= d == Int3(0) ? kFlagNoDirection : kFlagNearestExternal;
+  if (d != Int3(0)) area.direction = normalise({d.x, d.y, d.z});
 }
 
 bool HostAreas::solve(PosedTool& tool, const Held* held, const ContactLists& lists, Answer& answer) {

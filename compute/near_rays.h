@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Which triangles of a closed tool the rays of counting samples may cross on their way out of it: what its fine partition lists along
-/// them. The device decides about each crossing. One thread; find() does not allocate.
+/// them. The device decides about each crossing. One thread; only make() allocates, and look() for more rays than ever before.
 class NearRays {
  public:
   /// `order`: ids of the tool's triangles by place. Scene and tool outlive this. Only where PreparedScene::rays_walk().
@@ -62,7 +62,7 @@ class NearRays {
             HostList<std::uint32_t>& places);
 
  private:
-  /// A point seen along the rays: where across them, and how far ahead.
+  /// A point seen along the rays: where across them, and how far ahead. Steps of the tool's lattice.
   struct Seen {
     std::array<double, 2> shadow;
     double ahead;

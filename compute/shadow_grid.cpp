@@ -15,7 +15,6 @@ void ShadowGrid::for_squares(const Triangle& t, Visit&& visit) const {
 void ShadowGrid::begin(const std::array<double, 2>& low, const std::array<double, 2>& high, std::size_t rays) {
   low_ = low;
   high_ = high;
-  rays_ = rays;
   bits_ = drop_ = {};
   const auto side = [&](std::size_t axis) { return (high[axis] - low[axis]) / (1u << bits_[axis]); };
   while (bits_[0] + bits_[1] < kMostBits && std::size_t{1} << (bits_[0] + bits_[1]) < rays) {

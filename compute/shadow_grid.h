@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// A triangle seen along rays of one direction: its box across them, and how far ahead it reaches.
+/// A triangle seen along rays of one direction: its box across them, and how far ahead it reaches. Steps of the tool's lattice.
 struct RayShadow {
   std::array<double, 2> low{}, high{};
   double ahead = 0;
@@ -25,13 +25,13 @@ class ShadowGrid {
     std::uint32_t id;
     std::array<std::uint32_t, 2> first, last;   ///< columns, closed
   };
-  /// Squares for rays from `low` to `high`, about as many as `rays`, fewer where triangles are large beside them.
+  /// Squares for rays from `low` to `high` (steps of the tool's lattice, across them), about as many as `rays`, fewer where triangles are large beside them.
   void begin(const std::array<double, 2>& low, const std::array<double, 2>& high, std::size_t rays);
   /// Adds a triangle that some ray may meet.
   void add(const RayShadow& shadow, std::uint32_t id);
   /// No more triangles come.
   void close();
-  /// Numbers of all triangles whose shadow holds a ray between `low` and `high`, others among them.
+  /// After close(): numbers of all triangles whose shadow holds a ray between `low` and `high`, others among them.
   std::span<const std::uint32_t> at(const std::array<double, 2>& ray) const {
     const std::size_t square = (column(0, ray[0]) >> drop_[0]) + ((column(1, ray[1]) >> drop_[1]) << (bits_[0] - drop_[0]));
     return {entries_.data() + first_[square], entries_.data() + first_[square + 1]};
@@ -47,7 +47,6 @@ class ShadowGrid {
 
   std::array<double, 2> low_{}, high_{}, scale_{};
   std::array<std::uint32_t, 2> bits_{}, drop_{};   // columns are 2^bits; squares take 2^drop of them together
-  std::size_t rays_ = 0;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> first_, entries_;   // by square; numbers of triangles
 };

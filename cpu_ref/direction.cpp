@@ -126,7 +126,7 @@ void find_refined(const Frame& frame, Area& area) {
     }
     if (sum.weight > 0 && rule != bare_static_normals) area.out.flags |= kFlagCancelled;
   }
-  if (held != nullptr) {   // an area without a direction is not held
+  if (held != nullptr) {
     area.out.direction = held->direction;
     area.out.flags |= kFlagHeld;
     return;

@@ -35,7 +35,8 @@ class CollisionBackend {
   /// this comes back; the first of them waits for it.
   virtual Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) = 0;
 
-  /// Waits for what prepare() or replan() left to be made beside, so that no query has to: before a loop begins. Error: it can't be made.
+  /// Waits for what prepare() or replan() left to be made beside, so that no query has to: before a loop begins, not while a query runs. Error: it
+  /// can't be made.
   virtual Result<void> finish_preparing() { return {}; }
 
   /// The same prepared scene under another plan of the same profile: what it adds is made, what it leaves out is gone. Takes milliseconds; not

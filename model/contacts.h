@@ -74,7 +74,7 @@ struct Contacts {
 /// What a frame remembers of the frame before it (docs/EXACTNESS.md, "Held").
 struct HeldArea {
   std::vector<std::uint32_t> static_ids;   ///< ascending
-  Int3 direction{0};
+  Int3 direction{0};                       ///< as ContactArea::direction, never 0: an area without one is not held
   std::int8_t sheet_sign = 0;
   bool silent = false;                     ///< pierced, and another area gave the force
 };

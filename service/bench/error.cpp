@@ -7,17 +7,16 @@
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 #include "service/bench/bench.h"
-#include "service/bench/output.h"
 #include "service/bench/error_control.h"
 #include "service/bench/error_sweep.h"
-#include "service/cli/numbers.h"
+#include "service/bench/output.h"
 #include "service/bench/plain_response.h"
-#include "service/cli/scene_host.h"
 #include "service/bench/scene_subject.h"
+#include "service/cli/numbers.h"
+#include "service/cli/scene_host.h"
 
 namespace palpate {
 namespace {
-
 
 /// A setting that was measured.
 struct Point {
@@ -30,11 +29,9 @@ class ErrorBench {
   ErrorBench(const BenchOptions& options, const Parts& parts) : options_(options), parts_(parts) {}
 
   Result<void> run() {
-    auto backend = choose_backend(options_.backends.empty() ? "" : options_.backends.front(), parts_, console_);
+    auto backend = bench_backend(options_, parts_, console_, facts_);
     if (!backend) return backend.error();
     backend_ = std::move(*backend);
-    facts_.device = device_text(*backend_, parts_);
-    facts_.more.emplace_back("load average", fmt::format("{:.1f} at the start", load_average()));
     if (!options_.scenes_only)
       if (auto done = closed_forms(); !done) return done;
     for (const std::string& file : options_.scenes)

@@ -18,8 +18,8 @@
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/cli/console.h"
-#include "service/control_loop.h"
 #include "service/cli/scene_host.h"
+#include "service/control_loop.h"
 #include "service/session.h"
 #include "service/thread_share.h"
 

@@ -8,12 +8,12 @@
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 #include "service/bench/bench.h"
-#include "service/bench/output.h"
-#include "service/cli/console.h"
 #include "service/bench/error_sweep.h"
-#include "service/force_law.h"
+#include "service/bench/output.h"
 #include "service/bench/plain_response.h"
+#include "service/cli/console.h"
 #include "service/cli/scene_host.h"
+#include "service/force_law.h"
 
 namespace palpate {
 namespace {
@@ -69,10 +69,9 @@ class NumericsBench {
   NumericsBench(const BenchOptions& options, const Parts& parts) : options_(options), parts_(parts) {}
 
   Result<void> run() {
-    auto backend = choose_backend(options_.backends.empty() ? "" : options_.backends.front(), parts_, console_);
+    auto backend = bench_backend(options_, parts_, console_, facts_);
     if (!backend) return backend.error();
     backend_ = std::move(*backend);
-    facts_.device = device_text(*backend_, parts_);
     const auto powers = [](int from, int to, int step) {
       std::vector<double> out;
       for (int k = from; k <= to; k += step) out.push_back(std::pow(10.0, k));

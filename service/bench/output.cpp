@@ -14,6 +14,7 @@
 
 #include "generated/commit.h"
 #include "service/bench/chart_svg.h"
+#include "service/cli/scene_host.h"
 #include "service/report/report_assets.h"
 
 namespace palpate {
@@ -159,6 +160,15 @@ std::string device_text(const CollisionBackend& backend, const Parts& parts) {
     for (const DeviceLine& line : parts.list_devices())
       if (line.kind == "vulkan" && line.usable && line.name == backend.device()) return line.name + ", " + line.reason;
   return backend.device();
+}
+
+Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts) {
+  const double load = load_average();
+  auto backend = choose_backend(options.backends.empty() ? "" : options.backends.front(), parts, console);
+  if (!backend) return backend.error();
+  facts.device = device_text(**backend, parts);
+  facts.more.emplace_back("load average", fmt::format("{:.1f} at the start", load));
+  return backend;
 }
 
 double load_average() {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -7,7 +8,9 @@
 
 #include "model/collision_backend.h"
 #include "model/result.h"
+#include "service/bench/bench.h"
 #include "service/cli/cli.h"
+#include "service/cli/console.h"
 
 namespace palpate {
 
@@ -49,6 +52,9 @@ std::string device_text(const CollisionBackend& backend, const Parts& parts);
 
 /// Mean number of processes that wanted to run in the last minute; −1: unknown.
 double load_average();
+
+/// The first back end of the options, else the program's own choice; its device and the machine's load are noted in `facts`.
+Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts);
 
 /// Writes results.csv, results.json, report.html and chart_N.svg (lines and maps) to `directory` (made if missing), each with machine, device, commit and version, and
 /// prints the table. CSV: `table`'s columns and then machine, device, commit.

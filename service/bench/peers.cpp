@@ -4,11 +4,11 @@
 #include <cstring>
 #include <iterator>
 
-#include "service/cli/answer.h"
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
 #include "service/bench/times.h"
+#include "service/cli/answer.h"
 #include "service/cli/numbers.h"
 #include "service/report/run_summary.h"
 

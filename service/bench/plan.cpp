@@ -6,9 +6,9 @@
 
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
-#include "service/cli/console.h"
 #include "service/bench/plan_subjects.h"
 #include "service/bench/plan_trial.h"
+#include "service/cli/console.h"
 #include "service/cli/scene_host.h"
 
 namespace palpate {
@@ -19,11 +19,9 @@ class PlanBench {
   PlanBench(const BenchOptions& options, const Parts& parts) : options_(options), parts_(parts) {}
 
   Result<void> run() {
-    auto backend = choose_backend(options_.backends.empty() ? "" : options_.backends.front(), parts_, console_);
+    auto backend = bench_backend(options_, parts_, console_, facts_);
     if (!backend) return backend.error();
     backend_ = std::move(*backend);
-    facts_.device = device_text(*backend_, parts_);
-    facts_.more.emplace_back("load average", fmt::format("{:.1f} at the start", load_average()));
     for (const PlanSubject& subject : plan_subjects())
       if (auto done = one(subject); !done) return Error{done.error().code, subject.name + ": " + done.error().sentence};
     for (BenchChart* chart : {&time_, &memory_}) chart->series = {{"whole", {}, {}}, {"lean", {}, {}}};

@@ -7,11 +7,11 @@
 
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
+#include "service/bench/process_memory.h"
 #include "service/bench/times.h"
 #include "service/cli/numbers.h"
-#include "service/bench/process_memory.h"
-#include "service/report/run_summary.h"
 #include "service/cli/scene_host.h"
+#include "service/report/run_summary.h"
 
 namespace palpate {
 namespace {

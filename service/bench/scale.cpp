@@ -5,12 +5,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/answer.h"
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
-#include "service/bench/times.h"
 #include "service/bench/process_memory.h"
+#include "service/bench/times.h"
+#include "service/cli/answer.h"
 
 namespace palpate {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "model/scene_file.h"
 #include "service/bench/poses.h"
-#include "service/report/run_summary.h"
 #include "service/cli/scene_host.h"
+#include "service/report/run_summary.h"
 
 namespace palpate {
 

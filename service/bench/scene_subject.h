@@ -3,8 +3,8 @@
 
 #include "model/result.h"
 #include "service/bench/bench.h"
-#include "service/cli/console.h"
 #include "service/bench/error_subjects.h"
+#include "service/cli/console.h"
 
 namespace palpate {
 

@@ -6,11 +6,11 @@
 
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
+#include "service/bench/stability_bodies.h"
+#include "service/bench/stability_contacts.h"
 #include "service/cli/console.h"
 #include "service/cli/scene_host.h"
 #include "service/session.h"
-#include "service/bench/stability_bodies.h"
-#include "service/bench/stability_contacts.h"
 
 namespace palpate {
 namespace {

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "service/body_loop.h"
 #include "service/bench/stability_contacts.h"
+#include "service/body_loop.h"
 
 namespace palpate {
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "service/cli/answer.h"
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
 #include "service/bench/times.h"
+#include "service/cli/answer.h"
 #include "service/report/run_summary.h"
 
 namespace palpate {

@@ -14,9 +14,9 @@
 
 #include "model/one_line.h"
 #include "service/bench/bench.h"
-#include "service/cli/tune.h"
-#include "service/cli/serve.h"
 #include "service/cli/console.h"
+#include "service/cli/serve.h"
+#include "service/cli/tune.h"
 
 namespace palpate {
 namespace {

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "model/path_file.h"
+#include "service/bench/plan_trial.h"
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
-#include "service/bench/plan_trial.h"
 #include "service/cli/scene_host.h"
 
 namespace palpate {

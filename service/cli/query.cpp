@@ -9,8 +9,8 @@
 #include "service/cli/console.h"
 #include "service/cli/export_geometry.h"
 #include "service/cli/pose_input.h"
-#include "service/query_json.h"
 #include "service/cli/scene_host.h"
+#include "service/query_json.h"
 
 namespace palpate {
 namespace {

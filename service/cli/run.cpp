@@ -8,10 +8,10 @@
 
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
+#include "service/cli/scene_host.h"
 #include "service/recorder.h"
 #include "service/report/report.h"
 #include "service/report/run_summary.h"
-#include "service/cli/scene_host.h"
 #include "service/session.h"
 
 namespace palpate {

@@ -11,11 +11,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "service/bench/output.h"
 #include "service/bench/error_sweep.h"
+#include "service/bench/output.h"
+#include "service/bench/scene_subject.h"
 #include "service/cli/numbers.h"
 #include "service/cli/scene_host.h"
-#include "service/bench/scene_subject.h"
 
 namespace palpate {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "service/report/report_assets.h"
 #include "service/cli/numbers.h"
+#include "service/report/report_assets.h"
 #include "service/report/run_summary.h"
 
 namespace palpate {
