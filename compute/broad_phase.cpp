@@ -11,6 +11,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kFan = 8;   // children of a node
+constexpr std::int32_t kManyBricks = 3;   // along an axis, beyond which bricks are asked and not voxels (chosen)
 
 // Transformed vertices are rounded by half a step an axis, and doubles by far less than a thousandth: two steps hold both, and
 // voxels are closed.
@@ -119,15 +120,8 @@ void BroadPhase::make_levels(const LatticeMesh& tool, std::span<const std::uint3
 Result<void> BroadPhase::read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup) {
   grid_ = mockup.grid;
   per_voxel_ = 1.0 / grid_.size;
-  slots_.resize(static_cast<std::size_t>(grid_.bricks.x) * static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(grid_.bricks.z));
-  if (auto r = download(device, mockup.brick_slot, 0, slots_.data(), slots_.size() * 4); !r) return r;
-  std::vector<gpu::Brick> bricks(grid_.mixed_bricks);
-  if (auto r = download(device, mockup.bricks, 0, bricks.data(), bricks.size() * sizeof bricks[0]); !r) return r;
-  occupied_.resize(bricks.size());
-  for (std::size_t i = 0; i < bricks.size(); ++i)
-    for (std::size_t z = 0; z < 8; ++z)
-      occupied_[i][z] = std::uint64_t{bricks[i].boundary[2 * z] | bricks[i].internal_[2 * z]} |
-                        std::uint64_t{bricks[i].boundary[2 * z + 1] | bricks[i].internal_[2 * z + 1]} << 32;
+  if (auto r = occupied_.emplace_back().read(device, mockup); !r) return r;
+  while (std::max({occupied_.back().size().x, occupied_.back().size().y, occupied_.back().size().z}) > kManyBricks) occupied_.push_back(occupied_.back().coarser());
   return {};
 }
 
@@ -171,42 +165,31 @@ BroadPhase::Reach BroadPhase::reach(const Turn& turn, const Box& box) const {
   return out;
 }
 
-/// Calls take(brick coordinates, slot) for each brick with an occupied voxel among first … last, until it returns true.
-template <class Take>
-void BroadPhase::for_bricks(const std::int32_t (&first)[3], const std::int32_t (&last)[3], Take&& take) const {
-  constexpr std::uint64_t kRows = 0x0101010101010101u;
-  for (std::int32_t z = first[2] >> 3; z <= last[2] >> 3; ++z)
-    for (std::int32_t y = first[1] >> 3; y <= last[1] >> 3; ++y)
-      for (std::int32_t x = first[0] >> 3; x <= last[0] >> 3; ++x) {
-        const std::uint32_t slot = slots_[static_cast<std::size_t>(x) + static_cast<std::size_t>(grid_.bricks.x) *
-                                          (static_cast<std::size_t>(y) + static_cast<std::size_t>(grid_.bricks.y) * static_cast<std::size_t>(z))];
-        if (slot == gpu::kBrickExternal) continue;
-        if (slot != gpu::kBrickInternal) {
-          const auto from = [&](std::size_t k, std::int32_t brick) { return static_cast<unsigned>(std::max(first[k] - 8 * brick, 0)); };
-          const auto to = [&](std::size_t k, std::int32_t brick) { return static_cast<unsigned>(std::min(last[k] - 8 * brick, 7)); };
-          const std::uint64_t row = (2u << to(0, x)) - (1u << from(0, x));
-          const std::uint64_t rows = (kRows >> 8 * (7 - (to(1, y) - from(1, y)))) << 8 * from(1, y);
-          std::uint64_t found = 0;
-          for (unsigned k = from(2, z); k <= to(2, z); ++k) found |= occupied_[slot][k];
-          if ((found & row * rows) == 0) continue;
-        }
-        if (take(Int3(x, y, z), slot)) return;
-      }
-}
-
 bool BroadPhase::meets(const Reach& reach) const {
-  std::int32_t first[3], last[3];
+  BrickBits::Range voxels{};
   for (std::size_t k = 0; k < 3; ++k) {
     const int axis = static_cast<int>(k);
-    const double voxels = grid_.bricks[axis] * 8;
+    const double end = grid_.bricks[axis] * 8;
     const double low = (reach.low[k] - grid_.origin[axis]) * per_voxel_, high = (reach.high[k] - grid_.origin[axis]) * per_voxel_;
-    if (high < 0 || low >= voxels) return false;
-    first[k] = static_cast<std::int32_t>(std::max(low, 0.0));   // rounded down
-    last[k] = static_cast<std::int32_t>(std::min(high, voxels - 1));
+    if (high < 0 || low >= end) return false;
+    voxels.first[k] = static_cast<std::int32_t>(std::max(low, 0.0));   // rounded down
+    voxels.last[k] = static_cast<std::int32_t>(std::min(high, end - 1));
   }
-  bool any = false;
-  for_bricks(first, last, [&](const Int3&, std::uint32_t) { return any = true; });
-  return any;
+  return meets(voxels);
+}
+
+/// Whether any of the voxels is occupied; of many voxels, whether any of their bricks has one.
+bool BroadPhase::meets(BrickBits::Range voxels) const {
+  std::size_t level = 0;
+  const auto many = [&](std::size_t k) { return (voxels.last[k] >> 3) - (voxels.first[k] >> 3) >= kManyBricks; };
+  while (level + 1 < occupied_.size() && (many(0) || many(1) || many(2))) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      voxels.first[k] >>= 3;
+      voxels.last[k] >>= 3;
+    }
+    ++level;
+  }
+  return occupied_[level].for_bricks(voxels, [](std::int32_t, std::int32_t, std::int32_t) { return true; });
 }
 
 /// Of eight nodes those that come near an occupied voxel: a bit each.
@@ -216,11 +199,7 @@ unsigned BroadPhase::meeting(const Search& search, const EightBoxes& nodes) cons
   unsigned out = 0;
   for (std::size_t i = 0; i < kFan; ++i) {
     if (voxels.may[i] == 0) continue;
-    const std::int32_t first[3] = {voxels.first[0][i], voxels.first[1][i], voxels.first[2][i]}, last[3] = {voxels.last[0][i], voxels.last[1][i], voxels.last[2][i]};
-    for_bricks(first, last, [&](const Int3&, std::uint32_t) {
-      out |= 1u << i;
-      return true;
-    });
+    if (meets(voxels.range(i))) out |= 1u << i;
   }
   return out;
 }
@@ -247,15 +226,17 @@ void BroadPhase::descend(Search& search) {
 
 /// The triangles of a run, each by the box of its corners.
 void BroadPhase::take_run(Search& search, std::size_t run) {
+  const BrickBits& occupied = occupied_.front();
   EightRanges voxels;
   voxels_of(search.voxels, runs_[run], voxels);
   for (std::size_t i = 0; i < gpu::kRunSize; ++i) {
     if (voxels.may[i] == 0) continue;
-    const std::int32_t first[3] = {voxels.first[0][i], voxels.first[1][i], voxels.first[2][i]}, last[3] = {voxels.last[0][i], voxels.last[1][i], voxels.last[2][i]};
     const auto place = static_cast<std::uint32_t>(run * gpu::kRunSize + i);
     std::uint32_t head = gpu::kFirstOfTriangle;
     NearPairs::Triangle triangle;
-    for_bricks(first, last, [&](const Int3& brick, std::uint32_t slot) {
+    occupied.for_bricks(voxels.range(i), [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+      const Int3 brick(x, y, z);
+      const std::uint32_t slot = occupied.slot(occupied.number(x, y, z));
       if (head != 0 && !pairs_.begin(search.tool.corners(order_[place]), place, triangle)) return true;
       if (!search.lists.push(search.lists.triangles, gpu::kListNearTriangles, {place | head, slot, brick.x | brick.y << 16, brick.z})) return true;
       head = 0;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "compute/brick_bits.h"
 #include "compute/near_lists.h"
 #include "compute/near_pairs.h"
 #include "compute/near_samples.h"
@@ -45,9 +46,8 @@ class BroadPhase {
   Result<void> read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup);
   void find_parts(const LatticeMesh& mockup, std::int32_t tool_radius);
   Reach reach(const Turn& turn, const Box& box) const;
-  template <class Take>
-  void for_bricks(const std::int32_t (&first)[3], const std::int32_t (&last)[3], Take&& take) const;
   bool meets(const Reach& reach) const;
+  bool meets(BrickBits::Range voxels) const;
   void descend(Search& search);
   unsigned meeting(const Search& search, const EightBoxes& nodes) const;
   void take_run(Search& search, std::size_t run);
@@ -66,8 +66,7 @@ class BroadPhase {
   std::int32_t tool_radius_ = 0;
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;   ///< voxels a step
-  std::vector<std::uint32_t> slots_;                        ///< by brick, as brick_slot
-  std::vector<std::array<std::uint64_t, 8>> occupied_;      ///< by slot and z: bit x + 8y of a voxel that is not V_ext
+  std::vector<BrickBits> occupied_;                         ///< voxels that are not V_ext, bricks with such a voxel, bricks of bricks …
   /// Parts of the mock-up that would fit into the tool.
   std::vector<std::array<std::int32_t, 6>> parts_;          ///< low x, y, z, high x, y, z; steps
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "compute/processor.h"
 
@@ -14,11 +15,6 @@ constexpr double kRootThree = 1.7320508075688774;
 std::size_t at(const Int3& cell, const Int3& cells) {
   return static_cast<std::size_t>(cell.x) +
          static_cast<std::size_t>(cells.x) * (static_cast<std::size_t>(cell.y) + static_cast<std::size_t>(cells.y) * static_cast<std::size_t>(cell.z));
-}
-
-std::int32_t ceil_div(std::int32_t a, std::int32_t b) {
-  const std::int32_t q = a / b;
-  return q + (q * b < a ? 1 : 0);
 }
 
 /// Every cell takes the largest of those up to `reach` before and behind it along an axis.
@@ -35,6 +31,65 @@ void widen(std::vector<std::uint8_t>& cells, const Int3& n, int axis, std::int32
       }
 }
 
+constexpr std::size_t kEight = HostSamples::kPointsAtOnce;
+
+/// From the mock-up's voxels to fine voxels of the tool at a pose, numbers of the latter.
+struct FineTurn {
+  double column[3][3];       ///< a mock-up voxel further along [1] is so much along [0]
+  float point_column[3][3];  ///< the same for a voxel's 1024th
+  float end[3];              ///< the grid's fine voxels
+  float error;               ///< of a point, along each axis
+};
+
+/// Boundary voxels of a brick.
+struct BrickVoxels {
+  double first_centre[3];                ///< the centre of the brick's first voxel, in fine voxels
+  std::int32_t bit[512 + kEight];        ///< x + 8y + 64z
+  std::uint32_t number[512];
+  std::size_t count = 0;
+};
+
+/// Which fine voxels are near to the tool's solid (PreparedScene::tool_near).
+struct NearCells {
+  const HostCopy<std::uint32_t>& bits;
+  std::int32_t size[3];   ///< fine voxels, …
+  double end[3];          ///< … the same
+  double beyond;    ///< what reaches so far out of the grid has its nearest voxel of the solid seen from the border: the grid is padded by two voxels
+};
+
+/// Points in fine voxels of the tool.
+struct SolidPoints {
+  unsigned may, unsure;                            ///< a bit each: may lie in the solid; the voxel may be the next one
+  std::uint32_t brick[kEight], bit[kEight];        ///< which voxel, where it is sure (BrickBits)
+};
+
+namespace plain {
+constexpr std::size_t kWidth = 4;
+#include "compute/near_samples_lanes.h"
+}
+#if PALPATE_TWO_CODES
+PALPATE_SECOND_CODE_BEGIN
+namespace second {
+constexpr std::size_t kWidth = 8;
+#include "compute/near_samples_lanes.h"
+}
+PALPATE_SECOND_CODE_END
+#endif
+
+std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const NearCells& cells, std::uint16_t* near) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::near_voxels(turn, voxels, cells, near);
+#endif
+  return plain::near_voxels(turn, voxels, cells, near);
+}
+
+void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& solid, const std::uint32_t* points, SolidPoints& out) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::solid_points(turn, low, solid, points, out);
+#endif
+  plain::solid_points(turn, low, solid, points, out);
+}
+
 }  // namespace
 
 struct NearSamples::Search {
@@ -42,6 +97,7 @@ struct NearSamples::Search {
   double rotation[3][3];      // world from tool
   double translation[3];
   NearLists& lists;
+  FineTurn fine{};
 
   /// Tool lattice point of a world lattice point, off by less than 2^-20.
   void to_tool(const Int3& p, double (&out)[3]) const {
@@ -83,6 +139,7 @@ Result<NearSamples> NearSamples::make(VulkanDevice& device, const SceneGeometry&
     if (auto r = out.list_triangles_.read(device, m.list_triangles, m.grid.list_entries); !r) return r.error();
     if (auto r = out.fine_slots_.read(device, fine.brick_slot, count); !r) return r.error();
     if (auto r = out.fine_bricks_.read(device, fine.bricks, out.fine_.mixed_bricks); !r) return r.error();
+    if (auto r = out.solid_.read(device, fine); !r) return r.error();
   }
   std::vector<std::uint8_t> any(count, 1);
   if (out.has_near_) {
@@ -126,21 +183,15 @@ bool NearSamples::near_cube(const Level& level, const double (&p)[3]) const {
   return level.near[at(cell, level.cells)] != 0;
 }
 
-bool NearSamples::near_voxel(const double (&p)[3]) const {
-  if (!has_near_) return true;
-  Int3 cell;
-  const Int3 n = 8 * fine_.bricks;
-  for (int k = 0; k < 3; ++k) {
-    // What reaches out of the grid has its nearest voxel of the solid seen from the border: the grid is padded by two voxels.
-    const double d = p[k] - fine_.origin[k];
-    if (d < -mockup_.size || d > static_cast<double>(n[k]) * fine_.size + mockup_.size) return false;
-    cell[k] = static_cast<std::int32_t>(std::clamp(d * per_fine_, 0.0, n[k] - 1.0));
-  }
-  const std::size_t i = at(cell, n);
-  return (near_[i >> 5] >> (i & 31) & 1u) != 0;
+/// kVoxel… of a fine voxel, given by its brick and its bit there.
+std::uint32_t NearSamples::fine_class(std::size_t brick, std::uint32_t bit) const {
+  const std::uint32_t slot = fine_slots_[brick];
+  if (slot >= gpu::kBrickInternal) return slot == gpu::kBrickInternal ? gpu::kVoxelInternal : gpu::kVoxelExternal;
+  if ((fine_bricks_[slot].boundary[bit >> 5] >> (bit & 31) & 1) != 0) return gpu::kVoxelBoundary;
+  return (fine_bricks_[slot].internal_[bit >> 5] >> (bit & 31) & 1) != 0 ? gpu::kVoxelInternal : gpu::kVoxelExternal;
 }
 
-/// kVoxel… of the tool's fine partition; V_ext beyond the grid. For an open sample the device begins at the same voxel.
+/// The same of the voxel that holds a point; V_ext beyond the grid. For an open sample the device begins at the same voxel.
 std::uint32_t NearSamples::fine_class(const Int3& p) const {
   Int3 v;
   for (int k = 0; k < 3; ++k) {
@@ -149,42 +200,64 @@ std::uint32_t NearSamples::fine_class(const Int3& p) const {
     if (!(along >= 0 && along < 8 * fine_.bricks[k])) return gpu::kVoxelExternal;
     v[k] = static_cast<std::int32_t>(along);
   }
-  const std::uint32_t slot = fine_slots_[at(Int3(v.x >> 3, v.y >> 3, v.z >> 3), fine_.bricks)];
-  if (slot >= gpu::kBrickInternal) return slot == gpu::kBrickInternal ? gpu::kVoxelInternal : gpu::kVoxelExternal;
-  const auto bit = static_cast<unsigned>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
-  if ((fine_bricks_[slot].boundary[bit >> 5] >> (bit & 31) & 1) != 0) return gpu::kVoxelBoundary;
-  return (fine_bricks_[slot].internal_[bit >> 5] >> (bit & 31) & 1) != 0 ? gpu::kVoxelInternal : gpu::kVoxelExternal;
+  return fine_class(at(Int3(v.x >> 3, v.y >> 3, v.z >> 3), fine_.bricks), static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6));
+}
+
+/// The entries of a voxel, gone through with its points.
+struct NearSamples::Entries {
+  const HostSamples& samples;
+  std::uint32_t entry, first;   // its points are numbers first …
+  std::uint32_t count() const { return samples.samples_of(entry) + (samples.has_corner(entry) ? 1 : 0); }
+  /// To the entry of a point at or after the last one asked for.
+  void go_to(std::uint32_t point) {
+    for (std::uint32_t n = count(); first + n <= point; n = count()) {
+      first += n;
+      ++entry;
+    }
+  }
+};
+
+bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
+  const HostSamples& from = *sampled_;
+  const HostSamples::Voxel grid(mockup_.origin + mockup_.size * voxel, spacing_);
+  double at[3];
+  search.to_tool(grid.low, at);
+  float low[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float (&column)[3] = search.fine.point_column[k];
+    // Half a step, since points are rounded to steps (fine_class), and half a 1024th.
+    low[k] = static_cast<float>((at[k] - fine_.origin[static_cast<int>(k)] + 0.5) * per_fine_) + 0.5F * (column[0] + column[1] + column[2]);
+  }
+  Entries entries{from, list_begin_[boundary], from.point_begin[boundary]};
+  const std::uint32_t end = from.point_begin[boundary + 1];
+  for (std::uint32_t first = entries.first; first < end; first += kEight) {
+    SolidPoints solid;
+    solid_points(search.fine, low, solid_, &from.points[first], solid);
+    if (end - first < kEight) solid.may &= (1u << (end - first)) - 1;
+    for (; solid.may != 0; solid.may &= solid.may - 1) {
+      const auto lane = static_cast<unsigned>(std::countr_zero(solid.may));
+      entries.go_to(first + lane);
+      const std::uint32_t id = list_triangles_[entries.entry];
+      std::uint32_t i = first + lane - entries.first;
+      gpu::FrameSample sample{{}, id};
+      if (!from.has_corner(entries.entry)) sample.point = from.sample(grid, entries.entry, i);
+      else if (i-- > 0) sample.point = from.sample(grid, entries.entry, i);
+      else sample = {mesh_->corner(id, 0), id | gpu::kCornerProbe};
+      const std::uint32_t kind =
+          (solid.unsure >> lane & 1) != 0 ? fine_class(search.rounded_to_tool(sample.point)) : fine_class(solid.brick[lane], solid.bit[lane]);
+      const bool room = kind == gpu::kVoxelInternal   ? search.lists.push(search.lists.inside, gpu::kListInsideSamples, sample)
+                        : kind == gpu::kVoxelBoundary ? search.lists.push(search.lists.open, gpu::kListOpenSamples, sample)
+                                                      : true;
+      if (!room) return false;
+    }
+  }
+  return true;
 }
 
 bool NearSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const {
-  const std::uint32_t begin = list_begin_[boundary], end = list_begin_[boundary + 1];
-  if (listed_) {
-    const HostSamples& from = *sampled_;
-    const auto take = [&](const gpu::FrameSample& sample) {
-      const std::uint32_t voxel_class = fine_class(search.rounded_to_tool(sample.point));
-      if (voxel_class == gpu::kVoxelInternal) return search.lists.push(search.lists.inside, gpu::kListInsideSamples, sample);
-      return voxel_class != gpu::kVoxelBoundary || search.lists.push(search.lists.open, gpu::kListOpenSamples, sample);
-    };
-    const Int3 low = mockup_.origin + mockup_.size * voxel;
-    Int3 grid;   // the voxel's first grid point, axis by axis
-    for (int k = 0; k < 3; ++k) grid[k] = spacing_ * ceil_div(low[k], spacing_);
-    for (std::uint32_t e = begin; e < end; ++e) {
-      const std::uint32_t head = from.begin[e], id = list_triangles_[e], last = from.begin[e + 1] & HostSamples::kBegin;
-      if ((head & HostSamples::kCorner) != 0 && !take({mesh_->corner(id, 0), id | gpu::kCornerProbe})) return false;
-      const int axis = static_cast<int>(head >> HostSamples::kAxisShift), u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-      for (std::uint32_t i = head & HostSamples::kBegin; i < last; ++i) {
-        const std::uint32_t* at = &from.words[from.wide ? 2 * std::size_t{i} : i];
-        const std::uint32_t place = from.wide ? at[1] : *at >> 20;
-        gpu::FrameSample sample{{}, id};
-        sample.point[axis] = low[axis] + static_cast<std::int32_t>(from.wide ? *at : *at & 0xFFFFF);
-        sample.point[u] = grid[u] + spacing_ * static_cast<std::int32_t>(place & 63);
-        sample.point[v] = grid[v] + spacing_ * static_cast<std::int32_t>(place >> 6);
-        if (!take(sample)) return false;
-      }
-    }
-    return true;
-  }
-  for (std::uint32_t e = begin; e < end; e += gpu::kSampleChunk)
+  if (listed_) return take_listed(search, voxel, boundary);
+  const std::uint32_t end = list_begin_[boundary + 1];
+  for (std::uint32_t e = list_begin_[boundary]; e < end; e += gpu::kSampleChunk)
     if (!search.lists.push(search.lists.samples, gpu::kListSampleChunks, {voxel, e, std::min(e + gpu::kSampleChunk, end)})) return false;
   return true;
 }
@@ -196,6 +269,7 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
   search.to_tool(origin + 4 * size, q);
   if (!near_cube(brick_, q)) return;
   const gpu::Brick& voxels = bricks_[slot];
+  BrickVoxels found;
   for (std::int32_t o = 0; o < 8; ++o) {
     const Int3 octant(o & 1, o >> 1 & 1, o >> 2);
     const std::uint32_t mask = 0x0F0F0F0Fu << 4 * octant.x;
@@ -206,15 +280,38 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
     if (!near_cube(octant_, q)) continue;
     for (std::int32_t z = 4 * octant.z; z < 4 * octant.z + 4; ++z) {
       const auto word = static_cast<std::uint32_t>(2 * z + octant.y);
-      for (std::uint32_t rest = voxels.boundary[word] & mask; rest != 0; rest &= rest - 1) {
-        const auto bit = static_cast<std::int32_t>(std::countr_zero(rest));
-        const Int3 in_brick(bit & 7, 4 * octant.y + (bit >> 3), z);
-        search.to_tool(origin + size * in_brick + size / 2, q);
-        if (!near_voxel(q)) continue;
-        const std::uint32_t before = voxels.boundary[word] & ((1u << bit) - 1);
-        if (!take_voxel(search, 8 * brick + in_brick, voxels.first[word] + static_cast<std::uint32_t>(std::popcount(before)))) return;
+      const std::uint32_t boundary = voxels.boundary[word];
+      for (std::uint32_t rest = boundary & mask; rest != 0; rest &= rest - 1) {
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(rest));
+        found.bit[found.count] = static_cast<std::int32_t>(word << 5 | bit);
+        found.number[found.count++] = voxels.first[word] + static_cast<std::uint32_t>(std::popcount(boundary & ((1u << bit) - 1)));
       }
     }
+  }
+  std::uint16_t near[512 + kEight];
+  std::size_t count = found.count;
+  if (has_near_) {
+    std::fill_n(found.bit + count, kEight, 0);
+    search.to_tool(origin + size / 2, q);
+    NearCells cells{near_, {}, {}, mockup_.size * per_fine_};
+    for (std::size_t k = 0; k < 3; ++k) {
+      found.first_centre[k] = (q[k] - fine_.origin[static_cast<int>(k)]) * per_fine_;
+      cells.size[k] = 8 * fine_.bricks[static_cast<int>(k)];
+      cells.end[k] = cells.size[k];
+    }
+    count = near_voxels(search.fine, found, cells, near);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) near[i] = static_cast<std::uint16_t>(i);
+  }
+  if (listed_)
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t boundary = found.number[near[i]];
+      __builtin_prefetch(&sampled_->points[sampled_->point_begin[boundary]]);
+      __builtin_prefetch(&sampled_->begin[list_begin_[boundary]]);
+    }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t bit = found.bit[near[i]];
+    if (!take_voxel(search, 8 * brick + Int3(bit & 7, bit >> 3 & 7, bit >> 6), found.number[near[i]])) return;
   }
 }
 
@@ -224,6 +321,20 @@ void NearSamples::find(const LatticePose& pose, const Int3& first, const Int3& l
     for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = pose.rotation_q30[r][c] * 0x1p-30;
     search.translation[r] = pose.translation[static_cast<int>(r)];
   }
+  const double ratio = mockup_.size * per_fine_;
+  double most = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      search.fine.column[k][r] = search.rotation[r][k] * ratio;
+      search.fine.point_column[k][r] = static_cast<float>(search.fine.column[k][r] / (1 << HostSamples::kPointBits));
+    }
+    const double cells = 8.0 * fine_.bricks[static_cast<int>(k)];
+    search.fine.end[k] = static_cast<float>(cells);
+    most = std::max(most, cells);
+  }
+  // A point lies within half a 1024th of its word's middle along each axis, √3 / 2 of one at most along a turned one. Single precision: the voxel's
+  // low corner, three columns, their products and sums, all below the grid's size and a few voxels: eight roundings.
+  search.fine.error = static_cast<float>(kRootThree / 2 * ratio / (1 << HostSamples::kPointBits) + (most + 4 * ratio + 4) * 0x1p-21);
   on_this_processor([&] {
     Int3 b;
     for (b.z = first.z; b.z <= last.z; ++b.z)

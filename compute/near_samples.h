@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "compute/brick_bits.h"
 #include "compute/host_copy.h"
 #include "compute/host_samples.h"
 #include "compute/near_lists.h"
@@ -30,11 +31,13 @@ class NearSamples {
     std::vector<std::uint8_t> near;
   };
   struct Search;
+  struct Entries;
   Level make_level(const std::vector<std::uint8_t>& cubes, double reach) const;
   bool near_cube(const Level& level, const double (&at)[3]) const;
-  bool near_voxel(const double (&at)[3]) const;
   void take_brick(Search& search, const Int3& brick, std::uint32_t slot) const;
   bool take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const;
+  bool take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const;
+  std::uint32_t fine_class(std::size_t brick, std::uint32_t bit) const;
   std::uint32_t fine_class(const Int3& p) const;
 
   gpu::GridConstants mockup_{}, fine_{};
@@ -43,6 +46,7 @@ class NearSamples {
   bool has_near_ = false, listed_ = false;
   HostCopy<std::uint32_t> slots_, near_, list_begin_, list_triangles_, fine_slots_;
   HostCopy<gpu::Brick> bricks_, fine_bricks_;
+  BrickBits solid_;   ///< the tool's, by fine voxel
   const LatticeMesh* mesh_ = nullptr;
   std::int32_t spacing_ = 1;
   std::shared_ptr<const HostSamples> sampled_;

@@ -28,6 +28,8 @@ void archive_samples(Archive& a, Samples& samples) {
   a(samples.begin);
   a(samples.words);
   a(samples.wide);
+  a(samples.points);
+  a(samples.point_begin);
 }
 
 }  // namespace

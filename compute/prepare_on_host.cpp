@@ -154,6 +154,38 @@ HostPreparation::Outcome HostPreparation::list_samples(std::int32_t spacing, std
   return go_on(1) ? Outcome::kDone : Outcome::kCancelled;
 }
 
+bool HostPreparation::list_points(std::int32_t spacing, const GoOn& go_on, HostSamples& samples) const {
+  const std::vector<std::uint32_t> shares = shares_of(kEntriesAShare);
+  const auto count = static_cast<std::uint32_t>(shares.size() - 1);
+  samples.point_begin.assign(std::size_t{grid_.boundary_voxels} + 1, 0);
+  std::uint32_t total = 0;
+  for (std::uint32_t voxel = 0, e = 0; voxel < grid_.boundary_voxels; ++voxel) {
+    for (; e < list_begin_[voxel + 1]; ++e) total += samples.samples_of(e) + (samples.has_corner(e) ? 1 : 0);
+    samples.point_begin[voxel + 1] = total;
+  }
+  samples.points.resize(total + (HostSamples::kPointsAtOnce - 1));
+  const auto write = [&](std::uint32_t voxel) {
+    const HostSamples::Voxel at(low_of(voxel), spacing);
+    std::uint32_t* to = &samples.points[samples.point_begin[voxel]];
+    const auto put = [&](const Int3& p) {
+      std::uint32_t word = 0;
+      for (int k = 0; k < 3; ++k) word |= static_cast<std::uint32_t>((std::int64_t{p[k] - at.low[k]} << HostSamples::kPointBits) / grid_.size) << HostSamples::kPointBits * k;
+      *to++ = word;
+    };
+    for (std::uint32_t e = list_begin_[voxel]; e < list_begin_[voxel + 1]; ++e) {
+      if (samples.has_corner(e)) put(mesh_->corner(list_triangles_[e], 0));
+      for (std::uint32_t i = 0, n = samples.samples_of(e); i < n; ++i) put(samples.sample(at, e, i));
+    }
+  };
+  return in_shares(
+      count,
+      [&](std::uint32_t share) {
+        for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel)
+          if (samples.point_begin[voxel] != samples.point_begin[voxel + 1]) write(voxel);
+      },
+      [&](std::uint32_t begun) { return go_on(1.0 * begun / count); });
+}
+
 // ---- seams ---------------------------------------------------------------------------------------------------------------
 
 namespace {

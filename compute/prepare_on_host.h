@@ -27,6 +27,9 @@ class HostPreparation {
   /// Every entry's samples. kTooMany: more than `most_bytes`, or than HostSamples can number.
   Outcome list_samples(std::int32_t spacing, std::uint64_t most_bytes, const GoOn& go_on, HostSamples& out) const;
 
+  /// The points of samples that either this or the shaders have listed. False: cancelled.
+  bool list_points(std::int32_t spacing, const GoOn& go_on, HostSamples& samples) const;
+
   using Pair = std::array<std::uint32_t, 2>;
   /// Pairs of triangles that may touch along a seam under a smooth angle, the smaller id first, in no order; a pair may come several times.
   /// `least_cosine` is of unit normals in Q30, Q60. A run is some voxels; `take` gets each on the calling thread and says whether to go on.

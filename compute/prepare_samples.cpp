@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -124,9 +125,17 @@ void find_near(PrepareSteps& steps, const PartitionBuffers& p, std::int32_t voxe
   out.tool_near = steps.filled("voxels near the tool", bits);
 }
 
-}  // namespace
-
-namespace {
+/// The points of what is listed; then it is whole.
+void list_points(PrepareSteps& steps, const HostPreparation& host, std::int32_t spacing, std::shared_ptr<HostSamples> samples, PreparedScene& out) {
+  const bool done = host.list_points(
+      spacing,
+      [&](double share) {
+        steps.progress("samples", 0.99 + 0.01 * share);
+        return steps.ok();
+      },
+      *samples);
+  if (done) out.samples = std::move(samples);
+}
 
 void list_samples_on_host(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
   const auto host = HostPreparation::make(steps.device(), geometry.mockup, out.mockup.partition);
@@ -135,11 +144,11 @@ void list_samples_on_host(PrepareSteps& steps, const SceneGeometry& geometry, Pr
   const auto outcome = host->list_samples(
       geometry.sample_spacing, kMostSampleBytes,
       [&](double done) {
-        steps.progress("samples", 0.95 + 0.05 * done);
+        steps.progress("samples", 0.95 + 0.04 * done);
         return steps.ok();
       },
       *samples);
-  if (outcome == HostPreparation::Outcome::kDone) out.samples = std::move(samples);
+  if (outcome == HostPreparation::Outcome::kDone) list_points(steps, *host, geometry.sample_spacing, std::move(samples), out);
 }
 
 }  // namespace
@@ -184,12 +193,14 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
     run(1, some);
     if (!steps.ok()) return;
     if (auto r = download(steps.device(), some, 0, samples->words.data() + *from * words, (*to - *from) * words * 4); !r) return steps.fail(r.error());
-    steps.progress("samples", 0.95 + 0.05 * static_cast<double>(*to) / static_cast<double>(total + 1));
+    steps.progress("samples", 0.95 + 0.04 * static_cast<double>(*to) / static_cast<double>(total + 1));
     from = to;
   }
   if (!steps.ok()) return;
   if (auto r = download(steps.device(), begins, 0, samples->begin.data(), samples->begin.size() * 4); !r) return steps.fail(r.error());
-  out.samples = std::move(samples);
+  const auto host = HostPreparation::make(steps.device(), geometry.mockup, p);
+  if (!host) return steps.fail(host.error());
+  list_points(steps, *host, geometry.sample_spacing, std::move(samples), out);
 }
 
 void refine_tool(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "compute/brick_bits.h"
+
 namespace palpate {
 
 /// Boxes that turn with the tool, eight at a time in single precision: which voxels of the mock-up's grid they may meet.
@@ -25,6 +27,7 @@ struct VoxelTurn {
 /// Voxels first … last along each axis, clipped to the grid. `may` 0: none.
 struct EightRanges {
   alignas(32) std::int32_t first[3][kEight], last[3][kEight], may[kEight];
+  BrickBits::Range range(std::size_t i) const { return {{first[0][i], first[1][i], first[2][i]}, {last[0][i], last[1][i], last[2][i]}}; }
 };
 
 void voxels_of(const VoxelTurn& turn, const EightBoxes& boxes, EightRanges& out);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "compute/gpu_backend.h"
+#include "compute/host_exact.h"
 #include "compute/prepare_estimate.h"
 #include "compute/prepare_on_host.h"
 #include "compute/prepared_scene.h"
@@ -114,6 +115,40 @@ Mesh soup(std::size_t triangles) {
   return mesh;
 }
 
+/// Whether every voxel's points are the 1024ths that hold its triangles' first corners and samples, one by one.
+testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
+  const PartitionBuffers& p = scene.mockup.partition;
+  const HostSamples& samples = *scene.samples;
+  const auto read = [&](const VulkanBuffer& buffer, std::size_t count) {
+    std::vector<std::uint32_t> out(count);
+    EXPECT_TRUE(download(device, buffer, 0, out.data(), count * 4));
+    return out;
+  };
+  const auto begin = read(p.list_begin, p.grid.boundary_voxels + 1), ids = read(p.list_triangles, p.grid.list_entries),
+             places = read(p.boundary_place, p.grid.boundary_voxels), numbers = read(p.mixed_brick, p.grid.mixed_bricks);
+  std::vector<std::uint32_t> expected, expected_begin{0};
+  for (std::size_t voxel = 0; voxel < places.size(); ++voxel) {
+    const std::uint32_t brick = numbers[places[voxel] >> 9], bit = places[voxel] & 511;
+    const auto nx = static_cast<std::uint32_t>(p.grid.bricks.x), ny = static_cast<std::uint32_t>(p.grid.bricks.y);
+    const Int3 at = 8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6);
+    const Int3 low = p.grid.origin + p.grid.size * at, high = low + (p.grid.size - 1);
+    const auto put = [&](const Int3& point) {
+      const auto part = [&](int k) { return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / p.grid.size)); };   // exact: below 2^39
+      expected.push_back(part(0) | part(1) << 10 | part(2) << 20);
+    };
+    for (std::uint32_t e = begin[voxel]; e < begin[voxel + 1]; ++e) {
+      const exact::Corners t{geometry.mockup.corner(ids[e], 0), geometry.mockup.corner(ids[e], 1), geometry.mockup.corner(ids[e], 2)};
+      if (t[0] == glm::clamp(t[0], low, high)) put(t[0]);
+      exact::for_samples(t, geometry.mockup.sample_axis[ids[e]], geometry.sample_spacing, low, high, put);
+    }
+    expected_begin.push_back(static_cast<std::uint32_t>(expected.size()));
+  }
+  if (samples.point_begin != expected_begin) return testing::AssertionFailure() << "begins of points differ";
+  if (samples.points.size() != expected.size() + HostSamples::kPointsAtOnce - 1 || !std::equal(expected.begin(), expected.end(), samples.points.begin()))
+    return testing::AssertionFailure() << "points differ";
+  return testing::AssertionSuccess();
+}
+
 TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShaders) {
   struct Mockup {
     const char* name;
@@ -140,6 +175,7 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShaders) {
       const auto prepared = prepare_scene(**device, *geometry, Plan{}, {});
       ASSERT_TRUE(prepared) << prepared.error().sentence;
       by[share == HostShare::kContacts ? 1 : 0] = prepared->samples;
+      EXPECT_TRUE(points_are_right(**device, *geometry, *prepared));
       const auto host = HostPreparation::make(**device, geometry->mockup, prepared->mockup.partition);
       ASSERT_TRUE(host);
       const auto listing = [&](std::uint64_t most_bytes, bool go_on) {
@@ -156,6 +192,8 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShaders) {
     EXPECT_EQ(by[1]->wide, mockup.wide);
     EXPECT_EQ(by[1]->begin, by[0]->begin);
     EXPECT_EQ(by[1]->words, by[0]->words);
+    EXPECT_EQ(by[1]->points, by[0]->points);
+    EXPECT_EQ(by[1]->point_begin, by[0]->point_begin);
   }
 }
 
