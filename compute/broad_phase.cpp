@@ -237,7 +237,7 @@ void BroadPhase::take_run(Search& search, std::size_t run) {
     occupied.for_bricks(voxels.range(i), [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       const Int3 brick(x, y, z);
       const std::uint32_t slot = occupied.slot(occupied.number(x, y, z));
-      if (head != 0 && !pairs_.begin(search.tool.corners(order_[place]), place, triangle)) return true;
+      if (head != 0 && !pairs_.begin(search.tool.corners(order_[place]), place, voxels, i, triangle)) return true;
       if (!search.lists.push(search.lists.triangles, gpu::kListNearTriangles, {place | head, slot, brick.x | brick.y << 16, brick.z})) return true;
       head = 0;
       return !pairs_.take(triangle, brick, slot, search.lists);

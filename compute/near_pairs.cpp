@@ -11,11 +11,12 @@ namespace palpate {
 namespace {
 
 constexpr std::int32_t kFewVoxels = 64;   // beyond, a look at the brick as a whole comes first (chosen)
-constexpr std::int32_t kParts = 256;      // of a voxel's side: a byte says which
+constexpr std::int32_t kParts = kVoxelParts;
 
 // Sixteen boxes at a time.
 constexpr std::size_t kLanes = 16;
 using Bytes = std::uint8_t __attribute__((vector_size(kLanes)));
+using Halves = std::uint64_t __attribute__((vector_size(kLanes)));
 
 std::uint8_t in_voxel(std::int32_t part) { return static_cast<std::uint8_t>(std::clamp(part, 0, kParts - 1)); }
 
@@ -26,7 +27,6 @@ inline void load(const std::uint8_t* from, Bytes& out) { std::memcpy(&out, from,
 Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup) {
   NearPairs out;
   out.grid_ = mockup.grid;
-  out.per_voxel_ = 1.0 / mockup.grid.size;
   out.per_part_ = static_cast<double>(kParts) / mockup.grid.size;
   // Boxes of parts reach a part further than their highs. A test is off by less than a sixteenth of a half part: sums in single precision
   // below 2048 half parts by less than 2^-10, and doubles before that by far less.
@@ -76,20 +76,20 @@ void NearPairs::make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_
       }
 }
 
-bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, Triangle& out) {
+bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Triangle& out) {
   const exact::Normal n = exact::raw_normal(corners);
   if (n == exact::Normal{}) return false;
   out.place = place;
-  out.box = exact::box_of(corners);
+  out.voxels = boxes.range(i);
   out.corner = corners[0];
   out.normal = {static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)};
   out.normal_size = std::abs(out.normal[0]) + std::abs(out.normal[1]) + std::abs(out.normal[2]);
   const double each = 1 / out.normal_size;
+  out.half_parts = each * (2 * per_part_);
   for (std::size_t k = 0; k < 3; ++k) {
-    const int axis = static_cast<int>(k);
     out.facing[k] = static_cast<float>(out.normal[k] * each);
-    out.parts[k] = part_of(out.box.low[axis] - gpu::kCloseSteps, k);
-    out.parts[k + 3] = part_of(out.box.high[axis] + gpu::kCloseSteps, k);
+    out.parts[k] = boxes.low[k][i];
+    out.parts[k + 3] = boxes.high[k][i];
   }
   if (++looker_ == 0) {   // once in 2^32 triangles
     std::fill(seen_by_.begin(), seen_by_.end(), 0u);
@@ -120,7 +120,7 @@ bool NearPairs::take_list(const Triangle& triangle, const Int3& voxel, std::uint
       own[k + 3] = Bytes{} + in_voxel(triangle.parts[k + 3] - kParts * voxel[axis]);
       distance += triangle.normal[k] * (grid_.origin[axis] + grid_.size * voxel[axis] - triangle.corner[axis]);
     }
-    plane = static_cast<float>(distance / triangle.normal_size * (2 * per_part_)) + (triangle.facing[0] + triangle.facing[1] + triangle.facing[2]);
+    plane = static_cast<float>(distance * triangle.half_parts) + (triangle.facing[0] + triangle.facing[1] + triangle.facing[2]);
   }
   const float x = triangle.facing[0], y = triangle.facing[1], z = triangle.facing[2];
   const std::size_t begin = list_begin_[boundary], count = list_begin_[boundary + 1] - begin;
@@ -130,8 +130,7 @@ bool NearPairs::take_list(const Triangle& triangle, const Int3& voxel, std::uint
     for (std::size_t k = 0; k < 6; ++k) load(boxes + k * count + first, its[k]);
     const Bytes meet = (Bytes)(its[0] <= own[3]) & (Bytes)(its[1] <= own[4]) & (Bytes)(its[2] <= own[5]) & (Bytes)(own[0] <= its[3]) & (Bytes)(own[1] <= its[4]) &
                        (Bytes)(own[2] <= its[5]);
-    std::array<std::uint64_t, 2> found;
-    std::memcpy(found.data(), &meet, sizeof meet);
+    const auto found = (Halves)meet;
     for (std::size_t half = 0; half < 2; ++half)
       for (std::uint64_t rest = found[half] & 0x0101010101010101u; rest != 0; rest &= rest - 1) {
         const std::size_t i = first + 8 * half + static_cast<std::size_t>(std::countr_zero(rest) >> 3);
@@ -164,12 +163,9 @@ bool NearPairs::take_brick(const Triangle& triangle, const Int3& brick, std::uin
     return lists.push(lists.touch, gpu::kListTouchCandidates, {triangle.place, gpu::kNoVoxel, brick.x * 8 | brick.y * 8 << 16, brick.z * 8 | gpu::kWholeBrick});
   }
   Int3 first, last;
-  const Int3 low = triangle.box.low - (gpu::kCloseSteps + 1) - origin, high = triangle.box.high + (gpu::kCloseSteps + 1) - origin;
   for (int k = 0; k < 3; ++k) {
-    if (low[k] > 8 * size || high[k] < 0) return true;
-    // A quotient that is rounded wrongly is within 2^-20 of a voxel's side of the right one: the step added above covers it.
-    first[k] = std::max(static_cast<std::int32_t>(std::floor(low[k] * per_voxel_)), 0);
-    last[k] = std::min(static_cast<std::int32_t>(std::floor(high[k] * per_voxel_)), 7);
+    first[k] = std::max(triangle.voxels.first[k] - 8 * brick[k], 0);
+    last[k] = std::min(triangle.voxels.last[k] - 8 * brick[k], 7);
     if (first[k] > last[k]) return true;
   }
   const Int3 n = last - first + 1;

@@ -8,6 +8,7 @@
 #include "compute/host_exact.h"
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
+#include "compute/turned_boxes.h"
 #include "model/lattice_mesh.h"
 #include "model/scene_geometry.h"
 
@@ -22,15 +23,16 @@ class NearPairs {
   /// A tool triangle at a pose.
   struct Triangle {
     std::uint32_t place;             ///< in the order of clusters
-    exact::Box box;                  ///< of its corners
-    Int3 corner;                     ///< one of them
+    BrickBits::Range voxels;         ///< that its corners' box, grown by more than kCloseSteps, meets
+    Int3 corner;                     ///< one of its corners
     std::array<double, 3> normal;    ///< raw, rounded once
     double normal_size;              ///< sum of its components' sizes
     std::array<float, 3> facing;     ///< the same, its sizes' sum 1
-    std::array<std::int32_t, 6> parts;  ///< low and high, grown by kCloseSteps, in parts of a voxel from the grid's origin on
+    double half_parts;               ///< half parts of a voxel, to be multiplied with normal · steps
+    std::array<std::int32_t, 6> parts;  ///< low and high of the same box, in parts of a voxel from the grid's origin on
   };
-  /// `corners` in the world. False: collinear, it meets nothing.
-  bool begin(const exact::Corners& corners, std::uint32_t place, Triangle& out);
+  /// Lane `i` of `boxes` is the box of `corners`, in the world. False: collinear, it meets nothing.
+  bool begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Triangle& out);
   /// Appends what lies in one brick. False: a list had no room.
   bool take(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
 
@@ -42,7 +44,6 @@ class NearPairs {
   bool take_list(const Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists);
 
   gpu::GridConstants grid_{};
-  double per_voxel_ = 0;   ///< voxels a step
   double per_part_ = 0;    ///< parts of a voxel a step
   float slack_ = 0;        ///< of a test against a plane, half parts
   HostCopy<gpu::Brick> bricks_;

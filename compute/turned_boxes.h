@@ -24,9 +24,13 @@ struct VoxelTurn {
   float rotation[3][3], below[3], above[3];
   float end[3];   ///< the grid's voxels
 };
+inline constexpr std::int32_t kVoxelParts = 256;   ///< a byte says which of a voxel's side
+
 /// Voxels first … last along each axis, clipped to the grid. `may` 0: none.
 struct EightRanges {
   alignas(32) std::int32_t first[3][kEight], last[3][kEight], may[kEight];
+  /// Of triangles alone: their boxes in kVoxelParts-ths of a voxel, as far as they lie in the grid.
+  alignas(32) std::int32_t low[3][kEight], high[3][kEight];
   BrickBits::Range range(std::size_t i) const { return {{first[0][i], first[1][i], first[2][i]}, {last[0][i], last[1][i], last[2][i]}}; }
 };
 

@@ -7,11 +7,15 @@ using Words = std::int32_t __attribute__((vector_size(4 * kWidth)));
 static void load(const Eight& from, std::size_t begin, Floats& out) { std::memcpy(&out, from.data() + begin, sizeof out); }
 
 // Along an axis, from a lane on: voxels of boxes from `least` to `most`, turned but not moved.
-static void clip(const VoxelTurn& turn, std::size_t axis, std::size_t begin, const Floats& least, const Floats& most, Words& may, EightRanges& out) {
+static void clip(const VoxelTurn& turn, std::size_t axis, std::size_t begin, const Floats& least, const Floats& most, Words& may, EightRanges& out, Floats* parts = nullptr) {
   const Floats none{}, end = none + turn.end[axis], low = least + turn.below[axis], high = most + turn.above[axis];
   may &= (high >= none) & (low < end);
   const Floats from = low < none ? none : low, to = high < none ? none : high;
   const Words first = __builtin_convertvector(from < end ? from : end - 1, Words), last = __builtin_convertvector(to < end ? to : end - 1, Words);   // down
+  if (parts != nullptr) {
+    parts[0] = from < end ? from : end;
+    parts[1] = to < end ? to : end;
+  }
   std::memcpy(out.first[axis] + begin, &first, sizeof first);
   std::memcpy(out.last[axis] + begin, &last, sizeof last);
 }
@@ -44,7 +48,11 @@ static void of_triangles(const VoxelTurn& turn, const EightTriangles& corners, E
       const float x = turn.rotation[r][0], y = turn.rotation[r][1], z = turn.rotation[r][2];
       const Floats a = x * at[0] + y * at[1] + z * at[2], b = x * at[3] + y * at[4] + z * at[5], c = x * at[6] + y * at[7] + z * at[8];
       const Floats least = a < b ? a : b, most = a < b ? b : a;
-      clip(turn, r, begin, least < c ? least : c, most < c ? c : most, may, out);
+      Floats parts[2];
+      clip(turn, r, begin, least < c ? least : c, most < c ? c : most, may, out, parts);
+      const Words low = __builtin_convertvector(parts[0] * kVoxelParts, Words), high = __builtin_convertvector(parts[1] * kVoxelParts, Words);   // down
+      std::memcpy(out.low[r] + begin, &low, sizeof low);
+      std::memcpy(out.high[r] + begin, &high, sizeof high);
     }
     std::memcpy(out.may + begin, &may, sizeof may);
   }
