@@ -42,11 +42,7 @@ Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geo
   return out;
 }
 
-/// Monotone, as are a double's rounding, a clamp far beyond the grid, and a conversion: boxes that meet in a voxel still do.
-std::int32_t NearPairs::part_of(std::int32_t coordinate, std::size_t axis) const {
-  return static_cast<std::int32_t>(std::clamp((static_cast<double>(coordinate) - grid_.origin[static_cast<int>(axis)]) * per_part_, -0x1p30, 0x1p30));
-}
-
+/// Of boxes of triangles. What a product of doubles is rounded by is far less than the steps by which a tool triangle's box is grown.
 void NearPairs::make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_t> slots) {
   boxes_.resize(6 * std::size_t{grid_.list_entries} + kLanes);   // the last sixteen are read whole
   Int3 brick;
@@ -60,15 +56,16 @@ void NearPairs::make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_
           std::uint32_t boundary = voxels.first[word];
           for (std::uint32_t rest = voxels.boundary[word]; rest != 0; rest &= rest - 1, ++boundary) {
             const auto bit = static_cast<std::int32_t>(word << 5) + std::countr_zero(rest);
-            const Int3 base = kParts * (8 * brick + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
+            const Int3 low = grid_.origin + grid_.size * (8 * brick + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
             const std::size_t begin = list_begin_[boundary], count = list_begin_[boundary + 1] - begin;
             for (std::size_t i = 0; i < count; ++i) {
               const std::uint32_t id = list_triangles_[begin + i];
               const exact::Box box = exact::box_of({mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)});
+              const auto part = [&](std::int32_t at) { return static_cast<std::uint8_t>(std::clamp(at, 0, grid_.size - 1) * per_part_); };
               for (std::size_t k = 0; k < 3; ++k) {
                 const int axis = static_cast<int>(k);
-                boxes_[6 * begin + k * count + i] = in_voxel(part_of(box.low[axis], k) - base[axis]);
-                boxes_[6 * begin + (k + 3) * count + i] = in_voxel(part_of(box.high[axis], k) - base[axis]);
+                boxes_[6 * begin + k * count + i] = part(box.low[axis] - low[axis]);
+                boxes_[6 * begin + (k + 3) * count + i] = part(box.high[axis] - low[axis]);
               }
             }
           }

@@ -37,7 +37,6 @@ class NearPairs {
   bool take(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
 
  private:
-  std::int32_t part_of(std::int32_t coordinate, std::size_t axis) const;
   void make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_t> slots);
   bool off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const;
   bool take_brick(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);

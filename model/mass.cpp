@@ -25,7 +25,8 @@ SurfaceMeasure measure(const LatticeMesh& mesh) {
     area_moment += area / 3 * (a + b + c);
     out.volume += volume;
     volume_moment += volume / 4 * (a + b + c);
-    out.longest_edges += std::max({length(b - a), length(c - b), length(a - c)});
+    const auto squared = [](const Vec3& v) { return glm::dot(v, v); };
+    out.longest_edges += std::sqrt(std::max({squared(b - a), squared(c - b), squared(a - c)}));
     out.triangles += 1;
   }
   if (out.area > 0) out.area_centroid = area_moment / out.area;
