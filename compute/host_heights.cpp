@@ -32,6 +32,7 @@ bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3
 
 /// The smallest height above which the signs of the last ray's crossings add up to 0, or kNone.
 std::uint32_t HostHeights::lowest_exit() {
+  if (levels_.size() == 1) return levels_[0].height;
   std::sort(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.height < b.height; });
   std::int32_t above = 0;
   for (const Level& level : levels_) above += level.sign;
@@ -61,15 +62,13 @@ Int3 HostHeights::exit_normal(PosedTool& tool, std::uint32_t height) {
 /// sample of the grid lies on the same two faces. `d` is n_c.
 std::uint32_t HostHeights::fade_height(std::uint32_t static_id, const Int3& d, const Int3& m) const {
   const LatticeMesh& mesh = geometry_->mockup;
-  const Int3 n = mesh.unit_normal_q30[static_id];
-  const int k = mesh.sample_axis[static_id], u = (k + 1) % 3, v = (k + 2) % 3;
-  const std::int64_t across = std::abs(std::int64_t{n[k]});   // ≥ 2^30 / √3
-  const auto along = [&](int w) { return std::abs(std::int64_t{m[w]} * n[k] - std::int64_t{m[k]} * n[w]) / across; };   // products within 2^59
   const std::int64_t leaving = std::abs(std::int64_t{m.x} * d.x + std::int64_t{m.y} * d.y + std::int64_t{m.z} * d.z) >> 28;
-  const std::int64_t spacing = geometry_->sample_spacing;   // ≤ 2^28
-  const std::int64_t size = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-  const std::int64_t most = std::min((spacing << 32) / size, std::int64_t{1} << 30);
-  return static_cast<std::uint32_t>(leaving == 0 ? most : std::min(most, 4 * spacing * std::max(along(u), along(v)) / leaving));
+  if (leaving == 0) return static_cast<std::uint32_t>(most_fade_);
+  const Int3 n = mesh.unit_normal_q30[static_id];
+  const int k = mesh.sample_axis[static_id];
+  const auto apart = [&](int w) { return std::abs(std::int64_t{m[w]} * n[k] - std::int64_t{m[k]} * n[w]); };   // within 2^60
+  const std::int64_t along = std::max(apart((k + 1) % 3), apart((k + 2) % 3)) / std::abs(std::int64_t{n[k]});   // |n_k| ≥ 2^30 / √3
+  return static_cast<std::uint32_t>(std::min(most_fade_, 4 * std::int64_t{geometry_->sample_spacing} * along / leaving));   // spacing ≤ 2^28
 }
 
 std::uint32_t HostHeights::fade_of(std::uint32_t static_id, const Int3& d, const Int3& m) {
@@ -132,10 +131,14 @@ bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostArea
   left_ = kNone;
   // Area by area, for an area's rays have one direction.
   first_of_.assign(kMaxFrameAreas + 1, 0);
-  for (const FrameSample& sample : lists.samples) first_of_[areas.area_of(sample.static_id, lists) + 1] += 1;
+  area_of_.clear();
+  for (const FrameSample& sample : lists.samples) {
+    area_of_.push_back(areas.area_of(sample.static_id, lists));
+    first_of_[area_of_.back() + 1] += 1;
+  }
   for (std::size_t i = 0; i < kMaxFrameAreas; ++i) first_of_[i + 1] += first_of_[i];
   by_area_.resize(lists.samples.size());
-  for (std::uint32_t i = 0; i < lists.samples.size(); ++i) by_area_[first_of_[areas.area_of(lists.samples[i].static_id, lists)]++] = i;
+  for (std::uint32_t i = 0; i < lists.samples.size(); ++i) by_area_[first_of_[area_of_[i]]++] = i;
 
   // first_of_ has moved: an area's samples begin where the area before has ended.
   std::uint32_t begin = 0;
@@ -148,12 +151,19 @@ bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostArea
     points_.clear();
     for (const std::uint32_t i : own) points_.push_back(lists.samples[i].point);
     aim(turn, -area.direction);
-    const bool seen = rays_->look(turn, points_);
+    const Int3 size = glm::abs(area.direction);
+    most_fade_ = std::min((std::int64_t{geometry_->sample_spacing} << 32) / std::max({size.x, size.y, size.z}), std::int64_t{1} << 30);
+    const bool together = packet_.trace(tool, points_, along_);
     for (std::size_t k = 0; k < own.size(); ++k) {
       std::uint32_t h = kNone;
-      if (seen) {
+      if (together) {
         levels_.clear();
-        rays_->for_seen(k, [&](std::uint32_t id) { cross(tool, points_[k], id, kNone); });
+        packet_.for_hits(k, [&](const RayPacket::Hit& hit) {
+          if (hit.sign == 0)
+            cross(tool, points_[k], hit.id, kNone);
+          else
+            levels_.push_back({hit.height, hit.sign, hit.id});
+        });
         h = lowest_exit();
       } else if (!height(tool, turn, points_[k], false, h)) {
         return false;
@@ -161,7 +171,7 @@ bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostArea
       if (h == kNone) continue;
       const std::uint32_t id = lists.samples[own[k]].static_id;
       add(area, points_[k], h, geometry_->mockup.sample_weight_q30[id], fade_of(id, area.direction, exit_normal(tool, h)));
-      risen.push_back({number, points_[k], h});
+      risen.emplace_back(number, points_[k], h);
     }
   }
   return true;

@@ -6,6 +6,7 @@
 #include "compute/host_areas.h"
 #include "compute/near_rays.h"
 #include "compute/posed_tool.h"
+#include "compute/ray_packet.h"
 #include "model/scene_geometry.h"
 
 namespace palpate {
@@ -22,7 +23,7 @@ struct RisenSample {
 class HostHeights {
  public:
   HostHeights(const SceneGeometry& geometry, NearRays& rays, std::span<const std::uint32_t> order)
-      : geometry_(&geometry), rays_(&rays), order_(order), places_(kMostPlaces) {}
+      : geometry_(&geometry), rays_(&rays), packet_(geometry.tool, order), order_(order), places_(kMostPlaces) {}
 
   /// Traces every counting sample of an area with a direction and adds its height to the area; `risen` gets those with a height.
   /// False: a ray may cross more than kMostPlaces triangles.
@@ -56,9 +57,12 @@ class HostHeights {
 
   const SceneGeometry* geometry_;
   NearRays* rays_;
+  RayPacket packet_;
   std::span<const std::uint32_t> order_;
   std::vector<std::uint32_t> places_;
   Int3 along_{0};
+  std::int64_t most_fade_ = 0;           ///< H_0 of an area's samples is at most this
+  std::vector<std::uint32_t> area_of_;   ///< each sample's
   std::vector<std::uint32_t> by_area_;   ///< counting samples, those of an area one after the other
   std::vector<std::uint32_t> first_of_;  ///< of each area, in it
   std::vector<Int3> points_;             ///< of one area's samples

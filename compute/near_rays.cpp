@@ -13,9 +13,6 @@ namespace {
 /// a rounded matrix (0.3 steps for tools of PreparedScene::rays_walk()).
 constexpr double kBeside = 2;
 
-/// Rays of one direction for which the whole tool is looked at along them: as many that sorting so many triangles a ray costs less than the walk (chosen).
-constexpr std::size_t kTrianglesARay = 4;
-
 }  // namespace
 
 Result<NearRays> NearRays::make(VulkanDevice& device, const LatticeMesh& tool, const PreparedScene& scene, std::span<const std::uint32_t> order) {
@@ -44,36 +41,30 @@ void NearRays::aim(const Turn& turn, const Int3& along) {
   axis_ = 0;
   for (std::size_t k = 1; k < 3; ++k)
     if (std::abs(along_[k]) > std::abs(along_[axis_])) axis_ = k;
-  towards_ = along_[axis_] < 0 ? -1 : 1;
   for (std::size_t i = 0; i < 2; ++i) {
     shear_[i] = along_[(axis_ + 1 + i) % 3] / along_[axis_];
     beside_[i] = kBeside * (1 + std::abs(shear_[i])) + 0x1p-8;   // doubles round by less than 2^-20
   }
 }
 
-NearRays::Seen NearRays::see(const double (&p)[3]) const {
-  return {{p[(axis_ + 1) % 3] - p[axis_] * shear_[0], p[(axis_ + 2) % 3] - p[axis_] * shear_[1]}, towards_ * p[axis_]};
+/// Where a point lies across the rays.
+std::array<double, 2> NearRays::see(const double (&p)[3]) const {
+  return {p[(axis_ + 1) % 3] - p[axis_] * shear_[0], p[(axis_ + 2) % 3] - p[axis_] * shear_[1]};
 }
 
-/// Of a triangle, grown by what a ray may pass beside it.
-RayShadow NearRays::cast(const Seen& a, const Seen& b, const Seen& c) const {
-  RayShadow out;
-  out.ahead = std::max({a.ahead, b.ahead, c.ahead}) + kBeside;
-  for (std::size_t i = 0; i < 2; ++i) {
-    out.low[i] = std::min({a.shadow[i], b.shadow[i], c.shadow[i]}) - beside_[i];
-    out.high[i] = std::max({a.shadow[i], b.shadow[i], c.shadow[i]}) + beside_[i];
-  }
-  return out;
-}
-
-const RayShadow& NearRays::shadow_of(std::uint32_t id) {
+/// Grown by what a ray may pass beside the triangle.
+const NearRays::RayShadow& NearRays::shadow_of(std::uint32_t id) {
   if (cast_in_[id] != aim_) {
     cast_in_[id] = aim_;
     const auto corner = [&](int k) {
       const Int3 p = tool_->corner(id, k);
       return see({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     };
-    shadows_[id] = cast(corner(0), corner(1), corner(2));
+    const auto a = corner(0), b = corner(1), c = corner(2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      shadows_[id].low[i] = std::min({a[i], b[i], c[i]}) - beside_[i];
+      shadows_[id].high[i] = std::max({a[i], b[i], c[i]}) + beside_[i];
+    }
   }
   return shadows_[id];
 }
@@ -107,7 +98,7 @@ NearRays::Walk NearRays::begin(const Turn& turn, const Int3& point) const {
     const double face = along_[k] > 0 ? walk.voxel[axis] + 1 - at : at - walk.voxel[axis];
     walk.next[k] = along_[k] == 0 ? std::numeric_limits<double>::infinity() : face * each_[k];
   }
-  walk.shadow = see(from).shadow;
+  walk.shadow = see(from);
   return walk;
 }
 
@@ -144,36 +135,6 @@ bool NearRays::skip_external(Walk& walk) const {
 }
 
 std::uint32_t NearRays::stop_of(const Walk& walk) { return static_cast<std::uint32_t>(std::min(std::ceil(walk.t * 0x1p30), 4294967295.0)); }
-
-bool NearRays::look(const Turn& turn, std::span<const Int3> points) {
-  const std::size_t triangles = tool_->triangles.size();
-  if (points.size() * kTrianglesARay < triangles) return false;
-  std::array<double, 2> low{}, high{};
-  double least = 0;
-  rays_.clear();
-  for (const Int3& point : points) {
-    const Int3 d = point - turn.translation;
-    double from[3];
-    for (std::size_t k = 0; k < 3; ++k) from[k] = turn.row[k][0] * d.x + turn.row[k][1] * d.y + turn.row[k][2] * d.z;
-    const Seen ray = see(from);
-    for (std::size_t i = 0; i < 2; ++i) {
-      low[i] = rays_.empty() ? ray.shadow[i] : std::min(low[i], ray.shadow[i]);
-      high[i] = rays_.empty() ? ray.shadow[i] : std::max(high[i], ray.shadow[i]);
-    }
-    least = rays_.empty() ? ray.ahead : std::min(least, ray.ahead);
-    rays_.push_back(ray);
-  }
-  vertices_.clear();
-  for (const Int3& p : tool_->vertices) vertices_.push_back(see({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}));
-  grid_.begin(low, high, points.size());
-  for (std::uint32_t id = 0; id < triangles; ++id) {
-    const auto& [a, b, c] = tool_->triangles[id];
-    const RayShadow shadow = cast(vertices_[a], vertices_[b], vertices_[c]);
-    if (shadow.ahead >= least) grid_.add(shadow, id);
-  }
-  grid_.close();
-  return true;
-}
 
 bool NearRays::find(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::span<const Int3> directions, std::span<gpu::RayList> rays,
                     HostList<std::uint32_t>& places) {

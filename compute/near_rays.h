@@ -7,14 +7,13 @@
 #include "compute/host_partition.h"
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
-#include "compute/shadow_grid.h"
 #include "model/lattice.h"
 #include "model/lattice_mesh.h"
 
 namespace palpate {
 
 /// Which triangles of a closed tool the rays of counting samples may cross on their way out of it: what its fine partition lists along
-/// them. The device decides about each crossing. One thread; only make() allocates, and look() for more rays than ever before.
+/// them. The device decides about each crossing. One thread; only make() allocates.
 class NearRays {
  public:
   /// `order`: ids of the tool's triangles by place. Scene and tool outlive this. Only where PreparedScene::rays_walk().
@@ -45,30 +44,17 @@ class NearRays {
   bool skip_external(Walk& walk) const;
   static std::uint32_t stop_of(const Walk& walk);
 
-  /// Whether to look at the whole tool along the rays from these points costs less than to walk from each. Then for_seen() says what they may cross.
-  bool look(const Turn& turn, std::span<const Int3> points);
-  /// After look() in this aim: calls take(id) for triangles that the ray from point `i` may cross, each once; all that it crosses are among them.
-  template <class Take>
-  void for_seen(std::size_t i, Take&& take) const {
-    const Seen& ray = rays_[i];
-    for (const std::uint32_t triangle : grid_.at(ray.shadow)) {
-      const ShadowGrid::Triangle& met = grid_.triangle(triangle);
-      if (met.shadow.ahead >= ray.ahead && met.shadow.holds(ray.shadow)) take(met.id);
-    }
-  }
-
   /// Lists the ray of each sample that leaves it along −direction of its slot's area; direction 0: nothing. False: no room.
   bool find(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::span<const Int3> directions, std::span<gpu::RayList> rays,
             HostList<std::uint32_t>& places);
 
  private:
-  /// A point seen along the rays: where across them, and how far ahead. Steps of the tool's lattice.
-  struct Seen {
-    std::array<double, 2> shadow;
-    double ahead;
+  /// A triangle seen along the rays: its box across them. Steps of the tool's lattice.
+  struct RayShadow {
+    std::array<double, 2> low{}, high{};
+    bool holds(const std::array<double, 2>& ray) const { return ray[0] >= low[0] && ray[0] <= high[0] && ray[1] >= low[1] && ray[1] <= high[1]; }
   };
-  Seen see(const double (&p)[3]) const;
-  RayShadow cast(const Seen& a, const Seen& b, const Seen& c) const;
+  std::array<double, 2> see(const double (&p)[3]) const;
   const RayShadow& shadow_of(std::uint32_t id);
   bool take_list(const Walk& ray, std::uint32_t boundary, std::uint32_t first, HostList<std::uint32_t>& places);
   void step(Walk& walk) const;
@@ -86,10 +72,6 @@ class NearRays {
   double along_[3] = {}, each_[3] = {};   ///< direction in the tool's frame; parameter from face to face
   std::size_t axis_ = 0;                  ///< of its largest component: rays are seen along it
   double shear_[2] = {}, beside_[2] = {};   ///< of the other two axes, in turn
-  double towards_ = 1;                      ///< 1 or −1: whether rays climb or descend along `axis_`
-
-  std::vector<Seen> rays_, vertices_;       ///< of look(): where rays begin; the tool's vertices
-  ShadowGrid grid_;
 };
 
 }  // namespace palpate

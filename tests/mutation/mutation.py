@@ -42,7 +42,7 @@ shaders/frame/ shaders/""".split()
 HOST = [f"model/{name}.cpp" for name in "boundary edges orientation response side_winding smooth_angle".split()]
 
 # What the device's back end does on the host at a pose. Asked of the device's judge, in its process.
-NEAR = [f"compute/{name}.cpp" for name in "host_areas host_contact host_exact host_follow host_heights host_sets near_pairs near_rays near_samples nearest_external shadow_grid".split()]
+NEAR = [f"compute/{name}.cpp" for name in "host_areas host_contact host_exact host_follow host_heights host_sets near_pairs near_rays near_samples nearest_external ray_packet".split()]
 
 
 def of_program(name):
