@@ -17,7 +17,8 @@ void HostHeights::cross(PosedTool& tool, const Int3& p, std::uint32_t id, std::u
   if (crossing.sign != 0 && crossing.height < stop) levels_.push_back({crossing.height, crossing.sign, id});
 }
 
-bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, bool through, std::uint32_t& out) {
+/// Notes what the ray from p crosses as far as height() looks. False: as sum().
+bool HostHeights::walk(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, bool through) {
   NearRays::Walk walk = rays_->begin(turn, p);
   HostList<std::uint32_t> places{places_};
   do {
@@ -26,36 +27,47 @@ bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3
     levels_.clear();
     for (const std::uint32_t place : places.room.first(places.count)) cross(tool, p, order_[place], stop);
   } while (through && levels_.empty() && rays_->skip_external(walk));
-  out = lowest_exit();
   return true;
 }
 
-/// The smallest height above which the signs of the last ray's crossings add up to 0, or kNone.
+bool HostHeights::height(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, bool through, std::uint32_t& out) {
+  if (!walk(tool, turn, p, through)) return false;
+  const std::uint32_t exit = lowest_exit();
+  out = exit == kNone ? kNone : levels_[exit].height;
+  return true;
+}
+
+/// Sorts the last ray's crossings by height; the last of those at the smallest height above which the signs add up to 0, or kNone.
 std::uint32_t HostHeights::lowest_exit() {
-  if (levels_.size() == 1) return levels_[0].height;
+  if (levels_.size() == 1) return 0;   // one crossing: nothing above it
   std::sort(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.height < b.height; });
   std::int32_t above = 0;
   for (const Level& level : levels_) above += level.sign;
-  for (std::size_t i = 0; i < levels_.size(); ++i) {
+  for (std::uint32_t i = 0; i < levels_.size(); ++i) {
     above -= levels_[i].sign;
-    if (above == 0 && (i + 1 == levels_.size() || levels_[i + 1].height != levels_[i].height)) return levels_[i].height;
+    if (above == 0 && (i + 1 == levels_.size() || levels_[i + 1].height != levels_[i].height)) return i;
   }
   return kNone;
 }
 
-/// Of the triangles crossed at the last ray's height, the smallest direction of a normal.
-Int3 HostHeights::exit_normal(PosedTool& tool, std::uint32_t height) {
-  Int3 least(INT32_MAX);
-  for (const Level& level : levels_) {
-    if (level.height != height) continue;
-    if (level.id != left_) {
-      left_ = level.id;
-      left_normal_ = exact::normalise(exact::raw_normal(tool.corners(level.id)));
+/// Of the triangles crossed at the height of the last ray's exit, the smallest direction of a normal. Valid until the next call.
+const Int3& HostHeights::exit_normal(PosedTool& tool, std::uint32_t exit) {
+  const auto normal_of = [&](std::uint32_t id) -> const Int3& {
+    if (id != left_) {
+      left_ = id;
+      left_normal_ = exact::normalise(exact::raw_normal(tool.corners(id)));
     }
-    const Int3& m = left_normal_;
-    if (std::tie(m.x, m.y, m.z) < std::tie(least.x, least.y, least.z)) least = m;
+    return left_normal_;
+  };
+  const auto less = [](const Int3& a, const Int3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+  const std::uint32_t height = levels_[exit].height;
+  if (exit == 0 || levels_[exit - 1].height != height) return normal_of(levels_[exit].id);
+  least_normal_ = Int3(INT32_MAX);
+  for (std::uint32_t i = exit + 1; i-- > 0 && levels_[i].height == height;) {
+    const Int3& m = normal_of(levels_[i].id);
+    if (less(m, least_normal_)) least_normal_ = m;
   }
-  return least;
+  return least_normal_;
 }
 
 /// H_0 of a sample on a static triangle whose ray leaves the tool through a face with the direction m: how much further, in height, the next
@@ -155,7 +167,6 @@ bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostArea
     most_fade_ = std::min((std::int64_t{geometry_->sample_spacing} << 32) / std::max({size.x, size.y, size.z}), std::int64_t{1} << 30);
     const bool together = packet_.trace(tool, points_, along_);
     for (std::size_t k = 0; k < own.size(); ++k) {
-      std::uint32_t h = kNone;
       if (together) {
         levels_.clear();
         packet_.for_hits(k, [&](const RayPacket::Hit& hit) {
@@ -164,13 +175,14 @@ bool HostHeights::sum(PosedTool& tool, const ContactLists& lists, const HostArea
           else
             levels_.push_back({hit.height, hit.sign, hit.id});
         });
-        h = lowest_exit();
-      } else if (!height(tool, turn, points_[k], false, h)) {
+      } else if (!walk(tool, turn, points_[k], false)) {
         return false;
       }
-      if (h == kNone) continue;
+      const std::uint32_t exit = lowest_exit();
+      if (exit == kNone) continue;
+      const std::uint32_t h = levels_[exit].height;
       const std::uint32_t id = lists.samples[own[k]].static_id;
-      add(area, points_[k], h, geometry_->mockup.sample_weight_q30[id], fade_of(id, area.direction, exit_normal(tool, h)));
+      add(area, points_[k], h, geometry_->mockup.sample_weight_q30[id], fade_of(id, area.direction, exit_normal(tool, exit)));
       risen.emplace_back(number, points_[k], h);
     }
   }

@@ -50,9 +50,10 @@ class HostHeights {
     std::uint32_t id;
   };
   void cross(PosedTool& tool, const Int3& p, std::uint32_t id, std::uint32_t stop);
+  bool walk(PosedTool& tool, const NearRays::Turn& turn, const Int3& p, bool through);
   std::uint32_t lowest_exit();
   std::uint32_t fade_height(std::uint32_t static_id, const Int3& d, const Int3& m) const;
-  Int3 exit_normal(PosedTool& tool, std::uint32_t height);
+  const Int3& exit_normal(PosedTool& tool, std::uint32_t exit);
   std::uint32_t fade_of(std::uint32_t static_id, const Int3& d, const Int3& m);
 
   const SceneGeometry* geometry_;
@@ -70,6 +71,7 @@ class HostHeights {
   // Neighbouring samples lie on one triangle and leave through one: the last answers.
   std::uint32_t left_ = gpu::kNone;      ///< tool triangle
   Int3 left_normal_{0};                  ///< its direction at this pose
+  Int3 least_normal_{0};                 ///< of several that a ray leaves through at once
   std::uint32_t faded_ = gpu::kNone;     ///< static triangle, with m and D …
   Int3 faded_m_{0}, faded_d_{0};
   std::uint32_t fade_ = 0;               ///< … has this H_0
