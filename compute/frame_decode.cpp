@@ -21,12 +21,16 @@ bool sets_are_whole(const FrameState& state) {
   return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & (kOverflowBins | kOverflowLoop)) == 0;
 }
 
-/// Entries by id: id · 2^32 + place, ascending.
+/// Entries by id: id · 2^32 + place, ascending. The host's are so already.
 template <class Entry, class Id>
 void order_by_id(std::span<const Entry> entries, Id id, std::vector<std::uint64_t>& out, std::vector<std::uint64_t>& spare) {
   out.resize(entries.size());
-  for (std::uint32_t i = 0; i < entries.size(); ++i) out[i] = std::uint64_t{id(entries[i])} << 32 | i;
-  sort_keys(out, spare);
+  bool ascending = true;
+  for (std::uint32_t i = 0; i < entries.size(); ++i) {
+    out[i] = std::uint64_t{id(entries[i])} << 32 | i;
+    ascending = ascending && (i == 0 || out[i - 1] < out[i]);
+  }
+  if (!ascending) sort_keys(out, spare);
 }
 
 void decode_sums(const AreaResult& from, bool points, ContactArea& area) {

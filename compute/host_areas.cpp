@@ -60,11 +60,33 @@ Int3 normalise(const Sum& s) {
   return out;
 }
 
+/// The first place of a place's set.
+std::uint32_t first_of(std::vector<std::uint32_t>& sets, std::uint32_t place) {
+  while (sets[place] != place) place = sets[place] = sets[sets[place]];
+  return place;
+}
+
+/// Joins the set whose first place is `first` with that of `other`: the first place of both.
+std::uint32_t joined(std::vector<std::uint32_t>& sets, std::uint32_t first, std::uint32_t other) {
+  other = first_of(sets, other);
+  const std::uint32_t least = std::min(first, other);
+  sets[std::max(first, other)] = least;
+  return least;
+}
+
+void begin(AreaWork& area, std::uint32_t id) {
+  std::memset(static_cast<void*>(&area), 0, sizeof area);
+  area.box_low = Int3(INT32_MAX);
+  area.box_high = Int3(-INT32_MAX);
+  area.id = id;
+  area.held_area = kNone;
+}
+
 }  // namespace
 
 Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::size_t most_statics, bool zones) {
   HostAreas out;
-  out.zones_ = zones;
+  out.split_ = zones;
   out.geometry_ = &geometry;
   out.constants_ = scene.constants;
   out.per_voxel_ = 1.0 / scene.constants.mockup.grid.size;
@@ -76,158 +98,171 @@ Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geo
   if (auto r = out.brick_slots_.read(device, p.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r)
     return r.error();
   if (auto r = out.bricks_.read(device, p.bricks, p.grid.mixed_bricks); !r) return r.error();
-  out.slot_of_.resize(triangles);
+  out.sheets_ = std::any_of(geometry.mockup.flags.begin(), geometry.mockup.flags.end(), [](std::uint8_t flags) { return (flags & kTriangleSheet) != 0; });
   out.most_statics_ = most_statics;
-  out.parents_.resize((zones ? 2 : 1) * std::min(triangles, most_statics));
-  out.tool_samples_.resize(geometry.tool.triangles.size(), kNone);
+  out.marks_.resize(triangles);
+  for (auto* table : {&out.slot_at_, &out.zone_, &out.area_}) table->resize(std::min(triangles, most_statics));
+  for (auto* table : {&out.common_, &out.most_common_}) table->resize(kMaxFrameAreas);
+  out.spheres_.resize(kMaxFrameAreas);
   out.list_tool_samples();
   return out;
 }
 
-std::uint32_t HostAreas::root(std::uint32_t node) {
-  while (parents_[node] != node) node = parents_[node] = parents_[parents_[node]];
-  return node;
-}
-
-void HostAreas::join(std::uint32_t a, std::uint32_t b, const ContactLists& lists) {
-  a = root(a);
-  b = root(b);
-  if (a == b) return;
-  // The root of a set is its smallest id.
-  if (lists.statics[slot_of_node(a)].id > lists.statics[slot_of_node(b)].id) std::swap(a, b);
-  parents_[b] = a;
-}
-
 /// The slot of a static triangle, kNone if it is not in C_s.
 std::uint32_t HostAreas::slot(std::uint32_t id, const ContactLists& lists) const {
-  const std::uint32_t at = slot_of_[id];
-  return at < lists.statics.size() && lists.statics[at].id == id ? at : kNone;
+  const std::uint32_t place = marks_.place(id);
+  return place == IdMarks::kNowhere ? kNone : slot_at(place, lists);
 }
 
+/// Where C_s comes in any order.
+void HostAreas::number(const ContactLists& lists) {
+  marks_.clear();
+  for (const StaticResult& result : lists.statics) marks_.add(result.id, 1);
+  marks_.number([](std::uint32_t, std::uint32_t) {});
+  for (std::uint32_t i = 0; i < lists.statics.size(); ++i) slot_at_[marks_.place(lists.statics[i].id)] = i;
+}
+
+/// Zones and areas of all places. A set is named by its first place, so that on the way to it places descend.
 void HostAreas::join_all(const ContactLists& lists) {
   const LatticeMesh& mesh = geometry_->mockup;
-  for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
-    slot_of_[lists.statics[i].id] = i;
-    parents_[area_node(i)] = area_node(i);
-    if (zones_) parents_[zone_node(i)] = zone_node(i);
-  }
   const auto count = static_cast<std::uint32_t>(lists.statics.size());
+  const auto id_at = [&](std::uint32_t place) { return lists.statics[slot_at(place, lists)].id; };
+  edges_.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t id = lists.statics[i].id;
+    const std::uint32_t id = id_at(i);
     if (i + 2 * kAhead < count) {
-      const std::uint32_t later = lists.statics[i + 2 * kAhead].id;
+      const std::uint32_t later = id_at(i + 2 * kAhead);
       __builtin_prefetch(&mesh.neighbour_begin[later]);
       __builtin_prefetch(&seam_begin_[later]);
     }
-    if (i + kAhead < count) __builtin_prefetch(mesh.neighbours.data() + mesh.neighbour_begin[lists.statics[i + kAhead].id]);
+    if (i + kAhead < count) __builtin_prefetch(mesh.neighbours.data() + mesh.neighbour_begin[id_at(i + kAhead)]);
+    zone_[i] = i;
+    std::uint32_t own = i;   // the first place of its zone so far
     // Ascending: beyond its own number the others join from their side.
     for (std::uint32_t e = mesh.neighbour_begin[id]; e < mesh.neighbour_begin[id + 1] && mesh.neighbours[e] >> 1 < id; ++e) {
-      const std::uint32_t to = slot(mesh.neighbours[e] >> 1, lists);
-      if (to == kNone) continue;
-      join(area_node(i), area_node(to), lists);
-      if (zones_ && (mesh.neighbours[e] & 1) != 0) join(zone_node(i), zone_node(to), lists);
+      const std::uint32_t to = marks_.place(mesh.neighbours[e] >> 1);
+      if (to == IdMarks::kNowhere) continue;
+      if (split_ && (mesh.neighbours[e] & 1) == 0)
+        edges_.emplace_back(i, to);
+      else
+        own = joined(zone_, own, to);
     }
     // Seams are smooth by definition.
     for (std::uint32_t e = seam_begin_[id]; e < seam_begin_[id + 1] && seams_[e] < id; ++e) {
-      const std::uint32_t to = slot(seams_[e], lists);
-      if (to == kNone) continue;
-      join(area_node(i), area_node(to), lists);
-      if (zones_) join(zone_node(i), zone_node(to), lists);
+      const std::uint32_t to = marks_.place(seams_[e]);
+      if (to != IdMarks::kNowhere) own = joined(zone_, own, to);
     }
+  }
+  for (std::uint32_t i = 0; i < count; ++i) area_[i] = zone_[i] = zone_[zone_[i]];
+  for (const auto& [a, b] : edges_) joined(area_, first_of(area_, a), b);
+  if (!edges_.empty())
+    for (std::uint32_t i = 0; i < count; ++i) area_[i] = area_[area_[i]];
+}
+
+/// Counting samples of every slot.
+void HostAreas::count_samples(const ContactLists& lists) const {
+  for (std::uint32_t i = 0; i < lists.statics.size(); ++i) lists.slots[i] = {kNone, 0};
+  std::uint32_t id = kNone, at = 0;   // samples of a triangle follow each other
+  for (const FrameSample& sample : lists.samples) {
+    if (sample.static_id != id) at = slot(id = sample.static_id, lists);
+    lists.slots[at].samples += 1;
   }
 }
 
-/// Every slot adds its triangle to its area.
-void HostAreas::gather(const ContactLists& lists) {
+/// Numbers the areas by their smallest ids; every slot adds its triangle to its own. False: too many areas.
+bool HostAreas::gather(const ContactLists& lists, Answer& answer) const {
   const LatticeMesh& mesh = geometry_->mockup;
   const auto count = static_cast<std::uint32_t>(lists.statics.size());
+  const auto id_at = [&](std::uint32_t place) { return lists.statics[slot_at(place, lists)].id; };
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (i + 2 * kAhead < count) {
-      const std::uint32_t later = lists.statics[i + 2 * kAhead].id;
-      __builtin_prefetch(&mesh.triangles[later]);
-      __builtin_prefetch(&mesh.unit_normal_q30[later]);
-      __builtin_prefetch(&mesh.sample_weight_q30[later]);
-      __builtin_prefetch(&mesh.flags[later]);
-    }
+    if (i + 2 * kAhead < count) __builtin_prefetch(&mesh.triangles[id_at(i + 2 * kAhead)]);
     if (i + kAhead < count)
-      for (const std::uint32_t vertex : mesh.triangles[lists.statics[i + kAhead].id]) __builtin_prefetch(&mesh.vertices[vertex]);
-    StaticResult& result = lists.statics[i];
-    const std::uint32_t first = slot_of_node(root(area_node(i))), id = result.id, number = lists.slots[first].area, samples = lists.slots[i].samples;
-    result.area = number;
-    result.zone = zones_ ? slot_of_node(root(zone_node(i))) : first;
-    lists.slots[i].area = number;
-    AreaWork& area = lists.areas[number];
-    for (int k = 0; k < 3; ++k) {
-      const Int3 corner = mesh.corner(id, k);
-      area.box_low = glm::min(area.box_low, corner);
-      area.box_high = glm::max(area.box_high, corner);
+      for (const std::uint32_t vertex : mesh.triangles[id_at(i + kAhead)]) __builtin_prefetch(&mesh.vertices[vertex]);
+    SlotWork& slot = lists.slots[slot_at(i, lists)];
+    StaticResult& result = lists.statics[slot_at(i, lists)];
+    const std::uint32_t id = result.id;
+    if (area_[i] == i) {
+      if (answer.areas == kMaxFrameAreas) return false;
+      slot.area = answer.areas++;
+      begin(lists.areas[slot.area], id);
+    } else {
+      slot.area = lists.slots[slot_at(area_[i], lists)].area;
     }
+    result.area = slot.area;
+    result.zone = slot_at(zone_[i], lists);
+    AreaWork& area = lists.areas[slot.area];
+    const Int3 a = mesh.corner(id, 0), b = mesh.corner(id, 1), c = mesh.corner(id, 2);
+    area.box_low = glm::min(area.box_low, glm::min(a, glm::min(b, c)));
+    area.box_high = glm::max(area.box_high, glm::max(a, glm::max(b, c)));
     area.statics += 1;
-    if (result.zone == i) area.zones += 1;
-    const bool hit = (result.state & kStaticHit) != 0, sheet = (mesh.flags[id] & kTriangleSheet) != 0;
+    if (zone_[i] == i) area.zones += 1;
+    const bool hit = (result.state & kStaticHit) != 0, sheet = sheets_ && (mesh.flags[id] & kTriangleSheet) != 0;
+    if (!hit && !sheet && slot.samples == 0) continue;   // adds no normal
     if (hit) area.cst += 1;
     if (sheet) area.sheets += 1;
     // A term (w·n̂) >> 30 is within 2^31, a triangle's samples within 2^32: the sums stay within 2^63 for 2^32 samples in all.
     const auto w = static_cast<std::int64_t>(mesh.sample_weight_q30[id]);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t n = mesh.unit_normal_q30[id][static_cast<int>(k)];
-      (sheet ? area.sheet_sum : area.fixed_sum)[k] += std::int64_t{samples} * ((w * n) >> 30);
+      (sheet ? area.sheet_sum : area.fixed_sum)[k] += std::int64_t{slot.samples} * ((w * n) >> 30);
       if (hit) (sheet ? area.bare_sheet : area.bare_fixed)[k] += n;
       if (sheet) area.sheet_side[k] += n;
     }
-    area.samples += samples;
-    area.static_weight += std::int64_t{samples} * w;
+    area.samples += slot.samples;
+    area.static_weight += std::int64_t{slot.samples} * w;
   }
+  return true;
 }
 
 /// Gives every tool triangle of C_m to the areas whose spheres hold its rounded centroid, else to the nearest.
 bool HostAreas::associate(PosedTool& tool, const ContactLists& lists, Answer& answer) {
+  for (std::uint32_t number = 0; number < answer.areas; ++number) {
+    const AreaWork& area = lists.areas[number];
+    spheres_[number] = {area.box_low + area.box_high, squared(area.box_high - area.box_low)};
+  }
   for (const MobileResult& mobile : lists.mobiles) {
     const exact::Corners& t = tool.corners(mobile.id);
     const Int3 sum = t[0] + t[1] + t[2];
     const Int3 g(floor_div(sum.x, 3), floor_div(sum.y, 3), floor_div(sum.z, 3));
-    bool held = false;
-    std::uint32_t nearest = kNone;
-    std::int64_t least = 0;
+    const std::uint32_t members = answer.members;
+    std::uint32_t nearest = 0;   // of equals the first: areas are numbered by their smallest ids
+    std::int64_t least = INT64_MAX;
     for (std::uint32_t number = 0; number < answer.areas; ++number) {
-      const AreaWork& area = lists.areas[number];
-      const std::int64_t distance = squared(2 * g - (area.box_low + area.box_high));   // components within 2^30
-      if (distance <= squared(area.box_high - area.box_low)) {
+      const std::int64_t distance = squared(2 * g - spheres_[number].centre);   // components within 2^30
+      if (distance <= spheres_[number].reach) {
         if (answer.members == lists.members.size()) return false;
         lists.members[answer.members++] = {number, mobile.id};
-        held = true;
       }
-      if (nearest == kNone || distance < least || (distance == least && area.id < lists.areas[nearest].id)) {
-        nearest = number;
-        least = distance;
-      }
+      if (distance >= least) continue;
+      nearest = number;
+      least = distance;
     }
-    if (held || nearest == kNone) continue;
+    if (answer.members != members || answer.areas == 0) continue;
     if (answer.members == lists.members.size()) return false;
     lists.members[answer.members++] = {nearest, mobile.id};
   }
   return true;
 }
 
-/// The held area with most static triangles in common; the first of equals.
-std::uint32_t HostAreas::match_held(std::uint32_t area, const Held& held, const ContactLists& lists) const {
-  std::uint32_t best = kNone, most = 0;
+/// Of every area, the held one with most static triangles in common; the first of equals.
+void HostAreas::match_held(const Held& held, const ContactLists& lists, const Answer& answer) {
+  std::fill_n(most_common_.begin(), answer.areas, 0u);
   for (std::uint32_t h = 0; h < held.areas.size(); ++h) {
-    std::uint32_t common = 0;
+    std::fill_n(common_.begin(), answer.areas, 0u);
     for (const std::uint32_t id : held.areas[h].static_ids) {
       const std::uint32_t at = slot(id, lists);
-      common += at != kNone && lists.slots[at].area == area ? 1u : 0u;
+      if (at != kNone) common_[lists.slots[at].area] += 1;
     }
-    if (common <= most) continue;
-    most = common;
-    best = h;
+    for (std::uint32_t number = 0; number < answer.areas; ++number) {
+      if (common_[number] <= most_common_[number]) continue;
+      most_common_[number] = common_[number];
+      lists.areas[number].held_area = h;
+    }
   }
-  return best;
 }
 
 /// The side of sheets, and whether mobile normals are needed.
-void HostAreas::begin_area(AreaWork& area, std::uint32_t number, const LatticePose& pose, const Held* held, const ContactLists& lists) const {
-  if (held != nullptr) area.held_area = match_held(number, *held, lists);
+void HostAreas::begin_area(AreaWork& area, const LatticePose& pose, const Held* held) const {
   if (area.sheets != 0) {
     const std::int32_t kept = area.held_area == kNone ? 0 : held->areas[area.held_area].sheet_sign;
     area.sheet_sign = kept;
@@ -325,17 +360,16 @@ bool HostAreas::count_tool_samples(const LatticePose& pose, std::uint32_t mobile
   return true;
 }
 
-bool HostAreas::sum_tool_normals(const LatticePose& pose, const ContactLists& lists, const Answer& answer) {
+bool HostAreas::sum_tool_normals(const LatticePose& pose, const ContactLists& lists, const Answer& answer) const {
   const LatticeMesh& tool = geometry_->tool;
-  const std::span<const AreaMember> members = lists.members.first(answer.members);
-  for (const AreaMember& member : members) tool_samples_[member.mobile] = kNone;
-  for (const AreaMember& member : members) {
+  std::uint32_t mobile = kNone, samples = 0;   // of several areas' triangle entries follow each other
+  for (const AreaMember& member : lists.members.first(answer.members)) {
     AreaWork& area = lists.areas[member.area];
     if ((area.state & kAreaWantsMobile) == 0) continue;
-    std::uint32_t& samples = tool_samples_[member.mobile];
-    if (samples == kNone && !count_tool_samples(pose, member.mobile, samples)) return false;
-    const auto w = static_cast<std::int64_t>(tool.sample_weight_q30[member.mobile]);
-    const Int3 n = tool.unit_normal_q30[member.mobile];
+    if (member.mobile != mobile && !count_tool_samples(pose, mobile = member.mobile, samples)) return false;
+    if (samples == 0) continue;
+    const auto w = static_cast<std::int64_t>(tool.sample_weight_q30[mobile]);
+    const Int3 n = tool.unit_normal_q30[mobile];
     for (int r = 0; r < 3; ++r) {
       const auto& row = pose.rotation_q30[r];
       const std::int64_t turned = (std::int64_t{row[0]} * n.x + std::int64_t{row[1]} * n.y + std::int64_t{row[2]} * n.z + (std::int64_t{1} << 29)) >> 30;
@@ -382,24 +416,14 @@ bool HostAreas::solve(PosedTool& tool, const Held* held, const ContactLists& lis
   const LatticePose& pose = tool.pose();
   answer = {};
   if (lists.statics.size() > most_statics_) return false;
+  if (!lists.numbered) number(lists);
   join_all(lists);
-  for (std::uint32_t i = 0; i < lists.statics.size(); ++i) {
-    lists.slots[i] = {kNone, 0};
-    if (parents_[area_node(i)] != area_node(i)) continue;
-    if (answer.areas == kMaxFrameAreas) return false;
-    lists.slots[i].area = answer.areas;
-    AreaWork& area = lists.areas[answer.areas++];
-    std::memset(static_cast<void*>(&area), 0, sizeof area);
-    area.box_low = Int3(INT32_MAX);
-    area.box_high = Int3(-INT32_MAX);
-    area.id = lists.statics[i].id;
-    area.held_area = kNone;
-  }
-  for (const FrameSample& sample : lists.samples) lists.slots[slot(sample.static_id, lists)].samples += 1;
-  gather(lists);
+  count_samples(lists);
+  if (!gather(lists, answer)) return false;
   if (!associate(tool, lists, answer)) return false;
   const std::span<AreaWork> areas = lists.areas.first(answer.areas);
-  for (std::uint32_t number = 0; number < answer.areas; ++number) begin_area(areas[number], number, pose, held, lists);
+  if (held != nullptr) match_held(*held, lists, answer);
+  for (AreaWork& area : areas) begin_area(area, pose, held);
   if (!sum_tool_normals(pose, lists, answer)) return false;
   for (AreaWork& area : areas) direct(area, held);
   return true;

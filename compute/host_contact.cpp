@@ -16,12 +16,12 @@ Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, con
 }
 
 bool HostContact::decide(PosedTool& tool, const NearLists& near) {
-  return sets_.decide(tool, near, areas_.slots_by_id(), areas_.most_statics(), found_);
+  return sets_.decide(tool, near, areas_.marks(), areas_.most_statics(), found_);
 }
 
 bool HostContact::join(PosedTool& tool, const Held* held) {
   slots_.resize(found_.statics.size());
-  lists_ = {.mobiles = found_.mobiles, .samples = found_.samples, .statics = found_.statics, .areas = work_, .slots = slots_, .members = members_};
+  lists_ = {.mobiles = found_.mobiles, .samples = found_.samples, .statics = found_.statics, .areas = work_, .slots = slots_, .members = members_, .numbered = true};
   return areas_.solve(tool, held, lists_, answer_);
 }
 

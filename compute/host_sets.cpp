@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <glm/common.hpp>
 
+#include "compute/walk_filter.h"
+
 namespace palpate {
 
 using namespace gpu;   // names of shaders/shared/frame.h
 
 namespace {
 
-constexpr std::size_t kAhead = 12;   // entries of a list whose data are called for before their turn: they lie far apart (chosen)
+constexpr std::size_t kAhead = 4;   // voxels whose lists are called for before their turn: they lie far apart (chosen)
 
 }  // namespace
 
@@ -22,33 +24,8 @@ Result<HostSets> HostSets::make(VulkanDevice& device, const SceneGeometry& geome
   if (auto r = out.fine_.read(device, fine); !r) return r.error();
   if (auto r = out.fine_exit_.read(device, scene.fine_exit, fine.grid.boundary_voxels); !r) return r.error();
   out.touched_.resize(scene.mockup.partition.grid.boundary_voxels);
-  out.mobile_at_.resize(order.size());
+  out.mobiles_.resize(order.size());
   return out;
-}
-
-void HostSets::mark_static(std::uint32_t id, std::uint32_t bit, std::span<std::uint32_t> slot_of, FoundSets& out) const {
-  const std::uint32_t slot = slot_of[id];
-  if (slot < out.statics.size() && out.statics[slot].id == id) {
-    out.statics[slot].state |= bit;
-    return;
-  }
-  slot_of[id] = static_cast<std::uint32_t>(out.statics.size());
-  out.statics.push_back({id, bit, kNone, kNone});
-}
-
-void HostSets::mark_mobile(std::uint32_t id, std::uint32_t bit, FoundSets& out) {
-  const std::uint32_t at = mobile_at_[id];
-  if (at < out.mobiles.size() && out.mobiles[at].id == id) {
-    out.mobiles[at].state |= bit;
-    return;
-  }
-  mobile_at_[id] = static_cast<std::uint32_t>(out.mobiles.size());
-  out.mobiles.push_back({id, bit});
-}
-
-bool HostSets::marked(std::uint32_t id, std::uint32_t bit, const FoundSets& out) const {
-  const std::uint32_t at = mobile_at_[id];
-  return at < out.mobiles.size() && out.mobiles[at].id == id && (out.mobiles[at].state & bit) != 0;
 }
 
 /// The tool lattice point of a world lattice point (section 4). |p − translation| < 2^31: sums within 3 · 2^61.
@@ -83,19 +60,29 @@ void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
 /// Whether the winding at an open sample is not 0. It is what a walk out of the tool crosses, along an axis of its fine grid:
 /// shaders/frame/sample_walk.comp has the proof that each voxel on the way lists all that is crossed in it.
 bool HostSets::walks_out(PosedTool& tool, const Int3& point) const {
+  const LatticeMesh& mesh = geometry_->tool;
   const LatticePose& pose = tool.pose();
-  Int3 from = point, at = tool_point(pose, point);
-  Int3 voxel = fine_.voxel_of(at);
+  const Int3 start = tool_point(pose, point);
+  Int3 voxel = fine_.voxel_of(start);
   HostPartition::Voxel here = fine_.at(voxel);
   const std::uint32_t exit = fine_exit_[here.boundary];
   const int axis = static_cast<int>(exit >> 1), up = static_cast<int>(exit & 1);
+  AxisWay way(start, axis);
+  bool first = true;
+  const auto exact_crossing = [&](std::uint32_t id) {
+    const Int3 from = first ? point : transform(pose, way.begin()), to = transform(pose, way.end());
+    return from == to ? 0 : exact::segment_crossing(from, to, tool.corners(id));
+  };
   int winding = 0;
   do {
-    at[axis] = fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up);
-    const Int3 to = transform(pose, at);
-    if (here.boundary != kNoVoxel && from != to)
-      for (const std::uint32_t id : fine_.list(here.boundary)) winding += exact::segment_crossing(from, to, tool.corners(id));
-    from = to;
+    way.go_to(fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up));
+    if (here.boundary != kNoVoxel)
+      for (const std::uint32_t id : fine_.list(here.boundary)) {
+        const int crossing = way.crossing({mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)});
+        winding += crossing == AxisWay::kUnsure ? exact_crossing(id) : crossing;
+      }
+    way.go_on();
+    first = false;
     voxel[axis] += 2 * up - 1;
     here = fine_.at(voxel);
   } while (here.kind != kVoxelExternal);
@@ -103,7 +90,7 @@ bool HostSets::walks_out(PosedTool& tool, const Int3& point) const {
 }
 
 /// CST and CMT.
-void HostSets::decide_pairs(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, FoundSets& out) {
+void HostSets::decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out) {
   const LatticeMesh& mockup = geometry_->mockup;
   const std::span<const PairCandidate> candidates = near.pairs.room.first(near.pairs.count);
   std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
@@ -126,14 +113,14 @@ void HostSets::decide_pairs(PosedTool& tool, const NearLists& near, std::span<st
         if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, t, exact::raw_normal(t))) continue;
       }
       out.pairs.push_back({s, id});
-      mark_static(s, kStaticHit, slot_of, out);
-      mark_mobile(id, kMobileHit, out);
+      statics.add(s, kStaticHit);
+      mobiles_.add(id, kMobileHit);
     }
   }
 }
 
 /// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is not asked.
-void HostSets::decide_voxels(PosedTool& tool, const NearLists& near, FoundSets& out) {
+void HostSets::decide_voxels(PosedTool& tool, const NearLists& near) {
   const GridConstants& grid = mockup_.grid();
   std::uint32_t place = kNone, id = 0;   // candidates of one tool triangle follow each other
   const exact::Corners* corners = nullptr;
@@ -145,45 +132,64 @@ void HostSets::decide_voxels(PosedTool& tool, const NearLists& near, FoundSets& 
       corners = &tool.corners(id);
       box = exact::box_of(*corners);
     }
-    const std::uint32_t bit = candidate.boundary == kNoVoxel ? kMobileInternal : kMobileBoundary;
-    if ((candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) && marked(id, bit, out)) continue;
+    // CMT outdoes IMT, and that BMT.
+    const bool internal = candidate.boundary == kNoVoxel;
+    const bool known = mobiles_.has(id, kMobileHit) || mobiles_.has(id, kMobileInternal) || (!internal && mobiles_.has(id, kMobileBoundary));
+    if (known && (internal || touched_[candidate.boundary] != 0)) continue;
     const Int3 voxel(candidate.xy & 0xFFFF, candidate.xy >> 16, candidate.z & ~kWholeBrick);
     const std::int32_t side = (candidate.z & kWholeBrick) != 0 ? 8 * grid.size : grid.size;
     if (!exact::triangle_touches_cube(*corners, box, grid.origin + grid.size * voxel, side)) continue;
-    mark_mobile(id, bit, out);
-    if (candidate.boundary == kNoVoxel || touched_[candidate.boundary] != 0) continue;
+    mobiles_.add(id, internal ? kMobileInternal : kMobileBoundary);
+    if (internal || touched_[candidate.boundary] != 0) continue;
     touched_[candidate.boundary] = 1;
     touched_voxels_.push_back(candidate.boundary);
   }
 }
 
-bool HostSets::decide(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, std::size_t most_statics, FoundSets& out) {
+/// BST: what touched voxels list. False: too many.
+bool HostSets::mark_lists(IdMarks& statics, std::size_t most_statics) {
+  for (std::size_t i = 0; i < touched_voxels_.size(); ++i) {
+    if (i + kAhead < touched_voxels_.size()) __builtin_prefetch(mockup_.list(touched_voxels_[i + kAhead]).data());
+    touched_[touched_voxels_[i]] = 0;
+    if (statics.count() > most_statics) continue;
+    for (const std::uint32_t id : mockup_.list(touched_voxels_[i])) statics.add(id, kStaticListed);
+  }
+  return statics.count() <= most_statics;
+}
+
+/// C_s and C_m, and how many there are of each set.
+void HostSets::list(IdMarks& statics, FoundSets& out) {
+  FrameState& state = out.state;
+  statics.number([&](std::uint32_t id, std::uint32_t marks) {
+    const bool hit = (marks & kStaticHit) != 0;
+    state.cst += hit ? 1u : 0u;
+    state.bst += !hit && (marks & kStaticListed) != 0 ? 1u : 0u;
+    state.est += !hit && (marks & kStaticSampled) != 0 ? 1u : 0u;
+    out.statics.push_back({id, marks, kNone, kNone});
+  });
+  mobiles_.number([&](std::uint32_t id, std::uint32_t marks) {
+    ((marks & kMobileHit) != 0 ? state.cmt : (marks & kMobileInternal) != 0 ? state.imt : state.bmt) += 1;
+    out.mobiles.push_back({id, marks});
+  });
+}
+
+bool HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, std::size_t most_statics, FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();
   out.samples.clear();
   out.pairs.clear();
   touched_voxels_.clear();
+  statics.clear();
+  mobiles_.clear();
 
-  decide_pairs(tool, near, slot_of, out);
-  decide_voxels(tool, near, out);
-  bool room = true;
-  for (const std::uint32_t voxel : touched_voxels_) {
-    touched_[voxel] = 0;
-    if (room) {
-      const std::span<const std::uint32_t> list = mockup_.list(voxel);
-      for (std::size_t i = 0; i < list.size(); ++i) {
-        if (i + kAhead < list.size()) __builtin_prefetch(&slot_of[list[i + kAhead]]);
-        mark_static(list[i], kStaticListed, slot_of, out);
-      }
-    }
-    room = room && out.statics.size() <= most_statics;
-  }
-  if (!room) return false;
+  decide_pairs(tool, near, statics, out);
+  decide_voxels(tool, near);
+  if (!mark_lists(statics, most_statics)) return false;
 
   // Samples inside the tool: EST. A first corner tells EST and does not count.
   const auto take = [&](const FrameSample& sample) {
-    mark_static(sample.static_id & ~kCornerProbe, kStaticSampled, slot_of, out);
+    statics.add(sample.static_id & ~kCornerProbe, kStaticSampled);
     if ((sample.static_id & kCornerProbe) == 0) out.samples.push_back(sample);
   };
   for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
@@ -193,16 +199,9 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, std::span<std::uin
     scan(chunk, [&](const FrameSample& sample) {
       if (inside(tool, sample.point)) take(sample);
     });
-  if (out.statics.size() > most_statics) return false;
+  if (statics.count() > most_statics) return false;
 
-  for (const StaticResult& s : out.statics) {
-    const bool hit = (s.state & kStaticHit) != 0;
-    out.state.cst += hit ? 1u : 0u;
-    out.state.bst += !hit && (s.state & kStaticListed) != 0 ? 1u : 0u;
-    out.state.est += !hit && (s.state & kStaticSampled) != 0 ? 1u : 0u;
-  }
-  for (const MobileResult& m : out.mobiles)
-    ((m.state & kMobileHit) != 0 ? out.state.cmt : (m.state & kMobileInternal) != 0 ? out.state.imt : out.state.bmt) += 1;
+  list(statics, out);
   out.state.contact = out.state.cst + out.state.imt + out.state.est != 0 ? 1 : 0;
   out.state.swallowed = out.state.contact != 0 && out.state.imt != 0 && out.state.cst + out.state.est == 0 && out.samples.empty() ? 1 : 0;
   return true;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compute/host_partition.h"
+#include "compute/id_marks.h"
 #include "compute/near_lists.h"
 #include "compute/pair_filter.h"
 #include "compute/posed_tool.h"
@@ -12,7 +13,7 @@
 
 namespace palpate {
 
-/// What detection finds at a pose: frame_state and the lists that the device would leave, in any order.
+/// What detection finds at a pose: frame_state and the lists that the device would leave. C_s and C_m ascend by id.
 struct FoundSets {
   gpu::FrameState state{};
   std::vector<gpu::StaticResult> statics;   ///< C_s by slot
@@ -29,15 +30,14 @@ class HostSets {
   /// `order`: ids of the tool's triangles by place. Only where rays walk.
   static Result<HostSets> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
-  /// `slot_of`: by static id; the slots of C_s are written there. False: C_s has more than `most_statics`; `out` is then half written.
-  bool decide(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, std::size_t most_statics, FoundSets& out);
+  /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. False: C_s has more than `most_statics`; `out` is then half written.
+  bool decide(PosedTool& tool, const NearLists& near, IdMarks& statics, std::size_t most_statics, FoundSets& out);
 
  private:
-  void decide_pairs(PosedTool& tool, const NearLists& near, std::span<std::uint32_t> slot_of, FoundSets& out);
-  void decide_voxels(PosedTool& tool, const NearLists& near, FoundSets& out);
-  void mark_static(std::uint32_t id, std::uint32_t bit, std::span<std::uint32_t> slot_of, FoundSets& out) const;
-  void mark_mobile(std::uint32_t id, std::uint32_t bit, FoundSets& out);
-  bool marked(std::uint32_t id, std::uint32_t bit, const FoundSets& out) const;
+  void decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out);
+  void decide_voxels(PosedTool& tool, const NearLists& near);
+  bool mark_lists(IdMarks& statics, std::size_t most_statics);
+  void list(IdMarks& statics, FoundSets& out);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
   bool walks_out(PosedTool& tool, const Int3& point) const;
   bool inside(PosedTool& tool, const Int3& point) const;
@@ -51,7 +51,7 @@ class HostSets {
   HostCopy<std::uint32_t> fine_exit_;
   std::vector<std::uint8_t> touched_;           ///< by V_bnd voxel; 0 between frames
   std::vector<std::uint32_t> touched_voxels_;   ///< of this frame
-  std::vector<std::uint32_t> mobile_at_;        ///< by tool triangle: its place in C_m, where that has it there
+  IdMarks mobiles_;                             ///< C_m, with kMobile…
 };
 
 }  // namespace palpate
