@@ -7,6 +7,7 @@
 
 #include "compute/host_exact.h"
 #include "compute/nearest_external.h"
+#include "compute/processor.h"
 
 namespace palpate {
 namespace {
@@ -99,6 +100,9 @@ Result<HostAreas> HostAreas::make(VulkanDevice& device, const SceneGeometry& geo
     return r.error();
   if (auto r = out.bricks_.read(device, p.bricks, p.grid.mixed_bricks); !r) return r.error();
   out.sheets_ = std::any_of(geometry.mockup.flags.begin(), geometry.mockup.flags.end(), [](std::uint8_t flags) { return (flags & kTriangleSheet) != 0; });
+  out.has_seams_.resize((triangles + 63) / 64);
+  for (std::uint32_t id = 0; id < triangles; ++id)
+    if (out.seam_begin_[id] != out.seam_begin_[id + 1]) out.has_seams_[id >> 6] |= std::uint64_t{1} << (id & 63);
   out.most_statics_ = most_statics;
   out.marks_.resize(triangles);
   for (auto* table : {&out.slot_at_, &out.zone_, &out.area_}) table->resize(std::min(triangles, most_statics));
@@ -133,9 +137,13 @@ void HostAreas::join_all(const ContactLists& lists) {
     if (i + 2 * kAhead < count) {
       const std::uint32_t later = id_at(i + 2 * kAhead);
       __builtin_prefetch(&mesh.neighbour_begin[later]);
-      __builtin_prefetch(&seam_begin_[later]);
+      __builtin_prefetch(&mesh.triangles[later]);
     }
-    if (i + kAhead < count) __builtin_prefetch(mesh.neighbours.data() + mesh.neighbour_begin[id_at(i + kAhead)]);
+    if (i + kAhead < count) {
+      const std::uint32_t later = id_at(i + kAhead);
+      __builtin_prefetch(mesh.neighbours.data() + mesh.neighbour_begin[later]);
+      for (const std::uint32_t vertex : mesh.triangles[later]) __builtin_prefetch(&mesh.vertices[vertex]);   // for gather()
+    }
     zone_[i] = i;
     std::uint32_t own = i;   // the first place of its zone so far
     // Ascending: beyond its own number the others join from their side.
@@ -148,6 +156,7 @@ void HostAreas::join_all(const ContactLists& lists) {
         own = joined(zone_, own, to);
     }
     // Seams are smooth by definition.
+    if ((has_seams_[id >> 6] >> (id & 63) & 1) == 0) continue;
     for (std::uint32_t e = seam_begin_[id]; e < seam_begin_[id + 1] && seams_[e] < id; ++e) {
       const std::uint32_t to = marks_.place(seams_[e]);
       if (to != IdMarks::kNowhere) own = joined(zone_, own, to);
@@ -173,11 +182,14 @@ void HostAreas::count_samples(const ContactLists& lists) const {
 bool HostAreas::gather(const ContactLists& lists, Answer& answer) const {
   const LatticeMesh& mesh = geometry_->mockup;
   const auto count = static_cast<std::uint32_t>(lists.statics.size());
-  const auto id_at = [&](std::uint32_t place) { return lists.statics[slot_at(place, lists)].id; };
+  std::uint32_t number = kNone;   // of the area that `box` grows for: triangles of an area mostly follow each other
+  exact::Box box{};
+  const auto grow_area = [&] {
+    if (number == kNone) return;
+    lists.areas[number].box_low = glm::min(lists.areas[number].box_low, box.low);
+    lists.areas[number].box_high = glm::max(lists.areas[number].box_high, box.high);
+  };
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (i + 2 * kAhead < count) __builtin_prefetch(&mesh.triangles[id_at(i + 2 * kAhead)]);
-    if (i + kAhead < count)
-      for (const std::uint32_t vertex : mesh.triangles[id_at(i + kAhead)]) __builtin_prefetch(&mesh.vertices[vertex]);
     SlotWork& slot = lists.slots[slot_at(i, lists)];
     StaticResult& result = lists.statics[slot_at(i, lists)];
     const std::uint32_t id = result.id;
@@ -190,10 +202,16 @@ bool HostAreas::gather(const ContactLists& lists, Answer& answer) const {
     }
     result.area = slot.area;
     result.zone = slot_at(zone_[i], lists);
-    AreaWork& area = lists.areas[slot.area];
-    const Int3 a = mesh.corner(id, 0), b = mesh.corner(id, 1), c = mesh.corner(id, 2);
-    area.box_low = glm::min(area.box_low, glm::min(a, glm::min(b, c)));
-    area.box_high = glm::max(area.box_high, glm::max(a, glm::max(b, c)));
+    const exact::Corners corners{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
+    const exact::Box own = exact::box_of(corners);
+    if (slot.area == number) {
+      box = {glm::min(box.low, own.low), glm::max(box.high, own.high)};
+    } else {
+      grow_area();
+      number = slot.area;
+      box = own;
+    }
+    AreaWork& area = lists.areas[number];
     area.statics += 1;
     if (zone_[i] == i) area.zones += 1;
     const bool hit = (result.state & kStaticHit) != 0, sheet = sheets_ && (mesh.flags[id] & kTriangleSheet) != 0;
@@ -211,6 +229,7 @@ bool HostAreas::gather(const ContactLists& lists, Answer& answer) const {
     area.samples += slot.samples;
     area.static_weight += std::int64_t{slot.samples} * w;
   }
+  grow_area();
   return true;
 }
 
@@ -225,19 +244,16 @@ bool HostAreas::associate(PosedTool& tool, const ContactLists& lists, Answer& an
     const Int3 sum = t[0] + t[1] + t[2];
     const Int3 g(floor_div(sum.x, 3), floor_div(sum.y, 3), floor_div(sum.z, 3));
     const std::uint32_t members = answer.members;
-    std::uint32_t nearest = 0;   // of equals the first: areas are numbered by their smallest ids
-    std::int64_t least = INT64_MAX;
+    const auto distance = [&](std::uint32_t number) { return squared(2 * g - spheres_[number].centre); };   // components within 2^30
     for (std::uint32_t number = 0; number < answer.areas; ++number) {
-      const std::int64_t distance = squared(2 * g - spheres_[number].centre);   // components within 2^30
-      if (distance <= spheres_[number].reach) {
-        if (answer.members == lists.members.size()) return false;
-        lists.members[answer.members++] = {number, mobile.id};
-      }
-      if (distance >= least) continue;
-      nearest = number;
-      least = distance;
+      if (distance(number) > spheres_[number].reach) continue;
+      if (answer.members == lists.members.size()) return false;
+      lists.members[answer.members++] = {number, mobile.id};
     }
     if (answer.members != members || answer.areas == 0) continue;
+    std::uint32_t nearest = 0;   // of equals the first: areas are numbered by their smallest ids
+    for (std::uint32_t number = 1; number < answer.areas; ++number)
+      if (distance(number) < distance(nearest)) nearest = number;
     if (answer.members == lists.members.size()) return false;
     lists.members[answer.members++] = {nearest, mobile.id};
   }
@@ -417,14 +433,14 @@ bool HostAreas::solve(PosedTool& tool, const Held* held, const ContactLists& lis
   answer = {};
   if (lists.statics.size() > most_statics_) return false;
   if (!lists.numbered) number(lists);
-  join_all(lists);
+  on_this_processor([&] { join_all(lists); });
   count_samples(lists);
   if (!gather(lists, answer)) return false;
   if (!associate(tool, lists, answer)) return false;
   const std::span<AreaWork> areas = lists.areas.first(answer.areas);
   if (held != nullptr) match_held(*held, lists, answer);
   for (AreaWork& area : areas) begin_area(area, pose, held);
-  if (!sum_tool_normals(pose, lists, answer)) return false;
+  if (!on_this_processor([&] { return sum_tool_normals(pose, lists, answer); })) return false;
   for (AreaWork& area : areas) direct(area, held);
   return true;
 }

@@ -73,6 +73,7 @@ class HostAreas {
   double per_voxel_ = 0;                        ///< of the mock-up, voxels a step
   HostCopy<std::uint32_t> seam_begin_, seams_, brick_slots_;
   HostCopy<gpu::Brick> bricks_;
+  std::vector<std::uint64_t> has_seams_;        ///< a bit a static triangle: few have some
   bool split_ = true;                           ///< false: every edge is smooth, an area is one zone
   bool sheets_ = false;                         ///< the mock-up has some
   IdMarks marks_;                               ///< C_s, whose places by ascending id number the tables below

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/common.hpp>
 
-#include "compute/walk_filter.h"
+#include "compute/processor.h"
 
 namespace palpate {
 
@@ -25,6 +25,7 @@ Result<HostSets> HostSets::make(VulkanDevice& device, const SceneGeometry& geome
   if (auto r = out.fine_exit_.read(device, scene.fine_exit, fine.grid.boundary_voxels); !r) return r.error();
   out.touched_.resize(scene.mockup.partition.grid.boundary_voxels);
   out.mobiles_.resize(order.size());
+  out.cells_ = CellMemo(fine.grid.boundary_voxels);
   return out;
 }
 
@@ -57,32 +58,61 @@ void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
   }
 }
 
-/// Whether the winding at an open sample is not 0. It is what a walk out of the tool crosses, along an axis of its fine grid:
+/// The cells of open points. Point by point the way from voxel to list, triangles and sides is one long chain of loads, and what is decided at its end
+/// keeps the processor from the next point; step by step all points' loads run side by side.
+void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> samples) {
+  // From a plane, in steps: roundings and the rounded matrix come to less than 2.5, the rounded normal to less than 0.8 (derived).
+  constexpr std::int64_t kFar = std::int64_t{4} << 30;
+  const LatticeMesh& mesh = geometry_->tool;
+  open_.resize(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    open_[i].at = tool_point(pose, samples[i].point);
+    open_[i].voxel = fine_.at(fine_.voxel_of(open_[i].at)).boundary;
+  }
+  for (OpenPoint& open : open_) {
+    open.list = fine_.list(open.voxel);
+    __builtin_prefetch(open.list.data());
+  }
+  for (OpenPoint& open : open_) {
+    std::uint32_t sides = 0;
+    bool far = open.list.size() <= CellMemo::kMostPlanes;
+    for (const std::uint32_t id : open.list) {
+      const Int3 &n = mesh.unit_normal_q30[id], from = open.at - mesh.corner(id, 0);
+      const std::int64_t height = std::int64_t{n.x} * from.x + std::int64_t{n.y} * from.y + std::int64_t{n.z} * from.z;   // within 2^62
+      sides = sides << 1 | static_cast<std::uint32_t>(height > 0);
+      far = far & (std::abs(height) > kFar);
+    }
+    open.sides = sides;
+    open.in_cell = far;
+  }
+}
+
+/// Whether the winding at an open sample is not 0. In the tool's frame the planes of all that the sample's voxel lists divide the voxel into convex cells that
+/// nothing passes through, so that all samples of a cell have one answer, at every pose (docs/EXACTNESS.md, section 9).
+bool HostSets::open_inside(PosedTool& tool, const Int3& point, const OpenPoint& open) {
+  if (!open.in_cell) return walks_out(tool, point);
+  if (const std::optional<bool> answer = cells_.find(open.voxel, open.sides)) return *answer;
+  const bool answer = walks_out(tool, point);
+  cells_.keep(open.voxel, open.sides, answer);
+  return answer;
+}
+
+/// The same by a walk: the winding is what a walk out of the tool crosses, along an axis of its fine grid.
 /// shaders/frame/sample_walk.comp has the proof that each voxel on the way lists all that is crossed in it.
 bool HostSets::walks_out(PosedTool& tool, const Int3& point) const {
-  const LatticeMesh& mesh = geometry_->tool;
   const LatticePose& pose = tool.pose();
-  const Int3 start = tool_point(pose, point);
-  Int3 voxel = fine_.voxel_of(start);
+  Int3 from = point, at = tool_point(pose, point);
+  Int3 voxel = fine_.voxel_of(at);
   HostPartition::Voxel here = fine_.at(voxel);
   const std::uint32_t exit = fine_exit_[here.boundary];
   const int axis = static_cast<int>(exit >> 1), up = static_cast<int>(exit & 1);
-  AxisWay way(start, axis);
-  bool first = true;
-  const auto exact_crossing = [&](std::uint32_t id) {
-    const Int3 from = first ? point : transform(pose, way.begin()), to = transform(pose, way.end());
-    return from == to ? 0 : exact::segment_crossing(from, to, tool.corners(id));
-  };
   int winding = 0;
   do {
-    way.go_to(fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up));
-    if (here.boundary != kNoVoxel)
-      for (const std::uint32_t id : fine_.list(here.boundary)) {
-        const int crossing = way.crossing({mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)});
-        winding += crossing == AxisWay::kUnsure ? exact_crossing(id) : crossing;
-      }
-    way.go_on();
-    first = false;
+    at[axis] = fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up);
+    const Int3 to = transform(pose, at);
+    if (here.boundary != kNoVoxel && from != to)
+      for (const std::uint32_t id : fine_.list(here.boundary)) winding += exact::segment_crossing(from, to, tool.corners(id));
+    from = to;
     voxel[axis] += 2 * up - 1;
     here = fine_.at(voxel);
   } while (here.kind != kVoxelExternal);
@@ -122,24 +152,30 @@ void HostSets::decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& sta
 /// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is not asked.
 void HostSets::decide_voxels(PosedTool& tool, const NearLists& near) {
   const GridConstants& grid = mockup_.grid();
-  std::uint32_t place = kNone, id = 0;   // candidates of one tool triangle follow each other
-  const exact::Corners* corners = nullptr;
+  std::uint32_t place = kNone, id = 0, marks = 0;   // candidates of one tool triangle follow each other
+  const exact::Corners* corners = nullptr;          // its own, once they are asked for
   exact::Box box{};
   for (const TouchCandidate& candidate : near.touch.room.first(near.touch.count)) {
     if (candidate.place != place) {
       place = candidate.place;
       id = order_[place];
-      corners = &tool.corners(id);
-      box = exact::box_of(*corners);
+      marks = mobiles_.marks(id);
+      corners = nullptr;
     }
     // CMT outdoes IMT, and that BMT.
     const bool internal = candidate.boundary == kNoVoxel;
-    const bool known = mobiles_.has(id, kMobileHit) || mobiles_.has(id, kMobileInternal) || (!internal && mobiles_.has(id, kMobileBoundary));
-    if (known && (internal || touched_[candidate.boundary] != 0)) continue;
+    const std::uint32_t outdone_by = internal ? kMobileHit | kMobileInternal : kMobileHit | kMobileInternal | kMobileBoundary;
+    if ((marks & outdone_by) != 0 && (internal || touched_[candidate.boundary] != 0)) continue;
+    if (corners == nullptr) {
+      corners = &tool.corners(id);
+      box = exact::box_of(*corners);
+    }
     const Int3 voxel(candidate.xy & 0xFFFF, candidate.xy >> 16, candidate.z & ~kWholeBrick);
     const std::int32_t side = (candidate.z & kWholeBrick) != 0 ? 8 * grid.size : grid.size;
     if (!exact::triangle_touches_cube(*corners, box, grid.origin + grid.size * voxel, side)) continue;
-    mobiles_.add(id, internal ? kMobileInternal : kMobileBoundary);
+    const std::uint32_t mark = internal ? kMobileInternal : kMobileBoundary;
+    marks |= mark;
+    mobiles_.add(id, mark);
     if (internal || touched_[candidate.boundary] != 0) continue;
     touched_[candidate.boundary] = 1;
     touched_voxels_.push_back(candidate.boundary);
@@ -193,8 +229,10 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
     if ((sample.static_id & kCornerProbe) == 0) out.samples.push_back(sample);
   };
   for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
-  for (const FrameSample& sample : near.open.room.first(near.open.count))
-    if (walks_out(tool, sample.point)) take(sample);
+  const std::span<const FrameSample> open = near.open.room.first(near.open.count);
+  on_this_processor([&] { find_cells(tool.pose(), open); });
+  for (std::size_t i = 0; i < open.size(); ++i)
+    if (open_inside(tool, open[i].point, open_[i])) take(open[i]);
   for (const SampleChunk& chunk : near.samples.room.first(near.samples.count))
     scan(chunk, [&](const FrameSample& sample) {
       if (inside(tool, sample.point)) take(sample);

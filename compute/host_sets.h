@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "compute/cell_memo.h"
 #include "compute/host_partition.h"
 #include "compute/id_marks.h"
 #include "compute/near_lists.h"
@@ -38,6 +39,16 @@ class HostSets {
   void decide_voxels(PosedTool& tool, const NearLists& near);
   bool mark_lists(IdMarks& statics, std::size_t most_statics);
   void list(IdMarks& statics, FoundSets& out);
+  /// A point in a V_bnd voxel of the fine partition.
+  struct OpenPoint {
+    Int3 at;                                ///< in the tool's lattice
+    std::uint32_t voxel;
+    std::span<const std::uint32_t> list;    ///< the voxel's
+    std::uint32_t sides;                    ///< a bit a plane of a listed triangle: the point is on its outer side
+    bool in_cell;                           ///< it is far enough from all of them
+  };
+  void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples);
+  bool open_inside(PosedTool& tool, const Int3& point, const OpenPoint& open);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
   bool walks_out(PosedTool& tool, const Int3& point) const;
   bool inside(PosedTool& tool, const Int3& point) const;
@@ -49,6 +60,8 @@ class HostSets {
   HostPartition mockup_, fine_;
   PairFilter filter_;
   HostCopy<std::uint32_t> fine_exit_;
+  std::vector<OpenPoint> open_;                 ///< of this frame
+  CellMemo cells_;                              ///< of fine V_bnd voxels: whether they are inside
   std::vector<std::uint8_t> touched_;           ///< by V_bnd voxel; 0 between frames
   std::vector<std::uint32_t> touched_voxels_;   ///< of this frame
   IdMarks mobiles_;                             ///< C_m, with kMobile…

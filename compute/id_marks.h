@@ -32,8 +32,8 @@ class IdMarks {
     if (before == 0) any_[id >> 12] |= std::uint64_t{1} << (id >> 6 & 63);
     word.marks[mark >> 1] |= bit;
   }
-  bool has(std::uint32_t id, std::uint32_t mark) const { return (words_[id >> 6].marks[mark >> 1] >> (id & 63) & 1) != 0; }
-  void prefetch(std::uint32_t id) const { __builtin_prefetch(&words_[id >> 6]); }
+  /// All of an id's, 0: none.
+  std::uint32_t marks(std::uint32_t id) const { return words_[id >> 6].of(id & 63); }
   /// Ids that have a mark.
   std::uint32_t count() const { return count_; }
 
@@ -45,9 +45,8 @@ class IdMarks {
       Word& word = words_[w];
       word.place = place;
       for (std::uint64_t left = word.all(); left != 0; left &= left - 1, ++place) {
-        const int bit = std::countr_zero(left);
-        const auto mark = [&](std::size_t i) { return static_cast<std::uint32_t>(word.marks[i] >> bit & 1) << i; };
-        take(static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(bit), mark(0) | mark(1) | mark(2));
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+        take(static_cast<std::uint32_t>(64 * w) + bit, word.of(bit));
       }
     }
   }
@@ -64,6 +63,10 @@ class IdMarks {
     std::array<std::uint64_t, 3> marks{};   ///< of value 1, 2 and 4
     std::uint32_t place = 0, unused = 0;    ///< of the first that has one
     std::uint64_t all() const { return marks[0] | marks[1] | marks[2]; }
+    std::uint32_t of(std::uint32_t bit) const {
+      const auto mark = [&](std::size_t i) { return static_cast<std::uint32_t>(marks[i] >> bit & 1) << i; };
+      return mark(0) | mark(1) | mark(2);
+    }
   };
   /// The first word from `w` on with a mark, or their number.
   std::size_t next_word(std::size_t w) const {

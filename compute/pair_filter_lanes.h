@@ -3,16 +3,22 @@
 
 using Doubles = double __attribute__((vector_size(8 * kWidth)));
 using Masks = std::int64_t __attribute__((vector_size(8 * kWidth)));   // all bits of a lane, or none
+using Ints = std::int32_t __attribute__((vector_size(4 * kWidth)));
 
 struct Point {
   Doubles x, y, z;
 };
 
-// A corner of s or t, from a lane on.
+// A corner of s or t, from a lane on. Exact.
+static void load(const std::array<std::int32_t, kLanes>& from, std::size_t lane, Doubles& out) {
+  Ints whole;
+  std::memcpy(&whole, from.data() + lane, sizeof whole);
+  out = __builtin_convertvector(whole, Doubles);
+}
 static void load(const Coordinates& from, std::size_t corner, std::size_t lane, Point& out) {
-  std::memcpy(&out.x, from[3 * corner].data() + lane, sizeof out.x);
-  std::memcpy(&out.y, from[3 * corner + 1].data() + lane, sizeof out.y);
-  std::memcpy(&out.z, from[3 * corner + 2].data() + lane, sizeof out.z);
+  load(from[3 * corner], lane, out.x);
+  load(from[3 * corner + 1], lane, out.y);
+  load(from[3 * corner + 2], lane, out.z);
 }
 static void cross(const Point& a, const Point& b, Point& out) {
   out.x = a.y * b.z - a.z * b.y;
