@@ -10,14 +10,13 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kFan = 8;   // children of a node
 constexpr std::int32_t kManyBricks = 3;   // along an axis, beyond which bricks are asked and not voxels (chosen)
 
 // Transformed vertices are rounded by half a step an axis, and doubles by far less than a thousandth: two steps hold both, and
 // voxels are closed.
 constexpr double kMargin = gpu::kCloseSteps + 2.0;
 
-static_assert(kFan == kEight && gpu::kRunSize == kEight);
+static_assert(gpu::kRunSize == kEight);
 
 }  // namespace
 
@@ -56,64 +55,32 @@ Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& g
     out.samples_ = std::move(*samples);
   }
   out.inside_margin_ = 1.75 * geometry.tool_grid.size + 16;   // a grown voxel's diagonal
-  out.make_levels(geometry.tool, order);
+  out.tree_.emplace(geometry.tool, order);
+  out.make_runs(geometry.tool);
   out.tool_radius_ = geometry.tool_radius;
   if (auto r = out.read_occupancy(device, mockup); !r) return r.error();
   out.find_parts(geometry.mockup, geometry.tool_radius);
   return out;
 }
 
-void BroadPhase::make_levels(const LatticeMesh& tool, std::span<const std::uint32_t> order) {
-  runs_.resize((order.size() + gpu::kRunSize - 1) / gpu::kRunSize);
+void BroadPhase::make_runs(const LatticeMesh& tool) {
+  runs_.resize((order_.size() + kEight - 1) / kEight);
   for (EightTriangles& run : runs_)
     for (auto& coordinate : run) coordinate.fill(kNowhere);
-  std::vector<Int3> low, high;
-  for (std::size_t place = 0; place < order.size(); ++place) {
-    if (place % gpu::kRunSize == 0) {
-      low.emplace_back(INT32_MAX);
-      high.emplace_back(INT32_MIN);
-    }
-    if (tool.collapsed(order[place])) continue;
+  Int3 low(INT32_MAX), high(INT32_MIN);
+  for (std::size_t place = 0; place < order_.size(); ++place) {
+    if (tool.collapsed(order_[place])) continue;
     for (int corner = 0; corner < 3; ++corner) {
-      const Int3 p = tool.corner(order[place], corner);
-      low.back() = glm::min(low.back(), p);
-      high.back() = glm::max(high.back(), p);
-      for (int k = 0; k < 3; ++k)
-        runs_[place / gpu::kRunSize][static_cast<std::size_t>(3 * corner + k)][place % gpu::kRunSize] = static_cast<float>(p[k]);
+      const Int3 p = tool.corner(order_[place], corner);
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+      for (int k = 0; k < 3; ++k) runs_[place / kEight][static_cast<std::size_t>(3 * corner + k)][place % kEight] = static_cast<float>(p[k]);
     }
   }
-  while (true) {
-    std::vector<EightBoxes>& level = levels_.emplace_back((low.size() + kFan - 1) / kFan);
-    for (EightBoxes& group : level)
-      for (std::size_t k = 0; k < 3; ++k) {
-        group.centre[k].fill(kNowhere);
-        group.half[k].fill(0);
-      }
-    for (std::size_t i = 0; i < low.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double l = low[i][static_cast<int>(k)], h = high[i][static_cast<int>(k)];
-        if (l > h) continue;
-        level[i / kFan].centre[k][i % kFan] = static_cast<float>((l + h) / 2);
-        level[i / kFan].half[k][i % kFan] = static_cast<float>((h - l) / 2);
-      }
-    const std::size_t above = (low.size() + kFan - 1) / kFan;
-    for (std::size_t i = 0; i < above; ++i) {
-      for (std::size_t child = i * kFan + 1; child < std::min((i + 1) * kFan, low.size()); ++child) {
-        low[i * kFan] = glm::min(low[i * kFan], low[child]);
-        high[i * kFan] = glm::max(high[i * kFan], high[child]);
-      }
-      low[i] = low[i * kFan];
-      high[i] = high[i * kFan];
-    }
-    low.resize(above);
-    high.resize(above);
-    if (above > 1) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double l = low[0][static_cast<int>(k)], h = high[0][static_cast<int>(k)];
-      whole_.centre[k] = l > h ? 0 : (l + h) / 2;
-      whole_.half[k] = l > h ? -1 : (h - l) / 2;
-    }
-    return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double l = low[static_cast<int>(k)], h = high[static_cast<int>(k)];
+    whole_.centre[k] = l > h ? 0 : (l + h) / 2;
+    whole_.half[k] = l > h ? -1 : (h - l) / 2;
   }
 }
 
@@ -192,36 +159,14 @@ bool BroadPhase::meets(BrickBits::Range voxels) const {
   return occupied_[level].for_bricks(voxels, [](std::int32_t, std::int32_t, std::int32_t) { return true; });
 }
 
-/// Of eight nodes those that come near an occupied voxel: a bit each.
-unsigned BroadPhase::meeting(const Search& search, const EightBoxes& nodes) const {
-  EightRanges voxels;
-  voxels_of(search.voxels, nodes, voxels);
-  unsigned out = 0;
-  for (std::size_t i = 0; i < kFan; ++i) {
-    if (voxels.may[i] == 0) continue;
-    if (meets(voxels.range(i))) out |= 1u << i;
-  }
-  return out;
-}
-
 /// From the whole tool to runs of triangles.
 void BroadPhase::descend(Search& search) {
-  struct Open {
-    std::uint32_t level, number;
-  };
-  std::array<Open, kFan * 12> open;   // 8^12 runs are more than a mesh can have; a level leaves at most eight groups waiting
-  std::size_t count = 0;
-  open[count++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
-  while (count != 0 && search.lists.full == gpu::kNone) {
-    const Open group = open[--count];
-    const unsigned nodes = meeting(search, levels_[group.level][group.number]);
-    if (group.level == 0) {
-      for (unsigned rest = nodes; rest != 0; rest &= rest - 1) take_run(search, kFan * group.number + static_cast<unsigned>(std::countr_zero(rest)));
-      continue;
-    }
-    for (unsigned i = kFan; i-- > 0;)
-      if ((nodes >> i & 1) != 0) open[count++] = {group.level - 1, static_cast<std::uint32_t>(kFan) * group.number + i};
-  }
+  tree_->descend(
+      search.voxels, [&](const EightRanges& voxels, std::size_t i) { return meets(voxels.range(i)); },
+      [&](std::uint32_t run) {
+        take_run(search, run);
+        return search.lists.full == gpu::kNone;
+      });
 }
 
 /// The triangles of a run, each by the box of its corners.

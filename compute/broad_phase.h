@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "compute/near_samples.h"
 #include "compute/posed_tool.h"
 #include "compute/prepared_scene.h"
+#include "compute/run_tree.h"
 #include "compute/turned_boxes.h"
 #include "model/lattice.h"
 #include "model/result.h"
@@ -42,14 +44,13 @@ class BroadPhase {
   struct Turn;
   struct Search;
 
-  void make_levels(const LatticeMesh& tool, std::span<const std::uint32_t> order);
+  void make_runs(const LatticeMesh& tool);
   Result<void> read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup);
   void find_parts(const LatticeMesh& mockup, std::int32_t tool_radius);
   Reach reach(const Turn& turn, const Box& box) const;
   bool meets(const Reach& reach) const;
   bool meets(BrickBits::Range voxels) const;
   void descend(Search& search);
-  unsigned meeting(const Search& search, const EightBoxes& nodes) const;
   void take_run(Search& search, std::size_t run);
   void find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const;
 
@@ -60,8 +61,7 @@ class BroadPhase {
   bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
   bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
   Box whole_{};
-  /// Boxes of runs, of 8 runs, of 64 …; eight nodes together; the last level is one such group.
-  std::vector<std::vector<EightBoxes>> levels_;
+  std::optional<RunTree> tree_;
   std::vector<EightTriangles> runs_;
   std::int32_t tool_radius_ = 0;
   gpu::GridConstants grid_{};

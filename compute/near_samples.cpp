@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "compute/processor.h"
 
@@ -219,9 +220,10 @@ struct NearSamples::Entries {
 
 bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
   const HostSamples& from = *sampled_;
-  const HostSamples::Voxel grid(mockup_.origin + mockup_.size * voxel, spacing_);
+  const Int3 lowest = mockup_.origin + mockup_.size * voxel;
+  std::optional<HostSamples::Voxel> grid;   // once a point is wanted
   double at[3];
-  search.to_tool(grid.low, at);
+  search.to_tool(lowest, at);
   float low[3];
   for (std::size_t k = 0; k < 3; ++k) {
     const float (&column)[3] = search.fine.point_column[k];
@@ -239,12 +241,17 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
       entries.go_to(first + lane);
       const std::uint32_t id = list_triangles_[entries.entry];
       std::uint32_t i = first + lane - entries.first;
+      if (!grid) grid.emplace(lowest, spacing_);
+      const bool sure = (solid.unsure >> lane & 1) == 0;
+      std::uint32_t kind = sure ? fine_class(solid.brick[lane], solid.bit[lane]) : gpu::kVoxelBoundary;
       gpu::FrameSample sample{{}, id};
-      if (!from.has_corner(entries.entry)) sample.point = from.sample(grid, entries.entry, i);
-      else if (i-- > 0) sample.point = from.sample(grid, entries.entry, i);
-      else sample = {mesh_->corner(id, 0), id | gpu::kCornerProbe};
-      const std::uint32_t kind =
-          (solid.unsure >> lane & 1) != 0 ? fine_class(search.rounded_to_tool(sample.point)) : fine_class(solid.brick[lane], solid.bit[lane]);
+      if (!from.has_corner(entries.entry) || i-- > 0) {
+        sample.point = from.sample(*grid, entries.entry, i);
+      } else {
+        sample.static_id |= gpu::kCornerProbe;
+        if (kind == gpu::kVoxelBoundary) sample.point = mesh_->corner(id, 0);   // two loads, anywhere in the mesh; inside nobody asks
+      }
+      if (!sure) kind = fine_class(search.rounded_to_tool(sample.point));
       const bool room = kind == gpu::kVoxelInternal   ? search.lists.push(search.lists.inside, gpu::kListInsideSamples, sample)
                         : kind == gpu::kVoxelBoundary ? search.lists.push(search.lists.open, gpu::kListOpenSamples, sample)
                                                       : true;

@@ -291,8 +291,8 @@ struct ContactPair {
 
 struct FrameSample {
   ivec3 point;                    // world lattice
-  uint32_t static_id;             // its triangle; the weight is the triangle's. In open samples with kCornerProbe: the point is the
-                                  // triangle's first corner, tells EST and does not count
+  uint32_t static_id;             // its triangle; the weight is the triangle's. With kCornerProbe: the point is the triangle's first corner (which is
+                                  // left out where it is known to lie inside), tells EST and does not count
 };
 PALPATE_CONSTANT uint32_t kCornerProbe = 1u << 31;               // more triangles than this do not fit a lattice mesh
 
