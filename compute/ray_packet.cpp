@@ -14,6 +14,8 @@ constexpr std::size_t kMostSquares = 1 << 14;   // (chosen)
 constexpr double kHigher = 4;
 // Triangles before the rays, a ray, up to which to test them all costs less than to walk from each ray (chosen).
 constexpr std::size_t kTrianglesARay = 16;
+// Rows of squares that triangles lie in, a ray, up to which the same holds: long triangles across the squares lie in many (chosen).
+constexpr std::size_t kRowsARay = 16, kRunsKnown = 8;   // judged by so many runs
 // Crossings a ray that are kept (chosen).
 constexpr std::size_t kHitsARay = 16;
 
@@ -161,7 +163,8 @@ void RayPacket::test_run(PosedTool& tool, std::uint32_t run) {
   const RayRows rows{x_.data(), y_.data(), first_.data(), columns_};
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (eight_.may[i] == 0 || tool_->collapsed(ids[i])) continue;
-    const std::size_t count = rays_met(rows, eight_, i, met_.data());
+    rows_tested_ += static_cast<std::size_t>(eight_.last[1][i] - eight_.first[1][i] + 1);
+    const std::size_t count = rays_met(view_, rows, eight_, i, met_.data());
     for (std::size_t k = 0; k < count; ++k) note(met_[k], i, ids[i]);
   }
 }
@@ -179,9 +182,11 @@ bool RayPacket::trace(PosedTool& tool, std::span<const Int3> points, const Int3&
   hits_.clear();
   first_hit_.assign(points.size(), kNoHit);
   met_.resize(points.size() + kRayLanes);
-  for (const std::uint32_t run : runs_) {
-    test_run(tool, run);
+  rows_tested_ = 0;
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    test_run(tool, runs_[i]);
     if (hits_.size() > kHitsARay * points.size()) return false;
+    if ((i + 1) % kRunsKnown == 0 && rows_tested_ * runs_.size() > kRowsARay * points.size() * (i + 1)) return false;
   }
   return true;
 }

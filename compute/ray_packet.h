@@ -65,6 +65,7 @@ class RayPacket {
   std::vector<double> x_, y_;                      ///< … where they lie …
   std::vector<std::int32_t> z_;                    ///< … and begin
   std::vector<std::uint32_t> runs_;                ///< of triangles before the rays
+  std::size_t rows_tested_ = 0;
   std::vector<std::uint32_t> met_;                 ///< rays that a triangle may meet
   std::vector<std::uint32_t> first_hit_;           ///< by ray
   std::vector<Hit> hits_;

@@ -15,6 +15,7 @@ namespace {
 //   a·x + b·y + c: two more, and 8 and 16 ε L R for the sums. All together: below 114 ε L R.
 constexpr double kBound = 0x1p-46;   // 128 ε
 constexpr double kSlack = 0x1p-49;   // 16 ε: more than ray and corner together
+constexpr std::uint32_t kMany = 16;  // rays in a row of squares, beyond which a triangle's part of the row is found first (chosen)
 
 namespace plain {
 constexpr std::size_t kWidth = 2;
@@ -38,11 +39,11 @@ void see(const RayView& view, EightShadows& triangles) {
   plain::see_lanes(view, triangles);
 }
 
-std::size_t rays_met(const RayRows& rows, const EightShadows& triangles, std::size_t i, std::uint32_t* out) {
+std::size_t rays_met(const RayView& view, const RayRows& rows, const EightShadows& triangles, std::size_t i, std::uint32_t* out) {
 #if PALPATE_TWO_CODES
-  if (has_second_code()) return second::meet_rows(rows, triangles, i, out);
+  if (has_second_code()) return second::meet_rows(view, rows, triangles, i, out);
 #endif
-  return plain::meet_rows(rows, triangles, i, out);
+  return plain::meet_rows(view, rows, triangles, i, out);
 }
 
 }  // namespace palpate

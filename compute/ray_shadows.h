@@ -46,6 +46,6 @@ inline constexpr std::size_t kRayLanes = 4;
 
 void see(const RayView& view, EightShadows& triangles);
 /// Lists the rays that triangle `i` may meet, in `out` with room for kRayLanes more than there are rays; returns how many.
-std::size_t rays_met(const RayRows& rows, const EightShadows& triangles, std::size_t i, std::uint32_t* out);
+std::size_t rays_met(const RayView& view, const RayRows& rows, const EightShadows& triangles, std::size_t i, std::uint32_t* out);
 
 }  // namespace palpate

@@ -75,17 +75,58 @@ static void see_lanes(const RayView& view, EightShadows& out) {
   for (std::size_t begin = 0; begin < kEight; begin += kWidth) see_from(view, begin, out);
 }
 
-static std::size_t meet_rows(const RayRows& rows, const EightShadows& t, std::size_t i, std::uint32_t* out) {
+// Where rays in a row of squares may lie beside a triangle: of a long one across the squares its box says little.
+struct Band {
+  double a[3], b[3], least[3];   // edges turned so that the triangle is on their positive side: a·x + b·y ≥ least where a ray may meet it
+  bool known;                    // on which side that is
+};
+static void band_of(const EightShadows& t, std::size_t i, Band& out) {
+  const double sum = t.c[0][i] + t.c[1][i] + t.c[2][i], bound = t.bound[i];   // twice the area; off by less than 2 bound
+  out.known = sum > 4 * bound || sum < -4 * bound;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const double turn = sum < 0 ? -1 : 1, a = turn * t.a[e][i];
+    out.a[e] = a;
+    out.b[e] = turn * t.b[e][i];
+    out.least[e] = -2 * bound - turn * t.c[e][i];
+  }
+}
+static void clip(const RayView& view, const Band& band, std::int32_t row, std::int32_t& first, std::int32_t& last) {
+  const double slack = view.reach * kSlack, height = 1 / view.per_step[1];
+  const double y0 = view.low[1] + row * height - slack, y1 = view.low[1] + (row + 1) * height + slack;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const double a = band.a[e], below = band.b[e] * y0, above = band.b[e] * y1;
+    if (a == 0) continue;
+    const double x = (band.least[e] - (below < above ? above : below)) / a;
+    if (a > 0) {
+      const auto from = static_cast<std::int32_t>(view.square(0, x - slack));
+      first = first < from ? from : first;
+    } else {
+      const auto to = static_cast<std::int32_t>(view.square(0, x + slack));
+      last = to < last ? to : last;
+    }
+  }
+}
+
+static std::size_t meet_rows(const RayView& view, const RayRows& rows, const EightShadows& t, std::size_t i, std::uint32_t* out) {
   const Doubles none{};
   const Doubles a0 = none + t.a[0][i], a1 = none + t.a[1][i], a2 = none + t.a[2][i];
   const Doubles b0 = none + t.b[0][i], b1 = none + t.b[1][i], b2 = none + t.b[2][i];
   const Doubles c0 = none + t.c[0][i], c1 = none + t.c[1][i], c2 = none + t.c[2][i];
   const Doubles above = none + t.bound[i], below = -above;
+  Band band;
+  bool has_band = false;
   std::size_t count = 0;
   for (std::int32_t row = t.first[1][i]; row <= t.last[1][i]; ++row) {
-    const std::uint32_t* first = rows.first + static_cast<std::size_t>(row) * rows.columns;
-    const std::uint32_t end = first[t.last[0][i] + 1];
-    for (std::uint32_t ray = first[t.first[0][i]]; ray < end; ray += kWidth) {
+    const std::uint32_t* of_row = rows.first + static_cast<std::size_t>(row) * rows.columns;
+    std::int32_t first = t.first[0][i], last = t.last[0][i];
+    if (of_row[last + 1] - of_row[first] > kMany) {
+      if (!has_band) band_of(t, i, band);
+      has_band = true;
+      if (band.known) clip(view, band, row, first, last);
+      if (first > last) continue;
+    }
+    const std::uint32_t end = of_row[last + 1];
+    for (std::uint32_t ray = of_row[first]; ray < end; ray += kWidth) {
       Doubles x, y;
       std::memcpy(&x, rows.x + ray, sizeof x);
       std::memcpy(&y, rows.y + ray, sizeof y);

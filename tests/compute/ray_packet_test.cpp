@@ -75,7 +75,7 @@ Scene scene(std::uint64_t seed) {
   }
   const Int3 at(points.within(1 << 26), points.within(1 << 26), points.within(1 << 26));
   out.pose = coarse || seed % 3 == 0 ? unturned(at) : turned(engine, at);
-  const std::size_t rays = triangles / 16 + 1 + engine() % 200;
+  const std::size_t rays = triangles / 16 + 1 + engine() % (seed % 16 == 7 ? 4'000 : 200);
   for (std::size_t i = 0; i < rays; ++i) out.points.push_back(at + point());
   Int3 d(0);
   while (d == Int3(0)) d = coarse ? Int3(points.within(1), points.within(1), points.within(1)) : Int3(points.within(1 << 28), points.within(1 << 28), points.within(1 << 28));
@@ -178,6 +178,33 @@ TEST(RayPacket, IsNotWorthwhileForFewRaysOfManyTriangles) {
   EXPECT_TRUE(packet.trace(tool, s.points, s.along));
   s.points.assign(50, Int3(0, 0, -1));   // more crossings than are kept
   EXPECT_FALSE(packet.trace(tool, s.points, s.along));
+}
+
+TEST(RayPacket, IsNotWorthwhileForFewRaysOfLongTriangles) {
+  constexpr int reach = 1 << 20;
+  Scene s;
+  for (int z = 0; z < 600; ++z) {
+    const Int3 t[3] = {Int3(-reach, -reach, z), Int3(reach, reach - 1000, z), Int3(reach, reach, z)};
+    add(s.tool, t);
+  }
+  s.pose = unturned(Int3(0));
+  s.along = Int3(0, 0, 1 << 28);
+  s.order = order_in_space(s.tool);
+  RayPacket packet(s.tool, s.order);
+  PosedTool tool(s.tool);
+  tool.begin(s.pose);
+  const auto rays = [&](int side) {
+    s.points.clear();
+    for (int x = 0; x < side; ++x)
+      for (int y = 0; y < side; ++y) s.points.emplace_back(reach * (2 * x - side) / side, reach * (2 * y - side) / side + 7, -1);
+  };
+  rays(8);
+  EXPECT_FALSE(packet.trace(tool, s.points, s.along));
+  rays(80);
+  EXPECT_TRUE(packet.trace(tool, s.points, s.along));
+  Count count;
+  compare(s, count);
+  EXPECT_EQ(count.packets, 1u);
 }
 
 }  // namespace
