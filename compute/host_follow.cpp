@@ -61,6 +61,7 @@ bool HostFollow::needles(PosedTool& tool, HostHeights& heights, const ContactLis
   const LatticeMesh &mockup = geometry_->mockup, &moved = geometry_->tool;
   const NearRays::Turn turn(tool.pose());
   vertices_.clear();
+  std::uint32_t aimed = kNone;   // the area that heights are along
   for (const ContactPair& pair : pairs) {
     const std::uint32_t number = areas.area_of(pair.static_id, lists);
     AreaWork& area = lists.areas[number];
@@ -82,7 +83,8 @@ bool HostFollow::needles(PosedTool& tool, HostHeights& heights, const ContactLis
     if (low.x > high.x) continue;
     const Int3 middle = (low + high) >> 1;
     std::uint32_t height = kNone;
-    heights.aim(turn, -area.direction);
+    if (number != aimed) heights.aim(turn, -area.direction);
+    aimed = number;
     if (!heights.height(tool, turn, middle, true, height)) return false;
     if (height == kNone) continue;
     HostHeights::add(area, middle, height, kWhole, 0);
@@ -97,20 +99,28 @@ void HostFollow::take_vertices(PosedTool& tool, const ContactLists& lists) {
   const LatticeMesh& mockup = geometry_->mockup;
   std::sort(vertices_.begin(), vertices_.end());
   vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-  for (const auto& [number, vertex] : vertices_) {
+  for (auto begin = vertices_.begin(); begin != vertices_.end();) {
+    const std::uint32_t number = begin->first;
     AreaWork& area = lists.areas[number];
-    const Int3 p = transform(tool.pose(), geometry_->tool.vertices[vertex]), d = area.direction;
-    std::uint32_t lowest = kNone;
-    for (std::size_t slot = 0; slot < lists.statics.size(); ++slot) {
-      const StaticResult& s = lists.statics[slot];
-      if (s.area != number || (s.state & kStaticHit) == 0) continue;
-      const exact::Crossing crossing = exact::ray_crossing(p, d, {mockup.corner(s.id, 0), mockup.corner(s.id, 1), mockup.corner(s.id, 2)});
-      if (crossing.sign > 0 || (crossing.sign < 0 && (mockup.flags[s.id] & kTriangleSheet) != 0)) lowest = std::min(lowest, crossing.height);
+    const Int3 d = area.direction;
+    slots_.clear();
+    for (std::uint32_t slot = 0; slot < lists.statics.size(); ++slot)
+      if (lists.statics[slot].area == number && (lists.statics[slot].state & kStaticHit) != 0) slots_.push_back(slot);
+    for (; begin != vertices_.end() && begin->first == number; ++begin) {
+      const Int3 p = transform(tool.pose(), geometry_->tool.vertices[begin->second]);
+      std::uint32_t lowest = kNone;
+      for (const std::uint32_t slot : slots_) {
+        const std::uint32_t id = lists.statics[slot].id;
+        const exact::Corners corners{mockup.corner(id, 0), mockup.corner(id, 1), mockup.corner(id, 2)};
+        if (!may_cross(p, d, corners)) continue;
+        const exact::Crossing crossing = exact::ray_crossing(p, d, corners);
+        if (crossing.sign > 0 || (crossing.sign < 0 && (mockup.flags[id] & kTriangleSheet) != 0)) lowest = std::min(lowest, crossing.height);
+      }
+      if (lowest == kNone) continue;
+      Int3 at;
+      for (int k = 0; k < 3; ++k) at[k] = p[k] + static_cast<std::int32_t>((std::int64_t{d[k]} * lowest) >> 30);
+      HostHeights::add(area, at, lowest, kWhole, 0);
     }
-    if (lowest == kNone) continue;
-    Int3 at;
-    for (int k = 0; k < 3; ++k) at[k] = p[k] + static_cast<std::int32_t>((std::int64_t{d[k]} * lowest) >> 30);
-    HostHeights::add(area, at, lowest, kWhole, 0);
   }
 }
 

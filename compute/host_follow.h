@@ -37,7 +37,7 @@ class HostFollow {
 
   const SceneGeometry* geometry_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> vertices_;   ///< area, tool vertex
-  std::vector<std::uint32_t> slots_, first_slot_;                   ///< C_s by area; where each area's begin
+  std::vector<std::uint32_t> slots_, first_slot_;                   ///< C_s by area, or CST of one; where each area's begin
   std::vector<Facing> facing_;                                      ///< triangles of other areas that rays of one area may leave
 };
 
