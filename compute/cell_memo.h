@@ -12,7 +12,7 @@ namespace palpate {
 class CellMemo {
  public:
   static constexpr std::size_t kMostPlanes = 31;
-  static constexpr std::size_t kMostCells = std::size_t{1} << 14;   ///< 128 KiB (chosen)
+  static constexpr std::size_t kMostCells = std::size_t{1} << 15;   ///< 256 KiB (chosen)
 
   CellMemo() = default;
   /// Of a partition with so many V_bnd voxels.
@@ -24,6 +24,8 @@ class CellMemo {
     if (entry >> 1 != key(voxel, sides)) return std::nullopt;
     return (entry & 1) != 0;
   }
+  /// find() will soon be asked.
+  void prefetch(std::uint32_t voxel, std::uint32_t sides) const { __builtin_prefetch(&entries_[place(voxel, sides)]); }
   void keep(std::uint32_t voxel, std::uint32_t sides, bool answer) { entries_[place(voxel, sides)] = key(voxel, sides) << 1 | (answer ? 1u : 0u); }
 
  private:

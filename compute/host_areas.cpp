@@ -69,6 +69,7 @@ std::uint32_t first_of(std::vector<std::uint32_t>& sets, std::uint32_t place) {
 
 /// Joins the set whose first place is `first` with that of `other`: the first place of both.
 std::uint32_t joined(std::vector<std::uint32_t>& sets, std::uint32_t first, std::uint32_t other) {
+  if (sets[other] == first) return first;
   other = first_of(sets, other);
   const std::uint32_t least = std::min(first, other);
   sets[std::max(first, other)] = least;

@@ -84,6 +84,7 @@ void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> 
     }
     open.sides = sides;
     open.in_cell = far;
+    cells_.prefetch(open.voxel, sides);
   }
 }
 
