@@ -33,6 +33,13 @@ void order_by_id(std::span<const Entry> entries, Id id, std::vector<std::uint64_
   if (!ascending) sort_keys(out, spare);
 }
 
+/// Of keys made by order_by_id().
+void append_ids(std::vector<std::uint32_t>& to, std::span<const std::uint64_t> keys) {
+  const std::size_t at = to.size();
+  to.resize(at + keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) to[at + i] = static_cast<std::uint32_t>(keys[i] >> 32);
+}
+
 void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
   area.id = from.id;
   area.flags = from.flags;
@@ -103,18 +110,22 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
 
   // In the order of ids: every list ascends, and zones come by their first ids. A zone's label is the place of one of its triangles.
   zone_of_.assign(result.static_count, kNone);
-  for (const std::uint64_t key : statics_) {
-    const StaticResult& s = output.statics[static_cast<std::uint32_t>(key)];
-    if (s.area >= count) continue;
-    ContactArea& area = out.areas[position[s.area]];
-    area.static_ids.push_back(s.id);   // the next frame holds on to an area by them
+  const auto at = [&](std::size_t i) -> const StaticResult& { return output.statics[static_cast<std::uint32_t>(statics_[i])]; };
+  for (std::size_t begin = 0, end; begin < statics_.size(); begin = end) {
+    // Triangles of a zone mostly follow each other.
+    const StaticResult& first = at(begin);
+    for (end = begin + 1; end < statics_.size() && at(end).zone == first.zone;) ++end;
+    if (first.area >= count) continue;
+    const std::span run(statics_.data() + begin, end - begin);
+    ContactArea& area = out.areas[position[first.area]];
+    append_ids(area.static_ids, run);   // the next frame holds on to an area by them
     if (!out.lists) continue;
-    std::uint32_t& zone = zone_of_[s.zone];
+    std::uint32_t& zone = zone_of_[first.zone];
     if (zone == kNone) {
       zone = static_cast<std::uint32_t>(area.zones.size());
       new_zone(area);
     }
-    area.zones[zone].push_back(s.id);
+    append_ids(area.zones[zone], run);
   }
   const std::span members(output.members, out.lists ? result.member_count : 0);
   order_by_id(members, [](const AreaMember& m) { return m.mobile; }, members_, spare_keys_);
