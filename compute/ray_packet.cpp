@@ -13,7 +13,7 @@ constexpr std::size_t kMostSquares = 1 << 14;   // (chosen)
 // A row of squares is this much higher than a square is wide, so that it holds rays for a vector (chosen).
 constexpr double kHigher = 4;
 // Triangles before the rays, a ray, up to which to test them all costs less than to walk from each ray (chosen).
-constexpr std::size_t kTrianglesARay = 16;
+constexpr std::size_t kTrianglesARay = 8;
 // Rows of squares that triangles lie in, a ray, up to which the same holds: long triangles across the squares lie in many (chosen).
 constexpr std::size_t kRowsARay = 16, kRunsKnown = 8;   // judged by so many runs
 // Crossings a ray that are kept (chosen).

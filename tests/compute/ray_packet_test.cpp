@@ -150,7 +150,7 @@ TEST(RayPacket, OfOneRayIsThatRay) {
   for (std::uint64_t seed = 1; seed < 400; ++seed) {
     Scene s = scene(seed);
     s.points.resize(1);
-    s.tool.triangles.resize(std::min<std::size_t>(s.tool.triangles.size(), 16));
+    s.tool.triangles.resize(std::min<std::size_t>(s.tool.triangles.size(), 8));
     s.order = order_in_space(s.tool);
     SCOPED_TRACE(seed);
     compare(s, count);
@@ -174,7 +174,7 @@ TEST(RayPacket, IsNotWorthwhileForFewRaysOfManyTriangles) {
   tool.begin(s.pose);
   s.points = {Int3(0, 0, -1)};
   EXPECT_FALSE(packet.trace(tool, s.points, s.along));
-  s.points = {Int3(0, 0, 390)};   // ten before it
+  s.points = {Int3(0, 0, 396)};   // four before it
   EXPECT_TRUE(packet.trace(tool, s.points, s.along));
   s.points.assign(50, Int3(0, 0, -1));   // more crossings than are kept
   EXPECT_FALSE(packet.trace(tool, s.points, s.along));
