@@ -40,10 +40,11 @@ struct BroadPhase::Search {
   VoxelTurn voxels;
 };
 
-Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
+Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const RunTree& runs) {
   const PartitionBuffers& mockup = scene.mockup.partition;
   BroadPhase out;
-  out.order_ = order;
+  out.tree_ = &runs;
+  out.order_ = runs.order();
   out.has_inside_ = scene.constants.refined != 0 && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
   auto pairs = NearPairs::make(device, geometry, mockup);
@@ -55,7 +56,6 @@ Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& g
     out.samples_ = std::move(*samples);
   }
   out.inside_margin_ = 1.75 * geometry.tool_grid.size + 16;   // a grown voxel's diagonal
-  out.tree_.emplace(geometry.tool, order);
   out.make_runs(geometry.tool);
   out.tool_radius_ = geometry.tool_radius;
   if (auto r = out.read_occupancy(device, mockup); !r) return r.error();

@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,9 +24,9 @@ namespace palpate {
 /// One thread; find() neither allocates nor blocks.
 class BroadPhase {
  public:
-  /// `order`: the tool's triangles in the order of runs; it, geometry and scene outlive this. Reads the mock-up's partition back from the
+  /// `runs`: of the tool; they, geometry and scene outlive this. Reads the mock-up's partition back from the
   /// device. Allocates.
-  static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
+  static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const RunTree& runs);
 
   /// Fills the lists: tool triangles with the bricks in which they may come within kCloseSteps of a V_bnd or V_int voxel, those voxels,
   /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be
@@ -61,7 +60,7 @@ class BroadPhase {
   bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
   bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
   Box whole_{};
-  std::optional<RunTree> tree_;
+  const RunTree* tree_ = nullptr;
   std::vector<EightTriangles> runs_;
   std::int32_t tool_radius_ = 0;
   gpu::GridConstants grid_{};

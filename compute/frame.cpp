@@ -21,6 +21,7 @@
 #include "compute/host_contact.h"
 #include "compute/near_rays.h"
 #include "compute/posed_tool.h"
+#include "compute/run_tree.h"
 #include "compute/stage_memory.h"
 
 namespace palpate {
@@ -98,6 +99,7 @@ class RecordedFrame final : public Frame {
   const Plan plan_;
   gpu::GridConstants grid_{};
   PosedTool posed_;
+  std::optional<RunTree> runs_;
   std::optional<BroadPhase> broad_phase_;
   FrameCapacity capacity_;
   FrameBuffers buffers_;
@@ -156,7 +158,8 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   const bool host_decides = refined && device_.host_share == HostShare::kContacts && scene_.rays_walk();
   if (!host_decides)
     if (auto r = make_pipelines(); !r) return r;
-  auto broad_phase = BroadPhase::make(device_, geometry_, scene_, detection_->order());
+  runs_.emplace(geometry_.tool, detection_->order());
+  auto broad_phase = BroadPhase::make(device_, geometry_, scene_, *runs_);
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
   if (refined && device_.host_share != HostShare::kNear) {
@@ -168,7 +171,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
       if (!rays) return rays.error();
       near_rays_.emplace(std::move(*rays));
       if (host_decides) {
-        auto contact = HostContact::make(device_, geometry_, scene_, detection_->order(), *host_areas_, *near_rays_);
+        auto contact = HostContact::make(device_, geometry_, scene_, *runs_, *host_areas_, *near_rays_);
         if (!contact) return contact.error();
         host_contact_ = std::move(*contact);
       }

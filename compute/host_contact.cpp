@@ -5,9 +5,9 @@ namespace palpate {
 using namespace gpu;   // names of shaders/shared/frame.h
 
 Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                                       std::span<const std::uint32_t> order, HostAreas& areas, NearRays& rays) {
-  std::unique_ptr<HostContact> out(new HostContact(geometry, areas, rays, order));
-  auto sets = HostSets::make(device, geometry, scene, order);
+                                                       const RunTree& runs, HostAreas& areas, NearRays& rays) {
+  std::unique_ptr<HostContact> out(new HostContact(geometry, areas, rays, runs));
+  auto sets = HostSets::make(device, geometry, scene, runs.order());
   if (!sets) return sets.error();
   out->sets_ = std::move(*sets);
   out->work_.resize(kMaxFrameAreas);

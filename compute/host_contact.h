@@ -24,7 +24,7 @@ class HostContact {
  public:
   /// `areas` and `rays` outlive this. Only in `refined`, where rays walk.
   static Result<std::unique_ptr<HostContact>> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                                   std::span<const std::uint32_t> order, HostAreas& areas, NearRays& rays);
+                                                   const RunTree& runs, HostAreas& areas, NearRays& rays);
 
   /// False: left to the device. `stage(name)` is called at the end of each stage.
   template <class Stage>
@@ -48,8 +48,8 @@ class HostContact {
   static constexpr std::uint32_t kMostCandidates = 1u << 16;   ///< of a kind, beyond which the device takes over (chosen)
 
  private:
-  HostContact(const SceneGeometry& geometry, HostAreas& areas, NearRays& rays, std::span<const std::uint32_t> order)
-      : areas_(areas), heights_(geometry, rays, order), follow_(geometry) {}
+  HostContact(const SceneGeometry& geometry, HostAreas& areas, NearRays& rays, const RunTree& runs)
+      : areas_(areas), heights_(geometry, rays, runs), follow_(geometry) {}
   bool decide(PosedTool& tool, const NearLists& near);
   bool join(PosedTool& tool, const Held* held);
   bool trace(PosedTool& tool);

@@ -22,8 +22,8 @@ struct RisenSample {
 /// references to its arguments; the rest allocates only when a contact is larger than all before.
 class HostHeights {
  public:
-  HostHeights(const SceneGeometry& geometry, NearRays& rays, std::span<const std::uint32_t> order)
-      : geometry_(&geometry), rays_(&rays), packet_(geometry.tool, order), order_(order), places_(kMostPlaces) {}
+  HostHeights(const SceneGeometry& geometry, NearRays& rays, const RunTree& runs)
+      : geometry_(&geometry), rays_(&rays), packet_(geometry.tool, runs), order_(runs.order()), places_(kMostPlaces) {}
 
   /// Traces every counting sample of an area with a direction and adds its height to the area; `risen` gets those with a height.
   /// False: a ray may cross more than kMostPlaces triangles.

@@ -26,7 +26,7 @@ constexpr double kSideError = 24, kReachError = 0x1p-46;
 
 }  // namespace
 
-RayPacket::RayPacket(const LatticeMesh& tool, std::span<const std::uint32_t> order) : tool_(&tool), order_(order), tree_(tool, order), eight_{} {
+RayPacket::RayPacket(const LatticeMesh& tool, const RunTree& runs) : tool_(&tool), tree_(&runs), eight_{} {
   // No entry of a rotation is beyond 1; a vertex is rounded.
   for (const Int3& v : tool.vertices) tool_reach_ = std::max(tool_reach_, 1.0 + std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
 }
@@ -116,7 +116,7 @@ bool RayPacket::find_runs(const LatticePose& pose) {
   const std::size_t most = (begins_.size() * kTrianglesARay + kEight - 1) / kEight;
   runs_.clear();
   bool few = true;
-  tree_.descend(
+  tree_->descend(
       turn, [&](const EightRanges& at, std::size_t i) { return holds_rays({at.first[0][i], at.first[1][i]}, {at.last[0][i], at.last[1][i]}); },
       [&](std::uint32_t run) {
         few = runs_.size() < most;
@@ -153,7 +153,7 @@ void RayPacket::note(std::uint32_t ray, std::size_t i, std::uint32_t id) {
 void RayPacket::test_run(PosedTool& tool, std::uint32_t run) {
   const auto moved = std::bit_cast<std::array<std::int32_t, 3>>(tool.pose().translation);
   const std::array<std::int32_t, 3> origin{moved[axes_[0]], moved[axes_[1]], moved[axes_[2]]};
-  const auto ids = order_.subspan(run * kEight, std::min(order_.size() - run * kEight, kEight));
+  const auto ids = tree_->order().subspan(run * kEight, std::min(tree_->order().size() - run * kEight, kEight));
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const auto corners = std::bit_cast<std::array<std::int32_t, 9>>(tool.corners(ids[i]));
     for (std::size_t k = 0; k < 3; ++k)

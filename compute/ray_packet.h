@@ -16,8 +16,8 @@ namespace palpate {
 /// against those in the squares it covers, in doubles. One thread; trace() allocates only for more rays or crossings than ever before.
 class RayPacket {
  public:
-  /// `order`: ids of the tool's triangles by place. Both outlive this. Allocates.
-  RayPacket(const LatticeMesh& tool, std::span<const std::uint32_t> order);
+  /// `runs`: of the tool. Both outlive this.
+  RayPacket(const LatticeMesh& tool, const RunTree& runs);
 
   /// What a ray may cross: a crossing, or sign 0 where doubles don't tell and exact::ray_crossing has to.
   struct Hit {
@@ -49,8 +49,7 @@ class RayPacket {
   void note(std::uint32_t ray, std::size_t i, std::uint32_t id);
 
   const LatticeMesh* tool_;
-  std::span<const std::uint32_t> order_;
-  RunTree tree_;
+  const RunTree* tree_;
   double tool_reach_ = 0;   ///< steps: no component of a turned vertex is beyond it
 
   // The present rays.

@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-RunTree::RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order) {
+RunTree::RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order) : order_(order) {
   std::vector<Int3> low((order.size() + kEight - 1) / kEight, Int3(INT32_MAX)), high(low.size(), Int3(INT32_MIN));
   for (std::size_t place = 0; place < order.size(); ++place) {
     if (tool.collapsed(order[place])) continue;

@@ -13,8 +13,9 @@ namespace palpate {
 /// Boxes of a tool's runs of eight triangles, of eight runs, and so on, in its lattice frame: 3.5 bytes a triangle. What has collapsed is in none.
 class RunTree {
  public:
-  /// `order`: ids of the tool's triangles by place. Allocates.
+  /// `order`: ids of the tool's triangles by place; it outlives this. Allocates.
   RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order);
+  std::span<const std::uint32_t> order() const { return order_; }
 
   /// Calls take(run) for every run that the turned box of each node above it, and its own, meets the voxels of (voxels_of()) with
   /// holds(ranges, node of eight); until take() returns false.
@@ -42,6 +43,7 @@ class RunTree {
   }
 
  private:
+  std::span<const std::uint32_t> order_;
   std::vector<std::vector<EightBoxes>> levels_;   // of runs first; the last level is one group
 };
 

@@ -92,7 +92,8 @@ struct Count {
 
 /// Holds a packet against the exact test of every ray with every triangle.
 void compare(const Scene& s, Count& count) {
-  RayPacket packet(s.tool, s.order);
+  const RunTree runs(s.tool, s.order);
+  RayPacket packet(s.tool, runs);
   PosedTool tool(s.tool);
   tool.begin(s.pose);
   if (!packet.trace(tool, s.points, s.along)) return;
@@ -169,7 +170,8 @@ TEST(RayPacket, IsNotWorthwhileForFewRaysOfManyTriangles) {
   s.pose = unturned(Int3(0));
   s.along = Int3(0, 0, 1 << 28);
   s.order = order_in_space(s.tool);
-  RayPacket packet(s.tool, s.order);
+  const RunTree runs(s.tool, s.order);
+  RayPacket packet(s.tool, runs);
   PosedTool tool(s.tool);
   tool.begin(s.pose);
   s.points = {Int3(0, 0, -1)};
@@ -190,7 +192,8 @@ TEST(RayPacket, IsNotWorthwhileForFewRaysOfLongTriangles) {
   s.pose = unturned(Int3(0));
   s.along = Int3(0, 0, 1 << 28);
   s.order = order_in_space(s.tool);
-  RayPacket packet(s.tool, s.order);
+  const RunTree runs(s.tool, s.order);
+  RayPacket packet(s.tool, runs);
   PosedTool tool(s.tool);
   tool.begin(s.pose);
   const auto rays = [&](int side) {
