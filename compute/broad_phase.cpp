@@ -1,7 +1,6 @@
 #include "compute/broad_phase.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 

@@ -42,7 +42,7 @@ Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geo
   return out;
 }
 
-/// Of boxes of triangles. What a product of doubles is rounded by is far less than the steps by which a tool triangle's box is grown.
+/// Boxes of triangles in parts of the voxels that list them. A product's rounding is far less than the steps by which a tool triangle's box is grown.
 void NearPairs::make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_t> slots) {
   boxes_.resize(6 * std::size_t{grid_.list_entries} + kLanes);   // the last sixteen are read whole
   Int3 brick;
