@@ -54,6 +54,22 @@ TEST_F(GeometryCache, AScenePreparedBeforeIsReadWithoutItsMeshesAndIsTheSame) {
   EXPECT_THAT(cache.take_notes(), testing::IsEmpty());
 }
 
+TEST_F(GeometryCache, CoarseSamplesAreWarnedOfWhereverTheGeometryComesFrom) {
+  const auto warnings = [&](const char* response, DiskCache* with) {
+    auto loaded = load_scene(read(std::string(R"(, "response": )") + response), {}, {}, with);
+    EXPECT_TRUE(loaded);
+    std::erase_if(loaded->scene.warnings, [](const std::string& warning) { return !warning.starts_with("samples are "); });
+    return loaded->scene.warnings;
+  };
+  const char* coarse = R"({"voxel_size": 0.01, "sample_spacing": 0.02})";
+  const auto told = testing::ElementsAre("samples are 0.02 m apart, not less than a voxel (0.01 m): the force of a contact a few of them wide or deep is off by 5 % and more");
+  EXPECT_THAT(warnings(coarse, nullptr), told);
+  EXPECT_THAT(warnings(coarse, &cache), told);   // kept
+  EXPECT_THAT(warnings(coarse, &cache), told);   // found
+  EXPECT_THAT(warnings(R"({"voxel_size": 0.01, "sample_spacing": 0.02, "profile": "paper"})", &cache), testing::IsEmpty());   // the same geometry
+  EXPECT_THAT(warnings(R"({"voxel_size": 0.01, "sample_spacing": 0.009})", &cache), testing::IsEmpty());
+}
+
 TEST_F(GeometryCache, EverythingThatShapesGeometryIsInTheKeyAndNothingElse) {
   const auto key = geometry_key(read());
   ASSERT_TRUE(key);
