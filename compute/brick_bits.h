@@ -89,11 +89,14 @@ class BrickBits {
     const auto from = [&](std::size_t k, std::int32_t brick) { return brick == first[k] >> 3 ? first[k] & 7 : 0; };
     const auto to = [&](std::size_t k, std::int32_t brick) { return brick == last[k] >> 3 ? last[k] & 7 : 7; };
     for (std::int32_t z = first[2] >> 3; z <= last[2] >> 3; ++z) {
-      const Block& planes = kBrickMasks.z[from(2, z)][to(2, z)];
+      const auto low = static_cast<std::size_t>(from(2, z)), high = static_cast<std::size_t>(to(2, z));
       for (std::int32_t y = first[1] >> 3; y <= last[1] >> 3; ++y) {
         const std::uint64_t rows = kBrickMasks.y[from(1, y)][to(1, y)];
-        for (std::int32_t x = first[0] >> 3; x <= last[0] >> 3; ++x)
-          if ((within(bits(number(x, y, z)), planes) & rows & kBrickMasks.x[from(0, x)][to(0, x)]) != 0 && take(x, y, z)) return true;
+        for (std::int32_t x = first[0] >> 3; x <= last[0] >> 3; ++x) {
+          const Block& own = bits(number(x, y, z));
+          const std::uint64_t found = high - low < 2 ? own[low] | own[high] : within(own, kBrickMasks.z[low][high]);
+          if ((found & rows & kBrickMasks.x[from(0, x)][to(0, x)]) != 0 && take(x, y, z)) return true;
+        }
       }
     }
     return false;
@@ -116,7 +119,7 @@ class BrickBits {
   bool at(std::size_t brick, std::uint32_t bit) const { return (bits(brick)[bit >> 6] >> (bit & 63) & 1) != 0; }
 
  private:
-  /// What some planes of a brick have, one upon the other. All planes at once: a loop over a few would be mispredicted each time.
+  /// What some planes of a brick have, one upon the other. All planes at once: a loop over several would be mispredicted each time.
   static std::uint64_t within(const Block& own, const Block& planes) {
     using Two = std::uint64_t __attribute__((vector_size(16)));
     Two found{};
