@@ -298,7 +298,7 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
   std::uint16_t near[512 + kEight];
   std::size_t count = found.count;
   if (has_near_) {
-    std::fill_n(found.bit + count, kEight, 0);
+    std::fill_n(&found.bit[count], kEight, 0);
     search.to_tool(origin + size / 2, q);
     NearCells cells{near_, {}, {}, mockup_.size * per_fine_};
     for (std::size_t k = 0; k < 3; ++k) {
