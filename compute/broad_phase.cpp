@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "compute/processor.h"
+#include "compute/search_tables.h"
 
 namespace palpate {
 namespace {
@@ -46,7 +46,7 @@ Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& g
   out.order_ = runs.order();
   out.has_inside_ = scene.constants.refined != 0 && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
-  auto pairs = NearPairs::make(device, geometry, mockup);
+  auto pairs = NearPairs::make(device, geometry, scene);
   if (!pairs) return pairs.error();
   out.pairs_ = std::move(*pairs);
   if (out.has_inside_) {
@@ -58,7 +58,7 @@ Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& g
   out.make_runs(geometry.tool);
   out.tool_radius_ = geometry.tool_radius;
   if (auto r = out.read_occupancy(device, mockup); !r) return r.error();
-  out.find_parts(geometry.mockup, geometry.tool_radius);
+  out.parts_ = scene.search->parts;
   return out;
 }
 
@@ -89,35 +89,6 @@ Result<void> BroadPhase::read_occupancy(VulkanDevice& device, const PartitionBuf
   if (auto r = occupied_.emplace_back().read(device, mockup); !r) return r;
   while (std::max({occupied_.back().size().x, occupied_.back().size().y, occupied_.back().size().z}) > kManyBricks) occupied_.push_back(occupied_.back().coarser());
   return {};
-}
-
-void BroadPhase::find_parts(const LatticeMesh& mockup, std::int32_t tool_radius) {
-  // Parts are connected by corners: a part that meets no triangle of a closed tool lies wholly on one side of it.
-  std::vector<std::uint32_t> parent(mockup.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (std::uint32_t t = 0; t < mockup.triangles.size(); ++t) {
-    if (mockup.collapsed(t)) continue;
-    for (std::size_t k = 1; k < 3; ++k) parent[root(mockup.triangles[t][k])] = root(mockup.triangles[t][0]);
-  }
-  std::vector<std::array<std::int32_t, 6>> boxes(mockup.vertices.size(), {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MIN, INT32_MIN, INT32_MIN});
-  for (std::uint32_t t = 0; t < mockup.triangles.size(); ++t) {
-    if (mockup.collapsed(t)) continue;
-    auto& box = boxes[root(mockup.triangles[t][0])];
-    for (int corner = 0; corner < 3; ++corner)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::int32_t v = mockup.corner(t, corner)[static_cast<int>(k)];
-        box[k] = std::min(box[k], v);
-        box[k + 3] = std::max(box[k + 3], v);
-      }
-  }
-  const std::int64_t most = 2 * std::int64_t{tool_radius} + 2 * gpu::kCloseSteps;
-  for (const auto& box : boxes)
-    if (box[0] <= box[3] && std::int64_t{box[3]} - box[0] <= most && std::int64_t{box[4]} - box[1] <= most && std::int64_t{box[5]} - box[2] <= most)
-      parts_.push_back(box);
 }
 
 BroadPhase::Reach BroadPhase::reach(const Turn& turn, const Box& box) const {

@@ -45,7 +45,6 @@ class BroadPhase {
 
   void make_runs(const LatticeMesh& tool);
   Result<void> read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup);
-  void find_parts(const LatticeMesh& mockup, std::int32_t tool_radius);
   Reach reach(const Turn& turn, const Box& box) const;
   bool meets(const Reach& reach) const;
   bool meets(BrickBits::Range voxels) const;
@@ -66,8 +65,7 @@ class BroadPhase {
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;   ///< voxels a step
   std::vector<BrickBits> occupied_;                         ///< voxels that are not V_ext, bricks with such a voxel, bricks of bricks …
-  /// Parts of the mock-up that would fit into the tool.
-  std::vector<std::array<std::int32_t, 6>> parts_;          ///< low x, y, z, high x, y, z; steps
+  std::span<const std::array<std::int32_t, 6>> parts_;      ///< SearchTables::parts
 };
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "compute/processor.h"
+#include "compute/search_tables.h"
 
 namespace palpate {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::int32_t kFewVoxels = 64;   // beyond, a look at the brick as a wh
 constexpr std::int32_t kParts = kVoxelParts;
 
 // Sixteen boxes at a time.
-constexpr std::size_t kLanes = 16;
+constexpr std::size_t kLanes = SearchTables::kBoxesAtOnce;
 using Bytes = std::uint8_t __attribute__((vector_size(kLanes)));
 using Halves = std::uint64_t __attribute__((vector_size(kLanes)));
 
@@ -24,8 +25,9 @@ inline void load(const std::uint8_t* from, Bytes& out) { std::memcpy(&out, from,
 
 }  // namespace
 
-Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup) {
+Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
   NearPairs out;
+  const PartitionBuffers& mockup = scene.mockup.partition;
   out.grid_ = mockup.grid;
   out.per_part_ = static_cast<double>(kParts) / mockup.grid.size;
   // Boxes of parts reach a part further than their highs. A test is off by less than a sixteenth of a half part: sums in single precision
@@ -35,42 +37,8 @@ Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geo
   if (auto r = out.list_begin_.read(device, mockup.list_begin, std::size_t{mockup.grid.boundary_voxels} + 1); !r) return r.error();
   if (auto r = out.list_triangles_.read(device, mockup.list_triangles, mockup.grid.list_entries); !r) return r.error();
   out.seen_by_.resize(geometry.mockup.triangles.size());
-  std::vector<std::uint32_t> slots(static_cast<std::size_t>(mockup.grid.bricks.x) * static_cast<std::size_t>(mockup.grid.bricks.y) *
-                                   static_cast<std::size_t>(mockup.grid.bricks.z));
-  if (auto r = download(device, mockup.brick_slot, 0, slots.data(), slots.size() * 4); !r) return r.error();
-  out.make_boxes(geometry.mockup, slots);
+  out.boxes_ = scene.search->boxes;
   return out;
-}
-
-/// Boxes of triangles in parts of the voxels that list them. A product's rounding is far less than the steps by which a tool triangle's box is grown.
-void NearPairs::make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_t> slots) {
-  boxes_.resize(6 * std::size_t{grid_.list_entries} + kLanes);   // the last sixteen are read whole
-  Int3 brick;
-  std::size_t place = 0;
-  for (brick.z = 0; brick.z < grid_.bricks.z; ++brick.z)
-    for (brick.y = 0; brick.y < grid_.bricks.y; ++brick.y)
-      for (brick.x = 0; brick.x < grid_.bricks.x; ++brick.x, ++place) {
-        if (slots[place] >= gpu::kBrickInternal) continue;
-        const gpu::Brick& voxels = bricks_[slots[place]];
-        for (std::uint32_t word = 0; word < 16; ++word) {
-          std::uint32_t boundary = voxels.first[word];
-          for (std::uint32_t rest = voxels.boundary[word]; rest != 0; rest &= rest - 1, ++boundary) {
-            const auto bit = static_cast<std::int32_t>(word << 5) + std::countr_zero(rest);
-            const Int3 low = grid_.origin + grid_.size * (8 * brick + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
-            const std::size_t begin = list_begin_[boundary], count = list_begin_[boundary + 1] - begin;
-            for (std::size_t i = 0; i < count; ++i) {
-              const std::uint32_t id = list_triangles_[begin + i];
-              const exact::Box box = exact::box_of({mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)});
-              const auto part = [&](std::int32_t at) { return static_cast<std::uint8_t>(std::clamp(at, 0, grid_.size - 1) * per_part_); };
-              for (std::size_t k = 0; k < 3; ++k) {
-                const int axis = static_cast<int>(k);
-                boxes_[6 * begin + k * count + i] = part(box.low[axis] - low[axis]);
-                boxes_[6 * begin + (k + 3) * count + i] = part(box.high[axis] - low[axis]);
-              }
-            }
-          }
-        }
-      }
 }
 
 bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Triangle& out) {

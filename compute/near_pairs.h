@@ -9,7 +9,6 @@
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
 #include "compute/turned_boxes.h"
-#include "model/lattice_mesh.h"
 #include "model/scene_geometry.h"
 
 namespace palpate {
@@ -18,7 +17,7 @@ namespace palpate {
 /// The device decides both exactly. One thread; nothing but make() allocates.
 class NearPairs {
  public:
-  static Result<NearPairs> make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup);
+  static Result<NearPairs> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
 
   /// A tool triangle at a pose.
   struct Triangle {
@@ -37,7 +36,6 @@ class NearPairs {
   bool take(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
 
  private:
-  void make_boxes(const LatticeMesh& mesh, std::span<const std::uint32_t> slots);
   bool off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const;
   bool take_brick(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
   bool take_list(const Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists);
@@ -47,9 +45,7 @@ class NearPairs {
   float slack_ = 0;        ///< of a test against a plane, half parts
   HostCopy<gpu::Brick> bricks_;
   HostCopy<std::uint32_t> list_begin_, list_triangles_;
-  /// Boxes of triangles, each as far as it lies in a voxel that lists it, in parts of the voxel: for the list of n from `begin` on, six times n bytes
-  /// from 6 · begin on, all lows along x, then y and z, then highs.
-  std::vector<std::uint8_t> boxes_;
+  std::span<const std::uint8_t> boxes_;  ///< SearchTables::boxes
   std::vector<std::uint32_t> seen_by_;   ///< by static triangle: the last tool triangle that took it
   std::uint32_t looker_ = 0;             ///< number of the present one
 };

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/search_tables.h"
 #include "model/cache/archive.h"
 #include "model/cache/geometry_cache.h"
 
@@ -30,6 +31,12 @@ void archive_samples(Archive& a, Samples& samples) {
   a(samples.wide);
   a(samples.points);
   a(samples.point_begin);
+}
+
+template <class Archive, class Tables>
+void archive_tables(Archive& a, Tables& tables) {
+  a(tables.boxes);
+  a(tables.parts);
 }
 
 }  // namespace
@@ -65,6 +72,9 @@ std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cach
   auto samples = std::make_shared<HostSamples>();
   archive_samples(reader, *samples);
   scene.samples = std::move(samples);
+  auto tables = std::make_shared<SearchTables>();
+  archive_tables(reader, *tables);
+  scene.search = std::move(tables);
   if (!reader.complete()) {
     cache.drop(kKind, key, "does not hold what it should");
     return std::nullopt;
@@ -92,6 +102,7 @@ void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key
   });
   static const HostSamples kNone;
   archive_samples(writer, scene.samples ? *scene.samples : kNone);
+  archive_tables(writer, *scene.search);
   if (whole) cache.keep(kKind, key, writer.pieces(), seconds);
 }
 

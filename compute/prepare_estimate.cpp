@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "model/mass.h"
-
 namespace palpate {
 namespace {
 
@@ -15,8 +13,7 @@ struct Sizes {
   double body = 0, entries = 0, boundary = 0, bricks = 0;
 };
 
-Sizes sizes(const LatticeMesh& mesh, const VoxelGrid& grid) {
-  const SurfaceMeasure m = measure(mesh);
+Sizes sizes(const LatticeMesh& mesh, const SurfaceMeasure& m, const VoxelGrid& grid) {
   const auto triangles = static_cast<double>(mesh.triangles.size());
   const double v = grid.size;
   Sizes out;
@@ -37,7 +34,8 @@ double lists(const Sizes& s, double triangles) {
 }  // namespace
 
 std::uint64_t estimate_preparation(const SceneGeometry& geometry, const Plan& plan) {
-  const Sizes mockup = sizes(geometry.mockup, geometry.mockup_grid), tool = sizes(geometry.tool, geometry.tool_grid);
+  const Sizes mockup = sizes(geometry.mockup, geometry.mockup_surface, geometry.mockup_grid),
+              tool = sizes(geometry.tool, geometry.tool_surface, geometry.tool_grid);
   double sum = kFixed + mockup.body + tool.body + lists(mockup, static_cast<double>(geometry.mockup.triangles.size()));
   if (plan.profile == Profile::kRefined) sum += 17 * lists(tool, static_cast<double>(geometry.tool.triangles.size()));   // and in finer voxels
   return static_cast<std::uint64_t>(std::min(sum, 1e18));   // beyond, numbers end; memory did long before

@@ -10,6 +10,7 @@
 #include "compute/prepare_samples.h"
 #include "compute/prepare_seams.h"
 #include "compute/prepare_steps.h"
+#include "compute/search_tables.h"
 
 namespace palpate {
 namespace {
@@ -50,6 +51,19 @@ void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
   }
 }
 
+void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
+  steps.progress("search", 0.95);
+  if (!steps.ok()) return;
+  auto made = SearchTables::make(steps.device(), geometry, out.mockup.partition, [&] {
+    steps.progress("search", 0.95);
+    return steps.ok();
+  });
+  if (made)
+    out.search = std::move(*made);
+  else
+    steps.fail(made.error());
+}
+
 }  // namespace
 
 std::uint64_t PreparedScene::memory_bytes() const {
@@ -62,6 +76,7 @@ Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& sce
   PreparedScene out;
   out.constants = scene.constants;
   out.samples = scene.samples;
+  out.search = scene.search;
   for (auto body : {&PreparedScene::mockup, &PreparedScene::tool}) (out.*body).seam_entries = (scene.*body).seam_entries;
   std::vector<const PartitionBuffers*> partitions;
   for_each_partition(scene, [&](const PartitionBuffers& p) { partitions.push_back(&p); });
@@ -110,6 +125,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   classify(steps, geometry.mockup, pairs, out.mockup);
   steps.progress("seams", 0.9);
   find_seams(steps, geometry, refined, pairs, out.mockup);
+  make_search_tables(steps, geometry, out);
   if (refined) {
     const VoxelPairs tool_pairs =
         build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);

@@ -13,6 +13,8 @@
 
 namespace palpate {
 
+struct SearchTables;
+
 /// A voxel partition on the device (docs/EXACTNESS.md section 2); look-ups in shaders/lib/partition.glsl.
 struct PartitionBuffers {
   gpu::GridConstants grid{};
@@ -52,6 +54,7 @@ struct PreparedScene {
   VulkanBuffer fine_exit;         ///< uint32, one a boundary voxel of it: kBindFineExit
   VulkanBuffer tool_near;         ///< bits: kBindToolNear; may be empty: all are near
   std::shared_ptr<const HostSamples> samples;   ///< may be null or empty: frames work them out
+  std::shared_ptr<const SearchTables> search;   ///< never null
   std::uint64_t memory_bytes() const;
   /// Whether rays walk through the tool's fine partition: it is closed, and the bounds of shaders/lib/tool_walk.glsl hold.
   bool rays_walk() const;

@@ -192,8 +192,8 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
   out.tool = std::move(*tool_mesh);
 
   // The tool's mass and reach.
-  const SurfaceMeasure tool_measure = measure(out.tool);
-  const Result<Vec3> gc = centre_of_mass(settings.centre_of_mass_m, out.tool, tool_measure, tool_lattice, length(tool_box.size()) / 2,
+  out.tool_surface = measure(out.tool);
+  const Result<Vec3> gc = centre_of_mass(settings.centre_of_mass_m, out.tool, out.tool_surface, tool_lattice, length(tool_box.size()) / 2,
                                          out.tool_report);
   if (!gc) return gc.error();
   out.tool_gc_m = *gc;
@@ -204,8 +204,9 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
     out.tool_gc[k] = static_cast<std::int32_t>(std::nearbyint((out.tool_gc_m[k] - out.tool_centre_m[k]) / out.lattice.step_m));
 
   // The grids and the sampling.
-  const VoxelSubject mockup_subject{measure(out.mockup), out.mockup.box_min, out.mockup.box_max};
-  const VoxelSubject tool_subject{tool_measure, out.tool.box_min, out.tool.box_max};
+  out.mockup_surface = measure(out.mockup);
+  const VoxelSubject mockup_subject{out.mockup_surface, out.mockup.box_min, out.mockup.box_max};
+  const VoxelSubject tool_subject{out.tool_surface, out.tool.box_min, out.tool.box_max};
   const Result<std::int32_t> size = choose_voxel_size(mockup_subject, tool_subject, out.lattice.step_m, settings.voxel_size_m);
   if (!size) return size.error();
   out.mockup_grid = make_grid(out.mockup.box_min, out.mockup.box_max, *size);

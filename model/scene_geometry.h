@@ -3,6 +3,7 @@
 
 #include "model/lattice.h"
 #include "model/lattice_mesh.h"
+#include "model/mass.h"
 #include "model/smooth_angle.h"
 #include "model/voxel_grid.h"
 
@@ -13,6 +14,7 @@ struct SceneGeometry {
   Lattice lattice;
   LatticeMesh mockup;                 ///< world lattice frame
   LatticeMesh tool;                   ///< tool lattice frame: origin at the tool's box centre
+  SurfaceMeasure mockup_surface, tool_surface;   ///< of the two meshes
   Vec3 tool_centre_m{0};              ///< tool frame of the file: where the tool's lattice origin lies
   Vec3 tool_gc_m{0};                  ///< tool frame of the file: centre of mass
   Int3 tool_gc{0};                    ///< the same in the tool's lattice frame, rounded to nearest

@@ -66,6 +66,8 @@ void archive_shape(Archive& a, Geometry& g) {
   a(g.lattice.origin_m);
   archive_mesh(a, g.mockup);
   archive_mesh(a, g.tool);
+  a(g.mockup_surface);
+  a(g.tool_surface);
   a(g.tool_centre_m);
   a(g.tool_gc_m);
   a(g.tool_gc);

@@ -1,18 +1,24 @@
 // A batch is the same answers, sooner; preparation takes what was foretold.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <random>
 #include <span>
+#include <string_view>
 
 #include "compute/gpu_backend.h"
 #include "compute/host_exact.h"
 #include "compute/prepare_estimate.h"
 #include "compute/prepare_on_host.h"
 #include "compute/prepared_scene.h"
+#include "compute/search_tables.h"
 #include "model/generate.h"
 #include "model/geometry_build.h"
 #include "model/path_file.h"
+#include "shaders/shared/frame.h"
 #include "tests/equivalence/contacts_difference.h"
 
 namespace palpate {
@@ -149,7 +155,71 @@ testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeome
   return testing::AssertionSuccess();
 }
 
-TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShaders) {
+/// Whether every listed triangle's box, as far as it lies in its voxel, is rounded down to 256ths of the voxel.
+testing::AssertionResult boxes_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
+  const PartitionBuffers& p = scene.mockup.partition;
+  const std::vector<std::uint8_t>& boxes = scene.search->boxes;
+  const auto read = [&](const VulkanBuffer& buffer, std::size_t count) {
+    std::vector<std::uint32_t> out(count);
+    EXPECT_TRUE(download(device, buffer, 0, out.data(), count * 4));
+    return out;
+  };
+  const auto begin = read(p.list_begin, p.grid.boundary_voxels + 1), ids = read(p.list_triangles, p.grid.list_entries),
+             places = read(p.boundary_place, p.grid.boundary_voxels), numbers = read(p.mixed_brick, p.grid.mixed_bricks);
+  if (boxes.size() != 6 * ids.size() + SearchTables::kBoxesAtOnce) return testing::AssertionFailure() << boxes.size() << " bytes of boxes";
+  for (std::size_t voxel = 0; voxel < places.size(); ++voxel) {
+    const std::uint32_t brick = numbers[places[voxel] >> 9], bit = places[voxel] & 511;
+    const auto nx = static_cast<std::uint32_t>(p.grid.bricks.x), ny = static_cast<std::uint32_t>(p.grid.bricks.y);
+    const Int3 at = 8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6);
+    const Int3 low = p.grid.origin + p.grid.size * at;
+    const std::size_t count = begin[voxel + 1] - begin[voxel];
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < 6; ++k) {
+        const int axis = static_cast<int>(k % 3);
+        const auto corner = [&](int c) { return geometry.mockup.corner(ids[begin[voxel] + i], c)[axis]; };
+        const std::int32_t end = k < 3 ? std::min({corner(0), corner(1), corner(2)}) : std::max({corner(0), corner(1), corner(2)});
+        const double part = 256.0 * std::clamp(end - low[axis], 0, p.grid.size - 1) / p.grid.size, found = boxes[6 * begin[voxel] + k * count + i];
+        if (found > part + 1e-9 || found < part - 1 - 1e-9) return testing::AssertionFailure() << "voxel " << voxel << ", entry " << i << ", end " << k << ": " << found << ", " << part;
+      }
+  }
+  return testing::AssertionSuccess();
+}
+
+/// Boxes of what is connected by corners and fits into the tool: by labels that spread until none changes.
+std::vector<std::array<std::int32_t, 6>> parts_of(const SceneGeometry& geometry) {
+  const LatticeMesh& mesh = geometry.mockup;
+  std::vector<std::uint32_t> label(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < label.size(); ++v) label[v] = v;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (mesh.collapsed(t)) continue;
+      const auto& [a, b, c] = mesh.triangles[t];
+      const std::uint32_t least = std::min({label[a], label[b], label[c]});
+      for (const std::uint32_t v : {a, b, c}) changed = changed || label[v] != least, label[v] = least;
+    }
+  }
+  std::map<std::uint32_t, std::array<std::int32_t, 6>> boxes;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.collapsed(t)) continue;
+    const Int3 first = mesh.corner(t, 0);
+    auto& box = boxes.try_emplace(label[mesh.triangles[t][0]], std::array{first.x, first.y, first.z, first.x, first.y, first.z}).first->second;
+    for (int corner = 0; corner < 3; ++corner)
+      for (int k = 0; k < 3; ++k) {
+        auto &low = box[static_cast<std::size_t>(k)], &high = box[static_cast<std::size_t>(k) + 3];
+        low = std::min(low, mesh.corner(t, corner)[k]);
+        high = std::max(high, mesh.corner(t, corner)[k]);
+      }
+  }
+  std::vector<std::array<std::int32_t, 6>> out;
+  const auto most = 2 * std::int64_t{geometry.tool_radius} + 2 * gpu::kCloseSteps;
+  for (const auto& [root, box] : boxes)
+    if (std::int64_t{box[3]} - box[0] <= most && std::int64_t{box[4]} - box[1] <= most && std::int64_t{box[5]} - box[2] <= most) out.push_back(box);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShadersAndRightTablesForTheSearch) {
   struct Mockup {
     const char* name;
     Mesh mesh;
@@ -176,6 +246,16 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShaders) {
       ASSERT_TRUE(prepared) << prepared.error().sentence;
       by[share == HostShare::kContacts ? 1 : 0] = prepared->samples;
       EXPECT_TRUE(points_are_right(**device, *geometry, *prepared));
+      EXPECT_TRUE(boxes_are_right(**device, *geometry, *prepared));
+      auto parts = prepared->search->parts;
+      std::sort(parts.begin(), parts.end());
+      EXPECT_EQ(parts, parts_of(*geometry));
+      if (std::string_view(mockup.name).starts_with("soup")) {
+        EXPECT_GT(parts.size(), 100u);
+      }
+      const auto tables = SearchTables::make(**device, *geometry, prepared->mockup.partition, [] { return false; });
+      ASSERT_TRUE(tables);
+      EXPECT_FALSE(*tables) << "cancelled";
       const auto host = HostPreparation::make(**device, geometry->mockup, prepared->mockup.partition);
       ASSERT_TRUE(host);
       const auto listing = [&](std::uint64_t most_bytes, bool go_on) {

@@ -42,6 +42,8 @@ inline SceneGeometry scene_of(const std::vector<Triangle>& mockup, const std::ve
   scene.lattice.step_m = 1;
   scene.mockup = lattice_mesh_of(mockup);
   scene.tool = lattice_mesh_of(tool);
+  scene.mockup_surface = measure(scene.mockup);
+  scene.tool_surface = measure(scene.tool);
   scene.mockup_grid = make_grid(scene.mockup.box_min, scene.mockup.box_max, voxel);
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;

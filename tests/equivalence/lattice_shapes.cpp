@@ -38,6 +38,8 @@ Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& to
   auto tool_mesh = build_lattice_mesh(mesh_of(tool, {}), scene.lattice, scene.smooth_angle, scene.tool_report);
   if (!tool_mesh) return tool_mesh.error();
   scene.tool = std::move(*tool_mesh);
+  scene.mockup_surface = measure(scene.mockup);
+  scene.tool_surface = measure(scene.tool);
   scene.mockup_grid = make_grid(scene.mockup.box_min, scene.mockup.box_max, voxel);
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;
