@@ -6,8 +6,11 @@
 #include <vector>
 
 #include "model/cache/content_key.h"
+#include "model/large_pages.h"
 
 namespace palpate {
+
+inline constexpr std::size_t kListAlignment = 8;   ///< bytes from the row's begin to a list's first entry are a multiple of it
 
 /// Writes values and lists as a row of bytes. One function `template <class Archive> void archive(Archive& a, …)` that calls a(x) for each
 /// member serves both this and ArchiveReader, so that they can't fall out of step. Lists are not copied: they must outlive the archive.
@@ -24,6 +27,8 @@ class ArchiveWriter {
   template <PlainValue T>
   void operator()(const std::vector<T>& v) {
     (*this)(v.size());
+    static constexpr char kZeros[kListAlignment]{};
+    borrow({kZeros, (kListAlignment - bytes_ % kListAlignment) % kListAlignment});
     borrow({reinterpret_cast<const char*>(v.data()), v.size() * sizeof(T)});
   }
   template <class T, class Each>
@@ -31,22 +36,26 @@ class ArchiveWriter {
     (*this)(v.size());
     for (const T& item : v) each_of(*this, item);
   }
-  void borrow(std::string_view bytes) { pieces_.push_back(bytes); }
+  void borrow(std::string_view bytes) {
+    pieces_.push_back(bytes);
+    bytes_ += bytes.size();
+  }
   const std::vector<std::string_view>& pieces() const { return pieces_; }
 
  private:
   void owned(const void* data, std::size_t size) {
     small_.emplace_back(static_cast<const char*>(data), size);
-    pieces_.emplace_back(small_.back());
+    borrow(small_.back());
   }
   std::deque<std::string> small_;   // a deque: what pieces_ points to stays where it is
   std::vector<std::string_view> pieces_;
+  std::size_t bytes_ = 0;   // of all of them
 };
 
 /// Reads such a row back. What lies beyond the end reads as zero or empty, and ok() is false from then on.
 class ArchiveReader {
  public:
-  explicit ArchiveReader(std::string_view bytes) : rest_(bytes) {}
+  explicit ArchiveReader(std::string_view bytes) : bytes_(bytes.size()), rest_(bytes) {}
 
   template <PlainValue T>
   void operator()(T& v) {
@@ -55,8 +64,20 @@ class ArchiveReader {
   void operator()(std::string& s) { s = take(size(1)); }
   template <PlainValue T>
   void operator()(std::vector<T>& v) {
-    v.resize(size(sizeof(T)));
-    if (const std::string_view piece = take(v.size() * sizeof(T)); !piece.empty()) std::memcpy(v.data(), piece.data(), piece.size());
+    std::size_t n = size(sizeof(T));
+    take((kListAlignment - (bytes_ - rest_.size()) % kListAlignment) % kListAlignment);
+    const std::string_view piece = take(n * sizeof(T));
+    if (piece.empty()) n = 0;
+    v.reserve(n);
+    want_large_pages(v.data(), n * sizeof(T));
+    // Where entries lie as in a list of T they are copied without first being made 0.
+    const auto* entries = reinterpret_cast<const T*>(piece.data());
+    if (reinterpret_cast<std::uintptr_t>(entries) % alignof(T) == 0) {
+      v.assign(entries, entries + n);
+    } else {
+      v.resize(n);
+      std::memcpy(v.data(), piece.data(), piece.size());
+    }
   }
   template <class T, class Each>
   void each(std::vector<T>& v, Each each_of) {
@@ -86,6 +107,7 @@ class ArchiveReader {
     ok_ = false;
     return 0;
   }
+  std::size_t bytes_ = 0;   // of the whole row
   std::string_view rest_;
   bool ok_ = true;
 };

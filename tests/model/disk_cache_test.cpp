@@ -193,6 +193,7 @@ TEST(Archive, ReadsBackWhatWasWrittenAndNothingFromACutOne) {
     return std::tuple(reader.complete(), seven, text, numbers_back, names_back);
   };
   EXPECT_EQ(read(bytes), std::tuple(true, 7, "text", numbers, names));
+  for (const char* before : {"1", "22", "4444"}) EXPECT_EQ(read(std::string_view(before + bytes).substr(std::strlen(before))), std::tuple(true, 7, "text", numbers, names));   // lists that lie anywhere
   for (std::size_t length = 0; length < bytes.size(); ++length) EXPECT_FALSE(std::get<0>(read(bytes.substr(0, length)))) << length;
   EXPECT_FALSE(std::get<0>(read(bytes + "x")));
   // A length that no file could hold allocates nothing.
