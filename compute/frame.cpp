@@ -32,6 +32,8 @@ using Clock = std::chrono::steady_clock;
 // C_s beyond which the device takes over (chosen): one of its own, and one that is the host's own processor.
 constexpr std::size_t kMostStatics = 4096, kMostStaticsHere = 65536;
 
+constexpr unsigned kQueriesBefore = 3;   // the one that makes the compilers begin
+
 double us_since(Clock::time_point from) { return std::chrono::duration<double, std::micro>(Clock::now() - from).count(); }
 
 std::int32_t floor_div(std::int64_t a, std::int64_t b) {
@@ -119,6 +121,7 @@ class RecordedFrame final : public Frame {
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool finished_ = false;           ///< pipelines are there and commands recorded
+  unsigned unfinished_queries_ = 0;
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;         ///< that the last query counted
   std::uint32_t near_full_ = gpu::kNone;   ///< the list for which the last query found more than there is room for on the host
@@ -154,7 +157,8 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
 
   detection_ = FrameDetection::make(geometry_, scene_, plan_);
-  // Pipelines are compiled beside: where the device decides, beside what the host builds; else beside the first queries, which don't need them.
+  // Pipelines are compiled beside: where the device decides, beside what the host builds; else beside queries, which don't need them, from the
+  // third on: who asks about one pose (`palpate query` does so twice) ends without them.
   const bool host_decides = refined && device_.host_share == HostShare::kContacts && scene_.rays_walk();
   if (!host_decides)
     if (auto r = make_pipelines(); !r) return r;
@@ -180,8 +184,10 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   std::optional<std::uint64_t> samples;
   if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
   capacity_ = FrameCapacity::first({.scene = constants, .samples = samples, .host_decides = host_decides}, first_capacity);
-  if (host_decides)
+  if (host_decides) {
+    device_.compilers->hold();
     if (auto r = make_pipelines(); !r) return r;
+  }
   if (auto r = make_buffers(); !r) return r;
   return host_decides ? Result<void>{} : finish();
 }
@@ -340,6 +346,7 @@ bool RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, 
 
 Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Contacts& out) {
   const auto start = Clock::now();
+  if (!finished_ && ++unfinished_queries_ == kQueriesBefore) device_.compilers->begin();
   out.times.clear();
   decoder_.clear(out);
   pairs_ = 0;

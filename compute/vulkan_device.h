@@ -76,8 +76,8 @@ class VulkanDevice {
 
   /// Pipelines made or being made, by module and constants; ComputePipeline::create fills it.
   std::map<std::vector<std::uint32_t>, std::shared_ptr<PendingPipeline>> pipelines;
-  /// Makes them, while whoever asked goes on; null before the first.
-  std::unique_ptr<Compilers> compilers;
+  /// Makes them, while whoever asked goes on.
+  std::unique_ptr<Compilers> compilers = std::make_unique<Compilers>();
 
   /// For benches: told how long each kernel of preparation took on how many items; may be empty.
   std::function<void(const char* kernel, std::uint64_t items, double seconds)> kernel_watch;

@@ -85,8 +85,7 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   std::shared_ptr<PendingPipeline>& kept = device.pipelines[std::move(key)];
   if (!kept) {
     auto promise = std::make_shared<std::promise<MadePipeline>>();
-    kept = std::make_shared<PendingPipeline>(PendingPipeline{promise->get_future().share()});
-    if (!device.compilers) device.compilers = std::make_unique<Compilers>();
+    kept = std::make_shared<PendingPipeline>(PendingPipeline{device.compilers.get(), promise->get_future().share()});
     device.compilers->add([&device, name = code.name, words = std::vector<std::uint32_t>(code.words, code.words + code.bytes / 4), buffers, push_bytes,
                            values = std::vector<SpecConstant>(constants.begin(), constants.end()), uniform, promise] {
       promise->set_value(make_objects(device, {name, words.data(), words.size() * 4}, buffers, push_bytes, values, uniform));
@@ -102,6 +101,7 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
 }
 
 Result<void> ComputePipeline::wait() const {
+  made_->by->begin();
   if (const MadePipeline& made = made_->made.get(); !made) return made.error();
   return {};
 }

@@ -32,6 +32,7 @@ struct PipelineObjects {
 
 /// A pipeline that is being made.
 struct PendingPipeline {
+  Compilers* by;   ///< the device's
   std::shared_future<Result<std::shared_ptr<const PipelineObjects>>> made;
 };
 
@@ -46,7 +47,7 @@ class ComputePipeline {
                                         std::uint32_t push_bytes = 0, std::span<const SpecConstant> constants = {},
                                         std::uint32_t uniform = 0);
 
-  /// Waits until the pipeline is there. An error: the driver refused, or the module does not fit.
+  /// Waits until the pipeline is there; makes the compilers begin. An error: the driver refused, or the module does not fit.
   Result<void> wait() const;
   VkPipeline handle() const { return objects().pipeline; }        ///< after wait() has succeeded
   VkPipelineLayout layout() const { return objects().layout; }   ///< likewise

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <map>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "compute/cell_memo.h"
+#include "compute/compilers.h"
 #include "compute/id_marks.h"
 
 namespace palpate {
@@ -75,6 +79,25 @@ TEST(CellMemo, IsEmptyAtFirst) {
   const CellMemo memo(3);
   for (std::uint32_t voxel = 0; voxel < 3; ++voxel)
     for (std::uint32_t sides = 0; sides < 16; ++sides) EXPECT_FALSE(memo.find(voxel, sides));
+}
+
+TEST(Compilers, WhatIsHeldWaitsUntilItIsToBegin) {
+  std::atomic<int> done{0};
+  {
+    Compilers compilers;
+    compilers.hold();
+    for (int i = 0; i < 20; ++i) compilers.add([&] { ++done; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_EQ(done, 0);
+    compilers.begin();
+    compilers.begin();
+    compilers.add([&] { ++done; });   // what follows is not held
+    for (int i = 0; i < 1000 && done < 21; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(done, 21);
+    compilers.hold();
+    compilers.add([&] { ++done; });
+  }
+  EXPECT_EQ(done, 21) << "what was never to begin is dropped";
 }
 
 }  // namespace
