@@ -109,6 +109,10 @@ Result<void> bench_prepare(const BenchOptions& options, const Parts& parts) {
       lines.push_back({who, "preparation", begun->prepare_s, none, none});
       for (const auto& [stage, seconds] : begun->stages.seconds)
         if (seconds > 0.0005) lines.push_back({who, "- " + stage, seconds, none, none});
+      // Made for loops before they begin, and else beside queries; here, so that no other stage's time has a part of it.
+      const Stopwatch pipelines(options.cpu_clock);
+      if (auto done = begun->scene->backend->finish_preparing(); !done) return done.error();
+      lines.push_back({who, "pipelines of frames", pipelines.us() * 1e-6, none, none});
       if (!anew) continue;
       facts.device = device_text(*scene.backend, parts);
       if (const std::uint64_t bytes = scene.backend->preparation_bytes(geometry, scene.plan.plan); bytes > 0)
