@@ -32,6 +32,7 @@ struct DeviceSample {
   DeviceState state = DeviceState::kClosed;
   int stage = 0;                   ///< of the recorded or simulated path, 0: none
   bool clutched = false;           ///< the hand moves without the tool, so it must feel nothing
+  bool paused = false;             ///< somebody has taken the force off from outside; a simulated device stands still, this pose included
 };
 
 /// A haptic device. Implement it to plug in a device with a closed SDK (docs/examples).

@@ -42,6 +42,7 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
   record_.pose = sample.pose;
   record_.stage = sample.stage;
   record_.ready = sample.state == DeviceState::kReady;
+  record_.paused = sample.paused;
   record_.guidance = device_.guidance();
   if (!record_.ready) ++unready_ticks_;
   if (sample.stage > 0 && static_cast<std::size_t>(sample.stage) < kMaxStages) stages_[static_cast<std::size_t>(sample.stage)] = true;

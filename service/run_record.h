@@ -21,6 +21,7 @@ struct TickRecord {
   bool contact = false;              ///< of the newest result
   std::int32_t stage = 0;            ///< of the path, 0: none
   bool ready = false;                ///< whether the device was: else no force
+  bool paused = false;               ///< as the device reported it
   const char* guidance = "";         ///< what the person at the device should do now; text that outlives the run
   float lateness_us = 0;             ///< real time: wake-up of this tick after its time
   std::uint64_t missed_ticks = 0;    ///< real time: so far

@@ -162,7 +162,7 @@ void BatchQueue::run() {
       batch->ready += batch->made;
       batch->done = done;
       batch->broken = batch->failed;
-      parked = batch->parked = !done && batch->ready.size() > kReadAhead;
+      parked = batch->parked = !done && !batch->cancelled && batch->ready.size() > kReadAhead;   // whoever has gone would never come back for it
     }
     batch->made.clear();
     if (done) {

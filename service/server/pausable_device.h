@@ -18,10 +18,14 @@ class PausableDevice final : public HapticDevice {
   Result<void> open() override { return device_.open(); }
   void close() noexcept override { device_.close(); }
   const char* guidance() const noexcept override { return device_.guidance(); }
-  DeviceSample read() noexcept override { return device_.read(); }
+  DeviceSample read() noexcept override {
+    DeviceSample sample = device_.read();
+    sample.paused = held_ = paused_.load(std::memory_order_relaxed);
+    return sample;
+  }
   Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override { return device_.exertable(wrench, gc); }
   void write(const Wrench& wrench, const Vec3& gc) noexcept override {
-    if (paused_.load(std::memory_order_relaxed)) {
+    if (held_) {
       gain_ = 0;
       if (!stands_still_) device_.write(Wrench{}, gc);
       return;
@@ -37,6 +41,7 @@ class PausableDevice final : public HapticDevice {
   HapticDevice& device_;
   bool stands_still_;
   std::atomic<bool> paused_{false};
+  bool held_ = false;                      ///< what the tick's sample said
   int gain_ = kFadeTicks;                  ///< SafeDevice fades in after opening
 };
 

@@ -210,7 +210,6 @@ std::variant<std::string, Problem> SessionHost::set_paused(const std::string& id
   if (!session) return unknown(id);
   if (session->is_over()) return Problem{409, "conflict", "the session is over", "id"};
   session->pausable->set_paused(paused);
-  session->telemetry->set_paused(paused);
   {
     const std::lock_guard lock(session->mutex);
     session->paused = paused;

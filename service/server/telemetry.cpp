@@ -108,19 +108,19 @@ void Telemetry::publish() {
   std::shared_ptr<TelemetryMessage> message;
   if (viewers() > 0) {
     const TickRecord& t = tick_;
-    const bool paused = paused_.load(std::memory_order_relaxed), framed = !frame_json_.empty();
+    const bool framed = !frame_json_.empty();
     message = std::make_shared<TelemetryMessage>();
     message->seq = ++seq_;
     fmt::format_to(std::back_inserter(message->json),
                    ",\"tick\":{},\"time_s\":{},\"pose\":{},\"force\":{},\"torque\":{},\"response_force\":{},\"response_torque\":{},\"result_age_ticks\":{},"
                    "\"contact\":{},\"stage\":{},\"lateness_us\":{},\"lateness_max_us\":{},\"missed_ticks\":{},\"frame_us\":{},\"paused\":{},\"frame\":{},\"frame_pose\":{}}}",
                    t.tick, number(t.time_s), json(t.pose), json(t.sent.force), json(t.sent.torque), json(t.response.force), json(t.response.torque), t.result_age_ticks,
-                   t.contact, t.stage, t.lateness_us, number(lateness_max_us_), t.missed_ticks, number(frame_us_), paused, framed ? frame_json_ : "null",
+                   t.contact, t.stage, t.lateness_us, number(lateness_max_us_), t.missed_ticks, number(frame_us_), t.paused, framed ? frame_json_ : "null",
                    framed ? json(frame_pose_) : "null");
     std::string& out = message->binary;
     out = "PTEL";
     put(out, std::uint16_t{1});
-    put(out, static_cast<std::uint16_t>((t.contact ? 1 : 0) | (framed ? 2 : 0) | (framed && truncated_ ? 4 : 0) | (paused ? 8 : 0)));
+    put(out, static_cast<std::uint16_t>((t.contact ? 1 : 0) | (framed ? 2 : 0) | (framed && truncated_ ? 4 : 0) | (t.paused ? 8 : 0)));
     put(out, message->seq);
     put(out, t.tick);
     put(out, t.time_s);

@@ -32,7 +32,6 @@ class Telemetry final : public RunObserver {
   Result<void> on_tick(const TickRecord& tick) override;
   Result<void> on_frame(const FrameRecord& frame) override;
 
-  void set_paused(bool paused) { paused_.store(paused, std::memory_order_relaxed); }
   /// No message will come any more; viewers are told `reason`.
   void finish(const std::string& reason);
 
@@ -56,7 +55,6 @@ class Telemetry final : public RunObserver {
 
   Metrics& metrics_;
   RunObserver* then_;
-  std::atomic<bool> paused_{false};
 
   // The recording thread's:
   TickRecord tick_;

@@ -69,7 +69,7 @@ def test_curl_alone_uploads_waits_and_queries_a_thousand_poses():
     scene = folder.save('local.json', tool={'mesh': 'ball.glb', 'units': 'm'}, response={})
 
     def run(*arguments):
-        done = subprocess.run([curl, '-sS', '--max-time', '300', *map(str, arguments)], capture_output=True, timeout=400)
+        done = subprocess.run([curl, '-sS', '--max-time', str(WAIT_S), *map(str, arguments)], capture_output=True, timeout=WAIT_S)
         expect(done.returncode == 0, done.stderr.decode())
         return done.stdout
 
@@ -202,7 +202,8 @@ def test_a_session_runs_is_watched_paused_recorded_and_stopped():
             hello = viewer.json()
             expect(hello['type'] == 'hello' and hello['scene'] == name and other.json()['type'] == 'hello', hello)
             pressed = None
-            for _ in range(2000):
+            end = time.monotonic() + WAIT_S
+            while time.monotonic() < end:
                 message = viewer.json()
                 expect(message['type'] == 'telemetry' and len(message['pose']) == 7 and math.isfinite(message['lateness_us']), message)
                 if message['frame'] and message['frame']['contact'] and message['force'][2] > 0.1:
@@ -211,7 +212,7 @@ def test_a_session_runs_is_watched_paused_recorded_and_stopped():
             expect(pressed, 'the ball never touched the block')
             area = pressed['frame']['areas'][0]
             expect(area['rays'] > 0 and area['max_depth'] >= area['depth'] > 0 and len(pressed['frame_pose']) == 7, area)
-            for _ in range(2000):
+            while time.monotonic() < end:
                 data = other.receive()
                 magic, version, bits = struct.unpack_from('<4sHH', data)
                 expect(magic == b'PTEL' and version == 1, data[:8])
@@ -281,27 +282,27 @@ def test_a_remote_loop_gets_wrenches_with_its_own_stamps():
 def test_sigterm_in_mid_session_sends_zero_force_tells_clients_and_exits_0():
     folder, arguments = rooted()
     simulated(folder)
-    server = Server(*arguments)
-    name = named(server)
-    session = server.ask('POST', '/v1/sessions', {'scene': name, 'record': 'cut'}).json()['id']
-    with WebSocket(server, f'/v1/sessions/{session}/stream') as viewer, WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
-        expect(loop.json()['type'] == 'hello', 'hello')
-        loop.send({'type': 'pose', 'seq': 8, 'time': 0.5, 'pose': [0, 0, 0.018, 0, 0, 0, 1]})
-        felt = loop.json()
-        expect(felt['force'][2] > 0.1, felt)
-        viewer.json()
-        while not (message := viewer.json())['force'][2] > 0.1:
-            pass
-        server.process.send_signal(signal.SIGTERM)
-        last = None
-        while (message := viewer.json()) is not None:
-            last = message
-        expect(last['type'] == 'bye', last)
-        still = loop.json()
-        expect(still['type'] == 'wrench' and still['stopped'] and still['seq'] == 8 and still['force'] == still['torque'] == [0, 0, 0] and still['areas'] == [], still)
-        expect(math.dist(still['gc'], felt['gc']) < 1e-6, still)   # m: the wrench's is rounded to the lattice
-        expect(loop.json() == {'type': 'bye', 'reason': 'the server stops'} and loop.receive() is None and loop.closed_with == 1001, 'the loop is told')
-        expect(server.process.wait(60) == 0, server.log_text()[-2000:])
+    with Server(*arguments) as server:
+        name = named(server)
+        session = server.ask('POST', '/v1/sessions', {'scene': name, 'record': 'cut'}).json()['id']
+        with WebSocket(server, f'/v1/sessions/{session}/stream') as viewer, WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
+            expect(loop.json()['type'] == 'hello', 'hello')
+            loop.send({'type': 'pose', 'seq': 8, 'time': 0.5, 'pose': [0, 0, 0.018, 0, 0, 0, 1]})
+            felt = loop.json()
+            expect(felt['force'][2] > 0.1, felt)
+            viewer.json()
+            while not (message := viewer.json())['force'][2] > 0.1:
+                pass
+            server.process.send_signal(signal.SIGTERM)
+            last = None
+            while (message := viewer.json()) is not None:
+                last = message
+            expect(last['type'] == 'bye', last)
+            still = loop.json()
+            expect(still['type'] == 'wrench' and still['stopped'] and still['seq'] == 8 and still['force'] == still['torque'] == [0, 0, 0] and still['areas'] == [], still)
+            expect(math.dist(still['gc'], felt['gc']) < 1e-6, still)   # m: the wrench's is rounded to the lattice
+            expect(loop.json() == {'type': 'bye', 'reason': 'the server stops'} and loop.receive() is None and loop.closed_with == 1001, 'the loop is told')
+            expect(server.process.wait(WAIT_S) == 0, server.log_text()[-2000:])
     log = server.log_text()
     expect(log.index('"event":"stopping"') < log.index('"event":"session_over"') < log.index('"event":"stopped"'), log[-1500:])
     summary = json.loads((folder / 'cut' / 'summary.json').read_text())

@@ -7,7 +7,7 @@ from server import *
 
 
 def run(*command):
-    done = subprocess.run([*map(str, command)], capture_output=True, timeout=200)
+    done = subprocess.run([*map(str, command)], capture_output=True, timeout=WAIT_S)
     expect(done.returncode == 0, done.stderr.decode())
     return done.stdout.decode().splitlines()
 

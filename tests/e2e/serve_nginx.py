@@ -26,17 +26,14 @@ def test_queries_are_spread_and_survive_a_server():
         conf = folder.write('nginx.conf', f'worker_processes 1; daemon off; pid {folder.path}/pid; error_log {folder.path}/error.log; events {{}} http {{ access_log off; {temporary} {ours} }}')
         proxy = subprocess.Popen([nginx, '-e', folder / 'error.log', '-c', conf], stderr=subprocess.PIPE)
         try:
-            end = time.monotonic() + 30
-            while True:
-                expect(proxy.poll() is None and time.monotonic() < end, 'nginx did not start')
-                try:
-                    socket.create_connection(('127.0.0.1', port), timeout=1).close()
-                    break
-                except OSError:
-                    time.sleep(0.1)
+            def listens():
+                expect(proxy.poll() is None, 'nginx ended')
+                with socket.socket() as link:
+                    return link.connect_ex(('127.0.0.1', port)) == 0
+            until('nginx listens', listens)
 
             def ask():
-                connection = http.client.HTTPConnection('127.0.0.1', port, timeout=100)
+                connection = http.client.HTTPConnection('127.0.0.1', port, timeout=WAIT_S)
                 connection.request('POST', f'/v1/scenes/{name}/query', json.dumps({'pose': [0, 0, 0.018, 0, 0, 0, 1]}), {'Content-Type': 'application/json'})
                 answer = connection.getresponse()
                 body = answer.read()
@@ -52,7 +49,7 @@ def test_queries_are_spread_and_survive_a_server():
             expect({ask() for _ in range(20)} == answers, 'with one server')
         finally:
             proxy.terminate()
-            proxy.wait(30)
+            proxy.wait(WAIT_S)
 
 
 main(globals())

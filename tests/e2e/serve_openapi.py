@@ -9,7 +9,7 @@ PRESSED = [0, 0, 0.018, 0, 0, 0, 1]
 
 
 def judged(openapi, answers):
-    done = subprocess.run([JUDGE], input=json.dumps({'openapi': openapi, 'answers': [{'schema': s, 'answer': a} for s, a in answers]}).encode(), capture_output=True, timeout=100)
+    done = subprocess.run([JUDGE], input=json.dumps({'openapi': openapi, 'answers': [{'schema': s, 'answer': a} for s, a in answers]}).encode(), capture_output=True, timeout=WAIT_S)
     return done.returncode, done.stdout.decode() + done.stderr.decode()
 
 
@@ -31,8 +31,9 @@ def test_real_answers_fit_their_schemas():
             take(schema, 'GET', path)
         name = take('Scene', 'POST', '/v1/scenes', {'path': 'scene.json'})['id']
         failed = take('Scene', 'POST', '/v1/scenes', {'path': 'bad.json'})['id']
-        expect(take('Scene', 'GET', f'/v1/scenes/{name}?wait=60')['state'] == 'ready', 'ready')
-        expect(take('Scene', 'GET', f'/v1/scenes/{failed}?wait=60')['state'] == 'failed', 'failed')
+        for id_, state in ((name, 'ready'), (failed, 'failed')):
+            expect(server.settled(id_)['state'] == state, state)
+            take('Scene', 'GET', f'/v1/scenes/{id_}')
         take('Scenes', 'GET', '/v1/scenes')
         for path in ('', '?sets=0'):
             take('Answer', 'POST', f'/v1/scenes/{name}/query{path}', {'pose': PRESSED})

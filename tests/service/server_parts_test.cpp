@@ -1,0 +1,120 @@
+// Parts of the server by themselves, where the order of events decides and a whole server meets that order only now and then.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <thread>
+
+#include "service/control_loop.h"
+#include "service/server/batch_queue.h"
+#include "service/server/pausable_device.h"
+#include "service/server/telemetry.h"
+#include "tests/service/half_space.h"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Answers with more ids than a batch is read ahead, and says when it is asked.
+class LongAnswers final : public HalfSpace {
+ public:
+  explicit LongAnswers(std::function<void()> asked) : asked_(std::move(asked)) {}
+  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+    asked_();
+    auto done = HalfSpace::query(pose, held, out);
+    out.cst.resize(300'000);
+    std::iota(out.cst.begin(), out.cst.end(), 1'000'000u);   // eight bytes each as text
+    return done;
+  }
+
+ private:
+  std::function<void()> asked_;
+};
+
+// A client that went while the slice was answered that would have set its batch aside was never counted out: 256 of them, and no query was taken any more.
+TEST(BatchQueue, AClientThatGoesWhileItsPosesAreAnsweredLeavesNothing) {
+  const Parts parts;
+  const ServerLimits limits;
+  Metrics metrics;
+  Log log;
+  SceneStore store(parts, "cpu", limits, metrics, log);
+  std::shared_ptr<BodySource> client;   // touched by the queue's thread alone
+  const auto scene = std::make_shared<HostedScene>();
+  scene->loaded = half_space_scene();
+  scene->backend = std::make_unique<LongAnswers>([&] { client.reset(); });   // it is there from the second slice on
+  BatchQueue queue(store, limits, metrics);
+  BatchRequest request;
+  request.scene = std::make_shared<SceneLease>(scene, std::make_shared<SceneLease::Count>(), false);
+  request.poses.resize(1000);
+  queue.add(std::move(request), [&](HttpResponse response) {
+    client = response.source;
+    client->next([](const Chunk&) {});
+  });
+  const auto end = std::chrono::steady_clock::now() + 60s;   // a hang is a failure
+  while (metrics.batches_now > 0 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(metrics.batches_now, 0u) << "batches under way, and nobody waits for one";
+}
+
+/// Moves a millimetre with every write, until it is closed.
+class Sliding final : public HapticDevice {
+ public:
+  std::string name() const override { return "sliding"; }
+  DeviceCapabilities capabilities() const override { return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8}; }
+  Result<void> open() override { return {}; }
+  void close() noexcept override {}
+  DeviceSample read() noexcept override {
+    DeviceSample sample;
+    sample.pose.position.x = x_;
+    sample.state = DeviceState::kReady;
+    return sample;
+  }
+  void write(const Wrench&, const Vec3&) noexcept override { x_ += 1e-3; }
+
+ private:
+  double x_ = 0;
+};
+
+// "paused" was told beside poses from before the pause, which a recording thread that got no processor had not told yet.
+TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
+  Sliding sliding;
+  PausableDevice pausable(sliding, true);
+  SafeDevice device(pausable, {});
+  ASSERT_TRUE(device.open());
+  ControlTick tick(device, {}, Vec3(0), {});
+  auto record = [&, i = std::int64_t{0}]() mutable {
+    tick.sense(i++);
+    return tick.act(nullptr);
+  };
+  std::vector<TickRecord> late;   // not told yet
+  late.push_back(record());
+  late.push_back(record());
+  pausable.set_paused(true);
+  for (int i = 0; i < 3; ++i) late.push_back(record());
+  pausable.set_paused(false);
+  late.push_back(record());
+  late.push_back(record());
+
+  Metrics metrics;
+  Telemetry telemetry(metrics, nullptr);
+  const auto viewer = telemetry.attach([] {});
+  std::vector<std::pair<bool, double>> told;   // paused, x
+  std::uint64_t seen = 0;
+  for (const TickRecord& row : late) {
+    while (!telemetry.newest() || telemetry.newest()->seq == seen) {   // a message is made of one tick in 16 ms
+      ASSERT_TRUE(telemetry.on_tick(row));
+      std::this_thread::sleep_for(1ms);
+    }
+    seen = telemetry.newest()->seq;
+    const auto message = nlohmann::json::parse("{" + telemetry.newest()->json.substr(1));
+    told.emplace_back(message["paused"], message["pose"][0]);
+    const bool bit = (static_cast<unsigned char>(telemetry.newest()->binary[6]) & 8) != 0;
+    EXPECT_EQ(bit, told.back().first);
+  }
+  const std::vector<std::pair<bool, double>> expected = {{false, 0}, {false, 0.001}, {true, 0.002}, {true, 0.002}, {true, 0.002}, {false, 0.002}, {false, 0.003}};
+  EXPECT_EQ(told, expected);
+}
+
+}  // namespace
+}  // namespace palpate
