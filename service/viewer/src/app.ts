@@ -3,7 +3,7 @@ import { read_address, write_address } from './address.js';
 import { Api, ApiError } from './api.js';
 import { Connection } from './connection.js';
 import type { Colouring } from './contact_layer.js';
-import { element, make } from './dom.js';
+import { element, make, write } from './dom.js';
 import { listen, type Action } from './keys.js';
 import { Labels } from './labels.js';
 import type { Moment } from './moment.js';
@@ -254,10 +254,10 @@ export class App {
 
   private show_scales(): void {
     const { areas, view, drawn_triangles, reduced } = this.picture;
-    element('scales').textContent = !this.picture.scene ? '' : [
+    write(element('scales'), !this.picture.scene ? '' : [
       `grid ${figure(view.grid_cell * 1000)} mm`, `1 N = ${figure(areas.metres_per_newton * 1000)} mm`, `1 N·m = ${figure(areas.metres_per_newton_metre * 1000)} mm`,
       ...(areas.gain > 1 ? [`heights ${figure(areas.gain)}×`] : []), ...(reduced ? [`drawn: ${drawn_triangles.toLocaleString('en')} triangles, contact exact`] : []),
-    ].join(' · ');
+    ].join(' · '));
   }
   private show_scene(scene: Scene): void {
     const whole = (value: number | null) => (value === null ? '–' : value.toLocaleString('en'));

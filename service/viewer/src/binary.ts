@@ -48,6 +48,17 @@ export function read_voxels(bytes: ArrayBuffer): Voxels {
   return { origin: [doubles[0], doubles[1], doubles[2]], size: doubles[3], counts, cells: new Uint32Array(bytes, 72, cells) };
 }
 
+/** As many of the ids, the smallest first, as `most` characters hold. */
+export function ids_within(ids: number[], most: number): { ids: number[]; text: string } {
+  let taken = [...ids].sort((a, b) => a - b);
+  let text = id_ranges(taken);
+  while (text.length > most && taken.length > 1) {
+    taken = taken.slice(0, Math.max(1, Math.floor((0.9 * taken.length * most) / text.length)));
+    text = id_ranges(taken);
+  }
+  return { ids: taken, text };
+}
+
 /** Ids as the query asks for them: ascending, runs joined, "1,5-9". */
 export function id_ranges(ids: number[]): string {
   const sorted = [...ids].sort((a, b) => a - b);

@@ -10,6 +10,10 @@ export function make<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: 
   made.append(...children);
   return made;
 }
+/** Sets an element's text if it is another: what is written anew is laid out and painted anew, with every picture. */
+export function write(target: HTMLElement, text: string): void {
+  if (target.textContent !== text) target.textContent = text;
+}
 /** Fills a select, keeping what was chosen if it is still there. */
 export function fill(select: HTMLSelectElement, options: { value: string; text: string; disabled?: boolean; title?: string }[]): void {
   const text = JSON.stringify(options);

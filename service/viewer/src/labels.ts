@@ -1,6 +1,6 @@
 // A few words beside each contact area: its depth and force.
 import { Vector3 } from 'three';
-import { element, make } from './dom.js';
+import { element, make, write } from './dom.js';
 import { length, type Area } from './protocol.js';
 import type { SceneView } from './scene_view.js';
 import { figure } from './strips.js';
@@ -20,7 +20,7 @@ export class Labels {
     while (this.host.childElementCount < this.areas.length) this.host.append(make('div'));
     [...this.host.children].forEach((label, i) => {
       (label as HTMLElement).hidden = i >= this.areas.length;
-      if (i < this.areas.length) label.textContent = `${figure(this.areas[i].depth * 1000)} mm · ${figure(length(this.areas[i].force))} N`;
+      if (i < this.areas.length) write(label as HTMLElement, `${figure(this.areas[i].depth * 1000)} mm · ${figure(length(this.areas[i].force))} N`);
     });
   }
   private place(): void {

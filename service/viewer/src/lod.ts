@@ -17,6 +17,9 @@ export function next_level(level: number, picture_ms: number, total: number): nu
 /** Watches pictures of moving scenes; says when to change the level, and never goes back up to one that was too slow. */
 export class LevelKeeper {
   level = 1;
+  /** Pictures of what moves are to have half the width and height: where that helps (`may_coarsen`) it is given up before triangles are, for at rest it comes back. */
+  coarse = false;
+  may_coarsen = false;
   private ceiling = LEVELS.length - 1;
   private times: number[] = [];
   private spent = 0;
@@ -30,6 +33,10 @@ export class LevelKeeper {
     const typical = (this.spent - Math.max(...this.times)) / (this.times.length - 1);
     this.times = [];
     this.spent = 0;
+    if (typical > SLOW_MS && this.may_coarsen && !this.coarse) {
+      this.coarse = true;
+      return false;
+    }
     const next = Math.min(next_level(this.level, typical, total), this.ceiling);
     if (next === this.level) return false;
     if (next < this.level) this.ceiling = next;

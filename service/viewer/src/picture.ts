@@ -46,8 +46,10 @@ export class Picture {
     this.view.scene.add(this.contact.mockup.object, this.areas.object, this.voxels.object, this.ghost.object);
     this.bodies.tool.add(this.contact.tool.object);
     for (const store of [this.stores.mockup, this.stores.tool]) store.arrived = () => { this.redraw_contact(); };
+    this.levels.may_coarsen = this.view.software;
     this.view.after_draw = (ms) => {
       if (this.scene && Number.isFinite(ms) && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
+      this.view.coarse = this.levels.coarse;
     };
   }
 
@@ -69,6 +71,7 @@ export class Picture {
     this.areas.set_scale(scene.tool_radius ?? this.bodies.tool_radius(), STRONG_N, scene.stiffness ?? 2000);
     this.following = false;
     this.view.look_at_all(true);
+    this.view.make_ready();
   }
   close(): void {
     this.loading?.abort();

@@ -1,6 +1,6 @@
 // The recorded run's controls: play, scrubber, speed, and the list of runs.
 import type { Api } from './api.js';
-import { element, fill } from './dom.js';
+import { element, fill, write } from './dom.js';
 import type { Moment } from './moment.js';
 import { Playback } from './playback.js';
 import { depth, type Run, type Scene } from './protocol.js';
@@ -93,10 +93,11 @@ export class Player {
   }
   show(): void {
     const { playback } = this;
-    element('play').textContent = playback?.playing ? '❚❚' : '▶';
-    element('play').setAttribute('aria-label', playback?.playing ? 'Pause' : 'Play');
-    (element('play') as HTMLButtonElement).disabled = this.scrubber.disabled = !playback;
-    element('clock').textContent = `${(playback?.time ?? 0).toFixed(2)} s`;
+    const play = element<HTMLButtonElement>('play');
+    write(play, playback?.playing ? '❚❚' : '▶');
+    play.setAttribute('aria-label', playback?.playing ? 'Pause' : 'Play');
+    play.disabled = this.scrubber.disabled = !playback;
+    write(element('clock'), `${(playback?.time ?? 0).toFixed(2)} s`);
     this.scrubber.value = String(playback?.time ?? 0);
   }
 

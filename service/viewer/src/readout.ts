@@ -1,5 +1,5 @@
 // Numbers over the picture: what is felt now, the areas, and the legend's counts.
-import { element, make } from './dom.js';
+import { element, make, write } from './dom.js';
 import type { Moment } from './moment.js';
 import { KIND_TEXT } from './palette.js';
 import { KINDS, length, type Frame, type Kind } from './protocol.js';
@@ -28,16 +28,17 @@ export class Readout {
   }
 
   show(moment: Moment | null, stages: string[]): void {
-    element('force').textContent = moment ? figure(length(moment.force)) : '–';
-    element('torque').textContent = moment ? figure(length(moment.torque)) : '–';
-    element('depth').textContent = moment ? figure(moment.depth * 1000) : '–';
+    write(element('force'), moment ? figure(length(moment.force)) : '–');
+    write(element('torque'), moment ? figure(length(moment.torque)) : '–');
+    write(element('depth'), moment ? figure(moment.depth * 1000) : '–');
     const state = element('contact');
     const frame = moment?.frame ?? null;
-    state.textContent = !moment ? 'no source' : moment.note || (moment.contact ? 'contact' : 'free');
-    state.dataset['state'] = moment?.note ? 'note' : moment?.contact ? 'contact' : 'free';
-    element('stage').textContent = moment && moment.stage > 0 ? `${moment.stage}  ${stages[moment.stage - 1] ?? ''}` : '';
-    element('warning').textContent = frame?.truncated ? 'A list was too small for this frame: no force.' : (frame?.flags ?? []).join(', ');
-    for (const kind of KINDS) this.counts[kind].textContent = frame ? frame[kind].length.toLocaleString('en') : '';
+    write(state, !moment ? 'no source' : moment.note || (moment.contact ? 'contact' : 'free'));
+    const kind_of_state = moment?.note ? 'note' : moment?.contact ? 'contact' : 'free';
+    if (state.dataset['state'] !== kind_of_state) state.dataset['state'] = kind_of_state;
+    write(element('stage'), moment && moment.stage > 0 ? `${moment.stage}  ${stages[moment.stage - 1] ?? ''}` : '');
+    write(element('warning'), frame?.truncated ? 'A list was too small for this frame: no force.' : (frame?.flags ?? []).join(', '));
+    for (const kind of KINDS) write(this.counts[kind], frame ? frame[kind].length.toLocaleString('en') : '');
     if (frame !== this.table_of) this.table(frame);
   }
 

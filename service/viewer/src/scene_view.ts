@@ -1,4 +1,4 @@
-// The picture's frame: renderer, camera, light, ground grid. Draws when something changed, and else rests.
+// The picture's frame: renderer, camera, light, ground grid. Draws when something changed, and else rests. What moves may be drawn coarsely; at rest all is sharp.
 import * as three from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Theme } from './palette.js';
@@ -10,7 +10,9 @@ export function round_down(value: number): number {
   return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
 }
 
-/** Whether WebGL is drawn without a GPU: then edges are left rough, for smooth ones cost four times as much. */
+const SHARP_AFTER = 8;   // pictures' times without a picture; chosen: a hand that stops waits an eighth of a second for the sharp one
+
+/** Whether WebGL is drawn without a GPU: then edges are left rough, for smooth ones cost four times as much, and it is pixels that take the time. */
 function drawn_by_processor(): boolean {
   const context = document.createElement('canvas').getContext('webgl2');
   const names = context?.getExtension('WEBGL_debug_renderer_info');
@@ -27,6 +29,10 @@ export class SceneView {
   /** Called before each picture, and after it with the time since the last one in an unbroken row, ms (NaN for the first). */
   before_draw: () => void = () => {};
   after_draw: (ms: number) => void = () => {};
+  /** Whether pixels are what takes the time. */
+  readonly software = drawn_by_processor();
+  /** Pictures that follow one another have half the width and height. */
+  coarse = false;
   /** The grid's cell, m. */
   grid_cell = 0;
   private grid: three.GridHelper | null = null;
@@ -35,12 +41,13 @@ export class SceneView {
   private running = false;
   private quiet = 0;
   private last_draw = NaN;
+  private readonly sharp: number;   // pixels of the picture for one of the page
   private focus = { centre: new three.Vector3(), radius: 1, floor: 0 };
 
   constructor(private readonly host: HTMLElement) {
-    const software = drawn_by_processor();
-    this.renderer = new three.WebGLRenderer({ antialias: !software, powerPreference: 'high-performance' });
-    this.renderer.setPixelRatio(software ? 1 : Math.min(window.devicePixelRatio, 2));
+    this.renderer = new three.WebGLRenderer({ antialias: !this.software, powerPreference: 'high-performance' });
+    this.sharp = this.software ? 1 : Math.min(window.devicePixelRatio, 2);
+    this.renderer.setPixelRatio(this.sharp);
     host.append(this.renderer.domElement);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -69,14 +76,22 @@ export class SceneView {
     this.quiet = this.dirty ? 0 : this.quiet + 1;
     this.running = this.quiet < 20;
     if (this.running) requestAnimationFrame(this.draw);
-    if (!this.dirty) { this.last_draw = NaN; return; }
+    const before = this.renderer.getPixelRatio();
+    const rests = this.quiet === SHARP_AFTER && before !== this.sharp;
+    if (!this.dirty && !rests) { this.last_draw = NaN; return; }
     this.dirty = false;
+    // Coarse from the second picture of a row to the end of the motion, which a row that breaks is not: another size costs a picture's time.
+    const ratio = rests || !this.coarse ? this.sharp : Number.isFinite(this.last_draw) ? this.sharp / 2 : before;
+    if (ratio !== before) this.renderer.setPixelRatio(ratio);
     this.camera.updateMatrixWorld();   // labels are placed by where it is now
     this.before_draw();
     this.renderer.render(this.scene, this.camera);
     this.after_draw(now - this.last_draw);
-    this.last_draw = now;
+    this.last_draw = rests ? NaN : now;
   };
+
+  /** Makes the programs of all that may come to be drawn, so that the first contact does not wait for its own in the middle of a motion. */
+  make_ready(): void { this.renderer.compile(this.scene, this.camera); }
 
   get canvas(): HTMLCanvasElement { return this.renderer.domElement; }
 

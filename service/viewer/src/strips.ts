@@ -1,4 +1,6 @@
 // Strips over time: force, torque, depth, time a frame, lateness. Live they show the last seconds; of a recorded run the whole, and a press there seeks.
+// Curves are drawn when they change, so a recorded run's once; what moves while it plays is a mark over them.
+import { write } from './dom.js';
 import { Samples, round_up, type Column } from './samples.js';
 
 const LIVE_SECONDS = 10;
@@ -14,11 +16,13 @@ const STRIPS: Definition[] = [
   { title: 'Lateness', unit: 'µs', lines: [{ column: 'late', label: '', colour: '--late' }], signed: false, least: 1 },
 ];
 
+const FORMATS = [0, 1, 2, 3].map((digits) => new Intl.NumberFormat('en', { maximumFractionDigits: digits }));   // to make one takes longer than to use it
+
 export const figure = (value: number): string => {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
   if (size < 5e-4) return '0';
-  return value.toLocaleString('en', { maximumFractionDigits: size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3 }).replace('-', '−');
+  return FORMATS[size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3].format(value).replace('-', '−');
 };
 
 export class Strips {
@@ -27,6 +31,9 @@ export class Strips {
   recorded: { duration: number; time: number } | null = null;
   seek: (time: number) => void = () => {};
   private readonly canvases: HTMLCanvasElement[] = [];
+  private readonly marks: HTMLElement[] = [];
+  private readonly drawn: unknown[][] = STRIPS.map(() => []);   // what each canvas shows
+  private look = 0;                                             // grows with colours and titles
   private readonly values: HTMLElement[] = [];
   private readonly titles: HTMLElement[] = [];
   private colours: Record<string, string> = {};
@@ -38,13 +45,18 @@ export class Strips {
       const title = document.createElement('span');
       title.className = 'strip-title';
       const value = document.createElement('output');
+      const plot = document.createElement('div');
+      plot.className = 'strip-plot';
       const canvas = document.createElement('canvas');
+      const mark = document.createElement('i');
       caption.append(title, value);
-      strip.append(caption, canvas);
+      plot.append(canvas, mark);
+      strip.append(caption, plot);
       host.append(strip);
       this.titles.push(title);
       this.values.push(value);
       this.canvases.push(canvas);
+      this.marks.push(mark);
       canvas.addEventListener('pointerdown', (event) => {
         if (!this.recorded) return;
         canvas.setPointerCapture(event.pointerId);
@@ -70,11 +82,13 @@ export class Strips {
   /** What the last strip is about: lateness of a loop, age of a result, way to the server and back. */
   set_late(title: string, unit: string): void {
     STRIPS[4] = { ...STRIPS[4], title, unit };
+    ++this.look;
     this.name(4, STRIPS[4]);
   }
   theme(): void {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ['--x', '--y', '--z', '--depth', '--time', '--late', '--grid', '--soft', '--card', '--accent']) this.colours[name] = style.getPropertyValue(name).trim();
+    ++this.look;
+    for (const name of ['--x', '--y', '--z', '--depth', '--time', '--late', '--grid', '--soft', '--card']) this.colours[name] = style.getPropertyValue(name).trim();
   }
 
   draw(): void {
@@ -82,21 +96,28 @@ export class Strips {
     const end = this.recorded ? this.recorded.duration : samples.count > 0 ? samples.times[samples.count - 1] : 0;
     const begin = this.recorded ? 0 : end - LIVE_SECONDS;
     const now = this.recorded ? Math.max(0, Math.min(samples.count - 1, samples.first_at(this.recorded.time))) : samples.count - 1;
+    const ratio = window.devicePixelRatio || 1;
+    const sizes = this.canvases.map((canvas) => [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)]);   // all before anything is written: one layout
     STRIPS.forEach((strip, i) => {
-      this.draw_one(strip, this.canvases[i], begin, end);
+      const shown = [samples, samples.count, begin, end, ...sizes[i], this.look];
+      if (shown.some((value, k) => value !== this.drawn[i][k])) {
+        this.drawn[i] = shown;
+        this.draw_one(strip, this.canvases[i], sizes[i][0], sizes[i][1], begin, end);
+      }
+      this.marks[i].hidden = !this.recorded;
+      if (this.recorded) this.marks[i].style.left = `${(100 * this.recorded.time) / Math.max(end, 1e-9)}%`;
       const at = (column: Column) => (now >= 0 && samples.count > 0 ? samples.column(column)[now] : NaN);
       const value = strip.lines.length === 3 ? Math.hypot(at(strip.lines[0].column), at(strip.lines[1].column), at(strip.lines[2].column)) : at(strip.lines[0].column);
-      this.values[i].textContent = `${figure(value)} ${strip.unit}`;
+      write(this.values[i], `${figure(value)} ${strip.unit}`);
     });
   }
 
-  private draw_one(strip: Definition, canvas: HTMLCanvasElement, begin: number, end: number): void {
+  private draw_one(strip: Definition, canvas: HTMLCanvasElement, width: number, height: number, begin: number, end: number): void {
     const ratio = window.devicePixelRatio || 1;
-    const width = Math.round(canvas.clientWidth * ratio);
-    const height = Math.round(canvas.clientHeight * ratio);
     if (width === 0 || height === 0) return;
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
-    const pen = canvas.getContext('2d')!;
+    // Small canvases with fine lines: the processor draws them sooner than a GPU is told to, and far sooner than one that is a program.
+    const pen = canvas.getContext('2d', { willReadFrequently: true })!;
     pen.clearRect(0, 0, width, height);
 
     // The range: what is seen, rounded up, so that it moves seldom.
@@ -123,7 +144,7 @@ export class Strips {
 
     pen.font = `${10.5 * ratio}px system-ui, sans-serif`;
     pen.textBaseline = 'middle';
-    const write = (text: string, left: number, middle: number) => {
+    const label = (text: string, left: number, middle: number) => {
       pen.fillStyle = this.colours['--card'];
       pen.globalAlpha = 0.8;
       pen.fillRect(left - 3 * ratio, middle - 7 * ratio, pen.measureText(text).width + 6 * ratio, 14 * ratio);
@@ -131,14 +152,9 @@ export class Strips {
       pen.fillStyle = this.colours['--soft'];
       pen.fillText(text, left, middle);
     };
-    write(`${strip.signed ? '±' : ''}${figure(range)} ${strip.unit}`, 4 * ratio, top + 8 * ratio);
+    label(`${strip.signed ? '±' : ''}${figure(range)} ${strip.unit}`, 4 * ratio, top + 8 * ratio);
     const span = this.recorded ? `${figure(end)} s` : `last ${LIVE_SECONDS} s`;
-    write(span, width - pen.measureText(span).width - 4 * ratio, bottom - 8 * ratio);
-
-    if (this.recorded) {
-      pen.fillStyle = this.colours['--accent'];
-      pen.fillRect(Math.round(x(this.recorded.time)) - ratio, 0, 2 * ratio, height);
-    }
+    label(span, width - pen.measureText(span).width - 4 * ratio, bottom - 8 * ratio);
   }
 
   /** One line; where many samples share a column of pixels, their extremes are drawn, so that no peak is lost. */

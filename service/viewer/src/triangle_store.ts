@@ -1,8 +1,8 @@
 // Exact corners of triangles by id: from the drawn geometry when it is whole, else asked of the server and kept.
 import type { Api } from './api.js';
-import { id_ranges, type Body } from './binary.js';
+import { ids_within, type Body } from './binary.js';
 
-const IDS_A_REQUEST = 1000;   // a thousand ids of seven digits stay below the server's limit on a request's head
+const CHARACTERS_A_REQUEST = 1800;   // of ids: the server takes targets of 2048
 const KEPT = 400_000;
 
 export class TriangleStore {
@@ -54,11 +54,11 @@ export class TriangleStore {
 
   flush(): void {
     if (this.asking || this.wanted.size === 0) return;
-    const ids = [...this.wanted].sort((a, b) => a - b).slice(0, IDS_A_REQUEST);
+    const { ids, text } = ids_within([...this.wanted], CHARACTERS_A_REQUEST);
     this.wanted.clear();   // what is still in contact is wanted again by the next frame
     this.asking = true;
     const scene = this.scene;
-    this.api.triangles(scene, this.which, id_ranges(ids)).then((corners) => {
+    this.api.triangles(scene, this.which, text).then((corners) => {
       if (scene !== this.scene) return;
       if (this.known.size > KEPT) this.known.clear();
       ids.forEach((id, i) => this.known.set(id, corners.subarray(9 * i, 9 * i + 9)));

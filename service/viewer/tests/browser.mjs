@@ -6,6 +6,7 @@ import { createRequire } from 'node:module';
 import { createServer } from 'node:net';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { count_drawing } from './count_drawing.mjs';
 
 const [palpate, work, pictures] = process.argv.slice(2);
 const browser_path = process.env.CHROMIUM ?? '/usr/bin/chromium';
@@ -163,6 +164,8 @@ async function main() {
   await drag();
   check(errors.length === 0, `no error on the console${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
 
+  await light();
+
   // The server goes and comes back.
   await stop();
   await until('the page says that the server is gone', async () => (await page.isVisible('#banner')) && /does not answer/.test(await text('banner')));
@@ -173,6 +176,49 @@ async function main() {
   await drag();
   await until('the list names the scene again', async () => (await page.inputValue('#scene')).startsWith('id:'));
   check(errors.length === 0, `no error after the restart${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
+}
+
+/** What a picture may cost, without a clock: no more triangles than the level has, nothing handed over twice, curves drawn once. */
+async function light() {
+  const page = await browser.newPage({ viewport: WIDE });
+  page.setDefaultTimeout(120_000);
+  await page.addInitScript(count_drawing);
+  // A thousandth of the triangles, so that a small mock-up is one too large to be drawn whole; and the first level stays.
+  let most = 0;
+  await page.route('**/geometry*', (route) => {
+    if (most > 0) return;   // never answered
+    const url = route.request().url().replace(/max_triangles=(\d+)/, (_, asked) => `max_triangles=${most = Math.max(100, Number(asked) / 1000)}`);
+    void route.continue({ url });
+  });
+  const frames = (count, each) => page.evaluate(async ([wanted, act]) => {
+    const act_now = new Function('i', act);
+    for (let i = 0; i < wanted; ++i) { act_now(i); await new Promise((resolve) => { requestAnimationFrame(() => resolve()); }); }
+    return window.drawing.take().pictures;
+  }, [count, each]);
+  await page.goto(address);
+  await until('the scene is open on a second page', async () => /[0-9]/.test(await page.textContent('#facts')));
+  await until('it says that fewer triangles are drawn', async () => /drawn: [0-9,]+ triangles, contact exact/.test(await page.textContent('#scales')));
+  await frames(30, '');
+  const turn = `
+    const canvas = document.querySelector('#canvas canvas');
+    canvas.setPointerCapture = canvas.releasePointerCapture = () => {};   // there is no such pointer
+    const box = canvas.getBoundingClientRect();
+    canvas.dispatchEvent(new PointerEvent(i === 0 ? 'pointerdown' : i === 29 ? 'pointerup' : 'pointermove', { pointerId: 1, pointerType: 'mouse', clientX: box.x + 40 + 3 * i, clientY: box.y + 40, buttons: 1, bubbles: true }));`;
+  const turned = await frames(30, turn);
+  const largest = (pictures, key) => Math.max(...pictures.map((picture) => picture[key]));
+  check(turned.length > 5, `the camera turns: ${turned.length} pictures`);
+  check(most > 0 && largest(turned, 'triangles') <= 3 * most, `a picture has at most ${most} triangles of the mock-up, and as many of each side of the tool: ${largest(turned, 'triangles')}`);
+  check(largest(turned, 'uploaded') === 0, `nothing is handed over anew while the camera turns: ${largest(turned, 'uploaded')} bytes`);
+  await page.click('[data-source=run]');
+  await until('the run is read on the second page', async () => /ticks/.test(await page.textContent('#run-note')));
+  await frames(5, '');
+  await page.click('#play');
+  await frames(3, '');
+  const clock = await page.textContent('#clock');
+  const played = await frames(30, '');
+  check((await page.textContent('#clock')) !== clock && played.length > 5, `the run plays: ${played.length} pictures`);
+  check(largest(played, 'strokes') === 0, `the curves of a recorded run are not drawn again while it plays: ${largest(played, 'strokes')} strokes for a picture`);
+  await page.close();
 }
 
 let status = 1;

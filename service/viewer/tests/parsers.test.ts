@@ -1,7 +1,7 @@
 // Readers of what the server sends: they take what docs/SERVICE.md defines and refuse the rest.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { id_ranges, read_geometry, read_voxels } from '../src/binary.js';
+import { id_ranges, ids_within, read_geometry, read_voxels } from '../src/binary.js';
 import { FrameIndex } from '../src/frame_index.js';
 import { LevelKeeper, next_level } from '../src/lod.js';
 import { Samples, round_up } from '../src/samples.js';
@@ -82,6 +82,19 @@ test('frames: the newest at a tick, and a line that was cut is left out', () => 
   assert.deepEqual([4, 5, 8, 9, 99].map((tick) => index.at_tick(tick)), [-1, 0, 0, 1, 1]);
   assert.equal(index.entries[1].depth, 0.002);
   assert.equal(index.parse(index.text(1)!).tick, 9);
+});
+test('ids: as many as a request holds, the smallest first', () => {
+  const scattered = Array.from({ length: 1000 }, (_, i) => 9_999_999 - 7 * i);
+  const { ids, text } = ids_within(scattered, 1800);
+  assert.ok(text.length <= 1800 && ids.length > 150, `${ids.length} ids, ${text.length} characters`);
+  assert.deepEqual([ids[0], text], [9_999_999 - 6993, id_ranges(ids)]);
+  assert.deepEqual(ids_within([3, 1, 2], 1800), { ids: [1, 2, 3], text: '1-3' });
+});
+test('level of detail: where pixels take the time, they go before triangles do', () => {
+  const keeper = new LevelKeeper();
+  keeper.may_coarsen = true;
+  const feed = (ms: number, pictures: number) => { for (let i = 0; i < pictures; ++i) keeper.take(ms, 1e6); return [keeper.coarse, keeper.level]; };
+  assert.deepEqual([feed(30, 40), feed(60, 25), feed(30, 40), feed(60, 25), feed(5, 40)], [[false, 1], [true, 1], [true, 1], [true, 0], [true, 0]]);
 });
 test('level of detail: down when pictures are slow, up when they are fast and there is more, and not back to one that was slow', () => {
   assert.deepEqual([next_level(1, 60, 1e6), next_level(0, 60, 1e6), next_level(1, 5, 1e6), next_level(1, 5, 1e5), next_level(1, 20, 1e6)], [0, 0, 2, 1, 1]);
