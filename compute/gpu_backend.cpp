@@ -107,7 +107,7 @@ class GpuBackend final : public CollisionBackend {
   Result<void> scene_for(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const ContentKey key = options_.cache ? prepared_key(*device_, geometry, plan) : ContentKey{};
-    if (options_.cache) scene_ = find_prepared(*device_, *options_.cache, key);
+    if (options_.cache) scene_ = find_prepared(*device_, *options_.cache, key, geometry, plan);
     if (scene_) return {};
     if (const std::uint64_t bytes = estimate_preparation(geometry, plan); bytes > device_->limits().heap)
       return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles takes up to " + std::to_string(bytes >> 20) +

@@ -53,14 +53,14 @@ ContentKey prepared_key(const VulkanDevice& device, const SceneGeometry& geometr
   return key.finish();
 }
 
-std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key) {
+std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key, const SceneGeometry& geometry, const Plan& plan) {
   const auto entry = cache.find(kKind, key);
   if (!entry) return std::nullopt;
   ArchiveReader reader(entry->payload());
   PreparedScene scene;
+  bool room = static_cast<bool>(upload_meshes(device, geometry, plan, scene));
   archive_numbers(reader, scene);
-  bool room = true;
-  for_each_buffer(scene, [&](VulkanBuffer& buffer) {
+  for_each_made_buffer(scene, [&](VulkanBuffer& buffer) {
     std::uint64_t bytes = 0;
     reader(bytes);
     const std::string_view content = reader.take(bytes);
@@ -89,7 +89,7 @@ void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key
   std::vector<std::vector<char>> copies;   // of what the host can't see
   copies.reserve(64);
   bool whole = true;
-  for_each_buffer(scene, [&](const VulkanBuffer& buffer) {
+  for_each_made_buffer(scene, [&](const VulkanBuffer& buffer) {
     writer(buffer.bytes());
     if (buffer.bytes() == 0) return;
     if (!buffer.mapped()) {

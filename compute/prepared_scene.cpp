@@ -32,6 +32,12 @@ BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool neigh
   return out;
 }
 
+void upload_bodies(PrepareSteps& steps, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out) {
+  const bool refined = plan.profile == Profile::kRefined;
+  out.mockup = upload_body(steps, geometry.mockup, true, refined);
+  out.tool = upload_body(steps, geometry.tool, false, refined);
+}
+
 gpu::BodyConstants constants_of(const LatticeMesh& mesh, const BodyBuffers& body) {
   gpu::BodyConstants out{};
   out.vertices = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -70,6 +76,14 @@ std::uint64_t PreparedScene::memory_bytes() const {
   std::uint64_t sum = 0;
   for_each_buffer(*this, [&](const VulkanBuffer& buffer) { sum += buffer.bytes(); });
   return sum + (samples ? samples->bytes() : 0);
+}
+
+Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out) {
+  const Progress nobody;
+  PrepareSteps steps(device, nobody);
+  upload_bodies(steps, geometry, plan, out);
+  if (!steps.ok()) return steps.error();
+  return {};
 }
 
 Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene) {
@@ -118,8 +132,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   constexpr std::size_t kMostToolVertices = (1u << 24) - 1;
   if (const std::size_t n = geometry.tool.vertices.size(); n > kMostToolVertices)
     return bad_value("the tool has " + std::to_string(n) + " vertices, at most " + std::to_string(kMostToolVertices) + " are possible on a device");
-  out.mockup = upload_body(steps, geometry.mockup, true, refined);
-  out.tool = upload_body(steps, geometry.tool, false, refined);
+  upload_bodies(steps, geometry, plan, out);
 
   const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);

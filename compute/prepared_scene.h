@@ -68,23 +68,34 @@ void for_each_partition(Scene& scene, Visit visit) {
   visit(scene.fine);
 }
 
-/// Calls visit(buffer) for each buffer of a prepared scene, const or not; always in the same order. Some may be empty.
+/// Calls visit(buffer) for each buffer of a prepared scene that is worked out, const or not; always in the same order. Some may be empty.
 template <class Scene, class Visit>
-void for_each_buffer(Scene& scene, Visit visit) {
+void for_each_made_buffer(Scene& scene, Visit visit) {
   visit(scene.scene);
   for (auto* body : {&scene.mockup, &scene.tool})
-    for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->sample_weight,
-                         &body->neighbour_begin, &body->neighbours, &body->seam_begin, &body->seams})
-      visit(*buffer);
+    for (auto* buffer : {&body->seam_begin, &body->seams}) visit(*buffer);
   for_each_partition(scene, [&](auto& p) {
     for (auto* buffer : {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) visit(*buffer);
   });
   for (auto* buffer : {&scene.fine_exit, &scene.tool_near}) visit(*buffer);
 }
 
+/// The same for all buffers: also those that hold the meshes as they are.
+template <class Scene, class Visit>
+void for_each_buffer(Scene& scene, Visit visit) {
+  for_each_made_buffer(scene, visit);
+  for (auto* body : {&scene.mockup, &scene.tool})
+    for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->sample_weight,
+                         &body->neighbour_begin, &body->neighbours})
+      visit(*buffer);
+}
+
 /// Builds both bodies and their partitions. Errors: memory (kBadValue, one sentence), cancelled, device lost.
 Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
                                     const Progress& progress);
+
+/// Fills the buffers that hold the meshes as they are; the others stay empty.
+Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out);
 
 /// The same scene for another device that shares host memory (VulkanDevice::shares_memory): no copy is made.
 Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene);
