@@ -4,12 +4,14 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "service/server/connection.h"
@@ -30,6 +32,31 @@ constexpr std::size_t kPiece = 64 << 10;
 std::chrono::nanoseconds seconds(double s) { return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
 
 std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Ends what is being read when its time is over. The stream's own deadline would close the connection, and the client could not be told why.
+class ReadDeadline {
+ public:
+  /// `stream` outlives this; it has no other deadline meanwhile.
+  ReadDeadline(AnyStream& stream, std::chrono::nanoseconds time) : timer_(stream.lowest().get_executor(), time) {
+    stream.lowest().expires_never();
+    timer_.async_wait([state = state_, &lowest = stream.lowest()](error_code error) {
+      if (error || !state->reading) return;
+      state->late = true;
+      lowest.cancel();
+    });
+  }
+  ~ReadDeadline() { state_->reading = false; }   // the handler may be on its way already
+  ReadDeadline(const ReadDeadline&) = delete;
+  ReadDeadline& operator=(const ReadDeadline&) = delete;
+  bool late() const { return state_->late; }
+
+ private:
+  struct State {
+    bool reading = true, late = false;
+  };
+  std::shared_ptr<State> state_ = std::make_shared<State>();
+  asio::steady_timer timer_;
+};
 
 /// One connection's conversation.
 class HttpConnection {
@@ -65,17 +92,17 @@ class HttpConnection {
       if (error) co_return false;
       buffer_.commit(got);
     }
-    // The head is gathered here, so that one that drips in can still be told so: the library's own deadline closes the connection.
+    // The head is gathered here, so that one that drips in, or stops, can still be told so.
     started_ = Clock::now();
     method_ = path_ = "-";
     route_ = "none";
-    const double most = context_.limits.header_s;
-    stream_.lowest().expires_after(seconds(most + 2));
+    const Clock::time_point end = started_ + std::chrono::duration_cast<Clock::duration>(seconds(context_.limits.header_s));
     while (!head_complete() && buffer_.size() <= context_.limits.header_bytes) {
+      const ReadDeadline deadline(stream_, end - Clock::now());
       const std::size_t got = co_await stream_.async_read_some(buffer_.prepare(4096), asio::redirect_error(asio::use_awaitable, error));
-      if (error) co_return false;
+      if (deadline.late() ? buffer_.size() == 0 : error.failed()) co_return false;   // who never began to ask needs no answer
       buffer_.commit(got);
-      if (Clock::now() - started_ > seconds(most)) {
+      if (deadline.late() || Clock::now() > end) {
         refusal_ = Problem{408, "slow", "the head of the request did not come in time", ""};
         co_return co_await refuse();
       }
@@ -201,11 +228,11 @@ class HttpConnection {
       // Both a client that stops and one that drips are cut off.
       const double allowed = context_.limits.piece_s + static_cast<double>(total) / context_.limits.slowest_bytes_per_s;
       if (Clock::now() - started_ > seconds(allowed)) co_return Problem{408, "slow", "the body comes too slowly", "body"};
-      stream_.lowest().expires_after(seconds(context_.limits.piece_s));
+      const ReadDeadline deadline(stream_, seconds(context_.limits.piece_s));
       error_code error;
       co_await http::async_read_some(stream_, buffer_, parser, asio::redirect_error(asio::use_awaitable, error));
       if (error == http::error::need_buffer) error = {};
-      if (error == beast::error::timeout) co_return Problem{408, "slow", "the body did not come in time", "body"};
+      if (deadline.late()) co_return Problem{408, "slow", "the body did not come in time", "body"};
       if (error == http::error::end_of_stream || error == http::error::partial_message || (error && error.category() == boost::system::system_category())) co_return Problem{0, "", "", ""};
       if (error) co_return Problem{400, "bad-request", "the body is no HTTP: " + error.message(), "body"};
       const std::size_t got = piece.size() - parser.get().body().size;
