@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "model/large_pages.h"
 #include "shaders/code.h"
 #include "shaders/shared/prepare.h"
 
@@ -33,7 +32,6 @@ VulkanBuffer PrepareSteps::buffer(const char* what, std::uint64_t entries, std::
     fail(made.error());
     return {};
   }
-  if (made->mapped() != nullptr) want_large_pages(made->mapped(), made->bytes());   // a step fills all of it
   return std::move(*made);
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "compute/command_recorder.h"
-#include "model/large_pages.h"
 
 namespace palpate {
 namespace {
@@ -78,7 +77,7 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
   if (shares && allocated == VK_SUCCESS) {
     const std::uint64_t page = device.page();
     allocate.allocationSize = (allocate.allocationSize + page - 1) / page * page;
-    out.pages_ = of != nullptr ? of->pages_ : std::shared_ptr<void>(std::aligned_alloc(bytes >= kLargePage ? std::max<std::uint64_t>(page, kLargePage) : page, allocate.allocationSize), std::free);
+    out.pages_ = of != nullptr ? of->pages_ : std::shared_ptr<void>(std::aligned_alloc(page, allocate.allocationSize), std::free);
     if (!out.pages_) allocated = VK_ERROR_OUT_OF_HOST_MEMORY;
     import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT;
     import.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
@@ -132,7 +131,6 @@ VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
 Result<void> upload(VulkanDevice& device, const VulkanBuffer& to, const void* data, std::uint64_t bytes) {
   if (bytes == 0) return {};
   if (to.mapped() != nullptr) {
-    want_large_pages(to.mapped(), bytes);
     std::memcpy(to.mapped(), data, bytes);
     return {};
   }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "model/cache/content_key.h"
-#include "model/large_pages.h"
 
 namespace palpate {
 
@@ -68,8 +67,6 @@ class ArchiveReader {
     take((kListAlignment - (bytes_ - rest_.size()) % kListAlignment) % kListAlignment);
     const std::string_view piece = take(n * sizeof(T));
     if (piece.empty()) n = 0;
-    v.reserve(n);
-    want_large_pages(v.data(), n * sizeof(T));
     // Where entries lie as in a list of T they are copied without first being made 0.
     const auto* entries = reinterpret_cast<const T*>(piece.data());
     if (reinterpret_cast<std::uintptr_t>(entries) % alignof(T) == 0) {

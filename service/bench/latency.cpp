@@ -25,6 +25,7 @@ Result<std::vector<Subject>> measure(const BenchOptions& options, const std::str
   for (const std::string& backend : backends) {
     auto prepared = prepare_scene({file, backend, options.profile, false}, Purpose::kQuery, parts, console);
     if (!prepared) return prepared.error();
+    if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
     subjects.push_back({std::move(*prepared), {}});
   }
   const Result<std::vector<Pose>> poses = bench_poses(options, *subjects.front().scene, parts, console);

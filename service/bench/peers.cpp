@@ -145,6 +145,7 @@ Result<Race> run_race(const BenchOptions& options, const std::string& file, cons
   Race race;
   auto prepared = prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false}, Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
+  if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
   race.scene = std::move(*prepared);
   auto poses = bench_poses(options, *race.scene, parts, console);
   if (!poses) return poses.error();

@@ -65,6 +65,7 @@ Result<Figures> measure(const BenchOptions& options, const std::string& file, co
   restart_peak_memory();
   auto prepared = prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false}, Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
+  if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
   HostedScene& scene = **prepared;
   const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
   if (!poses) return poses.error();

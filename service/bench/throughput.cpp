@@ -80,6 +80,7 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
   for (const std::string& file : options.scenes) {
     auto prepared = prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false}, Purpose::kQuery, parts, console);
     if (!prepared) return prepared.error();
+    if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
     HostedScene& scene = **prepared;
     const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
     if (!poses) return poses.error();
