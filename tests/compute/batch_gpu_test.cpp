@@ -121,31 +121,44 @@ Mesh soup(std::size_t triangles) {
   return mesh;
 }
 
+/// What the mock-up's V_bnd voxels list, as the device has it.
+struct VoxelLists {
+  VoxelLists(VulkanDevice& device, const PartitionBuffers& from) : grid(from.grid) {
+    const auto read = [&](const VulkanBuffer& buffer, std::size_t count, std::vector<std::uint32_t>& to) {
+      to.resize(count);
+      EXPECT_TRUE(download(device, buffer, 0, to.data(), count * 4));
+    };
+    read(from.list_begin, grid.boundary_voxels + 1, begin);
+    read(from.list_triangles, grid.list_entries, ids);
+    read(from.boundary_place, grid.boundary_voxels, places);
+    read(from.mixed_brick, grid.mixed_bricks, bricks);
+  }
+  /// The lowest lattice point of a voxel, world frame, steps.
+  Int3 low(std::size_t voxel) const {
+    const std::uint32_t brick = bricks[places[voxel] >> 9], bit = places[voxel] & 511;
+    const auto nx = static_cast<std::uint32_t>(grid.bricks.x), ny = static_cast<std::uint32_t>(grid.bricks.y);
+    return grid.origin + grid.size * (8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
+  }
+  gpu::GridConstants grid;
+  std::vector<std::uint32_t> begin, ids, places, bricks;
+};
+
 /// Whether every voxel's points are the 1024ths that hold its triangles' first corners and samples, one by one.
 testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
   const PartitionBuffers& p = scene.mockup.partition;
   const HostSamples& samples = *scene.samples;
-  const auto read = [&](const VulkanBuffer& buffer, std::size_t count) {
-    std::vector<std::uint32_t> out(count);
-    EXPECT_TRUE(download(device, buffer, 0, out.data(), count * 4));
-    return out;
-  };
-  const auto begin = read(p.list_begin, p.grid.boundary_voxels + 1), ids = read(p.list_triangles, p.grid.list_entries),
-             places = read(p.boundary_place, p.grid.boundary_voxels), numbers = read(p.mixed_brick, p.grid.mixed_bricks);
+  const VoxelLists lists(device, p);
   std::vector<std::uint32_t> expected, expected_begin{0};
-  for (std::size_t voxel = 0; voxel < places.size(); ++voxel) {
-    const std::uint32_t brick = numbers[places[voxel] >> 9], bit = places[voxel] & 511;
-    const auto nx = static_cast<std::uint32_t>(p.grid.bricks.x), ny = static_cast<std::uint32_t>(p.grid.bricks.y);
-    const Int3 at = 8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6);
-    const Int3 low = p.grid.origin + p.grid.size * at, high = low + (p.grid.size - 1);
+  for (std::size_t voxel = 0; voxel < lists.places.size(); ++voxel) {
+    const Int3 low = lists.low(voxel), high = low + (p.grid.size - 1);
     const auto put = [&](const Int3& point) {
       const auto part = [&](int k) { return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / p.grid.size)); };   // exact: below 2^39
       expected.push_back(part(0) | part(1) << 10 | part(2) << 20);
     };
-    for (std::uint32_t e = begin[voxel]; e < begin[voxel + 1]; ++e) {
-      const exact::Corners t{geometry.mockup.corner(ids[e], 0), geometry.mockup.corner(ids[e], 1), geometry.mockup.corner(ids[e], 2)};
+    for (std::uint32_t e = lists.begin[voxel]; e < lists.begin[voxel + 1]; ++e) {
+      const exact::Corners t{geometry.mockup.corner(lists.ids[e], 0), geometry.mockup.corner(lists.ids[e], 1), geometry.mockup.corner(lists.ids[e], 2)};
       if (t[0] == glm::clamp(t[0], low, high)) put(t[0]);
-      exact::for_samples(t, geometry.mockup.sample_axis[ids[e]], geometry.sample_spacing, low, high, put);
+      exact::for_samples(t, geometry.mockup.sample_axis[lists.ids[e]], geometry.sample_spacing, low, high, put);
     }
     expected_begin.push_back(static_cast<std::uint32_t>(expected.size()));
   }
@@ -159,26 +172,17 @@ testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeome
 testing::AssertionResult boxes_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
   const PartitionBuffers& p = scene.mockup.partition;
   const std::vector<std::uint8_t>& boxes = scene.search->boxes;
-  const auto read = [&](const VulkanBuffer& buffer, std::size_t count) {
-    std::vector<std::uint32_t> out(count);
-    EXPECT_TRUE(download(device, buffer, 0, out.data(), count * 4));
-    return out;
-  };
-  const auto begin = read(p.list_begin, p.grid.boundary_voxels + 1), ids = read(p.list_triangles, p.grid.list_entries),
-             places = read(p.boundary_place, p.grid.boundary_voxels), numbers = read(p.mixed_brick, p.grid.mixed_bricks);
-  if (boxes.size() != 6 * ids.size() + SearchTables::kBoxesAtOnce) return testing::AssertionFailure() << boxes.size() << " bytes of boxes";
-  for (std::size_t voxel = 0; voxel < places.size(); ++voxel) {
-    const std::uint32_t brick = numbers[places[voxel] >> 9], bit = places[voxel] & 511;
-    const auto nx = static_cast<std::uint32_t>(p.grid.bricks.x), ny = static_cast<std::uint32_t>(p.grid.bricks.y);
-    const Int3 at = 8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6);
-    const Int3 low = p.grid.origin + p.grid.size * at;
-    const std::size_t count = begin[voxel + 1] - begin[voxel];
+  const VoxelLists lists(device, p);
+  if (boxes.size() != 6 * lists.ids.size() + SearchTables::kBoxesAtOnce) return testing::AssertionFailure() << boxes.size() << " bytes of boxes";
+  for (std::size_t voxel = 0; voxel < lists.places.size(); ++voxel) {
+    const Int3 low = lists.low(voxel);
+    const std::size_t count = lists.begin[voxel + 1] - lists.begin[voxel];
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < 6; ++k) {
         const int axis = static_cast<int>(k % 3);
-        const auto corner = [&](int c) { return geometry.mockup.corner(ids[begin[voxel] + i], c)[axis]; };
+        const auto corner = [&](int c) { return geometry.mockup.corner(lists.ids[lists.begin[voxel] + i], c)[axis]; };
         const std::int32_t end = k < 3 ? std::min({corner(0), corner(1), corner(2)}) : std::max({corner(0), corner(1), corner(2)});
-        const double part = 256.0 * std::clamp(end - low[axis], 0, p.grid.size - 1) / p.grid.size, found = boxes[6 * begin[voxel] + k * count + i];
+        const double part = 256.0 * std::clamp(end - low[axis], 0, p.grid.size - 1) / p.grid.size, found = boxes[6 * lists.begin[voxel] + k * count + i];
         if (found > part + 1e-9 || found < part - 1 - 1e-9) return testing::AssertionFailure() << "voxel " << voxel << ", entry " << i << ", end " << k << ": " << found << ", " << part;
       }
   }
