@@ -1,12 +1,12 @@
-"""Load on `palpate serve`, loopback only, bounded: a session alone, beside batch clients at full rate and viewers, and alone again; and, to tell what the load costs from what a busy
-machine costs, beside a program that does nothing but turn in a circle on each processor but the loop's, before the load and after it.
+"""Load on `palpate serve`, loopback only, bounded: a session alone, beside batch clients at full rate and viewers, and, to tell what the load costs from what a busy machine costs,
+beside a program that does nothing but turn in a circle on each processor but the loop's; in rounds, every other one the other way round, since a machine's own stalls come in bursts.
 
-usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--alone-seconds 60] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--beside] [--out DIR]
+usage: serve_load.py PROGRAM FOLDER [--seconds 60] [--alone-seconds 60] [--rounds 2] [--batches 4] [--viewers 200] [--poses 500] [--backend gpu|cpu] [--ordinary] [--beside] [--out DIR]
 
 FOLDER: what `palpate generate contacts` made. Its hand goes to and fro along its path for the whole time; the batches ask poses along that path, a millimetre off at most.
-Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for all five phases (alone, busy, loaded, busy again, alone again), and how late cyclictest was meanwhile, with
-the loop's own right to priority; queries and poses a second and p99 of a query's time, memory of the server over the time. --ordinary: the server has no right to real-time priority,
-nor to lock memory (as root, by setpriv). Python's standard library only.
+Prints, and leaves in DIR/load.json: missed ticks, p50 and p99 of the results' age and of the lateness for the phases of each round, how late cyclictest was meanwhile, which says what is the machine's own, and what the
+host of a virtual machine took of the loop's processor (ms, as Linux was told); queries and poses a second and p99 of a query's time, memory of the server over the time. The ratios are those of all rounds'
+ticks together, and of the medians of the rounds' p99 of age. --ordinary: the server has no right to real-time priority, nor to lock memory (as root, by setpriv). Python's standard library only.
 
 The clients of a server are on other machines. These are on the server's, so that they give way (nice 19) and leave the loop's processor, the last, alone: else their own work would be
 measured. --beside: they take what they get, as programs on the hand's own machine would.
@@ -23,6 +23,7 @@ import selectors
 import shutil
 import signal
 import socket
+import statistics
 import struct
 import subprocess
 import tempfile
@@ -33,7 +34,8 @@ parser = argparse.ArgumentParser()
 parser.add_argument('program')
 parser.add_argument('folder', type=pathlib.Path)
 parser.add_argument('--seconds', type=float, default=60)
-parser.add_argument('--alone-seconds', type=float, help='of each of the two phases alone; default as --seconds')
+parser.add_argument('--alone-seconds', type=float, help='of each of the other two phases; default as --seconds')
+parser.add_argument('--rounds', type=int, default=2, help='of all three phases, every other one from the last to the first')
 parser.add_argument('--batches', type=int, default=4)
 parser.add_argument('--viewers', type=int, default=200)
 parser.add_argument('--poses', type=int, default=500, help='of a query: about what a planner asks at once')
@@ -42,7 +44,7 @@ parser.add_argument('--ordinary', action='store_true')
 parser.add_argument('--beside', action='store_true', help='clients like any other program of this machine')
 parser.add_argument('--out', type=pathlib.Path)
 options = parser.parse_args()
-ALONE_S = options.alone_seconds or options.seconds
+options.alone_seconds = options.alone_seconds or options.seconds
 KEY = 'AAAAAAAAAAAAAAAAAAAAAA=='
 
 root = tempfile.TemporaryDirectory()
@@ -58,7 +60,7 @@ def lengthen():
     times, rest = zip(*((float(time), pose) for time, pose in (row.split(',', 1) for row in rows)))
     steps = list(zip([b - a for a, b in zip(times, times[1:])], rest[1:], rest))
     out, now = [f'0,{rest[0]}'], 0.0
-    while now < max(options.seconds, ALONE_S):
+    while now < max(options.seconds, options.alone_seconds):
         for step, there, _ in steps:
             now += step
             out.append(f'{now:.6f},{there}')
@@ -103,14 +105,14 @@ def memory_kib():
 
 
 class Background:
-    """cyclictest beside what is measured, as late as the machine makes it; nothing where there is none (nor where it is refused, which it is without any right)."""
+    """cyclictest beside what is measured: a thread of the loop's priority on the loop's processor (whatever the server's rights) that only sleeps, as late as the machine alone makes it; nothing where there is none,
+    nor where it is refused."""
 
     def __init__(self, seconds):
         self.file = tempfile.TemporaryFile('w+')
-        words = ['cyclictest', '--quiet', '--threads=1', '--interval=1000', f'--loops={int(seconds * 1000)}', '--histogram=20000']
-        words += ['--policy=other'] if options.ordinary else ['--mlockall', '--policy=fifo', '--priority=80', f'--affinity={PROCESSORS[-1]}']
         try:
-            self.process = subprocess.Popen(words, stdout=self.file, stderr=subprocess.DEVNULL)
+            self.process = subprocess.Popen(['cyclictest', '--quiet', '--threads=1', '--interval=1000', f'--loops={int(seconds * 1000)}', '--histogram=200000', '--mlockall', '--policy=fifo', '--priority=80',
+                                             f'--affinity={PROCESSORS[-1]}'], stdout=self.file, stderr=subprocess.DEVNULL)
         except OSError:
             self.process = None
 
@@ -129,15 +131,22 @@ class Background:
         return {'ticks': total, 'missed_ticks': sum(count * (us // 1000) for us, count in counts), **percentiles, 'max': int(re.search(r'# Max Latencies: (\d+)', text)[1])}
 
 
+def stolen_ms():
+    """Time that the loop's processor wanted and its machine's host gave to others."""
+    line = re.search(rf'^cpu{PROCESSORS[-1]} (.*)$', pathlib.Path('/proc/stat').read_text(), re.M)[1]
+    return int(line.split()[7]) * 1000 // os.sysconf('SC_CLK_TCK')
+
+
 def session(seconds, during=None):
     """A session of that length; its summary."""
-    background = Background(seconds)
+    background, stolen = Background(seconds), stolen_ms()
     started = json.loads(ask('POST', '/v1/sessions', json.dumps({'scene': scene['id'], 'duration_s': seconds})))
     begun = time.monotonic()
     if during:
         during(started['id'])
     while (state := json.loads(ask('GET', f"/v1/sessions/{started['id']}")))['state'] == 'running':
         time.sleep(min(1, max(0.05, seconds - (time.monotonic() - begun))))
+    state['stolen_ms'] = stolen_ms() - stolen
     state['cyclictest_us'] = background.end()
     return state
 
@@ -220,56 +229,80 @@ class Load:
             thread.join(120)
 
 
+PHASES = ['alone', 'busy', 'loaded']
+
+
+def run_round(states, loads, turned):
+    for phase in (reversed(PHASES) if turned else PHASES):
+        if phase == 'loaded':
+            load = Load()
+            state = session(options.seconds, load.start)
+            load.end()
+            loads.append(load)
+        elif phase == 'busy':
+            with Busy():
+                state = session(options.alone_seconds)
+        else:
+            state = session(options.alone_seconds)
+        states[phase].append(state)
+
+
+states, loads = {phase: [] for phase in PHASES}, []
 try:
     scene = json.loads(ask('POST', '/v1/scenes', json.dumps({'path': 'scene.json'}), {'Content-Type': 'application/json'}))
     while scene['state'] not in ('ready', 'failed'):
         scene = json.loads(ask('GET', f"/v1/scenes/{scene['id']}?wait=30"))
     if scene['state'] == 'failed':
         raise SystemExit(scene['error']['detail'])
-    alone = session(ALONE_S)
-    with Busy():
-        busy = session(ALONE_S)
-    load = Load()
-    loaded = session(options.seconds, load.start)
-    load.end()
+    for i in range(options.rounds):
+        run_round(states, loads, i % 2 == 1)
     metrics = ask('GET', '/metrics').decode()
-    with Busy():
-        busy_again = session(ALONE_S)
-    again = session(ALONE_S)
 finally:
     server.send_signal(signal.SIGTERM)
     server.wait(60)
 
-load.times.sort()
-
 
 def figures(state):
     summary = state['summary']
-    return {'ticks': summary['ticks'], 'missed_ticks': summary['missed_ticks'], 'result_age_ticks': state['result_age_ticks'], 'lateness_us': summary['lateness_us'], 'frame_us': summary['frame_us'],
-            'cyclictest_us': state['cyclictest_us'], 'notes': summary.get('notes', [])}
+    return {'ticks': summary['ticks'], 'missed_ticks': summary['missed_ticks'], 'stolen_ms': state['stolen_ms'], 'result_age_ticks': state['result_age_ticks'], 'lateness_us': summary['lateness_us'],
+            'frame_us': summary['frame_us'], 'cyclictest_us': state['cyclictest_us'], 'notes': summary.get('notes', [])}
 
 
 def metric(name):
     return int(float(re.search(rf'^{name} (\S+)$', metrics, re.M)[1]))
 
 
-def missed_share(state):
-    return state['summary']['missed_ticks'] / state['summary']['ticks']
+def missed_share(phase):
+    """Of all rounds' ticks; where none was missed, as if one had been."""
+    return max(1, sum(state['summary']['missed_ticks'] for state in states[phase])) / sum(state['summary']['ticks'] for state in states[phase])
 
 
-def before_and_after(value, before=None, after=None):
-    return (value(before or alone) + value(after or again)) / 2
+def missed_to_machine(phase):
+    """Against cyclictest's in the same time; None without it."""
+    machine = [state['cyclictest_us'] for state in states[phase]]
+    return sum(state['summary']['missed_ticks'] for state in states[phase]) / max(1, sum(one['missed_ticks'] for one in machine)) if all(machine) else None
 
 
-result = {'scene': options.folder.name, 'backend': scene['device'], 'seconds': options.seconds, 'batch_clients': options.batches, 'viewers': options.viewers, 'processors': os.cpu_count(),
-          'load_average': os.getloadavg(), 'realtime': not options.ordinary, 'clients_beside': options.beside,
-          'alone': figures(alone), 'busy': figures(busy), 'loaded': figures(loaded), 'busy_again': figures(busy_again), 'alone_again': figures(again), 'poses_per_s': load.poses / load.seconds, 'queries_per_s': len(load.times) / load.seconds,
-          'query_s': {'p50': load.times[len(load.times) // 2], 'p99': load.times[int(0.99 * len(load.times))], 'poses': options.poses} if load.times else None,
-          'viewer_reads': load.messages, 'viewer_bytes': load.bytes, 'telemetry_sent': metric('palpate_telemetry_sent_total'), 'telemetry_dropped': metric('palpate_telemetry_dropped_total'),
-          'memory_kib': {'after_5_s': load.memory[min(4, len(load.memory) - 1)], 'half_way': load.memory[len(load.memory) // 2], 'end': load.memory[-1], 'max': max(load.memory)},
-          'missed_ratio': missed_share(loaded) / max(before_and_after(missed_share), 1 / alone['summary']['ticks']),
-          'missed_ratio_to_busy': missed_share(loaded) / max(before_and_after(missed_share, busy, busy_again), 1 / alone['summary']['ticks']),
-          'age_p99_ratio': loaded['result_age_ticks']['p99'] / max(before_and_after(lambda state: state['result_age_ticks']['p99']), 1)}
+def age_p99(phase):
+    return statistics.median(state['result_age_ticks']['p99'] for state in states[phase])
+
+
+def of_load(load):
+    times = sorted(load.times)
+    return {'poses_per_s': load.poses / load.seconds, 'queries_per_s': len(times) / load.seconds,
+            'query_s': {'p50': times[len(times) // 2], 'p99': times[int(0.99 * len(times))], 'poses': options.poses} if times else None,
+            'viewer_reads': load.messages, 'viewer_bytes': load.bytes,
+            'memory_kib': {'after_5_s': load.memory[min(4, len(load.memory) - 1)], 'half_way': load.memory[len(load.memory) // 2], 'end': load.memory[-1], 'max': max(load.memory)}}
+
+
+result = {'scene': options.folder.name, 'backend': scene['device'], 'seconds': options.seconds, 'alone_seconds': options.alone_seconds, 'batch_clients': options.batches, 'viewers': options.viewers,
+          'processors': os.cpu_count(), 'load_average': os.getloadavg(), 'realtime': not options.ordinary, 'clients_beside': options.beside,
+          'rounds': [{phase: figures(states[phase][i]) for phase in PHASES} | {'load': of_load(loads[i])} for i in range(options.rounds)],
+          'telemetry_sent': metric('palpate_telemetry_sent_total'), 'telemetry_dropped': metric('palpate_telemetry_dropped_total'),
+          'missed_ticks': {phase: [sum(state['summary'][key] for state in states[phase]) for key in ('missed_ticks', 'ticks')] for phase in PHASES},
+          'missed_ratio': missed_share('loaded') / missed_share('alone'), 'missed_ratio_to_busy': missed_share('loaded') / missed_share('busy'),
+          'missed_to_machine': {phase: missed_to_machine(phase) for phase in PHASES},
+          'age_p99_ratio': age_p99('loaded') / max(age_p99('alone'), 1)}
 print(json.dumps(result, indent=1))
 if options.out:
     options.out.mkdir(parents=True, exist_ok=True)

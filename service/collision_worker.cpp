@@ -3,7 +3,6 @@
 #include <array>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstddef>
-#include <optional>
 
 #include "service/control_loop.h"
 #include "service/thread_share.h"
@@ -55,11 +54,10 @@ FrameSlot* CollisionWorker::next_frame() {
 void CollisionWorker::release(FrameSlot* slot) { queues_->free.push(slot); }
 
 void CollisionWorker::run() noexcept {
-  // It shares the loop's processor only where the loop goes before it whatever happens.
-  std::optional<ForHand> for_hand;
-  if (may_be_realtime()) for_hand.emplace();
+  // It shares the loop's processor, on which nobody else of this process runs: beside those who answer batches it would wait for milliseconds.
+  const ForHand for_hand;
   set_nice(kNiceContact);
-  set_slice(kSliceContactUs);
+  set_slice(may_be_realtime() ? kSliceContactUs : kSliceBesideLoopUs);
   LawResult result;
   std::uint32_t seen = 0;
   while (!stop_.load(std::memory_order_acquire)) {
