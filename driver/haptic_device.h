@@ -31,7 +31,7 @@ struct DeviceSample {
   std::uint32_t buttons = 0;
   DeviceState state = DeviceState::kClosed;
   int stage = 0;                   ///< of the recorded or simulated path, 0: none
-  bool clutched = false;           ///< the hand moves without the tool, so it must feel nothing
+  bool clutched = false;           ///< the hand moves without the tool, or was paused: it must feel nothing
   bool paused = false;             ///< somebody has taken the force off from outside; a simulated device stands still, this pose included
 };
 

@@ -5,8 +5,8 @@
 
 namespace palpate {
 
-/// A device that can be paused from outside. One of metal goes on telling its pose, with no force, and force fades in again over
-/// kFadeTicks; a simulated one stands still meanwhile. Refers to the device.
+/// A device that can be paused from outside. One of metal goes on telling its pose and is clutched for SafeDevice, which sends it no force and fades in
+/// again afterwards; a simulated one stands still meanwhile. Refers to the device.
 class PausableDevice final : public HapticDevice {
  public:
   PausableDevice(HapticDevice& device, bool stands_still) : device_(device), stands_still_(stands_still) {}
@@ -21,28 +21,19 @@ class PausableDevice final : public HapticDevice {
   DeviceSample read() noexcept override {
     DeviceSample sample = device_.read();
     sample.paused = held_ = paused_.load(std::memory_order_relaxed);
+    sample.clutched |= held_ && !stands_still_;
     return sample;
   }
   Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override { return device_.exertable(wrench, gc); }
   void write(const Wrench& wrench, const Vec3& gc) noexcept override {
-    if (held_) {
-      gain_ = 0;
-      if (!stands_still_) device_.write(Wrench{}, gc);
-      return;
-    }
-    gain_ = stands_still_ || gain_ >= kFadeTicks ? kFadeTicks : gain_ + 1;
-    const double share = static_cast<double>(gain_) / kFadeTicks;
-    device_.write({wrench.force * share, wrench.torque * share}, gc);
+    if (!(held_ && stands_still_)) device_.write(wrench, gc);
   }
 
  private:
-  static constexpr int kFadeTicks = 200;   ///< as control.fade_in_ms by default
-
   HapticDevice& device_;
   bool stands_still_;
   std::atomic<bool> paused_{false};
-  bool held_ = false;                      ///< what the tick's sample said
-  int gain_ = kFadeTicks;                  ///< SafeDevice fades in after opening
+  bool held_ = false;   ///< what the tick's sample said
 };
 
 }  // namespace palpate

@@ -116,5 +116,48 @@ TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
   EXPECT_EQ(told, expected);
 }
 
+/// Of metal: it stays where it is and keeps the force it was last sent.
+class Pressed final : public HapticDevice {
+ public:
+  std::string name() const override { return "pressed"; }
+  DeviceCapabilities capabilities() const override { return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8}; }
+  Result<void> open() override { return {}; }
+  void close() noexcept override {}
+  DeviceSample read() noexcept override {
+    DeviceSample sample;
+    sample.state = DeviceState::kReady;
+    return sample;
+  }
+  void write(const Wrench& wrench, const Vec3&) noexcept override { felt = wrench; }
+  Wrench felt;
+};
+
+// The loop's record said what would have been sent.
+TEST(PausableDevice, OfMetalFeelsAndTellsNoForceAndFadesInAgain) {
+  Pressed hand;
+  PausableDevice pausable(hand, false);
+  SafeDevice device(pausable, {.fade_in_ticks = 10, .watchdog_ticks = 0});
+  ASSERT_TRUE(device.open());
+  ControlTick tick(device, {.kind = LawKind::kHold}, Vec3(0), {});
+  LawResult pressed;
+  pressed.wrench.force = {0, 0, 2};
+  pressed.contact = true;
+  std::int64_t at = 0;
+  const auto force = [&] {
+    tick.sense(at);
+    pressed.tick = at++;
+    const TickRecord& record = tick.act(&pressed);
+    EXPECT_EQ(record.sent.force.z, hand.felt.force.z);
+    EXPECT_EQ(record.response.force.z, 2);
+    return record.sent.force.z;
+  };
+  for (int i = 0; i < 20; ++i) force();
+  EXPECT_EQ(force(), 2);
+  pausable.set_paused(true);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(force(), 0);
+  pausable.set_paused(false);
+  for (int i = 1; i <= 10; ++i) EXPECT_NEAR(force(), 0.2 * i, 1e-12);   // rounding of the gain's sum
+}
+
 }  // namespace
 }  // namespace palpate
