@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -37,42 +37,49 @@ std::size_t size_of_type(const std::string& type) {
   return 0;
 }
 
-/// Reads the header; false when it is not one.
-bool read_header(std::string_view bytes, Header& header) {
+constexpr const char* kNoHeader = "has no valid PLY header";
+
+/// Reads the header; what is wrong with it, "" when nothing is. What the importer would pass over or read in another way is wrong: it writes beyond the room
+/// of a first element's vertices when a second one of that name has more.
+std::string read_header(std::string_view bytes, Header& header) {
+  std::set<std::string> names;
   std::size_t at = 0;
   for (int line_number = 0; line_number < 100000; ++line_number) {
     const std::size_t end = bytes.find('\n', at);
-    if (end == std::string_view::npos) return false;
+    if (end == std::string_view::npos) return kNoHeader;
     std::istringstream line{std::string(bytes.substr(at, std::min<std::size_t>(end - at, 1000)))};
     at = end + 1;
     std::string word, type;
     line >> word;
     if (line_number == 0) {
-      if (word != "ply") return false;
+      if (word != "ply") return kNoHeader;
     } else if (word == "format") {
       line >> header.format;
     } else if (word == "element") {
       Element element;
-      if (!(line >> element.name >> element.count)) return false;
+      if (!(line >> element.name >> element.count)) return kNoHeader;
+      if (!names.insert(element.name).second) return fmt::format("has two elements '{}'", element.name.substr(0, 40));
       header.elements.push_back(element);
     } else if (word == "property") {
       Property property;
-      if (header.elements.empty() || !(line >> type)) return false;
+      if (header.elements.empty() || !(line >> type)) return kNoHeader;
       if (type == "list") {
         std::string count_type;
         line >> count_type >> type;
         property.count_size = size_of_type(count_type);
-        if (property.count_size == 0) return false;
+        if (property.count_size == 0) return kNoHeader;
       }
       property.size = size_of_type(type);
-      if (property.size == 0) return false;
+      if (property.size == 0) return kNoHeader;
       header.elements.back().properties.push_back(property);
     } else if (word == "end_header") {
       header.length = at;
-      return true;
+      return {};
+    } else if (!word.empty() && word != "comment" && word != "obj_info") {
+      return fmt::format("has a header line that begins with '{}', which PLY does not know", word.substr(0, 40));
     }
   }
-  return false;
+  return kNoHeader;
 }
 
 std::string cut_short(const Element& element, std::uint64_t have) {
@@ -137,7 +144,7 @@ std::string distrust_ascii(std::string_view body, const Header& header) {
 
 std::string distrust_ply(std::string_view bytes) {
   Header header;
-  if (!read_header(bytes, header)) return "has no valid PLY header";
+  if (std::string wrong = read_header(bytes, header); !wrong.empty()) return wrong;
   const std::string_view body = bytes.substr(header.length);
   if (header.format == "ascii") return distrust_ascii(body, header);
   if (header.format == "binary_little_endian" || header.format == "binary_big_endian") return distrust_binary(body, header);

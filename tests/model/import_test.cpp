@@ -126,9 +126,15 @@ TEST_F(MeshImport, PlyAndOff) {
               HasSubstr("promises 2 elements 'face' and has 1"));
   EXPECT_THAT(refused(write("many.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n")),
               HasSubstr("promises 4000000000 elements 'vertex'"));
-  // Without a known property an element takes no bytes: the importer then counted to 353535235358 (found by fuzzing).
-  EXPECT_THAT(refused(write("no_property.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 353535235358\npoperty float x\nend_header\n0000")),
+  // Without a property an element takes no bytes: the importer then counted to 353535235358 (found by fuzzing).
+  EXPECT_THAT(refused(write("no_property.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 353535235358\nend_header\n0000")),
               HasSubstr("promises 353535235358 elements 'vertex'"));
+  EXPECT_THAT(refused(write("unknown.ply", "ply\nformat ascii 1.0\nelement vertex 3\npoperty float x\nend_header\n0\n0\n0\n")), HasSubstr("begins with 'poperty', which PLY does not know"));
+  // The importer wrote beyond the first one's vertices (found by fuzzing).
+  EXPECT_THAT(refused(write("twice.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n" + header.substr(header.find("element vertex")) + "1\n2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n")),
+              HasSubstr("has two elements 'vertex'"));
+  const std::string told = std::string(header).insert(header.find("element face"), "comment of ours\n\nobj_info num_cols 2\n");
+  EXPECT_EQ(read(write("told.ply", told + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n")).triangles.size(), 2u);
   EXPECT_THAT(refused(write("index.ply", header + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 9\n")), HasSubstr("vertex index 9"));
   EXPECT_THAT(refused(write("many.off", "OFF\n353535235358 6 0\n0 0 0\n")), HasSubstr("promises 353535235358 vertices"));
   EXPECT_THAT(refused(write("short.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n")), HasSubstr("promises 2 faces and has 1"));
