@@ -233,6 +233,7 @@ PHASES = ['alone', 'busy', 'loaded']
 
 
 def run_round(states, loads, turned):
+    """All phases once, from the last to the first if turned; adds each session's summary to its phase's, and the load to the loads."""
     for phase in (reversed(PHASES) if turned else PHASES):
         if phase == 'loaded':
             load = Load()

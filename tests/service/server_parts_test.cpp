@@ -57,10 +57,11 @@ TEST(BatchQueue, AClientThatGoesWhileItsPosesAreAnsweredLeavesNothing) {
   EXPECT_EQ(metrics.batches_now, 0u) << "batches under way, and nobody waits for one";
 }
 
-/// Moves a millimetre with every write, until it is closed.
-class Sliding final : public HapticDevice {
+/// Ready at once. Moves so far along x with every write, m, and keeps the wrench it was last sent.
+class Hand final : public HapticDevice {
  public:
-  std::string name() const override { return "sliding"; }
+  explicit Hand(double step_m) : step_m_(step_m) {}
+  std::string name() const override { return "hand"; }
   DeviceCapabilities capabilities() const override { return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8}; }
   Result<void> open() override { return {}; }
   void close() noexcept override {}
@@ -70,15 +71,19 @@ class Sliding final : public HapticDevice {
     sample.state = DeviceState::kReady;
     return sample;
   }
-  void write(const Wrench&, const Vec3&) noexcept override { x_ += 1e-3; }
+  void write(const Wrench& wrench, const Vec3&) noexcept override {
+    felt = wrench;
+    x_ += step_m_;
+  }
+  Wrench felt;
 
  private:
-  double x_ = 0;
+  double step_m_, x_ = 0;
 };
 
 // "paused" was told beside poses from before the pause, which a recording thread that got no processor had not told yet.
 TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
-  Sliding sliding;
+  Hand sliding(1e-3);
   PausableDevice pausable(sliding, true);
   SafeDevice device(pausable, {});
   ASSERT_TRUE(device.open());
@@ -116,25 +121,9 @@ TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
   EXPECT_EQ(told, expected);
 }
 
-/// Of metal: it stays where it is and keeps the force it was last sent.
-class Pressed final : public HapticDevice {
- public:
-  std::string name() const override { return "pressed"; }
-  DeviceCapabilities capabilities() const override { return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8}; }
-  Result<void> open() override { return {}; }
-  void close() noexcept override {}
-  DeviceSample read() noexcept override {
-    DeviceSample sample;
-    sample.state = DeviceState::kReady;
-    return sample;
-  }
-  void write(const Wrench& wrench, const Vec3&) noexcept override { felt = wrench; }
-  Wrench felt;
-};
-
 // The loop's record said what would have been sent.
 TEST(PausableDevice, OfMetalFeelsAndTellsNoForceAndFadesInAgain) {
-  Pressed hand;
+  Hand hand(0);
   PausableDevice pausable(hand, false);
   SafeDevice device(pausable, {.fade_in_ticks = 10, .watchdog_ticks = 0});
   ASSERT_TRUE(device.open());
