@@ -2,6 +2,7 @@
 // Exit codes: 0 the parcel is complete, be it a mesh or why there is none; 12 an allocation failed; 2 called by hand.
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -27,8 +28,9 @@ void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
 }
 
 /// Before the first byte of the file is read.
-void limit_myself(rlim_t memory_bytes, rlim_t seconds) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);           // nothing outlives the one who asked
+void limit_myself(rlim_t memory_bytes, rlim_t seconds, pid_t asker) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);           // nothing outlives the one who asked,
+  if (::getppid() != asker) std::_Exit(1);      // not even if that one went before this was said
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   limit(RLIMIT_CPU, seconds, seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
@@ -59,11 +61,11 @@ Result<Mesh> read(const char* path, double scale, const char* folder, ImportRepo
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  if (argc != 6) {
+  if (argc != 7) {
     std::fputs("palpate-import is a part of palpate, which starts it to read a mesh file; use `palpate info FILE`\n", stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
-  limit_myself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
+  limit_myself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10), std::atoi(argv[6]));
   ImportReport report;
   const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), argv[5], report), report);
   std::_Exit(written ? 0 : 1);   // taking it all apart first would cost as much as a tenth of the reading

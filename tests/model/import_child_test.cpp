@@ -146,6 +146,26 @@ TEST_F(ImportChild, ItDiesWithTheOneWhoAsked) {
   EXPECT_EQ(wait_for(0), 0);
 }
 
+// The one who asked may be gone before the child has said that it wants to go with it.
+TEST_F(ImportChild, ItDoesNotBeginForOneWhoIsGone) {
+  file_ = folder_.write("mesh.stl", "sleep");
+  const std::string nobody = std::to_string(::getppid());   // somebody, but not its parent
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl(PALPATE_IMPORT_FAULTY, PALPATE_IMPORT_FAULTY, file_.c_str(), "0x1p+0", "419430400", "100", ".", nobody.c_str(), nullptr);
+    ::_exit(127);
+  }
+  int status = -1;
+  pid_t ended = 0;
+  for (int i = 0; i < 1000 && ended == 0; ++i) {   // 10 s on a busy machine
+    ended = ::waitpid(child, &status, WNOHANG);
+    if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  if (ended == 0) ::kill(child, SIGKILL), ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
 TEST_F(ImportChild, AMissingProgramIsToldByName) {
   const auto end = run_import_child("/nowhere/palpate-import", "a.stl", 1, kLimits, parcel_, {});
   ASSERT_FALSE(end);
