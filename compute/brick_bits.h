@@ -28,34 +28,36 @@ struct BrickMasks {
 };
 inline constexpr BrickMasks kBrickMasks;
 
-/// One bit a voxel of a partition: not V_ext. A brick's 512 bits lie together, and all bricks without a V_bnd voxel share two such blocks, so that every
-/// question is one index and one block, with nothing to decide on the way.
+/// One bit a voxel of a partition: whether it is not V_ext, or whether it is V_int. A brick's 512 bits lie together, and all bricks without a V_bnd voxel
+/// share two such blocks, so that every question is one index and one block, with nothing to decide on the way.
 class BrickBits {
  public:
   using Block = std::array<std::uint64_t, 8>;   ///< by z: bit x + 8y
 
+  enum class Of { kOccupied, kInternal };   ///< not V_ext; V_int
+
   /// Reads the partition back from the device; allocates.
-  Result<void> read(VulkanDevice& device, const PartitionBuffers& from) {
+  Result<void> read(VulkanDevice& device, const PartitionBuffers& from, Of of) {
     const Int3 size = from.grid.bricks;
     std::vector<std::uint32_t> slots(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
     std::vector<gpu::Brick> bricks(from.grid.mixed_bricks);
     if (auto r = download(device, from.brick_slot, 0, slots.data(), slots.size() * 4); !r) return r;
     if (auto r = download(device, from.bricks, 0, bricks.data(), bricks.size() * sizeof bricks[0]); !r) return r;
-    make(size, std::move(slots), bricks);
+    make(size, std::move(slots), bricks, of);
     return {};
   }
   /// `size` in bricks; `slots` as brick_slot has them.
-  void make(const Int3& size, std::vector<std::uint32_t> slots, std::span<const gpu::Brick> bricks) {
+  void make(const Int3& size, std::vector<std::uint32_t> slots, std::span<const gpu::Brick> bricks, Of of) {
     size_ = size;
     block_ = std::move(slots);
     for (std::uint32_t& block : block_) block = block == gpu::kBrickExternal ? 0 : block == gpu::kBrickInternal ? 1 : block + 2;
     bits_.resize(bricks.size() + 2);
     bits_[0].fill(0);
     bits_[1].fill(~std::uint64_t{0});
-    for (std::size_t i = 0; i < bricks.size(); ++i)
-      for (std::size_t z = 0; z < 8; ++z)
-        bits_[i + 2][z] = std::uint64_t{bricks[i].boundary[2 * z] | bricks[i].internal_[2 * z]} |
-                          std::uint64_t{bricks[i].boundary[2 * z + 1] | bricks[i].internal_[2 * z + 1]} << 32;
+    for (std::size_t i = 0; i < bricks.size(); ++i) {
+      const auto half = [&](std::size_t word) { return std::uint64_t{bricks[i].internal_[word] | (of == Of::kOccupied ? bricks[i].boundary[word] : 0)}; };
+      for (std::size_t z = 0; z < 8; ++z) bits_[i + 2][z] = half(2 * z) | half(2 * z + 1) << 32;
+    }
   }
 
   /// A bit for each brick: whether it has a voxel.

@@ -86,7 +86,7 @@ void BroadPhase::make_runs(const LatticeMesh& tool) {
 Result<void> BroadPhase::read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup) {
   grid_ = mockup.grid;
   per_voxel_ = 1.0 / grid_.size;
-  if (auto r = occupied_.emplace_back().read(device, mockup); !r) return r;
+  if (auto r = occupied_.emplace_back().read(device, mockup, BrickBits::Of::kOccupied); !r) return r;
   while (std::max({occupied_.back().size().x, occupied_.back().size().y, occupied_.back().size().z}) > kManyBricks) occupied_.push_back(occupied_.back().coarser());
   return {};
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
+#include "compute/listed_boxes.h"
 #include "compute/processor.h"
 #include "compute/search_tables.h"
 
@@ -12,16 +12,6 @@ namespace palpate {
 namespace {
 
 constexpr std::int32_t kFewVoxels = 64;   // beyond, a look at the brick as a whole comes first (chosen)
-constexpr std::int32_t kParts = kVoxelParts;
-
-// Sixteen boxes at a time.
-constexpr std::size_t kLanes = SearchTables::kBoxesAtOnce;
-using Bytes = std::uint8_t __attribute__((vector_size(kLanes)));
-using Halves = std::uint64_t __attribute__((vector_size(kLanes)));
-
-std::uint8_t in_voxel(std::int32_t part) { return static_cast<std::uint8_t>(std::clamp(part, 0, kParts - 1)); }
-
-inline void load(const std::uint8_t* from, Bytes& out) { std::memcpy(&out, from, sizeof out); }
 
 }  // namespace
 
@@ -29,7 +19,7 @@ Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geo
   NearPairs out;
   const PartitionBuffers& mockup = scene.mockup.partition;
   out.grid_ = mockup.grid;
-  out.per_part_ = static_cast<double>(kParts) / mockup.grid.size;
+  out.per_part_ = static_cast<double>(kVoxelParts) / mockup.grid.size;
   // Boxes of parts reach a part further than their highs. A test is off by less than a sixteenth of a half part: sums in single precision
   // below 2048 half parts by less than 2^-10, and doubles before that by far less.
   out.slack_ = 1 + static_cast<float>(2 * out.per_part_ * (gpu::kCloseSteps + 1)) + 0x1p-4F;
@@ -51,11 +41,14 @@ bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const 
   out.normal_size = std::abs(out.normal[0]) + std::abs(out.normal[1]) + std::abs(out.normal[2]);
   const double each = 1 / out.normal_size;
   out.half_parts = each * (2 * per_part_);
+  out.half_facing = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    out.facing[k] = static_cast<float>(out.normal[k] * each);
+    out.look.facing[k] = static_cast<float>(2 * out.normal[k] * each);
+    out.half_facing += 0.5F * out.look.facing[k];
     out.parts[k] = boxes.low[k][i];
     out.parts[k + 3] = boxes.high[k][i];
   }
+  out.look.slack = slack_;
   if (++looker_ == 0) {   // once in 2^32 triangles
     std::fill(seen_by_.begin(), seen_by_.end(), 0u);
     looker_ = 1;
@@ -74,53 +67,32 @@ bool NearPairs::off_plane(const Triangle& triangle, const Int3& low, std::int32_
 
 /// Of the static triangles that a voxel lists, those whose boxes there meet the triangle's and its plane. Where two triangles are within kCloseSteps
 /// of each other, the static one is so in some voxel that lists it, and there all of this lets it pass.
-bool NearPairs::take_list(const Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists) {
-  std::array<Bytes, 6> own;
-  float plane = 0;   // of the voxel's low corner, in half parts
-  {
-    double distance = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      own[k] = Bytes{} + in_voxel(triangle.parts[k] - kParts * voxel[axis]);
-      own[k + 3] = Bytes{} + in_voxel(triangle.parts[k + 3] - kParts * voxel[axis]);
-      distance += triangle.normal[k] * (grid_.origin[axis] + grid_.size * voxel[axis] - triangle.corner[axis]);
-    }
-    plane = static_cast<float>(distance * triangle.half_parts) + (triangle.facing[0] + triangle.facing[1] + triangle.facing[2]);
+bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists) {
+  ListLook& look = triangle.look;
+  double distance = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    look.box[k] = triangle.parts[k] - kVoxelParts * voxel[axis];
+    look.box[k + 3] = triangle.parts[k + 3] - kVoxelParts * voxel[axis];
+    distance += triangle.normal[k] * (grid_.origin[axis] + grid_.size * voxel[axis] - triangle.corner[axis]);
   }
-  const float x = triangle.facing[0], y = triangle.facing[1], z = triangle.facing[2];
+  look.plane = static_cast<float>(distance * triangle.half_parts) + triangle.half_facing;
   const std::size_t begin = list_begin_[boundary], count = list_begin_[boundary + 1] - begin;
-  const std::uint8_t* boxes = &boxes_[6 * begin];
-  for (std::size_t first = 0; first < count; first += kLanes) {
-    std::array<Bytes, 6> its;
-    for (std::size_t k = 0; k < 6; ++k) load(boxes + k * count + first, its[k]);
-    const Bytes meet = (Bytes)(its[0] <= own[3]) & (Bytes)(its[1] <= own[4]) & (Bytes)(its[2] <= own[5]) & (Bytes)(own[0] <= its[3]) & (Bytes)(own[1] <= its[4]) &
-                       (Bytes)(own[2] <= its[5]);
-    const auto found = (Halves)meet;
-    for (std::size_t half = 0; half < 2; ++half)
-      for (std::uint64_t rest = found[half] & 0x0101010101010101u; rest != 0; rest &= rest - 1) {
-        const std::size_t i = first + 8 * half + static_cast<std::size_t>(std::countr_zero(rest) >> 3);
-        if (i >= count) break;
-        // The box lies on one side of the plane when its middle is further from it than it reaches.
-        const std::uint8_t* s = boxes + i;
-        const int low[3] = {s[0], s[count], s[2 * count]}, high[3] = {s[3 * count], s[4 * count], s[5 * count]};
-        const float middle = plane + x * static_cast<float>(low[0] + high[0]) + y * static_cast<float>(low[1] + high[1]) + z * static_cast<float>(low[2] + high[2]);
-        const float reach = std::abs(x) * static_cast<float>(high[0] - low[0]) + std::abs(y) * static_cast<float>(high[1] - low[1]) +
-                            std::abs(z) * static_cast<float>(high[2] - low[2]) + slack_;
-        if (std::abs(middle) > reach) continue;
-        const std::uint32_t id = list_triangles_[begin + i];
-        if (seen_by_[id] == looker_) continue;   // one pair lies in many voxels
-        seen_by_[id] = looker_;
-        if (!lists.push(lists.pairs, gpu::kListPairCandidates, {id, triangle.place})) return false;
-      }
-  }
+  for (std::size_t first = 0; first < count; first += kMostBoxes)
+    for (std::uint64_t rest = near_boxes(look, &boxes_[6 * begin + first], count, std::min(count - first, kMostBoxes)); rest != 0; rest &= rest - 1) {
+      const std::uint32_t id = list_triangles_[begin + first + static_cast<std::size_t>(std::countr_zero(rest))];
+      if (seen_by_[id] == looker_) continue;   // one pair lies in many voxels
+      seen_by_[id] = looker_;
+      if (!lists.push(lists.pairs, gpu::kListPairCandidates, {id, triangle.place})) return false;
+    }
   return true;
 }
 
-bool NearPairs::take(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
+bool NearPairs::take(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
   return on_this_processor([&] { return take_brick(triangle, brick, slot, lists); });
 }
 
-bool NearPairs::take_brick(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
+bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
   const std::int32_t size = grid_.size;
   const Int3 origin = grid_.origin + 8 * size * brick;
   if (slot == gpu::kBrickInternal) {

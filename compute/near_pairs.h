@@ -6,6 +6,7 @@
 
 #include "compute/host_copy.h"
 #include "compute/host_exact.h"
+#include "compute/listed_boxes.h"
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
 #include "compute/turned_boxes.h"
@@ -26,19 +27,20 @@ class NearPairs {
     Int3 corner;                     ///< one of its corners
     std::array<double, 3> normal;    ///< raw, rounded once
     double normal_size;              ///< sum of its components' sizes
-    std::array<float, 3> facing;     ///< the same, its sizes' sum 1
+    ListLook look;                   ///< from the last voxel
+    float half_facing;               ///< half the sum of look.facing
     double half_parts;               ///< half parts of a voxel, to be multiplied with normal · steps
     std::array<std::int32_t, 6> parts;  ///< low and high of the same box, in parts of a voxel from the grid's origin on
   };
   /// Lane `i` of `boxes` is the box of `corners`, in the world. False: collinear, it meets nothing.
   bool begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Triangle& out);
   /// Appends what lies in one brick. False: a list had no room.
-  bool take(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
+  bool take(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
 
  private:
   bool off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const;
-  bool take_brick(const Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
-  bool take_list(const Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists);
+  bool take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
+  bool take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists);
 
   gpu::GridConstants grid_{};
   double per_part_ = 0;    ///< parts of a voxel a step

@@ -138,9 +138,8 @@ Result<NearSamples> NearSamples::make(VulkanDevice& device, const SceneGeometry&
   if (out.listed_) {
     const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
     if (auto r = out.list_triangles_.read(device, m.list_triangles, m.grid.list_entries); !r) return r.error();
-    if (auto r = out.fine_slots_.read(device, fine.brick_slot, count); !r) return r.error();
-    if (auto r = out.fine_bricks_.read(device, fine.bricks, out.fine_.mixed_bricks); !r) return r.error();
-    if (auto r = out.solid_.read(device, fine); !r) return r.error();
+    if (auto r = out.solid_.read(device, fine, BrickBits::Of::kOccupied); !r) return r.error();
+    if (auto r = out.internal_.read(device, fine, BrickBits::Of::kInternal); !r) return r.error();
   }
   std::vector<std::uint8_t> any(count, 1);
   if (out.has_near_) {
@@ -184,15 +183,7 @@ bool NearSamples::near_cube(const Level& level, const double (&p)[3]) const {
   return level.near[at(cell, level.cells)] != 0;
 }
 
-/// kVoxel… of a fine voxel, given by its brick and its bit there.
-std::uint32_t NearSamples::fine_class(std::size_t brick, std::uint32_t bit) const {
-  const std::uint32_t slot = fine_slots_[brick];
-  if (slot >= gpu::kBrickInternal) return slot == gpu::kBrickInternal ? gpu::kVoxelInternal : gpu::kVoxelExternal;
-  if ((fine_bricks_[slot].boundary[bit >> 5] >> (bit & 31) & 1) != 0) return gpu::kVoxelBoundary;
-  return (fine_bricks_[slot].internal_[bit >> 5] >> (bit & 31) & 1) != 0 ? gpu::kVoxelInternal : gpu::kVoxelExternal;
-}
-
-/// The same of the voxel that holds a point; V_ext beyond the grid. For an open sample the device begins at the same voxel.
+/// kVoxel… of the fine voxel that holds a point; V_ext beyond the grid. For an open sample the device begins at the same voxel.
 std::uint32_t NearSamples::fine_class(const Int3& p) const {
   Int3 v;
   for (int k = 0; k < 3; ++k) {
@@ -201,7 +192,9 @@ std::uint32_t NearSamples::fine_class(const Int3& p) const {
     if (!(along >= 0 && along < 8 * fine_.bricks[k])) return gpu::kVoxelExternal;
     v[k] = static_cast<std::int32_t>(along);
   }
-  return fine_class(at(Int3(v.x >> 3, v.y >> 3, v.z >> 3), fine_.bricks), static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6));
+  const std::size_t brick = solid_.number(v.x >> 3, v.y >> 3, v.z >> 3);
+  const auto bit = static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
+  return internal_.at(brick, bit) ? gpu::kVoxelInternal : solid_.at(brick, bit) ? gpu::kVoxelBoundary : gpu::kVoxelExternal;
 }
 
 /// The entries of a voxel, gone through with its points.
@@ -243,7 +236,7 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
       std::uint32_t i = first + lane - entries.first;
       if (!grid) grid.emplace(lowest, spacing_);
       const bool sure = (solid.unsure >> lane & 1) == 0;
-      std::uint32_t kind = sure ? fine_class(solid.brick[lane], solid.bit[lane]) : gpu::kVoxelBoundary;
+      std::uint32_t kind = sure && internal_.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal : gpu::kVoxelBoundary;
       gpu::FrameSample sample{{}, id};
       if (!from.has_corner(entries.entry) || i-- > 0) {
         sample.point = from.sample(*grid, entries.entry, i);
@@ -252,10 +245,9 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
         if (kind == gpu::kVoxelBoundary) sample.point = mesh_->corner(id, 0);   // two loads, anywhere in the mesh; inside nobody asks
       }
       if (!sure) kind = fine_class(search.rounded_to_tool(sample.point));
-      const bool room = kind == gpu::kVoxelInternal   ? search.lists.push(search.lists.inside, gpu::kListInsideSamples, sample)
-                        : kind == gpu::kVoxelBoundary ? search.lists.push(search.lists.open, gpu::kListOpenSamples, sample)
-                                                      : true;
-      if (!room) return false;
+      if (kind == gpu::kVoxelExternal) continue;
+      const bool internal = kind == gpu::kVoxelInternal;
+      if (!search.lists.push(internal ? search.lists.inside : search.lists.open, internal ? gpu::kListInsideSamples : gpu::kListOpenSamples, sample)) return false;
     }
   }
   return true;

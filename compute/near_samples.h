@@ -37,16 +37,15 @@ class NearSamples {
   void take_brick(Search& search, const Int3& brick, std::uint32_t slot) const;
   bool take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const;
   bool take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const;
-  std::uint32_t fine_class(std::size_t brick, std::uint32_t bit) const;
   std::uint32_t fine_class(const Int3& p) const;
 
   gpu::GridConstants mockup_{}, fine_{};
   double per_fine_ = 0, per_cube_ = 0;   ///< fine voxels and cubes of them a step
   Level brick_, octant_;
   bool has_near_ = false, listed_ = false;
-  HostCopy<std::uint32_t> slots_, near_, list_begin_, list_triangles_, fine_slots_;
-  HostCopy<gpu::Brick> bricks_, fine_bricks_;
-  BrickBits solid_;   ///< the tool's, by fine voxel
+  HostCopy<std::uint32_t> slots_, near_, list_begin_, list_triangles_;
+  HostCopy<gpu::Brick> bricks_;
+  BrickBits solid_, internal_;   ///< the tool's fine voxels that are not V_ext, those that are V_int
   const LatticeMesh* mesh_ = nullptr;
   std::int32_t spacing_ = 1;
   std::shared_ptr<const HostSamples> sampled_;

@@ -13,13 +13,12 @@ namespace {
 /// Voxels of a made-up partition: bricks of all three kinds.
 struct Voxels {
   Int3 bricks{0};
-  std::vector<bool> set;
-  BrickBits bits;
+  std::vector<bool> set, within;   ///< not V_ext; V_int
+  BrickBits bits, internal;
 
-  bool at(const Int3& v) const {
-    return set[static_cast<std::size_t>(v.x + 8 * bricks.x * (v.y + 8 * bricks.y * v.z))];
-  }
-  Voxels(const Int3& size, unsigned seed) : bricks(size), set(512 * static_cast<std::size_t>(size.x * size.y * size.z)) {
+  bool at(const Int3& v) const { return set[place(v)]; }
+  std::size_t place(const Int3& v) const { return static_cast<std::size_t>(v.x + 8 * bricks.x * (v.y + 8 * bricks.y * v.z)); }
+  Voxels(const Int3& size, unsigned seed) : bricks(size), set(512 * static_cast<std::size_t>(size.x * size.y * size.z)), within(set.size()) {
     std::mt19937 random(seed);
     std::vector<std::uint32_t> slots;
     std::vector<gpu::Brick> mixed;
@@ -31,17 +30,20 @@ struct Voxels {
           slots.push_back(kind == 0 ? gpu::kBrickInternal : kind == 1 ? gpu::kBrickExternal : static_cast<std::uint32_t>(mixed.size()));
           if (kind >= 2) mixed.emplace_back();
           for (std::uint32_t bit = 0; bit < 512; ++bit) {
-            bool in = kind == 0;
+            bool in = kind == 0, inside = in;
             if (kind >= 2 && random() % 40 == 0) {
               in = true;
-              auto& words = random() % 2 == 0 ? mixed.back().boundary : mixed.back().internal_;
+              inside = random() % 2 != 0;
+              auto& words = inside ? mixed.back().internal_ : mixed.back().boundary;
               words[bit >> 5] |= 1u << (bit & 31);
             }
             const Int3 v = 8 * b + Int3(static_cast<int>(bit & 7), static_cast<int>(bit >> 3 & 7), static_cast<int>(bit >> 6));
-            set[static_cast<std::size_t>(v.x + 8 * bricks.x * (v.y + 8 * bricks.y * v.z))] = in;
+            set[place(v)] = in;
+            within[place(v)] = inside;
           }
         }
-    bits.make(size, slots, mixed);
+    bits.make(size, slots, mixed, BrickBits::Of::kOccupied);
+    internal.make(size, slots, mixed, BrickBits::Of::kInternal);
     b = Int3(0);
     for (std::size_t i = 0; i < slots.size(); ++i) EXPECT_EQ(bits.slot(i), slots[i]);
   }
@@ -52,8 +54,12 @@ TEST(BrickBits, KnowsEveryVoxel) {
   Int3 v;
   for (v.z = 0; v.z < 32; ++v.z)
     for (v.y = 0; v.y < 16; ++v.y)
-      for (v.x = 0; v.x < 24; ++v.x)
-        ASSERT_EQ(voxels.bits.at(voxels.bits.number(v.x >> 3, v.y >> 3, v.z >> 3), static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6)), voxels.at(v));
+      for (v.x = 0; v.x < 24; ++v.x) {
+        const std::size_t brick = voxels.bits.number(v.x >> 3, v.y >> 3, v.z >> 3);
+        const auto bit = static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
+        ASSERT_EQ(voxels.bits.at(brick, bit), voxels.at(v));
+        ASSERT_EQ(voxels.internal.at(brick, bit), voxels.within[voxels.place(v)]);
+      }
 }
 
 TEST(BrickBits, FindsTheBricksOfEveryRange) {

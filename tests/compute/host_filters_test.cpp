@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
+#include <random>
 #include <utility>
 #include <vector>
 
+#include "compute/listed_boxes.h"
+#include "compute/search_tables.h"
+#include "compute/turned_boxes.h"
 #include "tests/compute/geometry_cases.h"
 
 namespace palpate {
@@ -95,6 +100,72 @@ TEST(PairFilter, ReachesTheEndsOfTheLattice) {
   EXPECT_EQ(judge({{{Int3(0, 0, -end), Int3(1, 0, end), Int3(0, 1, end)}, t}})[0], PairFilter::kMeet);
   EXPECT_EQ(judge({{{Int3(end, end, -end), Int3(end, end, end), Int3(end - 1, end, end)}, t}})[0], PairFilter::kApart);
   EXPECT_EQ(judge({{{Int3(-end, -end, 0), Int3(-end, -end, end), Int3(-end, end, end)}, t}})[0], PairFilter::kUnknown);   // they share a corner
+}
+
+/// A voxel's boxes as SearchTables has them, and a triangle's look at them.
+struct BoxCase {
+  std::vector<std::array<std::uint8_t, 6>> boxes;
+  std::vector<std::uint8_t> rows;
+  ListLook look{};
+
+  BoxCase(std::mt19937& random, std::size_t count, int side) : boxes(count), rows(6 * count + SearchTables::kBoxesAtOnce) {
+    const auto up_to = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most + 1)); };
+    for (std::uint8_t& byte : rows) byte = static_cast<std::uint8_t>(random());   // what lies behind must not matter
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int low = up_to(255);
+        boxes[i][k] = static_cast<std::uint8_t>(low);
+        boxes[i][k + 3] = static_cast<std::uint8_t>(std::min(low + up_to(side), 255));
+        rows[k * count + i] = boxes[i][k];
+        rows[(k + 3) * count + i] = boxes[i][k + 3];
+      }
+    double size = 0;
+    std::array<double, 3> normal{};
+    for (double& n : normal) size += std::abs(n = up_to(9) == 0 ? 0 : std::uniform_real_distribution<double>(-1, 1)(random));
+    for (std::size_t k = 0; k < 3; ++k) {
+      look.facing[k] = size > 0 ? static_cast<float>(2 * normal[k] / size) : k == 0 ? 2.0F : 0.0F;
+      look.box[k] = up_to(600) - 300;
+      look.box[k + 3] = look.box[k] + up_to(300);
+    }
+    look.plane = std::uniform_real_distribution<float>(-600, 600)(random);
+    look.slack = std::uniform_real_distribution<float>(1, 40)(random);
+  }
+  /// A box that reaches into the voxel's last part may go on beyond the voxel, and one out of the voxel has been cut off: so do the triangle's ends.
+  bool boxes_meet(std::size_t i) const {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (boxes[i][k] > std::clamp(look.box[k + 3], 0, kVoxelParts - 1) || boxes[i][k + 3] < std::clamp(look.box[k], 0, kVoxelParts - 1)) return false;
+    return true;
+  }
+  /// By how much box i is clear of the plane, beyond the slack; below 0: not clear. Half parts.
+  double clear(std::size_t i) const {
+    double middle = look.plane, reach = look.slack;
+    for (std::size_t k = 0; k < 3; ++k) {
+      middle += 0.5 * look.facing[k] * (boxes[i][k] + boxes[i][k + 3]);
+      reach += 0.5 * std::abs(look.facing[k]) * (boxes[i][k + 3] - boxes[i][k]);
+    }
+    return std::abs(middle) - reach;
+  }
+};
+
+TEST(ListedBoxes, AreThoseThatMeetTheTriangleBoxAndItsPlane) {
+  constexpr double kRounding = 0x1p-8;   // sums below 2^11 half parts in single precision
+  std::mt19937 random(4);
+  std::array<std::size_t, 4> count{};   // boxes apart, off the plane, met, unsure
+  for (int round = 0; round < 16'000; ++round) {
+    const std::size_t boxes = round % 8 == 0 ? kMostBoxes : 1 + random() % kMostBoxes;
+    const BoxCase c(random, boxes, round % 3 == 0 ? 255 : 20);
+    const std::uint64_t found = near_boxes(c.look, c.rows.data(), boxes, boxes);
+    ASSERT_EQ(boxes < kMostBoxes ? found >> boxes : 0, 0u) << "beyond the list";
+    for (std::size_t i = 0; i < boxes; ++i) {
+      const bool meets = c.boxes_meet(i);
+      const double clear = c.clear(i);
+      ++count[!meets ? 0 : clear > kRounding ? 1 : clear < -kRounding ? 2 : 3];
+      if (meets && std::abs(clear) <= kRounding) continue;
+      ASSERT_EQ(found >> i & 1, meets && clear < 0 ? 1u : 0u) << "round " << round << ", box " << i;
+    }
+  }
+  for (std::size_t kind = 0; kind < 3; ++kind) EXPECT_GT(count[kind], 3'000u) << kind;
+  EXPECT_LT(count[3], 1'000u);
 }
 
 /// The quotient comes from doubles where it lies clearly between whole numbers, else from integers.
