@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Load on `palpate serve`, loopback only, bounded: a session alone, beside batch clients at full rate and viewers, and, to tell what the load costs from what a busy machine costs,
 beside a program that does nothing but turn in a circle on each processor but the loop's; in rounds, every other one the other way round, since a machine's own stalls come in bursts.
 
