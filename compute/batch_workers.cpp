@@ -18,18 +18,21 @@ Result<void> answer_pose(Frame& frame, const LatticePose& pose, Contacts& out) {
 
 }  // namespace
 
-Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& options, const SceneGeometry& geometry, const PreparedScene& scene,
+Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& options, VulkanDevice* device, const SceneGeometry& geometry, const PreparedScene& scene,
                                                            const Plan& plan, unsigned helpers) {
   std::unique_ptr<BatchWorkers> out(new BatchWorkers);
   for (unsigned i = 0; i < helpers; ++i) {
     auto helper = std::make_unique<Helper>();
-    auto device = VulkanDevice::create(options);
-    if (!device) return device.error();
-    helper->device = std::move(*device);
-    auto shared = share_scene(*helper->device, scene);
-    if (!shared) return shared.error();
-    helper->scene = std::move(*shared);
-    auto frame = Frame::create(*helper->device, geometry, helper->scene, options.first_capacity, plan);
+    if (device == nullptr) {
+      auto made = VulkanDevice::create(options);
+      if (!made) return made.error();
+      helper->device = std::move(*made);
+      auto shared = share_scene(*helper->device, scene);
+      if (!shared) return shared.error();
+      helper->scene = std::move(*shared);
+    }
+    auto frame = device == nullptr ? Frame::create(*helper->device, geometry, helper->scene, options.first_capacity, plan)
+                                   : Frame::create(*device, geometry, scene, options.first_capacity, plan);
     if (!frame) return frame.error();
     helper->frame = std::move(*frame);
     out->helpers_.push_back(std::move(helper));

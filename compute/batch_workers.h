@@ -15,13 +15,14 @@
 
 namespace palpate {
 
-/// Threads that answer poses of a batch beside the caller's, each with a frame on a device of its own, all on one scene in shared host
-/// memory (VulkanDevice::shares_memory). What a frame does on lavapipe runs on the thread that asks, so that a thread is a core's worth.
-/// One caller at a time.
+/// Threads that answer poses of a batch beside the caller's, each with a frame of its own, all on one scene. Where what a frame does runs on the thread
+/// that asks (lavapipe), each has a device, too, and the devices share the scene in host memory (VulkanDevice::shares_memory): a thread is a core's worth.
+/// Elsewhere all frames are the one device's: while one waits for it others search, so that several are under way. One caller at a time.
 class BatchWorkers {
  public:
-  /// `helpers` threads; geometry and scene outlive this. Reads the environment as make_gpu_backend does. Takes about as long as the first frame.
-  static Result<std::unique_ptr<BatchWorkers>> create(const GpuOptions& options, const SceneGeometry& geometry, const PreparedScene& scene,
+  /// `helpers` threads on `device`, or each on a device of its own where it is null; device, geometry and scene outlive this. Reads the environment as
+  /// make_gpu_backend does. Takes about as long as the first frame.
+  static Result<std::unique_ptr<BatchWorkers>> create(const GpuOptions& options, VulkanDevice* device, const SceneGeometry& geometry, const PreparedScene& scene,
                                                       const Plan& plan, unsigned helpers);
   ~BatchWorkers();
   BatchWorkers(const BatchWorkers&) = delete;
@@ -34,8 +35,8 @@ class BatchWorkers {
 
  private:
   struct Helper {
-    std::unique_ptr<VulkanDevice> device;
-    PreparedScene scene;
+    std::unique_ptr<VulkanDevice> device;   ///< where each has one, with …
+    PreparedScene scene;                    ///< … what it has of the scene
     std::unique_ptr<Frame> frame;
     std::thread thread;
   };

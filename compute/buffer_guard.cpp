@@ -17,6 +17,7 @@ constexpr std::uint32_t kCanaryWord = 0xA5A5A5A5u;
 BufferGuard::BufferGuard(VulkanDevice& device, std::string what, VkDeviceMemory memory, void* mapped, std::uint64_t before, std::uint64_t bytes)
     : device_(device), what_(std::move(what)), memory_(memory), mapped_(static_cast<std::uint8_t*>(mapped)), before_(before), bytes_(bytes) {
   const std::uint64_t all = before_ + bytes_ + kBytes;
+  std::string error;
   if (mapped_ != nullptr) {
     std::memset(mapped_, kCanary, all);
   } else {
@@ -26,19 +27,25 @@ BufferGuard::BufferGuard(VulkanDevice& device, std::string what, VkDeviceMemory 
     create.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     create.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
     if (vkCreateBuffer(device_.handle(), &create, nullptr, &whole_) != VK_SUCCESS || vkBindBufferMemory(device_.handle(), whole_, memory_, 0) != VK_SUCCESS) {
-      device_.guard_error = what_ + ": no guard could be made";
+      error = what_ + ": no guard could be made";
     } else if (auto recorder = CommandRecorder::create(device_)) {
       recorder->begin();
       recorder->fill(whole_, kCanaryWord, 0, all / 4 * 4);
-      if (auto r = recorder->submit_and_wait(); !r) device_.guard_error = r.error().sentence;
+      if (auto r = recorder->submit_and_wait(); !r) error = r.error().sentence;
     }
   }
+  const std::lock_guard lock(device_.guard_mutex);
   device_.guards.insert(this);
+  if (device_.guard_error.empty()) device_.guard_error = std::move(error);
 }
 
 BufferGuard::~BufferGuard() {
-  device_.guards.erase(this);
-  if (device_.guard_error.empty()) device_.guard_error = broken().value_or("");
+  std::string error = broken().value_or("");
+  {
+    const std::lock_guard lock(device_.guard_mutex);
+    device_.guards.erase(this);
+    if (device_.guard_error.empty()) device_.guard_error = std::move(error);
+  }
   vkDestroyBuffer(device_.handle(), whole_, nullptr);
 }
 

@@ -44,7 +44,7 @@ Result<CommandRecorder> CommandRecorder::create(VulkanDevice& device, std::uint3
 
 CommandRecorder::~CommandRecorder() {
   if (device_ == nullptr) return;
-  if (pending_) vkDeviceWaitIdle(device_->handle());   // submitted and never waited for
+  if (pending_) device_->wait_idle();   // submitted and never waited for
   vkDestroyQueryPool(device_->handle(), queries_, nullptr);
   vkDestroyFence(device_->handle(), fence_, nullptr);
   vkDestroyCommandPool(device_->handle(), pool_, nullptr);
@@ -163,7 +163,7 @@ Result<void> CommandRecorder::submit() {
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &commands;
   VkResult submitted = device_->injected(GpuFault::Call::kSubmit);
-  if (submitted == VK_SUCCESS) submitted = vkQueueSubmit2(device_->queue(), 1, &info, fence_);
+  if (submitted == VK_SUCCESS) submitted = device_->submit(info, fence_);
   if (submitted != VK_SUCCESS) return vulkan_error("vkQueueSubmit2", submitted);
   pending_ = true;
   return {};
@@ -174,7 +174,7 @@ Result<void> CommandRecorder::wait(std::uint64_t timeout_ns) {
   if (waited == VK_SUCCESS) waited = vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, timeout_ns);
   pending_ = false;
   if (waited != VK_SUCCESS) {
-    vkDeviceWaitIdle(device_->handle());   // whoever hears of the failure will destroy what may still be in use
+    device_->wait_idle();   // whoever hears of the failure will destroy what may still be in use
     return vulkan_error("vkWaitForFences", waited);
   }
   return device_->take_validation_error();

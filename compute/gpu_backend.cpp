@@ -140,8 +140,9 @@ class GpuBackend final : public CollisionBackend {
   void set_helpers_up() {
     no_workers_ = true;
     const unsigned cores = std::thread::hardware_concurrency();
-    if (cores < 2 || !device_->shares_memory() || !options_.inline_execution) return;
-    auto made = BatchWorkers::create(options_, *geometry_, *scene_, plan_, std::min(cores - 1, kMostHelpers));
+    if (cores < 2) return;
+    const bool inline_execution = device_->shares_memory() && options_.inline_execution;
+    auto made = BatchWorkers::create(options_, inline_execution ? nullptr : device_.get(), *geometry_, *scene_, plan_, std::min(cores - 1, kMostHelpers));
     if (made) workers_ = std::move(*made);   // else one thread answers all, as before
   }
 

@@ -92,7 +92,7 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
   if (of == nullptr) {
     out.counted_ = bytes;
     const std::uint64_t now = device.allocated += bytes;
-    device.most_allocated = std::max<std::uint64_t>(device.most_allocated, now);
+    for (std::uint64_t most = device.most_allocated; most < now && !device.most_allocated.compare_exchange_weak(most, now);) {}
   }
   if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, before); r != VK_SUCCESS)
     return vulkan_error("vkBindBufferMemory", r);

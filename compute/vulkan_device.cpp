@@ -232,7 +232,7 @@ Result<void> VulkanDevice::choose(const std::string& wanted) {
   return {};
 }
 
-Result<void> VulkanDevice::make_device() {
+Result<void> VulkanDevice::make_device(bool own_memory) {
   VkPhysicalDeviceMaintenance3Properties maintenance{};
   maintenance.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
   VkPhysicalDeviceProperties2 p{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &maintenance, {}};
@@ -247,8 +247,8 @@ Result<void> VulkanDevice::make_device() {
       limits_.heap = std::max<std::uint64_t>(limits_.heap, memory_.memoryHeaps[i].size);
   // Buffers leave the driver what it needs itself.
   if (const auto left = address_space_left()) limits_.heap = std::min(limits_.heap, *left - std::min(*left, kDriverAddressSpace / 2));
-  processor_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  unified_ = processor_ || p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+  processor_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !own_memory;
+  unified_ = processor_ || (p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU && !own_memory);
   const bool shares = processor_ && has_extension(physical_, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
   if (shares) {
     VkPhysicalDeviceExternalMemoryHostPropertiesEXT host{};
@@ -292,7 +292,7 @@ Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& opt
   std::unique_ptr<VulkanDevice> device(new VulkanDevice);
   Result<void> made = device->make_instance(options.validation);
   if (made) made = device->choose(options.device);
-  if (made) made = device->make_device();
+  if (made) made = device->make_device(options.own_memory);
   if (!made) return Error{made.error().code, "no usable Vulkan device: " + made.error().sentence};
   device->fault_ = options.fault;
   device->guarded = options.guard_buffers;
@@ -311,7 +311,7 @@ std::vector<VulkanDeviceInfo> VulkanDevice::list() {
 
 VulkanDevice::~VulkanDevice() {
   if (device_ != VK_NULL_HANDLE) {
-    vkDeviceWaitIdle(device_);
+    wait_idle();
     compilers.reset();
     pipelines.clear();
     vkDestroyDevice(device_, nullptr);
@@ -333,6 +333,16 @@ int VulkanDevice::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wante
     if (found < 0) found = static_cast<int>(i);
   }
   return found;
+}
+
+VkResult VulkanDevice::submit(const VkSubmitInfo2& info, VkFence fence) {
+  const std::lock_guard lock(queue_mutex_);
+  return vkQueueSubmit2(queue_, 1, &info, fence);
+}
+
+void VulkanDevice::wait_idle() {
+  const std::lock_guard lock(queue_mutex_);
+  vkDeviceWaitIdle(device_);
 }
 
 Result<void> VulkanDevice::check_guards() {

@@ -24,7 +24,7 @@ struct PendingPipeline;
 Error vulkan_error(const char* call, VkResult result);
 
 /// An instance, one device and its one compute queue. Owned by GpuBackend; everything made from it must die first.
-/// One thread at a time.
+/// One thread at a time, but that several may make and drop buffers, record, submit and wait, each with recorders of its own.
 class VulkanDevice {
  public:
   struct Limits {
@@ -44,7 +44,9 @@ class VulkanDevice {
   VulkanDevice& operator=(const VulkanDevice&) = delete;
 
   VkDevice handle() const { return device_; }
-  VkQueue queue() const { return queue_; }
+  /// vkQueueSubmit2 and vkDeviceWaitIdle, one thread after the other.
+  VkResult submit(const VkSubmitInfo2& info, VkFence fence);
+  void wait_idle();
   std::uint32_t queue_family() const { return queue_family_; }
   const Limits& limits() const { return limits_; }
   const std::string& name() const { return name_; }
@@ -72,7 +74,10 @@ class VulkanDevice {
   /// Bytes of device memory now held by buffers.
   std::atomic<std::uint64_t> allocated{0};
   /// The most that this has been.
-  std::uint64_t most_allocated = 0;
+  std::atomic<std::uint64_t> most_allocated{0};
+
+  /// Copies of buffers for the host, as long as somebody has them (HostCopy).
+  std::map<VkBuffer, std::weak_ptr<std::vector<std::uint64_t>>> host_copies;
 
   /// Pipelines made or being made, by module and constants; ComputePipeline::create fills it.
   std::map<std::vector<std::uint32_t>, std::shared_ptr<PendingPipeline>> pipelines;
@@ -87,6 +92,7 @@ class VulkanDevice {
   /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
   /// `guard_error`: the first that was found broken when its buffer died, or empty.
   bool guarded = false;
+  std::mutex guard_mutex;   ///< of the next two
   std::set<BufferGuard*> guards;
   std::string guard_error;
   /// Success, or a sentence that names a buffer that something wrote beyond. Nothing when not `guarded`.
@@ -96,7 +102,7 @@ class VulkanDevice {
   VulkanDevice() = default;
   Result<void> make_instance(bool validation);
   Result<void> choose(const std::string& wanted);
-  Result<void> make_device();
+  Result<void> make_device(bool own_memory);
   static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                    VkDebugUtilsMessageTypeFlagsEXT types,
                                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
@@ -106,6 +112,7 @@ class VulkanDevice {
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
+  std::mutex queue_mutex_;
   std::uint32_t queue_family_ = 0;
   VkPhysicalDeviceMemoryProperties memory_{};
   Limits limits_;

@@ -7,7 +7,9 @@
 #include <map>
 #include <random>
 #include <span>
+#include <string>
 #include <string_view>
+#include <thread>
 
 #include "compute/gpu_backend.h"
 #include "compute/host_exact.h"
@@ -71,27 +73,43 @@ void expect_same(CollisionBackend& backend, std::span<const LatticePose> poses, 
   }
 }
 
-TEST(Batch, IsTheBitsOfSingleQueries) {
+/// Threads have a device each on lavapipe, and one together where it has memory of its own, as a GPU has.
+class Batch : public testing::TestWithParam<bool> {
+ protected:
+  static GpuOptions options_here() {
+    GpuOptions options;
+    options.own_memory = GetParam();
+    return options;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(HostOrOwn, Batch, testing::Bool(), [](const auto& own) { return own.param ? std::string("own_memory") : std::string("host_memory"); });
+
+TEST_P(Batch, IsTheBitsOfSingleQueries) {
   const Subject scene = subject("disassembly", 8000, 300);
-  GpuOptions options;
+  GpuOptions options = options_here();
   options.validation = true;
+  options.guard_buffers = GetParam();
   const auto backend = prepared(options, scene);
+  const std::uint64_t bytes = backend->memory_bytes();
   expect_same(*backend, scene.poses, scene.poses.size() / 4);
   expect_same(*backend, std::span(scene.poses).subspan(120, 7), 0);
+  if (std::thread::hardware_concurrency() > 1) {
+    EXPECT_GT(backend->memory_bytes(), bytes) << "no thread has a frame";
+  }
 }
 
-TEST(Batch, EnlargesWhatIsTooSmallOnEveryThread) {
+TEST_P(Batch, EnlargesWhatIsTooSmallOnEveryThread) {
   const Subject scene = subject("disassembly", 8000, 200);
-  GpuOptions options;
+  GpuOptions options = options_here();
   options.first_capacity = {{"pairs", 3}, {"pairs to test", 3}, {"samples", 3}};
   const auto backend = prepared(options, scene);
   expect_same(*backend, scene.poses, scene.poses.size() / 4);
 }
 
-TEST(Batch, EndsWithTheErrorOfAPoseThatFails) {
+TEST_P(Batch, EndsWithTheErrorOfAPoseThatFails) {
   const Subject scene = subject("disassembly", 4000, 200);
   const auto fault = std::make_shared<GpuFault>();
-  GpuOptions options;
+  GpuOptions options = options_here();
   options.fault = fault;
   options.host_share = HostShare::kAreas;   // what the host solves is never submitted
   const auto backend = prepared(options, scene);
