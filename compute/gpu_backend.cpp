@@ -141,8 +141,8 @@ class GpuBackend final : public CollisionBackend {
     no_workers_ = true;
     const unsigned cores = std::thread::hardware_concurrency();
     if (cores < 2) return;
-    const bool inline_execution = device_->shares_memory() && options_.inline_execution;
-    auto made = BatchWorkers::create(options_, inline_execution ? nullptr : device_.get(), *geometry_, *scene_, plan_, std::min(cores - 1, kMostHelpers));
+    const bool own_devices = device_->shares_memory() && options_.inline_execution;
+    auto made = BatchWorkers::create(options_, own_devices ? nullptr : device_.get(), *geometry_, *scene_, plan_, std::min(cores - 1, kMostHelpers));
     if (made) workers_ = std::move(*made);   // else one thread answers all, as before
   }
 

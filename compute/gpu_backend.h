@@ -35,7 +35,7 @@ struct GpuOptions {
   std::map<std::string, std::uint32_t> first_capacity{};   ///< for tests: items that a list of a frame holds to begin with, by its name in
                                                            ///< Contacts::truncated_capacity; lists not named here choose for themselves
   std::optional<HostShare> host_share{};   ///< for tests; empty: kContacts where the device is the host's own processor (lavapipe), else kAreas
-  bool own_memory = false;             ///< for tests: a device that is the host's own processor is taken for a GPU with memory of its own
+  bool own_memory = false;             ///< for tests: the host's own processor, or an integrated GPU, is taken for a GPU with memory of its own
   std::shared_ptr<GpuFault> fault{};   ///< for tests
 };
 

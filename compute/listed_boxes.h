@@ -8,7 +8,7 @@ namespace palpate {
 struct ListLook {
   std::int32_t box[6];   ///< the triangle's own, low x, y, z, high x, y, z: parts from the voxel's low corner on, also beyond the voxel
   float facing[3];       ///< along its normal, half parts a part along each axis: their sizes add up to 2
-  float plane;           ///< how far before its plane a box of parts 0 at the low corner begins, half parts
+  float plane;           ///< how far before its plane the middle of the part at the voxel's low corner lies, half parts
   float slack;           ///< half parts by which a box must be off the plane to be apart
 };
 

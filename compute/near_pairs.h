@@ -28,7 +28,7 @@ class NearPairs {
     std::array<double, 3> normal;    ///< raw, rounded once
     double normal_size;              ///< sum of its components' sizes
     ListLook look;                   ///< from the last voxel
-    float half_facing;               ///< half the sum of look.facing
+    float half_facing;               ///< from a part's low corner to its middle along the normal, half parts
     double half_parts;               ///< half parts of a voxel, to be multiplied with normal · steps
     std::array<std::int32_t, 6> parts;  ///< low and high of the same box, in parts of a voxel from the grid's origin on
   };

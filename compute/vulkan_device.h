@@ -92,7 +92,7 @@ class VulkanDevice {
   /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
   /// `guard_error`: the first that was found broken when its buffer died, or empty.
   bool guarded = false;
-  std::mutex guard_mutex;   ///< of the next two
+  std::mutex guard_mutex;   ///< of the next two, while several threads make and drop buffers; check_guards() wants to be alone
   std::set<BufferGuard*> guards;
   std::string guard_error;
   /// Success, or a sentence that names a buffer that something wrote beyond. Nothing when not `guarded`.

@@ -1,5 +1,5 @@
 // palpate-import: reads one mesh file, in a process of its own, and hands the mesh back as a parcel. import_mesh() starts it; nobody else does.
-// Exit codes: 0 the parcel is complete, be it a mesh or why there is none; 12 an allocation failed; 2 called by hand.
+// Exit codes: 0 the parcel is complete, be it a mesh or why there is none; 1 there is none, or its asker has gone; 12 an allocation failed; 2 called by hand.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>

@@ -148,7 +148,7 @@ struct BoxCase {
 };
 
 TEST(ListedBoxes, AreThoseThatMeetTheTriangleBoxAndItsPlane) {
-  constexpr double kRounding = 0x1p-8;   // sums below 2^11 half parts in single precision
+  constexpr double kRounding = 0x1p-10;   // six sums and products below 2^11 half parts in single precision, off by 2^-13 each at most
   std::mt19937 random(4);
   std::array<std::size_t, 4> count{};   // boxes apart, off the plane, met, unsure
   for (int round = 0; round < 16'000; ++round) {
@@ -165,7 +165,7 @@ TEST(ListedBoxes, AreThoseThatMeetTheTriangleBoxAndItsPlane) {
     }
   }
   for (std::size_t kind = 0; kind < 3; ++kind) EXPECT_GT(count[kind], 3'000u) << kind;
-  EXPECT_LT(count[3], 1'000u);
+  EXPECT_LT(100 * count[3], count[2]) << "nearly all are judged";
 }
 
 /// The quotient comes from doubles where it lies clearly between whole numbers, else from integers.

@@ -251,7 +251,7 @@ int run(int argc, char** argv) {
   app.add_flag("--times", o.times, "print the median time of every stage");
   app.add_flag("--validation", o.validation, "with Vulkan's validation layer and its synchronisation checks");
   app.add_flag("--device-sets", o.device_sets, "the device decides small contacts, too, not only large ones, whose areas the host then joins");
-  app.add_flag("--own-memory", o.own_memory, "a device that is the host's own processor is taken for a GPU with memory of its own");
+  app.add_flag("--own-memory", o.own_memory, "the host's own processor, or an integrated GPU, is taken for a GPU with memory of its own");
   app.add_flag("--device-areas", o.device_areas, "the device decides small contacts, joins their areas and finds directions, too");
   app.add_flag("--guards", o.guards, "with guard bytes round every buffer of the device, checked after every scene and pose");
   app.add_option("--campaign", o.campaign, "this many poses over all cases, with changing seeds, everything asked twice");
