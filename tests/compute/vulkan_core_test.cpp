@@ -1,6 +1,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "compute/host_copy.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
 
@@ -25,6 +26,27 @@ class VulkanCore : public GpuTest {
     return std::move(*made);
   }
 };
+
+// On a device with memory of its own: all who read a buffer have one copy, and one that is longer than it is made anew.
+TEST(HostCopy, IsOneForAllWhoReadABuffer) {
+  GpuOptions options;
+  options.own_memory = true;
+  const auto device = VulkanDevice::create(options);
+  ASSERT_TRUE(device) << device.error().sentence;
+  const auto buffer = VulkanBuffer::create(**device, "test numbers", 400, BufferKind::kDevice);
+  ASSERT_TRUE(buffer);
+  ASSERT_EQ(buffer->as<std::uint32_t>(), nullptr) << "it is mapped: nothing would be copied";
+  std::vector<std::uint32_t> numbers(100);
+  for (std::uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = 7 * i;
+  ASSERT_TRUE(upload(**device, *buffer, numbers.data(), 400));
+  HostCopy<std::uint32_t> few, all, again;
+  ASSERT_TRUE(few.read(**device, *buffer, 3));
+  ASSERT_TRUE(all.read(**device, *buffer, 100));
+  ASSERT_TRUE(again.read(**device, *buffer, 100));
+  EXPECT_EQ(&all[0], &again[0]);
+  for (std::uint32_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(again[i], 7 * i);
+  EXPECT_EQ(few[2], 14u);
+}
 
 TEST_F(VulkanCore, ARecordedSequenceCanBeSubmittedAgain) {
   constexpr std::uint32_t kCount = 1000;
