@@ -3,36 +3,37 @@
 #include <vector>
 
 #include "model/vector.h"
+#include "shaders/shared/prepare.h"
 
 namespace palpate {
 
-/// Samples and first corners of the mock-up's triangles, entry by entry of its voxels' lists (a triangle in a voxel): they do not depend on the
-/// pose, and only the host reads them. A sample is its place in the voxel's grid of samples, two numbers below 64, and its height
-/// above the voxel's low side along the triangle's sample axis.
+/// Samples and first corners of the mock-up's triangles, voxel by voxel: they do not depend on the pose, and only the host reads them. A sample is
+/// its place in the voxel's grid of samples, two numbers below 64, and its height above the voxel's low side along its triangle's sample axis.
 struct HostSamples {
-  /// Begin of an entry's samples in its low bits, then whether the triangle's first corner lies in the voxel (which comes before the samples and
-  /// is none of them), then the triangle's sample axis. One more at the end.
-  std::vector<std::uint32_t> begin;
-  /// Narrow: a word a sample, height | u << 20 | v << 26. Wide, for voxels of more than 2^20 steps: the height, then u | v << 6.
+  struct Begin {
+    std::uint32_t point, sample;   ///< numbers of the voxel's first ones
+    bool operator==(const Begin&) const = default;
+  };
+  std::vector<Begin> begin;   ///< by boundary voxel, and one more
+
+  /// A voxel's points, first corners before samples, each in the order of its list: which of the voxel's 1024ths along x, y and z a point lies in (ten
+  /// bits each, x lowest), and above that a sample's axis. kPointsAtOnce - 1 more at the end say nothing.
+  std::vector<std::uint32_t> points;
+  std::vector<std::uint16_t> entries;   ///< of each point: which entry of the voxel's list is its triangle's
+  /// By sample. Narrow: a word, height | u << 20 | v << 26. Wide, for voxels of more than kNarrowVoxel steps: the height, then u | v << 6.
   std::vector<std::uint32_t> words;
   bool wide = false;
-  /// All of them again, for a first look at many: which of the voxel's 1024ths along x, y and z (ten bits each, x lowest) a point lies in. A boundary
-  /// voxel's points follow each other entry by entry, a first corner before the entry's samples. kPointsAtOnce - 1 more at the end say nothing.
-  std::vector<std::uint32_t> points;
-  std::vector<std::uint32_t> point_begin;   ///< by boundary voxel, and one more
 
-  static constexpr std::uint32_t kCorner = 1u << 29, kBegin = kCorner - 1;
-  static constexpr int kAxisShift = 30;
   static constexpr int kPointBits = 10;
-  static constexpr std::size_t kPointsAtOnce = 8;   ///< may be read from any place on
-  static constexpr std::int32_t kNarrowVoxel = 1 << 20;   ///< steps: the largest that a height of 20 bits is enough for
+  static constexpr int kAxisShift = 3 * kPointBits;
+  static constexpr std::size_t kPointsAtOnce = 8;           ///< may be read from any place on
+  static constexpr std::uint32_t kLongestList = 1u << 16;   ///< entries of a voxel that can be told apart: with longer ones nothing is listed
+  static constexpr std::int32_t kNarrowVoxel = 1 << 20;     ///< steps: the largest that a height of 20 bits is enough for
 
+  bool operator==(const HostSamples&) const = default;
   std::uint64_t count() const { return words.size() / (wide ? 2 : 1); }
   bool listed() const { return !begin.empty(); }
-  std::uint64_t bytes() const { return 4 * (std::uint64_t{begin.size()} + words.size() + points.size() + point_begin.size()); }
-  /// Of entry `e`.
-  bool has_corner(std::size_t e) const { return (begin[e] & kCorner) != 0; }
-  std::uint32_t samples_of(std::size_t e) const { return (begin[e + 1] & kBegin) - (begin[e] & kBegin); }
+  std::uint64_t bytes() const { return 8 * std::uint64_t{begin.size()} + 4 * std::uint64_t{points.size()} + 2 * std::uint64_t{entries.size()} + 4 * std::uint64_t{words.size()}; }
 
   /// A voxel's samples as lattice points. Steps.
   struct Voxel {
@@ -46,18 +47,33 @@ struct HostSamples {
       }
     }
   };
-  /// Sample `i` of entry `e`, counted from the entry's first.
-  Int3 sample(const Voxel& voxel, std::size_t e, std::uint32_t i) const {
-    const std::size_t number = (begin[e] & kBegin) + i;
+  /// Sample `number` along `axis` of all voxels' samples.
+  Int3 sample(const Voxel& voxel, int axis, std::size_t number) const {
     const std::uint32_t* at = &words[wide ? 2 * number : number];
     const std::uint32_t height = wide ? at[0] : at[0] & 0xFFFFF, place = wide ? at[1] : at[0] >> 20;
-    const int axis = static_cast<int>(begin[e] >> kAxisShift), u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+    const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
     Int3 out;
     out[axis] = voxel.low[axis] + static_cast<std::int32_t>(height);
     out[u] = voxel.grid[u] + voxel.spacing * static_cast<std::int32_t>(place & 63);
     out[v] = voxel.grid[v] + voxel.spacing * static_cast<std::int32_t>(place >> 6);
     return out;
   }
+};
+
+/// The same while it is prepared, entry by entry of the voxels' lists (a triangle in a voxel).
+struct EntrySamples {
+  /// Begin of an entry's samples in its low bits, then whether the triangle's first corner lies in the voxel (gpu::kSampleCorner), then the triangle's
+  /// sample axis (gpu::kSampleAxisShift). One more at the end.
+  std::vector<std::uint32_t> begin;
+  std::vector<std::uint32_t> words;   ///< as HostSamples::words
+  bool wide = false;
+
+  static constexpr std::uint32_t kBegin = gpu::kSampleCorner - 1;
+
+  bool has_corner(std::size_t e) const { return (begin[e] & gpu::kSampleCorner) != 0; }
+  int axis(std::size_t e) const { return static_cast<int>(begin[e] >> gpu::kSampleAxisShift); }
+  std::uint32_t first(std::size_t e) const { return begin[e] & kBegin; }
+  std::uint32_t count(std::size_t e) const { return first(e + 1) - first(e); }
 };
 
 }  // namespace palpate

@@ -64,10 +64,11 @@ void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> 
   // From a plane, in steps: roundings and the rounded matrix come to less than 2.5, the rounded normal to less than 0.8 (derived).
   constexpr std::int64_t kFar = std::int64_t{4} << 30;
   const LatticeMesh& mesh = geometry_->tool;
-  open_.resize(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    open_[i].at = tool_point(pose, samples[i].point);
-    open_[i].voxel = fine_.at(fine_.voxel_of(open_[i].at)).boundary;
+  open_.clear();
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    if (i != 0 && samples[i].point == samples[i - 1].point) continue;
+    const Int3 at = tool_point(pose, samples[i].point);
+    open_.push_back({i, at, fine_.at(fine_.voxel_of(at)).boundary, {}, 0, false});
   }
   for (OpenPoint& open : open_) {
     open.list = fine_.list(open.voxel);
@@ -232,8 +233,11 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
   for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
   const std::span<const FrameSample> open = near.open.room.first(near.open.count);
   on_this_processor([&] { find_cells(tool.pose(), open); });
-  for (std::size_t i = 0; i < open.size(); ++i)
-    if (open_inside(tool, open[i].point, open_[i])) take(open[i]);
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    const std::size_t first = open_[i].first, end = i + 1 < open_.size() ? open_[i + 1].first : open.size();
+    if (!open_inside(tool, open[first].point, open_[i])) continue;
+    for (std::size_t j = first; j < end; ++j) take(open[j]);
+  }
   for (const SampleChunk& chunk : near.samples.room.first(near.samples.count))
     scan(chunk, [&](const FrameSample& sample) {
       if (inside(tool, sample.point)) take(sample);

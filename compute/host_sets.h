@@ -39,8 +39,9 @@ class HostSets {
   void decide_voxels(PosedTool& tool, const NearLists& near);
   bool mark_lists(IdMarks& statics, std::size_t most_statics);
   void list(IdMarks& statics, FoundSets& out);
-  /// A point in a V_bnd voxel of the fine partition.
+  /// A point in a V_bnd voxel of the fine partition, of one open sample or of several that follow each other: first corners of neighbours.
   struct OpenPoint {
+    std::uint32_t first;                    ///< of its samples
     Int3 at;                                ///< in the tool's lattice
     std::uint32_t voxel;
     std::span<const std::uint32_t> list;    ///< the voxel's

@@ -197,20 +197,6 @@ std::uint32_t NearSamples::fine_class(const Int3& p) const {
   return internal_.at(brick, bit) ? gpu::kVoxelInternal : solid_.at(brick, bit) ? gpu::kVoxelBoundary : gpu::kVoxelExternal;
 }
 
-/// The entries of a voxel, gone through with its points.
-struct NearSamples::Entries {
-  const HostSamples& samples;
-  std::uint32_t entry, first;   // its points are numbers first …
-  std::uint32_t count() const { return samples.samples_of(entry) + (samples.has_corner(entry) ? 1 : 0); }
-  /// To the entry of a point at or after the last one asked for.
-  void go_to(std::uint32_t point) {
-    for (std::uint32_t n = count(); first + n <= point; n = count()) {
-      first += n;
-      ++entry;
-    }
-  }
-};
-
 bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
   const HostSamples& from = *sampled_;
   const Int3 lowest = mockup_.origin + mockup_.size * voxel;
@@ -223,26 +209,26 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
     // Half a step, since points are rounded to steps (fine_class), and half a 1024th.
     low[k] = static_cast<float>((at[k] - fine_.origin[static_cast<int>(k)] + 0.5) * per_fine_) + 0.5F * (column[0] + column[1] + column[2]);
   }
-  Entries entries{from, list_begin_[boundary], from.point_begin[boundary]};
-  const std::uint32_t end = from.point_begin[boundary + 1];
-  for (std::uint32_t first = entries.first; first < end; first += kEight) {
+  const std::uint32_t* const ids = &list_triangles_[list_begin_[boundary]];
+  const auto [begin, first_number] = from.begin[boundary];
+  const auto [end, end_number] = from.begin[boundary + 1];
+  const std::uint32_t first_sample = end - (end_number - first_number);
+  for (std::uint32_t first = begin; first < end; first += kEight) {
     SolidPoints solid;
     solid_points(search.fine, low, solid_, &from.points[first], solid);
     if (end - first < kEight) solid.may &= (1u << (end - first)) - 1;
     for (; solid.may != 0; solid.may &= solid.may - 1) {
       const auto lane = static_cast<unsigned>(std::countr_zero(solid.may));
-      entries.go_to(first + lane);
-      const std::uint32_t id = list_triangles_[entries.entry];
-      std::uint32_t i = first + lane - entries.first;
-      if (!grid) grid.emplace(lowest, spacing_);
-      const bool sure = (solid.unsure >> lane & 1) == 0;
+      const std::uint32_t point = first + lane;
+      const bool sure = (solid.unsure >> lane & 1) == 0, corner = point < first_sample;
       std::uint32_t kind = sure && internal_.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal : gpu::kVoxelBoundary;
-      gpu::FrameSample sample{{}, id};
-      if (!from.has_corner(entries.entry) || i-- > 0) {
-        sample.point = from.sample(*grid, entries.entry, i);
-      } else {
+      gpu::FrameSample sample{{}, ids[from.entries[point]]};
+      if (corner) {
+        if (kind == gpu::kVoxelBoundary) sample.point = mesh_->corner(sample.static_id, 0);   // two loads, anywhere in the mesh; inside nobody asks
         sample.static_id |= gpu::kCornerProbe;
-        if (kind == gpu::kVoxelBoundary) sample.point = mesh_->corner(id, 0);   // two loads, anywhere in the mesh; inside nobody asks
+      } else {
+        if (!grid) grid.emplace(lowest, spacing_);
+        sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> HostSamples::kAxisShift), first_number + (point - first_sample));
       }
       if (!sure) kind = fine_class(search.rounded_to_tool(sample.point));
       if (kind == gpu::kVoxelExternal) continue;
@@ -305,8 +291,10 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
   if (listed_)
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t boundary = found.number[near[i]];
-      __builtin_prefetch(&sampled_->points[sampled_->point_begin[boundary]]);
-      __builtin_prefetch(&sampled_->begin[list_begin_[boundary]]);
+      const std::uint32_t point = sampled_->begin[boundary].point;
+      __builtin_prefetch(sampled_->points.data() + point);
+      __builtin_prefetch(sampled_->entries.data() + point);
+      __builtin_prefetch(&list_triangles_[list_begin_[boundary]]);
     }
   for (std::size_t i = 0; i < count; ++i) {
     const std::int32_t bit = found.bit[near[i]];

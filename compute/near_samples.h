@@ -31,7 +31,6 @@ class NearSamples {
     std::vector<std::uint8_t> near;
   };
   struct Search;
-  struct Entries;
   Level make_level(const std::vector<std::uint8_t>& cubes, double reach) const;
   bool near_cube(const Level& level, const double (&at)[3]) const;
   void take_brick(Search& search, const Int3& brick, std::uint32_t slot) const;

@@ -27,10 +27,10 @@ void archive_numbers(Archive& a, Scene& scene) {
 template <class Archive, class Samples>
 void archive_samples(Archive& a, Samples& samples) {
   a(samples.begin);
+  a(samples.points);
+  a(samples.entries);
   a(samples.words);
   a(samples.wide);
-  a(samples.points);
-  a(samples.point_begin);
 }
 
 template <class Archive, class Tables>

@@ -80,7 +80,7 @@ void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing,
     const exact::Corners t{mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)};
     const int k = mesh_->sample_axis[id], iu = (k + 1) % 3, iv = (k + 2) % 3;
     const bool corner = glm::all(glm::greaterThanEqual(t[0], low)) && glm::all(glm::lessThanEqual(t[0], high));
-    *begin++ = static_cast<std::uint32_t>(words.size() / (wide ? 2 : 1)) | (corner ? HostSamples::kCorner : 0u) | static_cast<std::uint32_t>(k) << HostSamples::kAxisShift;
+    *begin++ = static_cast<std::uint32_t>(words.size() / (wide ? 2 : 1)) | (corner ? gpu::kSampleCorner : 0u) | static_cast<std::uint32_t>(k) << gpu::kSampleAxisShift;
 
     const Int3 least = glm::min(glm::min(t[0], t[1]), t[2]), most = glm::max(glm::max(t[0], t[1]), t[2]);
     const std::int64_t u0 = grid_from(std::max(low[iu], least[iu]), spacing), v0 = grid_from(std::max(low[iv], least[iv]), spacing);
@@ -124,14 +124,14 @@ void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing,
   }
 }
 
-HostPreparation::Outcome HostPreparation::list_samples(std::int32_t spacing, std::uint64_t most_bytes, const GoOn& go_on, HostSamples& out) const {
+HostPreparation::Outcome HostPreparation::list_samples(std::int32_t spacing, std::uint64_t most_bytes, const GoOn& go_on, EntrySamples& out) const {
   const std::vector<std::uint32_t> shares = shares_of(kEntriesAShare);
   const auto count = static_cast<std::uint32_t>(shares.size() - 1);
   out.wide = grid_.size > HostSamples::kNarrowVoxel;
   out.begin.resize(std::size_t{grid_.list_entries} + 1);
   std::vector<std::vector<std::uint32_t>> words(count);
   std::atomic<std::uint64_t> total{0};
-  const std::uint64_t size = out.wide ? 2 : 1, most = std::min<std::uint64_t>(most_bytes / 4, size * HostSamples::kBegin);
+  const std::uint64_t size = out.wide ? 2 : 1, most = std::min<std::uint64_t>(most_bytes / 4, size * EntrySamples::kBegin);
   const bool done = in_shares(
       count,
       [&](std::uint32_t share) {
@@ -144,7 +144,7 @@ HostPreparation::Outcome HostPreparation::list_samples(std::int32_t spacing, std
   if (total > most) return Outcome::kTooMany;
   out.words.reserve(total);
   for (std::uint32_t share = 0; share < count; ++share) {
-    // Begins were counted from the share's first; they stay below kCorner.
+    // Begins were counted from the share's first; they stay below gpu::kSampleCorner.
     const auto base = static_cast<std::uint32_t>(out.words.size() / size);
     for (std::uint32_t e = list_begin_[shares[share]], end = list_begin_[shares[share + 1]]; e < end; ++e) out.begin[e] += base;
     out.words.insert(out.words.end(), words[share].begin(), words[share].end());
@@ -154,36 +154,45 @@ HostPreparation::Outcome HostPreparation::list_samples(std::int32_t spacing, std
   return go_on(1) ? Outcome::kDone : Outcome::kCancelled;
 }
 
-bool HostPreparation::list_points(std::int32_t spacing, const GoOn& go_on, HostSamples& samples) const {
+HostPreparation::Outcome HostPreparation::list_points(std::int32_t spacing, const GoOn& go_on, EntrySamples from, HostSamples& out) const {
   const std::vector<std::uint32_t> shares = shares_of(kEntriesAShare);
   const auto count = static_cast<std::uint32_t>(shares.size() - 1);
-  samples.point_begin.assign(std::size_t{grid_.boundary_voxels} + 1, 0);
-  std::uint32_t total = 0;
-  for (std::uint32_t voxel = 0, e = 0; voxel < grid_.boundary_voxels; ++voxel) {
-    for (; e < list_begin_[voxel + 1]; ++e) total += samples.samples_of(e) + (samples.has_corner(e) ? 1 : 0);
-    samples.point_begin[voxel + 1] = total;
+  out.begin.resize(std::size_t{grid_.boundary_voxels} + 1);
+  std::uint32_t corners = 0;
+  for (std::uint32_t voxel = 0; voxel <= grid_.boundary_voxels; ++voxel) {
+    const std::uint32_t first = list_begin_[voxel];
+    out.begin[voxel] = {corners + from.first(first), from.first(first)};
+    if (voxel == grid_.boundary_voxels) break;
+    if (list_begin_[voxel + 1] - first > HostSamples::kLongestList) return Outcome::kTooMany;
+    for (std::uint32_t e = first; e < list_begin_[voxel + 1]; ++e) corners += from.has_corner(e) ? 1u : 0u;
   }
-  samples.points.resize(total + (HostSamples::kPointsAtOnce - 1));
+  out.points.resize(out.begin.back().point + (HostSamples::kPointsAtOnce - 1));
+  out.entries.resize(out.begin.back().point);
+  out.words = std::move(from.words);
+  out.wide = from.wide;
   const auto write = [&](std::uint32_t voxel) {
-    const HostSamples::Voxel at(low_of(voxel), spacing);
-    std::uint32_t* to = &samples.points[samples.point_begin[voxel]];
-    const auto put = [&](const Int3& p) {
-      std::uint32_t word = 0;
-      for (int k = 0; k < 3; ++k) word |= static_cast<std::uint32_t>((std::int64_t{p[k] - at.low[k]} << HostSamples::kPointBits) / grid_.size) << HostSamples::kPointBits * k;
-      *to++ = word;
+    const HostSamples::Voxel grid(low_of(voxel), spacing);
+    std::uint32_t at = out.begin[voxel].point;
+    const auto put = [&](const Int3& p, std::uint32_t entry, int axis) {
+      std::uint32_t word = static_cast<std::uint32_t>(axis) << HostSamples::kAxisShift;
+      for (int k = 0; k < 3; ++k) word |= static_cast<std::uint32_t>((std::int64_t{p[k] - grid.low[k]} << HostSamples::kPointBits) / grid_.size) << HostSamples::kPointBits * k;
+      out.points[at] = word;
+      out.entries[at++] = static_cast<std::uint16_t>(entry);
     };
-    for (std::uint32_t e = list_begin_[voxel]; e < list_begin_[voxel + 1]; ++e) {
-      if (samples.has_corner(e)) put(mesh_->corner(list_triangles_[e], 0));
-      for (std::uint32_t i = 0, n = samples.samples_of(e); i < n; ++i) put(samples.sample(at, e, i));
-    }
+    const std::uint32_t begin = list_begin_[voxel], end = list_begin_[voxel + 1];
+    for (std::uint32_t e = begin; e < end; ++e)
+      if (from.has_corner(e)) put(mesh_->corner(list_triangles_[e], 0), e - begin, 0);
+    for (std::uint32_t e = begin; e < end; ++e)
+      for (std::uint32_t i = from.first(e); i < from.first(e + 1); ++i) put(out.sample(grid, from.axis(e), i), e - begin, from.axis(e));
   };
-  return in_shares(
+  const bool done = in_shares(
       count,
       [&](std::uint32_t share) {
         for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel)
-          if (samples.point_begin[voxel] != samples.point_begin[voxel + 1]) write(voxel);
+          if (out.begin[voxel].point != out.begin[voxel + 1].point) write(voxel);
       },
       [&](std::uint32_t begun) { return go_on(1.0 * begun / count); });
+  return done ? Outcome::kDone : Outcome::kCancelled;
 }
 
 // ---- seams ---------------------------------------------------------------------------------------------------------------

@@ -24,11 +24,11 @@ class HostPreparation {
   /// Whether to go on, asked now and then on the calling thread; `done` is a share from 0 to 1.
   using GoOn = std::function<bool(double done)>;
 
-  /// Every entry's samples. kTooMany: more than `most_bytes`, or than HostSamples can number.
-  Outcome list_samples(std::int32_t spacing, std::uint64_t most_bytes, const GoOn& go_on, HostSamples& out) const;
+  /// Every entry's samples. kTooMany: more than `most_bytes`, or than EntrySamples can number.
+  Outcome list_samples(std::int32_t spacing, std::uint64_t most_bytes, const GoOn& go_on, EntrySamples& out) const;
 
-  /// The points of samples that either this or the shaders have listed. False: cancelled.
-  bool list_points(std::int32_t spacing, const GoOn& go_on, HostSamples& samples) const;
+  /// Voxel by voxel what either this or the shaders have listed entry by entry. kTooMany: a voxel lists more than HostSamples::kLongestList.
+  Outcome list_points(std::int32_t spacing, const GoOn& go_on, EntrySamples from, HostSamples& out) const;
 
   using Pair = std::array<std::uint32_t, 2>;
   /// Pairs of triangles that may touch along a seam under a smooth angle, the smaller id first, in no order; a pair may come several times.

@@ -125,29 +125,30 @@ void find_near(PrepareSteps& steps, const PartitionBuffers& p, std::int32_t voxe
   out.tool_near = steps.filled("voxels near the tool", bits);
 }
 
-/// The points of what is listed; then it is whole.
-void list_points(PrepareSteps& steps, const HostPreparation& host, std::int32_t spacing, std::shared_ptr<HostSamples> samples, PreparedScene& out) {
-  const bool done = host.list_points(
+/// What is listed entry by entry, voxel by voxel; then it is whole.
+void list_points(PrepareSteps& steps, const HostPreparation& host, std::int32_t spacing, EntrySamples from, PreparedScene& out) {
+  auto samples = std::make_shared<HostSamples>();
+  const auto outcome = host.list_points(
       spacing,
       [&](double share) {
         steps.progress("samples", 0.99 + 0.01 * share);
         return steps.ok();
       },
-      *samples);
-  if (done) out.samples = std::move(samples);
+      std::move(from), *samples);
+  if (outcome == HostPreparation::Outcome::kDone) out.samples = std::move(samples);
 }
 
 void list_samples_on_host(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
   const auto host = HostPreparation::make(steps.device(), geometry.mockup, out.mockup.partition);
   if (!host) return steps.fail(host.error());
-  auto samples = std::make_shared<HostSamples>();
+  EntrySamples samples;
   const auto outcome = host->list_samples(
       geometry.sample_spacing, kMostSampleBytes,
       [&](double done) {
         steps.progress("samples", 0.95 + 0.04 * done);
         return steps.ok();
       },
-      *samples);
+      samples);
   if (outcome == HostPreparation::Outcome::kDone) list_points(steps, *host, geometry.sample_spacing, std::move(samples), out);
 }
 
@@ -176,15 +177,15 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
   if (!steps.ok()) return;
   run(0, unused);
   const std::uint64_t total = steps.scan("samples", begins, push.count), words = push.wide != 0 ? 2 : 1;
-  if (!steps.ok() || total > HostSamples::kBegin || total * words * 4 > kMostSampleBytes) return;
-  auto samples = std::make_shared<HostSamples>();
-  samples->wide = push.wide != 0;
-  samples->begin.resize(std::size_t{p.grid.list_entries} + 1);
-  samples->words.resize(total * words);
-  if (auto r = download(steps.device(), begins, 0, samples->begin.data(), samples->begin.size() * 4); !r) return steps.fail(r.error());
+  if (!steps.ok() || total > EntrySamples::kBegin || total * words * 4 > kMostSampleBytes) return;
+  EntrySamples samples;
+  samples.wide = push.wide != 0;
+  samples.begin.resize(std::size_t{p.grid.list_entries} + 1);
+  samples.words.resize(total * words);
+  if (auto r = download(steps.device(), begins, 0, samples.begin.data(), samples.begin.size() * 4); !r) return steps.fail(r.error());
   // Run by run, so that the device holds few of them at a time.
   const VulkanBuffer some = steps.buffer("samples of the mock-up", std::min(total, kSamplesARun) * words);
-  const std::vector<std::uint32_t>& begin = samples->begin;
+  const std::vector<std::uint32_t>& begin = samples.begin;
   for (auto from = begin.begin(), end = begin.end() - 1; from != end && steps.ok();) {
     const auto to = std::min(std::upper_bound(from + 1, begin.end(), *from + kSamplesARun) - 1, end);
     push.first = static_cast<std::uint32_t>(from - begin.begin());
@@ -192,12 +193,12 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
     push.base = *from;
     run(1, some);
     if (!steps.ok()) return;
-    if (auto r = download(steps.device(), some, 0, samples->words.data() + *from * words, (*to - *from) * words * 4); !r) return steps.fail(r.error());
+    if (auto r = download(steps.device(), some, 0, samples.words.data() + *from * words, (*to - *from) * words * 4); !r) return steps.fail(r.error());
     steps.progress("samples", 0.95 + 0.04 * static_cast<double>(*to) / static_cast<double>(total + 1));
     from = to;
   }
   if (!steps.ok()) return;
-  if (auto r = download(steps.device(), begins, 0, samples->begin.data(), samples->begin.size() * 4); !r) return steps.fail(r.error());
+  if (auto r = download(steps.device(), begins, 0, samples.begin.data(), samples.begin.size() * 4); !r) return steps.fail(r.error());
   const auto host = HostPreparation::make(steps.device(), geometry.mockup, p);
   if (!host) return steps.fail(host.error());
   list_points(steps, *host, geometry.sample_spacing, std::move(samples), out);

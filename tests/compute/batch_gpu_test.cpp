@@ -161,26 +161,44 @@ struct VoxelLists {
   std::vector<std::uint32_t> begin, ids, places, bricks;
 };
 
-/// Whether every voxel's points are the 1024ths that hold its triangles' first corners and samples, one by one.
+/// Whether every voxel's points are the 1024ths that hold its triangles' first corners and then their samples, one by one, with axis and entry.
 testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
   const PartitionBuffers& p = scene.mockup.partition;
   const HostSamples& samples = *scene.samples;
   const VoxelLists lists(device, p);
-  std::vector<std::uint32_t> expected, expected_begin{0};
+  std::vector<std::uint32_t> expected;
+  std::vector<std::uint16_t> entries;
+  std::vector<HostSamples::Begin> begins{{0, 0}};
+  std::uint32_t number = 0;   // of the next sample
   for (std::size_t voxel = 0; voxel < lists.places.size(); ++voxel) {
     const Int3 low = lists.low(voxel), high = low + (p.grid.size - 1);
-    const auto put = [&](const Int3& point) {
+    const HostSamples::Voxel grid(low, geometry.sample_spacing);
+    const auto put = [&](const Int3& point, std::uint32_t e, std::uint32_t axis) {
       const auto part = [&](int k) { return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / p.grid.size)); };   // exact: below 2^39
-      expected.push_back(part(0) | part(1) << 10 | part(2) << 20);
+      expected.push_back(part(0) | part(1) << 10 | part(2) << 20 | axis << 30);
+      entries.push_back(static_cast<std::uint16_t>(e - lists.begin[voxel]));
     };
-    for (std::uint32_t e = lists.begin[voxel]; e < lists.begin[voxel + 1]; ++e) {
-      const exact::Corners t{geometry.mockup.corner(lists.ids[e], 0), geometry.mockup.corner(lists.ids[e], 1), geometry.mockup.corner(lists.ids[e], 2)};
-      if (t[0] == glm::clamp(t[0], low, high)) put(t[0]);
-      exact::for_samples(t, geometry.mockup.sample_axis[lists.ids[e]], geometry.sample_spacing, low, high, put);
-    }
-    expected_begin.push_back(static_cast<std::uint32_t>(expected.size()));
+    const auto for_triangles = [&](auto&& take) {
+      for (std::uint32_t e = lists.begin[voxel]; e < lists.begin[voxel + 1]; ++e)
+        take(e, exact::Corners{geometry.mockup.corner(lists.ids[e], 0), geometry.mockup.corner(lists.ids[e], 1), geometry.mockup.corner(lists.ids[e], 2)});
+    };
+    for_triangles([&](std::uint32_t e, const exact::Corners& t) {
+      if (t[0] == glm::clamp(t[0], low, high)) put(t[0], e, 0);
+    });
+    bool same = true;
+    for_triangles([&](std::uint32_t e, const exact::Corners& t) {
+      const std::uint8_t axis = geometry.mockup.sample_axis[lists.ids[e]];
+      exact::for_samples(t, axis, geometry.sample_spacing, low, high, [&](const Int3& point) {
+        put(point, e, axis);
+        same = same && number < samples.count() && samples.sample(grid, axis, number) == point;
+        ++number;
+      });
+    });
+    if (!same) return testing::AssertionFailure() << "samples of voxel " << voxel << " differ";
+    begins.push_back({static_cast<std::uint32_t>(expected.size()), number});
   }
-  if (samples.point_begin != expected_begin) return testing::AssertionFailure() << "begins of points differ";
+  if (samples.begin != begins) return testing::AssertionFailure() << "begins differ";
+  if (samples.entries != entries) return testing::AssertionFailure() << "entries differ";
   if (samples.points.size() != expected.size() + HostSamples::kPointsAtOnce - 1 || !std::equal(expected.begin(), expected.end(), samples.points.begin()))
     return testing::AssertionFailure() << "points differ";
   return testing::AssertionSuccess();
@@ -281,7 +299,7 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShadersAndRightTablesForTheSea
       const auto host = HostPreparation::make(**device, geometry->mockup, prepared->mockup.partition);
       ASSERT_TRUE(host);
       const auto listing = [&](std::uint64_t most_bytes, bool go_on) {
-        HostSamples out;
+        EntrySamples out;
         return host->list_samples(geometry->sample_spacing, most_bytes, [&](double) { return go_on; }, out);
       };
       EXPECT_EQ(listing(std::uint64_t{1} << 30, true), HostPreparation::Outcome::kDone);
@@ -292,10 +310,46 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShadersAndRightTablesForTheSea
     EXPECT_GT(by[0]->count(), 10'000u);
     EXPECT_EQ(by[0]->wide, mockup.wide);
     EXPECT_EQ(by[1]->wide, mockup.wide);
-    EXPECT_EQ(by[1]->begin, by[0]->begin);
-    EXPECT_EQ(by[1]->words, by[0]->words);
-    EXPECT_EQ(by[1]->points, by[0]->points);
-    EXPECT_EQ(by[1]->point_begin, by[0]->point_begin);
+    EXPECT_TRUE(*by[1] == *by[0]);
+  }
+}
+
+TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
+  auto device = VulkanDevice::create({});
+  ASSERT_TRUE(device);
+  LatticeMesh mesh;
+  mesh.vertices = {{1, 1, 1}, {90, 1, 1}, {1, 90, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.sample_axis = {2};
+  for (const std::uint32_t entries : {HostSamples::kLongestList, HostSamples::kLongestList + 1}) {
+    PartitionBuffers lists;   // one voxel of one brick; the triangle again and again
+    lists.grid.origin = Int3(0);
+    lists.grid.size = 100;
+    lists.grid.bricks = Int3(1);
+    lists.grid.mixed_bricks = lists.grid.boundary_voxels = 1;
+    lists.grid.list_entries = entries;
+    const auto fill = [&](VulkanBuffer& buffer, const std::vector<std::uint32_t>& content) {
+      auto made = VulkanBuffer::create(**device, "a list of the test", 4 * content.size(), BufferKind::kDevice);
+      ASSERT_TRUE(made);
+      buffer = std::move(*made);
+      ASSERT_TRUE(upload(**device, buffer, content.data(), 4 * content.size()));
+    };
+    fill(lists.list_begin, {0, entries});
+    fill(lists.list_triangles, std::vector<std::uint32_t>(entries));
+    fill(lists.boundary_place, {0});
+    fill(lists.mixed_brick, {0});
+    const auto host = HostPreparation::make(**device, mesh, lists);
+    ASSERT_TRUE(host);
+    EntrySamples by_entry;
+    const auto go_on = [](double) { return true; };
+    ASSERT_EQ(host->list_samples(40, std::uint64_t{1} << 30, go_on, by_entry), HostPreparation::Outcome::kDone);
+    HostSamples samples;
+    const auto outcome = host->list_points(40, go_on, std::move(by_entry), samples);
+    EXPECT_EQ(outcome, entries == HostSamples::kLongestList ? HostPreparation::Outcome::kDone : HostPreparation::Outcome::kTooMany);
+    if (outcome != HostPreparation::Outcome::kDone) continue;
+    EXPECT_EQ(samples.entries.front(), 0);
+    EXPECT_EQ(samples.entries.back(), HostSamples::kLongestList - 1);
+    EXPECT_EQ(samples.count(), HostSamples::kLongestList);   // (40, 40) alone lies inside
   }
 }
 
