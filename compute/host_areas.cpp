@@ -434,9 +434,12 @@ bool HostAreas::solve(PosedTool& tool, const Held* held, const ContactLists& lis
   answer = {};
   if (lists.statics.size() > most_statics_) return false;
   if (!lists.numbered) number(lists);
-  on_this_processor([&] { join_all(lists); });
-  count_samples(lists);
-  if (!gather(lists, answer)) return false;
+  const bool gathered = on_this_processor([&] {
+    join_all(lists);
+    count_samples(lists);
+    return gather(lists, answer);
+  });
+  if (!gathered) return false;
   if (!associate(tool, lists, answer)) return false;
   const std::span<AreaWork> areas = lists.areas.first(answer.areas);
   if (held != nullptr) match_held(*held, lists, answer);

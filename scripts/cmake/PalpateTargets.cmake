@@ -8,7 +8,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
-# Every build keeps its assertions, for every build is tested. Not -O3: it gains nothing where integers decide, builds longer, and
+# Every build keeps its assertions, for every build is tested. Not -O3, but for compute/: elsewhere it gains nothing, builds longer, and
 # GCC 12 then warns of overlaps in the standard library's strings that are not there.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2")
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g")
