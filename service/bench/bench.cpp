@@ -58,7 +58,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       ->check(one_of({"gpu", "cpu"}))
       ->expected(1, 2)
       ->type_name("gpu|cpu");
-  latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the tool's box meets nothing). Stages are the\n"
+  latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing near). Stages are the\n"
                   "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out.");
   latency->callback([&] { outcome = bench_latency(options, parts); });
 

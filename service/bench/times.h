@@ -25,7 +25,7 @@ struct TimePercentiles {
 };
 TimePercentiles percentiles(std::vector<double> times_us);
 
-/// What a frame was like. A frame is `kApart` when the tool's box meets nothing, so that the device was not asked.
+/// What a frame was like. A frame is `kApart` when the search found nothing that may touch, so that nothing had to be decided.
 enum class FrameKind : std::uint8_t { kContact, kFree, kApart };
 inline constexpr const char* kFrameKindNames[] = {"contact", "free", "apart", "all"};   ///< and all of them together
 FrameKind frame_kind(const Contacts& contacts);
