@@ -302,7 +302,7 @@ HostPreparation::Outcome HostPreparation::find_seams(std::int64_t least_cosine, 
     std::sort(mine.found.begin(), mine.found.end());
     mine.found.erase(std::unique(mine.found.begin(), mine.found.end()), mine.found.end());
     out.resize(mine.found.size());
-    std::memcpy(out.data(), mine.found.data(), out.size() * sizeof(Pair));
+    if (!out.empty()) std::memcpy(out.data(), mine.found.data(), out.size() * sizeof(Pair));   // of nothing: not from nowhere, either
   };
   std::vector<Pair> all;
   for (std::uint32_t first = 0; first < count; first += kSharesARun) {
