@@ -164,7 +164,8 @@ Case smooth_bead_in_a_tool() {
   return rule("smooth_bead_in_a_tool", "an area of one zone whose normals cancel, while the tool's do not", smooth_bead(100), box_of(Int3(-300), Int3(300)),
               [](const SceneGeometry&, Random& random, Known&) {
                 Int3 at = any(random, 40);
-                at[random.between(0, 2)] = (random.below(2) == 0 ? 1 : -1) * (300 - random.between(101, 127));
+                const int side = random.below(2) == 0 ? 1 : -1, off = random.between(101, 127);
+                at[random.between(0, 2)] = side * (300 - off);
                 return unturned(at);
               });
 }

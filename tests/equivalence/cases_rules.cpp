@@ -245,7 +245,8 @@ Case long_tool() {
     scene.geometry = std::move(*geometry);
     scene.pose = [](const SceneGeometry& of, Random& random, Known&) {
       palpate::Pose tilted;   // its rotation alone is used
-      tilted.rotation = rotation_about(Vec3(0, random.unit() - 0.5, random.unit() - 0.5) * 0.02) * rotation_about(Vec3(1, 0, 0), random.unit() * 6);
+      const double turned = random.unit() * 6, z = random.unit() - 0.5, y = random.unit() - 0.5;
+      tilted.rotation = rotation_about(Vec3(0, y, z) * 0.02) * rotation_about(Vec3(1, 0, 0), turned);
       LatticePose pose = to_lattice(tilted, of).value();
       pose.beyond_lattice = false;
       pose.translation = {random.between(-100'000'000, 100'000'000), random.between(-1'000'000, 1'000'000), random.between(-1'000'000, 1'000'000)};

@@ -33,7 +33,8 @@ LatticePose on_posts(const SceneGeometry& geometry, Random& random, Known&) {
   LatticePose pose;
   for (int k = 0; k < 3; ++k) pose.rotation_q30[k][k] = 1 << 30;
   const int reach = (geometry.mockup.box_max.x - geometry.mockup.box_min.x) / 2;
-  pose.translation = {random.between(-reach, reach) / random.between(1, 16), 0, geometry.mockup.box_max.z - geometry.tool.box_min.z - reach / 50};
+  const int along = random.between(-reach, reach);   // one number after the other: compilers take those of an expression in the order they like
+  pose.translation = {along / random.between(1, 16), 0, geometry.mockup.box_max.z - geometry.tool.box_min.z - reach / 50};
   return pose;
 }
 
