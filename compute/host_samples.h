@@ -17,7 +17,7 @@ struct HostSamples {
   std::vector<Begin> begin;   ///< by boundary voxel, and one more
 
   /// A voxel's points, first corners before samples, each in the order of its list: which of the voxel's 1024ths along x, y and z a point lies in (ten
-  /// bits each, x lowest), and above that a sample's axis. kPointsAtOnce - 1 more at the end say nothing.
+  /// bits each, x lowest), and above that a sample's axis, 0 for a corner. kPointsAtOnce - 1 more at the end say nothing.
   std::vector<std::uint32_t> points;
   std::vector<std::uint16_t> entries;   ///< of each point: which entry of the voxel's list is its triangle's
   /// By sample. Narrow: a word, height | u << 20 | v << 26. Wide, for voxels of more than kNarrowVoxel steps: the height, then u | v << 6.
@@ -70,10 +70,10 @@ struct EntrySamples {
 
   static constexpr std::uint32_t kBegin = gpu::kSampleCorner - 1;
 
+  /// Of entry `e`: first() is the number of its first sample, and of the next one's the end.
   bool has_corner(std::size_t e) const { return (begin[e] & gpu::kSampleCorner) != 0; }
   int axis(std::size_t e) const { return static_cast<int>(begin[e] >> gpu::kSampleAxisShift); }
   std::uint32_t first(std::size_t e) const { return begin[e] & kBegin; }
-  std::uint32_t count(std::size_t e) const { return first(e + 1) - first(e); }
 };
 
 }  // namespace palpate

@@ -27,7 +27,8 @@ class HostPreparation {
   /// Every entry's samples. kTooMany: more than `most_bytes`, or than EntrySamples can number.
   Outcome list_samples(std::int32_t spacing, std::uint64_t most_bytes, const GoOn& go_on, EntrySamples& out) const;
 
-  /// Voxel by voxel what either this or the shaders have listed entry by entry. kTooMany: a voxel lists more than HostSamples::kLongestList.
+  /// Voxel by voxel what either this or the shaders have listed entry by entry. kTooMany: a voxel lists more than HostSamples::kLongestList. What is not
+  /// done leaves `out` half written.
   Outcome list_points(std::int32_t spacing, const GoOn& go_on, EntrySamples from, HostSamples& out) const;
 
   using Pair = std::array<std::uint32_t, 2>;
