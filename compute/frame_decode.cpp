@@ -21,23 +21,10 @@ bool sets_are_whole(const FrameState& state) {
   return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & (kOverflowBins | kOverflowLoop)) == 0;
 }
 
-/// Entries by id: id · 2^32 + place, ascending. The host's are so already.
-template <class Entry, class Id>
-void order_by_id(std::span<const Entry> entries, Id id, std::vector<std::uint64_t>& out, std::vector<std::uint64_t>& spare) {
-  out.resize(entries.size());
-  bool ascending = true;
-  for (std::uint32_t i = 0; i < entries.size(); ++i) {
-    out[i] = std::uint64_t{id(entries[i])} << 32 | i;
-    ascending = ascending && (i == 0 || out[i - 1] < out[i]);
-  }
-  if (!ascending) sort_keys(out, spare);
-}
-
-/// Of keys made by order_by_id().
-void append_ids(std::vector<std::uint32_t>& to, std::span<const std::uint64_t> keys) {
+void append_ids(std::vector<std::uint32_t>& to, std::span<const StaticResult> statics) {
   const std::size_t at = to.size();
-  to.resize(at + keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) to[at + i] = static_cast<std::uint32_t>(keys[i] >> 32);
+  to.resize(at + statics.size());
+  for (std::size_t i = 0; i < statics.size(); ++i) to[at + i] = statics[i].id;
 }
 
 void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
@@ -62,12 +49,22 @@ void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
 
 }  // namespace
 
+/// Entries by ascending id, equal ones as they came: themselves where they are so already, as the host's are, else a copy in `sorted`.
+template <class Entry, class Id>
+std::span<const Entry> FrameDecoder::by_id(std::span<const Entry> entries, Id id, std::vector<Entry>& sorted) {
+  if (std::is_sorted(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) { return id(a) < id(b); })) return entries;
+  keys_.resize(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) keys_[i] = std::uint64_t{id(entries[i])} << 32 | i;
+  sort_keys(keys_, spare_keys_);
+  sorted.resize(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) sorted[i] = entries[static_cast<std::uint32_t>(keys_[i])];
+  return sorted;
+}
+
 void FrameDecoder::decode_sets(const FrameOutput& output, Contacts& out) {
-  const std::span statics(output.statics, output.result->static_count);
-  order_by_id(statics, [](const StaticResult& s) { return s.id; }, statics_, spare_keys_);
+  statics_ = by_id(std::span(output.statics, output.result->static_count), [](const StaticResult& s) { return s.id; }, sorted_statics_);
   if (!out.lists) return;
-  for (const std::uint64_t key : statics_) {
-    const StaticResult& s = statics[static_cast<std::uint32_t>(key)];
+  for (const StaticResult& s : statics_) {
     if ((s.state & kStaticHit) != 0) {
       out.cst.push_back(s.id);
       continue;
@@ -76,11 +73,8 @@ void FrameDecoder::decode_sets(const FrameOutput& output, Contacts& out) {
     if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
   }
   const std::span mobiles(output.mobiles, output.result->mobile_count);
-  order_by_id(mobiles, [](const MobileResult& m) { return m.id; }, mobiles_, spare_keys_);
-  for (const std::uint64_t key : mobiles_) {
-    const MobileResult& m = mobiles[static_cast<std::uint32_t>(key)];
+  for (const MobileResult& m : by_id(mobiles, [](const MobileResult& one) { return one.id; }, sorted_mobiles_))
     ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
-  }
 }
 
 /// One more zone of an area, empty.
@@ -110,13 +104,12 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
 
   // In the order of ids: every list ascends, and zones come by their first ids. A zone's label is the place of one of its triangles.
   zone_of_.assign(result.static_count, kNone);
-  const auto at = [&](std::size_t i) -> const StaticResult& { return output.statics[static_cast<std::uint32_t>(statics_[i])]; };
   for (std::size_t begin = 0, end; begin < statics_.size(); begin = end) {
     // Triangles of a zone mostly follow each other.
-    const StaticResult& first = at(begin);
-    for (end = begin + 1; end < statics_.size() && at(end).zone == first.zone;) ++end;
+    const StaticResult& first = statics_[begin];
+    for (end = begin + 1; end < statics_.size() && statics_[end].zone == first.zone;) ++end;
     if (first.area >= count) continue;
-    const std::span run(statics_.data() + begin, end - begin);
+    const std::span run = statics_.subspan(begin, end - begin);
     ContactArea& area = out.areas[position[first.area]];
     append_ids(area.static_ids, run);   // the next frame holds on to an area by them
     if (!out.lists) continue;
@@ -128,11 +121,8 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
     append_ids(area.zones[zone], run);
   }
   const std::span members(output.members, out.lists ? result.member_count : 0);
-  order_by_id(members, [](const AreaMember& m) { return m.mobile; }, members_, spare_keys_);
-  for (const std::uint64_t key : members_) {
-    const AreaMember& m = members[static_cast<std::uint32_t>(key)];
+  for (const AreaMember& m : by_id(members, [](const AreaMember& one) { return one.mobile; }, sorted_members_))
     out.areas[position[m.area]].mobile_ids.push_back(m.mobile);
-  }
   for (const AreaPierce& p : std::span(output.pierces, result.pierce_count)) out.areas[position[p.area]].pierces.push_back(position[p.pierced]);
   for (ContactArea& area : out.areas) std::sort(area.pierces.begin(), area.pierces.end());
 }
@@ -143,14 +133,15 @@ void FrameDecoder::clear(Contacts& out) {
   out.truncated_capacity = "";
   out.pairs = 0;
   for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) ids->clear();
-  for (ContactArea& area : out.areas) {
-    for (std::vector<std::uint32_t>& zone : area.zones) {
-      zone.clear();
-      if (spare_zones_.size() < kMostSpareZones) spare_zones_.push_back(std::move(zone));
+  // The last first, so that the next frame's first area, which is mostly this one's, takes what this one's had and does not grow.
+  for (auto area = out.areas.rbegin(); area != out.areas.rend(); ++area) {
+    for (auto zone = area->zones.rbegin(); zone != area->zones.rend(); ++zone) {
+      zone->clear();
+      if (spare_zones_.size() < kMostSpareZones) spare_zones_.push_back(std::move(*zone));
     }
-    for (auto* ids : {&area.static_ids, &area.mobile_ids, &area.pierces}) ids->clear();
-    area.zones.clear();
-    if (spare_areas_.size() < kMaxFrameAreas) spare_areas_.push_back(std::move(area));
+    for (auto* ids : {&area->static_ids, &area->mobile_ids, &area->pierces}) ids->clear();
+    area->zones.clear();
+    if (spare_areas_.size() < kMaxFrameAreas) spare_areas_.push_back(std::move(*area));
   }
   out.areas.clear();
   out.flags = 0;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "model/contacts.h"
@@ -31,8 +32,14 @@ class FrameDecoder {
   void decode_areas(const FrameOutput& output, Contacts& out);
   std::vector<std::uint32_t>& new_zone(ContactArea& area);
 
-  std::vector<std::uint64_t> statics_, mobiles_, members_;   ///< id · 2^32 + place in the output, ascending
-  std::vector<std::uint64_t> spare_keys_;
+  template <class Entry, class Id>
+  std::span<const Entry> by_id(std::span<const Entry> entries, Id id, std::vector<Entry>& sorted);
+
+  std::span<const gpu::StaticResult> statics_;   ///< of the present output, by id
+  std::vector<gpu::StaticResult> sorted_statics_;
+  std::vector<gpu::MobileResult> sorted_mobiles_;
+  std::vector<gpu::AreaMember> sorted_members_;
+  std::vector<std::uint64_t> keys_, spare_keys_;
   std::vector<std::uint32_t> zone_of_;                       ///< by label: position in its area's zones
   std::vector<ContactArea> spare_areas_;
   std::vector<std::vector<std::uint32_t>> spare_zones_;

@@ -11,15 +11,19 @@ namespace palpate {
 /// its place in the voxel's grid of samples, two numbers below 64, and its height above the voxel's low side along its triangle's sample axis.
 struct HostSamples {
   struct Begin {
-    std::uint32_t point, sample;   ///< numbers of the voxel's first ones
+    std::uint32_t point, sample, owner;   ///< numbers of the voxel's first ones
     bool operator==(const Begin&) const = default;
   };
   std::vector<Begin> begin;   ///< by boundary voxel, and one more
 
-  /// A voxel's points, first corners before samples, each in the order of its list: which of the voxel's 1024ths along x, y and z a point lies in (ten
-  /// bits each, x lowest), and above that a sample's axis, 0 for a corner. kPointsAtOnce - 1 more at the end say nothing.
+  /// A voxel's points: vertices that are first corners, each once, by their numbers in the mesh; then samples in the order of the voxel's list. Which of
+  /// the voxel's 1024ths along x, y and z a point lies in (ten bits each, x lowest), and above that a sample's axis, 0 for a corner. kPointsAtOnce - 1
+  /// more at the end say nothing.
   std::vector<std::uint32_t> points;
-  std::vector<std::uint16_t> entries;   ///< of each point: which entry of the voxel's list is its triangle's
+  /// Of each point, for a sample: which entry of the voxel's list is its triangle's; for a corner: which of the voxel's `owners` is its first. The next
+  /// corner's end them, and after the last corner the voxel's.
+  std::vector<std::uint16_t> entries;
+  std::vector<std::uint16_t> owners;   ///< corner by corner the entries of the triangles that begin there
   /// By sample. Narrow: a word, height | u << 20 | v << 26. Wide, for voxels of more than kNarrowVoxel steps: the height, then u | v << 6.
   std::vector<std::uint32_t> words;
   bool wide = false;
@@ -33,7 +37,9 @@ struct HostSamples {
   bool operator==(const HostSamples&) const = default;
   std::uint64_t count() const { return words.size() / (wide ? 2 : 1); }
   bool listed() const { return !begin.empty(); }
-  std::uint64_t bytes() const { return 8 * std::uint64_t{begin.size()} + 4 * std::uint64_t{points.size()} + 2 * std::uint64_t{entries.size()} + 4 * std::uint64_t{words.size()}; }
+  std::uint64_t bytes() const {
+    return sizeof(Begin) * begin.size() + 4 * std::uint64_t{points.size()} + 2 * std::uint64_t{entries.size()} + 2 * std::uint64_t{owners.size()} + 4 * std::uint64_t{words.size()};
+  }
 
   /// A voxel's samples as lattice points. Steps.
   struct Voxel {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <span>
 
 #include "compute/processor.h"
 
@@ -210,30 +211,38 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
     low[k] = static_cast<float>((at[k] - fine_.origin[static_cast<int>(k)] + 0.5) * per_fine_) + 0.5F * (column[0] + column[1] + column[2]);
   }
   const std::uint32_t* const ids = &list_triangles_[list_begin_[boundary]];
-  const auto [begin, first_number] = from.begin[boundary];
-  const auto [end, end_number] = from.begin[boundary + 1];
-  const std::uint32_t first_sample = end - (end_number - first_number);
-  for (std::uint32_t first = begin; first < end; first += kEight) {
+  const HostSamples::Begin begin = from.begin[boundary], end = from.begin[boundary + 1];
+  const std::uint32_t first_sample = end.point - (end.sample - begin.sample);
+  const std::uint16_t* const owners = from.owners.data() + begin.owner;
+  for (std::uint32_t first = begin.point; first < end.point; first += kEight) {
     SolidPoints solid;
     solid_points(search.fine, low, solid_, &from.points[first], solid);
-    if (end - first < kEight) solid.may &= (1u << (end - first)) - 1;
+    if (end.point - first < kEight) solid.may &= (1u << (end.point - first)) - 1;
     for (; solid.may != 0; solid.may &= solid.may - 1) {
       const auto lane = static_cast<unsigned>(std::countr_zero(solid.may));
       const std::uint32_t point = first + lane;
-      const bool sure = (solid.unsure >> lane & 1) == 0, corner = point < first_sample;
+      const bool sure = (solid.unsure >> lane & 1) == 0;
       std::uint32_t kind = sure && internal_.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal : gpu::kVoxelBoundary;
-      gpu::FrameSample sample{{}, ids[from.entries[point]]};
-      if (corner) {
-        if (kind == gpu::kVoxelBoundary) sample.point = mesh_->corner(sample.static_id, 0);   // two loads, anywhere in the mesh; inside nobody asks
-        sample.static_id |= gpu::kCornerProbe;
+      gpu::FrameSample sample{};
+      std::span<const std::uint16_t> triangles(&from.entries[point], 1);
+      std::uint32_t mark = 0;
+      if (point < first_sample) {
+        const std::uint32_t last = point + 1 < first_sample ? from.entries[point + 1] : end.owner - begin.owner;
+        triangles = {owners + from.entries[point], owners + last};
+        if (kind == gpu::kVoxelBoundary) sample.point = mesh_->corner(ids[triangles.front()], 0);   // two loads, anywhere in the mesh; inside nobody asks
+        mark = gpu::kCornerProbe;
       } else {
         if (!grid) grid.emplace(lowest, spacing_);
-        sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> HostSamples::kAxisShift), first_number + (point - first_sample));
+        sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> HostSamples::kAxisShift), begin.sample + (point - first_sample));
       }
       if (!sure) kind = fine_class(search.rounded_to_tool(sample.point));
       if (kind == gpu::kVoxelExternal) continue;
       const bool internal = kind == gpu::kVoxelInternal;
-      if (!search.lists.push(internal ? search.lists.inside : search.lists.open, internal ? gpu::kListInsideSamples : gpu::kListOpenSamples, sample)) return false;
+      auto& list = internal ? search.lists.inside : search.lists.open;
+      for (const std::uint16_t entry : triangles) {
+        sample.static_id = ids[entry] | mark;
+        if (!search.lists.push(list, internal ? gpu::kListInsideSamples : gpu::kListOpenSamples, sample)) return false;
+      }
     }
   }
   return true;
@@ -294,6 +303,7 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
       const std::uint32_t point = sampled_->begin[boundary].point;
       __builtin_prefetch(sampled_->points.data() + point);
       __builtin_prefetch(sampled_->entries.data() + point);
+      __builtin_prefetch(sampled_->owners.data() + sampled_->begin[boundary].owner);
       __builtin_prefetch(&list_triangles_[list_begin_[boundary]]);
     }
   for (std::size_t i = 0; i < count; ++i) {

@@ -29,6 +29,7 @@ void archive_samples(Archive& a, Samples& samples) {
   a(samples.begin);
   a(samples.points);
   a(samples.entries);
+  a(samples.owners);
   a(samples.words);
   a(samples.wide);
 }

@@ -38,6 +38,12 @@ struct EdgeSide {
   }
 };
 
+/// A triangle whose first corner lies in a voxel: that vertex, and the entry of the voxel's list.
+struct Owner {
+  std::uint32_t vertex, entry;
+  auto operator<=>(const Owner&) const = default;
+};
+
 }  // namespace
 
 Result<HostPreparation> HostPreparation::make(VulkanDevice& device, const LatticeMesh& mesh, const PartitionBuffers& lists) {
@@ -158,19 +164,42 @@ HostPreparation::Outcome HostPreparation::list_points(std::int32_t spacing, cons
   const std::vector<std::uint32_t> shares = shares_of(kEntriesAShare);
   const auto count = static_cast<std::uint32_t>(shares.size() - 1);
   out.begin.resize(std::size_t{grid_.boundary_voxels} + 1);
-  std::uint32_t corners = 0;
-  for (std::uint32_t voxel = 0; voxel <= grid_.boundary_voxels; ++voxel) {
-    const std::uint32_t first = list_begin_[voxel];
-    out.begin[voxel] = {corners + from.first(first), from.first(first)};
-    if (voxel == grid_.boundary_voxels) break;
-    if (list_begin_[voxel + 1] - first > HostSamples::kLongestList) return Outcome::kTooMany;
-    for (std::uint32_t e = first; e < list_begin_[voxel + 1]; ++e) corners += from.has_corner(e) ? 1u : 0u;
+  for (std::uint32_t voxel = 0; voxel < grid_.boundary_voxels; ++voxel)
+    if (list_begin_[voxel + 1] - list_begin_[voxel] > HostSamples::kLongestList) return Outcome::kTooMany;
+  // First how many there are in each voxel, then the numbers of its first ones.
+  const auto in_voxels = [&](double begin, double part, auto&& take) {
+    return in_shares(
+        count,
+        [&](std::uint32_t share) {
+          std::vector<Owner> owners;
+          for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) {
+            owners.clear();
+            for (std::uint32_t e = list_begin_[voxel]; e < list_begin_[voxel + 1]; ++e)
+              if (from.has_corner(e)) owners.push_back({mesh_->triangles[list_triangles_[e]][0], e - list_begin_[voxel]});
+            std::sort(owners.begin(), owners.end());
+            take(voxel, owners);
+          }
+        },
+        [&](std::uint32_t begun) { return go_on(begin + part * begun / count); });
+  };
+  const bool counted = in_voxels(0, 0.4, [&](std::uint32_t voxel, const std::vector<Owner>& owners) {
+    const std::uint32_t samples = from.first(list_begin_[voxel + 1]) - from.first(list_begin_[voxel]);
+    std::uint32_t corners = 0;
+    for (std::size_t i = 0; i < owners.size(); ++i) corners += i == 0 || owners[i].vertex != owners[i - 1].vertex ? 1u : 0u;
+    out.begin[voxel] = {corners + samples, samples, static_cast<std::uint32_t>(owners.size())};
+  });
+  if (!counted) return Outcome::kCancelled;
+  HostSamples::Begin sum{};
+  for (HostSamples::Begin& begin : out.begin) {
+    const HostSamples::Begin size = std::exchange(begin, sum);
+    sum = {sum.point + size.point, sum.sample + size.sample, sum.owner + size.owner};
   }
   out.points.resize(out.begin.back().point + (HostSamples::kPointsAtOnce - 1));
   out.entries.resize(out.begin.back().point);
+  out.owners.resize(out.begin.back().owner);
   out.words = std::move(from.words);
   out.wide = from.wide;
-  const auto write = [&](std::uint32_t voxel) {
+  const bool written = in_voxels(0.4, 0.6, [&](std::uint32_t voxel, const std::vector<Owner>& owners) {
     const HostSamples::Voxel grid(low_of(voxel), spacing);
     std::uint32_t at = out.begin[voxel].point;
     const auto put = [&](const Int3& p, std::uint32_t entry, int axis) {
@@ -180,19 +209,14 @@ HostPreparation::Outcome HostPreparation::list_points(std::int32_t spacing, cons
       out.entries[at++] = static_cast<std::uint16_t>(entry);
     };
     const std::uint32_t begin = list_begin_[voxel], end = list_begin_[voxel + 1];
-    for (std::uint32_t e = begin; e < end; ++e)
-      if (from.has_corner(e)) put(mesh_->corner(list_triangles_[e], 0), e - begin, 0);
+    for (std::uint32_t i = 0; i < owners.size(); ++i) {
+      if (i == 0 || owners[i].vertex != owners[i - 1].vertex) put(mesh_->vertices[owners[i].vertex], i, 0);
+      out.owners[out.begin[voxel].owner + i] = static_cast<std::uint16_t>(owners[i].entry);
+    }
     for (std::uint32_t e = begin; e < end; ++e)
       for (std::uint32_t i = from.first(e); i < from.first(e + 1); ++i) put(out.sample(grid, from.axis(e), i), e - begin, from.axis(e));
-  };
-  const bool done = in_shares(
-      count,
-      [&](std::uint32_t share) {
-        for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel)
-          if (out.begin[voxel].point != out.begin[voxel + 1].point) write(voxel);
-      },
-      [&](std::uint32_t begun) { return go_on(1.0 * begun / count); });
-  return done ? Outcome::kDone : Outcome::kCancelled;
+  });
+  return written ? Outcome::kDone : Outcome::kCancelled;
 }
 
 // ---- seams ---------------------------------------------------------------------------------------------------------------

@@ -161,44 +161,52 @@ struct VoxelLists {
   std::vector<std::uint32_t> begin, ids, places, bricks;
 };
 
-/// Whether every voxel's points are the 1024ths that hold its triangles' first corners and then their samples, one by one, with axis and entry.
+/// Whether every voxel's points are the 1024ths that hold its triangles' first corners, each once and with all that begin there, and then their samples,
+/// one by one, with axis and entry.
 testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
   const PartitionBuffers& p = scene.mockup.partition;
   const HostSamples& samples = *scene.samples;
   const VoxelLists lists(device, p);
   std::vector<std::uint32_t> expected;
-  std::vector<std::uint16_t> entries;
-  std::vector<HostSamples::Begin> begins{{0, 0}};
+  std::vector<std::uint16_t> entries, owners;
+  std::vector<HostSamples::Begin> begins{{0, 0, 0}};
   std::uint32_t number = 0;   // of the next sample
   for (std::size_t voxel = 0; voxel < lists.places.size(); ++voxel) {
     const Int3 low = lists.low(voxel), high = low + (p.grid.size - 1);
     const HostSamples::Voxel grid(low, geometry.sample_spacing);
-    const auto put = [&](const Int3& point, std::uint32_t e, std::uint32_t axis) {
+    const auto put = [&](const Int3& point, std::size_t entry, std::uint32_t axis) {
       const auto part = [&](int k) { return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / p.grid.size)); };   // exact: below 2^39
       expected.push_back(part(0) | part(1) << 10 | part(2) << 20 | axis << 30);
-      entries.push_back(static_cast<std::uint16_t>(e - lists.begin[voxel]));
+      entries.push_back(static_cast<std::uint16_t>(entry));
     };
     const auto for_triangles = [&](auto&& take) {
       for (std::uint32_t e = lists.begin[voxel]; e < lists.begin[voxel + 1]; ++e)
         take(e, exact::Corners{geometry.mockup.corner(lists.ids[e], 0), geometry.mockup.corner(lists.ids[e], 1), geometry.mockup.corner(lists.ids[e], 2)});
     };
+    std::map<std::uint32_t, std::vector<std::uint32_t>> corners;   // entries by vertex
     for_triangles([&](std::uint32_t e, const exact::Corners& t) {
-      if (t[0] == glm::clamp(t[0], low, high)) put(t[0], e, 0);
+      if (t[0] == glm::clamp(t[0], low, high)) corners[geometry.mockup.triangles[lists.ids[e]][0]].push_back(e - lists.begin[voxel]);
     });
+    const std::size_t first_owner = owners.size();
+    for (const auto& [vertex, its] : corners) {
+      put(geometry.mockup.vertices[vertex], owners.size() - first_owner, 0);
+      owners.insert(owners.end(), its.begin(), its.end());
+    }
     bool same = true;
     for_triangles([&](std::uint32_t e, const exact::Corners& t) {
       const std::uint8_t axis = geometry.mockup.sample_axis[lists.ids[e]];
       exact::for_samples(t, axis, geometry.sample_spacing, low, high, [&](const Int3& point) {
-        put(point, e, axis);
+        put(point, e - lists.begin[voxel], axis);
         same = same && number < samples.count() && samples.sample(grid, axis, number) == point;
         ++number;
       });
     });
     if (!same) return testing::AssertionFailure() << "samples of voxel " << voxel << " differ";
-    begins.push_back({static_cast<std::uint32_t>(expected.size()), number});
+    begins.push_back({static_cast<std::uint32_t>(expected.size()), number, static_cast<std::uint32_t>(owners.size())});
   }
   if (samples.begin != begins) return testing::AssertionFailure() << "begins differ";
   if (samples.entries != entries) return testing::AssertionFailure() << "entries differ";
+  if (samples.owners != owners) return testing::AssertionFailure() << "owners differ";
   if (samples.points.size() != expected.size() + HostSamples::kPointsAtOnce - 1 || !std::equal(expected.begin(), expected.end(), samples.points.begin()))
     return testing::AssertionFailure() << "points differ";
   return testing::AssertionSuccess();
@@ -349,6 +357,8 @@ TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
     if (outcome != HostPreparation::Outcome::kDone) continue;
     EXPECT_EQ(samples.entries.front(), 0);
     EXPECT_EQ(samples.entries.back(), HostSamples::kLongestList - 1);
+    EXPECT_EQ(samples.owners.size(), HostSamples::kLongestList);   // of one corner
+    EXPECT_EQ(samples.owners.back(), HostSamples::kLongestList - 1);
     EXPECT_EQ(samples.count(), HostSamples::kLongestList);   // (40, 40) alone lies inside
   }
 }
