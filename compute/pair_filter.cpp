@@ -10,17 +10,17 @@ namespace {
 constexpr std::size_t kLanes = PairFilter::kLanes;
 using Coordinates = PairFilter::Coordinates;
 
-// What is computed differs from its exact value by less than 170 · 2^-53 · M³ (pair_filter_lanes.h); M³ itself is rounded three times.
-constexpr double kBound = 0x1p-45;
+// What is computed differs from its exact value by less than 104 · 2^-24 of a product of three sizes (pair_filter_lanes.h), which itself is rounded four times.
+constexpr float kBound = 0x1p-17F;
 
 namespace plain {
-constexpr std::size_t kWidth = 2;
+constexpr std::size_t kWidth = 4;
 #include "compute/pair_filter_lanes.h"
 }
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
-constexpr std::size_t kWidth = 4;
+constexpr std::size_t kWidth = 8;
 #include "compute/pair_filter_lanes.h"
 }
 PALPATE_SECOND_CODE_END

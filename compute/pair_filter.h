@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// Pairs of triangles judged in doubles, several at a time, where doubles are enough (docs/EXACTNESS.md, section 9). One thread.
+/// Pairs of triangles judged in single precision, several at a time, where that is enough (docs/EXACTNESS.md, section 9). One thread.
 class PairFilter {
  public:
   static constexpr std::size_t kLanes = 8;

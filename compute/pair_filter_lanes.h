@@ -1,105 +1,119 @@
-// Included by pair_filter.cpp alone, once for each processor's code (processor.h); so it guards nothing and includes nothing. kWidth: doubles in a
+// Included by pair_filter.cpp alone, once for each processor's code (processor.h); so it guards nothing and includes nothing. kWidth: floats in a
 // vector of the processor's; GCC takes longer ones apart, number by number where they are compared.
 
-using Doubles = double __attribute__((vector_size(8 * kWidth)));
-using Masks = std::int64_t __attribute__((vector_size(8 * kWidth)));   // all bits of a lane, or none
-using Ints = std::int32_t __attribute__((vector_size(4 * kWidth)));
+using Floats = float __attribute__((vector_size(4 * kWidth)));
+using Words = std::int32_t __attribute__((vector_size(4 * kWidth)));   // as masks: all bits of a lane, or none
 
 struct Point {
-  Doubles x, y, z;
+  Floats x, y, z;
 };
 
-// A corner of s or t, from a lane on. Exact.
-static void load(const std::array<std::int32_t, kLanes>& from, std::size_t lane, Doubles& out) {
-  Ints whole;
-  std::memcpy(&whole, from.data() + lane, sizeof whole);
-  out = __builtin_convertvector(whole, Doubles);
+// Coordinate by coordinate.
+struct Whole {
+  Words at[3];
+};
+static void load(const Coordinates& from, std::size_t corner, std::size_t lane, Whole& out) {
+  for (std::size_t k = 0; k < 3; ++k) std::memcpy(&out.at[k], from[3 * corner + k].data() + lane, sizeof out.at[k]);
 }
-static void load(const Coordinates& from, std::size_t corner, std::size_t lane, Point& out) {
-  load(from[3 * corner], lane, out.x);
-  load(from[3 * corner + 1], lane, out.y);
-  load(from[3 * corner + 2], lane, out.z);
+static void between(const Whole& from, const Whole& to, Whole& out) {
+  for (std::size_t k = 0; k < 3; ++k) out.at[k] = to.at[k] - from.at[k];
+}
+// Rounded to 24 bits; `most` becomes the largest size of a coordinate, if it is larger.
+static void round(const Whole& p, Point& out, Floats& most) {
+  out = {__builtin_convertvector(p.at[0], Floats), __builtin_convertvector(p.at[1], Floats), __builtin_convertvector(p.at[2], Floats)};
+  for (const Floats& v : {out.x, out.y, out.z}) {
+    const Floats size = v < 0 ? -v : v;
+    most = most < size ? size : most;
+  }
 }
 static void cross(const Point& a, const Point& b, Point& out) {
   out.x = a.y * b.z - a.z * b.y;
   out.y = a.z * b.x - a.x * b.z;
   out.z = a.x * b.y - a.y * b.x;
 }
-static void dot(const Point& a, const Point& b, Doubles& out) { out = a.x * b.x + a.y * b.y + a.z * b.z; }
-static void widen(Doubles& most, const Doubles& v) {
-  const Doubles size = v < 0 ? -v : v;
-  most = most < size ? size : most;
-}
-static void widen(Doubles& most, const Point& p) {
-  widen(most, p.x);
-  widen(most, p.y);
-  widen(most, p.z);
-}
+static void dot(const Point& a, const Point& b, Floats& out) { out = a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // The sign of a number, as far as it is known: neither where it is not.
 struct Side {
-  Masks above, below;
+  Words above, below;
 };
-static void side(const Doubles& v, const Doubles& error, Side& out) {
+static void side(const Floats& v, const Floats& error, Side& out) {
   out.above = v > error;
   out.below = v < -error;
 }
 
-// Let a0, a1, a2 be s's corners and 0, b1, b2 t's, m_i = a_i × a_{i+1}, N = b1 × b2. Then
+// Let a0, a1, a2 be s's corners and 0, b1, b2 t's, e_i = a_{i+1} − a_i, f = b2 − b1, m_i = a_i × e_i, N = b1 × b2, n = e_0 × e_1. Then
 //   side of a_i of t's plane                       S_i = N·a_i,
-//   side of t's corners of s's plane               T_0 = −a0·m_1, T_1 = T_0 + Σ b1·m_i, T_2 = T_0 + Σ b2·m_i  (s's normal is Σ m_i),
-//   side on which edge i of s passes edge j of t   L_i0 = b1·m_i, L_i1 = S_{i+1} − S_i + b2·m_i − b1·m_i, L_i2 = −b2·m_i.
-// Errors, ε = 2^-53, every coordinate within M and exact: a component of a cross product is a difference of two products within M², so off by
-// less than 4.01 ε M²; a scalar product of it with a corner adds 3 · 4.01 for that, 6 for products and 10 for sums: below 29 ε M³, and its
-// size below 6 M³ (1 + 2^-50). L_i1, T_1 and T_2 add four such: 4 · 29 and (12 + 18 + 24) for the sums: below 170 ε M³. A product that is added without
-// being rounded (fused) only takes errors away.
+//   side of t's corners of s's plane               T_0 = −n·a0, T_1 = T_0 + n·b1, T_2 = T_0 + n·b2,
+//   side on which edge i of s passes edge j of t   L_i0 = b1·m_i, L_i1 = N·e_i + f·m_i, L_i2 = −b2·m_i.
+// Differences are exact integers. Errors, u = 2^-24, components within A, B (of b1 and b2; f within 2 B) and E: each is off by u times itself before it is
+// multiplied. A component of a cross product is a difference of two products of such, so off by less than 2 · 3 + 2 = 8 u times both sizes and itself within
+// twice these; a scalar product of it with a third vector by 3 · (8 + 2 · 2) for its terms and 4 + 6 for sums: 46 u times three sizes, itself within six times these. So
+//   S_i, 46 u A B²;   T_1 and T_2, u E² (46 (A + B) + 6 (A + B));   L_i1, u B E (46 B + 2 · 46 A + 6 B + 12 A).
+// Second orders are below 2^-18 of that. A product that is added without being rounded (fused) only takes errors away.
 static void judge_from(const Coordinates& s, const Coordinates& t, std::size_t begin, PairFilter::Verdict* out) {
-  Point a[3], b1, b2;
-  for (std::size_t i = 0; i < 3; ++i) load(s, i, begin, a[i]);
-  load(t, 0, begin, b1);
-  load(t, 1, begin, b2);
-  Doubles most{};
-  for (const Point& p : a) widen(most, p);
-  widen(most, b1);
-  widen(most, b2);
-  const Doubles error = most * most * most * kBound;
-
-  Point normal, m[3];
-  cross(b1, b2, normal);
-  for (std::size_t i = 0; i < 3; ++i) cross(a[i], a[(i + 1) % 3], m[i]);
-  Doubles of_a[3], by_b1[3], by_b2[3], first;
-  for (std::size_t i = 0; i < 3; ++i) {
-    dot(normal, a[i], of_a[i]);
-    dot(b1, m[i], by_b1[i]);
-    dot(b2, m[i], by_b2[i]);
+  Point a[3], e[3], b1, b2, f;
+  Floats most_a{}, most_b{}, most_e{}, most_f{};
+  {
+    Whole whole[3], way, t1, t2;
+    for (std::size_t i = 0; i < 3; ++i) load(s, i, begin, whole[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      between(whole[i], whole[(i + 1) % 3], way);
+      round(whole[i], a[i], most_a);
+      round(way, e[i], most_e);
+    }
+    load(t, 0, begin, t1);
+    load(t, 1, begin, t2);
+    between(t1, t2, way);
+    round(t1, b1, most_b);
+    round(t2, b2, most_b);
+    round(way, f, most_f);
   }
-  dot(a[0], m[1], first);
-  Side of_s[3], of_t[3];
-  for (std::size_t i = 0; i < 3; ++i) side(of_a[i], error, of_s[i]);
-  side(-first, error, of_t[0]);
-  side(by_b1[0] + by_b1[1] + by_b1[2] - first, error, of_t[1]);
-  side(by_b2[0] + by_b2[1] + by_b2[2] - first, error, of_t[2]);
+  const Floats reach = (most_a + most_b) * kBound, error_s = most_b * most_b * reach, error_t = most_e * most_e * reach, error_l = most_b * most_e * reach;
+
+  Point of_t, of_s, m;
+  cross(b1, b2, of_t);
+  cross(e[0], e[1], of_s);
+  Floats at_s[3], at_t[3], first, along;
+  for (std::size_t i = 0; i < 3; ++i) dot(of_t, a[i], at_s[i]);
+  dot(of_s, a[0], first);
+  at_t[0] = -first;
+  dot(of_s, b1, along);
+  at_t[1] = along - first;
+  dot(of_s, b2, along);
+  at_t[2] = along - first;
+  Side ends_s[3], ends_t[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    side(at_s[i], error_s, ends_s[i]);
+    side(at_t[i], error_t, ends_t[i]);
+  }
 
   // As exact::triangles_meet: one side, or an edge whose ends are on different sides passes the other's three edges on one side.
-  const Masks apart = (of_s[0].above & of_s[1].above & of_s[2].above) | (of_s[0].below & of_s[1].below & of_s[2].below) | (of_t[0].above & of_t[1].above & of_t[2].above) |
-                      (of_t[0].below & of_t[1].below & of_t[2].below);
-  Masks meet{}, no_edge = Masks{} - 1;   // some edge surely does; each surely does not
+  const Words apart = (ends_s[0].above & ends_s[1].above & ends_s[2].above) | (ends_s[0].below & ends_s[1].below & ends_s[2].below) |
+                      (ends_t[0].above & ends_t[1].above & ends_t[2].above) | (ends_t[0].below & ends_t[1].below & ends_t[2].below);
+  Words meet{}, no_edge = Words{} - 1;   // some edge surely does; each surely does not
   Side lines[3][3];
   const auto edge = [&](const Side& from, const Side& to, const Side& x, const Side& y, const Side& z) {
-    const Masks through = (from.above & to.below) | (from.below & to.above), beside = (from.above & to.above) | (from.below & to.below);
-    const Masks alike = (x.above & y.above & z.above) | (x.below & y.below & z.below);
-    const Masks mixed = (x.above | y.above | z.above) & (x.below | y.below | z.below);
+    const Words through = (from.above & to.below) | (from.below & to.above), beside = (from.above & to.above) | (from.below & to.below);
+    const Words alike = (x.above & y.above & z.above) | (x.below & y.below & z.below);
+    const Words mixed = (x.above | y.above | z.above) & (x.below | y.below | z.below);
     meet |= through & alike;
     no_edge &= beside | mixed;
   };
   for (std::size_t i = 0; i < 3; ++i) {
-    side(by_b1[i], error, lines[i][0]);
-    side(of_a[(i + 1) % 3] - of_a[i] + by_b2[i] - by_b1[i], error, lines[i][1]);
-    side(-by_b2[i], error, lines[i][2]);
-    edge(of_s[i], of_s[(i + 1) % 3], lines[i][0], lines[i][1], lines[i][2]);
+    cross(a[i], e[i], m);
+    Floats by_b1, by_b2, by_f, by_e;
+    dot(b1, m, by_b1);
+    dot(b2, m, by_b2);
+    dot(f, m, by_f);
+    dot(of_t, e[i], by_e);
+    side(by_b1, error_l, lines[i][0]);
+    side(by_e + by_f, error_l, lines[i][1]);
+    side(-by_b2, error_l, lines[i][2]);
+    edge(ends_s[i], ends_s[(i + 1) % 3], lines[i][0], lines[i][1], lines[i][2]);
   }
-  for (std::size_t j = 0; j < 3; ++j) edge(of_t[j], of_t[(j + 1) % 3], lines[0][j], lines[1][j], lines[2][j]);
-  const Masks missed = apart | (no_edge & ~meet);
+  for (std::size_t j = 0; j < 3; ++j) edge(ends_t[j], ends_t[(j + 1) % 3], lines[0][j], lines[1][j], lines[2][j]);
+  const Words missed = apart | (no_edge & ~meet);
   for (std::size_t lane = 0; lane < kWidth; ++lane)
     out[begin + lane] = missed[lane] != 0 ? PairFilter::kApart : meet[lane] != 0 ? PairFilter::kMeet : PairFilter::kUnknown;
 }
