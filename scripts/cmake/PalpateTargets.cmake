@@ -26,7 +26,8 @@ function(palpate_compile_options target)
   target_compile_definitions(${target} PRIVATE GLM_FORCE_EXPLICIT_CTOR GLM_ENABLE_EXPERIMENTAL)
   if(PALPATE_SANITIZE)
     string(REPLACE ";" "," sanitizers "${PALPATE_SANITIZE}")
-    target_compile_options(${target} PRIVATE -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_compile_options(${target} PRIVATE -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)   # GCC bug 105616: std::regex under the address sanitizer
     target_link_options(${target} PRIVATE -fsanitize=${sanitizers})
   endif()
 endfunction()
