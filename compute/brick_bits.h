@@ -80,6 +80,28 @@ class BrickBits {
     return out;
   }
 
+  /// Voxels that are in this or have one that is `step` < 8 further along an axis. Of what comes out slot() says nothing.
+  BrickBits widened(int axis, std::int32_t step) const {
+    BrickBits out;
+    out.size_ = size_;
+    out.block_.resize(block_.size());
+    out.bits_ = {bits_[0], bits_[1]};
+    Int3 b;
+    for (b.z = 0; b.z < size_.z; ++b.z)
+      for (b.y = 0; b.y < size_.y; ++b.y)
+        for (b.x = 0; b.x < size_.x; ++b.x) {
+          Int3 further = b;
+          further[axis] += 1;
+          const std::size_t at = number(b.x, b.y, b.z);
+          const std::uint32_t own = block_[at], next = further[axis] < size_[axis] ? block_[number(further.x, further.y, further.z)] : 0;
+          out.block_[at] = own;   // none or all
+          if (own == 1 || (own == 0 && next == 0)) continue;
+          out.block_[at] = static_cast<std::uint32_t>(out.bits_.size());
+          out.bits_.push_back(united(bits_[own], bits_[next], axis, static_cast<unsigned>(step)));
+        }
+    return out;
+  }
+
   /// Voxels first … last of the grid.
   struct Range {
     std::int32_t first[3], last[3];
@@ -121,6 +143,16 @@ class BrickBits {
   bool at(std::size_t brick, std::uint32_t bit) const { return (bits(brick)[bit >> 6] >> (bit & 63) & 1) != 0; }
 
  private:
+  /// A brick's bits with those `step` further along an axis, where `next` is the next brick.
+  static Block united(const Block& own, const Block& next, int axis, unsigned step) {
+    const std::uint64_t low = 0x0101010101010101u * (0xFFu >> step);   // of a row, those that come from the same brick
+    Block out;
+    for (unsigned z = 0; z < 8; ++z)
+      out[z] = own[z] | (axis == 0   ? (own[z] >> step & low) | (next[z] << (8 - step) & ~low)
+                         : axis == 1 ? own[z] >> 8 * step | next[z] << (64 - 8 * step)
+                                     : z + step < 8 ? own[z + step] : next[z + step - 8]);
+    return out;
+  }
   /// What some planes of a brick have, one upon the other. All planes at once: a loop over several would be mispredicted each time.
   static std::uint64_t within(const Block& own, const Block& planes) {
     using Two = std::uint64_t __attribute__((vector_size(16)));

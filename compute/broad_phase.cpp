@@ -1,6 +1,7 @@
 #include "compute/broad_phase.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "compute/processor.h"
@@ -87,6 +88,7 @@ Result<void> BroadPhase::read_occupancy(VulkanDevice& device, const PartitionBuf
   grid_ = mockup.grid;
   per_voxel_ = 1.0 / grid_.size;
   if (auto r = occupied_.emplace_back().read(device, mockup, BrickBits::Of::kOccupied); !r) return r;
+  cubes_.make(occupied_.front());
   while (std::max({occupied_.back().size().x, occupied_.back().size().y, occupied_.back().size().z}) > kManyBricks) occupied_.push_back(occupied_.back().coarser());
   return {};
 }
@@ -132,7 +134,13 @@ bool BroadPhase::meets(BrickBits::Range voxels) const {
 /// From the whole tool to runs of triangles.
 void BroadPhase::descend(Search& search) {
   tree_->descend(
-      search.voxels, [&](const EightRanges& voxels, std::size_t i) { return meets(voxels.range(i)); },
+      search.voxels,
+      [&](const EightRanges& voxels) {
+        unsigned out = 0;
+        for (unsigned near = cubes_.near(voxels); near != 0; near &= near - 1)
+          if (const int i = std::countr_zero(near); meets(voxels.range(static_cast<std::size_t>(i)))) out |= 1u << i;
+        return out;
+      },
       [&](std::uint32_t run) {
         take_run(search, run);
         return search.lists.full == gpu::kNone;
@@ -144,8 +152,8 @@ void BroadPhase::take_run(Search& search, std::size_t run) {
   const BrickBits& occupied = occupied_.front();
   EightRanges voxels;
   voxels_of(search.voxels, runs_[run], voxels);
-  for (std::size_t i = 0; i < gpu::kRunSize; ++i) {
-    if (voxels.may[i] == 0) continue;
+  for (unsigned near = cubes_.near(voxels); near != 0; near &= near - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(near));
     const auto place = static_cast<std::uint32_t>(run * gpu::kRunSize + i);
     std::uint32_t head = gpu::kFirstOfTriangle;
     NearPairs::Triangle triangle;

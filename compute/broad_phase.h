@@ -8,6 +8,7 @@
 #include "compute/near_lists.h"
 #include "compute/near_pairs.h"
 #include "compute/near_samples.h"
+#include "compute/occupied_cubes.h"
 #include "compute/posed_tool.h"
 #include "compute/prepared_scene.h"
 #include "compute/run_tree.h"
@@ -65,6 +66,7 @@ class BroadPhase {
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;   ///< voxels a step
   std::vector<BrickBits> occupied_;                         ///< voxels that are not V_ext, bricks with such a voxel, bricks of bricks …
+  OccupiedCubes cubes_;
   std::span<const std::array<std::int32_t, 6>> parts_;      ///< SearchTables::parts
 };
 

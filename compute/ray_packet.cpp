@@ -117,7 +117,13 @@ bool RayPacket::find_runs(const LatticePose& pose) {
   runs_.clear();
   bool few = true;
   tree_->descend(
-      turn, [&](const EightRanges& at, std::size_t i) { return holds_rays({at.first[0][i], at.first[1][i]}, {at.last[0][i], at.last[1][i]}); },
+      turn,
+      [&](const EightRanges& at) {
+        unsigned out = 0;
+        for (std::size_t i = 0; i < kEight; ++i)
+          if (at.may[i] != 0 && holds_rays({at.first[0][i], at.first[1][i]}, {at.last[0][i], at.last[1][i]})) out |= 1u << i;
+        return out;
+      },
       [&](std::uint32_t run) {
         few = runs_.size() < most;
         if (few) runs_.push_back(run);

@@ -17,10 +17,10 @@ class RunTree {
   RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order);
   std::span<const std::uint32_t> order() const { return order_; }
 
-  /// Calls take(run) for every run that the turned box of each node above it, and its own, meets the voxels of (voxels_of()) with
-  /// holds(ranges, node of eight); until take() returns false.
-  template <class Holds, class Take>
-  void descend(const VoxelTurn& turn, Holds&& holds, Take&& take) const {
+  /// Calls take(run) for every run of which which(ranges) names each node above it and its own, until take() returns false. which() tells, a bit each, which of
+  /// eight nodes it wants by the voxels that their turned boxes meet (voxels_of()); those that meet none are not among them.
+  template <class Which, class Take>
+  void descend(const VoxelTurn& turn, Which&& which, Take&& take) const {
     struct Open {
       std::uint32_t level, group;
     };
@@ -31,9 +31,8 @@ class RunTree {
     while (count != 0) {
       const Open next = open[--count];
       voxels_of(turn, levels_[next.level][next.group], ranges);
-      for (std::uint32_t i = 0; i < kEight; ++i) {
-        if (ranges.may[i] == 0 || !holds(ranges, i)) continue;
-        const std::uint32_t node = static_cast<std::uint32_t>(kEight) * next.group + i;
+      for (unsigned left = which(ranges); left != 0; left &= left - 1) {
+        const std::uint32_t node = static_cast<std::uint32_t>(kEight) * next.group + static_cast<std::uint32_t>(std::countr_zero(left));
         if (next.level != 0)
           open[count++] = {next.level - 1, node};
         else if (!take(node))

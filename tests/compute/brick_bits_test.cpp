@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <glm/common.hpp>
 #include <random>
 #include <set>
 #include <tuple>
 #include <vector>
+
+#include "compute/occupied_cubes.h"
 
 namespace palpate {
 namespace {
@@ -106,6 +111,45 @@ TEST(BrickBits, TheCoarserLevelHasABitForEachBrickWithAVoxel) {
         const bool any = within && voxels.bits.for_bricks({{8 * x, 8 * y, 8 * z}, {8 * x + 7, 8 * y + 7, 8 * z + 7}}, [](int, int, int) { return true; });
         ASSERT_EQ(coarser.at(coarser.number(x >> 3, y >> 3, z >> 3), static_cast<std::uint32_t>((x & 7) | (y & 7) << 3 | (z & 7) << 6)), any);
       }
+}
+
+/// The answer is that of the smallest cube of 1, 2, 4 or 8 voxels that holds the range, voxel by voxel; beyond the grid there is nothing.
+TEST(OccupiedCubes, AnswerForTheSmallestCubeFromTheFirstVoxelOn) {
+  const Voxels voxels({4, 3, 2}, 5);
+  OccupiedCubes cubes;
+  cubes.make(voxels.bits);
+  const Int3 end = 8 * voxels.bricks;
+  std::mt19937 random(6);
+  std::array<std::size_t, 5> yes{}, no{};   // by cube
+  for (int round = 0; round < 4'000; ++round) {
+    EightRanges ranges{};
+    unsigned expected = 0;
+    for (std::size_t i = 0; i < kEight; ++i) {
+      Int3 first, last;
+      const unsigned most = 1u << random() % 5;
+      for (int k = 0; k < 3; ++k) {
+        first[k] = static_cast<std::int32_t>(random() % static_cast<unsigned>(end[k]));
+        last[k] = std::min(end[k] - 1, first[k] + static_cast<std::int32_t>(random() % most));
+        ranges.first[k][i] = first[k];
+        ranges.last[k][i] = last[k];
+      }
+      ranges.may[i] = random() % 8 != 0 ? -1 : 0;
+      const Int3 beyond = last - first;
+      const int longest = std::max({beyond.x, beyond.y, beyond.z});
+      const std::size_t level = longest == 0 ? 0 : longest < 2 ? 1 : longest < 4 ? 2 : longest < 8 ? 3 : 4;
+      bool any = level == 4;
+      const Int3 to = glm::min(first + (1 << level), end);
+      for (Int3 v = first; v.z < to.z; ++v.z)
+        for (v.y = first.y; v.y < to.y; ++v.y)
+          for (v.x = first.x; v.x < to.x; ++v.x) any = any || voxels.at(v);
+      if (ranges.may[i] == 0) continue;
+      ++(any ? yes : no)[level];
+      expected |= any ? 1u << i : 0u;
+    }
+    ASSERT_EQ(cubes.near(ranges), expected) << "round " << round;
+  }
+  for (std::size_t level = 0; level < 4; ++level) EXPECT_GT(yes[level], 300u) << level;
+  for (std::size_t level = 0; level < 3; ++level) EXPECT_GT(no[level], 300u) << level;   // in cubes of 8 there is nearly always something
 }
 
 }  // namespace
