@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// A first look at small boxes: for cubes of 1, 2, 4 and 8 voxels, from every voxel of the mock-up's grid on, whether one of theirs is not V_ext. Most boxes near a mock-up
-/// meet nothing; one bit says so, where going through a box's voxels takes loops whose ends can't be foreseen.
+/// A first look at small boxes: for cubes of 1, 2, 4 and 8 voxels, from every voxel of the mock-up's grid on, whether one of theirs is not V_ext. Most
+/// boxes near a mock-up meet nothing; one bit says so, where going through a box's voxels takes loops whose ends can't be foreseen.
 class OccupiedCubes {
  public:
   /// Allocates: what the bricks near occupied voxels take, four times.
@@ -21,7 +21,8 @@ class OccupiedCubes {
     }
   }
 
-  /// Of eight ranges those that may have an occupied voxel, a bit each: whose smallest such cube from their first voxel on has one, or which fit into none.
+  /// Of eight ranges those that may have an occupied voxel, a bit each: whose smallest such cube from their first voxel on has one, or which fit into
+  /// none.
   unsigned near(const EightRanges& voxels) const {
     std::array<std::uint32_t, kEight> level, brick, bit, large;
     const Int3& size = levels_[0].size();

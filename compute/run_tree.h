@@ -17,8 +17,8 @@ class RunTree {
   RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order);
   std::span<const std::uint32_t> order() const { return order_; }
 
-  /// Calls take(run) for every run of which which(ranges) names each node above it and its own, until take() returns false. which() tells, a bit each, which of
-  /// eight nodes it wants by the voxels that their turned boxes meet (voxels_of()); those that meet none are not among them.
+  /// Calls take(run) for every run that which(ranges) names with each node above it, until take() returns false. which() tells, a bit each, which of
+  /// eight nodes it wants, by the voxels that their turned boxes meet (voxels_of()); what meets none must not be among them.
   template <class Which, class Take>
   void descend(const VoxelTurn& turn, Which&& which, Take&& take) const {
     struct Open {
