@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <glm/common.hpp>
+#include <vector>
 
 #include "compute/brick_bits.h"
 #include "compute/turned_boxes.h"
@@ -12,12 +14,32 @@ namespace palpate {
 /// boxes near a mock-up meet nothing; one bit says so, where going through a box's voxels takes loops whose ends can't be foreseen.
 class OccupiedCubes {
  public:
-  /// Allocates: what the bricks near occupied voxels take, four times.
+  /// Allocates: 256 bytes for each brick that has an occupied voxel and others, or is next before one with an occupied voxel; four for all others.
   void make(const BrickBits& occupied) {
-    levels_[0] = occupied;
-    for (std::size_t level = 1; level < kLevels; ++level) {
-      levels_[level] = levels_[level - 1];
-      for (int axis = 0; axis < 3; ++axis) levels_[level] = levels_[level].widened(axis, std::int32_t{1} << (level - 1));
+    size_ = occupied.size();
+    place_.assign(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z), 0);
+    cubes_.assign(2, Cubes{});
+    for (BrickBits::Block& level : cubes_[kAll]) level.fill(~std::uint64_t{0});
+    Int3 b;   // cubes from a brick's voxels on reach into the next one along each axis
+    for (b.z = 0; b.z < size_.z; ++b.z)
+      for (b.y = 0; b.y < size_.y; ++b.y)
+        for (b.x = 0; b.x < size_.x; ++b.x) {
+          std::uint32_t& place = place_[occupied.number(b.x, b.y, b.z)];
+          if (occupied.slot(occupied.number(b.x, b.y, b.z)) == gpu::kBrickInternal) {
+            place = kAll;
+            continue;
+          }
+          const Int3 last = glm::min(8 * b + 15, 8 * size_ - 1);
+          if (!occupied.for_bricks({{8 * b.x, 8 * b.y, 8 * b.z}, {last.x, last.y, last.z}}, [](int, int, int) { return true; })) continue;
+          place = static_cast<std::uint32_t>(cubes_.size());
+          cubes_.emplace_back();
+        }
+    BrickBits grown = occupied;
+    for (std::size_t level = 0; level < kLevels; ++level) {
+      if (level > 0)
+        for (int axis = 0; axis < 3; ++axis) grown = grown.widened(axis, std::int32_t{1} << (level - 1));
+      for (std::size_t brick = 0; brick < place_.size(); ++brick)
+        if (place_[brick] > kAll) cubes_[place_[brick]][level] = grown.bits(brick);
     }
   }
 
@@ -25,26 +47,31 @@ class OccupiedCubes {
   /// none.
   unsigned near(const EightRanges& voxels) const {
     std::array<std::uint32_t, kEight> level, brick, bit, large;
-    const Int3& size = levels_[0].size();
     for (std::size_t i = 0; i < kEight; ++i) {
       const std::int32_t x = voxels.first[0][i], y = voxels.first[1][i], z = voxels.first[2][i];
       const std::int32_t beyond = std::max({voxels.last[0][i] - x, voxels.last[1][i] - y, voxels.last[2][i] - z});
       level[i] = static_cast<std::uint32_t>((beyond > 0) + (beyond > 1) + (beyond > 3));
       large[i] = beyond > 7;
-      brick[i] = static_cast<std::uint32_t>((x >> 3) + size.x * ((y >> 3) + size.y * (z >> 3)));
+      brick[i] = static_cast<std::uint32_t>((x >> 3) + size_.x * ((y >> 3) + size_.y * (z >> 3)));
       bit[i] = static_cast<std::uint32_t>((x & 7) | (y & 7) << 3 | (z & 7) << 6);
     }
     unsigned out = 0;
     for (std::size_t i = 0; i < kEight; ++i) {
+      const std::uint64_t plane = cubes_[place_[brick[i]]][level[i]][bit[i] >> 6];
       const auto may = static_cast<unsigned>(voxels.may[i]) & 1;
-      out |= ((levels_[level[i]].at(brick[i], bit[i]) ? 1u : 0u) | large[i]) << i & may << i;
+      out |= ((static_cast<unsigned>(plane >> (bit[i] & 63)) & 1) | large[i]) << i & may << i;
     }
     return out;
   }
 
  private:
   static constexpr std::size_t kLevels = 4;
-  std::array<BrickBits, kLevels> levels_;
+  using Cubes = std::array<BrickBits::Block, kLevels>;   // of a brick: a bit for each voxel that such a cube begins at
+  static constexpr std::uint32_t kAll = 1;               // a place: all voxels are occupied; 0: none, nor in the next bricks
+
+  Int3 size_{0};                       ///< bricks
+  std::vector<std::uint32_t> place_;   ///< by brick, in `cubes_`
+  std::vector<Cubes> cubes_;
 };
 
 }  // namespace palpate
