@@ -80,7 +80,7 @@ class BrickBits {
     return out;
   }
 
-  /// Voxels that are in this or have one that is `step` < 8 further along an axis. Of what comes out slot() says nothing.
+  /// Voxels that are in this or have one that is `step` voxels further along an axis, 0 < step < 8. Of what comes out slot() says nothing.
   BrickBits widened(int axis, std::int32_t step) const {
     BrickBits out;
     out.size_ = size_;

@@ -14,7 +14,8 @@ namespace palpate {
 /// boxes near a mock-up meet nothing; one bit says so, where going through a box's voxels takes loops whose ends can't be foreseen.
 class OccupiedCubes {
  public:
-  /// Allocates: 256 bytes for each brick that has an occupied voxel and others, or is next before one with an occupied voxel; four for all others.
+  /// `occupied`: voxels that are not V_ext. Allocates four bytes a brick, and 256 for each that is not V_int but has an occupied voxel, or has one in the
+  /// next bricks along the axes.
   void make(const BrickBits& occupied) {
     size_ = occupied.size();
     place_.assign(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z), 0);
@@ -44,7 +45,7 @@ class OccupiedCubes {
   }
 
   /// Of eight ranges those that may have an occupied voxel, a bit each: whose smallest such cube from their first voxel on has one, or which fit into
-  /// none.
+  /// none. `voxels` as voxels_of() leaves them: within the grid, also where they may not.
   unsigned near(const EightRanges& voxels) const {
     std::array<std::uint32_t, kEight> level, brick, bit, large;
     for (std::size_t i = 0; i < kEight; ++i) {

@@ -18,10 +18,13 @@ static void load(const Coordinates& from, std::size_t corner, std::size_t lane, 
 static void between(const Whole& from, const Whole& to, Whole& out) {
   for (std::size_t k = 0; k < 3; ++k) out.at[k] = to.at[k] - from.at[k];
 }
-// Rounded to 24 bits; `most` becomes the largest size of a coordinate, if it is larger.
-static void round(const Whole& p, Point& out, Floats& most) {
+// To 24 bits.
+static void round(const Whole& p, Point& out) {
   out = {__builtin_convertvector(p.at[0], Floats), __builtin_convertvector(p.at[1], Floats), __builtin_convertvector(p.at[2], Floats)};
-  for (const Floats& v : {out.x, out.y, out.z}) {
+}
+// `most` becomes the largest size of a coordinate, if it is larger.
+static void widen(Floats& most, const Point& p) {
+  for (const Floats& v : {p.x, p.y, p.z}) {
     const Floats size = v < 0 ? -v : v;
     most = most < size ? size : most;
   }
@@ -53,21 +56,25 @@ static void side(const Floats& v, const Floats& error, Side& out) {
 // Second orders are below 2^-18 of that. A product that is added without being rounded (fused) only takes errors away.
 static void judge_from(const Coordinates& s, const Coordinates& t, std::size_t begin, PairFilter::Verdict* out) {
   Point a[3], e[3], b1, b2, f;
-  Floats most_a{}, most_b{}, most_e{}, most_f{};
+  Floats most_a{}, most_b{}, most_e{};
   {
     Whole whole[3], way, t1, t2;
     for (std::size_t i = 0; i < 3; ++i) load(s, i, begin, whole[i]);
     for (std::size_t i = 0; i < 3; ++i) {
       between(whole[i], whole[(i + 1) % 3], way);
-      round(whole[i], a[i], most_a);
-      round(way, e[i], most_e);
+      round(whole[i], a[i]);
+      round(way, e[i]);
+      widen(most_a, a[i]);
+      widen(most_e, e[i]);
     }
     load(t, 0, begin, t1);
     load(t, 1, begin, t2);
     between(t1, t2, way);
-    round(t1, b1, most_b);
-    round(t2, b2, most_b);
-    round(way, f, most_f);
+    round(t1, b1);
+    round(t2, b2);
+    round(way, f);
+    widen(most_b, b1);
+    widen(most_b, b2);
   }
   const Floats reach = (most_a + most_b) * kBound, error_s = most_b * most_b * reach, error_t = most_e * most_e * reach, error_l = most_b * most_e * reach;
 

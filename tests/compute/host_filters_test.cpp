@@ -66,7 +66,7 @@ TEST(PairFilter, NeverSaysWhatIsNotSo) {
   EXPECT_GT(count[PairFilter::kUnknown], 2'000u);
 }
 
-TEST(PairFilter, DecidesAllOfGeneralPosition) {
+TEST(PairFilter, DecidesNearlyAllOfGeneralPosition) {
   LatticePoints points(2);
   std::vector<Pair> pairs;
   for (int i = 0; i < 4'000; ++i) {
@@ -76,8 +76,8 @@ TEST(PairFilter, DecidesAllOfGeneralPosition) {
     pairs.push_back({c[0], c[1]});
   }
   const auto verdicts = judge(pairs);
-  // Fifteen signs a pair, each unknown within 2^-17 of what it can be, or a few times that where triangles are thin.
-  EXPECT_LE(std::count(verdicts.begin(), verdicts.end(), PairFilter::kUnknown), 40);
+  // Fifteen signs a pair are 60,000, each unknown in some 2^-16 of its range: about one, and not every sign decides. Triangles that are thin by chance: a few more.
+  EXPECT_LE(std::count(verdicts.begin(), verdicts.end(), PairFilter::kUnknown), 4);
 }
 
 /// A triangle, and itself moved off its plane so that each of its corners has `low` + p (p + 1) `high` as the sixfold volume with it, p = 2^20.
