@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "cpu_ref/triangle_triangle.h"
-#include "model/smooth_angle.h"
 
 namespace palpate::cpu_ref {
 namespace {
@@ -62,54 +60,6 @@ std::vector<std::uint32_t> components(const Links& links, bool smooth_only) {
   return component;
 }
 
-/// Whether two triangles that share no edge touch in more than one common corner.
-bool touch_along_a_seam(const LatticeMesh& mesh, std::uint32_t s, std::uint32_t t) {
-  const auto& of_s = mesh.triangles[s];
-  const auto& of_t = mesh.triangles[t];
-  int shared = 0, corner_s = 0, corner_t = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      if (of_s[static_cast<std::size_t>(i)] == of_t[static_cast<std::size_t>(j)]) {
-        ++shared;
-        corner_s = i;
-        corner_t = j;
-      }
-  const Triangle triangle_s = triangle_of(mesh, s), triangle_t = triangle_of(mesh, t);
-  if (shared == 0) return triangles_intersect(triangle_s, triangle_t);
-  if (shared > 1) return false;   // an edge: joined already
-  return segment_meets_triangle(triangle_s[(corner_s + 1) % 3], triangle_s[(corner_s + 2) % 3], triangle_t) ||
-         segment_meets_triangle(triangle_t[(corner_t + 1) % 3], triangle_t[(corner_t + 2) % 3], triangle_s);
-}
-
-/// Adds a smooth link for every seam between triangles that are not in one zone already.
-void join_seams(const Frame& frame, Links& links) {
-  const LatticeMesh& mesh = frame.mockup();
-  const std::vector<std::uint32_t> zone = components(links, true);
-  std::vector<Box> boxes;
-  Box all;
-  for (const std::uint32_t s : frame.contact_static) {
-    boxes.push_back(triangle_of(mesh, s).box());
-    all.include(boxes.back().min);
-    all.include(boxes.back().max);
-  }
-  // Sweep along the longest axis: only boxes that overlap there are compared.
-  const Long3 extent = difference(all.max, all.min);
-  const int k = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-  std::vector<std::uint32_t> order(boxes.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return boxes[a].min[k] < boxes[b].min[k]; });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].min[k] <= boxes[order[i]].max[k]; ++j) {
-      const std::uint32_t a = order[i], b = order[j];
-      if (zone[a] == zone[b] || !boxes[a].meets(boxes[b])) continue;
-      const std::uint32_t s = frame.contact_static[a], t = frame.contact_static[b];
-      if (!touch_along_a_seam(mesh, s, t)) continue;
-      if (!smooth(triangle_of(mesh, s).normal, triangle_of(mesh, t).normal, frame.scene.geometry->smooth_angle)) continue;
-      links.of[a].push_back({b, true});
-      links.of[b].push_back({a, true});
-    }
-}
-
 /// |2g − c2|² with g the rounded centroid. 2g and c2 within 2^29: the square within 3 · 2^60.
 std::int64_t doubled_distance2(const Int3& doubled_centre, const Int3& g) {
   const Long3 away = Long3(g) * std::int64_t{2} - Long3(doubled_centre);
@@ -142,9 +92,8 @@ void assign_mobile(const Frame& frame, std::vector<Area>& areas) {
 
 }  // namespace
 
-std::vector<Area> find_areas(const Frame& frame, const Contacts& sets) {
-  Links links = shared_edges(frame);
-  if (frame.scene.refined()) join_seams(frame, links);
+std::vector<Area> find_areas(const Frame& frame) {
+  const Links links = shared_edges(frame);
   const std::vector<std::uint32_t> area_of = components(links, false), zone_of = components(links, true);
 
   std::vector<Area> areas;
@@ -159,7 +108,6 @@ std::vector<Area> find_areas(const Frame& frame, const Contacts& sets) {
     Area& area = areas[area_of[i]];
     area.out.static_ids.push_back(s);
     for (int k = 0; k < 3; ++k) area.box.include(frame.mockup().corner(s, k));
-    if (std::binary_search(sets.cst.begin(), sets.cst.end(), s)) area.cst.push_back(s);
     const std::uint32_t zone = zone_of[i];
     if (!zone_seen[zone]) {
       zone_seen[zone] = true;
@@ -168,7 +116,6 @@ std::vector<Area> find_areas(const Frame& frame, const Contacts& sets) {
     }
     area.out.zones[zone_place[zone]].push_back(s);
   }
-  for (const Sample& sample : frame.counting) areas[area_of[place(frame.contact_static, sample.triangle)]].counting.push_back(sample);
   assign_mobile(frame, areas);
   return areas;
 }

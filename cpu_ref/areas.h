@@ -3,8 +3,8 @@
 
 namespace palpate::cpu_ref {
 
-/// The areas of C_s with their zones, mobile triangles, boxes and counting samples, ascending id (EXACTNESS section 5).
+/// `paper`: the areas of C_s with their zones, mobile triangles and boxes, ascending id (EXACTNESS section 5).
 /// May return more than kMaxAreas.
-std::vector<Area> find_areas(const Frame& frame, const Contacts& sets);
+std::vector<Area> find_areas(const Frame& frame);
 
 }  // namespace palpate::cpu_ref

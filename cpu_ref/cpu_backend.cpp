@@ -5,10 +5,11 @@
 
 #include "cpu_ref/areas.h"
 #include "cpu_ref/direction.h"
+#include "cpu_ref/field.h"
 #include "cpu_ref/frame.h"
 #include "cpu_ref/heights.h"
 #include "cpu_ref/sets.h"
-#include "cpu_ref/special_cases.h"
+#include "model/contact_areas.h"
 
 namespace palpate {
 namespace {
@@ -55,6 +56,12 @@ class CpuBackend final : public CollisionBackend {
       for (std::uint32_t s = 0; s < geometry.mockup.triangles.size(); ++s)
         boxes.push_back(geometry.mockup.collapsed(s) ? Box() : triangle_of(geometry.mockup, s).box());
       scene->mockup_tree.build(std::move(boxes));
+      if (scene->refined()) {
+        boxes.clear();
+        for (std::uint32_t m = 0; m < geometry.tool.triangles.size(); ++m)
+          boxes.push_back(geometry.tool.collapsed(m) ? Box() : triangle_of(geometry.tool, m).box());
+        scene->tool_rest_tree.build(std::move(boxes));
+      }
       scene_ = std::move(scene);
       return {};
     } catch (const std::exception& failure) {   // out of memory, or Embree
@@ -62,12 +69,12 @@ class CpuBackend final : public CollisionBackend {
     }
   }
 
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+  Result<void> query(const LatticePose& pose, Contacts& out) override {
     out = Contacts();
     pairs_.clear();
     if (!scene_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
     try {
-      if (!pose.beyond_lattice) answer(pose, held, out);
+      if (!pose.beyond_lattice) answer(pose, out);
       leave_out(out);
       return {};
     } catch (const std::exception& failure) {
@@ -99,9 +106,9 @@ class CpuBackend final : public CollisionBackend {
   }
 
  private:
-  void answer(const LatticePose& pose, const Held* held, Contacts& out) {
+  void answer(const LatticePose& pose, Contacts& out) {
     StageClock clock(out);
-    Frame frame{*scene_, pose, held, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    Frame frame{*scene_, pose, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     tool_tree_.build(transform_tool(frame));
     clock.done("transform");
     find_pairs(frame, out);
@@ -113,8 +120,15 @@ class CpuBackend final : public CollisionBackend {
     clock.done("est");
     if (scene_->tool_open()) out.flags |= kFlagToolOpen;
     if (!out.contact) return;
+    if (scene_->refined()) {
+      sum_field(frame, out);
+      clock.done("field");
+      if (plan_.telemetry) gather_areas(*scene_->geometry, pose, out);
+      clock.done("areas");
+      return;
+    }
 
-    std::vector<Area> areas = find_areas(frame, out);
+    std::vector<Area> areas = find_areas(frame);
     clock.done("areas");
     if (areas.size() > kMaxAreas) {
       out.truncated = true;
@@ -123,16 +137,10 @@ class CpuBackend final : public CollisionBackend {
     }
     for (Area& area : areas) find_direction(frame, area);
     clock.done("direction");
-    for (std::size_t a = 0; a < areas.size(); ++a) {
-      measure_heights(frame, areas[a]);
-      if (scene_->refined()) {
-        measure_needle(frame, areas[a]);
-        find_pierced(frame, areas, a);
-      } else {
-        sum_voxels(frame, areas[a]);
-      }
+    for (Area& area : areas) {
+      measure_heights(frame, area);
+      sum_voxels(frame, area);
     }
-    if (scene_->refined()) measure_swallowed(frame, out);
     clock.done("rays");
     for (Area& area : areas) out.areas.push_back(std::move(area.out));
   }
@@ -141,6 +149,7 @@ class CpuBackend final : public CollisionBackend {
   void leave_out(Contacts& out) const {
     out.contact_points = plan_.contact_point;
     out.lists = plan_.telemetry;
+    if (!out.lists) out.carriers.clear();
     if (!out.lists)
       for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) ids->clear();
     for (ContactArea& area : out.areas) {
@@ -149,8 +158,6 @@ class CpuBackend final : public CollisionBackend {
         area.mobile_ids.clear();
       }
       if (out.contact_points) continue;
-      area.height_sum = 0;
-      area.moment = {};
       area.voxel_sum = {};
       area.voxel_count = 0;
     }

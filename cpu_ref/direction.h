@@ -3,14 +3,11 @@
 
 namespace palpate::cpu_ref {
 
-/// n_c of one area: direction, its flags and the sheet sign (EXACTNESS section 6). The area is not truncated.
+/// `paper`: n_c of one area and its flags (EXACTNESS section 6).
 void find_direction(const Frame& frame, Area& area);
 
 /// Scales S ≠ 0 until its largest component lies in [2^28, 2^29).
 Int3 normalise(const Long3& sum);
-
-/// Smallest angle bound of section 6: an eighth of the summed weights is left.
-bool usable(const Long3& sum, std::int64_t weight);
 
 /// A tool triangle's n̂ turned into the world, Q30.
 Int3 turned(const LatticePose& pose, const Int3& unit_normal_q30);

@@ -19,9 +19,10 @@ struct Prepared {
   Partition tool;                 ///< `refined` only
   bool tool_has_inside = true;    ///< closed, or its partition has a V_int voxel
   BoxTree mockup_tree;            ///< boxes of the mock-up's triangles
+  BoxTree tool_rest_tree;         ///< `refined`: boxes of the tool's triangles in its own frame
 
   bool refined() const { return profile == Profile::kRefined; }
-  /// Heights of a tool without inside are the nearest hits (EXACTNESS section 4).
+  /// No inside was found: its samples push as a sheet's do (EXACTNESS section 8).
   bool tool_open() const { return refined() && !tool_has_inside; }
 };
 
@@ -35,7 +36,6 @@ struct Sample {
 struct Frame {
   const Prepared& scene;
   const LatticePose& pose;
-  const Held* held;                               ///< may be null
   const BoxTree& tool_tree;                       ///< boxes of `tool`
 
   std::vector<Int3> vertices;                     ///< of the tool, transformed
@@ -44,30 +44,19 @@ struct Frame {
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;   ///< static, mobile
   std::vector<std::uint64_t> touched_boundary, touched_internal;   ///< V_bnd and V_int voxels a mobile triangle touches
-  std::vector<Sample> counting;                   ///< `refined`: counting samples, by triangle
+  std::vector<Sample> counting;                   ///< `refined`: samples inside the tool, by triangle
   std::vector<std::uint32_t> contact_static, contact_mobile;       ///< C_s, C_m
 
   const LatticeMesh& mockup() const { return scene.geometry->mockup; }
   const LatticeMesh& tool_mesh() const { return scene.geometry->tool; }
 };
 
-/// A ray from a surface point along −D and the height it found.
-struct MeasuredRay {
-  Int3 from{0};
-  std::uint32_t height = 0;
-};
-
-/// One area on its way to `out`.
+/// One area of `paper` on its way to `out`.
 struct Area {
   ContactArea out;
   Box box;                                        ///< of its triangles' corners
-  std::vector<std::uint32_t> cst;                 ///< its CST, ascending
-  std::vector<Sample> counting;                   ///< `refined`
-  std::vector<MeasuredRay> rays;                  ///< of its counting samples, or of its needle samples on pairs
 
   Int3 doubled_centre() const { return box.min + box.max; }
-  /// Neither a crossing nor a sample inside: it gives nothing (`refined`).
-  bool proximity() const { return cst.empty() && counting.empty(); }
 };
 
 }  // namespace palpate::cpu_ref

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "cpu_ref/depth.h"
 #include "cpu_ref/ray.h"
 #include "cpu_ref/samples.h"
 #include "cpu_ref/touched_voxels.h"
@@ -29,7 +30,8 @@ std::vector<std::uint32_t> all_of(std::initializer_list<const std::vector<std::u
   return result;
 }
 
-/// World lattice point to the tool's frame: ((Rᵀ (p − t) + 2^29) >> 30). Components within 3 · 2^30 · 2^29.
+}  // namespace
+
 Int3 to_tool(const LatticePose& pose, const Int3& point) {
   const Long3 from = difference(point, pose.translation);
   Int3 result;
@@ -39,22 +41,6 @@ Int3 to_tool(const LatticePose& pose, const Int3& point) {
   }
   return result;
 }
-
-/// Samples of the C_s triangles in V_bnd voxels that the tool touches: what counts when the tool has no inside.
-void find_touched_samples(Frame& frame) {
-  // A voxel that the tool touches reaches at most its own size beyond the tool.
-  const Int3 margin(frame.scene.geometry->mockup_grid.size);
-  const Box near{frame.tool_box.min - margin, frame.tool_box.max + margin};
-  for (const std::uint32_t s : frame.contact_static)
-    for_each_sample(frame.mockup(), s, frame.scene.geometry->sample_spacing, near,
-                    [&](const Int3& point) {
-                      const Int3 voxel = frame.scene.mockup.holding(point);
-                      if (frame.scene.mockup.in_grid(voxel) && has(frame.touched_boundary, frame.scene.mockup.number(voxel)))
-                        frame.counting.push_back({s, point});
-                    });
-}
-
-}  // namespace
 
 std::vector<Box> transform_tool(Frame& frame) {
   const LatticeMesh& mesh = frame.tool_mesh();
@@ -125,8 +111,10 @@ void find_voxel_sets(Frame& frame, Contacts& out) {
 }
 
 bool inside_tool(const Frame& frame, const Int3& point) {
-  const VoxelClass voxel_class = frame.scene.tool.class_of(to_tool(frame.pose, point));
+  const Int3 own = to_tool(frame.pose, point);
+  const VoxelClass voxel_class = frame.scene.tool.class_of(own);
   if (voxel_class != VoxelClass::kBoundary) return voxel_class == VoxelClass::kInternal;
+  if (!frame.tool_mesh().closed) return inside_by_walks(frame.tool_mesh(), frame.scene.tool_rest_tree, frame.scene.tool, own);
   // The two frames round differently near the surface: the transformed mesh itself decides.
   std::vector<std::uint32_t> candidates;
   const Int3 along_x(1, 0, 0);
@@ -158,7 +146,6 @@ void find_samples(Frame& frame, Contacts& out) {
   }
   frame.contact_static = all_of({&out.cst, &out.bst, &out.est});
   frame.contact_mobile = all_of({&out.cmt, &out.bmt, &out.imt});
-  if (frame.scene.tool_open()) find_touched_samples(frame);
   out.contact = !out.cst.empty() || !out.imt.empty() || !out.est.empty();
 }
 

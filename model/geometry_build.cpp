@@ -214,6 +214,10 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
   const Result<std::int32_t> spacing = choose_sample_spacing(*size, out.lattice.step_m, settings.sample_spacing_m);
   if (!spacing) return spacing.error();
   out.sample_spacing = *spacing;
+  const Int3 extent = out.tool.box_max - out.tool.box_min;
+  const double side = out.lattice.step_m * std::max({extent.x, extent.y, extent.z});
+  out.reference_area_m2 = side * side / 64;
+  out.tool_gyration_m = side / 3;
   return out;
 }
 

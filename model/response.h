@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/contact_plane.h"
 #include "model/contacts.h"
 #include "model/plan.h"
 #include "model/pose.h"
@@ -14,32 +15,27 @@ namespace palpate {
 struct AreaResponse {
   std::uint32_t id = 0;
   Vec3 normal{0};            ///< n_c, unit, out of the mock-up; 0 if there is no direction
-  double depth = 0;          ///< d, m, ≥ 0; of the area that gives force for a pierced plate: the smallest of its group
-  double max_depth = 0;      ///< largest height, m
-  double slope = 1;          ///< ∂d/∂h: how d changes as the tool goes deeper along n_c; may leave [0, 1] where samples come in
+  double depth = 0;          ///< d, m, ≥ 0: the mean of what its samples find
+  double max_depth = 0;      ///< the largest, m
+  double slope = 1;          ///< `paper`: ∂d/∂h, how d changes as the tool goes deeper along n_c
   Vec3 point{0};             ///< cp, m; gc where the plan leaves it out
-  Vec3 force{0};             ///< K d n_c, N; 0 for an area silenced by piercing
-  Vec3 torque{0};            ///< (cp − gc) × F, N·m
+  Vec3 force{0};             ///< `paper`: K d n_c, N. `refined`: what the mock-up's own samples of the area say, K (area / A_ref) d n_c where it is flat
+  Vec3 torque{0};            ///< about gc, N·m
   std::uint32_t flags = 0;   ///< ContactFlag bits
-  bool silent = false;       ///< gives no force because another area of the same pierced plate does
 };
 
 struct ContactResponse {
   Vec3 gc{0};                ///< centre of mass of the tool at this pose, world, m
-  Wrench wrench;             ///< sum over areas
+  Wrench wrench;             ///< `paper`: sum over areas. `refined`: of the pressure field at this pose, before any coupling
   std::uint32_t flags = 0;
   bool contact = false;
   bool contact_points = true;   ///< as Contacts::contact_points; false: no cp, and all torques are 0
-  std::vector<AreaResponse> areas;   ///< as Contacts::areas; a swallowed tool gives one area with id 0xFFFFFFFF
+  std::vector<AreaResponse> areas;     ///< as Contacts::areas
+  std::vector<ContactPlane> planes;    ///< `refined`: the field for the control law (field_planes)
 };
 
-/// Turns integer sums into d, n_c, cp, F, T. One function for both back ends: equal sums give equal bits.
-/// `stiffness` K in N/m, finite and ≥ 0. `held`: what query() was given, so that a pierced plate keeps its side; may be null.
-/// A truncated frame gives zero force. Writes `out` whole, reusing its memory.
-void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeometry& geometry, Profile profile,
-             double stiffness, ContactResponse& out, const Held* held = nullptr);
-
-/// What the next frame may hold on to.
-void remember(const Contacts& contacts, const ContactResponse& response, Held& held);
+/// Turns integer sums into d, n_c, cp, F, T. One function for all back ends: equal sums give equal bits.
+/// `stiffness` K in N/m, finite and ≥ 0. A truncated frame gives zero force. Writes `out` whole, reusing its memory.
+void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeometry& geometry, Profile profile, double stiffness, ContactResponse& out);
 
 }  // namespace palpate

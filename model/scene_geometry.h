@@ -22,6 +22,8 @@ struct SceneGeometry {
   VoxelGrid mockup_grid;
   VoxelGrid tool_grid;                ///< in the tool's lattice frame, same voxel size
   std::int32_t sample_spacing = 0;    ///< steps, ≥ 1, ≥ voxel size / 64
+  double reference_area_m2 = 0;       ///< A_ref: a flat contact of this area is as stiff as K, m²
+  double tool_gyration_m = 0;         ///< ρ: radius of gyration of the tool's surface about gc, m
   SmoothAngle smooth_angle;
   MeshReport mockup_report, tool_report;
 };

@@ -16,8 +16,8 @@ void clear(Contacts& contacts) {
   for (auto* list : {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est}) list->clear();
   contacts.areas.clear();
   contacts.flags = 0;
-  contacts.swallowed_direction = Int3(0);
-  contacts.swallowed_height = 0;
+  contacts.field = {};
+  contacts.carriers.clear();
   contacts.times.clear();
 }
 
@@ -26,14 +26,13 @@ void clear(Contacts& contacts) {
 CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques, PlanSwitch* plans)
     : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques) {}
 
-/// Goes over to another plan, if one is ready. What is held names triangles, which no plan changes; but another profile begins anew.
+/// Goes over to another plan, if one is ready.
 void CollisionFrame::take_plan() noexcept {
   const PlanTarget* next = plans_ ? plans_->take(backend_) : nullptr;
   if (!next) return;
   ++plan_changes_;
   if (next->plan.profile == profile_ && next->torques == torques_) return;
   ++felt_changes_;
-  if (next->plan.profile != profile_) held_ = {};
   profile_ = next->plan.profile;
   torques_ = next->torques;
 }
@@ -58,11 +57,10 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
 
   if (slot.lattice_pose.beyond_lattice) {
     clear(slot.contacts);
-  } else if (auto answered = backend_->query(slot.lattice_pose, &held_, slot.contacts); !answered) {
+  } else if (auto answered = backend_->query(slot.lattice_pose, slot.contacts); !answered) {
     return answered;
   }
-  respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response, &held_);
-  remember(slot.contacts, slot.response, held_);
+  respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response);
 
   result = {};
   result.tick = slot.sample.tick;

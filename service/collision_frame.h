@@ -31,7 +31,7 @@ struct FrameSlot {
   }
 };
 
-/// Answers one pose after the other: query, respond, remember what is held, and what the force law needs of it.
+/// Answers one pose after the other: query, respond, and what the force law needs of it.
 /// Used by one thread at a time. Allocates only as the back end and growing lists do.
 class CollisionFrame {
  public:
@@ -62,7 +62,6 @@ class CollisionFrame {
   Profile profile_;
   double stiffness_;
   bool torques_;
-  Held held_;
   Histogram frame_ns_;
   std::uint64_t plan_changes_ = 0;
   std::uint32_t felt_changes_ = 0;

@@ -22,10 +22,20 @@ ContactPlane plane_of(const AreaResponse& area, const Vec3& gc, double stiffness
 
 }  // namespace
 
+void fill_planes(const ContactResponse& response, PlaneSet& out) {
+  out.plane_count = 0;
+  for (const ContactPlane& plane : response.planes) add_plane(out, plane);
+}
+
 void fill_law_result(const ContactResponse& response, double stiffness, LawResult& out) {
   out.wrench = response.wrench;
   out.contact = response.contact;
   out.plane_count = 0;
+  if (!response.planes.empty()) {
+    fill_planes(response, out);
+    out.areas = static_cast<std::uint32_t>(response.areas.size());
+    return;
+  }
 
   // Areas that push, by their position; a swallowed tool adds one to kMaxAreas.
   std::array<const AreaResponse*, kMaxAreas + 1> pushing{};

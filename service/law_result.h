@@ -15,6 +15,9 @@ struct LawResult : PlaneSet {
   std::uint32_t areas = 0;            ///< areas with a force, before the merge below
 };
 
+/// The planes of `refined` (ContactResponse::planes) as a set of fixed size, but for its pose: beyond kMaxLawPlanes, those most alike are made one.
+void fill_planes(const ContactResponse& response, PlaneSet& out);
+
 /// Fills everything but tick and pose. `stiffness` K in N/m.
 /// κ = K·∂d/∂h, within [K/4, K]: AreaResponse::slope, the exact derivative of the sums that d is made of, for with results c ticks old a κ of 0.95 times
 /// the contact's own stiffness loses most of the stable K.

@@ -42,14 +42,21 @@ ContactPlane merged(const ContactPlane& a, const ContactPlane& b) {
   return sum;
 }
 
-void add(PlaneSet& into, const ContactPlane& plane) {
+/// The plane of a set most like another, and how unlike it is.
+std::uint32_t most_alike(const PlaneSet& set, const ContactPlane& plane, double& least) {
   std::uint32_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = 0; i < into.plane_count; ++i) {
-    const double turn = into.planes[i].normal.x - plane.normal.x;
+  least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < set.plane_count; ++i) {
+    const double turn = set.planes[i].normal.x - plane.normal.x;
     if (turn * turn >= least) continue;   // a part of it is too much already
-    if (const double unlike = unlikeness(into.planes[i], plane); unlike < least) least = unlike, nearest = i;
+    if (const double unlike = unlikeness(set.planes[i], plane); unlike < least) least = unlike, nearest = i;
   }
+  return nearest;
+}
+
+void add(PlaneSet& into, const ContactPlane& plane) {
+  double least = 0;
+  const std::uint32_t nearest = most_alike(into, plane, least);
   if (into.plane_count > 0 && (least < kAlike || into.plane_count == kMaxLawPlanes)) {
     into.planes[nearest] = merged(into.planes[nearest], plane);
   } else {
@@ -58,6 +65,16 @@ void add(PlaneSet& into, const ContactPlane& plane) {
 }
 
 }  // namespace
+
+void add_plane(PlaneSet& into, const ContactPlane& plane) {
+  if (into.plane_count < kMaxLawPlanes) {
+    into.planes[into.plane_count++] = plane;
+    return;
+  }
+  double least = 0;
+  const std::uint32_t nearest = most_alike(into, plane, least);
+  into.planes[nearest] = merged(into.planes[nearest], plane);
+}
 
 Wrench pushed(const PlaneSet& set, const Vec3& gc, const Quat& rotation, bool grows) {
   Wrench sum;

@@ -2,21 +2,13 @@
 #include <array>
 #include <cstdint>
 
+#include "model/contact_plane.h"
 #include "model/pose.h"
 
 namespace palpate {
 
-/// Planes that a result carries to the force law. Scenes of the chapter reach 4 areas at once; 32 keeps a result at 2 kB.
-inline constexpr std::uint32_t kMaxLawPlanes = 32;
-
-/// One contact area as the force law extrapolates it: it pushes along `normal` with
-/// max(0, force − stiffness · (normal·Δgc + lever·Δθ)), Δ the motion since the set's pose. World frame.
-struct ContactPlane {
-  Vec3 normal{0};        ///< n_c, unit
-  Vec3 lever{0};         ///< (cp − gc) × n_c, m: torque about gc per newton
-  double force = 0;      ///< K d, N; < 0 for a wall that the tool has left: −κ times how far
-  double stiffness = 0;  ///< κ, N/m: how fast the force gives way as the tool is drawn back
-};
+/// Planes that a result carries to the force law: four a direction for sixteen of the field's directions at once, which keeps a result at 4 kB.
+inline constexpr std::uint32_t kMaxLawPlanes = 64;
 
 /// What pushes the tool, and how it gives way. Plain data of fixed size.
 struct PlaneSet {
@@ -29,6 +21,9 @@ struct PlaneSet {
 /// What the planes say at another pose; torque about `gc`. No plane pulls. `grows` false: none pushes harder than at the set's
 /// own pose either.
 Wrench pushed(const PlaneSet& set, const Vec3& gc, const Quat& rotation, bool grows = true);
+
+/// Appends a plane; where there is no room, it and the one most like it become one: force and torque at the set's pose stay, its stiffness loses what is across.
+void add_plane(PlaneSet& into, const ContactPlane& plane);
 
 /// Force and torque that give way by so much for a displacement of gc and a small turn: rows and columns x y z rx ry rz, N/m, N and N·m.
 using StiffnessMatrix = std::array<std::array<double, 6>, 6>;

@@ -1,16 +1,7 @@
 #pragma once
-#include <array>
-
-#include "service/force_law.h"
+#include "service/spring_balance.h"
 
 namespace palpate {
-
-struct CouplingSettings {
-  double stiffness_n_per_m = 0;       ///< 0: tool and device are in one place
-  double stiffness_nm_per_rad = 0;    ///< 0: they are turned alike
-
-  bool on() const { return stiffness_n_per_m > 0 || stiffness_nm_per_rad > 0; }
-};
 
 /// A virtual coupling (Colgate, Stanley and Brown 1995), the quasi-static one: the tool has no mass and hangs on the device by a spring. At every tick it is where
 /// spring and contact balance, spring · (tool − device) = push(tool), and the device gets that push. In free space they are in one place.
@@ -20,11 +11,9 @@ struct CouplingSettings {
 /// continuous, never pulls, and no stiffer than the spring, whatever K and however many areas; so a device of damping b is stable
 /// under any wall once the spring is below b / (T/2). The price is a softer wall.
 ///
-/// Found by Newton's method from the tick before, with steps that don't pass the minimum by much; plain arithmetic on fixed memory: no clock, no allocation.
+/// Found by spring_balance from the tick before on; plain arithmetic on fixed memory: no clock, no allocation.
 class VirtualCoupling {
  public:
-  static constexpr int kMostEvaluations = 80;                 ///< of the planes in a tick; from the tick before it takes two or three, among walls of 10^6 N/m behind 1 kN/m up to 60 (measured)
-  static constexpr double kEnoughJ = 1e-16;                   ///< 0.3 µN against 1 kN/m (chosen)
   static constexpr double kFastest = 0.01, kFastestTurn = 0.1;   ///< m and rad a tick: so the tool leaves no wall with a jump that the law would take for the device's (chosen)
 
   explicit VirtualCoupling(const CouplingSettings& settings) : settings_(settings) {}
@@ -35,11 +24,6 @@ class VirtualCoupling {
   void reset() { apart_ = {}; }
 
  private:
-  using Vec6 = std::array<double, 6>;   ///< gc and turn, world
-
-  LawPose at(const LawPose& device, const Vec6& apart) const;
-  void balance(const ForceLawState& law, const LawPose& device, const Vec6& apart, Vec6& rest, StiffnessMatrix& slope) const;
-
   CouplingSettings settings_;
   Vec6 apart_{};   ///< tool minus device, m and rad
 };

@@ -31,12 +31,9 @@ const char* difference(const ContactArea& a, const AreaResponse& ra, const Conta
   if (a.id != b.id || ra.id != rb.id) return "id";
   if (a.static_ids != b.static_ids) return "static";
   if (lists && (a.zones != b.zones || a.mobile_ids != b.mobile_ids)) return "zones or mobile";
-  if (a.flags != b.flags || ra.flags != rb.flags || a.sheet_sign != b.sheet_sign || ra.silent != rb.silent) return "flags";
+  if (a.flags != b.flags || ra.flags != rb.flags) return "flags";
   if (a.direction != b.direction || !same_bits(ra.normal, rb.normal)) return "n_c";
-  if (a.rays != b.rays || a.max_height != b.max_height || a.weight_sum != b.weight_sum || a.faded_sum != b.faded_sum || a.faded_rest != b.faded_rest ||
-      a.weight_slope != b.weight_slope || a.height_slope != b.height_slope)
-    return "sums";
-  if (a.pierces != b.pierces) return "pierces";
+  if (a.rays != b.rays || a.max_height != b.max_height || a.height_sum != b.height_sum || a.field != b.field) return "sums";
   if (!same_bits(ra.depth, rb.depth) || !same_bits(ra.max_depth, rb.max_depth) || !same_bits(ra.slope, rb.slope)) return "d";
   if (!same_bits(ra.force, rb.force)) return "F";
   if (points && (!same_bits(ra.point, rb.point) || !same_bits(ra.torque, rb.torque))) return "cp or T";
@@ -57,15 +54,13 @@ Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, c
   Contacts contacts;
   ContactResponse response;
   for (std::uint64_t round = 0; round <= rounds; ++round) {
-    Held held;
     for (std::size_t i = 0; i < question.poses.size(); ++i) {
       const auto start = Clock::now();
       const Result<LatticePose> pose = to_lattice(question.poses[i], *question.geometry);
       if (!pose) return pose.error();
       contacts = Contacts{};
-      if (auto done = backend.query(*pose, &held, contacts); !done) return done;
-      respond(contacts, *pose, *question.geometry, plan.profile, question.stiffness_n_per_m, response, &held);
-      remember(contacts, response, held);
+      if (auto done = backend.query(*pose, contacts); !done) return done;
+      respond(contacts, *pose, *question.geometry, plan.profile, question.stiffness_n_per_m, response);
       const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
       if (contacts.truncated) return Error{ErrorCode::kInternal, std::string("a frame was truncated: ") + contacts.truncated_capacity};
       if (round == 0) {
@@ -94,7 +89,7 @@ std::string difference(const PlanTrial& whole, const PlanTrial& lean) {
     const char* what = nullptr;
     if (a.contact != b.contact || a.pairs != b.pairs || a.flags != b.flags || ra.flags != rb.flags) what = "contact, pairs or flags";
     else if (lists && (a.cst != b.cst || a.bst != b.bst || a.est != b.est || a.cmt != b.cmt || a.bmt != b.bmt || a.imt != b.imt)) what = "sets";
-    else if (a.swallowed_direction != b.swallowed_direction || a.swallowed_height != b.swallowed_height) what = "the swallowed tool";
+    else if (a.field != b.field) what = "the field";
     else if (a.areas.size() != b.areas.size() || ra.areas.size() != rb.areas.size()) what = "areas";
     else if (!same_bits(ra.wrench.force, rb.wrench.force)) what = "F";
     else if (points && !same_bits(ra.wrench.torque, rb.wrench.torque)) what = "T";

@@ -267,11 +267,8 @@ void RemoteLoops::answer(Loop& loop) {
     const auto put_vector = [&](const Vec3& v) {
       for (int i = 0; i < 3; ++i) put(double{v[i]});
     };
-    std::uint32_t planes = 0;
-    for (const AreaResponse& area : response.areas) planes += area.silent ? 0 : 1;
-    put_wrench_head(*pose, response.wrench, response.gc, us, skipped, (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u), planes, out);
+    put_wrench_head(*pose, response.wrench, response.gc, us, skipped, (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u), static_cast<std::uint32_t>(response.areas.size()), out);
     for (const AreaResponse& area : response.areas) {
-      if (area.silent) continue;
       put_vector(area.normal);
       put_vector(area.point);
       put(area.depth);

@@ -1,0 +1,126 @@
+#include "cpu_ref/depth.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "cpu_ref/direction.h"
+#include "cpu_ref/ray.h"
+
+namespace palpate::cpu_ref {
+namespace {
+
+/// floor(√v), v below 2^63.
+std::int64_t root(std::int64_t v) {
+  std::int64_t low = 0, high = std::int64_t{3037000500};
+  while (high - low > 1) {
+    const std::int64_t middle = (low + high) / 2;
+    (middle * middle <= v ? low : high) = middle;
+  }
+  return low;
+}
+
+std::int64_t product(const Long3& a, const Long3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+}  // namespace
+
+std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& point) {
+  const Long3 n(mesh.unit_normal_q30[triangle]);
+  // Above the plane: 3 · 2^30 · 2^29.6.
+  const std::int64_t height = std::llabs((product(n, difference(point, mesh.corner(triangle, 0))) + (std::int64_t{1} << 29)) >> 30);
+  std::int64_t least = -1;   // squared, to the edges that have the point on their outer side
+  for (int k = 0; k < 3; ++k) {
+    const Int3 &u = mesh.corner(triangle, k), &v = mesh.corner(triangle, (k + 1) % 3);
+    const Long3 edge = difference(v, u), from = difference(point, u);
+    const Long3 along(normalise(edge));                                     // within 2^29
+    Long3 out = cross(along, n);                                            // within 2^60
+    for (int c = 0; c < 3; ++c) out[c] >>= 30;
+    const std::int64_t size = root(product(along, along));                  // below 2^30
+    const std::int64_t side = floor_divide(product(out, from), size);
+    if (side <= 0) continue;
+    const std::int64_t at = floor_divide(product(along, from), size), length = root(product(edge, edge));
+    const std::int64_t over = std::max({std::int64_t{0}, -at, at - length});
+    const std::int64_t squared = height * height + side * side + over * over;   // within 3 · 2^60
+    if (least < 0 || squared < least) least = squared;
+  }
+  return static_cast<std::uint32_t>(least < 0 ? height : root(least));
+}
+
+std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point) {
+  std::optional<Depth> best;
+  std::vector<std::uint32_t> near;
+  const auto within = [&](std::int64_t reach) {
+    const auto limit = [](std::int64_t v) { return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -(1 << 30), 1 << 30)); };
+    Box box;
+    for (int k = 0; k < 3; ++k) {
+      box.min[k] = limit(point[k] - reach);
+      box.max[k] = limit(point[k] + reach);
+    }
+    near.clear();
+    tree.meeting(box, near);
+    for (const std::uint32_t t : near) {
+      if (mesh.collapsed(t) || is_sheet(mesh, t)) continue;
+      const std::uint32_t steps = distance(mesh, t, point);
+      if (!best || steps < best->steps) best = Depth{steps, t};   // ascending ids: a tie stays with the smallest
+    }
+  };
+  // Cubes twice as large each time until one holds something; whatever is nearer than that lies in a cube of its distance, and rounding.
+  for (std::int64_t reach = 1024; !best && reach <= std::int64_t{1} << 31; reach *= 2) within(reach);
+  constexpr std::int64_t kRounding = 16;   // steps by which `distance` may be off, and more
+  if (best) {
+    const std::int64_t reach = best->steps + kRounding;
+    best.reset();
+    within(reach);
+  }
+  return best;
+}
+
+bool inside_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point) {
+  int inside = 0;
+  std::vector<std::uint32_t> candidates;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int way : {1, -1}) {
+      // The walk ends at the middle of the first voxel on the line that lists nothing.
+      Int3 voxel = partition.holding(point);
+      VoxelClass end = VoxelClass::kExternal;
+      Int3 last = voxel;
+      while (partition.in_grid(voxel) && (end = partition.classes.at(voxel)) == VoxelClass::kBoundary) {
+        last = voxel;
+        voxel[axis] += way;
+        end = VoxelClass::kExternal;
+      }
+      Int3 direction(0), until = partition.centre(last);
+      direction[axis] = way;
+      until[axis] += way * partition.grid.size;
+      candidates.clear();
+      tree.along_ray(point, direction, candidates);
+      int net = 0;
+      for (const std::uint32_t t : candidates) {
+        if (mesh.collapsed(t) || is_sheet(mesh, t)) continue;
+        const Triangle triangle = triangle_of(mesh, t);
+        // What is crossed beyond the end is crossed from there, too: no triangle touches the end's voxel.
+        Int3 beyond = point;
+        beyond[axis] = until[axis];
+        const auto crossing = ray_crosses(point, direction, triangle);
+        if (crossing && !ray_crosses(beyond, direction, triangle)) net += crossing->sign;
+      }
+      const bool votes_inside = end == VoxelClass::kInternal ? net >= 0 : net != 0;
+      inside += votes_inside ? 1 : 0;
+    }
+  return inside > 3;
+}
+
+bool inside_mockup(const Frame& frame, const Int3& point) {
+  const VoxelClass voxel_class = frame.scene.mockup.class_of(point);
+  if (voxel_class != VoxelClass::kBoundary) return voxel_class == VoxelClass::kInternal;
+  const LatticeMesh& mesh = frame.mockup();
+  if (!mesh.closed) return inside_by_walks(mesh, frame.scene.mockup_tree, frame.scene.mockup, point);
+  std::vector<std::uint32_t> candidates;
+  const Int3 along_x(1, 0, 0);
+  frame.scene.mockup_tree.along_ray(point, along_x, candidates);
+  int winding = 0;
+  for (const std::uint32_t s : candidates)
+    if (const auto crossing = ray_crosses(point, along_x, triangle_of(mesh, s))) winding += crossing->sign;
+  return winding != 0;
+}
+
+}  // namespace palpate::cpu_ref

@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "cpu_ref/frame.h"
+
+namespace palpate::cpu_ref {
+
+/// How far a point lies below a body's surface, and below which triangle.
+struct Depth {
+  std::uint32_t steps = 0;      ///< φ
+  std::uint32_t triangle = 0;   ///< the nearest one; of several the smallest id
+};
+
+/// Distance between a lattice point and a triangle of `mesh` that did not collapse (EXACTNESS section 4, "Depth").
+std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& point);
+
+/// The nearest triangle that bounds a solid: neither collapsed nor of a sheet. `tree` holds the boxes of `mesh`'s triangles.
+std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point);
+
+/// Whether a point in a V_bnd voxel of a body that is not `closed` lies inside it: six walks to the next voxel that is not V_bnd (EXACTNESS section 4).
+bool inside_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point);
+
+/// Whether a world lattice point lies inside the mock-up.
+bool inside_mockup(const Frame& frame, const Int3& point);
+
+}  // namespace palpate::cpu_ref

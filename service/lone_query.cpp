@@ -1,0 +1,154 @@
+#include "service/lone_query.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "service/law_result.h"
+
+namespace palpate {
+namespace {
+
+/// Fixed planes.
+class PlaneFeel final : public Feel {
+ public:
+  explicit PlaneFeel(const PlaneSet& planes) : planes_(planes) {}
+  void operator()(const LawPose& tool, Wrench& push, StiffnessMatrix& slope) const override {
+    push = {};
+    slope = {};
+    add_pushed(push, slope, planes_, 1, tool.gc, tool.rotation);
+    for (std::size_t row = 0; row < 6; ++row)
+      for (std::size_t column = 0; column < row; ++column) slope[column][row] = slope[row][column];
+  }
+
+ private:
+  const PlaneSet& planes_;
+};
+
+/// Turns count by their way at the tool's radius of gyration, so that a length is a length.
+double length(const Vec6& v, double gyration) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 6; ++i) sum += v[i] * v[i] * (i < 3 ? 1 : gyration * gyration);
+  return std::sqrt(sum);
+}
+
+Vec6 minus(const Vec6& a, const Vec6& b) {
+  Vec6 out;
+  for (std::size_t i = 0; i < 6; ++i) out[i] = a[i] - b[i];
+  return out;
+}
+
+/// Anderson's method on z = T(z): the next z from the last few z and T(z).
+class Anderson {
+ public:
+  explicit Anderson(double gyration) : gyration_(gyration) {}
+
+  Vec6 next(const Vec6& z, const Vec6& image) {
+    const Vec6 rest = minus(image, z);
+    if (count_ > 0) {
+      const std::size_t place = (count_ - 1) % kMemory;
+      rest_steps_[place] = minus(rest, last_rest_);
+      image_steps_[place] = minus(image, last_image_);
+    }
+    last_rest_ = rest;
+    last_image_ = image;
+    const std::size_t kept = std::min(count_++, kMemory);
+    // Least squares |rest − Σ γ rest_steps|², by normal equations with a little of the identity.
+    double a[kMemory][kMemory] = {}, b[kMemory] = {};
+    for (std::size_t i = 0; i < kept; ++i) {
+      for (std::size_t j = 0; j < kept; ++j) a[i][j] = product(rest_steps_[i], rest_steps_[j]);
+      b[i] = product(rest_steps_[i], rest);
+    }
+    double trace = 0;
+    for (std::size_t i = 0; i < kept; ++i) trace += a[i][i];
+    if (!(trace > 0)) return image;
+    for (std::size_t i = 0; i < kept; ++i) a[i][i] += 1e-10 * trace;
+    for (std::size_t i = 0; i < kept; ++i)   // symmetric and positive: no pivots
+      for (std::size_t j = i + 1; j < kept; ++j) {
+        const double share = a[j][i] / a[i][i];
+        for (std::size_t k = i; k < kept; ++k) a[j][k] -= share * a[i][k];
+        b[j] -= share * b[i];
+      }
+    Vec6 out = image;
+    for (std::size_t i = kept; i-- > 0;) {
+      for (std::size_t k = i + 1; k < kept; ++k) b[i] -= a[i][k] * b[k];
+      b[i] /= a[i][i];
+      for (std::size_t k = 0; k < 6; ++k) out[k] -= b[i] * image_steps_[i][k];
+    }
+    return out;
+  }
+  void forget() { count_ = 0; }
+
+ private:
+  static constexpr std::size_t kMemory = 5;
+  double product(const Vec6& a, const Vec6& b) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i] * (i < 3 ? 1 : gyration_ * gyration_);
+    return sum;
+  }
+  double gyration_;
+  std::size_t count_ = 0;
+  std::array<Vec6, kMemory> rest_steps_{}, image_steps_{};
+  Vec6 last_rest_{}, last_image_{};
+};
+
+}  // namespace
+
+LoneQuery::LoneQuery(const SceneGeometry& geometry, double stiffness)
+    : geometry_(geometry), stiffness_(stiffness), spring_{stiffness, stiffness * geometry.tool_gyration_m * geometry.tool_gyration_m} {}
+
+Result<void> LoneQuery::evaluate(CollisionBackend& backend, const LawPose& tool) {
+  const Pose pose{tool.gc - tool.rotation * geometry_.tool_gc_m, tool.rotation};
+  const auto lattice = to_lattice(pose, geometry_);
+  if (!lattice) return lattice.error();
+  if (auto answered = backend.query(*lattice, contacts_); !answered) return answered;
+  respond(contacts_, *lattice, geometry_, Profile::kRefined, stiffness_, response_);
+  fill_planes(response_, planes_);
+  planes_.gc = tool.gc;
+  planes_.rotation = tool.rotation;
+  return {};
+}
+
+/// T: where the tool would be if the field were its planes at `apart`.
+Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const { return spring_balance(spring_, device, apart, PlaneFeel(planes_)); }
+
+Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Pose& pose, const ContactResponse& at_pose) {
+  Felt out;
+  out.tool = pose;
+  out.evaluations = 1;
+  if (!at_pose.contact || !spring_.on()) return out;
+  const LawPose device{0, pose.position + pose.rotation * geometry_.tool_gc_m, glm::normalize(pose.rotation)};
+  fill_planes(at_pose, planes_);
+  planes_.gc = device.gc;
+  planes_.rotation = device.rotation;
+
+  const double gyration = geometry_.tool_gyration_m;
+  constexpr double kEnough = 1e-8, kEnoughShare = 1e-6;   // m, and of the way: 20 µN at 2 kN/m (chosen)
+  Anderson anderson(gyration);
+  Vec6 apart{}, best{};
+  double least = HUGE_VAL;
+  out.settled = false;
+  while (true) {
+    const Vec6 image = next(device, apart);
+    const double rest = length(minus(image, apart), gyration);
+    if (rest < least) {
+      least = rest;
+      best = image;
+    }
+    if (rest <= kEnough + kEnoughShare * length(image, gyration)) {
+      out.settled = true;
+      break;
+    }
+    if (out.evaluations == kMostEvaluations) break;
+    if (rest > 4 * least) anderson.forget();
+    apart = anderson.next(apart, image);
+    if (auto done = evaluate(backend, apart_from(device, apart, spring_)); !done) return done.error();
+    ++out.evaluations;
+  }
+  out.wrench.force = spring_.stiffness_n_per_m * Vec3(best[0], best[1], best[2]);
+  out.wrench.torque = spring_.stiffness_nm_per_rad * Vec3(best[3], best[4], best[5]);
+  const LawPose tool = apart_from(device, best, spring_);
+  out.tool = {tool.gc - tool.rotation * geometry_.tool_gc_m, tool.rotation};
+  return out;
+}
+
+}  // namespace palpate

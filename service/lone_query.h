@@ -1,0 +1,47 @@
+#pragma once
+#include "model/collision_backend.h"
+#include "model/response.h"
+#include "service/plane_set.h"
+#include "service/spring_balance.h"
+
+namespace palpate {
+
+/// What a hand would feel at a pose if it had always been there.
+struct Felt {
+  Wrench wrench;           ///< that the spring hands on; torque about gc at the pose asked for, world
+  Pose tool;               ///< where the tool is while the device is at the pose asked for
+  int evaluations = 0;     ///< of the field, the one at the pose asked for included
+  bool settled = true;     ///< false: no balance was found; the wrench is of the nearest to one
+};
+
+/// `refined`: force and torque of a lone pose. The tool hangs on the device by a spring of stiffness K and Kρ² (ρ: its radius of gyration), and is where spring and field
+/// balance: F = −∇ min_y [E(y) + ½ |x − y|²], the gradient of the field's Moreau envelope. It is conservative as the field is, and no contact, however large, is stiffer
+/// than the spring. In a session the control law does the same tick by tick (service/virtual_coupling.h).
+///
+/// The field's planes at a pose give the next one, as in the law; Anderson's method makes up for what planes leave out. From the pose asked for on, so of
+/// several balances it finds the one that a hand at rest there would. One thread; allocates only as its answers grow.
+class LoneQuery {
+ public:
+  static constexpr int kMostEvaluations = 60;      ///< from 2 for a flat contact to 20 for a pose far deeper than a hand gets (measured; the rest is room)
+
+  /// `geometry` outlives this. `stiffness` K in N/m.
+  LoneQuery(const SceneGeometry& geometry, double stiffness);
+
+  /// `at_pose`: what respond() says at `pose`. Without contact there, or with K = 0, there is nothing to ask. Error: the back end failed.
+  Result<Felt> ask(CollisionBackend& backend, const Pose& pose, const ContactResponse& at_pose);
+
+  CouplingSettings spring() const { return spring_; }
+
+ private:
+  Result<void> evaluate(CollisionBackend& backend, const LawPose& tool);
+  Vec6 next(const LawPose& device, const Vec6& apart) const;
+
+  const SceneGeometry& geometry_;
+  double stiffness_;
+  CouplingSettings spring_;
+  Contacts contacts_;
+  ContactResponse response_;
+  PlaneSet planes_;
+};
+
+}  // namespace palpate
