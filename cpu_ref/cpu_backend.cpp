@@ -69,12 +69,12 @@ class CpuBackend final : public CollisionBackend {
     }
   }
 
-  Result<void> query(const LatticePose& pose, Contacts& out) override {
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     out = Contacts();
     pairs_.clear();
     if (!scene_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
     try {
-      if (!pose.beyond_lattice) answer(pose, out);
+      if (!pose.beyond_lattice) answer(pose, ignored, out);
       leave_out(out);
       return {};
     } catch (const std::exception& failure) {
@@ -106,9 +106,9 @@ class CpuBackend final : public CollisionBackend {
   }
 
  private:
-  void answer(const LatticePose& pose, Contacts& out) {
+  void answer(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
     StageClock clock(out);
-    Frame frame{*scene_, pose, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    Frame frame{*scene_, pose, ignored, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     tool_tree_.build(transform_tool(frame));
     clock.done("transform");
     find_pairs(frame, out);

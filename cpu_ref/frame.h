@@ -36,6 +36,7 @@ struct Sample {
 struct Frame {
   const Prepared& scene;
   const LatticePose& pose;
+  const Ignored* ignored;                         ///< may be null
   const BoxTree& tool_tree;                       ///< boxes of `tool`
 
   std::vector<Int3> vertices;                     ///< of the tool, transformed

@@ -50,15 +50,15 @@ class CollisionBackend {
     return 0;
   }
 
-  /// Answers one pose. Writes `out` whole, reusing its memory.
+  /// Answers one pose. `ignored`: contacts that are left out, `refined` only; may be null. Writes `out` whole, reusing its memory.
   /// An error means that the back end itself failed (device lost): the caller sends zero force.
-  virtual Result<void> query(const LatticePose& pose, Contacts& out) = 0;
+  virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;
 
-  /// Answers many poses with whatever can work on them side by side: out[i] is what query(poses[i], out[i]) would make of it but for the
+  /// Answers many poses with whatever can work on them side by side: out[i] is what query(poses[i], nullptr, out[i]) would make of it but for the
   /// times. As many `out` as `poses`. The first call that is worth it may take time and memory to set helpers up; it may start threads.
   virtual Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
     for (std::size_t i = 0; i < poses.size(); ++i)
-      if (auto answered = query(poses[i], out[i]); !answered) return answered;
+      if (auto answered = query(poses[i], nullptr, out[i]); !answered) return answered;
     return {};
   }
 

@@ -37,6 +37,12 @@ struct ContactArea {
   std::uint32_t voxel_count = 0;                    ///< `paper`
 };
 
+/// Contacts that are left out, for parts that overlap where the tool starts: samples whose static triangle, their own or the nearest, is of one of these patches
+/// (LatticeMesh::patch) don't push.
+struct Ignored {
+  std::vector<std::uint32_t> patches;   ///< ascending, each once
+};
+
 /// The exact outcome of one pose: identical on every back end.
 struct Contacts {
   bool contact = false;
@@ -46,6 +52,7 @@ struct Contacts {
   std::vector<std::uint32_t> cst, bst, cmt, bmt, imt, est;   ///< ascending
   std::vector<ContactArea> areas;       ///< ascending id; empty without contact
   FieldSums field;                      ///< `refined`: what pushes the tool
+  std::vector<std::uint32_t> ignored_touched;   ///< `refined`: ignored patches in which something would push, ascending
   std::vector<CarrierSums> carriers;    ///< `refined`: CST and EST, ascending id; empty where the plan leaves lists out
   std::uint32_t flags = 0;
   bool contact_points = true;           ///< false: the plan leaves them out; `paper`: voxel_sum is 0

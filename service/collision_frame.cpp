@@ -57,7 +57,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
 
   if (slot.lattice_pose.beyond_lattice) {
     clear(slot.contacts);
-  } else if (auto answered = backend_->query(slot.lattice_pose, slot.contacts); !answered) {
+  } else if (auto answered = backend_->query(slot.lattice_pose, nullptr, slot.contacts); !answered) {
     return answered;
   }
   respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response);

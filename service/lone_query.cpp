@@ -96,11 +96,11 @@ class Anderson {
 LoneQuery::LoneQuery(const SceneGeometry& geometry, double stiffness)
     : geometry_(geometry), stiffness_(stiffness), spring_{stiffness, stiffness * geometry.tool_gyration_m * geometry.tool_gyration_m} {}
 
-Result<void> LoneQuery::evaluate(CollisionBackend& backend, const LawPose& tool) {
+Result<void> LoneQuery::evaluate(CollisionBackend& backend, const Ignored* ignored, const LawPose& tool) {
   const Pose pose{tool.gc - tool.rotation * geometry_.tool_gc_m, tool.rotation};
   const auto lattice = to_lattice(pose, geometry_);
   if (!lattice) return lattice.error();
-  if (auto answered = backend.query(*lattice, contacts_); !answered) return answered;
+  if (auto answered = backend.query(*lattice, ignored, contacts_); !answered) return answered;
   respond(contacts_, *lattice, geometry_, Profile::kRefined, stiffness_, response_);
   fill_planes(response_, planes_);
   planes_.gc = tool.gc;
@@ -111,7 +111,7 @@ Result<void> LoneQuery::evaluate(CollisionBackend& backend, const LawPose& tool)
 /// T: where the tool would be if the field were its planes at `apart`.
 Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const { return spring_balance(spring_, device, apart, PlaneFeel(planes_)); }
 
-Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Pose& pose, const ContactResponse& at_pose) {
+Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose) {
   Felt out;
   out.tool = pose;
   out.evaluations = 1;
@@ -141,7 +141,7 @@ Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Pose& pose, const C
     if (out.evaluations == kMostEvaluations) break;
     if (rest > 4 * least) anderson.forget();
     apart = anderson.next(apart, image);
-    if (auto done = evaluate(backend, apart_from(device, apart, spring_)); !done) return done.error();
+    if (auto done = evaluate(backend, ignored, apart_from(device, apart, spring_)); !done) return done.error();
     ++out.evaluations;
   }
   out.wrench.force = spring_.stiffness_n_per_m * Vec3(best[0], best[1], best[2]);

@@ -27,13 +27,13 @@ class LoneQuery {
   /// `geometry` outlives this. `stiffness` K in N/m.
   LoneQuery(const SceneGeometry& geometry, double stiffness);
 
-  /// `at_pose`: what respond() says at `pose`. Without contact there, or with K = 0, there is nothing to ask. Error: the back end failed.
-  Result<Felt> ask(CollisionBackend& backend, const Pose& pose, const ContactResponse& at_pose);
+  /// `at_pose`: what respond() says at `pose`. Without contact there, or with K = 0, there is nothing to ask. `ignored` as for CollisionBackend::query. Error: the back end failed.
+  Result<Felt> ask(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose);
 
   CouplingSettings spring() const { return spring_; }
 
  private:
-  Result<void> evaluate(CollisionBackend& backend, const LawPose& tool);
+  Result<void> evaluate(CollisionBackend& backend, const Ignored* ignored, const LawPose& tool);
   Vec6 next(const LawPose& device, const Vec6& apart) const;
 
   const SceneGeometry& geometry_;

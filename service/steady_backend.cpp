@@ -49,9 +49,9 @@ Result<void> SteadyBackend::prepare_spare(const Progress& progress) {
   return {};
 }
 
-Result<void> SteadyBackend::ask_first(const LatticePose& pose, Contacts& out) {
+Result<void> SteadyBackend::ask_first(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   for (;;) {
-    if (auto answered = first_->query(pose, out); !answered || !out.truncated || out.truncated_capacity == full_) return answered;
+    if (auto answered = first_->query(pose, ignored, out); !answered || !out.truncated || out.truncated_capacity == full_) return answered;
     if (auto enlarged = first_->enlarge(); !enlarged) {
       full_ = out.truncated_capacity;
       note(enlarged.error().sentence);
@@ -61,10 +61,10 @@ Result<void> SteadyBackend::ask_first(const LatticePose& pose, Contacts& out) {
   }
 }
 
-Result<void> SteadyBackend::query(const LatticePose& pose, Contacts& out) {
+Result<void> SteadyBackend::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   by_spare_ = false;
   if (first_) {
-    const Result<void> answered = ask_first(pose, out);
+    const Result<void> answered = ask_first(pose, ignored, out);
     // More areas than a frame may have is truncation by definition, whoever answers.
     if (answered && (!out.truncated || std::strcmp(out.truncated_capacity, "areas") == 0)) return answered;
     if (!make_spare_) return answered;
@@ -73,7 +73,7 @@ Result<void> SteadyBackend::query(const LatticePose& pose, Contacts& out) {
   if (!spare_ready_)
     if (auto prepared = prepare_spare([](const char*, double) { return true; }); !prepared) return prepared;
   by_spare_ = true;
-  return spare_->query(pose, out);
+  return spare_->query(pose, ignored, out);
 }
 
 Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
@@ -82,7 +82,7 @@ Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std:
   const Result<void> answered = first_->query_batch(poses, out);
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (!answered || out[i].truncated)
-      if (auto again = query(poses[i], out[i]); !again) return again;
+      if (auto again = query(poses[i], nullptr, out[i]); !again) return again;
   return {};
 }
 

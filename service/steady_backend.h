@@ -29,7 +29,7 @@ class SteadyBackend final : public CollisionBackend {
   std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override {
     return first_ ? first_->preparation_bytes(geometry, plan) : 0;
   }
-  Result<void> query(const LatticePose& pose, Contacts& out) override;
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override;
 
   Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }
@@ -43,7 +43,7 @@ class SteadyBackend final : public CollisionBackend {
 
  private:
   const CollisionBackend& now() const { return first_ ? *first_ : *spare_; }
-  Result<void> ask_first(const LatticePose& pose, Contacts& out);
+  Result<void> ask_first(const LatticePose& pose, const Ignored* ignored, Contacts& out);
   Result<void> prepare_spare(const Progress& progress);
   void first_failed(const Error& error);
   void note(std::string sentence);   ///< each sentence once

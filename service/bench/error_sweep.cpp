@@ -61,7 +61,7 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
       const auto start = std::chrono::steady_clock::now();
       const Result<LatticePose> pose = to_lattice(subject.poses[i], *geometry);
       if (!pose) return Error{pose.error().code, subject.name + ": " + pose.error().sentence};
-      if (auto done = backend.query(*pose, contacts); !done) return done.error();
+      if (auto done = backend.query(*pose, nullptr, contacts); !done) return done.error();
       respond(contacts, *pose, *geometry, setting.profile, subject.stiffness_n_per_m, response);
       const double us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
       if (contacts.truncated) return Error{ErrorCode::kInternal, subject.name + ": a frame was truncated: " + contacts.truncated_capacity};

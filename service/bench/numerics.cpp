@@ -134,7 +134,7 @@ class NumericsBench {
     if (!pose) return refused(pose.error());
     Contacts contacts;
     ContactResponse response;
-    if (auto done = backend_->query(*pose, contacts); !done) return refused(done.error());
+    if (auto done = backend_->query(*pose, nullptr, contacts); !done) return refused(done.error());
     if (contacts.truncated) return {0, std::string("refused: too much for ") + contacts.truncated_capacity};
     respond(contacts, *pose, *geometry, Profile::kRefined, extreme.stiffness, response);
     return judged(contacts.contact, response.wrench.force, scene.force);
@@ -170,7 +170,7 @@ class NumericsBench {
           }
           Contacts contacts;
           const Result<LatticePose> pose = to_lattice(scene.pose, *geometry);
-          if (!pose || !backend_->query(*pose, contacts)) {
+          if (!pose || !backend_->query(*pose, nullptr, contacts)) {
             ++wrong["palpate"];
             continue;
           }

@@ -59,7 +59,7 @@ Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, c
       const Result<LatticePose> pose = to_lattice(question.poses[i], *question.geometry);
       if (!pose) return pose.error();
       contacts = Contacts{};
-      if (auto done = backend.query(*pose, contacts); !done) return done;
+      if (auto done = backend.query(*pose, nullptr, contacts); !done) return done;
       respond(contacts, *pose, *question.geometry, plan.profile, question.stiffness_n_per_m, response);
       const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
       if (contacts.truncated) return Error{ErrorCode::kInternal, std::string("a frame was truncated: ") + contacts.truncated_capacity};

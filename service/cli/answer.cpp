@@ -12,7 +12,7 @@ Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, co
   const SceneGeometry& geometry = scene.geometry;
   const Result<LatticePose> lattice = to_lattice(pose, geometry);
   if (!lattice) return lattice.error();
-  if (auto done = backend.query(*lattice, out.contacts); !done) return done;
+  if (auto done = backend.query(*lattice, nullptr, out.contacts); !done) return done;
   const ResponseSettings& settings = scene.scene.response;
   respond(out.contacts, *lattice, geometry, settings.profile, settings.stiffness_n_per_m, out.response);
   out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();

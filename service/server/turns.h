@@ -55,9 +55,9 @@ class BackendInTurns final : public CollisionBackend {
     const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
     return backend_.finish_preparing();
   }
-  Result<void> query(const LatticePose& pose, Contacts& out) override {
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
-    return backend_.query(pose, out);
+    return backend_.query(pose, ignored, out);
   }
   Result<void> enlarge() override {
     const TurnGuard turn(turns_, TurnGuard::Kind::kLoop);
