@@ -30,6 +30,7 @@ struct LatticeMesh {
   std::vector<std::uint32_t> neighbour_begin;             ///< CSR, triangles.size() + 1
   std::vector<EdgeNeighbour> neighbours;                  ///< ascending in each triangle, each neighbour once
                                                           ///< (smooth if any edge shared with it is smooth)
+  std::vector<std::uint32_t> patch;                       ///< number of the patch, about a CAD face, by triangle; UINT32_MAX if collapsed
   bool closed = false;                                    ///< edges, each with its direction, cancel point for point
   Int3 box_min{0}, box_max{0};                            ///< of all triangles that did not collapse
 

@@ -25,29 +25,34 @@ class PlaneFeel final : public Feel {
 };
 
 /// Turns count by their way at the tool's radius of gyration, so that a length is a length.
-double length(const Vec6& v, double gyration) {
-  double sum = 0;
-  for (std::size_t i = 0; i < 6; ++i) sum += v[i] * v[i] * (i < 3 ? 1 : gyration * gyration);
-  return std::sqrt(sum);
-}
+struct Metric {
+  double gyration;
+  double product(const Vec6& a, const Vec6& b) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i] * (i < 3 ? 1 : gyration * gyration);
+    return sum;
+  }
+  double length(const Vec6& v) const { return std::sqrt(product(v, v)); }
+};
 
-Vec6 minus(const Vec6& a, const Vec6& b) {
+/// a + share · b.
+Vec6 plus(const Vec6& a, double share, const Vec6& b) {
   Vec6 out;
-  for (std::size_t i = 0; i < 6; ++i) out[i] = a[i] - b[i];
+  for (std::size_t i = 0; i < 6; ++i) out[i] = a[i] + share * b[i];
   return out;
 }
 
 /// Anderson's method on z = T(z): the next z from the last few z and T(z).
 class Anderson {
  public:
-  explicit Anderson(double gyration) : gyration_(gyration) {}
+  explicit Anderson(const Metric& metric) : metric_(metric) {}
 
   Vec6 next(const Vec6& z, const Vec6& image) {
-    const Vec6 rest = minus(image, z);
+    const Vec6 rest = plus(image, -1, z);
     if (count_ > 0) {
       const std::size_t place = (count_ - 1) % kMemory;
-      rest_steps_[place] = minus(rest, last_rest_);
-      image_steps_[place] = minus(image, last_image_);
+      rest_steps_[place] = plus(rest, -1, last_rest_);
+      image_steps_[place] = plus(image, -1, last_image_);
     }
     last_rest_ = rest;
     last_image_ = image;
@@ -55,8 +60,8 @@ class Anderson {
     // Least squares |rest − Σ γ rest_steps|², by normal equations with a little of the identity.
     double a[kMemory][kMemory] = {}, b[kMemory] = {};
     for (std::size_t i = 0; i < kept; ++i) {
-      for (std::size_t j = 0; j < kept; ++j) a[i][j] = product(rest_steps_[i], rest_steps_[j]);
-      b[i] = product(rest_steps_[i], rest);
+      for (std::size_t j = 0; j < kept; ++j) a[i][j] = metric_.product(rest_steps_[i], rest_steps_[j]);
+      b[i] = metric_.product(rest_steps_[i], rest);
     }
     double trace = 0;
     for (std::size_t i = 0; i < kept; ++i) trace += a[i][i];
@@ -80,12 +85,7 @@ class Anderson {
 
  private:
   static constexpr std::size_t kMemory = 5;
-  double product(const Vec6& a, const Vec6& b) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i] * (i < 3 ? 1 : gyration_ * gyration_);
-    return sum;
-  }
-  double gyration_;
+  Metric metric_;
   std::size_t count_ = 0;
   std::array<Vec6, kMemory> rest_steps_{}, image_steps_{};
   Vec6 last_rest_{}, last_image_{};
@@ -108,6 +108,17 @@ Result<void> LoneQuery::evaluate(CollisionBackend& backend, const Ignored* ignor
   return {};
 }
 
+/// What is out of balance, as a way that the spring would give.
+Vec6 LoneQuery::pull(const Wrench& push, const Vec6& apart) const {
+  Vec6 out;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    out[i] = push.force[k] / spring_.stiffness_n_per_m - apart[i];
+    out[i + 3] = push.torque[k] / spring_.stiffness_nm_per_rad - apart[i + 3];
+  }
+  return out;
+}
+
 /// T: where the tool would be if the field were its planes at `apart`.
 Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const { return spring_balance(spring_, device, apart, PlaneFeel(planes_)); }
 
@@ -121,29 +132,57 @@ Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, c
   planes_.gc = device.gc;
   planes_.rotation = device.rotation;
 
-  const double gyration = geometry_.tool_gyration_m;
+  const Metric metric{geometry_.tool_gyration_m};
   constexpr double kEnough = 1e-8, kEnoughShare = 1e-6;   // m, and of the way: 20 µN at 2 kN/m (chosen)
-  Anderson anderson(gyration);
-  Vec6 apart{}, best{};
-  double least = HUGE_VAL;
-  out.settled = false;
-  while (true) {
-    const Vec6 image = next(device, apart);
-    const double rest = length(minus(image, apart), gyration);
-    if (rest < least) {
-      least = rest;
-      best = image;
+  constexpr int kMostTries = 10;                          // places along one step (chosen: a stiff wall is found to a thousandth of the step)
+  constexpr double kNear = 1e-2;                          // of the way: from here on planes lead on by themselves (chosen)
+  Anderson anderson(metric);
+  Vec6 apart{}, rest = pull(at_pose.wrench, apart), image = next(device, apart), best = image;
+  double left = metric.length(plus(image, -1, apart)), least = left;
+  const auto settled = [&] { return left <= kEnough + kEnoughShare * metric.length(image); };
+  while (!settled() && out.evaluations < kMostEvaluations) {
+    const Vec6 way = plus(image, -1, apart);
+    Vec6 step = plus(anderson.next(apart, image), -1, apart);
+    if (!(metric.product(rest, step) > 0)) step = way;
+    // `rest` is minus the slope of E + ½ spring. A step is taken that leads to half as much left or goes on downhill; else the lowest place is looked for along it
+    // (regula falsi, Illinois): planes that are left too far are forgotten, and a step may go right through a wall.
+    double low = 0, low_slope = metric.product(rest, step), high = 0, high_slope = 0, share = 1;
+    for (int tried = 1; out.evaluations < kMostEvaluations; ++tried) {
+      const Vec6 there = plus(apart, share, step);
+      if (auto done = evaluate(backend, ignored, apart_from(device, there, spring_)); !done) return done.error();
+      ++out.evaluations;
+      const Vec6 rest_there = pull(response_.wrench, there), image_there = next(device, there);
+      const double left_there = metric.length(plus(image_there, -1, there)), slope = metric.product(rest_there, step);
+      if (left_there < least) {
+        least = left_there;
+        best = image_there;
+      }
+      if (left_there <= (tried == 1 ? 0.5 : 0.8) * left || (slope >= 0 && high == 0) || tried == kMostTries || out.evaluations == kMostEvaluations) {
+        apart = there;
+        rest = rest_there;
+        image = image_there;
+        left = left_there;
+        break;
+      }
+      if (tried == 1 && left < kNear * metric.length(image)) {   // what planes alone say, for Anderson's method has been misled
+        anderson.forget();
+        step = way;
+        low_slope = metric.product(rest, step);
+        continue;
+      }
+      if (slope < 0) {
+        if (high != 0) low_slope *= 0.5;
+        high = share;
+        high_slope = slope;
+      } else {
+        if (low != 0) high_slope *= 0.5;
+        low = share;
+        low_slope = slope;
+      }
+      share = low + (high - low) * std::clamp(low_slope / (low_slope - high_slope), 0.05, 0.95);
     }
-    if (rest <= kEnough + kEnoughShare * length(image, gyration)) {
-      out.settled = true;
-      break;
-    }
-    if (out.evaluations == kMostEvaluations) break;
-    if (rest > 4 * least) anderson.forget();
-    apart = anderson.next(apart, image);
-    if (auto done = evaluate(backend, ignored, apart_from(device, apart, spring_)); !done) return done.error();
-    ++out.evaluations;
   }
+  out.settled = settled();
   out.wrench.force = spring_.stiffness_n_per_m * Vec3(best[0], best[1], best[2]);
   out.wrench.torque = spring_.stiffness_nm_per_rad * Vec3(best[3], best[4], best[5]);
   const LawPose tool = apart_from(device, best, spring_);

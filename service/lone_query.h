@@ -34,6 +34,7 @@ class LoneQuery {
 
  private:
   Result<void> evaluate(CollisionBackend& backend, const Ignored* ignored, const LawPose& tool);
+  Vec6 pull(const Wrench& push, const Vec6& apart) const;
   Vec6 next(const LawPose& device, const Vec6& apart) const;
 
   const SceneGeometry& geometry_;

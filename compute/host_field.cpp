@@ -1,0 +1,199 @@
+#include "compute/host_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "compute/host_exact.h"
+
+namespace palpate {
+
+using namespace gpu;   // names of shaders/shared/frame.h
+
+namespace {
+
+constexpr std::size_t kMostListed = std::size_t{1} << 22;   // samples of the tool (chosen: 48 MiB)
+
+bool is_sheet(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & kTriangleSheet) != 0; }
+
+Int3 turned(const LatticePose& pose, const Int3& n) {
+  Int3 out;
+  for (int r = 0; r < 3; ++r) {
+    const auto& row = pose.rotation_q30[r];
+    out[r] = static_cast<std::int32_t>((std::int64_t{row[0]} * n.x + std::int64_t{row[1]} * n.y + std::int64_t{row[2]} * n.z + (std::int64_t{1} << 29)) >> 30);
+  }
+  return out;
+}
+
+Int3 to_tool(const LatticePose& pose, const Int3& point) {
+  Int3 at;
+  for (int c = 0; c < 3; ++c) {
+    std::int64_t sum = std::int64_t{1} << 29;
+    for (int r = 0; r < 3; ++r) sum += pose.rotation_q30[r][c] * (std::int64_t{point[r]} - pose.translation[r]);
+    at[c] = static_cast<std::int32_t>(sum >> 30);
+  }
+  return at;
+}
+
+void add_term(WideSum& sum, std::int64_t term) {
+  sum.low += term & 0xFFFFFFFF;
+  sum.high += term >> 32;
+}
+
+}  // namespace
+
+/// A sample inside the other body (EXACTNESS section 8).
+struct HostField::Push {
+  Int3 at;
+  Int3 along, against;      ///< n and u
+  std::uint32_t depth;
+  std::uint32_t weight;     ///< the sample's own
+  bool sheet;
+};
+
+HostField HostField::make(const SceneGeometry& geometry, const HostPartition& mockup, const HostPartition& fine, bool tool_has_inside) {
+  HostField out;
+  out.geometry_ = &geometry;
+  out.tool_depth_ = DepthSearch(geometry.tool, fine);
+  out.mockup_depth_ = DepthSearch(geometry.mockup, mockup);
+  out.in_mockup_ = InsideSearch(geometry.mockup, mockup);
+  out.tool_has_inside_ = tool_has_inside;
+  out.lever_shift_ = lever_shift(geometry.tool_radius);
+  out.own_begin_.assign(1, 0);
+  const std::size_t triangles = geometry.tool.triangles.size();
+  const double density = static_cast<double>(geometry.sample_spacing) * geometry.sample_spacing;
+  if (geometry.tool_surface.area / density + static_cast<double>(triangles) > static_cast<double>(kMostListed)) {
+    out.own_begin_.clear();
+    return out;
+  }
+  std::vector<std::uint32_t> begin{0};
+  std::vector<Int3> samples;
+  for (std::uint32_t id = 0; id < triangles; ++id) {
+    out.own_begin_.clear();   // for_tool_samples then works them out
+    out.for_tool_samples(id, [&](const Int3& p) { samples.push_back(p); });
+    begin.push_back(static_cast<std::uint32_t>(samples.size()));
+  }
+  out.own_begin_ = std::move(begin);
+  out.own_samples_ = std::move(samples);
+  return out;
+}
+
+template <class Take>
+void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
+  if (!own_begin_.empty()) {
+    for (std::uint32_t i = own_begin_[mobile]; i < own_begin_[mobile + 1]; ++i) take(own_samples_[i]);
+    return;
+  }
+  const LatticeMesh& tool = geometry_->tool;
+  if (tool.collapsed(mobile)) return;
+  const exact::Corners corners{tool.corner(mobile, 0), tool.corner(mobile, 1), tool.corner(mobile, 2)};
+  const exact::Box box = exact::box_of(corners);
+  exact::for_samples(corners, tool.sample_axis[mobile], geometry_->sample_spacing, box.low - Int3(1), box.high + Int3(1), take);
+}
+
+bool HostField::is_ignored(std::uint32_t static_id) {
+  if (ignored_ == nullptr || ignored_->patches.empty()) return false;
+  const std::uint32_t patch = geometry_->mockup.patch[static_id];
+  if (!std::binary_search(ignored_->patches.begin(), ignored_->patches.end(), patch)) return false;
+  touched_.push_back(patch);
+  return true;
+}
+
+void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out) {
+  const std::uint32_t weight = push.weight >> (push.sheet ? 0 : 1);
+  const Int3 &n = push.along, r = push.at;
+  const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 20);
+  constexpr std::int32_t kLeast = 444764242;   // tan 22.5° in Q30
+  std::size_t number = 0;
+  for (int k = 2; k >= 0; --k) number = 3 * number + static_cast<std::size_t>(1 + (n[k] > kLeast ? 1 : 0) - (n[k] < -kLeast ? 1 : 0));
+  FieldBin& bin = out.field.bins[number];
+  ++bin.samples;
+  const exact::Normal turn = exact::cross(r, n);
+  const std::int64_t turns[3] = {turn.x >> 30, turn.y >> 30, turn.z >> 30};
+  for (std::size_t k = 0; k < 3; ++k) {
+    add_term(bin.push[k], p * (n[static_cast<int>(k)] >> 10));
+    add_term(bin.turn[k], (p >> 10) * turns[k]);
+  }
+  const Int3& u = push.against;
+  const std::int64_t steep = std::max<std::int64_t>((std::int64_t{n.x} * u.x + std::int64_t{n.y} * u.y + std::int64_t{n.z} * u.z) >> 30, 0);
+  const std::int64_t give = (std::int64_t{weight} * steep) >> 40;
+  const std::int64_t x = r.x >> lever_shift_, y = r.y >> lever_shift_, z = r.z >> lever_shift_;
+  bin.give += give;
+  bin.give_at[0] += give * x;
+  bin.give_at[1] += give * y;
+  bin.give_at[2] += give * z;
+  bin.give_spread[0] += (give * x * x) >> 8;
+  bin.give_spread[1] += (give * y * y) >> 8;
+  bin.give_spread[2] += (give * z * z) >> 8;
+  bin.give_spread[3] += (give * x * y) >> 8;
+  bin.give_spread[4] += (give * y * z) >> 8;
+  bin.give_spread[5] += (give * z * x) >> 8;
+
+  FieldSums& field = out.field;
+  if (push.depth > field.max_depth) {
+    field.max_depth = push.depth;
+    field.deepest_static = static_id;
+    field.deepest_mobile = mobile;
+  } else if (push.depth == field.max_depth && push.depth > 0) {
+    field.deepest_static = std::min(field.deepest_static, static_id);
+    field.deepest_mobile = std::min(field.deepest_mobile, mobile);
+  }
+  if (push.sheet) out.flags |= kFlagSheet;
+  if (carrier == nullptr) return;
+  const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 20);
+  ++carrier->samples;
+  carrier->max_depth = std::max(carrier->max_depth, push.depth);
+  carrier->weight_sum += push.weight;
+  carrier->depth_sum += whole;
+  for (std::size_t k = 0; k < 3; ++k) {
+    add_term(carrier->push[k], whole * (n[static_cast<int>(k)] >> 10));
+    add_term(carrier->moment[k], (whole >> 10) * r[static_cast<int>(k)]);
+  }
+}
+
+void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out) {
+  const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point));
+  if (below.triangle == DepthSearch::kNobody || is_ignored(static_id)) return;
+  const bool sheet = is_sheet(geometry_->mockup, static_id);
+  const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
+  add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against, below.steps, weight, sheet}, static_id, below.triangle, carrier, out);
+}
+
+void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out) {
+  const Int3 point = transform(pose, own);
+  if (!in_mockup_.inside(point)) return;
+  const DepthSearch::Depth below = mockup_depth_.below(point);
+  if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle)) return;
+  const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
+  const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
+  add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]), against, below.steps, weight, sheet}, below.triangle, mobile, nullptr, out);
+}
+
+void HostField::sum(PosedTool& tool, const FoundSets& found, const Wanted& wanted, Contacts& out) {
+  const LatticePose& pose = tool.pose();
+  const LatticeMesh &mockup = geometry_->mockup, &own = geometry_->tool;
+  out.field = {};
+  out.carriers.clear();
+  ignored_ = wanted.ignored;
+  touched_.clear();
+
+  // C_s ascends; of it CST and EST carry.
+  if (wanted.carriers)
+    for (const StaticResult& result : found.statics)
+      if ((result.state & (kStaticHit | kStaticSampled)) != 0) out.carriers.emplace_back().id = result.id;
+  const auto carrier = [&](std::uint32_t id) -> CarrierSums* {
+    const auto at = std::lower_bound(out.carriers.begin(), out.carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
+    return at != out.carriers.end() && at->id == id ? &*at : nullptr;
+  };
+  for (const FrameSample& sample : found.samples)
+    push_from_mockup(pose, sample.static_id, sample.point, mockup.sample_weight_q30[sample.static_id], carrier(sample.static_id), out);
+  for (const MobileResult& result : found.mobiles)
+    for_tool_samples(result.id, [&](const Int3& p) { push_from_tool(pose, result.id, p, own.sample_weight_q30[result.id], out); });
+
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  out.ignored_touched = touched_;
+  if (std::none_of(out.field.bins.begin(), out.field.bins.end(), [](const FieldBin& bin) { return bin.samples != 0; })) out.flags |= kFlagNoDirection;
+}
+
+}  // namespace palpate

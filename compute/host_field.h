@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "compute/depth_search.h"
+#include "compute/host_partition.h"
+#include "compute/host_sets.h"
+#include "compute/posed_tool.h"
+#include "model/contacts.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+
+/// The pressure field at a pose (docs/EXACTNESS.md section 8), on the host. One thread; make() keeps references to its arguments; sum() allocates only when a contact is
+/// larger than all before.
+class HostField {
+ public:
+  /// `mockup` and `fine`, the tool's partition, outlive this.
+  static HostField make(const SceneGeometry& geometry, const HostPartition& mockup, const HostPartition& fine, bool tool_has_inside);
+
+  /// What is wanted of a field.
+  struct Wanted {
+    const Ignored* ignored = nullptr;
+    bool carriers = true;
+  };
+  /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags.
+  void sum(PosedTool& tool, const FoundSets& found, const Wanted& wanted, Contacts& out);
+
+ private:
+  struct Push;
+  struct Body;
+  void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out);
+  void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out);
+  void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out);
+  bool is_ignored(std::uint32_t static_id);
+  template <class Take>
+  void for_tool_samples(std::uint32_t mobile, Take&& take) const;
+
+  const SceneGeometry* geometry_ = nullptr;
+  DepthSearch tool_depth_, mockup_depth_;
+  InsideSearch in_mockup_;
+  bool tool_has_inside_ = true;
+  int lever_shift_ = 0;
+  std::vector<std::uint32_t> own_begin_;   ///< by tool triangle, and one more; empty: the tool's samples are too many to list
+  std::vector<Int3> own_samples_;          ///< of the tool, in its lattice frame
+  const Ignored* ignored_ = nullptr;       ///< of this frame
+  std::vector<std::uint32_t> touched_;     ///< ignored patches, in any order
+};
+
+}  // namespace palpate
