@@ -17,20 +17,16 @@
 #include "compute/frame_plan.h"
 #include "compute/frame_recorder.h"
 #include "compute/frame_response.h"
-#include "compute/host_areas.h"
 #include "compute/host_contact.h"
-#include "compute/near_rays.h"
 #include "compute/posed_tool.h"
 #include "compute/run_tree.h"
 #include "compute/stage_memory.h"
+#include "model/contact_areas.h"
 
 namespace palpate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// C_s beyond which the device takes over (chosen): one of its own, and one that is the host's own processor.
-constexpr std::size_t kMostStatics = 4096, kMostStaticsHere = 65536;
 
 constexpr unsigned kQueriesBefore = 3;   // the one that makes the compilers begin
 
@@ -68,7 +64,7 @@ class RecordedFrame final : public Frame {
 
   Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
   Result<void> finish() override;
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   Result<void> enlarge() override;
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
@@ -89,11 +85,10 @@ class RecordedFrame final : public Frame {
   template <class Body>
   Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
   Result<void> run(CommandRecorder& commands, Contacts& out);
-  bool solve_on_host(const Held* held, const NearLists& near, Contacts& out);
-  bool join_on_host(const LatticePose& pose, const Held* held);
+  bool solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out);
   void read(Contacts& out);
   Reach reach(const LatticePose& pose) const;
-  bool write_input(const LatticePose& pose, const NearLists& near, bool rays, const Held* held);
+  void write_input(const LatticePose& pose, const NearLists& near, bool rays);
 
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
@@ -107,16 +102,11 @@ class RecordedFrame final : public Frame {
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
   std::optional<FrameResponse> response_;
-  std::optional<HostAreas> host_areas_;   ///< `refined`
-  std::optional<NearRays> near_rays_;     ///< where rays walk
   std::unique_ptr<HostContact> host_contact_;   ///< where small contacts are wholly the host's
   bool host_solved_ = false;              ///< the last query's contact was
-  std::vector<Int3> directions_;          ///< by counting sample, while the host joins
   FrameDecoder decoder_;
-  HostAreas::Answer joined_;              ///< of the last frame whose areas the host joined, else empty
-  /// From the pose to the sets; then, with contact, the whole response, or what follows once the host has joined areas. Null after a
-  /// failed record().
-  std::unique_ptr<CommandRecorder> detect_, respond_, follow_;
+  /// From the pose to the sets; then, with contact, the response. Null after a failed record().
+  std::unique_ptr<CommandRecorder> detect_, respond_;
   double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
@@ -125,7 +115,6 @@ class RecordedFrame final : public Frame {
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;         ///< that the last query counted
   std::uint32_t near_full_ = gpu::kNone;   ///< the list for which the last query found more than there is room for on the host
-  bool held_overflow_ = false;      ///< the last query brought more held triangles than there is room for
   std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
 };
 
@@ -166,20 +155,10 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, *runs_);
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
-  if (refined && device_.host_share != HostShare::kNear) {
-    auto areas = HostAreas::make(device_, geometry_, scene_, device_.host_share == HostShare::kContacts ? kMostStaticsHere : kMostStatics, plan_.zones);
-    if (!areas) return areas.error();
-    host_areas_.emplace(std::move(*areas));
-    if (scene_.rays_walk()) {
-      auto rays = NearRays::make(device_, geometry_.tool, scene_, detection_->order());
-      if (!rays) return rays.error();
-      near_rays_.emplace(std::move(*rays));
-      if (host_decides) {
-        auto contact = HostContact::make(device_, geometry_, scene_, *runs_, *host_areas_, *near_rays_);
-        if (!contact) return contact.error();
-        host_contact_ = std::move(*contact);
-      }
-    }
+  if (host_decides) {
+    auto contact = HostContact::make(device_, geometry_, scene_, runs_->order());
+    if (!contact) return contact.error();
+    host_contact_ = std::move(*contact);
   }
   std::optional<std::uint64_t> samples;
   if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
@@ -228,9 +207,9 @@ Result<void> RecordedFrame::enlarge() {
   std::array<std::uint32_t, gpu::kListCount> asked{};
   for (std::size_t i = 0; i < lists.size(); ++i) asked[i] = lists[i].asked;
   gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
-  if (near_full_ != gpu::kNone || held_overflow_) {   // before the frame began
+  if (near_full_ != gpu::kNone) {   // before the frame began
     state = {};
-    state.overflow = 1u << (near_full_ != gpu::kNone ? near_full_ : gpu::kListContactStatics);   // the held triangles' room follows the latter's
+    state.overflow = 1u << near_full_;
   }
   const FrameCapacity before = capacity_;
   if (!capacity_.grow(state, asked)) return bad_value(fixed_limit(state));
@@ -264,7 +243,6 @@ Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
 Result<void> RecordedFrame::record() {
   detect_.reset();
   respond_.reset();
-  follow_.reset();
   pipelines_.clear();
   auto detect = recorded([&](FrameRecorder& recorder) { detection_->record(recorder); });
   if (!detect) return detect.error();
@@ -274,15 +252,6 @@ Result<void> RecordedFrame::record() {
     detection_->record_end(recorder);
   });
   if (!respond) return respond.error();
-  if (host_areas_) {
-    auto follow = recorded([&](FrameRecorder& recorder) {
-      response_->record_after_areas(recorder);
-      recorder.barrier();
-      detection_->record_end(recorder);
-    });
-    if (!follow) return follow.error();
-    follow_ = std::move(*follow);
-  }
   detect_ = std::move(*detect);
   respond_ = std::move(*respond);
   return {};
@@ -310,7 +279,7 @@ Reach RecordedFrame::reach(const LatticePose& pose) const {
   return out;
 }
 
-bool RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, bool rays, const Held* held) {
+void RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, bool rays) {
   const Reach reach = this->reach(pose);
   gpu::FrameInput input{};
   input.near_triangles = near.triangles.count;
@@ -328,23 +297,10 @@ bool RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, 
   input.tool_high = reach.high;
   const std::int32_t shadow = std::max(reach.high.y - reach.low.y, reach.high.z - reach.low.z);
   while (shadow >> input.bin_shift >= detection_->bins()) ++input.bin_shift;
-  if (held != nullptr) {
-    input.last_direction = held->last_direction;
-    auto* statics = buffers_[gpu::kBindHeldStatics].as<gpu::HeldStatic>();
-    auto* areas = buffers_[gpu::kBindHeldAreas].as<gpu::HeldDirection>();
-    const std::uint64_t room = buffers_[gpu::kBindHeldStatics].bytes() / sizeof *statics;
-    for (const HeldArea& area : held->areas) {
-      if (input.held_areas == gpu::kMaxFrameAreas || input.held_statics + area.static_ids.size() > room) return false;
-      areas[input.held_areas] = {area.direction, area.sheet_sign};
-      for (const std::uint32_t id : area.static_ids) statics[input.held_statics++] = {id, input.held_areas};
-      ++input.held_areas;
-    }
-  }
   std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
-  return true;
 }
 
-Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Contacts& out) {
+Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   const auto start = Clock::now();
   if (!finished_ && ++unfinished_queries_ == kQueriesBefore) device_.compilers->begin();
   out.times.clear();
@@ -356,7 +312,6 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
     return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
   if (!pose.beyond_lattice) out.flags = frame_flags_;
   near_full_ = gpu::kNone;
-  held_overflow_ = false;
   host_solved_ = false;
   NearLists near;
   bool rays = false;
@@ -374,25 +329,20 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
-  if (host_contact_ && solve_on_host(held, near, out)) return {};
+  if (host_contact_ && solve_on_host(ignored, near, out)) return {};
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
   const auto writing = Clock::now();
-  held_overflow_ = !write_input(pose, near, rays, held);
-  if (held_overflow_) return truncate(out, "held triangles");
+  write_input(pose, near, rays);
   out.times.push_back({"upload", us_since(writing)});
 
   if (!detect_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
   waited_us_ = staged_us_ = 0;
-  joined_ = {};
   if (auto r = run(*detect_, out); !r) return r;
   if (buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state.contact != 0) {
-    const auto joining = Clock::now();
-    const bool joined = follow_ && join_on_host(pose, held);
-    if (joined) out.times.push_back({"areas", us_since(joining)});
-    if (auto r = run(joined ? *follow_ : *respond_, out); !r) return r;
+    if (auto r = run(*respond_, out); !r) return r;
   }
   out.times.push_back({"submit", std::max(0.0, waited_us_ - staged_us_)});   // what waiting cost beyond the stages themselves
   const auto finished = Clock::now();
@@ -402,19 +352,20 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Held* held, Con
 }
 
 /// False: the device has to.
-bool RecordedFrame::solve_on_host(const Held* held, const NearLists& near, Contacts& out) {
+bool RecordedFrame::solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out) {
   auto last = Clock::now();
   const auto stage = [&](const char* name) {
     const auto now = Clock::now();
     out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count()});
     last = now;
   };
-  if (!host_contact_->solve(posed_, held, near, stage)) return false;
-  decoder_.decode(host_contact_->output(), out);
+  if (!host_contact_->solve(posed_, ignored, near, out, stage)) return false;
   host_solved_ = true;
   pairs_ = out.pairs;
-  out.flags |= frame_flags_;
-  stage("readback");
+  if (out.contact && out.lists) {
+    gather_areas(geometry_, posed_.pose(), out);
+    stage("areas");
+  }
   return true;
 }
 
@@ -432,38 +383,9 @@ Result<void> RecordedFrame::run(CommandRecorder& commands, Contacts& out) {
   return {};
 }
 
-/// False: the device has to.
-bool RecordedFrame::join_on_host(const LatticePose& pose, const Held* held) {
-  const auto& result = *buffers_[gpu::kBindResult].as<const gpu::FrameResult>();
-  if (result.state.swallowed != 0) return false;
-  const ContactLists lists{
-      .mobiles = {buffers_[gpu::kBindResultMobiles].as<const gpu::MobileResult>(), result.mobile_count},
-      .samples = {buffers_[gpu::kBindSamples].as<const gpu::FrameSample>(), result.sample_count},
-      .statics = {buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(), result.static_count},
-      .areas = {buffers_[gpu::kBindAreas].as<gpu::AreaWork>(), gpu::kMaxFrameAreas},
-      .slots = {buffers_[gpu::kBindSlots].as<gpu::SlotWork>(), result.static_count},
-      .members = mapped<gpu::AreaMember>(gpu::kBindResultMembers, gpu::kListMembers),
-  };
-  HostAreas::Answer answer;
-  if (!host_areas_->solve(posed_, held, lists, answer)) return false;
-  if (near_rays_) {
-    directions_.clear();
-    for (const gpu::FrameSample& sample : lists.samples) directions_.push_back(lists.areas[host_areas_->area_of(sample.static_id, lists)].direction);
-    HostList<std::uint32_t> places{{buffers_[gpu::kBindRayPlaces].as<std::uint32_t>(), kRayPlaces}};
-    if (!near_rays_->find(pose, lists.samples, directions_, mapped<gpu::RayList>(gpu::kBindRayLists, gpu::kListSamples), places)) return false;
-  }
-  auto& state = *buffers_[gpu::kBindResponseState].as<gpu::ResponseState>();
-  state.areas = answer.areas;
-  state.requests = state.swallowed_flags = state.swallowed_steps = 0;
-  state.swallowed_direction = Int3(0);
-  joined_ = answer;
-  return true;
-}
-
 /// What the device left in mapped memory.
 void RecordedFrame::read(Contacts& out) {
-  auto* result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
-  if (joined_.areas != 0) result->member_count = joined_.members;   // the host's list
+  const auto* result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
   decoder_.decode({.result = result,
           .statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(),
           .mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>(),

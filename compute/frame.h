@@ -26,7 +26,7 @@ class Frame {
                                                const std::map<std::string, std::uint32_t>& first_capacity, const Plan& plan = {});
   /// As CollisionBackend::finish_preparing, query and enlarge.
   virtual Result<void> finish() = 0;
-  virtual Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) = 0;
+  virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;
   virtual Result<void> enlarge() = 0;
   /// As CollisionBackend::pairs.
   virtual Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const = 0;

@@ -31,19 +31,10 @@ void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
   area.id = from.id;
   area.flags = from.flags;
   area.direction = from.direction;
-  area.sheet_sign = static_cast<std::int8_t>(from.sheet_sign);
   area.rays = from.rays;
   area.max_height = from.max_height;
-  area.height_sum = points ? from.height_sum : 0;
-  area.weight_sum = from.weight_sum;
-  area.faded_sum = from.faded_sum;
-  area.faded_rest = from.faded_rest;
-  area.weight_slope = from.weight_slope;
-  area.height_slope = from.height_slope;
-  for (std::size_t k = 0; k < 3; ++k) {
-    area.moment[k] = points ? WideSum{from.moment_low[k], from.moment_high[k]} : WideSum{};
-    area.voxel_sum[k] = points ? from.voxel_sum[k] : 0;
-  }
+  area.height_sum = from.height_sum;
+  for (std::size_t k = 0; k < 3; ++k) area.voxel_sum[k] = points ? from.voxel_sum[k] : 0;
   area.voxel_count = points ? from.voxel_count : 0;
 }
 
@@ -123,8 +114,6 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
   const std::span members(output.members, out.lists ? result.member_count : 0);
   for (const AreaMember& m : by_id(members, [](const AreaMember& one) { return one.mobile; }, sorted_members_))
     out.areas[position[m.area]].mobile_ids.push_back(m.mobile);
-  for (const AreaPierce& p : std::span(output.pierces, result.pierce_count)) out.areas[position[p.area]].pierces.push_back(position[p.pierced]);
-  for (ContactArea& area : out.areas) std::sort(area.pierces.begin(), area.pierces.end());
 }
 
 void FrameDecoder::clear(Contacts& out) {
@@ -139,14 +128,15 @@ void FrameDecoder::clear(Contacts& out) {
       zone->clear();
       if (spare_zones_.size() < kMostSpareZones) spare_zones_.push_back(std::move(*zone));
     }
-    for (auto* ids : {&area->static_ids, &area->mobile_ids, &area->pierces}) ids->clear();
+    for (auto* ids : {&area->static_ids, &area->mobile_ids}) ids->clear();
     area->zones.clear();
     if (spare_areas_.size() < kMaxFrameAreas) spare_areas_.push_back(std::move(*area));
   }
   out.areas.clear();
   out.flags = 0;
-  out.swallowed_direction = Int3(0);
-  out.swallowed_height = 0;
+  out.field = {};
+  out.carriers.clear();
+  out.ignored_touched.clear();
 }
 
 void FrameDecoder::decode(const FrameOutput& output, Contacts& out) {
@@ -160,8 +150,6 @@ void FrameDecoder::decode(const FrameOutput& output, Contacts& out) {
   decode_sets(output, out);
   if (!out.contact || out.truncated) return;
   out.flags = result.flags;
-  out.swallowed_direction = result.swallowed_direction;
-  out.swallowed_height = result.swallowed_height;
   decode_areas(output, out);
 }
 

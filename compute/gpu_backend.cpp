@@ -54,9 +54,9 @@ class GpuBackend final : public CollisionBackend {
 
   std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override { return estimate_preparation(geometry, plan); }
 
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
-    if (auto r = frame_->query(pose, held, out); !r) return r;
+    if (auto r = frame_->query(pose, ignored, out); !r) return r;
     return device_->check_guards();
   }
 
