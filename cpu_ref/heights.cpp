@@ -74,7 +74,7 @@ std::optional<Exit> height(const Frame& frame, const Int3& origin, const Int3& d
   std::vector<Crossing> sorted = crossings;
   std::sort(sorted.begin(), sorted.end(), [](const Crossing& a, const Crossing& b) { return a.height < b.height; });
   std::uint32_t result = sorted.front().height;
-  if (frame.scene.refined() && !frame.scene.tool_open()) {
+  if (!frame.scene.tool_open()) {
     // From the far end back: `beyond` is the winding after all crossings of one height. The last height with 0 seen is the
     // smallest, and the farthest crossing has nothing beyond it.
     result = sorted.back().height;
@@ -120,6 +120,21 @@ void add_height(Area& area, std::uint32_t height, std::uint32_t weight_q30, cons
   out.height_slope += slope;
 }
 
+namespace {
+
+/// `paper`: the smallest height at which a ray crosses a tool triangle of the area's.
+std::optional<std::uint32_t> height_in(const Frame& frame, const Area& area, const Int3& origin, const Int3& direction) {
+  std::vector<std::uint32_t> triangles;
+  const std::vector<Crossing> crossings = tool_crossings(frame, origin, direction, &triangles);
+  const std::vector<std::uint32_t>& own = area.out.mobile_ids;   // ascending, as C_m is
+  std::optional<std::uint32_t> least;
+  for (std::size_t i = 0; i < crossings.size(); ++i)
+    if (std::binary_search(own.begin(), own.end(), triangles[i]) && (!least || crossings[i].height < *least)) least = crossings[i].height;
+  return least;
+}
+
+}  // namespace
+
 void measure_heights(const Frame& frame, Area& area) {
   if (area.out.direction == Int3(0)) return;
   const Int3 down = -area.out.direction;
@@ -133,11 +148,11 @@ void measure_heights(const Frame& frame, Area& area) {
     }
     return;
   }
-  for (const std::uint32_t s : area.out.static_ids) {   // `paper`: the triangles' centroids
+  for (const std::uint32_t s : area.out.static_ids) {   // `paper`: the triangles' centroids, and the area's own C_m
     const Long3 sum = Long3(mesh.corner(s, 0)) + Long3(mesh.corner(s, 1)) + Long3(mesh.corner(s, 2));
     Int3 centroid;
     for (int k = 0; k < 3; ++k) centroid[k] = static_cast<std::int32_t>(floor_divide(sum[k], std::int64_t{3}));
-    if (const auto hit = height(frame, centroid, down)) add_height(area, hit->height, std::uint32_t{1} << 30, centroid, 0);
+    if (const auto hit = height_in(frame, area, centroid, down)) add_height(area, *hit, std::uint32_t{1} << 30, centroid, 0);
   }
 }
 
