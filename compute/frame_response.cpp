@@ -84,7 +84,8 @@ Result<FrameResponse> FrameResponse::create(VulkanDevice& device, bool refined, 
            {out.areas_direct_, spirv::areas_direct},
            {out.nearest_distance_, spirv::nearest_find, true},
            {out.areas_settle_, spirv::areas_settle, true},
-           {out.heights_trace_, spirv::heights_trace},
+           {out.heights_trace_, spirv::heights_trace, true},
+           {out.centroids_trace_, spirv::centroids_trace, false, true},
            {out.heights_sum_, spirv::heights_sum},
            {out.areas_follow_, spirv::areas_follow, true},
            {out.pierce_boxes_, spirv::pierce_boxes, true},
@@ -182,7 +183,7 @@ void FrameResponse::record_paper(FrameRecorder& recorder) const {
   recorder.run_dispatch(areas_direct_, kDispatchContactOne);
   recorder.barrier();
   recorder.stage("rays");
-  recorder.run_dispatch(heights_trace_, kDispatchContactStatics);
+  recorder.run_dispatch(centroids_trace_, kDispatchContactStatics);
   recorder.barrier();
   recorder.run_dispatch(heights_sum_, kDispatchHeightRuns);
   recorder.barrier();

@@ -38,7 +38,7 @@ class FrameResponse {
   Plan plan_;
   FrameShader begin_, areas_begin_, areas_join_, samples_count_, areas_number_, areas_gather_, held_count_, areas_associate_;
   FrameShader areas_first_, mobile_tiles_, mobile_samples_, mobile_normals_, areas_direct_, nearest_distance_, nearest_number_;
-  FrameShader areas_settle_, heights_trace_, heights_listed_, heights_sum_, areas_follow_, pierce_boxes_, pierce_find_, needle_pairs_;
+  FrameShader areas_settle_, heights_trace_, heights_listed_, centroids_trace_, heights_sum_, areas_follow_, pierce_boxes_, pierce_find_, needle_pairs_;
   FrameShader needle_trace_, points_sum_, swallow_march_, areas_result_;
 };
 

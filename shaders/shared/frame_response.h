@@ -75,6 +75,7 @@ struct SlotWork {
 struct MobileWork {
   uint32_t claimed;          // 1: its tiles are in the list
   uint32_t samples;          // of its samples, those at this pose in a V_bnd or V_int voxel
+  uint32_t nearest;          // the area that has it although no sphere holds it; kNone: the areas whose spheres hold it have it
 };
 
 // kMobileTile² points of a tool triangle's sample grid, beginning at grid point (first_u, first_v)·spacing.
