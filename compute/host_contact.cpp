@@ -10,10 +10,15 @@ Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, con
   if (!sets) return sets.error();
   out->sets_ = std::move(*sets);
   if (auto r = out->mockup_.read(device, scene.mockup.partition); !r) return r.error();
-  if (auto r = out->fine_.read(device, scene.fine.brick_slot ? scene.fine : scene.tool.partition); !r) return r.error();
+  if (auto r = out->tool_.read(device, scene.tool.partition); !r) return r.error();
+  auto boxes = SearchTables::boxes_of(device, geometry.tool, scene.tool.partition);
+  if (!boxes) return boxes.error();
+  out->tool_boxes_ = std::move(*boxes);
+  out->search_ = scene.search;
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
-  out->field_ = HostField::make(geometry, out->mockup_, out->fine_, tool.closed != 0 || tool.has_internal != 0);
+  out->field_ = HostField::make(geometry, DepthSearch(geometry.mockup, out->mockup_, scene.search->boxes), InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
+                                DepthSearch(geometry.tool, out->tool_, out->tool_boxes_), tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "compute/host_field.h"
 #include "compute/host_partition.h"
@@ -11,6 +12,7 @@
 #include "compute/near_lists.h"
 #include "compute/posed_tool.h"
 #include "compute/prepared_scene.h"
+#include "compute/search_tables.h"
 
 namespace palpate {
 
@@ -43,7 +45,9 @@ class HostContact {
   HostContact() = default;
   bool decide(PosedTool& tool, const NearLists& near, Contacts& out);
 
-  HostPartition mockup_, fine_;
+  HostPartition mockup_, tool_;
+  std::vector<std::uint8_t> tool_boxes_;   ///< SearchTables::boxes_of
+  std::shared_ptr<const SearchTables> search_;
   IdMarks statics_;
   HostSets sets_;
   HostField field_;

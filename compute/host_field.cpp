@@ -51,12 +51,12 @@ struct HostField::Push {
   bool sheet;
 };
 
-HostField HostField::make(const SceneGeometry& geometry, const HostPartition& mockup, const HostPartition& fine, bool tool_has_inside) {
+HostField HostField::make(const SceneGeometry& geometry, const DepthSearch& mockup_depth, const InsideSearch& in_mockup, const DepthSearch& tool_depth, bool tool_has_inside) {
   HostField out;
   out.geometry_ = &geometry;
-  out.tool_depth_ = DepthSearch(geometry.tool, fine);
-  out.mockup_depth_ = DepthSearch(geometry.mockup, mockup);
-  out.in_mockup_ = InsideSearch(geometry.mockup, mockup);
+  out.tool_depth_ = tool_depth;
+  out.mockup_depth_ = mockup_depth;
+  out.in_mockup_ = in_mockup;
   out.tool_has_inside_ = tool_has_inside;
   out.lever_shift_ = lever_shift(geometry.tool_radius);
   out.own_begin_.assign(1, 0);
@@ -152,7 +152,8 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
 }
 
 void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out) {
-  const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point));
+  const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point), near_tool_);
+  near_tool_ = below.triangle;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
@@ -162,7 +163,8 @@ void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_i
 void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out) {
   const Int3 point = transform(pose, own);
   if (!in_mockup_.inside(point)) return;
-  const DepthSearch::Depth below = mockup_depth_.below(point);
+  const DepthSearch::Depth below = mockup_depth_.below(point, near_mockup_);
+  near_mockup_ = below.triangle;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "compute/depth_search.h"
-#include "compute/host_partition.h"
 #include "compute/host_sets.h"
 #include "compute/posed_tool.h"
 #include "model/contacts.h"
@@ -15,8 +14,8 @@ namespace palpate {
 /// larger than all before.
 class HostField {
  public:
-  /// `mockup` and `fine`, the tool's partition, outlive this.
-  static HostField make(const SceneGeometry& geometry, const HostPartition& mockup, const HostPartition& fine, bool tool_has_inside);
+  /// What the arguments refer to outlives this.
+  static HostField make(const SceneGeometry& geometry, const DepthSearch& mockup_depth, const InsideSearch& in_mockup, const DepthSearch& tool_depth, bool tool_has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
@@ -43,6 +42,7 @@ class HostField {
   int lever_shift_ = 0;
   std::vector<std::uint32_t> own_begin_;   ///< by tool triangle, and one more; empty: the tool's samples are too many to list
   std::vector<Int3> own_samples_;          ///< of the tool, in its lattice frame
+  std::uint32_t near_tool_ = DepthSearch::kNobody, near_mockup_ = DepthSearch::kNobody;   ///< the last sample's nearest triangles
   const Ignored* ignored_ = nullptr;       ///< of this frame
   std::vector<std::uint32_t> touched_;     ///< ignored patches, in any order
 };
