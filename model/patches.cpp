@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "model/triangle.h"
@@ -10,15 +11,15 @@
 namespace palpate {
 namespace {
 
-/// Faces of at least so many s² keep the weights of the grid …
+/// Sides of at least so many s² keep the weights of the grid where it sees them fairly (chosen).
 constexpr double kLarge = 64;
-/// … unless it is off by more than this part of their area: they are thin. (Both chosen: a square of that size is seen as 7² to 9² points.)
-constexpr double kFairlySeen = 0.125;
-/// A face whose samples stand for less than this part of it gets extra samples. Weights are at most √3: up to it, they can grow to fit.
+/// What the grid may miss or add of a side's area, and of the sum of its normals, as a part of its area (chosen).
+constexpr double kFairly = 0.0625;
+/// Samples that stand for less than this part of a side can't stand for it all: weights are at most √3, and 2√3 < 4 is what Q30 holds.
 constexpr double kHardlySeen = 0.5;
-/// An extra sample of a face that needs several stands for at most this part of s² (chosen: denser than the grid, for such faces are narrow).
+/// An extra sample of a side larger than s² stands for at most this part of s² (chosen: denser than the grid, for such sides are narrow).
 constexpr double kExtraShare = 0.25;
-constexpr double kMostPoints = 1024;   // on one triangle (chosen: memory)
+constexpr double kMostExtras = 1024;   // on one triangle (chosen: memory)
 
 /// Triangles joined into components; the smallest is the root.
 class Components {
@@ -67,10 +68,7 @@ Numbering number_smooth(const LatticeMesh& mesh, const Together& together) {
   return out;
 }
 
-double area_of(const LatticeMesh& mesh, std::uint32_t triangle) {
-  const Vec3 normal(raw_normal(mesh, triangle));
-  return std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z) / 2;
-}
+double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
 bool looks_back(const LatticeMesh& mesh, std::uint32_t triangle) { return mesh.unit_normal_q30[triangle][mesh.sample_axis[triangle]] < 0; }
 
@@ -84,18 +82,6 @@ std::int64_t ceil_divide(std::int64_t value, std::int64_t divisor) { return -flo
 std::uint32_t weight_q30(double weight) {
   return static_cast<std::uint32_t>(std::clamp(std::nearbyint(weight * 0x1p30), 1.0, 4294967295.0));
 }
-
-/// A side of a patch: what of it looks the same way. All of it is sampled by one grid, so it is seen well or not as a whole.
-struct Side {
-  double area = 0;         ///< steps²
-  double seen = 0;         ///< steps² that the grid's samples stand for
-  double factor = 1;       ///< of the samples' weights
-  double missing = 0;      ///< part of its area that extra samples stand for
-  // The triangles that the next extra samples stand for.
-  double gathered = 0;     ///< their missing area
-  double largest_area = 0;
-  std::uint32_t largest = 0;
-};
 
 /// Cuts a triangle from its longest edge to the opposite corner into `count` of equal area; the centroid of number i of them, rounded down.
 Int3 middle_of_share(const LatticeMesh& mesh, std::uint32_t triangle, std::int64_t i, std::int64_t count) {
@@ -115,15 +101,62 @@ Int3 middle_of_share(const LatticeMesh& mesh, std::uint32_t triangle, std::int64
   return out;
 }
 
-/// Puts extra samples on the largest triangle of those gathered.
-void place_extras(LatticeMesh& mesh, Side& side, double square) {
-  const double weight = side.gathered / square;
-  const bool one = side.missing * side.area <= square;
-  const double count = one ? 1 : std::clamp(std::ceil(weight / kExtraShare), 1.0, kMostPoints);
-  const auto whole = static_cast<std::int64_t>(count);
-  for (std::int64_t i = 0; i < whole; ++i)
-    mesh.extra_samples.push_back({side.largest, middle_of_share(mesh, side.largest, i, whole), weight_q30(weight / count)});
-  side.gathered = side.largest_area = 0;
+/// Area by where it faces, steps².
+struct Facing {
+  double area = 0;
+  Vec3 sum{0};      ///< of n̂
+  Vec3 spread{0};   ///< of |n̂|, each component by itself: a round side seen at its middle alone has the right sum
+  void add(double more, const Vec3& normal) {
+    area += more;
+    sum += more * normal;
+    spread += more * glm::abs(normal);
+  }
+};
+
+/// What looks one way of a patch, and hangs together: all of it is sampled by the same columns of the grid.
+struct Side {
+  std::span<const std::uint32_t> triangles;   ///< ascending
+  Facing facing{};
+};
+
+/// The factor of its samples' weights with which they stand for all of it; 0 when they can't.
+double factor_of(const LatticeMesh& mesh, std::int32_t spacing, double square, Side& side) {
+  Facing &is = side.facing, seen;
+  for (const std::uint32_t t : side.triangles) {
+    const Vec3 raw(raw_normal(mesh, t));
+    const double size = length(raw);
+    is.add(size / 2, raw / size);
+    if (const std::uint64_t samples = count_samples(mesh, t, spacing); samples != 0)
+      seen.add(square * static_cast<double>(samples) * (mesh.sample_weight_q30[t] * 0x1p-30), raw / size);
+  }
+  const double fair = kFairly * is.area;
+  const auto fits = [&](double factor) {
+    return length(factor * seen.sum - is.sum) <= fair && length(factor * seen.spread - is.spread) <= fair;
+  };
+  if (is.area >= kLarge * square && std::abs(seen.area - is.area) <= fair && fits(1)) return 1;
+  if (seen.area < kHardlySeen * is.area) return 0;
+  const double factor = is.area / seen.area;
+  return fits(factor) ? factor : 0;   // a round side seen only in places would push askew
+}
+
+/// Gives a side extra samples for all of its area.
+void place_extras(LatticeMesh& mesh, double square, const Side& side) {
+  const bool one = side.facing.area <= square;
+  double gathered = 0, most = -1;
+  std::uint32_t largest = 0;
+  for (const std::uint32_t t : side.triangles) {
+    const Vec3 raw(raw_normal(mesh, t));
+    gathered += length(raw) / 2;
+    if (const double shows = glm::dot(raw, side.facing.sum); shows > most) most = shows, largest = t;
+    if (t != side.triangles.back() && (one || gathered < kExtraShare * square)) continue;
+    const double weight = gathered / square;
+    const double count = one ? 1 : std::clamp(std::ceil(weight / kExtraShare), 1.0, kMostExtras);
+    const auto whole = static_cast<std::int64_t>(count);
+    for (std::int64_t i = 0; i < whole; ++i)
+      mesh.extra_samples.push_back({largest, middle_of_share(mesh, largest, i, whole), weight_q30(weight / count)});
+    gathered = 0;
+    most = -1;
+  }
 }
 
 }  // namespace
@@ -169,36 +202,26 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   const Numbering sides = number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) {
     return mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] && looks_back(mesh, a) == looks_back(mesh, b);
   });
-  std::vector<Side> list(sides.count);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    if (mesh.collapsed(t)) continue;
-    Side& side = list[sides.of[t]];
-    side.area += area_of(mesh, t);
-    if (const std::uint64_t samples = count_samples(mesh, t, spacing); samples != 0)
-      side.seen += square * static_cast<double>(samples) * (mesh.sample_weight_q30[t] * 0x1p-30);
-  }
-  for (Side& side : list) {
-    if (side.area >= kLarge * square && std::abs(side.seen - side.area) <= kFairlySeen * side.area) continue;
-    if (side.seen >= kHardlySeen * side.area) {
-      side.factor = side.area / side.seen;
-    } else {
-      side.missing = 1 - side.seen / side.area;
-    }
-  }
+  std::vector<std::uint32_t> begin(std::size_t{sides.count} + 1, 0), order(count);
+  for (const std::uint32_t side : sides.of)
+    if (side != kNoPatch) ++begin[side + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (std::uint32_t t = 0; t < count; ++t)
+    if (sides.of[t] != kNoPatch) order[next[sides.of[t]]++] = t;
+
   mesh.field_weight_q30.assign(count, 0);
   mesh.extra_samples.clear();
-  for (std::uint32_t t = 0; t < count; ++t) {
-    if (mesh.collapsed(t)) continue;
-    Side& side = list[sides.of[t]];
-    mesh.field_weight_q30[t] = side.factor == 1 ? mesh.sample_weight_q30[t] : weight_q30(side.factor * (mesh.sample_weight_q30[t] * 0x1p-30));
-    if (side.missing == 0) continue;
-    const double area = area_of(mesh, t);
-    side.gathered += side.missing * area;
-    if (area > side.largest_area) side.largest_area = area, side.largest = t;
-    if (side.missing * side.area > square && side.gathered >= kExtraShare * square) place_extras(mesh, side, square);
+  for (std::uint32_t s = 0; s < sides.count; ++s) {
+    Side side{.triangles = std::span(order).subspan(begin[s], begin[s + 1] - begin[s])};
+    const double factor = factor_of(mesh, spacing, square, side);
+    if (factor == 0) {
+      place_extras(mesh, square, side);
+      continue;
+    }
+    for (const std::uint32_t t : side.triangles)
+      mesh.field_weight_q30[t] = factor == 1 ? mesh.sample_weight_q30[t] : weight_q30(factor * (mesh.sample_weight_q30[t] * 0x1p-30));
   }
-  for (Side& side : list)
-    if (side.gathered > 0) place_extras(mesh, side, square);
   std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),
                    [](const ExtraSample& a, const ExtraSample& b) { return a.triangle < b.triangle; });
 }
