@@ -178,15 +178,15 @@ TEST(FieldWeights, OfLargeFacesAreTheGrids) {
   EXPECT_TRUE(box.extra_samples.empty());
 }
 
-// The push of a pressure that is the same everywhere. What each side of the mantle lacks, at most a tenth of a face's normals' spread, is
-// how unevenly its own samples are spread over its quarter of a turn.
+// The push of a pressure that is the same everywhere, nothing all in all. A side, a quarter of the mantle, is off by a sixteenth of its area at
+// most; three sides look the way of an axis at least in part, and a shadow is 1/π of the mantle: 3/64 π = 15 % of it.
 TEST(FieldWeights, OfAThinPinCancel) {
   for (int i = 0; i < 20; ++i) {
     const LatticeMesh pin = build(solids::cylinder(0.0005, 0.05), {0.00131 * i, 0.00117 * i, 0.00071 * i});
     const Seen whole = seen(pin);
     const double area = measure(pin).area;
     EXPECT_NEAR(whole.area, area, 1) << i;
-    EXPECT_LT(glm::length(whole.normal), 0.02 * area) << i;
+    EXPECT_LT(glm::length(whole.normal), area / 16) << i;
     // Pressed from any side it is felt: a quarter of the mantle looks each way.
     double away[6] = {};
     const auto add = [&](std::uint32_t t, double weight) {
@@ -196,7 +196,7 @@ TEST(FieldWeights, OfAThinPinCancel) {
     for (std::uint32_t t = 0; t < pin.triangles.size(); ++t) add(t, static_cast<double>(count_samples(pin, t, kSpacing)) * pin.field_weight_q30[t]);
     for (const ExtraSample& extra : pin.extra_samples) add(extra.triangle, extra.weight_q30);
     const double shadow = 0.001 * 0.05 / kStep / kStep, end = shadow / 0.05 * 0.001 * 0.7854;
-    for (int k = 0; k < 4; ++k) EXPECT_NEAR(away[k], shadow, 0.1 * shadow) << i << " " << k;
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(away[k], shadow, 0.15 * shadow) << i << " " << k;
     for (int k = 4; k < 6; ++k) EXPECT_NEAR(away[k], end, 0.01 * end) << i << " " << k;   // 48 sides: 0.3 % less than a circle
   }
 }
