@@ -31,7 +31,7 @@ class HostContact {
     if (!decide(tool, near, out)) return false;
     stage("sets");
     if (!out.contact) return true;
-    field_.sum(tool, found_, {.ignored = ignored, .carriers = out.lists}, out);
+    field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, out);
     stage("field");
     return true;
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compute/depth_search.h"
@@ -23,11 +24,21 @@ class HostField {
     bool carriers = true;
   };
   /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags.
-  void sum(PosedTool& tool, const FoundSets& found, const Wanted& wanted, Contacts& out);
+  void sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, Contacts& out);
 
  private:
   struct Push;
-  struct Body;
+  /// Extra samples by triangle; few have some.
+  class Extras {
+   public:
+    Extras() = default;
+    explicit Extras(const LatticeMesh& mesh);
+    std::span<const ExtraSample> of(std::uint32_t triangle) const;
+
+   private:
+    std::span<const ExtraSample> all_;
+    std::vector<std::uint64_t> has_;   ///< a bit a triangle
+  };
   void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out);
   void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out);
   void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out);
@@ -38,6 +49,7 @@ class HostField {
   const SceneGeometry* geometry_ = nullptr;
   DepthSearch tool_depth_, mockup_depth_;
   InsideSearch in_mockup_;
+  Extras mockup_extras_, tool_extras_;
   bool tool_has_inside_ = true;
   int lever_shift_ = 0;
   std::vector<std::uint32_t> own_begin_;   ///< by tool triangle, and one more; empty: the tool's samples are too many to list

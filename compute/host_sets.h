@@ -34,6 +34,9 @@ class HostSets {
   /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. False: C_s has more than `most_statics`; `out` is then half written.
   bool decide(PosedTool& tool, const NearLists& near, IdMarks& statics, std::size_t most_statics, FoundSets& out);
 
+  /// Whether a world lattice point lies inside the tool (section 4).
+  bool inside(PosedTool& tool, const Int3& point) const;
+
  private:
   void decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out);
   void decide_voxels(PosedTool& tool, const NearLists& near);
@@ -52,7 +55,6 @@ class HostSets {
   bool open_inside(PosedTool& tool, const Int3& point, const OpenPoint& open);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
   bool walks_out(PosedTool& tool, const Int3& point) const;
-  bool inside(PosedTool& tool, const Int3& point) const;
   template <class Take>
   void scan(const gpu::SampleChunk& chunk, Take&& take) const;
 
