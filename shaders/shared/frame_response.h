@@ -134,14 +134,14 @@ struct AreaWork {
 };
 
 // ContactFlag of model/contacts.h.
-PALPATE_CONSTANT uint32_t kAreaFlagNeedle = 1u << 0;
-PALPATE_CONSTANT uint32_t kAreaFlagSwallowed = 1u << 1;
-PALPATE_CONSTANT uint32_t kAreaFlagCancelled = 1u << 3;
-PALPATE_CONSTANT uint32_t kAreaFlagHeld = 1u << 4;
-PALPATE_CONSTANT uint32_t kAreaFlagNearestExternal = 1u << 5;
-PALPATE_CONSTANT uint32_t kAreaFlagSheet = 1u << 6;
-PALPATE_CONSTANT uint32_t kAreaFlagToolOpen = 1u << 7;
-PALPATE_CONSTANT uint32_t kAreaFlagNoDirection = 1u << 8;
+PALPATE_CONSTANT uint32_t kAreaFlagCancelled = 1u << 0;
+PALPATE_CONSTANT uint32_t kAreaFlagSheet = 1u << 1;
+PALPATE_CONSTANT uint32_t kAreaFlagToolOpen = 1u << 2;
+PALPATE_CONSTANT uint32_t kAreaFlagNoDirection = 1u << 3;
+PALPATE_CONSTANT uint32_t kAreaFlagNeedle = 1u << 8;
+PALPATE_CONSTANT uint32_t kAreaFlagSwallowed = 1u << 9;
+PALPATE_CONSTANT uint32_t kAreaFlagHeld = 1u << 12;
+PALPATE_CONSTANT uint32_t kAreaFlagNearestExternal = 1u << 13;
 
 PALPATE_SHARED_END
 #endif
