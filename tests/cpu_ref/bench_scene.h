@@ -24,17 +24,15 @@ struct BenchScene {
       throw std::runtime_error(prepared.error().sentence);
   }
 
-  /// A lone query, unless `held` is given: then it is used and brought up to date.
-  const ContactResponse& ask(const Pose& pose, Held* held = nullptr) {
+  const ContactResponse& ask(const Pose& pose) {
     const Result<LatticePose> rounded = to_lattice(pose, *geometry);
     if (!rounded) throw std::runtime_error(rounded.error().sentence);
-    if (const Result<void> answered = backend->query(*rounded, held, contacts); !answered)
+    if (const Result<void> answered = backend->query(*rounded, nullptr, contacts); !answered)
       throw std::runtime_error(answered.error().sentence);
-    respond(contacts, *rounded, *geometry, plan.profile, kStiffness, response, held);
-    if (held != nullptr) remember(contacts, response, *held);
+    respond(contacts, *rounded, *geometry, plan.profile, kStiffness, response);
     return response;
   }
-  const ContactResponse& ask(const Vec3& position, Held* held = nullptr) { return ask(Pose{position, Quat(1, 0, 0, 0)}, held); }
+  const ContactResponse& ask(const Vec3& position) { return ask(Pose{position, Quat(1, 0, 0, 0)}); }
 
   double voxel() const { return geometry->mockup_grid.size * geometry->lattice.step_m; }     ///< m
   double spacing() const { return geometry->sample_spacing * geometry->lattice.step_m; }     ///< m

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "model/patches.h"
 #include "model/geometry_build.h"
 #include "tests/cpu_ref/lattice_solids.h"
 
@@ -47,6 +48,9 @@ inline SceneGeometry scene_of(const std::vector<Triangle>& mockup, const std::ve
   scene.mockup_grid = make_grid(scene.mockup.box_min, scene.mockup.box_max, voxel);
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;
+  for (LatticeMesh* mesh : {&scene.mockup, &scene.tool}) weigh_for_field(scene.sample_spacing, *mesh);
+  scene.reference_area_m2 = 1;
+  scene.tool_gyration_m = 1;
   return scene;
 }
 

@@ -42,7 +42,7 @@ struct Case {
   std::string about;               ///< what it meets that others do not, and what is known of it beforehand
   std::function<Result<TestScene>(std::uint64_t seed)> make;   ///< most scenes do not depend on the seed
   Profile profile = Profile::kRefined;
-  bool held = false;               ///< poses come in chains of kChain: each frame remembers the one before, and moves on a little
+  bool ignoring = false;           ///< every second patch is ignored; poses come in chains of kChain, each a little further than the one before
   bool killer = false;             ///< one of the few that together reach every rule, for those who need an answer in seconds
   bool degenerate = false;         ///< of a family where points, edges and faces coincide or a surface is not a solid's
   int poses = 24;                  ///< how many the stored hashes cover
@@ -57,7 +57,7 @@ inline Case paper(Case c) {
   return c;
 }
 
-inline constexpr int kChain = 8;   ///< poses of a chain of a `held` case
+inline constexpr int kChain = 8;   ///< poses of a chain of an `ignoring` case
 
 /// All cases, in the order of their hashes.
 std::vector<Case> all_cases();

@@ -110,42 +110,43 @@ class Runner {
   void ask_poses(const TestScene& scene) {
     const SceneGeometry& geometry = scene.geometry;
     const std::uint64_t count = settings_.poses.value_or(static_cast<std::uint64_t>(case_.poses));
-    const std::uint64_t first = case_.held ? settings_.first - settings_.first % kChain : settings_.first;
-    Held held;
+    const std::uint64_t first = case_.ignoring ? settings_.first - settings_.first % kChain : settings_.first;
+    // Every second patch of the mock-up, where a case leaves contacts out.
+    Ignored ignored;
+    for (std::uint32_t patch = 0; patch < geometry.mockup.patch_count; patch += 2) ignored.patches.push_back(patch);
     LatticePose pose;
     for (std::uint64_t i = first; i < settings_.first + count; ++i) {
       Random random(settings_.seed, i);
       Known known;
-      if (case_.held && i % kChain != 0)
+      if (case_.ignoring && i % kChain != 0)
         pose = moved_on(pose, geometry.mockup_grid.size, random);
       else
-        pose = scene.pose(geometry, random, known), held = {};
+        pose = scene.pose(geometry, random, known);
       counted_ = i >= settings_.first;
       where_ = "pose " + std::to_string(i) + ", " + text_of(pose);
-      if (!ask(geometry, pose, case_.held ? &held : nullptr, known)) return;
-      if (case_.held) remember(answer_.contacts, answer_.response, held);
+      if (!ask(geometry, pose, case_.ignoring ? &ignored : nullptr, known)) return;
     }
   }
 
   /// One pose, every back end. False: no more.
-  bool ask(const SceneGeometry& geometry, const LatticePose& pose, const Held* held, const Known& known) {
-    if (!query(*backends_[0], geometry, pose, held, answer_)) return false;
+  bool ask(const SceneGeometry& geometry, const LatticePose& pose, const Ignored* ignored, const Known& known) {
+    if (!query(*backends_[0], geometry, pose, ignored, answer_)) return false;
     if (!counted_) return true;
     count(geometry, pose, known);
     if (settings_.twice) {
-      if (!query(*backends_[0], geometry, pose, held, other_)) return false;
+      if (!query(*backends_[0], geometry, pose, ignored, other_)) return false;
       compare(first_difference(answer_, other_), "two runs of " + backends_[0]->name());
     }
     for (std::size_t b = 1; b < backends_.size(); ++b) {
-      if (!query(*backends_[b], geometry, pose, held, other_)) return false;
+      if (!query(*backends_[b], geometry, pose, ignored, other_)) return false;
       compare(first_difference(answer_, other_), backends_[0]->name() + ", " + backends_[b]->name());
     }
     compare(first_difference(known, answer_.contacts, answer_.pairs), backends_[0]->name() + ", known beforehand");
     return out_.findings.size() < static_cast<std::size_t>(settings_.most_differences);
   }
 
-  bool query(CollisionBackend& backend, const SceneGeometry& geometry, const LatticePose& pose, const Held* held, Answer& answer) {
-    if (const auto asked = backend.query(pose, held, answer.contacts); !asked) {
+  bool query(CollisionBackend& backend, const SceneGeometry& geometry, const LatticePose& pose, const Ignored* ignored, Answer& answer) {
+    if (const auto asked = backend.query(pose, ignored, answer.contacts); !asked) {
       differs(backend.name() + " failed: " + asked.error().sentence + "; " + where_);
       return false;
     }
@@ -160,7 +161,7 @@ class Runner {
       return false;
     }
     answer.pairs = std::move(*pairs);
-    respond(answer.contacts, pose, geometry, case_.profile, kStiffness, answer.response, held);
+    respond(answer.contacts, pose, geometry, case_.profile, kStiffness, answer.response);
     return true;
   }
 
@@ -191,14 +192,14 @@ class Runner {
     count("IMT", !contacts.imt.empty());
     count("areas", contacts.areas.size() > 1);
     count("truncated", contacts.truncated);
-    bool zones = false, pierces = false;
+    bool zones = false;
     for (const ContactArea& area : contacts.areas) {
       zones = zones || area.zones.size() > 1;
-      pierces = pierces || !area.pierces.empty();
       out_.flags |= area.flags;
     }
     count("zones", zones);
-    count("pierces", pierces);
+    count("field", contacts.field.max_depth > 0);
+    count("ignored", !contacts.ignored_touched.empty());
     out_.flags |= contacts.flags | answer_.response.flags;
     for (const AreaResponse& area : answer_.response.areas) out_.flags |= area.flags;
   }

@@ -7,13 +7,13 @@
 namespace palpate::equivalence {
 namespace {
 
-Case chapter(const std::string& scene, std::uint64_t triangles, Profile profile, bool held) {
+Case chapter(const std::string& scene, std::uint64_t triangles, Profile profile, bool ignoring) {
   Case c;
-  c.name = scene + (profile == Profile::kPaper ? "_paper" : "") + (held ? "_held" : "");
+  c.name = scene + (profile == Profile::kPaper ? "_paper" : "") + (ignoring ? "_ignoring" : "");
   c.family = "chapter";
   c.about = "the chapter's scene with " + std::to_string(triangles) + " triangles and a tool of 1000";
   c.profile = profile;
-  c.held = held;
+  c.ignoring = ignoring;
   c.share = 0.013;   // 110 ms a pose, asked twice
   c.poses = 8;
   c.make = [=](std::uint64_t) -> Result<TestScene> {

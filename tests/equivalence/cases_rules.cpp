@@ -24,22 +24,22 @@ Case seam_with_a_common_corner() {
   append(table, {{Int3(-512, -512, 512), Int3(0, -512, 512), Int3(0, 512, 512)}, {Int3(-512, -512, 512), Int3(0, 512, 512), Int3(-512, 512, 512)}});
   const Int3 ring[5] = {{0, -512, 512}, {512, -512, 512}, {512, 512, 512}, {0, 512, 512}, {0, 100, 512}};
   for (int i = 0; i < 5; ++i) append(table, {{Int3(300, 3, 512), ring[i], ring[(i + 1) % 5]}});
-  return rule("seam_with_a_common_corner", "a seam between triangles that share a corner joins two halves of a table", table, small_box(),
+  return rule("seam_with_a_common_corner", "a seam between triangles that share a corner and no edge: two areas", table, small_box(),
               [](const SceneGeometry&, Random& random, Known& known) {
                 known.contact = true;
-                known.areas = 1;
+                known.areas = 2;
                 return unturned({random.between(-30, 30), random.between(-200, 200), 512 + random.between(-20, 40)});
               });
 }
 
-/// Three triangles in a plane, joined only by seams, the second with the first and the third: each of them is one area with the others.
+/// Three triangles in a plane that touch only where no edge is shared: an area each.
 Case seams_in_a_row() {
   const Triangles row = {{Int3(-20, -512, 0), Int3(-20, 512, 0), Int3(-512, 0, 0)}, {Int3(-20, -300, 0), Int3(20, 0, 0), Int3(-20, 300, 0)},
                          {Int3(20, 512, 0), Int3(20, -512, 0), Int3(512, 0, 0)}};
-  return rule("seams_in_a_row", "three triangles of which the second touches the first and the third: one area", row, small_box(),
+  return rule("seams_in_a_row", "three triangles of which the second touches the first and the third, with no common edge: three areas", row, small_box(),
               [](const SceneGeometry&, Random& random, Known& known) {
                 known.contact = true;
-                known.areas = 1;
+                known.areas = 3;
                 return unturned({random.between(-15, 15), random.between(-30, 30), random.between(-38, 38)});
               });
 }
@@ -418,7 +418,7 @@ Case bead_beside_a_swallowed_part() {
 
 std::vector<Case> rule_cases() {
   return {seam_with_a_common_corner(), inside_of_one_voxel(false), inside_of_one_voxel(true), inside_of_one_brick(false), inside_of_one_brick(true), votes(true), votes(false),
-          sheet_through_gc(), held(two_sheets()), held(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
+          sheet_through_gc(), ignoring(two_sheets()), ignoring(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
           swallowed_at_ties(), bridge(), long_tool(), seams_in_a_row(), numbered_in_turn(), crossed_wedges(0, false), crossed_wedges(1, false), crossed_wedges(1, true),
           nested_tool(Nested::kClosed), nested_tool(Nested::kOpen), nested_tool(Nested::kOpenWithInside), open_box_and_boxes(), needle_open(false), needle_open(true), needle_through_plates(), needle_in_a_fan(), fine_plates(),
           paper(two_sheets()), open_tubes(), swallowed_below_a_brick(), bead_in_a_swallowed_tool(), bead_beside_a_swallowed_part(), clamp_round_a_rod()};

@@ -98,9 +98,9 @@ Case solid(const char* name, const char* about, std::function<Mesh()> mockup, st
   c.make = [=](std::uint64_t) { return mesh_scene(mockup(), tool(), settings, pose); };
   return c;
 }
-Case held(Case c) {
-  c.name += "_held";
-  c.held = true;
+Case ignoring(Case c) {
+  c.name += "_ignoring";
+  c.ignoring = true;
   return c;
 }
 Case killer(Case c) {
@@ -124,7 +124,7 @@ std::vector<Case> solid_cases() {
   const Case on_sheet = solid("ball_on_sheet", "a mock-up without inside: the side is the tool's, or the one it had", square_sheet, ball, near);
   return {
       killer(ball_on_block),
-      killer(held(ball_on_block)),
+      killer(ignoring(ball_on_block)),
       killer(paper(ball_on_block)),
       solid("ball_deep_in_block", "EST, IMT and no crossing beside them", big_box, ball, deep),
       killer(boxes),
@@ -138,8 +138,8 @@ std::vector<Case> solid_cases() {
              0.2, 8),
       ball_on_ring,
       paper(ball_on_ring),
-      held(solid("box_in_ring", "several areas at once, each with what it held", ring, small_box, near)),
-      killer(held(solid("box_swallowed", "a tool wholly inside, with and without a direction to remember", big_box,
+      ignoring(solid("box_in_ring", "several areas at once, each with what it held", ring, small_box, near)),
+      killer(ignoring(solid("box_swallowed", "a tool wholly inside, with and without a direction to remember", big_box,
                         [] { return solids::box({-0.003, -0.002, -0.002}, {0.003, 0.002, 0.002}); }, inside, voxels(0.002, 0.001)))),
       shared(solid("too_many_areas", "more areas than a frame holds: both say so", [] { return posts(17); },
                    [] { return solids::box({-0.026, -0.026, -0.004}, {0.026, 0.026, 0.004}); }, on_posts, voxels(0.004, 0.001)),
@@ -147,7 +147,7 @@ std::vector<Case> solid_cases() {
       shared(killer(solid("many_areas", "nine posts: some areas, some zones", [] { return posts(3); },
                           [] { return solids::box({-0.004, -0.004, -0.002}, {0.004, 0.004, 0.002}); }, on_posts, voxels(0.002, 0.0005))),
              0.5, 12),
-      shared(killer(held(solid("hundred_areas", "more areas than a workgroup has invocations, each with what it held", [] { return posts(11); },
+      shared(killer(ignoring(solid("hundred_areas", "more areas than a workgroup has invocations, each with what it held", [] { return posts(11); },
                                [] { return solids::box({-0.017, -0.017, -0.003}, {0.017, 0.017, 0.003}); }, on_posts, voxels(0.003, 0.0005)))),
              0.02, 6),
       shared(solid("same_body_in_the_same_place", "all triangles coplanar with their own copies",
@@ -157,13 +157,13 @@ std::vector<Case> solid_cases() {
       killer(paper(solid("box_in_its_own_place", "all normals cancel and no rule is left: no direction, no force", small_box, small_box, near_identity))),
       killer(solid("needle", "a tool thinner than the samples' spacing: heights of pairs and of tool vertices", big_box,
                    [] { return solids::box({-0.0001, -0.0001, -0.01}, {0.0001, 0.0001, 0.01}); }, near)),
-      killer(held(through_plate)),
+      killer(ignoring(through_plate)),
       through_plate,
       killer(solid("open_ball", "a tool with holes that still has an inside", big_box, [] { return without_every(ball(), 7); }, near)),
       shared(killer(solid("open_fine_ball", "the same of many triangles, of which rays may meet some in each of several clusters", big_box,
                           [] { return without_every(solids::sphere(0.012, 24, 12), 7); }, near)), 0.5, 8),
       killer(solid("sheet_tool", "a tool without inside: tool_open", big_box, square_sheet, near)),
-      killer(held(on_sheet)),
+      killer(ignoring(on_sheet)),
       on_sheet,
       solid("ball_on_open_ring", "a mock-up with holes", [] { return without_every(ring(), 5); }, ball, near),
       killer(solid("ball_on_seams", "faces that touch without sharing edges: seams, found in preparation", blocks_with_seams, ball, near)),

@@ -1,5 +1,6 @@
 #include "tests/equivalence/contacts_difference.h"
 
+#include <array>
 #include <sstream>
 #include <vector>
 
@@ -38,6 +39,38 @@ class Finder {
   std::string found_;
 };
 
+void compare_sums(Finder& find, const std::string& name, const std::array<WideSum, 3>& a, const std::array<WideSum, 3>& b) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    find.field(name + ".low", a[k].low, b[k].low);
+    find.field(name + ".high", a[k].high, b[k].high);
+  }
+}
+
+void compare_carriers(Finder& find, const std::string& name, const CarrierSums& a, const CarrierSums& b) {
+  find.field(name + ".id", a.id, b.id);
+  find.field(name + ".samples", a.samples, b.samples);
+  find.field(name + ".max_depth", a.max_depth, b.max_depth);
+  find.field(name + ".weight_sum", a.weight_sum, b.weight_sum);
+  find.field(name + ".depth_sum", a.depth_sum, b.depth_sum);
+  compare_sums(find, name + ".push", a.push, b.push);
+  compare_sums(find, name + ".moment", a.moment, b.moment);
+}
+
+void compare_fields(Finder& find, const FieldSums& a, const FieldSums& b) {
+  for (std::size_t i = 0; i < kFieldBins; ++i) {
+    const std::string name = "field.bins[" + std::to_string(i) + "]";
+    find.field(name + ".samples", a.bins[i].samples, b.bins[i].samples);
+    compare_sums(find, name + ".push", a.bins[i].push, b.bins[i].push);
+    compare_sums(find, name + ".turn", a.bins[i].turn, b.bins[i].turn);
+    find.field(name + ".give", a.bins[i].give, b.bins[i].give);
+    for (std::size_t k = 0; k < 3; ++k) find.field(name + ".give_at", a.bins[i].give_at[k], b.bins[i].give_at[k]);
+    for (std::size_t k = 0; k < 6; ++k) find.field(name + ".give_spread", a.bins[i].give_spread[k], b.bins[i].give_spread[k]);
+  }
+  find.field("field.max_depth", a.max_depth, b.max_depth);
+  find.field("field.deepest_static", a.deepest_static, b.deepest_static);
+  find.field("field.deepest_mobile", a.deepest_mobile, b.deepest_mobile);
+}
+
 void compare_areas(Finder& find, const std::string& name, const ContactArea& a, const ContactArea& b) {
   find.field(name + ".id", a.id, b.id);
   find.list(name + ".static_ids", a.static_ids, b.static_ids);
@@ -45,24 +78,16 @@ void compare_areas(Finder& find, const std::string& name, const ContactArea& a, 
   for (std::size_t i = 0; i < a.zones.size() && i < b.zones.size(); ++i)
     find.list(name + ".zones[" + std::to_string(i) + "]", a.zones[i], b.zones[i]);
   find.list(name + ".mobile_ids", a.mobile_ids, b.mobile_ids);
-  find.field(name + ".sheet_sign", static_cast<int>(a.sheet_sign), static_cast<int>(b.sheet_sign));
   find.field(name + ".flags", a.flags, b.flags);
   find.field(name + ".direction", a.direction, b.direction);
   find.field(name + ".rays", a.rays, b.rays);
   find.field(name + ".max_height", a.max_height, b.max_height);
-  find.field(name + ".weight_sum", a.weight_sum, b.weight_sum);
   find.field(name + ".height_sum", a.height_sum, b.height_sum);
-  find.field(name + ".faded_sum", a.faded_sum, b.faded_sum);
-  find.field(name + ".faded_rest", a.faded_rest, b.faded_rest);
-  find.field(name + ".weight_slope", a.weight_slope, b.weight_slope);
-  find.field(name + ".height_slope", a.height_slope, b.height_slope);
   for (std::size_t k = 0; k < 3; ++k) {
-    find.field(name + ".moment.low", a.moment[k].low, b.moment[k].low);
-    find.field(name + ".moment.high", a.moment[k].high, b.moment[k].high);
     find.field(name + ".voxel_sum", a.voxel_sum[k], b.voxel_sum[k]);
   }
   find.field(name + ".voxel_count", a.voxel_count, b.voxel_count);
-  find.list(name + ".pierces", a.pierces, b.pierces);
+  compare_carriers(find, name + ".field", a.field, b.field);
 }
 
 }  // namespace
@@ -79,12 +104,14 @@ std::string first_difference(const Contacts& a, const Contacts& b) {
   find.list("bst", a.bst, b.bst);
   find.list("est", a.est, b.est);
   find.field("contact", a.contact, b.contact);
+  compare_fields(find, a.field, b.field);
+  find.list("ignored_touched", a.ignored_touched, b.ignored_touched);
+  find.field("carriers.size", a.carriers.size(), b.carriers.size());
+  for (std::size_t i = 0; i < a.carriers.size() && i < b.carriers.size(); ++i) compare_carriers(find, "carriers[" + std::to_string(i) + "]", a.carriers[i], b.carriers[i]);
   find.field("areas.size", a.areas.size(), b.areas.size());
   for (std::size_t i = 0; i < a.areas.size() && i < b.areas.size(); ++i)
     compare_areas(find, "areas[" + std::to_string(i) + "]", a.areas[i], b.areas[i]);
   find.field("flags", a.flags, b.flags);
-  find.field("swallowed_direction", a.swallowed_direction, b.swallowed_direction);
-  find.field("swallowed_height", a.swallowed_height, b.swallowed_height);
   return find.found();
 }
 

@@ -1,5 +1,6 @@
 #include "tests/equivalence/digest.h"
 
+#include <array>
 #include <bit>
 #include <vector>
 
@@ -18,6 +19,20 @@ template <class T>
 void add(Digest& digest, const std::vector<T>& list) {
   digest.add(list.size());
   for (const T& entry : list) digest.add(static_cast<std::uint64_t>(entry));
+}
+
+void add(Digest& digest, const std::array<WideSum, 3>& sums) {
+  for (const WideSum& sum : sums) {
+    add(digest, sum.low);
+    add(digest, sum.high);
+  }
+}
+void add(Digest& digest, const CarrierSums& carrier) {
+  for (const std::uint32_t word : {carrier.id, carrier.samples, carrier.max_depth}) digest.add(word);
+  add(digest, carrier.weight_sum);
+  add(digest, carrier.depth_sum);
+  add(digest, carrier.push);
+  add(digest, carrier.moment);
 }
 
 }  // namespace
@@ -50,23 +65,28 @@ void add(CaseHashes& hashes, const Contacts& contacts) {
     for (const auto& zone : area.zones) add(areas, zone);
     add(areas, area.static_ids);
     add(areas, area.mobile_ids);
-    add(areas, area.pierces);
-    add(areas, std::int64_t{area.sheet_sign});
     areas.add(area.flags);
 
     add(sums, area.direction);
     sums.add(area.rays);
     sums.add(area.max_height);
-    for (const std::int64_t sum : {area.height_sum, area.weight_sum, area.faded_sum, area.faded_rest, area.weight_slope, area.height_slope}) add(sums, sum);
-    for (const WideSum& moment : area.moment) {
-      add(sums, moment.low);
-      add(sums, moment.high);
-    }
+    add(sums, area.height_sum);
+    add(sums, area.field);
     for (const std::int64_t component : area.voxel_sum) add(sums, component);
     sums.add(area.voxel_count);
   }
-  add(sums, contacts.swallowed_direction);
-  sums.add(contacts.swallowed_height);
+  for (const FieldBin& bin : contacts.field.bins) {
+    sums.add(bin.samples);
+    add(sums, bin.push);
+    add(sums, bin.turn);
+    add(sums, bin.give);
+    for (const std::int64_t sum : bin.give_at) add(sums, sum);
+    for (const std::int64_t sum : bin.give_spread) add(sums, sum);
+  }
+  for (const std::uint32_t word : {contacts.field.max_depth, contacts.field.deepest_static, contacts.field.deepest_mobile}) sums.add(word);
+  sums.add(contacts.carriers.size());
+  for (const CarrierSums& carrier : contacts.carriers) add(sums, carrier);
+  add(sums, contacts.ignored_touched);
 }
 
 void add(CaseHashes& hashes, const ContactResponse& response) {
@@ -87,7 +107,13 @@ void add(CaseHashes& hashes, const ContactResponse& response) {
     add(d, area.force);
     add(d, area.torque);
     d.add(area.flags);
-    d.add(area.silent);
+  }
+  d.add(response.planes.size());
+  for (const ContactPlane& plane : response.planes) {
+    add(d, plane.normal);
+    add(d, plane.lever);
+    add(d, plane.force);
+    add(d, plane.stiffness);
   }
 }
 

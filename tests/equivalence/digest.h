@@ -25,9 +25,9 @@ class Digest {
 struct CaseHashes {
   Digest preparation;   ///< grids, class of every voxel, list of every boundary voxel; mock-up and (`refined`) tool
   Digest sets;          ///< contact, truncation, count of pairs, CST … EST, frame flags
-  Digest areas;         ///< areas, zones, who pierces whom, sheet signs, flags
-  Digest sums;          ///< directions, rays, heights, all integer sums, the swallowed tool's
-  Digest response;      ///< bits of d, n_c, cp, F and T, of areas and in sum
+  Digest areas;         ///< areas, zones, flags
+  Digest sums;          ///< directions, rays, heights, the field and what carries it
+  Digest response;      ///< bits of d, n_c, cp, F and T, of areas and in sum, and of the law's planes
 };
 
 void add(CaseHashes& hashes, const VoxelPartition& partition);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/patches.h"
 #include "model/lattice_build.h"
 #include "model/smooth_angle.h"
 
@@ -43,6 +44,9 @@ Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& to
   scene.mockup_grid = make_grid(scene.mockup.box_min, scene.mockup.box_max, voxel);
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;
+  for (LatticeMesh* mesh : {&scene.mockup, &scene.tool}) weigh_for_field(scene.sample_spacing, *mesh);
+  scene.reference_area_m2 = 1;
+  scene.tool_gyration_m = 1;
   double radius = 0;
   for (const Int3& v : scene.tool.vertices) radius = std::max(radius, std::sqrt(glm::dot(Vec3(v), Vec3(v))));
   scene.tool_radius = static_cast<std::int32_t>(std::ceil(radius)) + 3;

@@ -41,7 +41,7 @@ std::vector<Case> chosen(const Options& options) {
 void list(const std::vector<Case>& cases) {
   for (const Case& c : cases)
     std::printf("%-28s %-9s %3d poses%s%s%s%s\n    %s\n", c.name.c_str(), c.family.c_str(), c.poses,
-                c.profile == Profile::kPaper ? ", paper" : "", c.held ? ", held" : "", c.killer ? ", killer" : "",
+                c.profile == Profile::kPaper ? ", paper" : "", c.ignoring ? ", ignoring" : "", c.killer ? ", killer" : "",
                 c.degenerate ? ", degenerate" : "", c.about.c_str());
 }
 

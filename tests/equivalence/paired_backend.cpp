@@ -25,9 +25,9 @@ class PairedBackend final : public CollisionBackend {
     if (auto prepared = reference_->prepare(geometry, plan, progress); !prepared) return prepared;
     return device_->prepare(geometry, plan, progress);
   }
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
-    if (auto answered = reference_->query(pose, held, expected_); !answered) return answered;
-    if (auto answered = device_->query(pose, held, out); !answered) return answered;
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    if (auto answered = reference_->query(pose, ignored, expected_); !answered) return answered;
+    if (auto answered = device_->query(pose, ignored, out); !answered) return answered;
     EXPECT_EQ(first_difference(out, expected_), "") << "(gpu, cpu)";
     return {};
   }

@@ -58,9 +58,9 @@ inline Case rule(const char* name, const char* about, Triangles mockup, Triangle
   };
   return c;
 }
-inline Case held(Case c) {
-  c.name += "_held";
-  c.held = true;
+inline Case ignoring(Case c) {
+  c.name += "_ignoring";
+  c.ignoring = true;
   return c;
 }
 

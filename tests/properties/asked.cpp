@@ -11,6 +11,7 @@
 
 #include "compute/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
+#include "model/patches.h"
 #include "model/geometry_build.h"
 #include "model/triangle.h"
 
@@ -93,6 +94,9 @@ std::vector<Answer> ask(const Question& question, const std::vector<LatticePose>
   geometry.mockup_grid = make_grid(geometry.mockup.box_min, geometry.mockup.box_max, question.voxel);
   geometry.tool_grid = make_grid(geometry.tool.box_min, geometry.tool.box_max, question.voxel);
   geometry.sample_spacing = question.spacing;
+  for (LatticeMesh* mesh : {&geometry.mockup, &geometry.tool}) weigh_for_field(geometry.sample_spacing, *mesh);
+  geometry.reference_area_m2 = 1;
+  geometry.tool_gyration_m = 1;
   double radius = 0;
   for (const Int3& v : geometry.tool.vertices) radius = std::max(radius, glm::length(Vec3(v)));
   geometry.tool_radius = static_cast<std::int32_t>(std::ceil(radius)) + 3;   // as build_geometry does
