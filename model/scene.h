@@ -54,8 +54,8 @@ struct ControlSettings {
   double change_n_per_s = 100;               ///< law `corrected`: force that comes or goes with the areas, not the hand; 0: unlimited
   double slew_ms = 5;                        ///< from no force to the device's largest takes at least this long; 0: unlimited
   bool passivity = false;                    ///< damping takes back what the wall has made by itself
-  double coupling_n_per_m = 0;               ///< virtual coupling: the spring between device and tool, law `corrected` only; 0: rigid
-  double coupling_nm_per_rad = 0;            ///< the same for rotation
+  std::optional<double> coupling_n_per_m;    ///< virtual coupling: the spring between device and tool, law `corrected` only; 0: rigid; empty: auto
+  std::optional<double> coupling_nm_per_rad; ///< the same for rotation
 };
 
 /// A tick of the hand's intended motion. With a guide, position.x is the travel in m and the rest is unused.

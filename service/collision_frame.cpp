@@ -65,6 +65,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   result = {};
   result.tick = slot.sample.tick;
   result.change = felt_changes_;
+  result.field = profile_ == Profile::kRefined;
   result.rotation = slot.sample.pose.rotation;
   result.gc = slot.sample.pose.position + slot.sample.pose.rotation * geometry_.tool_gc_m;
   fill_law_result(slot.response, stiffness_, result);

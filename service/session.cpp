@@ -51,7 +51,8 @@ Result<void> check(const Scene& scene, const SessionOptions& options) {
   if (!(control.change_n_per_s >= 0 && std::isfinite(control.change_n_per_s)))
     return wrong("control.change_n_per_s", control.change_n_per_s, "a finite number of N/s from 0");
   if (!(control.slew_ms >= 0 && control.slew_ms <= kMaxFadeMs)) return wrong("control.slew_ms", control.slew_ms, "0 to 60000");
-  for (const auto& [name, value] : {std::pair{"control.coupling_n_per_m", control.coupling_n_per_m}, {"control.coupling_nm_per_rad", control.coupling_nm_per_rad}}) {
+  for (const auto& [name, spring] : {std::pair{"control.coupling_n_per_m", control.coupling_n_per_m}, {"control.coupling_nm_per_rad", control.coupling_nm_per_rad}}) {
+    const double value = spring.value_or(0);
     if (!(value >= 0 && std::isfinite(value))) return wrong(name, value, "a finite number from 0");
     if (value > 0 && control.law == ForceLaw::kPrinted) return wrong(name, value, "0 with law printed: the coupling needs the planes of law corrected");
   }
@@ -106,8 +107,8 @@ struct Run {
         options(session_options),
         device(safe),
         frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans),
-        tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m,
-             {loaded.scene.control.coupling_n_per_m, loaded.scene.control.coupling_nm_per_rad}),
+        tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m, couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
+             loaded.scene.response.profile == Profile::kRefined),
         observer(run_observer),
         ticks(tick_count(safe, session_options)) {}
 
