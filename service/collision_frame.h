@@ -48,6 +48,8 @@ class CollisionFrame {
   std::uint64_t frames() const { return frame_ns_.total(); }
   std::uint64_t truncated_frames() const { return truncated_frames_; }
   const char* truncated_capacity() const { return truncated_capacity_; }   ///< of the last truncated frame
+  std::uint64_t no_direction_frames() const { return no_direction_frames_; }   ///< with contact and nothing that pushes (kFlagNoDirection)
+  const PoseSample& no_direction_first() const { return no_direction_first_; }  ///< of the first of them
   std::uint64_t plan_changes() const { return plan_changes_; }
   std::uint32_t areas_max() const { return areas_max_; }
   std::uint64_t merged_frames() const { return merged_frames_; }           ///< more areas than the force law keeps apart
@@ -67,6 +69,8 @@ class CollisionFrame {
   std::uint32_t felt_changes_ = 0;
   std::uint64_t truncated_frames_ = 0, merged_frames_ = 0;
   const char* truncated_capacity_ = "";
+  std::uint64_t no_direction_frames_ = 0;
+  PoseSample no_direction_first_;
   std::uint32_t areas_max_ = 0;
 };
 

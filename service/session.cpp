@@ -264,6 +264,9 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.force_max_N = run.tick.force_max();
   out.torque_max_Nm = run.tick.torque_max();
   out.frames = run.frame.frames();
+  out.no_direction_frames = run.frame.no_direction_frames();
+  out.no_direction_tick = run.frame.no_direction_first().tick;
+  out.no_direction_pose = run.frame.no_direction_first().pose;
   out.watchdog_ticks = run.device.watchdog_ticks();
   out.saturated_ticks = run.device.saturated_ticks();
   out.dropped_ticks = run.dropped_ticks;
@@ -273,6 +276,12 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.failure = failure_of(run);
 
   const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
+  if (out.no_direction_frames > 0) {
+    const Vec3& at = out.no_direction_pose.position;
+    note(std::to_string(out.no_direction_frames) + (out.no_direction_frames > 1 ? " frames were" : " frame was") +
+         " in contact with nothing that says which way, and gave no force of it; the first at tick " + std::to_string(out.no_direction_tick) + ", the tool at " + number(at.x) + " " +
+         number(at.y) + " " + number(at.z) + " m");
+  }
   if (!run.realtime_note.empty()) note(run.realtime_note);
   for (std::string& sentence : backend.take_notes()) note(std::move(sentence));
   if (run.options.plans)
