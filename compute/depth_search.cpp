@@ -1,10 +1,12 @@
 #include "compute/depth_search.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 
 #include "compute/host_exact.h"
+#include "compute/turned_boxes.h"
 
 namespace palpate {
 
@@ -90,31 +92,58 @@ void DepthSearch::look_at(Search& search, std::uint32_t id) const {
   }
 }
 
-void DepthSearch::look_into(Search& search, const Int3& voxel) const {
-  const HostPartition::Voxel at = partition_->at(voxel);
-  if (at.boundary == kNoVoxel) return;
-  for (const std::uint32_t id : partition_->list(at.boundary)) look_at(search, id);
+/// What the V_bnd voxel lists, as far as its boxes there are near enough.
+void DepthSearch::look_into(Search& search, const Int3& voxel, std::uint32_t boundary) const {
+  const auto list = partition_->list(boundary);
+  const std::size_t count = list.size();
+  const GridConstants& grid = partition_->grid();
+  const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
+  // Everything in parts of the voxel, rounded down: a box reaches a part further than its highs, the point a part further than its place.
+  std::int32_t at[3];
+  for (int k = 0; k < 3; ++k) {
+    const double place = (search.point[k] - (grid.origin[k] + double(grid.size) * voxel[k])) * per_part_;
+    at[k] = static_cast<std::int32_t>(std::floor(std::clamp(place, -20000.0, 20000.0)));   // further away nothing is asked
+  }
+  const auto limit = [&] {
+    const double reach = static_cast<double>(search.best + kRounding) * per_part_ + 1;
+    return search.best == INT64_MAX || reach > 20000 ? std::int32_t{INT32_MAX} : static_cast<std::int32_t>(reach * reach) + 1;
+  };
+  constexpr std::size_t kAtOnce = 64;
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    const std::size_t some = std::min(kAtOnce, count - first);
+    std::uint8_t near[kAtOnce];
+    const std::int32_t most = limit(), x = at[0], y = at[1], z = at[2];
+    const std::uint8_t *lx = boxes + first, *ly = lx + count, *lz = ly + count, *hx = lz + count, *hy = hx + count, *hz = hy + count;
+    for (std::size_t i = 0; i < some; ++i) {
+      const std::int32_t dx = std::max(std::max(lx[i] - x - 1, x - hx[i] - 1), 0), dy = std::max(std::max(ly[i] - y - 1, y - hy[i] - 1), 0),
+                         dz = std::max(std::max(lz[i] - z - 1, z - hz[i] - 1), 0);
+      near[i] = dx * dx + dy * dy + dz * dz <= most ? 1 : 0;   // within 3 · 2^29
+    }
+    for (std::size_t i = 0; i < some; ++i)
+      if (near[i] != 0) look_at(search, list[first + i]);
+  }
 }
 
-DepthSearch::Depth DepthSearch::below(const Int3& point) const {
-  Search search{.point = point};
+DepthSearch::DepthSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes)
+    : mesh_(&mesh), partition_(&partition), boxes_(boxes), per_part_(static_cast<double>(kVoxelParts) / partition.grid().size) {}
+
+/// Voxels in rings round the point's own, as far as they may hold something nearer.
+void DepthSearch::look_round(Search& search) const {
   const GridConstants& grid = partition_->grid();
-  const Int3 home = partition_->voxel_of(point), in_home = point - (grid.origin + grid.size * home);
+  const Int3 home = partition_->voxel_of(search.point), in_home = search.point - (grid.origin + grid.size * home);
   const std::int64_t size = grid.size;
-  look_into(search, home);
-  // How far the point is from a row of voxels `by` away along an axis.
-  const auto gap = [&](int axis, std::int32_t by) -> std::int64_t {
-    return by == 0 ? 0 : by > 0 ? by * size - in_home[axis] : in_home[axis] + 1 - size * (by + 1) - 1;
-  };
   const Int3 voxels = grid.bricks * 8;
+  if (const HostPartition::Voxel at = partition_->at(home); at.boundary != kNoVoxel) look_into(search, home, at.boundary);
+  // How far the point is from voxels `by` away along an axis.
+  const auto gap = [&](int axis, std::int32_t by) -> std::int64_t { return by == 0 ? 0 : by > 0 ? by * size - in_home[axis] : in_home[axis] - size * (by + 1); };
+  const auto near = [&](std::int64_t squared) {
+    return search.best == INT64_MAX || squared <= (search.best + kRounding) * (search.best + kRounding);
+  };
   const std::int32_t last = std::max({voxels.x, voxels.y, voxels.z, std::abs(home.x), std::abs(home.y), std::abs(home.z)}) + 1;
   for (std::int32_t ring = 1; ring <= last; ++ring) {
     std::int64_t nearest = INT64_MAX;
     for (int axis = 0; axis < 3; ++axis) nearest = std::min({nearest, gap(axis, ring), gap(axis, -ring)});
-    if (search.best != INT64_MAX && nearest > search.best + kRounding) break;
-    const auto near = [&](std::int64_t squared) {
-      return search.best == INT64_MAX || squared <= (search.best + kRounding) * (search.best + kRounding);
-    };
+    if (search.best != INT64_MAX && nearest > search.best + kRounding) return;
     const Int3 low = glm::max(home - Int3(ring), Int3(0)), high = glm::min(home + Int3(ring), voxels - Int3(1));
     for (std::int32_t z = low.z; z <= high.z; ++z) {
       const std::int64_t gz = gap(2, z - home.z), square_z = gz * gz;
@@ -123,82 +152,133 @@ DepthSearch::Depth DepthSearch::below(const Int3& point) const {
         const std::int64_t gy = gap(1, y - home.y), square_y = square_z + gy * gy;
         if (!near(square_y)) continue;
         const bool face = std::abs(z - home.z) == ring || std::abs(y - home.y) == ring;
-        for (std::int32_t x = low.x; x <= high.x; ++x) {
-          if (!face && std::abs(x - home.x) != ring) {   // the ring's inside
-            x = std::max(x, home.x + ring - 1);
-            continue;
+        for (std::int32_t brick = low.x >> 3; brick <= high.x >> 3; ++brick) {
+          HostPartition::Row row = partition_->row(brick, y, z);
+          for (std::uint32_t bits = row.boundary; bits != 0; bits &= bits - 1, ++row.first) {
+            const std::int32_t x = 8 * brick + std::countr_zero(bits), away = std::abs(x - home.x);
+            if (away > ring || (!face && away != ring)) continue;
+            const std::int64_t gx = gap(0, x - home.x);
+            if (near(square_y + gx * gx)) look_into(search, Int3(x, y, z), row.first);
           }
-          const std::int64_t gx = gap(0, x - home.x);
-          if (near(square_y + gx * gx)) look_into(search, Int3(x, y, z));
         }
       }
     }
   }
+}
+
+DepthSearch::Depth DepthSearch::below(const Int3& point, std::uint32_t guess) const {
+  Search search{.point = point};
+  if (guess != kNobody) look_at(search, guess);
+  look_round(search);
   return {static_cast<std::uint32_t>(search.best), search.triangle};
+}
+
+InsideSearch::InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes)
+    : mesh_(&mesh), partition_(&partition), boxes_(boxes), per_part_(static_cast<double>(kVoxelParts) / partition.grid().size), way_(partition.grid().boundary_voxels) {
+  constexpr std::size_t kMostKnown = std::size_t{1} << 14;   // 256 KiB (chosen)
+  windings_.resize(kMostKnown);
 }
 
 bool InsideSearch::inside(const Int3& point) {
   const Int3 voxel = partition_->voxel_of(point);
   const HostPartition::Voxel at = partition_->at(voxel);
   if (at.boundary == kNoVoxel) return at.kind == kVoxelInternal;
-  if (!mesh_->closed) return by_walks(point, voxel);
-  // The planes of what the voxel lists cut it into cells through which nothing passes: the winding is one number for a cell. A point nearer to a plane than
-  // its rounded normal may be off is asked by itself.
-  constexpr std::int64_t kFar = std::int64_t{2} << 30;
-  const auto list = partition_->list(at.boundary);
-  std::uint32_t sides = 0;
-  bool far = list.size() <= CellMemo::kMostPlanes;
-  for (const std::uint32_t id : list) {
-    const std::int64_t height = product(mesh_->unit_normal_q30[id], point - mesh_->corner(id, 0));
-    sides = sides << 1 | static_cast<std::uint32_t>(height > 0);
-    far = far & (std::abs(height) > kFar);
+  if (mesh_->closed) {
+    std::uint8_t& way = way_[at.boundary];
+    if (way == 0) way = shortest_way(voxel);
+    const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1, true);
+    return out.net + (out.kind == kVoxelInternal ? winding_of(out.voxel) : 0) != 0;
   }
-  if (!far) return by_winding(point, voxel);
-  if (const std::optional<bool> known = cells_.find(at.boundary, sides)) return *known;
-  const bool answer = by_winding(point, voxel);
-  cells_.keep(at.boundary, sides, answer);
-  return answer;
+  int inside = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int way : {1, -1}) {
+      const Walk out = walk(point, voxel, axis, way, false);
+      inside += (out.kind == kVoxelInternal ? out.net >= 0 : out.net != 0) ? 1 : 0;
+    }
+  return inside > 3;
 }
 
-/// What is crossed along +x until nothing can be any more.
-bool InsideSearch::by_winding(const Int3& point, const Int3& voxel) const {
+/// Along an axis to the first voxel that is not V_bnd. `sheets`: their triangles count, too.
+InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const {
   const GridConstants& grid = partition_->grid();
+  Walk out{0, voxel, kVoxelBoundary};
+  Int3 from = point;
+  HostPartition::Voxel here = partition_->at(voxel);
+  do {
+    Int3 to = from;
+    to[axis] = grid.origin[axis] + grid.size * (out.voxel[axis] + (way > 0 ? 1 : 0));
+    if (from != to) out.net += crossed(from, to, axis, out.voxel, here.boundary, sheets);
+    from = to;
+    out.voxel[axis] += way;
+    here = partition_->at(out.voxel);
+  } while (here.boundary != kNoVoxel);
+  out.kind = here.kind;
+  return out;
+}
+
+/// What the way from one end to the other, along an axis and within a voxel, crosses of what the voxel lists: of those triangles that lie round it.
+int InsideSearch::crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary, bool sheets) const {
+  const GridConstants& grid = partition_->grid();
+  const auto list = partition_->list(boundary);
+  const std::size_t count = list.size();
+  const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
+  const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+  const auto part = [&](int k) { return static_cast<std::int32_t>((from[k] - (grid.origin[k] + double(grid.size) * voxel[k])) * per_part_); };
+  const std::int32_t at_u = part(u), at_v = part(v);
+  int net = 0;
+  constexpr std::size_t kAtOnce = 64;
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    const std::size_t some = std::min(kAtOnce, count - first);
+    std::uint8_t near[kAtOnce];
+    const std::uint8_t *lu = boxes + static_cast<std::size_t>(u) * count + first, *hu = lu + 3 * count, *lv = boxes + static_cast<std::size_t>(v) * count + first, *hv = lv + 3 * count;
+    // A part to spare: both are rounded down, and a double's rounding may come out on either side of a part's border.
+    for (std::size_t i = 0; i < some; ++i) near[i] = lu[i] <= at_u + 1 && hu[i] + 1 >= at_u && lv[i] <= at_v + 1 && hv[i] + 1 >= at_v ? 1 : 0;
+    for (std::size_t i = 0; i < some; ++i) {
+      if (near[i] == 0) continue;
+      const std::uint32_t id = list[first + i];
+      if (sheets || bounds_solid(*mesh_, id)) net += exact::segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+    }
+  }
+  return net;
+}
+
+/// The way from a V_bnd voxel on which fewest of them lie; V_ext before V_int, whose winding has to be asked.
+std::uint8_t InsideSearch::shortest_way(const Int3& voxel) const {
+  for (std::int32_t steps = 1;; ++steps) {   // the grid's outermost layer is V_ext, so it ends
+    std::uint8_t internal = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int up : {0, 1}) {
+        Int3 to = voxel;
+        to[axis] += up != 0 ? steps : -steps;
+        const HostPartition::Voxel there = partition_->at(to);
+        if (there.boundary != kNoVoxel) continue;
+        const auto way = static_cast<std::uint8_t>(axis * 2 + up + 1);
+        if (there.kind != kVoxelInternal) return way;
+        internal = way;
+      }
+    if (internal != 0) return internal;
+  }
+}
+
+/// Of a V_int voxel of a closed body: what is crossed from its middle on along +x until nothing can be any more.
+int InsideSearch::winding_of(const Int3& voxel) {
+  const GridConstants& grid = partition_->grid();
+  const Int3 n = grid.bricks * 8;
+  const std::uint64_t number = 1 + static_cast<std::uint64_t>(voxel.x) + static_cast<std::uint64_t>(n.x) * (static_cast<std::uint64_t>(voxel.y) + static_cast<std::uint64_t>(n.y) * static_cast<std::uint64_t>(voxel.z));
+  Known& known = windings_[(number * 0x9E3779B97F4A7C15) >> 32 & (windings_.size() - 1)];   // 2^64 / golden ratio
+  if (known.voxel == number) return known.winding;
   int winding = 0;
-  Int3 from = point, at = voxel;
-  for (; at.x < 8 * grid.bricks.x; ++at.x) {
+  Int3 at = voxel, from = grid.origin + grid.size * voxel + Int3(grid.size / 2);
+  for (; at.x < n.x; ++at.x) {
     const HostPartition::Voxel here = partition_->at(at);
     if (here.kind == kVoxelExternal) break;
     Int3 to = from;
     to.x = grid.origin.x + grid.size * (at.x + 1);
-    if (here.boundary != kNoVoxel)
-      for (const std::uint32_t id : partition_->list(here.boundary))
-        winding += exact::segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+    if (here.boundary != kNoVoxel) winding += crossed(from, to, 0, at, here.boundary, true);
     from = to;
   }
-  return winding != 0;
-}
-
-bool InsideSearch::by_walks(const Int3& point, const Int3& voxel) const {
-  const GridConstants& grid = partition_->grid();
-  int inside = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int way : {1, -1}) {
-      int net = 0;
-      Int3 from = point, at = voxel;
-      HostPartition::Voxel here = partition_->at(at);
-      do {
-        Int3 to = from;
-        to[axis] = grid.origin[axis] + grid.size * (at[axis] + (way > 0 ? 1 : 0));
-        if (from != to)
-          for (const std::uint32_t id : partition_->list(here.boundary))
-            if (bounds_solid(*mesh_, id)) net += exact::segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
-        from = to;
-        at[axis] += way;
-        here = partition_->at(at);
-      } while (here.boundary != kNoVoxel);
-      inside += (here.kind == kVoxelInternal ? net >= 0 : net != 0) ? 1 : 0;
-    }
-  return inside > 3;
+  known = {number, winding};
+  return winding;
 }
 
 }  // namespace palpate

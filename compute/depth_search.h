@@ -1,15 +1,15 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "compute/cell_memo.h"
 #include "compute/host_partition.h"
 #include "model/lattice_mesh.h"
 
 namespace palpate {
 
 /// How far a point lies below a body's surface (docs/EXACTNESS.md section 4), on the host: through the voxels round the point, nearest first, as far as something
-/// may still be nearer. Geometry and partition outlive this. One thread; only the constructor allocates.
+/// may still be nearer, and in each of them through those triangles alone whose boxes are near enough. Arguments outlive this. One thread; never allocates.
 class DepthSearch {
  public:
   struct Depth {
@@ -19,35 +19,55 @@ class DepthSearch {
   static constexpr std::uint32_t kNobody = UINT32_MAX;
 
   DepthSearch() = default;
-  /// `partition` lists every triangle of `mesh` in every voxel that it touches.
-  DepthSearch(const LatticeMesh& mesh, const HostPartition& partition) : mesh_(&mesh), partition_(&partition) {}
+  /// `partition` lists every triangle of `mesh` in every voxel that it touches; `boxes`: SearchTables::boxes of it.
+  DepthSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes);
 
-  Depth below(const Int3& point) const;
+  /// `guess`: a triangle that may be near, as the one of a point beside it; kNobody: none. It changes nothing but the time.
+  Depth below(const Int3& point, std::uint32_t guess) const;
 
  private:
   struct Search;
   void look_at(Search& search, std::uint32_t triangle) const;
-  void look_into(Search& search, const Int3& voxel) const;
+  void look_into(Search& search, const Int3& voxel, std::uint32_t boundary) const;
+  void look_round(Search& search) const;
 
   const LatticeMesh* mesh_ = nullptr;
   const HostPartition* partition_ = nullptr;
+  std::span<const std::uint8_t> boxes_;
+  double per_part_ = 0;   ///< parts of a voxel a step
 };
 
-/// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4). One thread; only make() allocates.
+/// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4): by walks along axes to voxels that list nothing.
+/// Arguments outlive this. One thread; only the constructor allocates.
 class InsideSearch {
  public:
   InsideSearch() = default;
-  InsideSearch(const LatticeMesh& mesh, const HostPartition& partition) : mesh_(&mesh), partition_(&partition), cells_(partition.grid().boundary_voxels) {}
+  /// As for DepthSearch.
+  InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes);
 
   bool inside(const Int3& point);
 
  private:
-  bool by_winding(const Int3& point, const Int3& voxel) const;
-  bool by_walks(const Int3& point, const Int3& voxel) const;
+  struct Walk {
+    int net;              ///< Σ of the signs of what is crossed
+    Int3 voxel;           ///< where it ends
+    std::uint32_t kind;   ///< of that voxel
+  };
+  Walk walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const;
+  int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary, bool sheets) const;
+  std::uint8_t shortest_way(const Int3& voxel) const;
+  int winding_of(const Int3& voxel);
 
   const LatticeMesh* mesh_ = nullptr;
   const HostPartition* partition_ = nullptr;
-  CellMemo cells_;   ///< of V_bnd voxels of a closed body
+  std::span<const std::uint8_t> boxes_;
+  double per_part_ = 0;                    ///< parts of a voxel a step
+  std::vector<std::uint8_t> way_;          ///< by V_bnd voxel of a closed body: the shortest way out of such voxels, axis · 2 + up + 1; 0: not known yet
+  struct Known {
+    std::uint64_t voxel;                   ///< its number + 1; 0: nothing
+    int winding;
+  };
+  std::vector<Known> windings_;            ///< of V_int voxels in which walks ended: a table where a newer answer takes an older one's place
 };
 
 }  // namespace palpate

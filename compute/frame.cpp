@@ -28,8 +28,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr unsigned kQueriesBefore = 3;   // the one that makes the compilers begin
-
 double us_since(Clock::time_point from) { return std::chrono::duration<double, std::micro>(Clock::now() - from).count(); }
 
 std::int32_t floor_div(std::int64_t a, std::int64_t b) {
@@ -85,7 +83,7 @@ class RecordedFrame final : public Frame {
   template <class Body>
   Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
   Result<void> run(CommandRecorder& commands, Contacts& out);
-  bool solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out);
+  void solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out);
   void read(Contacts& out);
   Reach reach(const LatticePose& pose) const;
   void write_input(const LatticePose& pose, const NearLists& near, bool rays);
@@ -102,8 +100,9 @@ class RecordedFrame final : public Frame {
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
   std::optional<FrameResponse> response_;
-  std::unique_ptr<HostContact> host_contact_;   ///< where small contacts are wholly the host's
-  bool host_solved_ = false;              ///< the last query's contact was
+  std::unique_ptr<HostContact> host_contact_;   ///< `refined`
+  bool host_decides_ = false;             ///< sets, too
+  bool host_solved_ = false;              ///< the last query's contact was decided by the host
   FrameDecoder decoder_;
   /// From the pose to the sets; then, with contact, the response. Null after a failed record().
   std::unique_ptr<CommandRecorder> detect_, respond_;
@@ -111,7 +110,6 @@ class RecordedFrame final : public Frame {
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool finished_ = false;           ///< pipelines are there and commands recorded
-  unsigned unfinished_queries_ = 0;
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;         ///< that the last query counted
   std::uint32_t near_full_ = gpu::kNone;   ///< the list for which the last query found more than there is room for on the host
@@ -146,16 +144,17 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
 
   detection_ = FrameDetection::make(geometry_, scene_, plan_);
-  // Pipelines are compiled beside: where the device decides, beside what the host builds; else beside queries, which don't need them, from the
-  // third on: who asks about one pose (`palpate query` does so twice) ends without them.
-  const bool host_decides = refined && device_.host_share == HostShare::kContacts && scene_.rays_walk();
+  // An open tool's samples are asked by walks, which the host alone knows.
+  host_decides_ = refined && (device_.host_share == HostShare::kContacts || constants.tool.closed == 0);
+  const bool host_decides = host_decides_;
+  // Pipelines are compiled beside what the host builds; where it decides all, nobody needs them.
   if (!host_decides)
     if (auto r = make_pipelines(); !r) return r;
   runs_.emplace(geometry_.tool, detection_->order());
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, *runs_);
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
-  if (host_decides) {
+  if (refined) {
     auto contact = HostContact::make(device_, geometry_, scene_, runs_->order());
     if (!contact) return contact.error();
     host_contact_ = std::move(*contact);
@@ -163,25 +162,22 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   std::optional<std::uint64_t> samples;
   if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
   capacity_ = FrameCapacity::first({.scene = constants, .samples = samples, .host_decides = host_decides}, first_capacity);
-  if (host_decides) {
-    device_.compilers->hold();
-    if (auto r = make_pipelines(); !r) return r;
-  }
   if (auto r = make_buffers(); !r) return r;
-  return host_decides ? Result<void>{} : finish();
+  return finish();
 }
 
 /// Asks for them: they are made by other threads.
 Result<void> RecordedFrame::make_pipelines() {
   if (auto r = detection_->make_shaders(device_); !r) return r;
-  auto response = FrameResponse::create(device_, scene_.constants.refined != 0, scene_.rays_walk(), plan_);
+  if (scene_.constants.refined != 0) return {};   // the field is the host's
+  auto response = FrameResponse::create(device_, plan_);
   if (!response) return response.error();
   response_.emplace(std::move(*response));
   return {};
 }
 
 Result<void> RecordedFrame::finish() {
-  if (finished_) return {};
+  if (finished_ || host_decides_) return {};
   if (auto r = record(); !r) return r;
   if (auto r = warm_up(device_, pipelines_); !r) return r;   // no frame of a loop should wait for a compiler
   finished_ = true;
@@ -190,7 +186,8 @@ Result<void> RecordedFrame::finish() {
 
 Result<void> RecordedFrame::make_buffers() {
   if (auto r = detection_->make_buffers(device_, geometry_, scene_, capacity_, buffers_); !r) return r;
-  if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
+  if (response_)
+    if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
   return set_capacities();
 }
 
@@ -247,8 +244,10 @@ Result<void> RecordedFrame::record() {
   auto detect = recorded([&](FrameRecorder& recorder) { detection_->record(recorder); });
   if (!detect) return detect.error();
   auto respond = recorded([&](FrameRecorder& recorder) {
-    response_->record(recorder);
-    recorder.barrier();
+    if (response_) {
+      response_->record(recorder);
+      recorder.barrier();
+    }
     detection_->record_end(recorder);
   });
   if (!respond) return respond.error();
@@ -302,7 +301,6 @@ void RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, 
 
 Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   const auto start = Clock::now();
-  if (!finished_ && ++unfinished_queries_ == kQueriesBefore) device_.compilers->begin();
   out.times.clear();
   decoder_.clear(out);
   pairs_ = 0;
@@ -329,7 +327,10 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
-  if (host_contact_ && solve_on_host(ignored, near, out)) return {};
+  if (host_decides_) {
+    solve_on_host(ignored, near, out);
+    return {};
+  }
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
@@ -348,25 +349,32 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
   const auto finished = Clock::now();
   read(out);
   out.times.push_back({"readback", us_since(finished)});
+  if (host_contact_ && out.contact && !out.truncated) {
+    const auto summing = Clock::now();
+    const auto& result = *buffers_[gpu::kBindResult].as<const gpu::FrameResult>();
+    host_contact_->sum_field(posed_, ignored, {buffers_[gpu::kBindResultStatics].as<const gpu::StaticResult>(), result.static_count},
+                             {buffers_[gpu::kBindResultMobiles].as<const gpu::MobileResult>(), result.mobile_count},
+                             {buffers_[gpu::kBindSamples].as<const gpu::FrameSample>(), result.sample_count}, out);
+    if (out.lists) gather_areas(geometry_, pose, out);
+    out.times.push_back({"field", us_since(summing)});
+  }
   return {};
 }
 
-/// False: the device has to.
-bool RecordedFrame::solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out) {
+void RecordedFrame::solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out) {
   auto last = Clock::now();
   const auto stage = [&](const char* name) {
     const auto now = Clock::now();
     out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count()});
     last = now;
   };
-  if (!host_contact_->solve(posed_, ignored, near, out, stage)) return false;
+  host_contact_->solve(posed_, ignored, near, out, stage);
   host_solved_ = true;
   pairs_ = out.pairs;
   if (out.contact && out.lists) {
     gather_areas(geometry_, posed_.pose(), out);
     stage("areas");
   }
-  return true;
 }
 
 /// Submits, waits, and notes the stages' times.
@@ -390,7 +398,7 @@ void RecordedFrame::read(Contacts& out) {
           .statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(),
           .mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>(),
           .members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>(),
-          .pierces = buffers_[gpu::kBindResultPierces].as<gpu::AreaPierce>()},
+          .areas = scene_.constants.refined == 0},
          out);
   pairs_ = out.pairs;
   out.flags |= frame_flags_;

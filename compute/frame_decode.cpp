@@ -33,7 +33,7 @@ void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
   area.direction = from.direction;
   area.rays = from.rays;
   area.max_height = from.max_height;
-  area.height_sum = from.height_sum;
+  area.height_sum = from.faded_sum;   // with whole weights it is Σ H, whatever the plan
   for (std::size_t k = 0; k < 3; ++k) area.voxel_sum[k] = points ? from.voxel_sum[k] : 0;
   area.voxel_count = points ? from.voxel_count : 0;
 }
@@ -149,6 +149,7 @@ void FrameDecoder::decode(const FrameOutput& output, Contacts& out) {
   out.pairs = result.pair_count;
   decode_sets(output, out);
   if (!out.contact || out.truncated) return;
+  if (!output.areas) return;
   out.flags = result.flags;
   decode_areas(output, out);
 }

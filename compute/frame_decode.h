@@ -14,7 +14,7 @@ struct FrameOutput {
   const gpu::StaticResult* statics = nullptr;
   const gpu::MobileResult* mobiles = nullptr;
   const gpu::AreaMember* members = nullptr;
-  const gpu::AreaPierce* pierces = nullptr;
+  bool areas = true;   ///< `paper`: the device has made them
 };
 
 /// Puts frames' outputs in the order that Contacts asks for: ids ascending, areas by id, zones by first id. Keeps the memory of areas that an

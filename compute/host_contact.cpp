@@ -1,27 +1,35 @@
 #include "compute/host_contact.h"
 
+#include <algorithm>
+
 namespace palpate {
 
 using namespace gpu;   // names of shaders/shared/frame.h
 
 Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
   std::unique_ptr<HostContact> out(new HostContact);
-  auto sets = HostSets::make(device, geometry, scene, order);
+  if (auto r = out->mockup_.read(device, scene.mockup.partition); !r) return r.error();
+  if (auto r = out->tool_.read(device, scene.tool.partition); !r) return r.error();
+  auto boxes = SearchTables::boxes_of(device, geometry.tool, scene.tool.partition);
+  if (!boxes) return boxes.error();
+  out->tool_boxes_ = std::move(*boxes);
+  out->search_ = scene.search;
+  out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
+  auto sets = HostSets::make(device, geometry, scene, order, out->in_tool_);
   if (!sets) return sets.error();
   out->sets_ = std::move(*sets);
-  if (auto r = out->mockup_.read(device, scene.mockup.partition); !r) return r.error();
-  if (auto r = out->fine_.read(device, scene.fine.brick_slot ? scene.fine : scene.tool.partition); !r) return r.error();
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
-  out->field_ = HostField::make(geometry, out->mockup_, out->fine_, tool.closed != 0 || tool.has_internal != 0);
+  out->field_ = HostField::make(geometry, DepthSearch(geometry.mockup, out->mockup_, scene.search->boxes), InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
+                                DepthSearch(geometry.tool, out->tool_, out->tool_boxes_), tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 
-bool HostContact::decide(PosedTool& tool, const NearLists& near, Contacts& out) {
-  if (!sets_.decide(tool, near, statics_, kMostStatics, found_)) return false;
+void HostContact::decide(PosedTool& tool, const NearLists& near, Contacts& out) {
+  sets_.decide(tool, near, statics_, found_);
   out.contact = found_.state.contact != 0;
   out.pairs = found_.pairs.size();
-  if (!out.lists) return true;
+  if (!out.lists) return;
   for (const StaticResult& s : found_.statics) {
     if ((s.state & kStaticHit) != 0) {
       out.cst.push_back(s.id);
@@ -32,7 +40,15 @@ bool HostContact::decide(PosedTool& tool, const NearLists& near, Contacts& out) 
   }
   for (const MobileResult& m : found_.mobiles)
     ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
-  return true;
+}
+
+void HostContact::sum_field(PosedTool& tool, const Ignored* ignored, std::span<const StaticResult> statics, std::span<const MobileResult> mobiles,
+                            std::span<const FrameSample> samples, Contacts& out) {
+  found_.statics.assign(statics.begin(), statics.end());
+  std::sort(found_.statics.begin(), found_.statics.end(), [](const StaticResult& a, const StaticResult& b) { return a.id < b.id; });
+  found_.mobiles.assign(mobiles.begin(), mobiles.end());
+  found_.samples.assign(samples.begin(), samples.end());
+  field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, out);
 }
 
 }  // namespace palpate

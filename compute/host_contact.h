@@ -1,8 +1,8 @@
 #pragma once
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "compute/host_field.h"
 #include "compute/host_partition.h"
@@ -11,40 +11,40 @@
 #include "compute/near_lists.h"
 #include "compute/posed_tool.h"
 #include "compute/prepared_scene.h"
+#include "compute/search_tables.h"
 
 namespace palpate {
 
 /// A whole contact on the host, from the lists of what is near to the field: where the device is the host's own processor, a few thousand exact questions are
-/// sooner answered one after the other than in dispatches (docs/PERFORMANCE.md). What is larger is left to the device, whose shaders say the same bits. `refined`. One
-/// thread; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
+/// sooner answered one after the other than in dispatches (docs/PERFORMANCE.md). `refined`. One thread; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
 class HostContact {
  public:
-  /// Only where rays walk.
   static Result<std::unique_ptr<HostContact>> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
-  /// False: left to the device. Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `stage(name)` is called at the end of each stage.
+  /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `stage(name)` is called at the end of each stage.
   template <class Stage>
-  bool solve(PosedTool& tool, const Ignored* ignored, const NearLists& near, Contacts& out, Stage stage) {
-    if (std::max({near.touch.count, near.pairs.count, near.inside.count, near.open.count, near.samples.count}) > kMostCandidates) return false;
-    if (!decide(tool, near, out)) return false;
+  void solve(PosedTool& tool, const Ignored* ignored, const NearLists& near, Contacts& out, Stage stage) {
+    decide(tool, near, out);
     stage("sets");
-    if (!out.contact) return true;
-    field_.sum(tool, found_, {.ignored = ignored, .carriers = out.lists}, out);
+    if (!out.contact) return;
+    field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, out);
     stage("field");
-    return true;
   }
+  /// The field alone, where the device has decided the sets: C_s in any order.
+  void sum_field(PosedTool& tool, const Ignored* ignored, std::span<const gpu::StaticResult> statics, std::span<const gpu::MobileResult> mobiles,
+                 std::span<const gpu::FrameSample> samples, Contacts& out);
   /// After solve().
   std::span<const gpu::ContactPair> pairs() const { return found_.pairs; }
 
-  static constexpr std::uint32_t kMostCandidates = 1u << 16;   ///< of a kind, beyond which the device takes over (chosen)
-  static constexpr std::size_t kMostStatics = 1u << 16;        ///< C_s, likewise
-
  private:
   HostContact() = default;
-  bool decide(PosedTool& tool, const NearLists& near, Contacts& out);
+  void decide(PosedTool& tool, const NearLists& near, Contacts& out);
 
-  HostPartition mockup_, fine_;
+  HostPartition mockup_, tool_;
+  std::vector<std::uint8_t> tool_boxes_;   ///< SearchTables::boxes_of
+  std::shared_ptr<const SearchTables> search_;
   IdMarks statics_;
+  InsideSearch in_tool_;
   HostSets sets_;
   HostField field_;
   FoundSets found_;

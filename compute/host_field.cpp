@@ -51,13 +51,25 @@ struct HostField::Push {
   bool sheet;
 };
 
-HostField HostField::make(const SceneGeometry& geometry, const HostPartition& mockup, const HostPartition& fine, bool tool_has_inside) {
+HostField::Extras::Extras(const LatticeMesh& mesh) : all_(mesh.extra_samples), has_((mesh.triangles.size() + 63) / 64) {
+  for (const ExtraSample& extra : all_) has_[extra.triangle >> 6] |= std::uint64_t{1} << (extra.triangle & 63);
+}
+
+std::span<const ExtraSample> HostField::Extras::of(std::uint32_t triangle) const {
+  if ((has_[triangle >> 6] >> (triangle & 63) & 1) == 0) return {};
+  const auto range = std::ranges::equal_range(all_, triangle, {}, &ExtraSample::triangle);
+  return {range.begin(), range.end()};
+}
+
+HostField HostField::make(const SceneGeometry& geometry, const DepthSearch& mockup_depth, const InsideSearch& in_mockup, const DepthSearch& tool_depth, bool tool_has_inside) {
   HostField out;
   out.geometry_ = &geometry;
-  out.tool_depth_ = DepthSearch(geometry.tool, fine);
-  out.mockup_depth_ = DepthSearch(geometry.mockup, mockup);
-  out.in_mockup_ = InsideSearch(geometry.mockup, mockup);
+  out.tool_depth_ = tool_depth;
+  out.mockup_depth_ = mockup_depth;
+  out.in_mockup_ = in_mockup;
   out.tool_has_inside_ = tool_has_inside;
+  out.mockup_extras_ = Extras(geometry.mockup);
+  out.tool_extras_ = Extras(geometry.tool);
   out.lever_shift_ = lever_shift(geometry.tool_radius);
   out.own_begin_.assign(1, 0);
   const std::size_t triangles = geometry.tool.triangles.size();
@@ -152,7 +164,8 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
 }
 
 void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out) {
-  const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point));
+  const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point), near_tool_);
+  near_tool_ = below.triangle;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
@@ -162,14 +175,15 @@ void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_i
 void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out) {
   const Int3 point = transform(pose, own);
   if (!in_mockup_.inside(point)) return;
-  const DepthSearch::Depth below = mockup_depth_.below(point);
+  const DepthSearch::Depth below = mockup_depth_.below(point, near_mockup_);
+  near_mockup_ = below.triangle;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
   add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]), against, below.steps, weight, sheet}, below.triangle, mobile, nullptr, out);
 }
 
-void HostField::sum(PosedTool& tool, const FoundSets& found, const Wanted& wanted, Contacts& out) {
+void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, Contacts& out) {
   const LatticePose& pose = tool.pose();
   const LatticeMesh &mockup = geometry_->mockup, &own = geometry_->tool;
   out.field = {};
@@ -186,9 +200,17 @@ void HostField::sum(PosedTool& tool, const FoundSets& found, const Wanted& wante
     return at != out.carriers.end() && at->id == id ? &*at : nullptr;
   };
   for (const FrameSample& sample : found.samples)
-    push_from_mockup(pose, sample.static_id, sample.point, mockup.sample_weight_q30[sample.static_id], carrier(sample.static_id), out);
-  for (const MobileResult& result : found.mobiles)
-    for_tool_samples(result.id, [&](const Int3& p) { push_from_tool(pose, result.id, p, own.sample_weight_q30[result.id], out); });
+    if (const std::uint32_t weight = mockup.field_weight_q30[sample.static_id]; weight != 0)
+      push_from_mockup(pose, sample.static_id, sample.point, weight, carrier(sample.static_id), out);
+  if (tool_has_inside_)
+    for (const StaticResult& result : found.statics)
+      for (const ExtraSample& extra : mockup_extras_.of(result.id))
+        if (sets.inside(tool, extra.point)) push_from_mockup(pose, result.id, extra.point, extra.weight_q30, carrier(result.id), out);
+  for (const MobileResult& result : found.mobiles) {
+    if (const std::uint32_t weight = own.field_weight_q30[result.id]; weight != 0)
+      for_tool_samples(result.id, [&](const Int3& p) { push_from_tool(pose, result.id, p, weight, out); });
+    for (const ExtraSample& extra : tool_extras_.of(result.id)) push_from_tool(pose, result.id, extra.point, extra.weight_q30, out);
+  }
 
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());

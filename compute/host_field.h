@@ -1,9 +1,9 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compute/depth_search.h"
-#include "compute/host_partition.h"
 #include "compute/host_sets.h"
 #include "compute/posed_tool.h"
 #include "model/contacts.h"
@@ -15,8 +15,8 @@ namespace palpate {
 /// larger than all before.
 class HostField {
  public:
-  /// `mockup` and `fine`, the tool's partition, outlive this.
-  static HostField make(const SceneGeometry& geometry, const HostPartition& mockup, const HostPartition& fine, bool tool_has_inside);
+  /// What the arguments refer to outlives this.
+  static HostField make(const SceneGeometry& geometry, const DepthSearch& mockup_depth, const InsideSearch& in_mockup, const DepthSearch& tool_depth, bool tool_has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
@@ -24,11 +24,21 @@ class HostField {
     bool carriers = true;
   };
   /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags.
-  void sum(PosedTool& tool, const FoundSets& found, const Wanted& wanted, Contacts& out);
+  void sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, Contacts& out);
 
  private:
   struct Push;
-  struct Body;
+  /// Extra samples by triangle; few have some.
+  class Extras {
+   public:
+    Extras() = default;
+    explicit Extras(const LatticeMesh& mesh);
+    std::span<const ExtraSample> of(std::uint32_t triangle) const;
+
+   private:
+    std::span<const ExtraSample> all_;
+    std::vector<std::uint64_t> has_;   ///< a bit a triangle
+  };
   void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out);
   void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out);
   void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out);
@@ -39,10 +49,12 @@ class HostField {
   const SceneGeometry* geometry_ = nullptr;
   DepthSearch tool_depth_, mockup_depth_;
   InsideSearch in_mockup_;
+  Extras mockup_extras_, tool_extras_;
   bool tool_has_inside_ = true;
   int lever_shift_ = 0;
   std::vector<std::uint32_t> own_begin_;   ///< by tool triangle, and one more; empty: the tool's samples are too many to list
   std::vector<Int3> own_samples_;          ///< of the tool, in its lattice frame
+  std::uint32_t near_tool_ = DepthSearch::kNobody, near_mockup_ = DepthSearch::kNobody;   ///< the last sample's nearest triangles
   const Ignored* ignored_ = nullptr;       ///< of this frame
   std::vector<std::uint32_t> touched_;     ///< ignored patches, in any order
 };

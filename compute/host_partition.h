@@ -58,6 +58,21 @@ class HostPartition {
   std::span<const std::uint32_t> list(std::uint32_t boundary) const {
     return {&list_triangles_[list_begin_[boundary]], &list_triangles_[list_begin_[boundary + 1]]};
   }
+  /// Of the V_bnd voxel of this number: its list's first place in all lists together.
+  std::uint32_t list_begin(std::uint32_t boundary) const { return list_begin_[boundary]; }
+  /// The V_bnd voxels among eight in a row along x, the first of them at a whole multiple of eight: a bit each, and the number of the first.
+  struct Row {
+    std::uint32_t boundary = 0, first = 0;
+  };
+  Row row(std::int32_t brick_x, std::int32_t y, std::int32_t z) const {
+    const Int3& n = grid_.bricks;
+    const std::uint32_t slot = slots_[static_cast<std::size_t>(brick_x) + static_cast<std::size_t>(n.x) * (static_cast<std::size_t>(y >> 3) + static_cast<std::size_t>(n.y) * static_cast<std::size_t>(z >> 3))];
+    if (slot >= gpu::kBrickInternal) return {};
+    const auto word = static_cast<std::size_t>((y & 7) >> 2 | (z & 7) << 1);
+    const gpu::Brick& brick = bricks_[slot];
+    const std::uint32_t shift = static_cast<std::uint32_t>(y & 3) * 8, bits = brick.boundary[word];
+    return {bits >> shift & 0xFF, brick.first[word] + static_cast<std::uint32_t>(std::popcount(bits & ((1u << shift) - 1)))};
+  }
   /// Entry `i` of all lists together.
   std::uint32_t listed(std::uint32_t i) const { return list_triangles_[i]; }
 

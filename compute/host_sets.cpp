@@ -15,14 +15,16 @@ constexpr std::size_t kAhead = 4;   // voxels whose lists are called for before 
 
 }  // namespace
 
-Result<HostSets> HostSets::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
+Result<HostSets> HostSets::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool) {
   HostSets out;
   out.geometry_ = &geometry;
+  out.in_tool_ = &in_tool;
   out.order_ = order;
   const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
   if (auto r = out.mockup_.read(device, scene.mockup.partition); !r) return r.error();
   if (auto r = out.fine_.read(device, fine); !r) return r.error();
-  if (auto r = out.fine_exit_.read(device, scene.fine_exit, fine.grid.boundary_voxels); !r) return r.error();
+  if (geometry.tool.closed)
+    if (auto r = out.fine_exit_.read(device, scene.fine_exit, fine.grid.boundary_voxels); !r) return r.error();
   out.touched_.resize(scene.mockup.partition.grid.boundary_voxels);
   out.mobiles_.resize(order.size());
   out.cells_ = CellMemo(fine.grid.boundary_voxels);
@@ -41,7 +43,9 @@ Int3 HostSets::tool_point(const LatticePose& pose, const Int3& point) const {
 }
 
 bool HostSets::inside(PosedTool& tool, const Int3& point) const {
-  const std::uint32_t kind = fine_.at(fine_.voxel_of(tool_point(tool.pose(), point))).kind;
+  const Int3 at = tool_point(tool.pose(), point);
+  if (!geometry_->tool.closed) return in_tool_->inside(at);
+  const std::uint32_t kind = fine_.at(fine_.voxel_of(at)).kind;
   return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(tool, point));
 }
 
@@ -184,15 +188,13 @@ void HostSets::decide_voxels(PosedTool& tool, const NearLists& near) {
   }
 }
 
-/// BST: what touched voxels list. False: too many.
-bool HostSets::mark_lists(IdMarks& statics, std::size_t most_statics) {
+/// BST: what touched voxels list.
+void HostSets::mark_lists(IdMarks& statics) {
   for (std::size_t i = 0; i < touched_voxels_.size(); ++i) {
     if (i + kAhead < touched_voxels_.size()) __builtin_prefetch(mockup_.list(touched_voxels_[i + kAhead]).data());
     touched_[touched_voxels_[i]] = 0;
-    if (statics.count() > most_statics) continue;
     for (const std::uint32_t id : mockup_.list(touched_voxels_[i])) statics.add(id, kStaticListed);
   }
-  return statics.count() <= most_statics;
 }
 
 /// C_s and C_m, and how many there are of each set.
@@ -211,7 +213,7 @@ void HostSets::list(IdMarks& statics, FoundSets& out) {
   });
 }
 
-bool HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, std::size_t most_statics, FoundSets& out) {
+void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();
@@ -223,7 +225,7 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
 
   decide_pairs(tool, near, statics, out);
   decide_voxels(tool, near);
-  if (!mark_lists(statics, most_statics)) return false;
+  mark_lists(statics);
 
   // Samples inside the tool: EST. A first corner tells EST and does not count.
   const auto take = [&](const FrameSample& sample) {
@@ -232,7 +234,13 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
   };
   for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
   const std::span<const FrameSample> open = near.open.room.first(near.open.count);
-  on_this_processor([&] { find_cells(tool.pose(), open); });
+  if (!geometry_->tool.closed) {
+    for (const FrameSample& sample : open)
+      if (inside(tool, sample.point)) take(sample);
+    open_.clear();
+  } else {
+    on_this_processor([&] { find_cells(tool.pose(), open); });
+  }
   for (std::size_t i = 0; i < open_.size(); ++i) {
     const std::size_t first = open_[i].first, end = i + 1 < open_.size() ? open_[i + 1].first : open.size();
     if (!open_inside(tool, open[first].point, open_[i])) continue;
@@ -242,12 +250,9 @@ bool HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
     scan(chunk, [&](const FrameSample& sample) {
       if (inside(tool, sample.point)) take(sample);
     });
-  if (statics.count() > most_statics) return false;
 
   list(statics, out);
   out.state.contact = out.state.cst + out.state.imt + out.state.est != 0 ? 1 : 0;
-  out.state.swallowed = out.state.contact != 0 && out.state.imt != 0 && out.state.cst + out.state.est == 0 && out.samples.empty() ? 1 : 0;
-  return true;
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compute/cell_memo.h"
+#include "compute/depth_search.h"
 #include "compute/host_partition.h"
 #include "compute/id_marks.h"
 #include "compute/near_lists.h"
@@ -24,20 +25,23 @@ struct FoundSets {
 };
 
 /// Decides on the host what the device's shaders decide about the lists of what is near (docs/EXACTNESS.md sections 3 and 4): sets, pairs and
-/// counting samples of a closed tool in `refined`. The same questions, answered exactly, so the same bits.
+/// samples inside the tool in `refined`. The same questions, answered exactly, so the same bits.
 /// One thread; make() keeps references to its arguments; decide() allocates only when a contact is larger than all before.
 class HostSets {
  public:
-  /// `order`: ids of the tool's triangles by place. Only where rays walk.
-  static Result<HostSets> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
+  /// `order`: ids of the tool's triangles by place. `in_tool` outlives this and answers for a tool that is not closed. `refined`.
+  static Result<HostSets> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
-  /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. False: C_s has more than `most_statics`; `out` is then half written.
-  bool decide(PosedTool& tool, const NearLists& near, IdMarks& statics, std::size_t most_statics, FoundSets& out);
+  /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered.
+  void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out);
+
+  /// Whether a world lattice point lies inside the tool (section 4).
+  bool inside(PosedTool& tool, const Int3& point) const;
 
  private:
   void decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out);
   void decide_voxels(PosedTool& tool, const NearLists& near);
-  bool mark_lists(IdMarks& statics, std::size_t most_statics);
+  void mark_lists(IdMarks& statics);
   void list(IdMarks& statics, FoundSets& out);
   /// A point in a V_bnd voxel of the fine partition, of one open sample or of several that follow each other: first corners of neighbours.
   struct OpenPoint {
@@ -52,11 +56,11 @@ class HostSets {
   bool open_inside(PosedTool& tool, const Int3& point, const OpenPoint& open);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
   bool walks_out(PosedTool& tool, const Int3& point) const;
-  bool inside(PosedTool& tool, const Int3& point) const;
   template <class Take>
   void scan(const gpu::SampleChunk& chunk, Take&& take) const;
 
   const SceneGeometry* geometry_ = nullptr;
+  InsideSearch* in_tool_ = nullptr;
   std::span<const std::uint32_t> order_;
   HostPartition mockup_, fine_;
   PairFilter filter_;

@@ -101,6 +101,14 @@ std::vector<Box> find_parts(const LatticeMesh& mockup, std::int32_t tool_radius)
 
 }  // namespace
 
+Result<std::vector<std::uint8_t>> SearchTables::boxes_of(VulkanDevice& device, const LatticeMesh& mesh, const PartitionBuffers& partition) {
+  Lists lists;
+  if (auto r = lists.read(device, partition); !r) return r.error();
+  std::vector<std::uint8_t> boxes(6 * std::size_t{lists.grid.list_entries} + kBoxesAtOnce);
+  for (std::uint32_t slot = 0; slot < lists.grid.mixed_bricks; ++slot) make_boxes(mesh, lists, slot, boxes);
+  return boxes;
+}
+
 Result<std::shared_ptr<const SearchTables>> SearchTables::make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup,
                                                                const std::function<bool()>& go_on) {
   Lists lists;

@@ -19,6 +19,9 @@ struct SearchTables {
 
   static constexpr std::size_t kBoxesAtOnce = 16;   ///< may be read from any place on
 
+  /// `boxes` of another body's partition, the tool's.
+  static Result<std::vector<std::uint8_t>> boxes_of(VulkanDevice& device, const LatticeMesh& mesh, const PartitionBuffers& partition);
+
   /// On all cores; `go_on` is asked now and then on this thread. Cancelled: empty. Error: a download failed.
   static Result<std::shared_ptr<const SearchTables>> make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup,
                                                           const std::function<bool()>& go_on);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "cpu_ref/depth.h"
 #include "cpu_ref/direction.h"
@@ -86,40 +87,26 @@ class Summing {
 
   /// The mock-up's samples in the tool's depth.
   void mockup_in_tool() {
-    const LatticeMesh &mockup = frame_.mockup(), &tool = frame_.tool_mesh();
-    for (const Sample& sample : frame_.counting) {
-      const auto below = nearest(tool, frame_.scene.tool_rest_tree, to_tool(frame_.pose, sample.point));
-      if (!below) continue;
-      Push push{.at = sample.point, .against = -turned(frame_.pose, tool.unit_normal_q30[below->triangle]), .depth = below->steps};
-      const bool sheet = is_sheet(mockup, sample.triangle);
-      push.along = sheet ? push.against : mockup.unit_normal_q30[sample.triangle];
-      push.whole = mockup.sample_weight_q30[sample.triangle];
-      push.weight = push.whole >> (sheet ? 0 : 1);
-      if (sheet) out_.flags |= kFlagSheet;
-      add_push(push, sample.triangle, below->triangle, carrier(sample.triangle));
-    }
+    const LatticeMesh& mockup = frame_.mockup();
+    for (const Sample& sample : frame_.counting)
+      if (const std::uint32_t weight = mockup.field_weight_q30[sample.triangle]; weight != 0) mockup_sample(sample.triangle, sample.point, weight);
+    if (!frame_.scene.tool_has_inside) return;
+    for (const ExtraSample& extra : mockup.extra_samples)
+      if (std::binary_search(frame_.contact_static.begin(), frame_.contact_static.end(), extra.triangle) && inside_tool(frame_, extra.point))
+        mockup_sample(extra.triangle, extra.point, extra.weight_q30);
   }
 
   /// The tool's samples in the mock-up's depth.
   void tool_in_mockup() {
-    const LatticeMesh &mockup = frame_.mockup(), &tool = frame_.tool_mesh();
+    const LatticeMesh& tool = frame_.tool_mesh();
     Box everywhere;
     everywhere.min = Int3(std::numeric_limits<std::int32_t>::min());
     everywhere.max = Int3(std::numeric_limits<std::int32_t>::max());
-    for (const std::uint32_t m : frame_.contact_mobile) {
-      const bool sheet = is_sheet(tool, m) || !frame_.scene.tool_has_inside;
-      for_each_sample(tool, m, frame_.scene.geometry->sample_spacing, everywhere, [&](const Int3& own) {
-        const Int3 point = transform(frame_.pose, own);
-        if (!inside_mockup(frame_, point)) return;
-        const auto below = nearest(mockup, frame_.scene.mockup_tree, point);
-        if (!below) return;
-        Push push{.at = point, .against = mockup.unit_normal_q30[below->triangle], .depth = below->steps};
-        push.along = sheet ? push.against : -turned(frame_.pose, tool.unit_normal_q30[m]);
-        push.weight = tool.sample_weight_q30[m] >> (sheet ? 0 : 1);
-        if (sheet) out_.flags |= kFlagSheet;
-        add_push(push, below->triangle, m, nullptr);
-      });
-    }
+    for (const std::uint32_t m : frame_.contact_mobile)
+      if (const std::uint32_t weight = tool.field_weight_q30[m]; weight != 0)
+        for_each_sample(tool, m, frame_.scene.geometry->sample_spacing, everywhere, [&](const Int3& own) { tool_sample(m, own, weight); });
+    for (const ExtraSample& extra : tool.extra_samples)
+      if (std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle)) tool_sample(extra.triangle, extra.point, extra.weight_q30);
   }
 
   /// CST and EST, ascending, with nothing on them yet.
@@ -130,7 +117,46 @@ class Summing {
     for (const std::uint32_t id : ids) out_.carriers.push_back({.id = id});
   }
 
+  void list_touched() { out_.ignored_touched.assign(touched_.begin(), touched_.end()); }
+
  private:
+  void mockup_sample(std::uint32_t id, const Int3& point, std::uint32_t weight) {
+    const LatticeMesh &mockup = frame_.mockup(), &tool = frame_.tool_mesh();
+    const auto below = nearest(tool, frame_.scene.tool_rest_tree, to_tool(frame_.pose, point));
+    if (!below || ignored(id)) return;
+    const bool sheet = is_sheet(mockup, id);
+    Push push{.at = point, .against = -turned(frame_.pose, tool.unit_normal_q30[below->triangle]), .depth = below->steps};
+    push.along = sheet ? push.against : mockup.unit_normal_q30[id];
+    push.whole = weight;
+    push.weight = weight >> (sheet ? 0 : 1);
+    if (sheet) out_.flags |= kFlagSheet;
+    add_push(push, id, below->triangle, carrier(id));
+  }
+
+  void tool_sample(std::uint32_t m, const Int3& own, std::uint32_t weight) {
+    const LatticeMesh &mockup = frame_.mockup(), &tool = frame_.tool_mesh();
+    const Int3 point = transform(frame_.pose, own);
+    if (!inside_mockup(frame_, point)) return;
+    const auto below = nearest(mockup, frame_.scene.mockup_tree, point);
+    if (!below || ignored(below->triangle)) return;
+    const bool sheet = is_sheet(tool, m) || !frame_.scene.tool_has_inside;
+    Push push{.at = point, .against = mockup.unit_normal_q30[below->triangle], .depth = below->steps};
+    push.along = sheet ? push.against : -turned(frame_.pose, tool.unit_normal_q30[m]);
+    push.weight = weight >> (sheet ? 0 : 1);
+    if (sheet) out_.flags |= kFlagSheet;
+    add_push(push, below->triangle, m, nullptr);
+  }
+
+  /// Notes a contact that is left out.
+  bool ignored(std::uint32_t static_id) {
+    if (frame_.ignored == nullptr) return false;
+    const std::vector<std::uint32_t>& patches = frame_.ignored->patches;
+    const std::uint32_t patch = frame_.mockup().patch[static_id];
+    if (!std::binary_search(patches.begin(), patches.end(), patch)) return false;
+    touched_.insert(patch);
+    return true;
+  }
+
   CarrierSums* carrier(std::uint32_t id) {
     const auto found = std::lower_bound(out_.carriers.begin(), out_.carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
     return found != out_.carriers.end() && found->id == id ? &*found : nullptr;
@@ -139,6 +165,7 @@ class Summing {
   const Frame& frame_;
   Contacts& out_;
   int shift_;
+  std::set<std::uint32_t> touched_;   ///< ignored patches in which something would push
 };
 
 }  // namespace
@@ -148,6 +175,7 @@ void sum_field(const Frame& frame, Contacts& out) {
   summing.begin_carriers();
   summing.mockup_in_tool();
   summing.tool_in_mockup();
+  summing.list_touched();
   const auto pushes = [](const FieldBin& bin) { return bin.samples > 0; };
   if (std::none_of(out.field.bins.begin(), out.field.bins.end(), pushes)) out.flags |= kFlagNoDirection;
 }

@@ -8,6 +8,7 @@
 #include "model/lattice_build.h"
 #include "model/mass.h"
 #include "model/orientation.h"
+#include "model/patches.h"
 #include "model/triangle.h"
 #include "model/voxel_size.h"
 #include "model/weld.h"
@@ -149,6 +150,7 @@ Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice,
   if (stop()) return ended;
   make_normals(out);
   if (const Result<void> found = find_neighbours(edges, angle, out); !found) return found.error();
+  find_patches(part_of, out);
   return out;
 }
 
@@ -216,8 +218,12 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
   out.sample_spacing = *spacing;
   const Int3 extent = out.tool.box_max - out.tool.box_min;
   const double side = out.lattice.step_m * std::max({extent.x, extent.y, extent.z});
-  out.reference_area_m2 = side * side / 64;
-  out.tool_gyration_m = side / 3;
+  out.reference_area_m2 = side * side / 64;   // (side / 8)², chosen
+  out.tool_gyration_m = out.lattice.step_m * gyration_radius(out.tool, (out.tool_gc_m - out.tool_centre_m) / out.lattice.step_m);
+  for (LatticeMesh* mesh : {&out.mockup, &out.tool}) {
+    if (go_on && !go_on()) return Error{ErrorCode::kInternal, "loading was cancelled"};
+    weigh_for_field(out.sample_spacing, *mesh);
+  }
   return out;
 }
 

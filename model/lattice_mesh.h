@@ -19,6 +19,16 @@ enum TriangleFlag : std::uint8_t {
 /// One neighbour across a shared edge (the same two lattice vertices): neighbour id · 2 + (1 if the edge is smooth).
 using EdgeNeighbour = std::uint32_t;
 
+inline constexpr std::uint32_t kNoPatch = 0xFFFFFFFF;
+
+/// A point of a triangle that stands for what the grid of samples misses (docs/EXACTNESS.md section 4).
+struct ExtraSample {
+  std::uint32_t triangle = 0;
+  Int3 point{0};                  ///< within a step of the triangle's plane
+  std::uint32_t weight_q30 = 0;   ///< of s², > 0
+  bool operator==(const ExtraSample&) const = default;
+};
+
 /// A body snapped to the lattice, welded and oriented; made once at load on the host and read by both back ends.
 struct LatticeMesh {
   std::vector<Int3> vertices;                             ///< distinct points, |c| ≤ kLatticeReach
@@ -30,7 +40,12 @@ struct LatticeMesh {
   std::vector<std::uint32_t> neighbour_begin;             ///< CSR, triangles.size() + 1
   std::vector<EdgeNeighbour> neighbours;                  ///< ascending in each triangle, each neighbour once
                                                           ///< (smooth if any edge shared with it is smooth)
-  std::vector<std::uint32_t> patch;                       ///< number of the patch, about a CAD face, by triangle; UINT32_MAX if collapsed
+  std::vector<std::uint32_t> patch;                       ///< about a CAD face, by triangle: joined over smooth edges, in one part;
+                                                          ///< numbered by their smallest triangle; kNoPatch if collapsed
+  std::uint32_t patch_count = 0;
+  std::vector<std::uint32_t> field_weight_q30;            ///< what the pressure field takes for sample_weight_q30: of small and thin
+                                                          ///< faces scaled, so that s²·w adds up to their area; 0 if collapsed
+  std::vector<ExtraSample> extra_samples;                 ///< of faces that the grid misses; ascending by triangle, which may have several
   bool closed = false;                                    ///< edges, each with its direction, cancel point for point
   Int3 box_min{0}, box_max{0};                            ///< of all triangles that did not collapse
 

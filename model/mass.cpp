@@ -34,4 +34,18 @@ SurfaceMeasure measure(const LatticeMesh& mesh) {
   return out;
 }
 
+double gyration_radius(const LatticeMesh& mesh, const Vec3& centre) {
+  double area_sum = 0, moment = 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.collapsed(t)) continue;
+    const Vec3 a = Vec3(mesh.corner(t, 0)) - centre, b = Vec3(mesh.corner(t, 1)) - centre, c = Vec3(mesh.corner(t, 2)) - centre;
+    const double area = length(Vec3(raw_normal(mesh, t))) / 2;
+    const Vec3 sum = a + b + c;
+    // The integral over a triangle of |x|² is area / 12 · (|a|² + |b|² + |c|² + |a + b + c|²).
+    moment += area / 12 * (glm::dot(a, a) + glm::dot(b, b) + glm::dot(c, c) + glm::dot(sum, sum));
+    area_sum += area;
+  }
+  return area_sum > 0 ? std::sqrt(moment / area_sum) : 0;
+}
+
 }  // namespace palpate

@@ -14,4 +14,8 @@ struct SurfaceMeasure {
 };
 SurfaceMeasure measure(const LatticeMesh& mesh);
 
+/// Radius of gyration of the surface about a point, both in steps: √(∫|x − c|² dA / ∫dA). Exact for each triangle but for rounding, summed in
+/// their order; > 0 for a mesh with any area.
+double gyration_radius(const LatticeMesh& mesh, const Vec3& centre);
+
 }  // namespace palpate

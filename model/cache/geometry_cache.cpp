@@ -32,6 +32,10 @@ void archive_mesh(Archive& a, LatticeMeshOrConst& mesh) {
   a(mesh.sample_axis);
   a(mesh.neighbour_begin);
   a(mesh.neighbours);
+  a(mesh.patch);
+  a(mesh.patch_count);
+  a(mesh.field_weight_q30);
+  a(mesh.extra_samples);
   a(mesh.closed);
   a(mesh.box_min);
   a(mesh.box_max);
@@ -75,6 +79,8 @@ void archive_shape(Archive& a, Geometry& g) {
   archive_grid(a, g.mockup_grid);
   archive_grid(a, g.tool_grid);
   a(g.sample_spacing);
+  a(g.reference_area_m2);
+  a(g.tool_gyration_m);
   a(g.smooth_angle.cos2_numerator);
   a(g.smooth_angle.cos2_denominator);
 }

@@ -24,7 +24,8 @@ std::uint64_t bytes_of(const std::vector<T>& list) {
 
 std::uint64_t bytes_of(const LatticeMesh& mesh) {
   return bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.flags) + bytes_of(mesh.unit_normal_q30) +
-         bytes_of(mesh.sample_weight_q30) + bytes_of(mesh.sample_axis) + bytes_of(mesh.neighbour_begin) + bytes_of(mesh.neighbours);
+         bytes_of(mesh.sample_weight_q30) + bytes_of(mesh.sample_axis) + bytes_of(mesh.neighbour_begin) + bytes_of(mesh.neighbours) +
+         bytes_of(mesh.patch) + bytes_of(mesh.field_weight_q30) + bytes_of(mesh.extra_samples);
 }
 
 /// What a prepared scene keeps: back end and integers.

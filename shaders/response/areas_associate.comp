@@ -20,11 +20,7 @@ EDIT(kBindResultMembers, AreaMember, members);
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/centroid.glsl"
 #include "shaders/lib/pose.glsl"
-
-int64_t squared(ivec3 v) {
-  const i64vec3 w = i64vec3(v);
-  return w.x * w.x + w.y * w.y + w.z * w.z;
-}
+#include "shaders/lib/area_sphere.glsl"
 
 void append(uint32_t area, uint32_t mobile) {
   const uint32_t i = take_room(kListMembers, 1u);
@@ -35,8 +31,6 @@ void main() {
   const uint32_t i = flat_invocation();
   if (i >= frame_lists[kListContactMobiles].count) return;
   const uint32_t mobile = contact_mobiles[i];
-  mobile_work[mobile] = MobileWork(0u, 0u);
-
   const uvec3 corners = tool_triangles[mobile];
   const ivec3 g = rounded_centroid(world_from_tool(tool_vertices[corners.x]), world_from_tool(tool_vertices[corners.y]), world_from_tool(tool_vertices[corners.z]));
   bool held_by_one = false;
@@ -44,9 +38,8 @@ void main() {
   int64_t nearest_distance = 0l;
   const uint32_t count = min(response.areas, kMaxFrameAreas);
   for (uint32_t area = 0u; area < count; ++area) {
-    const ivec3 low = areas[area].box_low, high = areas[area].box_high;
-    const int64_t distance = squared(2 * g - (low + high));   // components within 2^30: below 2^62
-    if (distance <= squared(high - low)) {
+    const int64_t distance = area_distance(area, g);
+    if (area_holds(area, g)) {
       append(area, mobile);
       held_by_one = true;
     }
@@ -57,4 +50,5 @@ void main() {
     }
   }
   if (!held_by_one && nearest != kNone) append(nearest, mobile);
+  mobile_work[mobile] = MobileWork(0u, 0u, held_by_one ? kNone : nearest);
 }

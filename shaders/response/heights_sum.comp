@@ -1,7 +1,7 @@
 #version 460
 // One invocation: a run of kHeightRun samples. Adds their heights to their areas, once for each change of area in the run.
 // Reads samples, heights, fades, slots, weights. Writes the sums of areas.
-// Before: heights_trace.
+// Before: heights_trace (`paper`: centroids_trace).
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"

@@ -1,22 +1,16 @@
 #version 460
-// One invocation: a counting sample (`paper`: a triangle of C_s and its rounded centroid). Traces −n_c through the tool.
-// Reads samples, slots, areas, the tool: as a whole at its pose, or (WALK) its fine partition. Writes heights and, in `refined`, how they
-// fade in.
+// One invocation (`refined`): a counting sample. Traces −n_c through the tool.
+// Reads samples, slots, areas, the tool: as a whole at its pose, or (WALK) its fine partition. Writes heights, and how they fade in.
 // Before: areas_direct, areas_settle.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
-layout(constant_id = 0) const bool REFINED = true;
-
 CONSTANT(kBindScene, SceneConstants, scene);
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindSamples, FrameSample, frame_samples);
-READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindStaticSlot, uint32_t, static_slot);
-READ(kBindMockupVertices, ivec3, mockup_vertices);
-READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindClusterBoxes, LatticeBox, cluster_boxes);
 READ(kBindRunBoxes, LatticeBox, run_boxes);
 READ(kBindToolCorners, ToolCorners, tool_corners);
@@ -38,7 +32,6 @@ READ(kBindRayPlaces, uint32_t, ray_places);
 
 #define TOOL_RAY_LISTS
 #include "shaders/lib/tool_ray.glsl"
-#include "shaders/lib/centroid.glsl"
 
 // H_0 of a sample: how much further, in height, the next sample of the grid lies on the same two faces.
 uint32_t fade_height(uint32_t static_id, ivec3 d, uint32_t exit_triangle) {
@@ -56,24 +49,15 @@ uint32_t fade_height(uint32_t static_id, ivec3 d, uint32_t exit_triangle) {
 
 void main() {
   const uint32_t i = flat_invocation();
-  if (i >= frame_lists[REFINED ? kListSamples : kListContactStatics].count) return;
+  if (i >= frame_lists[kListSamples].count) return;
   heights[i] = kNone;
-  uint32_t slot = i;
-  ivec3 p;
-  if (REFINED) {
-    slot = static_slot[frame_samples[i].static_id];
-    p = frame_samples[i].point;
-  } else {
-    const uvec3 corners = mockup_triangles[contact_statics[i]];
-    p = rounded_centroid(mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]);
-  }
-  const uint32_t area = slots[slot].area;
+  const uint32_t static_id = frame_samples[i].static_id, area = slots[static_slot[static_id]].area;
   if (area == kNone) return;
   const ivec3 direction = areas[area].direction;
   if (direction == ivec3(0)) return;
-  const bool nearest = !REFINED || (scene.tool.closed == 0u && scene.tool.has_internal == 0u);
+  const bool nearest = scene.tool.closed == 0u && scene.tool.has_internal == 0u;
   listed_item = i;
   uint32_t exit_triangle;
-  heights[i] = tool_height(p, -direction, nearest, exit_triangle);
-  if (REFINED && heights[i] != kNone) fades[i] = fade_height(frame_samples[i].static_id, direction, exit_triangle);
+  heights[i] = tool_height(frame_samples[i].point, -direction, nearest, exit_triangle);
+  if (heights[i] != kNone) fades[i] = fade_height(static_id, direction, exit_triangle);
 }

@@ -75,6 +75,7 @@ struct SlotWork {
 struct MobileWork {
   uint32_t claimed;          // 1: its tiles are in the list
   uint32_t samples;          // of its samples, those at this pose in a V_bnd or V_int voxel
+  uint32_t nearest;          // the area that has it although no sphere holds it; kNone: the areas whose spheres hold it have it
 };
 
 // kMobileTile² points of a tool triangle's sample grid, beginning at grid point (first_u, first_v)·spacing.
@@ -133,14 +134,14 @@ struct AreaWork {
 };
 
 // ContactFlag of model/contacts.h.
-PALPATE_CONSTANT uint32_t kAreaFlagNeedle = 1u << 0;
-PALPATE_CONSTANT uint32_t kAreaFlagSwallowed = 1u << 1;
-PALPATE_CONSTANT uint32_t kAreaFlagCancelled = 1u << 3;
-PALPATE_CONSTANT uint32_t kAreaFlagHeld = 1u << 4;
-PALPATE_CONSTANT uint32_t kAreaFlagNearestExternal = 1u << 5;
-PALPATE_CONSTANT uint32_t kAreaFlagSheet = 1u << 6;
-PALPATE_CONSTANT uint32_t kAreaFlagToolOpen = 1u << 7;
-PALPATE_CONSTANT uint32_t kAreaFlagNoDirection = 1u << 8;
+PALPATE_CONSTANT uint32_t kAreaFlagCancelled = 1u << 0;
+PALPATE_CONSTANT uint32_t kAreaFlagSheet = 1u << 1;
+PALPATE_CONSTANT uint32_t kAreaFlagToolOpen = 1u << 2;
+PALPATE_CONSTANT uint32_t kAreaFlagNoDirection = 1u << 3;
+PALPATE_CONSTANT uint32_t kAreaFlagNeedle = 1u << 8;
+PALPATE_CONSTANT uint32_t kAreaFlagSwallowed = 1u << 9;
+PALPATE_CONSTANT uint32_t kAreaFlagHeld = 1u << 12;
+PALPATE_CONSTANT uint32_t kAreaFlagNearestExternal = 1u << 13;
 
 PALPATE_SHARED_END
 #endif

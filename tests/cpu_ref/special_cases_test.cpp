@@ -222,6 +222,25 @@ TEST(Heights, GoThroughPartsThatOverlap) {
   EXPECT_NEAR(answer.areas[0].depth, 4 * kMm, 1e-6);
 }
 
+TEST(Heights, InPaperAreOfTheAreasOwnToolTrianglesAlone) {
+  // A clamp round a rod, 1 mm into its top and 2 mm into its bottom; the arm below is the wider one. Rays from the top that pass the narrow arm
+  // would go on to the arm below, 58 mm away, which touches the rod as well but belongs to the other area.
+  const Mesh rod = solids::box(Vec3(-20 * kMm, -20 * kMm, -60 * kMm), Vec3(20 * kMm, 20 * kMm, 0), Int3(20, 20, 1));
+  Mesh clamp;
+  solids::append(clamp, solids::box(Vec3(-4 * kMm, -4 * kMm, -1 * kMm), Vec3(4 * kMm, 4 * kMm, 10 * kMm)), "upper arm");
+  solids::append(clamp, solids::box(Vec3(-12 * kMm, -12 * kMm, -70 * kMm), Vec3(12 * kMm, 12 * kMm, -58 * kMm)), "lower arm");
+  BenchScene scene(rod, clamp, voxels_of(4 * kMm), Profile::kPaper);
+  const ContactResponse& answer = scene.ask(Vec3(1 * kMm, 1 * kMm, 0));
+  ASSERT_EQ(answer.areas.size(), 2u);
+  for (const AreaResponse& area : answer.areas) {
+    const bool top = area.normal.z > 0;
+    EXPECT_LT(angle_deg(area.normal, top ? kUp : -kUp), 1e-6);
+    EXPECT_NEAR(area.depth, (top ? 1 : 2) * kMm, 1e-6);   // m: lattice steps and Q30
+  }
+  EXPECT_NE(answer.areas[0].normal.z > 0, answer.areas[1].normal.z > 0);
+  EXPECT_NEAR(answer.wrench.force.z, -BenchScene::kStiffness * 1 * kMm, 1e-2);   // N
+}
+
 TEST(Est, FineTrianglesInTheMiddleKeepTheContactWhole) {
   // Cells of 0.6 and 0.4 mm under samples 0.5 mm apart: many triangles have none. Were they left out, the middle of the
   // contact would fall apart into islands, each with a force of its own.

@@ -202,6 +202,26 @@ Case between_two_areas() {
               [](const SceneGeometry&, Random& random, Known&) { return unturned({random.below(2) == 0 ? 0 : random.between(-1, 1), 200 + random.between(-20, 20), random.between(-20, 20)}); });
 }
 
+/// A clamp whose arms lie on either side of a rod, with a finger beside one and a long triangle that only just reaches in. A ray may pass its own arm and meet another that is not in C_m,
+/// that is another area's, that several spheres hold, or that none holds and is the nearest area's. `paper`.
+Case clamp_round_a_rod() {
+  Triangles rod;   // its upper and lower side in squares of 64 steps, so that some centroids are beside the arms
+  for (std::int32_t x = -256; x < 256; x += 64)
+    for (std::int32_t y = -128; y < 128; y += 64) {
+      append(rod, side_of(Int3(x, y, -100), Int3(x + 64, y + 64, 100), 5));
+      append(rod, side_of(Int3(x, y, -100), Int3(x + 64, y + 64, 100), 4));
+    }
+  const Triangles clamp = together({box_of(Int3(-40, -40, 90), Int3(40, 40, 300)), box_of(Int3(-100, -120, -300), Int3(200, 120, -90)),
+                                    box_of(Int3(150, -30, 80), Int3(200, 30, 260)), {{Int3(-100, -80, 100), Int3(-100, 80, 100), Int3(-1500, 0, 20)}}});
+  Case c = rule("clamp_round_a_rod", "a ray that passes its own area's arm may meet another's: only its own counts", rod, clamp,
+                [](const SceneGeometry&, Random& random, Known&) {
+                  const Int3 at(random.between(-90, 90), random.between(-90, 90), random.between(-30, 30));
+                  return random.below(3) == 0 ? unturned(at) : leaning(random, at);
+                });
+  c.poses = 24;
+  return paper(c);
+}
+
 /// Wholly inside, at points from which several voxels are the nearest way out.
 Case swallowed_at_ties() {
   return rule("swallowed_at_ties", "wholly inside, as far from one way out as from another: the voxel of the smallest number", block(), box_of(Int3(-20), Int3(20)),
@@ -401,7 +421,7 @@ std::vector<Case> rule_cases() {
           sheet_through_gc(), held(two_sheets()), held(bead()), flush_with_the_back(), two_plates(), needle_leaning(), on_the_sphere(), between_two_areas(),
           swallowed_at_ties(), bridge(), long_tool(), seams_in_a_row(), numbered_in_turn(), crossed_wedges(0, false), crossed_wedges(1, false), crossed_wedges(1, true),
           nested_tool(Nested::kClosed), nested_tool(Nested::kOpen), nested_tool(Nested::kOpenWithInside), open_box_and_boxes(), needle_open(false), needle_open(true), needle_through_plates(), needle_in_a_fan(), fine_plates(),
-          paper(two_sheets()), open_tubes(), swallowed_below_a_brick(), bead_in_a_swallowed_tool(), bead_beside_a_swallowed_part()};
+          paper(two_sheets()), open_tubes(), swallowed_below_a_brick(), bead_in_a_swallowed_tool(), bead_beside_a_swallowed_part(), clamp_round_a_rod()};
 }
 
 }  // namespace palpate::equivalence

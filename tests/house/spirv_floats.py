@@ -21,6 +21,7 @@ SHARED_STORAGE = {'StorageBuffer', 'Uniform', 'UniformConstant', 'PushConstant',
 RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding, contracted or not, and exact tests follow'
 CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
 CULLS = {
+    'centroids_trace': RAYS,
     'heights_trace': RAYS,
     'mobile_samples': CELL,
     'sample_scan': CELL,

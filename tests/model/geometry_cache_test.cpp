@@ -54,6 +54,27 @@ TEST_F(GeometryCache, AScenePreparedBeforeIsReadWithoutItsMeshesAndIsTheSame) {
   EXPECT_THAT(cache.take_notes(), testing::IsEmpty());
 }
 
+TEST_F(GeometryCache, WhatThePressureFieldNeedsIsKept) {
+  const auto load = [&](DiskCache* with) {
+    return load_scene(read(R"(, "response": {"voxel_size": 0.1, "sample_spacing": 0.2})", R"({"mesh": "block.off"}, {"mesh": "block.off", "position": [0.33, 0.17, 0.21]})"), {}, {}, with);
+  };
+  const auto plain = load(nullptr), first = load(&cache), second = load(&cache);
+  ASSERT_TRUE(plain && first && second);
+  ASSERT_TRUE(second->from_cache);
+  for (const auto mesh : {&SceneGeometry::mockup, &SceneGeometry::tool}) {
+    const LatticeMesh &made = plain->geometry.*mesh, &found = second->geometry.*mesh;
+    EXPECT_EQ(found.patch, made.patch);
+    EXPECT_EQ(found.patch_count, made.patch_count);
+    EXPECT_EQ(found.field_weight_q30, made.field_weight_q30);
+    EXPECT_EQ(found.extra_samples, made.extra_samples);
+  }
+  EXPECT_EQ(plain->geometry.mockup.patch_count, 8u);
+  EXPECT_FALSE(plain->geometry.mockup.extra_samples.empty());   // faces of an eighth of s²
+  EXPECT_GT(plain->geometry.tool_gyration_m, 0);
+  EXPECT_EQ(second->geometry.tool_gyration_m, plain->geometry.tool_gyration_m);
+  EXPECT_EQ(second->geometry.reference_area_m2, plain->geometry.reference_area_m2);
+}
+
 TEST_F(GeometryCache, CoarseSamplesAreWarnedOfWhereverTheGeometryComesFrom) {
   const auto warnings = [&](const char* response, DiskCache* with) {
     auto loaded = load_scene(read(std::string(R"(, "response": )") + response), {}, {}, with);

@@ -1,0 +1,229 @@
+#include "model/patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "model/triangle.h"
+
+namespace palpate {
+namespace {
+
+/// Sides of at least so many s² keep the weights of the grid where it sees them fairly (chosen).
+constexpr double kLarge = 64;
+/// What the grid may miss or add of a side's area, and of the sum of its normals, as a part of its area (chosen).
+constexpr double kFairly = 0.0625;
+/// Samples that stand for less than this part of a side can't stand for it all: weights are at most √3, and 2√3 < 4 is what Q30 holds.
+constexpr double kHardlySeen = 0.5;
+/// An extra sample of a side larger than s² stands for at most this part of s² (chosen: denser than the grid, for such sides are narrow).
+constexpr double kExtraShare = 0.25;
+constexpr double kMostExtras = 1024;   // on one triangle (chosen: memory)
+
+/// Triangles joined into components; the smallest is the root.
+class Components {
+ public:
+  explicit Components(std::size_t count) : parent_(count) {
+    for (std::uint32_t i = 0; i < count; ++i) parent_[i] = i;
+  }
+  std::uint32_t find(std::uint32_t t) {
+    while (parent_[t] != t) {
+      parent_[t] = parent_[parent_[t]];
+      t = parent_[t];
+    }
+    return t;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+struct Numbering {
+  std::vector<std::uint32_t> of;   ///< by triangle, kNoPatch for collapsed ones
+  std::uint32_t count = 0;
+};
+
+/// Numbers the components over smooth edges between triangles that `together` allows, in the order of their smallest triangle.
+template <class Together>
+Numbering number_smooth(const LatticeMesh& mesh, const Together& together) {
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  Components components(count);
+  for (std::uint32_t t = 0; t < count; ++t)
+    for (std::uint32_t i = mesh.neighbour_begin[t]; i < mesh.neighbour_begin[t + 1]; ++i) {
+      const EdgeNeighbour entry = mesh.neighbours[i];
+      if ((entry & 1) != 0 && entry / 2 < t && together(t, entry / 2)) components.join(t, entry / 2);
+    }
+  Numbering out{std::vector<std::uint32_t>(count, kNoPatch)};
+  for (std::uint32_t t = 0; t < count; ++t) {
+    if (mesh.collapsed(t)) continue;
+    const std::uint32_t root = components.find(t);   // not after t, so it has its number
+    out.of[t] = root == t ? out.count++ : out.of[root];
+  }
+  return out;
+}
+
+double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+bool looks_back(const LatticeMesh& mesh, std::uint32_t triangle) { return mesh.unit_normal_q30[triangle][mesh.sample_axis[triangle]] < 0; }
+
+std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
+  const std::int64_t quotient = value / divisor;
+  return value % divisor < 0 ? quotient - 1 : quotient;
+}
+std::int64_t ceil_divide(std::int64_t value, std::int64_t divisor) { return -floor_divide(-value, divisor); }
+
+/// A weight, at least 1: an extra sample that weighs nothing would be none.
+std::uint32_t weight_q30(double weight) {
+  return static_cast<std::uint32_t>(std::clamp(std::nearbyint(weight * 0x1p30), 1.0, 4294967295.0));
+}
+
+/// Cuts a triangle from its longest edge to the opposite corner into `count` of equal area; the centroid of number i of them, rounded down.
+Int3 middle_of_share(const LatticeMesh& mesh, std::uint32_t triangle, std::int64_t i, std::int64_t count) {
+  double longest = -1;
+  int first = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 edge = Vec3(mesh.corner(triangle, (k + 1) % 3)) - Vec3(mesh.corner(triangle, k));
+    const double length = edge.x * edge.x + edge.y * edge.y + edge.z * edge.z;
+    if (length > longest) longest = length, first = k;
+  }
+  const Int3 p = mesh.corner(triangle, first), q = mesh.corner(triangle, (first + 1) % 3), apex = mesh.corner(triangle, (first + 2) % 3);
+  Int3 out;
+  for (int k = 0; k < 3; ++k) {   // count ≤ 2^10: within 2^42
+    const std::int64_t along = (std::int64_t{q[k]} - p[k]) * (2 * i + 1);
+    out[k] = static_cast<std::int32_t>(floor_divide(count * (std::int64_t{apex[k]} + 2 * std::int64_t{p[k]}) + along, 3 * count));
+  }
+  return out;
+}
+
+/// Area by where it faces, steps².
+struct Facing {
+  double area = 0;
+  Vec3 sum{0};      ///< of n̂
+  Vec3 spread{0};   ///< of |n̂|, each component by itself: a round side seen at its middle alone has the right sum
+  void add(double more, const Vec3& normal) {
+    area += more;
+    sum += more * normal;
+    spread += more * glm::abs(normal);
+  }
+};
+
+/// What looks one way of a patch, and hangs together: all of it is sampled by the same columns of the grid.
+struct Side {
+  std::span<const std::uint32_t> triangles;   ///< ascending
+  Facing facing{};
+};
+
+/// The factor of its samples' weights with which they stand for all of it; 0 when they can't.
+double factor_of(const LatticeMesh& mesh, std::int32_t spacing, double square, Side& side) {
+  Facing &is = side.facing, seen;
+  for (const std::uint32_t t : side.triangles) {
+    const Vec3 raw(raw_normal(mesh, t));
+    const double size = length(raw);
+    is.add(size / 2, raw / size);
+    if (const std::uint64_t samples = count_samples(mesh, t, spacing); samples != 0)
+      seen.add(square * static_cast<double>(samples) * (mesh.sample_weight_q30[t] * 0x1p-30), raw / size);
+  }
+  const double fair = kFairly * is.area;
+  const auto fits = [&](double factor) {
+    return length(factor * seen.sum - is.sum) <= fair && length(factor * seen.spread - is.spread) <= fair;
+  };
+  if (is.area >= kLarge * square && std::abs(seen.area - is.area) <= fair && fits(1)) return 1;
+  if (seen.area < kHardlySeen * is.area) return 0;
+  const double factor = is.area / seen.area;
+  return fits(factor) ? factor : 0;   // a round side seen only in places would push askew
+}
+
+/// Gives a side extra samples for all of its area.
+void place_extras(LatticeMesh& mesh, double square, const Side& side) {
+  const bool one = side.facing.area <= square;
+  double gathered = 0, most = -1;
+  std::uint32_t largest = 0;
+  for (const std::uint32_t t : side.triangles) {
+    const Vec3 raw(raw_normal(mesh, t));
+    gathered += length(raw) / 2;
+    if (const double shows = glm::dot(raw, side.facing.sum); shows > most) most = shows, largest = t;
+    if (t != side.triangles.back() && (one || gathered < kExtraShare * square)) continue;
+    const double weight = gathered / square;
+    const double count = one ? 1 : std::clamp(std::ceil(weight / kExtraShare), 1.0, kMostExtras);
+    const auto whole = static_cast<std::int64_t>(count);
+    for (std::int64_t i = 0; i < whole; ++i)
+      mesh.extra_samples.push_back({largest, middle_of_share(mesh, largest, i, whole), weight_q30(weight / count)});
+    gathered = 0;
+    most = -1;
+  }
+}
+
+}  // namespace
+
+void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh) {
+  Numbering found = number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) { return part_of[a] == part_of[b]; });
+  mesh.patch = std::move(found.of);
+  mesh.patch_count = found.count;
+}
+
+std::uint64_t count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std::int32_t spacing) {
+  if (mesh.collapsed(triangle)) return 0;
+  const int axis = mesh.sample_axis[triangle], u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const std::int64_t facing = looks_back(mesh, triangle) ? -1 : 1, s = spacing;
+  const Int3 corners[3] = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
+  const auto [min_v, max_v] = std::minmax({corners[0][v], corners[1][v], corners[2][v]});
+  const std::int64_t first = ceil_divide(min_v, s), last = floor_divide(max_v, s);
+  if (first > last) return 0;
+  const auto [min_u, max_u] = std::minmax({corners[0][u], corners[1][u], corners[2][u]});
+  if (ceil_divide(min_u, s) > floor_divide(max_u, s)) return 0;
+  std::uint64_t count = 0;
+  for (std::int64_t j = first; j <= last; ++j) {
+    // Along a row of the grid every edge leaves one half of the line; what lies on an edge goes where (ε, ε²) says.
+    std::int64_t low = min_u, high = max_u;
+    for (int k = 0; k < 3 && low <= high; ++k) {
+      const Int3 &p = corners[k], &q = corners[(k + 1) % 3];
+      const std::int64_t along_u = facing * (std::int64_t{q[u]} - p[u]), along_v = facing * (std::int64_t{q[v]} - p[v]);
+      const std::int64_t reach = along_u * (j * s - p[v]);   // within 2^58
+      if (along_v > 0) high = std::min(high, p[u] + ceil_divide(reach, along_v) - 1);
+      if (along_v < 0) low = std::max(low, p[u] + ceil_divide(-reach, -along_v));
+      if (along_v == 0 && (reach < 0 || (reach == 0 && along_u < 0))) high = low - 1;
+    }
+    if (low > high) continue;
+    const std::int64_t in_row = floor_divide(high, s) - ceil_divide(low, s) + 1;
+    if (in_row > 0) count += static_cast<std::uint64_t>(in_row);
+  }
+  return count;
+}
+
+void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  const double square = static_cast<double>(spacing) * spacing;
+  const Numbering sides = number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) {
+    return mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] && looks_back(mesh, a) == looks_back(mesh, b);
+  });
+  std::vector<std::uint32_t> begin(std::size_t{sides.count} + 1, 0), order(count);
+  for (const std::uint32_t side : sides.of)
+    if (side != kNoPatch) ++begin[side + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (std::uint32_t t = 0; t < count; ++t)
+    if (sides.of[t] != kNoPatch) order[next[sides.of[t]]++] = t;
+
+  mesh.field_weight_q30.assign(count, 0);
+  mesh.extra_samples.clear();
+  for (std::uint32_t s = 0; s < sides.count; ++s) {
+    Side side{.triangles = std::span(order).subspan(begin[s], begin[s + 1] - begin[s])};
+    const double factor = factor_of(mesh, spacing, square, side);
+    if (factor == 0) {
+      place_extras(mesh, square, side);
+      continue;
+    }
+    for (const std::uint32_t t : side.triangles)
+      mesh.field_weight_q30[t] = factor == 1 ? mesh.sample_weight_q30[t] : weight_q30(factor * (mesh.sample_weight_q30[t] * 0x1p-30));
+  }
+  std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),
+                   [](const ExtraSample& a, const ExtraSample& b) { return a.triangle < b.triangle; });
+}
+
+}  // namespace palpate

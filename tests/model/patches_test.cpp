@@ -1,0 +1,265 @@
+// Patches are about the faces that a CAD file knows, and no face is too small or too thin for the pressure field.
+#include "model/patches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+
+#include "cpu_ref/samples.h"
+#include "model/generate/solids.h"
+#include "model/geometry_build.h"
+#include "model/mass.h"
+#include "model/triangle.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kStep = 0x1p-20;                       // m, about a micrometre
+constexpr std::int32_t kSpacing = 1468;                 // 1.4 mm
+constexpr double kSquare = double{kSpacing} * kSpacing; // steps²
+
+LatticeMesh build(const Mesh& mesh, const Vec3& origin_m = Vec3(0), std::int32_t spacing = kSpacing) {
+  MeshReport report;
+  auto built = build_lattice_mesh(mesh, Lattice{kStep, origin_m}, {}, report);
+  EXPECT_TRUE(built) << built.error().sentence;
+  weigh_for_field(spacing, *built);
+  return std::move(*built);
+}
+
+double area_of(const LatticeMesh& mesh, std::uint32_t triangle) { return glm::length(Vec3(raw_normal(mesh, triangle))) / 2; }
+Vec3 normal_of(const LatticeMesh& mesh, std::uint32_t triangle) { return Vec3(mesh.unit_normal_q30[triangle]) * 0x1p-30; }
+
+/// What the field sees of the surface, s² w.
+struct Seen {
+  double area = 0;
+  Vec3 normal{0};   ///< Σ s² w n̂: 0 for a closed surface
+  double patch_worst = 0;   ///< largest difference from a patch's area
+};
+Seen seen(const LatticeMesh& mesh, std::int32_t spacing = kSpacing) {
+  Seen out;
+  std::vector<double> true_area(mesh.patch_count, 0), patch_area(mesh.patch_count, 0);
+  const double square = double{1} * spacing * spacing * 0x1p-30;
+  const auto add = [&](std::uint32_t t, double weight) {
+    out.area += square * weight;
+    out.normal += square * weight * normal_of(mesh, t);
+    patch_area[mesh.patch[t]] += square * weight;
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.collapsed(t)) continue;
+    true_area[mesh.patch[t]] += area_of(mesh, t);
+    add(t, static_cast<double>(count_samples(mesh, t, spacing)) * mesh.field_weight_q30[t]);
+  }
+  for (const ExtraSample& extra : mesh.extra_samples) add(extra.triangle, extra.weight_q30);
+  for (std::size_t p = 0; p < true_area.size(); ++p) out.patch_worst = std::max(out.patch_worst, std::abs(patch_area[p] - true_area[p]));
+  return out;
+}
+
+/// A needle along −z with a flat end, its tip at z = 0.
+Mesh needle(double tip_radius, double radius, double length) {
+  return solids::revolve({{tip_radius, 0}, {radius, length / 4}, {radius, length}}, 24, solids::Ends::kPoints);
+}
+
+TEST(Patches, ACubeHasSixAndACylinderThree) {
+  const LatticeMesh cube = build(solids::box(Vec3(0), Vec3(0.02), Int3(3)));
+  EXPECT_EQ(cube.patch_count, 6u);
+  EXPECT_EQ(build(solids::cylinder(0.01, 0.03, 48, 2)).patch_count, 3u);
+  EXPECT_EQ(build(solids::cylinder(0.01, 0.03, 8)).patch_count, 10u);   // 45° from side to side: no longer round
+  EXPECT_EQ(build(solids::sphere(0.01)).patch_count, 1u);
+  for (std::uint32_t t = 0; t < cube.triangles.size(); ++t)
+    for (std::uint32_t other = 0; other < t; ++other)
+      EXPECT_EQ(cube.patch[t] == cube.patch[other], cube.unit_normal_q30[t] == cube.unit_normal_q30[other]);
+}
+
+TEST(Patches, AreNumberedByTheirSmallestTriangleAndLeaveCollapsedOnesOut) {
+  Mesh mesh = solids::cylinder(0.01, 0.03, 48);
+  mesh.vertices.push_back(mesh.vertices[mesh.triangles[5][0]]);
+  const auto twice = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  mesh.triangles.insert(mesh.triangles.begin(), {mesh.triangles[5][0], twice, mesh.triangles[5][1]});
+  mesh.parts.clear();
+  const LatticeMesh built = build(mesh);
+  ASSERT_TRUE(built.collapsed(0));
+  EXPECT_EQ(built.patch[0], kNoPatch);
+  EXPECT_EQ(built.field_weight_q30[0], 0u);
+  std::uint32_t next = 0;
+  for (std::uint32_t t = 1; t < built.triangles.size(); ++t) {
+    ASSERT_LE(built.patch[t], next);
+    if (built.patch[t] == next) ++next;
+  }
+  EXPECT_EQ(next, built.patch_count);
+  EXPECT_EQ(next, 3u);
+}
+
+TEST(Patches, EndWhereAPartEnds) {
+  Mesh two;
+  solids::append(two, solids::box(Vec3(0), Vec3(0.02)), "left");
+  solids::append(two, solids::box(Vec3(0.02, 0, 0), Vec3(0.04, 0.02, 0.02)), "right");   // flush with it
+  EXPECT_EQ(build(two).patch_count, 12u);
+  two.parts = {{"both", 0, 24}};
+  EXPECT_LT(build(two).patch_count, 12u);
+}
+
+TEST(FieldWeights, CountTheSamplesThatTheReferenceVisits) {
+  std::mt19937 random(7);
+  std::uint64_t total = 0;
+  for (const std::int32_t spacing : {1, 3, 8}) {
+    for (int i = 0; i < 3000; ++i) {
+      // Few coordinates, many of them on the grid: ties of every kind.
+      std::uniform_int_distribution<std::int32_t> coordinate(-24, 24);
+      LatticeMesh mesh;
+      for (int k = 0; k < 3; ++k) mesh.vertices.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+      mesh.triangles = {{0, 1, 2}};
+      const Long3 raw = raw_normal(mesh.vertices[0], mesh.vertices[1], mesh.vertices[2]);
+      mesh.flags = {static_cast<std::uint8_t>(raw == Long3(0) ? kTriangleCollapsed : 0)};
+      mesh.sample_axis = {static_cast<std::uint8_t>(dominant_axis(raw))};
+      mesh.unit_normal_q30 = {Int3(raw)};
+      cpu_ref::Box everywhere;
+      everywhere.min = Int3(-100);
+      everywhere.max = Int3(100);
+      std::uint64_t visited = 0;
+      cpu_ref::for_each_sample(mesh, 0, spacing, everywhere, [&](const Int3&) { ++visited; });
+      ASSERT_EQ(count_samples(mesh, 0, spacing), visited) << spacing << " " << i;
+      total += visited;
+    }
+  }
+  EXPECT_GT(total, 100000u);
+}
+
+TEST(FieldWeights, ANeedlesTipIsOneExtraSampleOfItsArea) {
+  int found = 0;
+  for (int i = 0; i < 10; ++i) {
+    const LatticeMesh mesh = build(needle(0.0002, 0.0005, 0.04), {0.00131 * i, 0.00117 * i, 0.0003});
+    double area = 0;
+    std::uint64_t samples = 0;
+    std::uint32_t tip = kNoPatch, largest = 0;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (normal_of(mesh, t).z > -0.99) continue;
+      if (tip == kNoPatch || area_of(mesh, t) > area_of(mesh, largest)) largest = t;
+      tip = mesh.patch[t];
+      area += area_of(mesh, t);
+      samples += count_samples(mesh, t, kSpacing);
+    }
+    ASSERT_NE(tip, kNoPatch);
+    std::vector<ExtraSample> extras;
+    for (const ExtraSample& extra : mesh.extra_samples)
+      if (mesh.patch[extra.triangle] == tip) extras.push_back(extra);
+    if (samples != 0) continue;
+    ++found;
+    ASSERT_EQ(extras.size(), 1u);
+    EXPECT_EQ(extras[0].triangle, largest);
+    EXPECT_NEAR(extras[0].weight_q30 * 0x1p-30 * kSquare, area, 0.002);   // half a Q30 of s²
+    const Vec3 middle = Vec3(mesh.corner(largest, 0)) + Vec3(mesh.corner(largest, 1)) + Vec3(mesh.corner(largest, 2));
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(extras[0].point[k], std::floor(middle[k] / 3));
+  }
+  EXPECT_GT(found, 5);
+}
+
+// Weights are whole 2^-30ths of s² = 2.1e6 steps²: a sample is off by 0.001 steps² at most.
+TEST(FieldWeights, EveryPatchOfASmallBodyIsSeenAsLargeAsItIs) {
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 at(0.00131 * i, 0.00117 * i, 0.00071 * i);
+    for (const double size : {0.0004, 0.0015, 0.005, 0.01}) {
+      const LatticeMesh box = build(solids::box(at, at + Vec3(size, 0.7 * size, 1.1 * size)));
+      const Seen whole = seen(box);
+      EXPECT_LT(whole.patch_worst, 1) << i << " " << size;
+      EXPECT_NEAR(whole.area, measure(box).area, 1);
+    }
+    const LatticeMesh sphere = build(solids::sphere(0.002), at);
+    EXPECT_LT(seen(sphere).patch_worst, 1);
+  }
+}
+
+TEST(FieldWeights, OfLargeFacesAreTheGrids) {
+  const LatticeMesh box = build(solids::box(Vec3(0.001), Vec3(0.1), Int3(2)));
+  EXPECT_EQ(box.field_weight_q30, box.sample_weight_q30);
+  EXPECT_TRUE(box.extra_samples.empty());
+}
+
+// The push of a pressure that is the same everywhere, nothing all in all. A side, a quarter of the mantle, is off by a sixteenth of its area at
+// most; three sides look the way of an axis at least in part, and a shadow is 1/π of the mantle: 3/64 π = 15 % of it.
+TEST(FieldWeights, OfAThinPinCancel) {
+  for (int i = 0; i < 20; ++i) {
+    const LatticeMesh pin = build(solids::cylinder(0.0005, 0.05), {0.00131 * i, 0.00117 * i, 0.00071 * i});
+    const Seen whole = seen(pin);
+    const double area = measure(pin).area;
+    EXPECT_NEAR(whole.area, area, 1) << i;
+    EXPECT_LT(glm::length(whole.normal), area / 16) << i;
+    // Pressed from any side it is felt: a quarter of the mantle looks each way.
+    double away[6] = {};
+    const auto add = [&](std::uint32_t t, double weight) {
+      const Vec3 n = normal_of(pin, t);
+      for (int k = 0; k < 3; ++k) away[2 * k + (n[k] > 0)] += kSquare * 0x1p-30 * weight * std::abs(n[k]);
+    };
+    for (std::uint32_t t = 0; t < pin.triangles.size(); ++t) add(t, static_cast<double>(count_samples(pin, t, kSpacing)) * pin.field_weight_q30[t]);
+    for (const ExtraSample& extra : pin.extra_samples) add(extra.triangle, extra.weight_q30);
+    const double shadow = 0.001 * 0.05 / kStep / kStep, end = shadow / 0.05 * 0.001 * 0.7854;
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(away[k], shadow, 0.15 * shadow) << i << " " << k;
+    for (int k = 4; k < 6; ++k) EXPECT_NEAR(away[k], end, 0.01 * end) << i << " " << k;   // 48 sides: 0.3 % less than a circle
+  }
+}
+
+TEST(FieldWeights, TheEdgeOfAThinSheetIsSeenAllAlong) {
+  int missed = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 at(0.00131 * i, 0.00117 * i, 0.00071 * i);
+    const LatticeMesh sheet = build(solids::box(at, at + Vec3(0.4, 0.2, 0.0008)));
+    const Seen whole = seen(sheet);
+    EXPECT_LT(glm::length(whole.normal), 0.002 * measure(sheet).area);   // the large faces see the same grid
+    for (const double side : {-1, 1}) {
+      std::vector<double> along;
+      for (const ExtraSample& extra : sheet.extra_samples)
+        if (normal_of(sheet, extra.triangle).y * side > 0.9) along.push_back(extra.point.x * kStep - at.x);
+      if (along.empty()) continue;
+      ++missed;
+      std::sort(along.begin(), along.end());
+      for (std::size_t n = 1; n < along.size(); ++n) EXPECT_LT(along[n] - along[n - 1], 0.0014) << i;
+      EXPECT_LT(along.front(), 0.0014);
+      EXPECT_GT(along.back(), 0.4 - 0.0014);
+    }
+  }
+  EXPECT_GT(missed, 5);
+}
+
+TEST(ExtraSamples, LieOnTheirTrianglesAndAscend) {
+  std::size_t count = 0;
+  for (int i = 0; i < 10; ++i) {
+    Mesh turned = solids::moved(needle(0.0003, 0.0006, 0.05), {Vec3(0.00131 * i, 0, 0), glm::normalize(Quat(1, 0.1 * i, 0.3, -0.2))});
+    const LatticeMesh mesh = build(turned);
+    count += mesh.extra_samples.size();
+    std::uint32_t before = 0;
+    for (const ExtraSample& extra : mesh.extra_samples) {
+      EXPECT_GE(extra.triangle, before);
+      EXPECT_GT(extra.weight_q30, 0u);
+      before = extra.triangle;
+      const Vec3 a(mesh.corner(extra.triangle, 0)), b(mesh.corner(extra.triangle, 1)), c(mesh.corner(extra.triangle, 2)), p(extra.point);
+      const Vec3 n = glm::normalize(glm::cross(b - a, c - a));
+      EXPECT_LT(std::abs(glm::dot(n, p - a)), std::sqrt(3.0));   // each component is rounded down by less than a step
+      for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
+        EXPECT_GT(glm::dot(glm::cross(n, glm::normalize(to - from)), p - from), -std::sqrt(3.0));
+    }
+  }
+  EXPECT_GT(count, 20u);
+}
+
+TEST(Gyration, OfABoxAboutItsMiddleAndAboutACorner) {
+  // A cube's surface of side 2a about its middle: a² for the face's own axis, a²/3 for each of the others.
+  const LatticeMesh cube = build(solids::box(Vec3(-0x1p-6), Vec3(0x1p-6), Int3(2, 3, 5)));
+  const double a = 0x1p14;
+  EXPECT_NEAR(gyration_radius(cube, Vec3(0)), a * std::sqrt(5.0 / 3), 1e-9 * a);
+  EXPECT_NEAR(gyration_radius(cube, Vec3(a)), a * std::sqrt(5.0 / 3 + 3), 1e-9 * a);
+  const auto geometry = build_geometry(solids::box(Vec3(0), Vec3(1)), solids::box(Vec3(0), Vec3(0.08, 0.02, 0.04)), {});
+  ASSERT_TRUE(geometry);
+  EXPECT_NEAR(geometry->reference_area_m2, 1e-4, 1e-7);   // (80 mm / 8)², the box in steps
+  const double areas[3] = {0.02 * 0.04, 0.04 * 0.08, 0.08 * 0.02}, sides[3] = {0.08, 0.02, 0.04};
+  double moment = 0, area = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 3; ++j) moment += areas[k] * sides[j] * sides[j] / (j == k ? 4 : 12);
+  for (const double one : areas) area += one;
+  EXPECT_NEAR(geometry->tool_gyration_m, std::sqrt(moment / area), 1e-5);
+}
+
+}  // namespace
+}  // namespace palpate
