@@ -88,6 +88,12 @@ struct DeviceSettings {
   std::string replay_file;                   ///< driver `replay`: the recorded trace.csv, absolute after loading
 };
 
+/// What becomes of contacts that are there where the tool starts.
+enum class StartContacts : std::uint8_t {
+  kAsIs,            ///< they push
+  kIgnoreInitial,   ///< profile `refined`: a run leaves them out, patch by patch of the mock-up, until they have opened once
+};
+
 /// A scene file, read, checked and completed with defaults.
 struct Scene {
   std::string file;
@@ -96,6 +102,7 @@ struct Scene {
   ResponseSettings response;
   ControlSettings control;
   DeviceSettings device;
+  StartContacts start_contacts = StartContacts::kAsIs;
   Pose start;                                ///< first path point, else the part's assembled place, else identity
   std::vector<std::string> stage_names;      ///< stage i is stage_names[i − 1]
   std::vector<std::string> warnings;         ///< one sentence each

@@ -16,7 +16,7 @@ namespace palpate {
 
 const std::map<std::string, std::vector<std::string>>& scene_keys() {
   static const std::map<std::string, std::vector<std::string>> keys{
-      {"scene", {"$schema", "description", "static", "tool", "response", "control", "device"}},
+      {"scene", {"$schema", "description", "static", "tool", "response", "control", "device", "start"}},
       {"static", {"mesh", "generate", "units", "scale", "part", "without", "position", "rotation"}},
       {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
@@ -299,6 +299,7 @@ Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile
     if (profile) scene.response.profile = *profile;
     read_control(root, scene.response.profile, scene.control);
     read_device(root, scene);
+    if (const auto start = root.choice("start", {"as_is", "ignore_initial"})) scene.start_contacts = *start == 0 ? StartContacts::kAsIs : StartContacts::kIgnoreInitial;
     scene.start = start_of(scene);
     return scene;
   } catch (const SceneFault& found) {

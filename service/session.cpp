@@ -106,7 +106,7 @@ struct Run {
       : scene(loaded.scene),
         options(session_options),
         device(safe),
-        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans),
+        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans, loaded.scene.start_contacts),
         tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m, couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
              loaded.scene.response.profile == Profile::kRefined),
         observer(run_observer),
@@ -273,6 +273,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.dropped_frames = run.dropped_frames;
   out.stopped = run.timing.stopped;
   out.plan_changes = run.frame.plan_changes();
+  out.ignored_patches_first = run.frame.ignored_at_first();
+  if (run.frame.frames() > 0) out.ignored_patches_end = run.frame.ignored() ? run.frame.ignored()->patches.size() : 0;
   out.failure = failure_of(run);
 
   const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
@@ -281,6 +283,13 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
     note(std::to_string(out.no_direction_frames) + (out.no_direction_frames > 1 ? " frames were" : " frame was") +
          " in contact with nothing that says which way, and gave no force of it; the first at tick " + std::to_string(out.no_direction_tick) + ", the tool at " + number(at.x) + " " +
          number(at.y) + " " + number(at.z) + " m");
+  }
+  if (run.scene.start_contacts == StartContacts::kIgnoreInitial) {
+    if (run.scene.response.profile == Profile::kPaper)
+      note("\"start\": \"ignore_initial\" is for profile refined; in paper contacts of the start push");
+    else if (out.ignored_patches_first > 0)
+      note("contacts of the start were left out on " + std::to_string(out.ignored_patches_first) + (out.ignored_patches_first > 1 ? " faces" : " face") + " of the mock-up; " +
+           (out.ignored_patches_end > 0 ? "on " + std::to_string(out.ignored_patches_end) + " they had not opened by the end" : "all had opened by the end"));
   }
   if (!run.realtime_note.empty()) note(run.realtime_note);
   for (std::string& sentence : backend.take_notes()) note(std::move(sentence));

@@ -11,6 +11,7 @@
 #include "service/cli/pose_input.h"
 #include "service/cli/scene_host.h"
 #include "service/query_json.h"
+#include "service/scene_talk.h"
 
 namespace palpate {
 namespace {
@@ -66,6 +67,10 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     if (auto done = export_geometry(options.export_directory, scene.loaded.geometry, *scene.backend, poses, notes); !done) return done;
     for (const std::string& note : notes) console.note(note);
   }
+
+  const Result<SceneTalk> talk = scene_talk(scene.loaded, *scene.backend);
+  if (!talk) return talk.error();
+  for (const std::string& sentence : talk->bodies) console.note(sentence);
 
   Answer answer;
   for (std::size_t i = 0; i < std::min(kWarmUpPoses, poses.size()); ++i) {

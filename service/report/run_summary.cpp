@@ -36,6 +36,7 @@ std::string summary_json(const SessionSummary& summary) {
                      {"torque_max_Nm", summary.torque_max_Nm}};
   json["lateness_histogram_us"] = histogram(summary.lateness_bins_us);
   json["result_age_histogram_ticks"] = histogram(summary.result_age_bins_ticks);
+  if (summary.ignored_patches_first > 0) json["ignored_patches"] = {{"first", summary.ignored_patches_first}, {"end", summary.ignored_patches_end}};
   json["no_direction_frames"] = summary.no_direction_frames;
   if (summary.no_direction_frames > 0) {
     const Vec3& p = summary.no_direction_pose.position;

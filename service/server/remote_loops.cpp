@@ -114,7 +114,8 @@ struct RemoteLoops::Loop {
   explicit Loop(SceneUse scene)
       : use(std::move(scene)),
         backend(*(*use)->backend, use->turns()),
-        frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile, (*use)->loaded.scene.response.stiffness_n_per_m, true),
+        frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile, (*use)->loaded.scene.response.stiffness_n_per_m, true, nullptr,
+              (*use)->loaded.scene.start_contacts),
         lone((*use)->loaded.geometry, (*use)->loaded.scene.response.stiffness_n_per_m),
         field((*use)->loaded.scene.response.profile == Profile::kRefined) {}
 
@@ -122,7 +123,7 @@ struct RemoteLoops::Loop {
   Result<void> solve() noexcept {
     if (auto solved = frame.solve(slot, result); !solved || !field || !slot.response.contact) return solved;
     try {
-      return lone.feel(backend, nullptr, slot.sample.pose, slot.response);
+      return lone.feel(backend, frame.ignored(), slot.sample.pose, slot.response);
     } catch (const std::exception& error) {   // a library's, as in CollisionFrame::solve
       return Error{ErrorCode::kInternal, std::string("the collision query failed: ") + error.what()};
     } catch (...) {
