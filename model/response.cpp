@@ -69,6 +69,7 @@ void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeome
     gc_steps[r] = (pose.rotation_q30[r][0] * gc_tool.x + pose.rotation_q30[r][1] * gc_tool.y + pose.rotation_q30[r][2] * gc_tool.z) / kQ30 + pose.translation[r];
   out.gc = to_metres(lattice, gc_steps);
   out.wrench = {};
+  out.felt.reset();
   out.flags = contacts.flags;
   out.contact = contacts.contact;
   out.contact_points = contacts.contact_points;

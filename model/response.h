@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "model/contact_plane.h"
@@ -24,14 +25,26 @@ struct AreaResponse {
   std::uint32_t flags = 0;   ///< ContactFlag bits
 };
 
+/// What a hand would feel at a pose if it had always been there: service/lone_query.h.
+struct Felt {
+  Wrench wrench;           ///< that the spring hands on; torque about gc at the pose asked for, world
+  Pose tool;               ///< where the tool is while the device is at the pose asked for
+  int evaluations = 0;     ///< of the field, the one at the pose asked for included
+  bool settled = true;     ///< false: no balance was found; the wrench is of the nearest to one
+};
+
 struct ContactResponse {
   Vec3 gc{0};                ///< centre of mass of the tool at this pose, world, m
   Wrench wrench;             ///< `paper`: sum over areas. `refined`: of the pressure field at this pose, before any coupling
+  std::optional<Felt> felt;  ///< `refined`, of a lone query; respond() leaves it empty
   std::uint32_t flags = 0;
   bool contact = false;
   bool contact_points = true;   ///< as Contacts::contact_points; false: no cp, and all torques are 0
   std::vector<AreaResponse> areas;     ///< as Contacts::areas
   std::vector<ContactPlane> planes;    ///< `refined`: the field for the control law (field_planes)
+
+  /// What is told as force and torque: what would be felt, where it was asked for.
+  const Wrench& told() const { return felt ? felt->wrench : wrench; }
 };
 
 /// Turns integer sums into d, n_c, cp, F, T. One function for all back ends: equal sums give equal bits.

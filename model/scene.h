@@ -54,8 +54,8 @@ struct ControlSettings {
   double change_n_per_s = 100;               ///< law `corrected`: force that comes or goes with the areas, not the hand; 0: unlimited
   double slew_ms = 5;                        ///< from no force to the device's largest takes at least this long; 0: unlimited
   bool passivity = false;                    ///< damping takes back what the wall has made by itself
-  double coupling_n_per_m = 0;               ///< virtual coupling: the spring between device and tool, law `corrected` only; 0: rigid
-  double coupling_nm_per_rad = 0;            ///< the same for rotation
+  std::optional<double> coupling_n_per_m;    ///< virtual coupling: the spring between device and tool, law `corrected` only; 0: rigid; empty: auto
+  std::optional<double> coupling_nm_per_rad; ///< the same for rotation
 };
 
 /// A tick of the hand's intended motion. With a guide, position.x is the travel in m and the rest is unused.
@@ -88,6 +88,12 @@ struct DeviceSettings {
   std::string replay_file;                   ///< driver `replay`: the recorded trace.csv, absolute after loading
 };
 
+/// What becomes of contacts that are there where the tool starts.
+enum class StartContacts : std::uint8_t {
+  kAsIs,            ///< they push
+  kIgnoreInitial,   ///< profile `refined`: a run leaves them out, patch by patch of the mock-up, until they have opened once
+};
+
 /// A scene file, read, checked and completed with defaults.
 struct Scene {
   std::string file;
@@ -96,6 +102,7 @@ struct Scene {
   ResponseSettings response;
   ControlSettings control;
   DeviceSettings device;
+  StartContacts start_contacts = StartContacts::kAsIs;
   Pose start;                                ///< first path point, else the part's assembled place, else identity
   std::vector<std::string> stage_names;      ///< stage i is stage_names[i − 1]
   std::vector<std::string> warnings;         ///< one sentence each

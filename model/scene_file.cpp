@@ -16,7 +16,7 @@ namespace palpate {
 
 const std::map<std::string, std::vector<std::string>>& scene_keys() {
   static const std::map<std::string, std::vector<std::string>> keys{
-      {"scene", {"$schema", "description", "static", "tool", "response", "control", "device"}},
+      {"scene", {"$schema", "description", "static", "tool", "response", "control", "device", "start"}},
       {"static", {"mesh", "generate", "units", "scale", "part", "without", "position", "rotation"}},
       {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
@@ -144,6 +144,13 @@ void read_response(const SceneObject& scene_json, ResponseSettings& response) {
   read_length(body, "voxel_size", response.voxel_size_m);
 }
 
+/// A spring that may be "auto".
+void read_spring(const SceneObject& object, const char* key, const Limits& limits, std::optional<double>& out) {
+  if (!object.has(key) || object.is_auto(key)) return;
+  if (object.at(key).is_string()) object.fail(key, "is " + object.at(key).dump() + "; it must be \"auto\" or a number of" + limits.unit);
+  object.number(key, limits, out.emplace());
+}
+
 void read_control(const SceneObject& scene_json, Profile profile, ControlSettings& control) {
   if (profile == Profile::kPaper) control.law = ForceLaw::kPrinted;   // the chapter's own, unless the file says otherwise
   if (!scene_json.has("control")) return;
@@ -161,8 +168,8 @@ void read_control(const SceneObject& scene_json, Profile profile, ControlSetting
   body.number("change_n_per_s", {0, 1e9, " N/s"}, control.change_n_per_s);
   body.number("slew_ms", {0, 1e4, " ms"}, control.slew_ms);
   if (const auto passivity = body.choice("passivity", {"off", "on"})) control.passivity = *passivity == 1;
-  body.number("coupling_n_per_m", {0, 1e6, " N/m"}, control.coupling_n_per_m);
-  body.number("coupling_nm_per_rad", {0, 1e5, " N·m/rad"}, control.coupling_nm_per_rad);
+  read_spring(body, "coupling_n_per_m", {0, 1e6, " N/m"}, control.coupling_n_per_m);
+  read_spring(body, "coupling_nm_per_rad", {0, 1e5, " N·m/rad"}, control.coupling_nm_per_rad);
 }
 
 void read_hand(const SceneObject& device_json, DeviceSettings& device) {
@@ -292,6 +299,7 @@ Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile
     if (profile) scene.response.profile = *profile;
     read_control(root, scene.response.profile, scene.control);
     read_device(root, scene);
+    if (const auto start = root.choice("start", {"as_is", "ignore_initial"})) scene.start_contacts = *start == 0 ? StartContacts::kAsIs : StartContacts::kIgnoreInitial;
     scene.start = start_of(scene);
     return scene;
   } catch (const SceneFault& found) {

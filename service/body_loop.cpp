@@ -73,7 +73,7 @@ AxisLoop::Outcome BodyLoop::run(int ticks) const {
     out.finite = false;
     return out;
   }
-  const auto control = std::make_unique<ControlTick>(safe, law, Vec3(0), coupling);
+  const auto control = std::make_unique<ControlTick>(safe, law, Vec3(0), Couplings{coupling, coupling});
   Ranges second, last;
   Courier courier(delivery);
   double work = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <numeric>
 #include <string>
 
 namespace palpate {
@@ -18,13 +19,28 @@ void clear(Contacts& contacts) {
   contacts.flags = 0;
   contacts.field = {};
   contacts.carriers.clear();
+  contacts.ignored_touched.clear();
   contacts.times.clear();
 }
 
 }  // namespace
 
-CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques, PlanSwitch* plans)
-    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques) {}
+CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques, PlanSwitch* plans,
+                               StartContacts start)
+    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques) {
+  if (start != StartContacts::kIgnoreInitial) return;
+  ignored_.patches.resize(geometry.mockup.patch_count);
+  std::iota(ignored_.patches.begin(), ignored_.patches.end(), 0u);
+  ignored_known_ = false;
+}
+
+/// A patch in which nothing would push any more has opened, and pushes from then on.
+void CollisionFrame::ignore_what_has_not_opened(const Contacts& contacts) {
+  if (ignored_.patches.empty() || contacts.truncated) return;
+  ignored_.patches = contacts.ignored_touched;
+  if (!ignored_known_) ignored_at_first_ = ignored_.patches.size();
+  ignored_known_ = true;
+}
 
 /// Goes over to another plan, if one is ready.
 void CollisionFrame::take_plan() noexcept {
@@ -55,16 +71,19 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   if (!lattice_pose) return lattice_pose.error();
   slot.lattice_pose = *lattice_pose;
 
+  const bool refined = profile_ == Profile::kRefined;
   if (slot.lattice_pose.beyond_lattice) {
     clear(slot.contacts);
-  } else if (auto answered = backend_->query(slot.lattice_pose, nullptr, slot.contacts); !answered) {
+  } else if (auto answered = backend_->query(slot.lattice_pose, refined ? ignored() : nullptr, slot.contacts); !answered) {
     return answered;
   }
+  if (refined) ignore_what_has_not_opened(slot.contacts);
   respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response);
 
   result = {};
   result.tick = slot.sample.tick;
   result.change = felt_changes_;
+  result.field = refined;
   result.rotation = slot.sample.pose.rotation;
   result.gc = slot.sample.pose.position + slot.sample.pose.rotation * geometry_.tool_gc_m;
   fill_law_result(slot.response, stiffness_, result);
@@ -78,6 +97,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   slot.total_us = static_cast<double>(ns) / 1000;
   frame_ns_.add(ns);
   if (slot.contacts.truncated) ++truncated_frames_, truncated_capacity_ = slot.contacts.truncated_capacity;
+  if ((slot.response.flags & kFlagNoDirection) != 0 && no_direction_frames_++ == 0) no_direction_first_ = slot.sample;
   areas_max_ = std::max(areas_max_, result.areas);
   if (result.areas > kMaxLawPlanes) ++merged_frames_;
   return {};

@@ -4,6 +4,7 @@
 #include "model/collision_backend.h"
 #include "model/plan.h"
 #include "model/response.h"
+#include "model/scene.h"
 #include "model/scene_geometry.h"
 #include "service/histogram.h"
 #include "service/law_result.h"
@@ -36,9 +37,9 @@ struct FrameSlot {
 class CollisionFrame {
  public:
   /// All outlive this. `plans`: where other plans come from in mid-run, with back ends of their own; may be null. `torques`: the device has torque axes; without them the plan may have left out
-  /// contact points, so torques and levers are not used.
+  /// contact points, so torques and levers are not used. `start`: what becomes of contacts that the first frame has.
   CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques,
-                 PlanSwitch* plans = nullptr);
+                 PlanSwitch* plans = nullptr, StartContacts start = StartContacts::kAsIs);
 
   /// Fills `slot` (its sample is set by the caller) and `result`. An error means that the back end failed, by
   /// status or by exception, or that the pose isn't one: the caller sends zero force.
@@ -48,12 +49,18 @@ class CollisionFrame {
   std::uint64_t frames() const { return frame_ns_.total(); }
   std::uint64_t truncated_frames() const { return truncated_frames_; }
   const char* truncated_capacity() const { return truncated_capacity_; }   ///< of the last truncated frame
+  std::uint64_t no_direction_frames() const { return no_direction_frames_; }   ///< with contact and nothing that pushes (kFlagNoDirection)
+  const PoseSample& no_direction_first() const { return no_direction_first_; }  ///< of the first of them
+  /// What is left out, as contacts of the start have not opened yet; null: nothing.
+  const Ignored* ignored() const { return ignored_.patches.empty() ? nullptr : &ignored_; }
+  std::size_t ignored_at_first() const { return ignored_at_first_; }   ///< patches
   std::uint64_t plan_changes() const { return plan_changes_; }
   std::uint32_t areas_max() const { return areas_max_; }
   std::uint64_t merged_frames() const { return merged_frames_; }           ///< more areas than the force law keeps apart
 
  private:
   void take_plan() noexcept;
+  void ignore_what_has_not_opened(const Contacts& contacts);
   Result<void> answer(FrameSlot& slot, LawResult& result);
 
   const SceneGeometry& geometry_;
@@ -62,11 +69,16 @@ class CollisionFrame {
   Profile profile_;
   double stiffness_;
   bool torques_;
+  Ignored ignored_;              ///< to begin with, of start contacts that are to be ignored, every patch
+  bool ignored_known_ = true;    ///< false: it is still every patch
+  std::size_t ignored_at_first_ = 0;
   Histogram frame_ns_;
   std::uint64_t plan_changes_ = 0;
   std::uint32_t felt_changes_ = 0;
   std::uint64_t truncated_frames_ = 0, merged_frames_ = 0;
   const char* truncated_capacity_ = "";
+  std::uint64_t no_direction_frames_ = 0;
+  PoseSample no_direction_first_;
   std::uint32_t areas_max_ = 0;
 };
 

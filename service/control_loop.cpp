@@ -32,8 +32,18 @@ void sleep_until(std::int64_t ns) noexcept {
 
 }  // namespace
 
-ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc, const CouplingSettings& coupling)
-    : device_(device), law_(law), coupling_(coupling), coupled_(coupling.on() && law.kind == LawKind::kCorrected), tool_gc_(tool_gc) {}
+ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc, const Couplings& couplings, bool field)
+    : device_(device), settings_(law), law_(law), couplings_(couplings), coupling_({}), tool_gc_(tool_gc) {
+  couple(field);
+}
+
+/// Takes the springs that go with the profile. Where nothing reaches the device but by a spring, the spring keeps the force from jumping, and the law need not.
+void ControlTick::couple(bool field) noexcept {
+  field_ = field;
+  coupling_ = VirtualCoupling(field ? couplings_.field : couplings_.areas, settings_.change_n_per_s);
+  coupled_ = coupling_.on() && settings_.kind == LawKind::kCorrected;
+  law_.limit_change(coupled_ && coupling_.all() ? 0 : settings_.change_n_per_s);
+}
 
 PoseSample ControlTick::sense(std::int64_t tick) noexcept {
   const DeviceSample sample = device_.read();
@@ -54,7 +64,7 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
 }
 
 const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
-  const Wrench wrench = law_.step(pose_, fresh);
+  Wrench wrench = law_.step(pose_, fresh);
   if (law_.jumped()) {   // the device homed, or slipped
     device_.restart_fade();
     coupling_.reset();
@@ -64,10 +74,12 @@ const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
     result_tick_ = fresh->tick;
     if (fresh->change != change_) device_.restart_fade();   // another profile or device: nothing is as it was felt
     change_ = fresh->change;
+    if (fresh->field != field_) couple(fresh->field);
     record_.response = fresh->wrench;
     record_.contact = fresh->contact;
   }
-  device_.write(wrench, device_gc_);   // a spring that couples hands its force and torque on as they are
+  if (coupled_) wrench = coupling_.force(wrench);
+  device_.write(wrench, device_gc_);
   record_.sent = device_.sent();
   record_.uncontrolled = device_.exertable(record_.response, device_gc_);
   record_.result_age_ticks = result_tick_ < 0 ? -1 : static_cast<std::int32_t>(pose_.tick - result_tick_);

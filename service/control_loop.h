@@ -20,8 +20,9 @@ inline constexpr std::size_t kMaxStages = 256;   ///< stages that a run can tell
 /// allocation, no lock, no exception.
 class ControlTick {
  public:
-  /// `device` outlives this. `tool_gc` in the tool's frame, m. A coupling goes with law `corrected` alone.
-  ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc, const CouplingSettings& coupling = {});
+  /// `device` outlives this. `tool_gc` in the tool's frame, m. A coupling goes with law `corrected` alone; `field`: with which of the two the run begins, before
+  /// results say it.
+  ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc, const Couplings& couplings = {}, bool field = true);
 
   /// Reads the device. `tick` counts 1 ms periods since the start, missed ones too. Returns where the tool is: where the device is, or, with
   /// a virtual coupling, where it hangs; that pose is the one to ask about.
@@ -44,10 +45,14 @@ class ControlTick {
   double torque_max() const { return torque_max_; }   ///< N·m, sent
 
  private:
+  void couple(bool field) noexcept;
+
   SafeDevice& device_;
+  ForceLawSettings settings_;
   ForceLawState law_;
+  Couplings couplings_;
   VirtualCoupling coupling_;
-  bool coupled_;
+  bool coupled_ = false, field_ = true;
   Vec3 tool_gc_;
   LawPose pose_;       ///< of the tool
   Vec3 device_gc_{0};  ///< where the tool would be without a coupling

@@ -67,6 +67,9 @@ class ForceLawState {
   /// force never grows as the tool gives way to it.
   void feel(const Vec3& gc, const Quat& rotation, Wrench& force, StiffnessMatrix& stiffness) const;
 
+  /// Another change_n_per_s from here on.
+  void limit_change(double n_per_s) { settings_.change_n_per_s = n_per_s; }
+
   int transitions() const { return transitions_; }   ///< n in use
   bool took_fresh() const { return took_fresh_; }     ///< the last step used a new result
   bool jumped() const { return jumped_; }             ///< `corrected`: the pose went further in a tick than a hand can; all was forgotten

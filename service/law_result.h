@@ -10,6 +10,7 @@ namespace palpate {
 struct LawResult : PlaneSet {
   std::int64_t tick = -1;             ///< at which the pose was sensed; −1: no result
   Wrench wrench;                      ///< sum over areas, torque about gc
+  bool field = false;                 ///< of profile `refined`, which a spring of its own bounds (Couplings)
   std::uint32_t change = 0;           ///< counts changes of profile or device: with another number the force fades in anew
   bool contact = false;
   std::uint32_t areas = 0;            ///< areas with a force, before the merge below

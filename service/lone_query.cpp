@@ -122,6 +122,15 @@ Vec6 LoneQuery::pull(const Wrench& push, const Vec6& apart) const {
 /// T: where the tool would be if the field were its planes at `apart`.
 Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const { return spring_balance(spring_, device, apart, PlaneFeel(planes_)); }
 
+Result<void> LoneQuery::feel(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response) {
+  Result<Felt> felt = ask(backend, ignored, pose, response);
+  if (!felt) return felt.error();
+  if (!response.contact_points) felt->wrench.torque = Vec3(0);
+  if (!felt->settled) response.flags |= kFlagUnsettled;
+  response.felt = *felt;
+  return {};
+}
+
 Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose) {
   Felt out;
   out.tool = pose;

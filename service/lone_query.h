@@ -6,14 +6,6 @@
 
 namespace palpate {
 
-/// What a hand would feel at a pose if it had always been there.
-struct Felt {
-  Wrench wrench;           ///< that the spring hands on; torque about gc at the pose asked for, world
-  Pose tool;               ///< where the tool is while the device is at the pose asked for
-  int evaluations = 0;     ///< of the field, the one at the pose asked for included
-  bool settled = true;     ///< false: no balance was found; the wrench is of the nearest to one
-};
-
 /// `refined`: force and torque of a lone pose. The tool hangs on the device by a spring of stiffness K and Kρ² (ρ: its radius of gyration), and is where spring and field
 /// balance: F = −∇ min_y [E(y) + ½ |x − y|²], the gradient of the field's Moreau envelope. It is conservative as the field is, and no contact, however large, is stiffer
 /// than the spring. In a session the control law does the same tick by tick (service/virtual_coupling.h).
@@ -26,6 +18,9 @@ class LoneQuery {
 
   /// `geometry` outlives this. `stiffness` K in N/m.
   LoneQuery(const SceneGeometry& geometry, double stiffness);
+
+  /// Puts what would be felt into `response`, which is what respond() said at `pose`: `felt`, and the flag `unsettled`. Error: the back end failed.
+  Result<void> feel(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response);
 
   /// `at_pose`: what respond() says at `pose`. Without contact there, or with K = 0, there is nothing to ask. `ignored` as for CollisionBackend::query. Error: the back end failed.
   Result<Felt> ask(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose);

@@ -140,13 +140,22 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   }
   json.key("areas");
   json.open('[');
-  // A swallowed tool adds a response that belongs to no area of triangles; a truncated frame has no response at all.
+  // A truncated frame has no response at all.
   for (std::size_t i = 0; i < contacts.areas.size(); ++i)
     write_area(json, line, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{}, response.contact_points);
   json.close(']');
-  json.vector("force", response.wrench.force);
-  json.vector_or_null("torque", response.wrench.torque, response.contact_points);
+  json.vector("force", response.told().force);
+  json.vector_or_null("torque", response.told().torque, response.contact_points);
   json.flags(response.flags);
+  if (response.felt) {
+    const Pose& tool = response.felt->tool;
+    json.key("tool");
+    json.open('[');
+    for (const double one : {tool.position.x, tool.position.y, tool.position.z, tool.rotation.x, tool.rotation.y, tool.rotation.z, tool.rotation.w}) json.number(one);
+    json.close(']');
+    json.key("evaluations");
+    json.integer(response.felt->evaluations);
+  }
   json.key("truncated");
   json.boolean(contacts.truncated);
   json.key("time_us");

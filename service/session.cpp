@@ -51,7 +51,8 @@ Result<void> check(const Scene& scene, const SessionOptions& options) {
   if (!(control.change_n_per_s >= 0 && std::isfinite(control.change_n_per_s)))
     return wrong("control.change_n_per_s", control.change_n_per_s, "a finite number of N/s from 0");
   if (!(control.slew_ms >= 0 && control.slew_ms <= kMaxFadeMs)) return wrong("control.slew_ms", control.slew_ms, "0 to 60000");
-  for (const auto& [name, value] : {std::pair{"control.coupling_n_per_m", control.coupling_n_per_m}, {"control.coupling_nm_per_rad", control.coupling_nm_per_rad}}) {
+  for (const auto& [name, spring] : {std::pair{"control.coupling_n_per_m", control.coupling_n_per_m}, {"control.coupling_nm_per_rad", control.coupling_nm_per_rad}}) {
+    const double value = spring.value_or(0);
     if (!(value >= 0 && std::isfinite(value))) return wrong(name, value, "a finite number from 0");
     if (value > 0 && control.law == ForceLaw::kPrinted) return wrong(name, value, "0 with law printed: the coupling needs the planes of law corrected");
   }
@@ -105,9 +106,9 @@ struct Run {
       : scene(loaded.scene),
         options(session_options),
         device(safe),
-        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans),
-        tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m,
-             {loaded.scene.control.coupling_n_per_m, loaded.scene.control.coupling_nm_per_rad}),
+        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans, loaded.scene.start_contacts),
+        tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m, couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
+             loaded.scene.response.profile == Profile::kRefined),
         observer(run_observer),
         ticks(tick_count(safe, session_options)) {}
 
@@ -263,15 +264,33 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.force_max_N = run.tick.force_max();
   out.torque_max_Nm = run.tick.torque_max();
   out.frames = run.frame.frames();
+  out.no_direction_frames = run.frame.no_direction_frames();
+  out.no_direction_tick = run.frame.no_direction_first().tick;
+  out.no_direction_pose = run.frame.no_direction_first().pose;
   out.watchdog_ticks = run.device.watchdog_ticks();
   out.saturated_ticks = run.device.saturated_ticks();
   out.dropped_ticks = run.dropped_ticks;
   out.dropped_frames = run.dropped_frames;
   out.stopped = run.timing.stopped;
   out.plan_changes = run.frame.plan_changes();
+  out.ignored_patches_first = run.frame.ignored_at_first();
+  if (run.frame.frames() > 0) out.ignored_patches_end = run.frame.ignored() ? run.frame.ignored()->patches.size() : 0;
   out.failure = failure_of(run);
 
   const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
+  if (out.no_direction_frames > 0) {
+    const Vec3& at = out.no_direction_pose.position;
+    note(std::to_string(out.no_direction_frames) + (out.no_direction_frames > 1 ? " frames were" : " frame was") +
+         " in contact with nothing that says which way, and gave no force of it; the first at tick " + std::to_string(out.no_direction_tick) + ", the tool at " + number(at.x) + " " +
+         number(at.y) + " " + number(at.z) + " m");
+  }
+  if (run.scene.start_contacts == StartContacts::kIgnoreInitial) {
+    if (run.scene.response.profile == Profile::kPaper)
+      note("\"start\": \"ignore_initial\" is for profile refined; in paper contacts of the start push");
+    else if (out.ignored_patches_first > 0)
+      note("contacts of the start were left out on " + std::to_string(out.ignored_patches_first) + (out.ignored_patches_first > 1 ? " faces" : " face") + " of the mock-up; " +
+           (out.ignored_patches_end > 0 ? "on " + std::to_string(out.ignored_patches_end) + " they had not opened by the end" : "all had opened by the end"));
+  }
   if (!run.realtime_note.empty()) note(run.realtime_note);
   for (std::string& sentence : backend.take_notes()) note(std::move(sentence));
   if (run.options.plans)

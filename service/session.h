@@ -66,6 +66,11 @@ struct SessionSummary {
   std::uint32_t areas_max = 0;               ///< most areas with a force in one frame
   double force_max_N = 0, torque_max_Nm = 0; ///< sent to the device
   std::uint64_t frames = 0;
+  std::uint64_t no_direction_frames = 0;     ///< in contact, and nothing said which way: no force was made up
+  std::int64_t no_direction_tick = 0;        ///< of the first of them
+  Pose no_direction_pose;                    ///< and its tool pose
+  std::uint64_t ignored_patches_first = 0;   ///< patches of the mock-up whose contacts at the start were left out
+  std::uint64_t ignored_patches_end = 0;     ///< of them, those that had not opened by the end
   std::uint64_t watchdog_ticks = 0;          ///< ticks without a fresh result for longer than the watchdog
   std::uint64_t saturated_ticks = 0;         ///< ticks where a device limit shortened force or torque
   std::uint64_t plan_changes = 0;            ///< in mid-run

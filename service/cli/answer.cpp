@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "service/lone_query.h"
+
 namespace palpate {
 
 Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) { return answer_pose(scene.loaded, *scene.backend, pose, out); }
@@ -15,6 +17,8 @@ Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, co
   if (auto done = backend.query(*lattice, nullptr, out.contacts); !done) return done;
   const ResponseSettings& settings = scene.scene.response;
   respond(out.contacts, *lattice, geometry, settings.profile, settings.stiffness_n_per_m, out.response);
+  if (settings.profile == Profile::kRefined)
+    if (auto felt = LoneQuery(geometry, settings.stiffness_n_per_m).feel(backend, nullptr, pose, out.response); !felt) return felt;
   out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   return {};
 }
@@ -33,8 +37,12 @@ Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, Batch
   out.responses.resize(poses.size());
   if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
   const ResponseSettings& settings = scene.loaded.scene.response;
-  for (std::size_t i = 0; i < poses.size(); ++i)
+  LoneQuery lone(geometry, settings.stiffness_n_per_m);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
     respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m, out.responses[i]);
+    if (settings.profile != Profile::kRefined) continue;
+    if (auto felt = lone.feel(*scene.backend, nullptr, poses[i], out.responses[i]); !felt) return felt;
+  }
   out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   return {};
 }

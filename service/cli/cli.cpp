@@ -201,13 +201,13 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
 
   std::vector<std::string> meshes;
   bool info_json = false;
-  CLI::App* info_app = app.add_subcommand("info", "tell what is in mesh files and what import made of them");
-  info_app->add_option("meshes", meshes, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, …")->required()->type_name("MESH");
+  CLI::App* info_app = app.add_subcommand("info", "tell what is in mesh files and what import made of them; of a scene, how its tool starts");
+  info_app->add_option("files", meshes, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, …; or a scene, .json")->required()->type_name("MESH|SCENE");
   info_app->add_flag("--json", info_json, "one JSON object");
   ImportLimits info_limits;
   add_import_limits(*info_app, info_limits);
   info_app->footer("A part's path is what `part` and `without` of a scene file name. Sizes are in the file's own unit.");
-  info_app->callback([&] { outcome = info_command(meshes, info_json, info_limits); });
+  info_app->callback([&] { outcome = info_command(meshes, info_json, info_limits, parts); });
 
   GenerateOptions generate;
   CLI::App* generate_app = app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");

@@ -78,7 +78,8 @@ struct GenerateOptions {
 Result<void> run_command(const RunOptions& options, const Parts& parts);
 Result<void> query_command(const QueryOptions& options, const Parts& parts);
 Result<void> plan_command(const SceneOptions& options, bool json, const Parts& parts);
-Result<void> info_command(const std::vector<std::string>& meshes, bool json, const ImportLimits& limits);
+/// `files`: meshes, and scenes (.json).
+Result<void> info_command(const std::vector<std::string>& files, bool json, const ImportLimits& limits, const Parts& parts);
 Result<void> generate_command(const GenerateOptions& options);
 Result<void> devices_command(const Parts& parts);
 

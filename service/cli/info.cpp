@@ -9,6 +9,8 @@
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
+#include "service/cli/scene_host.h"
+#include "service/scene_talk.h"
 
 namespace palpate {
 namespace {
@@ -116,12 +118,46 @@ void print_table(const MeshInfo& info) {
                pad(size_text(part.box_max_m - part.box_min_m), size_width), part.closed ? "yes" : "no", orientation(part));
 }
 
+struct SceneInfo {
+  std::string file, prepared;
+  SceneTalk talk;
+};
+
+bool is_scene(const std::string& path) { return path.ends_with(".json"); }
+
+Result<SceneInfo> inspect_scene(const std::string& path, const ImportLimits& limits, const Parts& parts) {
+  SceneOptions options;
+  options.scene = path;
+  options.import = limits;
+  SceneInfo info{.file = path, .prepared = {}, .talk = {}};
+  const PrepareWatch watch{.note = [&](const std::string& sentence) { info.prepared = sentence; },   // the last one says what was read
+                           .step = [](const char*) {},
+                           .progress = [](const char*, double) { return true; },
+                           .admit = {},
+                           .cached = true,
+                           .folder = {}};
+  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options, Purpose::kQuery, parts, watch);
+  if (!prepared) return prepared.error();
+  Result<SceneTalk> talk = scene_talk((*prepared)->loaded, *(*prepared)->backend);
+  if (!talk) return talk.error();
+  info.talk = std::move(*talk);
+  return info;
+}
+
 }  // namespace
 
-Result<void> info_command(const std::vector<std::string>& meshes, bool json, const ImportLimits& limits) {
-  // Every mesh is read before anything is printed, so a bad one leaves standard output empty.
+Result<void> info_command(const std::vector<std::string>& files, bool json, const ImportLimits& limits, const Parts& parts) {
+  // Everything is read before anything is printed, so a bad file leaves standard output empty. Scenes first: a back end is made before an import starts threads.
+  std::vector<SceneInfo> scenes;
+  for (const std::string& path : files) {
+    if (!is_scene(path)) continue;
+    Result<SceneInfo> scene = inspect_scene(path, limits, parts);
+    if (!scene) return scene.error();
+    scenes.push_back(std::move(*scene));
+  }
   std::vector<MeshInfo> infos;
-  for (const std::string& path : meshes) {
+  for (const std::string& path : files) {
+    if (is_scene(path)) continue;
     Result<MeshInfo> info = inspect(path, limits);
     if (!info) return info.error();
     infos.push_back(std::move(*info));
@@ -129,12 +165,21 @@ Result<void> info_command(const std::vector<std::string>& meshes, bool json, con
   if (json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const MeshInfo& info : infos) list.push_back(to_json(info));
-    fmt::print("{}\n", nlohmann::ordered_json{{"meshes", list}}.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    nlohmann::ordered_json out{{"meshes", list}};
+    for (const SceneInfo& scene : scenes) out["scenes"].push_back({{"file", scene.file}, {"start", scene.talk.start}, {"bodies", scene.talk.bodies}});
+    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return {};
   }
   for (std::size_t i = 0; i < infos.size(); ++i) {
     if (i > 0) fmt::print("\n");
     print_table(infos[i]);
+  }
+  for (const SceneInfo& scene : scenes) {
+    if (&scene != &scenes.front() || !infos.empty()) fmt::print("\n");
+    fmt::print("{}\n  {:<12} {}\n", scene.file, "read", scene.prepared);
+    if (scene.talk.start.empty()) fmt::print("  {:<12} free: nothing pushes the tool\n", "start");
+    for (const std::string& sentence : scene.talk.start) fmt::print("  {:<12} {}\n", "start", sentence);
+    for (const std::string& sentence : scene.talk.bodies) fmt::print("  {:<12} {}\n", "note", sentence);
   }
   return {};
 }

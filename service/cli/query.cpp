@@ -11,6 +11,7 @@
 #include "service/cli/pose_input.h"
 #include "service/cli/scene_host.h"
 #include "service/query_json.h"
+#include "service/scene_talk.h"
 
 namespace palpate {
 namespace {
@@ -67,6 +68,10 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     for (const std::string& note : notes) console.note(note);
   }
 
+  const Result<SceneTalk> talk = scene_talk(scene.loaded, *scene.backend);
+  if (!talk) return talk.error();
+  for (const std::string& sentence : talk->bodies) console.note(sentence);
+
   Answer answer;
   for (std::size_t i = 0; i < std::min(kWarmUpPoses, poses.size()); ++i) {
     if (auto done = answer_pose(scene, poses[i], answer); !done) return done;
@@ -74,10 +79,12 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   }
 
   std::string text;
-  std::size_t truncated = 0;
+  std::size_t truncated = 0, unsettled = 0, directionless = 0;
   const char* capacity = "";
   const auto print = [&](std::size_t pose, double total_us, const Contacts& contacts, const ContactResponse& response) {
     append_query_line({pose, total_us, options.batch, std::nullopt}, contacts, response, text);
+    if (response.flags & kFlagUnsettled) ++unsettled;
+    if (response.flags & kFlagNoDirection) ++directionless;
     if (!contacts.truncated) return;
     ++truncated;
     capacity = contacts.truncated_capacity;
@@ -103,6 +110,9 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
   }
   for (const std::string& note : scene.backend->take_notes()) console.note(note);
+  if (unsettled > 0) console.note(fmt::format("{} of {} poses found no balance of spring and contact (flag unsettled): their force is the nearest to one", unsettled, poses.size()));
+  if (directionless > 0)
+    console.note(fmt::format("{} of {} poses are in contact with nothing that says which way (flag no_direction): they give no force", directionless, poses.size()));
   if (truncated > 0) console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated, poses.size(), capacity));
   return {};
 }

@@ -12,6 +12,7 @@
 #include "service/recorder.h"
 #include "service/report/report.h"
 #include "service/report/run_summary.h"
+#include "service/scene_talk.h"
 #include "service/session.h"
 
 namespace palpate {
@@ -147,6 +148,11 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (!directory) return directory.error();
   Result<std::unique_ptr<Recorder>> recorder = Recorder::create(directory->string());
   if (!recorder) return recorder.error();
+
+  const Result<SceneTalk> talk = scene_talk(loaded, *(*prepared)->backend);
+  if (!talk) return talk.error();
+  for (const auto* sentences : {&talk->start, &talk->bodies})
+    for (const std::string& sentence : *sentences) console.note(sentence);
 
   // Until here no device has been opened, and a signal just ends the program, whatever it is busy with.
   catch_interrupts();

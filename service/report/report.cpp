@@ -9,6 +9,7 @@
 #include "service/cli/numbers.h"
 #include "service/report/report_assets.h"
 #include "service/report/run_summary.h"
+#include "service/virtual_coupling.h"
 
 namespace palpate {
 namespace {
@@ -42,8 +43,10 @@ Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
   row("sample spacing", fmt::format("{}{}", millimetres(step * geometry.sample_spacing), scene.response.sample_spacing_m ? "" : " (auto)"));
   row("control law", scene.control.law == ForceLaw::kPrinted ? "printed" : "corrected");
   row("transitions n", scene.control.transitions ? fmt::format("{}", *scene.control.transitions) : "auto");
-  if (scene.control.coupling_n_per_m > 0 || scene.control.coupling_nm_per_rad > 0)
-    row("virtual coupling", fmt::format("{:g} N/m, {:g} N·m/rad", scene.control.coupling_n_per_m, scene.control.coupling_nm_per_rad));
+  const Couplings couplings = couplings_of(scene, geometry.tool_gyration_m);
+  const CouplingSettings& coupling = scene.response.profile == Profile::kPaper ? couplings.areas : couplings.field;
+  if (coupling.on() && scene.control.law == ForceLaw::kCorrected)
+    row("virtual coupling", fmt::format("{:.3g} N/m, {:.3g} N·m/rad", coupling.stiffness_n_per_m, coupling.stiffness_nm_per_rad));
   row("fade-in", fmt::format("{:g} ms", scene.control.fade_in_ms));
   row("watchdog", fmt::format("{:g} ms", scene.control.watchdog_ms));
   row("device limits", fmt::format("{:g} N, {:g} N·m", scene.device.max_force_n, scene.device.max_torque_nm));

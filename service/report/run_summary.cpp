@@ -36,6 +36,13 @@ std::string summary_json(const SessionSummary& summary) {
                      {"torque_max_Nm", summary.torque_max_Nm}};
   json["lateness_histogram_us"] = histogram(summary.lateness_bins_us);
   json["result_age_histogram_ticks"] = histogram(summary.result_age_bins_ticks);
+  if (summary.ignored_patches_first > 0) json["ignored_patches"] = {{"first", summary.ignored_patches_first}, {"end", summary.ignored_patches_end}};
+  json["no_direction_frames"] = summary.no_direction_frames;
+  if (summary.no_direction_frames > 0) {
+    const Vec3& p = summary.no_direction_pose.position;
+    const Quat& q = summary.no_direction_pose.rotation;
+    json["no_direction_first"] = {{"tick", summary.no_direction_tick}, {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}}};
+  }
   if (!summary.notes.empty()) json["notes"] = summary.notes;
   if (summary.failure) json["failure"] = summary.failure->sentence;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

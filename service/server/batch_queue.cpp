@@ -24,8 +24,8 @@ void append_wrench(const Answer& answer, std::string& out) {
   } record{};
   static_assert(sizeof(Record) == 64);
   for (int i = 0; i < 3; ++i) {
-    record.force[i] = answer.response.wrench.force[i];
-    record.torque[i] = answer.response.wrench.torque[i];
+    record.force[i] = answer.response.told().force[i];
+    record.torque[i] = answer.response.told().torque[i];
   }
   record.pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(answer.contacts.pairs, UINT32_MAX));
   record.flags = answer.response.flags;

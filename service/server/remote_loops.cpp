@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "service/collision_frame.h"
+#include "service/lone_query.h"
 #include "service/query_json.h"
 #include "service/server/json_input.h"
 #include "service/server/pose_body.h"
@@ -84,6 +85,17 @@ void put_wrench_head(const PoseMessage& pose, const Wrench& wrench, const Vec3& 
   for (const std::uint32_t word : {skipped, bits, planes}) put(word);
 }
 
+/// `refined`: what is felt, as one area: a client carries the force on along a wall as stiff as the spring. None without a force, for a couple has no wall.
+std::vector<AreaResponse> felt_area(const ContactResponse& response, double stiffness) {
+  const Wrench& felt = response.told();
+  const double force = glm::length(felt.force);
+  if (!(force > 0) || !(stiffness > 0)) return {};
+  AreaResponse area{.normal = felt.force / force, .depth = force / stiffness, .max_depth = force / stiffness, .force = felt.force};
+  area.point = response.gc + glm::cross(felt.force, felt.torque) / (force * force);   // what the torque has along the force is no wall's
+  area.torque = glm::cross(area.point - response.gc, area.force);
+  return {area};
+}
+
 /// What a loop hears last: nothing pushes any more.
 SocketMessage zero_wrench(const PoseMessage& pose, const Vec3& gc) {
   SocketMessage message;
@@ -102,12 +114,29 @@ struct RemoteLoops::Loop {
   explicit Loop(SceneUse scene)
       : use(std::move(scene)),
         backend(*(*use)->backend, use->turns()),
-        frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile, (*use)->loaded.scene.response.stiffness_n_per_m, true) {}
+        frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile, (*use)->loaded.scene.response.stiffness_n_per_m, true, nullptr,
+              (*use)->loaded.scene.start_contacts),
+        lone((*use)->loaded.geometry, (*use)->loaded.scene.response.stiffness_n_per_m),
+        field((*use)->loaded.scene.response.profile == Profile::kRefined) {}
+
+  /// The pose in `slot`.
+  Result<void> solve() noexcept {
+    if (auto solved = frame.solve(slot, result); !solved || !field || !slot.response.contact) return solved;
+    try {
+      return lone.feel(backend, frame.ignored(), slot.sample.pose, slot.response);
+    } catch (const std::exception& error) {   // a library's, as in CollisionFrame::solve
+      return Error{ErrorCode::kInternal, std::string("the collision query failed: ") + error.what()};
+    } catch (...) {
+      return Error{ErrorCode::kInternal, "the collision query failed for an unknown reason"};
+    }
+  }
 
   // The answering thread's:
   SceneUse use;
   BackendInTurns backend;
   CollisionFrame frame;
+  LoneQuery lone;
+  bool field;   ///< profile `refined`
   FrameSlot slot;
   LawResult result;
   std::int64_t count = 0;
@@ -250,7 +279,7 @@ void RemoteLoops::answer(Loop& loop) {
   }
   if (!pose) return;
   loop.slot.sample = {loop.count++, pose->pose};
-  const Result<void> solved = loop.frame.solve(loop.slot, loop.result);
+  const Result<void> solved = loop.solve();
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - pose->arrived).count();
   ++metrics_.loop_poses;
   metrics_.loop_s.add(us / 1e6);
@@ -258,6 +287,7 @@ void RemoteLoops::answer(Loop& loop) {
   SocketMessage message;
   const Contacts& contacts = loop.slot.contacts;
   const ContactResponse& response = loop.slot.response;
+  const std::vector<AreaResponse> areas = loop.field ? felt_area(response, (*loop.use)->loaded.scene.response.stiffness_n_per_m) : response.areas;
   if (!solved) {
     ++metrics_.backend_errors;
     message = {error_message(Problem{500, "internal", solved.error().sentence, ""}), nullptr, false, true};
@@ -267,8 +297,8 @@ void RemoteLoops::answer(Loop& loop) {
     const auto put_vector = [&](const Vec3& v) {
       for (int i = 0; i < 3; ++i) put(double{v[i]});
     };
-    put_wrench_head(*pose, response.wrench, response.gc, us, skipped, (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u), static_cast<std::uint32_t>(response.areas.size()), out);
-    for (const AreaResponse& area : response.areas) {
+    put_wrench_head(*pose, response.told(), response.gc, us, skipped, (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u), static_cast<std::uint32_t>(areas.size()), out);
+    for (const AreaResponse& area : areas) {
       put_vector(area.normal);
       put_vector(area.point);
       put(area.depth);
@@ -279,10 +309,10 @@ void RemoteLoops::answer(Loop& loop) {
     std::string& out = message.head;
     fmt::format_to(std::back_inserter(out),
                    R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
-                   pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated, contacts.pairs, json(response.gc), json(response.wrench.force),
-                   json(response.wrench.torque));
-    for (std::size_t i = 0; i < response.areas.size(); ++i) {
-      const AreaResponse& area = response.areas[i];
+                   pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated, contacts.pairs, json(response.gc), json(response.told().force),
+                   json(response.told().torque));
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+      const AreaResponse& area = areas[i];
       fmt::format_to(std::back_inserter(out), R"({}{{"id":{},"normal":{},"point":{},"depth":{},"force":{},"torque":{}}})", i ? "," : "", area.id, json(area.normal),
                      json(area.point), number(area.depth), json(area.force), json(area.torque));
     }

@@ -25,19 +25,28 @@ TEST(QueryLine, HasTheContractsFieldsInItsOrder) {
   AreaResponse of_area;
   of_area.normal = Vec3(0, 0, 1);
   of_area.depth = 0.1;
-  of_area.flags = kFlagNeedle | kFlagHeld;
+  of_area.flags = kFlagCancelled | kFlagSheet;
   response.areas = {of_area};
   response.wrench.force = Vec3(0, 0, 1.0 / 3);
-  response.flags = kFlagNeedle;
+  response.flags = kFlagCancelled;
   std::string out;
   append_query_line({4, 20, std::nullopt, 12}, contacts, response, out);
   EXPECT_EQ(out,
             R"({"pose":4,"contact":true,"pairs":3,"cst":[1,2],"bst":[],"cmt":[],"bmt":[],"imt":[9],"est":[],)"
             R"("areas":[{"id":1,"zones":[[1],[2]],"static":[1,2],"mobile":[9],"normal":[0,0,1],"depth":0.1,"point":[0,0,0],)"
-            R"("force":[0,0,0],"torque":[0,0,0],"flags":["needle","held"]}],)"
-            R"("force":[0,0,0.3333333333333333],"torque":[0,0,0],"flags":["needle"],"truncated":false,)"
+            R"("force":[0,0,0],"torque":[0,0,0],"flags":["cancelled","sheet"]}],)"
+            R"("force":[0,0,0.3333333333333333],"torque":[0,0,0],"flags":["cancelled"],"truncated":false,)"
             R"("time_us":{"total":20,"detect":12.5},"tick":12})"
             "\n");
+}
+
+TEST(QueryLine, TellsWhatIsFeltAndWhereTheToolIsMeanwhile) {
+  ContactResponse response;
+  response.wrench.force = Vec3(0, 0, 80);
+  response.felt = Felt{.wrench = {Vec3(0, 0, 2), Vec3(0.5, 0, 0)}, .tool = {Vec3(1, 2, 3), Quat(1, 0, 0, 0)}, .evaluations = 5};
+  std::string out;
+  append_query_line({}, Contacts{}, response, out);
+  EXPECT_NE(out.find(R"("force":[0,0,2],"torque":[0.5,0,0],"flags":[],"tool":[1,2,3,0,0,0,1],"evaluations":5,"truncated":false)"), std::string::npos) << out;
 }
 
 TEST(QueryLine, ABatchIsNamed) {
@@ -53,19 +62,6 @@ TEST(QueryLine, ANumberThatIsNotFiniteIsNullSoThatTheLineStaysJson) {
   std::string out;
   append_query_line({}, Contacts{}, response, out);
   EXPECT_NE(out.find(R"("force":[null,null,0])"), std::string::npos) << out;
-}
-
-TEST(QueryLine, ASwallowedToolsResponseBelongsToNoArea) {
-  Contacts contacts;
-  contacts.contact = true;
-  contacts.flags = kFlagSwallowed;
-  ContactResponse response;
-  response.areas.resize(1);
-  response.flags = kFlagSwallowed;
-  std::string out;
-  append_query_line({}, contacts, response, out);
-  EXPECT_NE(out.find(R"("areas":[],)"), std::string::npos) << out;
-  EXPECT_NE(out.find(R"("flags":["swallowed"])"), std::string::npos) << out;
 }
 
 }  // namespace

@@ -64,14 +64,14 @@ class LosingBackend final : public CollisionBackend {
     gpu_ = std::move(*made);
   }
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override { return gpu_->prepare(geometry, plan, progress); }
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     if (healthy_-- == 0) {
       fault_->call = Call::kSubmit;
-      auto lost = gpu_->query(pose, held, out);
+      auto lost = gpu_->query(pose, ignored, out);
       device_.failed = true;
       return lost;
     }
-    return gpu_->query(pose, held, out);
+    return gpu_->query(pose, ignored, out);
   }
   Result<VoxelPartition> partition(bool tool) const override { return gpu_->partition(tool); }
   bool has_internal_voxels() const override { return gpu_->has_internal_voxels(); }

@@ -125,7 +125,7 @@ TEST(Extremes, ForceStaysFiniteAndWithinTheLimitsAndIsZeroWhenNothingCanBeTruste
                                .transitions = static_cast<int>(12 * dice.unit()), .change_n_per_s = dice.one_in(4) ? 0.0 : 100.0};
     const CouplingSettings coupling{dice.one_in(4) ? dice.log(1, 1e6) : 0, dice.one_in(4) ? dice.log(1e-3, 1e5) : 0};
     const auto control = std::make_unique<ControlTick>(
-        safe, law, Vec3(0.01, 0, 0), coupling);
+        safe, law, Vec3(0.01, 0, 0), Couplings{coupling, coupling});
     const double rarely = dice.log(1, 60);
     const bool empty = dice.one_in(10);
     const std::size_t before = allocations_of_this_thread();

@@ -41,8 +41,7 @@ double paper_slope(double mean) {
   area.direction = Int3(0, 0, 1 << 28);
   area.rays = 1;
   area.max_height = 1u << 30;
-  area.weight_sum = std::int64_t{1} << 30;
-  area.faded_sum = std::llround(mean * (1 << 30));
+  area.height_sum = std::llround(mean * (1 << 30));
   contacts.areas = {area};
   ContactResponse response;
   respond(contacts, LatticePose{}, SceneGeometry{}, Profile::kPaper, kK, response);
@@ -63,7 +62,7 @@ TEST(Respond, EstimatesTheSlopeOfPapersDepthOnTheSafeSideAndWithinOneAndAHalfPer
 TEST(LawResult, LeavesOutAreasThatDoNotPush) {
   ContactResponse response;
   response.areas = {area(1, Vec3(0, 0, 1), 1e-3, 1e-3, Vec3(0)), area(2, Vec3(0, 0, -1), 5e-3, 5e-3, Vec3(0)), area(3, Vec3(0), 0, 0, Vec3(0))};
-  response.areas[1].force = Vec3(0);   // silenced by piercing
+  response.areas[1].force = Vec3(0);   // nothing of it is deep
   LawResult out;
   fill_law_result(response, kK, out);
   EXPECT_EQ(out.plane_count, 1u);

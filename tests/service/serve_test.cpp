@@ -67,9 +67,9 @@ struct Asked {
 class CountingBackend final : public HalfSpace {
  public:
   CountingBackend(Asked& all, std::atomic<int>& mine) : all_(all), mine_(mine) {}
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     ++mine_;
-    return HalfSpace::query(pose, held, out);
+    return HalfSpace::query(pose, ignored, out);
   }
   Result<VoxelPartition> partition(bool tool) const override {
     ++all_.partitions;

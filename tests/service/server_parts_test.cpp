@@ -21,9 +21,9 @@ using namespace std::chrono_literals;
 class LongAnswers final : public HalfSpace {
  public:
   explicit LongAnswers(std::function<void()> asked) : asked_(std::move(asked)) {}
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     asked_();
-    auto done = HalfSpace::query(pose, held, out);
+    auto done = HalfSpace::query(pose, ignored, out);
     out.cst.resize(300'000);
     std::iota(out.cst.begin(), out.cst.end(), 1'000'000u);   // eight bytes each as text
     return done;

@@ -302,8 +302,8 @@ TEST_P(SessionExit, IsAtZeroWhenTheRecordingFails) {
 TEST_P(SessionExit, GivesNoForceForATruncatedFrame) {
   WatchedDevice device(scene);
   class Truncating : public HalfSpace {
-    Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override {
-      auto done = HalfSpace::query(pose, held, out);
+    Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+      auto done = HalfSpace::query(pose, ignored, out);
       out.truncated = true, out.truncated_capacity = "pairs";
       return done;
     }

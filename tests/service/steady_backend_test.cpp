@@ -15,7 +15,7 @@ class Teller final : public CollisionBackend {
     scene_ = static_cast<std::uint64_t>(geometry.sample_spacing);
     return {};
   }
-  Result<void> query(const LatticePose&, const Held*, Contacts& out) override {
+  Result<void> query(const LatticePose&, const Ignored*, Contacts& out) override {
     out = {};
     out.pairs = scene_;
     out.truncated = truncates_;
