@@ -4,8 +4,6 @@
 // One workgroup; invocation i handles list i. Reads frame_input; writes frame_lists, frame_state, dispatches.
 #include "shaders/lib/frame.glsl"
 
-layout(constant_id = 0) const uint32_t BINS_BITS = 0u;
-
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
@@ -25,11 +23,7 @@ void main() {
     frame_lists[i].items = groups_for((count + kGroupSize - 1u) / kGroupSize);
     frame_lists[i].groups = DispatchArguments(0u, 0u, 0u);
   }
-  if (i < kDispatchCount) {
-    const bool rays = frame_input.rays != 0u;
-    dispatches[i] = i == kDispatchClusters && rays ? groups_for((scene.tool.triangles + kClusterSize - 1u) / kClusterSize)
-                    : i == kDispatchBins && rays ? groups_for(((1u << 2u * BINS_BITS) + kGroupSize - 1u) / kGroupSize)
-                    : DispatchArguments(0u, 0u, 0u);
-  }
-  if (i == 0u) frame_state = FrameState(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+  if (i < kDispatchCount)
+    dispatches[i] = i == kDispatchClusters && frame_input.rays != 0u ? groups_for((scene.tool.triangles + kClusterSize - 1u) / kClusterSize) : DispatchArguments(0u, 0u, 0u);
+  if (i == 0u) frame_state = FrameState(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 }

@@ -11,5 +11,4 @@ void main() {
   if (gl_LocalInvocationIndex != 0u) return;
   result.state = frame_state;
   result.member_count = frame_lists[kListMembers].count;
-  result.pierce_count = frame_lists[kListPierces].count;
 }

@@ -1,13 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The grid samples of listed triangles in one voxel, and what the tool's fine partition says of them. An invocation a SampleChunk.
-// V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. With NO_INSIDE = 1 (a tool without
-// inside) all of them count and none is marked. A triangle's first corner is asked as well, in the voxel that holds it.
+// V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. A triangle's first corner is asked as well,
+// in the voxel that holds it. Only where samples are not listed.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
-
-layout(constant_id = 0) const uint32_t NO_INSIDE = 0u;
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
@@ -34,14 +32,14 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/partition.glsl"
 
 void take(ivec3 point, uint32_t id) {
-  const uint32_t voxel_class = NO_INSIDE != 0u ? kVoxelInternal : tool_class_of(tool_voxel_of(tool_from_world(point)));
+  const uint32_t voxel_class = tool_class_of(tool_voxel_of(tool_from_world(point)));
   if (voxel_class == kVoxelExternal) return;
   if (voxel_class == kVoxelBoundary) {
     const uint32_t at = atomicAdd(frame_lists[kListOpenSamples].count, 1u);
     if (at < frame_lists[kListOpenSamples].capacity) open_samples[at] = FrameSample(point, id);
     return;
   }
-  if (NO_INSIDE == 0u) mark_static(id, kStaticSampled);
+  mark_static(id, kStaticSampled);
   const uint32_t at = atomicAdd(frame_lists[kListSamples].count, 1u);
   if (at < frame_lists[kListSamples].capacity) samples[at] = FrameSample(point, id);
 }
@@ -71,7 +69,7 @@ void main() {
     t.c = mockup_vertices[s.z];
     t.axis = int(mockup_info[id] >> kInfoAxisShift & 3u);
     t.normal = raw_normal(t.a, t.b, t.c);
-    if (NO_INSIDE == 0u && all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) probe(t.a, id);
+    if (all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) probe(t.a, id);
     // Grid points of the voxel that lie in the triangle's box; at most 64 an axis, as a voxel is at most 64 spacings.
     const ivec2 from = seen_along(t.axis, max(low, min(min(t.a, t.b), t.c)));
     const ivec2 to = seen_along(t.axis, min(high, max(max(t.a, t.b), t.c)));

@@ -1,6 +1,6 @@
 #version 460
 // One invocation: a tool triangle of C_m. Gives it to every area whose sphere holds its rounded centroid, else to the nearest.
-// Reads areas, transformed vertices. Writes members, mobile_work.
+// Reads areas, transformed vertices. Writes members, mobile_areas.
 // Before: areas_gather.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -14,7 +14,7 @@ READ(kBindToolVertices, ivec3, tool_vertices);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ_ONE(kBindResponseState, ResponseState, response);
 READ(kBindAreas, AreaWork, areas);
-EDIT(kBindMobileWork, MobileWork, mobile_work);
+EDIT(kBindMobileAreas, uint32_t, mobile_areas);
 EDIT(kBindResultMembers, AreaMember, members);
 
 #include "shaders/lib/list_room.glsl"
@@ -50,5 +50,5 @@ void main() {
     }
   }
   if (!held_by_one && nearest != kNone) append(nearest, mobile);
-  mobile_work[mobile] = MobileWork(0u, 0u, held_by_one ? kNone : nearest);
+  mobile_areas[mobile] = held_by_one ? kNone : nearest;
 }

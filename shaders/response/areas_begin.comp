@@ -1,6 +1,6 @@
 #version 460
 // One invocation: a slot of C_s. It is an area of its own to begin with.
-// Reads nothing. Writes parents, slots.
+// Reads nothing. Writes parents, slot_areas.
 // Before: the list of C_s is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -9,12 +9,12 @@
 
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT(kBindParents, uint32_t, parents);
-EDIT(kBindSlots, SlotWork, slots);
+EDIT(kBindSlotAreas, uint32_t, slot_areas);
 
 void main() {
   const uint32_t slot = flat_invocation();
   if (slot >= frame_lists[kListContactStatics].count) return;
   parents[area_node(slot)] = area_node(slot);
   if (ZONES) parents[zone_node(slot)] = zone_node(slot);
-  slots[slot] = SlotWork(kNone, 0u);
+  slot_areas[slot] = kNone;
 }

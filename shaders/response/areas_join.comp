@@ -1,13 +1,11 @@
 #version 460
 // One invocation: a slot of C_s. Joins its triangle with its neighbours of smaller id in C_s: into areas over every shared edge,
-// into zones over smooth ones. Seams (`refined`) are smooth by definition and join both.
-// Reads the mock-up's neighbours and seams, static states. Writes parents.
+// into zones over smooth ones.
+// Reads the mock-up's neighbours, static states. Writes parents.
 // Before: areas_begin.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
-
-layout(constant_id = 0) const bool REFINED = true;
 
 READ(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
@@ -16,8 +14,6 @@ READ(kBindStaticState, uint32_t, static_state);
 READ(kBindStaticSlot, uint32_t, static_slot);
 READ(kBindNeighbourBegin, uint32_t, neighbour_begin);
 READ(kBindNeighbours, uint32_t, neighbours);
-READ(kBindSeamBegin, uint32_t, seam_begin);
-READ(kBindSeams, uint32_t, seams);
 layout(set = 0, binding = kBindParents, scalar) coherent buffer parents_block { uint32_t parents[]; };
 
 #include "shaders/lib/union_find.glsl"
@@ -33,14 +29,5 @@ void main() {
     const uint32_t to = static_slot[other];
     union_join(area_node(slot), area_node(to));
     if (ZONES && (neighbours[e] & 1u) != 0u) union_join(zone_node(slot), zone_node(to));
-  }
-  if (!REFINED) return;
-  for (uint32_t e = seam_begin[id]; e < seam_begin[id + 1u] && !spent(1u); ++e) {
-    const uint32_t other = seams[e];
-    if (other >= id) break;
-    if (static_state[other] == 0u) continue;
-    const uint32_t to = static_slot[other];
-    union_join(area_node(slot), area_node(to));
-    if (ZONES) union_join(zone_node(slot), zone_node(to));
   }
 }

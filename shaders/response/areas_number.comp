@@ -1,6 +1,6 @@
 #version 460
 // One invocation: a slot of C_s. Every root of an area takes a number and an empty record.
-// Reads parents. Writes areas, slots[root].area, response.areas.
+// Reads parents. Writes areas, slot_areas[root], response.areas.
 // Before: areas_join.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -13,7 +13,7 @@ READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindParents, uint32_t, parents);
 EDIT_ONE(kBindResponseState, ResponseState, response);
 EDIT(kBindAreas, AreaWork, areas);
-EDIT(kBindSlots, SlotWork, slots);
+EDIT(kBindSlotAreas, uint32_t, slot_areas);
 
 void main() {
   const uint32_t slot = flat_invocation();
@@ -23,44 +23,23 @@ void main() {
     atomicOr(frame_state.overflow_other, kOverflowAreas);
     return;
   }
-  slots[slot].area = area;
+  slot_areas[slot] = area;
 
   const int64_t zero[3] = {0l, 0l, 0l};
   AreaWork empty;
-  empty.fixed_sum = zero;
-  empty.sheet_sum = zero;
-  empty.static_weight = 0l;
-  empty.bare_fixed = zero;
-  empty.bare_sheet = zero;
-  empty.sheet_side = zero;
+  empty.static_sum = zero;
   empty.mobile_sum = zero;
-  empty.mobile_weight = 0l;
   empty.height_sum = 0l;
-  empty.weight_sum = 0l;
-  empty.faded_sum = 0l;
-  empty.faded_rest = 0l;
-  empty.weight_slope = 0l;
-  empty.height_slope = 0l;
-  empty.moment_low = zero;
-  empty.moment_high = zero;
   empty.voxel_sum = zero;
   empty.box_low = ivec3(0x7FFFFFFF);
   empty.box_high = ivec3(-0x7FFFFFFF);
   empty.direction = ivec3(0);
   empty.id = contact_statics[slot];
   empty.zones = 0u;
-  empty.statics = 0u;
-  empty.cst = 0u;
-  empty.sheets = 0u;
-  empty.samples = 0u;
-  empty.held_area = kNone;
-  empty.sheet_sign = 0;
   empty.flags = 0u;
-  empty.state = 0u;
   empty.rays = 0u;
   empty.max_height = 0u;
   empty.voxel_count = 0u;
-  for (uint32_t w = 0u; w < kMaxFrameAreas / 32u; ++w) empty.pierces[w] = 0u;
   empty.padding = 0u;
   areas[area] = empty;
 }

@@ -1,6 +1,6 @@
 #version 460
-// One invocation (`paper`): a triangle of C_s. Traces −n_c from its rounded centroid through the tool triangles that its area has of C_m.
-// Reads the mock-up's triangles, slots, areas, the tool at its pose, mobile_state and mobile_work. Writes heights.
+// One invocation: a triangle of C_s. Traces −n_c from its rounded centroid through the tool triangles that its area has of C_m.
+// Reads the mock-up's triangles, slot_areas, areas, the tool at its pose, mobile_state and mobile_areas. Adds the height to the area.
 // Before: areas_associate, areas_direct.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -17,10 +17,9 @@ READ(kBindRunBoxes, LatticeBox, run_boxes);
 READ(kBindToolCorners, ToolCorners, tool_corners);
 READ(kBindToolRecords, ToolRecord, tool_records);
 READ(kBindMobileState, uint32_t, mobile_state);
-READ(kBindMobileWork, MobileWork, mobile_work);
-READ(kBindSlots, SlotWork, slots);
-READ(kBindAreas, AreaWork, areas);
-EDIT(kBindHeights, uint32_t, heights);
+READ(kBindMobileAreas, uint32_t, mobile_areas);
+READ(kBindSlotAreas, uint32_t, slot_areas);
+EDIT(kBindAreas, AreaWork, areas);
 
 #include "shaders/lib/ray.glsl"
 #include "shaders/lib/line_box.glsl"
@@ -33,7 +32,7 @@ EDIT(kBindHeights, uint32_t, heights);
 bool area_has(uint32_t area, uint32_t place) {
   const uint32_t mobile = tool_records[place].id;
   if ((mobile_state[mobile] & kMobileSets) == 0u) return false;   // not in C_m
-  const uint32_t nearest = mobile_work[mobile].nearest;
+  const uint32_t nearest = mobile_areas[mobile];
   if (nearest != kNone) return nearest == area;
   const ToolCorners t = tool_corners[place];
   return area_holds(area, rounded_centroid(t.a, t.b, t.c));
@@ -75,11 +74,14 @@ uint32_t area_height(uint32_t area, ivec3 p, ivec3 d) {
 void main() {
   const uint32_t slot = flat_invocation();
   if (slot >= frame_lists[kListContactStatics].count) return;
-  heights[slot] = kNone;
-  const uint32_t area = slots[slot].area;
+  const uint32_t area = slot_areas[slot];
   if (area == kNone) return;
   const ivec3 direction = areas[area].direction;
   if (direction == ivec3(0)) return;
   const uvec3 corners = mockup_triangles[contact_statics[slot]];
-  heights[slot] = area_height(area, rounded_centroid(mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]), -direction);
+  const uint32_t height = area_height(area, rounded_centroid(mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]), -direction);
+  if (height == kNone) return;
+  atomicAdd(areas[area].rays, 1u);
+  atomicMax(areas[area].max_height, height);
+  atomicAdd(areas[area].height_sum, int64_t(height));
 }

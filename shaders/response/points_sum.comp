@@ -1,6 +1,6 @@
 #version 460
 // One invocation: a touched V_bnd voxel (`paper`). Adds its centre to every area that has a triangle in its list.
-// Reads touched voxels, the voxels' lists, static states and slots, slots. Writes areas[].voxel_sum and voxel_count.
+// Reads touched voxels, the voxels' lists, static states and slots, slot_areas. Writes areas[].voxel_sum and voxel_count.
 // Before: areas_gather.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -14,7 +14,7 @@ READ(kBindMockupListBegin, uint32_t, mockup_list_begin);
 READ(kBindMockupListTriangles, uint32_t, mockup_list);
 READ(kBindStaticState, uint32_t, static_state);
 READ(kBindStaticSlot, uint32_t, static_slot);
-READ(kBindSlots, SlotWork, slots);
+READ(kBindSlotAreas, uint32_t, slot_areas);
 EDIT(kBindAreas, AreaWork, areas);
 
 void main() {
@@ -29,7 +29,7 @@ void main() {
   for (uint32_t e = begin; e < min(end, begin + kLoopBudget); ++e) {
     const uint32_t id = mockup_list[e];
     if (static_state[id] == 0u) continue;
-    const uint32_t area = slots[static_slot[id]].area;
+    const uint32_t area = slot_areas[static_slot[id]];
     if (area == kNone || (seen[area >> 5] >> (area & 31u) & 1u) != 0u) continue;
     seen[area >> 5] |= 1u << (area & 31u);
     atomicAdd(areas[area].voxel_count, 1u);

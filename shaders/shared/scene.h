@@ -14,10 +14,11 @@ PALPATE_CONSTANT uint32_t kVoxelExternal = 0u;
 PALPATE_CONSTANT uint32_t kVoxelBoundary = 1u;
 PALPATE_CONSTANT uint32_t kVoxelInternal = 2u;
 
-// triangle_info[]: bits 0–7 are TriangleFlag of model/lattice_mesh.h, bits 8–9 the sample axis.
+// triangle_info[]: bits 0–7 are TriangleFlag of model/lattice_mesh.h, bits 8–9 the sample axis; bit 10: it has extra samples.
 PALPATE_CONSTANT uint32_t kInfoCollapsed = 1u;
 PALPATE_CONSTANT uint32_t kInfoSheet = 2u;
 PALPATE_CONSTANT uint32_t kInfoAxisShift = 8u;
+PALPATE_CONSTANT uint32_t kInfoHasExtra = 1u << 10;
 
 // Not a boundary voxel (boundary_index() of lib/partition.glsl).
 PALPATE_CONSTANT uint32_t kNoVoxel = 0xFFFFFFFFu;
@@ -59,14 +60,16 @@ PALPATE_ASSERT_SIZE(BodyConstants, 56);
 struct SceneConstants {
   BodyConstants mockup;
   BodyConstants tool;
-  ivec3 tool_gc;             // tool lattice frame
   int32_t tool_radius;       // steps
+  int32_t lever_shift;       // of it (model/field.h)
   int32_t sample_spacing;    // steps
   uint32_t refined;          // 1: profile `refined`, 0: `paper`
+  uint32_t mockup_extras;    // extra samples; refined
+  uint32_t tool_extras;
   GridConstants fine;        // a second, finer partition of a closed tool, or its own: early answers for samples
 };
 PALPATE_ASSERT_SIZE(SceneConstants, 176);
-PALPATE_ASSERT_OFFSET(SceneConstants, tool_gc, 112);
+PALPATE_ASSERT_OFFSET(SceneConstants, tool_radius, 112);
 
 PALPATE_SHARED_END
 #endif

@@ -1,0 +1,91 @@
+#version 460
+// One invocation: a sample of the mock-up: one that counts, or (EXTRA) an extra one, which is asked first whether it lies inside the tool. Adds how the tool's depth there pushes.
+// Reads samples or mockup_points, both bodies, the tool's fine partition. Writes field_work, carrier_work, ignored patches.
+// Before: field_begin, field_statics; the lists are closed.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_field.h"
+
+layout(constant_id = 0) const bool CLOSED = true;   // the tool
+layout(constant_id = 1) const bool EXTRA = false;
+
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+READ(kBindSamples, FrameSample, frame_samples);
+READ(kBindMockupPoints, FieldPoint, mockup_points);
+READ(kBindMockupInfo, uint32_t, mockup_info);
+READ(kBindMockupNormals, ivec3, mockup_normals);
+READ(kBindMockupWeights, uint32_t, mockup_weights);
+READ(kBindMockupPatches, uint32_t, mockup_patches);
+READ(kBindStaticState, uint32_t, static_state);
+READ(kBindStaticSlot, uint32_t, static_slot);
+READ(kBindToolRecords, uint64_t, tool_records);
+READ(kBindToolVertices, ivec3, body_vertices);
+READ(kBindToolTriangles, uvec3, body_triangles);
+READ(kBindToolInfo, uint32_t, body_info);
+READ(kBindToolNormals, ivec3, body_normals);
+READ(kBindFineBrickSlot, uint32_t, body_brick_slot);
+READ(kBindFineBricks, Brick, body_bricks);
+READ(kBindFineListBegin, uint32_t, body_list_begin);
+READ(kBindFineListTriangles, uint32_t, body_list);
+READ(kBindFinePlaces, uint32_t, fine_places);
+READ(kBindFineExit, uint32_t, fine_exit);
+EDIT(kBindFieldWork, int64_t, field_work);
+EDIT(kBindCarrierWork, int64_t, carrier_work);
+READ(kBindIgnored, uint32_t, ignored);
+EDIT(kBindIgnoredState, uint32_t, ignored_state);
+EDIT(kBindResultIgnored, uint32_t, result_ignored);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
+
+#define BODY_GRID scene.fine
+#include "shaders/lib/body_depth.glsl"
+#include "shaders/lib/body_walks.glsl"
+#include "shaders/lib/field_sums.glsl"
+#include "shaders/lib/ignored.glsl"
+#include "shaders/lib/tool_winding.glsl"
+
+bool inside_tool(ivec3 point, ivec3 at) {
+  const ivec3 voxel = body_voxel_of(at);
+  const uint32_t voxel_class = body_class_of(voxel);
+  if (voxel_class != kVoxelBoundary) return voxel_class == kVoxelInternal;
+  return CLOSED ? tool_winding(point) != 0 : body_walks_inside(at, voxel);
+}
+
+// False: nothing pushes.
+bool push_of(uint32_t item, out Push push) {
+  ivec3 point;
+  uint32_t id, weight;
+  if (EXTRA) {
+    const FieldPoint work = mockup_points[item];
+    point = work.point;
+    id = work.triangle;
+    weight = work.weight;
+  } else {
+    const FrameSample work = frame_samples[item];
+    point = work.point;
+    id = work.static_id;
+    weight = mockup_weights[id];
+  }
+  const ivec3 at = tool_from_world(point);
+  if (weight == 0u || (EXTRA && !inside_tool(point, at))) return false;
+  const Depth depth = body_depth(at);
+  if (depth.triangle == kNone || is_ignored(id)) return false;
+  push.at = point;
+  push.against = -turned(body_normals[depth.triangle]);
+  push.sheet = (mockup_info[id] & kInfoSheet) != 0u;
+  push.along = push.sheet ? push.against : mockup_normals[id];
+  push.depth = uint32_t(depth.steps);
+  push.weight = weight;
+  push.static_id = id;
+  push.mobile = depth.triangle;
+  push.slot = (static_state[id] & (kStaticHit | kStaticSampled)) != 0u ? static_slot[id] : kNone;   // CST and EST carry
+  return true;
+}
+
+void main() {
+  const uint32_t item = flat_invocation();
+  Push push;
+  const bool pushes = item < frame_lists[EXTRA ? kListMockupPoints : kListSamples].count && push_of(item, push);
+  add_pushes(pushes, push);
+}

@@ -1,0 +1,71 @@
+#version 460
+// One invocation: a sample of a triangle of C_m in a V_bnd or V_int voxel of the mock-up, or an extra one. Where it lies inside, adds how the mock-up's depth there pushes.
+// Reads tool_points, both bodies, the mock-up's partition. Writes field_work, ignored patches.
+// Before: field_begin, field_points; the list is closed.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_field.h"
+
+layout(constant_id = 0) const bool CLOSED = true;   // the mock-up
+layout(constant_id = 1) const bool INSIDE = true;   // the tool has an inside
+
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+READ(kBindToolPoints, FieldPoint, tool_points);
+READ(kBindToolInfo, uint32_t, tool_info);
+READ(kBindToolNormals, ivec3, tool_normals);
+READ(kBindMockupVertices, ivec3, body_vertices);
+READ(kBindMockupTriangles, uvec3, body_triangles);
+READ(kBindMockupInfo, uint32_t, body_info);
+READ(kBindMockupNormals, ivec3, body_normals);
+READ(kBindMockupPatches, uint32_t, mockup_patches);
+READ(kBindMockupBrickSlot, uint32_t, body_brick_slot);
+READ(kBindMockupBricks, Brick, body_bricks);
+READ(kBindMockupListBegin, uint32_t, body_list_begin);
+READ(kBindMockupListTriangles, uint32_t, body_list);
+EDIT(kBindFieldWork, int64_t, field_work);
+EDIT(kBindCarrierWork, int64_t, carrier_work);
+READ(kBindIgnored, uint32_t, ignored);
+EDIT(kBindIgnoredState, uint32_t, ignored_state);
+EDIT(kBindResultIgnored, uint32_t, result_ignored);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
+
+#define BODY_GRID scene.mockup.grid
+#include "shaders/lib/pose.glsl"
+#include "shaders/lib/body_depth.glsl"
+#include "shaders/lib/body_walks.glsl"
+#include "shaders/lib/field_sums.glsl"
+#include "shaders/lib/ignored.glsl"
+
+bool inside_mockup(ivec3 point) {
+  const ivec3 voxel = body_voxel_of(point);
+  const uint32_t voxel_class = body_class_of(voxel);
+  if (voxel_class != kVoxelBoundary) return voxel_class == kVoxelInternal;
+  return CLOSED ? body_winding_inside(point, voxel) : body_walks_inside(point, voxel);
+}
+
+// False: nothing pushes.
+bool push_of(uint32_t item, out Push push) {
+  const FieldPoint work = tool_points[item];
+  if (!inside_mockup(work.point)) return false;
+  const Depth depth = body_depth(work.point);
+  if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
+  push.at = work.point;
+  push.against = body_normals[depth.triangle];
+  push.sheet = !INSIDE || (tool_info[work.triangle] & kInfoSheet) != 0u;
+  push.along = push.sheet ? push.against : -turned(tool_normals[work.triangle]);
+  push.depth = uint32_t(depth.steps);
+  push.weight = work.weight;
+  push.static_id = depth.triangle;
+  push.mobile = work.triangle;
+  push.slot = kNone;
+  return true;
+}
+
+void main() {
+  const uint32_t item = flat_invocation();
+  Push push;
+  const bool pushes = item < frame_lists[kListToolPoints].count && push_of(item, push);
+  add_pushes(pushes, push);
+}

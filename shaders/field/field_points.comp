@@ -1,0 +1,46 @@
+#version 460
+// One workgroup: a tile of a tool triangle's sample grid; one invocation: a grid point. Lists the samples that lie in a V_bnd or V_int voxel of the mock-up.
+// Reads field_tiles, the tool in its own frame, the mock-up's partition. Writes tool_points.
+// Before: field_mobiles; its list is closed.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_field.h"
+#include "shaders/lib/voxel_range.glsl"
+#include "shaders/lib/sample.glsl"
+
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+READ(kBindFieldTiles, FieldTile, field_tiles);
+READ(kBindToolVertices, ivec3, tool_vertices);
+READ(kBindToolTriangles, uvec3, tool_triangles);
+READ(kBindToolInfo, uint32_t, tool_info);
+READ(kBindToolWeights, uint32_t, tool_weights);
+READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
+READ(kBindMockupBricks, Brick, mockup_bricks);
+EDIT(kBindToolPoints, FieldPoint, tool_points);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
+
+#include "shaders/lib/list_room.glsl"
+#include "shaders/lib/pose.glsl"
+#define PARTITION(name) mockup_##name
+#define PARTITION_GRID scene.mockup.grid
+#define PARTITION_SLOTS mockup_brick_slots
+#define PARTITION_BRICKS mockup_bricks
+#include "shaders/lib/partition.glsl"
+
+void main() {
+  if (flat_group() >= frame_lists[kListFieldTiles].count) return;
+  const FieldTile tile = field_tiles[flat_group()];
+  const uvec3 corners = tool_triangles[tile.mobile];
+  const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
+  const int32_t axis = int32_t(tool_info[tile.mobile] >> kInfoAxisShift & 3u);
+  const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
+  const ivec2 place = ivec2(gl_LocalInvocationIndex % uint32_t(kFieldTile), gl_LocalInvocationIndex / uint32_t(kFieldTile));
+  const ivec2 g = scene.sample_spacing * (ivec2(tile.first_u, tile.first_v) + place);
+  if (!grid_point_inside(triangle, g)) return;
+  const ivec3 p = world_from_tool(sample_point(triangle, g));
+  if (mockup_class_of(mockup_voxel_of(p)) == kVoxelExternal) return;
+  const uint32_t at = take_room(kListToolPoints, 1u);
+  if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(p, tile.mobile, tool_weights[tile.mobile]);
+}

@@ -1,0 +1,173 @@
+// How deep a lattice point lies below the surface of a body that does not move, in its own frame (docs/EXACTNESS.md section 4, "Depth"), exact.
+// The including shader has what lib/body.glsl asks for, ivec3 body_normals[] and frame_state (writable).
+#ifndef PALPATE_LIB_BODY_DEPTH
+#define PALPATE_LIB_BODY_DEPTH
+#include "shaders/shared/frame_field.h"
+#include "shaders/lib/body.glsl"
+#include "shaders/lib/budget.glsl"
+#include "shaders/lib/direction.glsl"
+#include "shaders/lib/wide_integer.glsl"
+
+struct Depth {
+  int32_t steps;       // φ
+  uint32_t triangle;   // the nearest one, of several the smallest id; kNone: there is none
+};
+
+int64_t wide_dot(ivec3 a, ivec3 b) { return mul_wide(a.x, b.x) + mul_wide(a.y, b.y) + mul_wide(a.z, b.z); }
+
+// floor(√v), 0 ≤ v < 2^62. A float's root is off by less than 2^10; what is left of v says by how much, to less than one.
+int32_t floor_root(int64_t v) {
+  int64_t r = int64_t(sqrt(float(v)));
+  if (r > 0l) r += int64_t(floor(float(v - r * r) / (2.0 * float(r))));
+  if (r * r > v) r -= 1l;
+  if (r * r > v) r -= 1l;
+  if ((r + 1l) * (r + 1l) <= v) r += 1l;
+  if ((r + 1l) * (r + 1l) <= v) r += 1l;
+  return int32_t(r);
+}
+
+// floor(a / b), 2^28 ≤ b < 2^30, the quotient within 2^30: in two steps as above.
+int32_t floor_quotient(int64_t a, int32_t b) {
+  const int64_t wide = int64_t(b);
+  const float one = 1.0 / float(b);
+  int64_t q = int64_t(float(a) * one);
+  q += int64_t(floor(float(a - q * wide) * one));
+  if (q * wide > a) q -= 1l;
+  if (q * wide > a) q -= 1l;
+  if ((q + 1l) * wide <= a) q += 1l;
+  if ((q + 1l) * wide <= a) q += 1l;
+  return int32_t(q);
+}
+
+// How far p is from a closed box along each axis.
+ivec3 box_gap(ivec3 p, ivec3 low, ivec3 high) { return max(max(low - p, p - high), ivec3(0)); }
+
+// Whether what is that far away may be as near as the best so far.
+bool may_be_nearer(ivec3 gap, Depth best) {
+  if (best.triangle == kNone) return true;
+  const int64_t reach = int64_t(best.steps) + int64_t(kDepthSlack);
+  return wide_dot(gap, gap) <= reach * reach;
+}
+
+// The squared distance by way of the edge from u to v, if the point lies on its outer side; the least of them so far, −1: none. No loops here:
+// they would count against what llvmpipe lets an invocation run.
+void pass_edge(ivec3 u, ivec3 v, ivec3 p, ivec3 n, int32_t height, inout int64_t least) {
+  const ivec3 edge = v - u, from = p - u;
+  const ivec3 along = normalise(i64vec3(edge));   // within 2^29
+  const ivec3 across = ivec3(i64vec3(mul_wide(along.y, n.z) - mul_wide(along.z, n.y), mul_wide(along.z, n.x) - mul_wide(along.x, n.z),
+                                     mul_wide(along.x, n.y) - mul_wide(along.y, n.x)) >> 30);
+  const int32_t size = floor_root(wide_dot(along, along));   // from 2^28 on
+  const int32_t side = floor_quotient(wide_dot(across, from), size);
+  if (side <= 0) return;
+  const int32_t at = floor_quotient(wide_dot(along, from), size);
+  const int32_t over = max(0, max(-at, at - floor_root(wide_dot(edge, edge))));
+  const int64_t squared = mul_wide(height, height) + mul_wide(side, side) + mul_wide(over, over);   // within 3 · 2^60
+  if (least == -1l || squared < least) least = squared;
+}
+
+// The distance to a triangle, where it may be the least.
+void look_at(uint32_t id, ivec3 p, inout Depth best) {
+  if (id == best.triangle || !body_bounds_solid(id)) return;
+  const uvec3 ids = body_triangles[id];
+  const ivec3 a = body_vertices[ids.x], b = body_vertices[ids.y], c = body_vertices[ids.z];
+  if (!may_be_nearer(box_gap(p, min(min(a, b), c), max(max(a, b), c)), best)) return;
+  const ivec3 n = body_normals[id];
+  const int32_t height = int32_t(abs((wide_dot(n, p - a) + (1l << 29)) >> 30));   // |n·(p − a)| within 3 · 2^59
+  if (height > best.steps) return;
+
+  int64_t least = -1l;
+  pass_edge(a, b, p, n, height, least);
+  pass_edge(b, c, p, n, height, least);
+  pass_edge(c, a, p, n, height, least);
+  const int32_t steps = least == -1l ? height : floor_root(least);
+  if (steps < best.steps || (steps == best.steps && id < best.triangle)) best = Depth(steps, id);
+}
+
+// Something near: what the nearest V_bnd voxels along the axes list, the point's own first. One loop does all of it (see lib/body_walks.glsl).
+void look_along_axes(ivec3 p, ivec3 home, inout Depth best) {
+  const ivec3 cells = 8 * BODY_GRID.bricks;
+  const int32_t last_ring = max(cells.x, max(cells.y, cells.z));
+  int32_t ring = 0;
+  uint32_t way = 0u, entry = 0u, last = 0u;
+  while (!spent(1u)) {
+    if (entry < last) {
+      look_at(body_list[entry++], p, best);
+      continue;
+    }
+    if (way == 6u) {
+      if (best.triangle != kNone || ring == last_ring) return;
+      way = 0u;
+      ++ring;
+    }
+    ivec3 voxel = home;
+    voxel[int(way >> 1)] += (way & 1u) != 0u ? ring : -ring;
+    way = ring == 0 ? 6u : way + 1u;
+    const uint32_t boundary = body_boundary_index(voxel);
+    if (boundary == kNoVoxel) continue;
+    entry = body_list_begin[boundary];
+    last = body_list_begin[boundary + 1u];
+  }
+}
+
+// Bits of a brick's word (4 rows of 8 voxels, from y on) within low … high of the brick.
+uint32_t word_bits(int32_t y, ivec3 low, ivec3 high) {
+  const int32_t first = max(low.y - y, 0), end = min(high.y - y, 3);
+  if (first > 3 || end < 0) return 0u;
+  const uint32_t row = 0xFFu >> uint32_t(7 - high.x) & 0xFFu << uint32_t(low.x);
+  return row * 0x01010101u & 0xFFFFFFFFu >> uint32_t(8 * (3 - end)) & 0xFFFFFFFFu << uint32_t(8 * first);
+}
+
+Depth body_depth(ivec3 p) {
+  Depth best = Depth(0x7FFFFFFF, kNone);
+  const ivec3 home = body_voxel_of(p);
+  look_along_axes(p, home, best);
+
+  // All voxels within reach of what was found, brick by brick, as far as they may hold something nearer.
+  const int32_t size = BODY_GRID.size;
+  ivec3 low = ivec3(0), high = 8 * BODY_GRID.bricks - 1;
+  if (best.triangle != kNone) {
+    const int32_t reach = best.steps + kDepthSlack;
+    low = max(low, body_voxel_of(p - reach));
+    high = min(high, body_voxel_of(p + reach));
+  }
+  const ivec3 first = low >> 3, end = high >> 3;
+  ivec3 brick = first;
+  uint32_t slot = 0u, word = 0u, words = 0u, bits = 0u, whole = 0u, entry = 0u, last = 0u;
+  ivec3 in_low = ivec3(0), in_high = ivec3(0), at = first;   // `at`: the present brick; `brick`: the next one
+  while (!spent(1u)) {
+    if (entry < last) {
+      look_at(body_list[entry++], p, best);
+    } else if (bits != 0u) {
+      const uint32_t bit = uint32_t(findLSB(bits));
+      bits &= bits - 1u;
+      const ivec3 voxel = 8 * at + ivec3(bit & 7u, 4u * (word & 1u) + (bit >> 3), word >> 1);
+      const ivec3 corner = BODY_GRID.origin + size * voxel;
+      if (voxel == home || !may_be_nearer(box_gap(p, corner, corner + size), best)) continue;
+      const uint32_t boundary = body_bricks[slot].first[word] + uint32_t(bitCount(whole & ((1u << bit) - 1u)));
+      entry = body_list_begin[boundary];
+      last = body_list_begin[boundary + 1u];
+    } else if (word + 1u < words) {
+      ++word;
+      const uint32_t wanted = word_bits(int32_t(4u * (word & 1u)), in_low, in_high);
+      if (wanted == 0u) continue;
+      whole = body_bricks[slot].boundary[word];
+      bits = whole & wanted;
+    } else {
+      if (any(greaterThan(brick, end))) break;
+      at = brick;
+      brick = ivec3(brick.x + 1, brick.yz);
+      if (brick.x > end.x) brick = ivec3(first.x, brick.y + 1, brick.z);
+      if (brick.y > end.y) brick = brick.z < end.z ? ivec3(first.xy, brick.z + 1) : end + 1;
+      slot = body_slot_of(at);
+      words = 0u;
+      const ivec3 corner = BODY_GRID.origin + 8 * size * at;
+      if (slot >= kBrickInternal || !may_be_nearer(box_gap(p, corner, corner + 8 * size), best)) continue;
+      in_low = clamp(low - 8 * at, ivec3(0), ivec3(7));
+      in_high = clamp(high - 8 * at, ivec3(0), ivec3(7));
+      word = 2u * uint32_t(in_low.z) - 1u;   // the one before the first; runs round at 0
+      words = 2u * uint32_t(in_high.z) + 2u;
+    }
+  }
+  return best;
+}
+#endif

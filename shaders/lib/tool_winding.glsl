@@ -1,0 +1,44 @@
+// The winding of the closed tool at its pose round a world lattice point in a V_bnd voxel of its fine partition: what a walk out of the tool
+// crosses, along an axis of that grid, from voxel to voxel, and each voxel lists all that may be crossed in it.
+// The including shader has what lib/body.glsl asks for, of the tool and its fine partition, and tool_records[], fine_places[], fine_exit[],
+// frame_input, frame_state (writable).
+//
+// The walk's points on the faces between voxels are lattice points of the tool, moved to the world and rounded. That, the rounding
+// of the sample and that of the triangles' corners come to less than two steps, and voxels are grown by kToolVoxelGrowth; so a voxel's
+// list holds all that the walk crosses in it, and at the face of a V_ext voxel the winding is 0.
+#ifndef PALPATE_LIB_TOOL_WINDING
+#define PALPATE_LIB_TOOL_WINDING
+#include "shaders/lib/body.glsl"
+#include "shaders/lib/budget.glsl"
+#include "shaders/lib/pose.glsl"
+#include "shaders/lib/segment.glsl"
+#include "shaders/lib/tool_record.glsl"
+
+int32_t tool_winding(ivec3 point) {
+  ivec3 from = point, to = point, at = tool_from_world(point);
+  ivec3 voxel = body_voxel_of(at);
+  const uint32_t exit = fine_exit[body_boundary_index(voxel)];
+  const int axis = int(exit >> 1);
+  const int32_t up = int32_t(exit & 1u);
+  int32_t winding = 0;
+  uint32_t entry = 0u, last = 0u;   // of the present voxel's list
+  while (!spent(1u)) {
+    if (entry < last) {
+      const RecordCorners t = record_at(fine_places[entry++]);
+      winding += segment_crossing(from, to, world_from_tool(t.a), world_from_tool(t.b), world_from_tool(t.c));
+      continue;
+    }
+    const uint32_t boundary = body_boundary_index(voxel);
+    if (boundary == kNoVoxel && body_class_of(voxel) == kVoxelExternal) break;
+    from = to;
+    at[axis] = BODY_GRID.origin[axis] + BODY_GRID.size * (voxel[axis] + up);
+    to = world_from_tool(at);
+    if (boundary != kNoVoxel && from != to) {
+      entry = body_list_begin[boundary];
+      last = body_list_begin[boundary + 1u];
+    }
+    voxel[axis] += 2 * up - 1;
+  }
+  return winding;
+}
+#endif
