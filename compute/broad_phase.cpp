@@ -155,14 +155,13 @@ void BroadPhase::take_run(Search& search, std::size_t run) {
   for (unsigned near = cubes_.near(voxels); near != 0; near &= near - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(near));
     const auto place = static_cast<std::uint32_t>(run * gpu::kRunSize + i);
-    std::uint32_t head = gpu::kFirstOfTriangle;
+    bool begun = false;
     NearPairs::Triangle triangle;
     occupied.for_bricks(voxels.range(i), [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       const Int3 brick(x, y, z);
       const std::uint32_t slot = occupied.slot(occupied.number(x, y, z));
-      if (head != 0 && !pairs_.begin(search.tool.corners(order_[place]), place, voxels, i, triangle)) return true;
-      if (!search.lists.push(search.lists.triangles, gpu::kListNearTriangles, {place | head, slot, brick.x | brick.y << 16, brick.z})) return true;
-      head = 0;
+      if (!begun && !pairs_.begin(search.tool.corners(order_[place]), place, voxels, i, triangle)) return true;
+      begun = true;
       return !pairs_.take(triangle, brick, slot, search.lists);
     });
     if (search.lists.full != gpu::kNone) return;

@@ -29,7 +29,7 @@ class BroadPhase {
   /// device. Allocates.
   static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const RunTree& runs);
 
-  /// Fills the lists: tool triangles with the bricks in which they may come within kCloseSteps of a V_bnd or V_int voxel, those voxels,
+  /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may come,
   /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be
   /// beyond the lattice.
   bool find(PosedTool& tool, NearLists& lists);

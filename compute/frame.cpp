@@ -14,6 +14,7 @@
 #include "compute/frame_capacity.h"
 #include "compute/frame_decode.h"
 #include "compute/frame_detection.h"
+#include "compute/frame_field.h"
 #include "compute/frame_plan.h"
 #include "compute/frame_recorder.h"
 #include "compute/frame_response.h"
@@ -30,11 +31,6 @@ using Clock = std::chrono::steady_clock;
 
 double us_since(Clock::time_point from) { return std::chrono::duration<double, std::micro>(Clock::now() - from).count(); }
 
-std::int32_t floor_div(std::int64_t a, std::int64_t b) {
-  const std::int64_t q = a / b;
-  return static_cast<std::int32_t>(a % b < 0 ? q - 1 : q);
-}
-
 /// An answer cut short by a capacity: no force.
 Result<void> truncate(Contacts& out, const char* capacity) {
   out.truncated = true;
@@ -48,12 +44,6 @@ bool turned(const LatticePose& pose) {
       if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
   return false;
 }
-
-/// Where the tool is at a pose.
-struct Reach {
-  Int3 low{0}, high{0};                        ///< holds the transformed tool and its inside; closed
-  Int3 first_brick{0}, last_brick{-1};         ///< bricks of the mock-up that meet it
-};
 
 class RecordedFrame final : public Frame {
  public:
@@ -85,24 +75,22 @@ class RecordedFrame final : public Frame {
   Result<void> run(CommandRecorder& commands, Contacts& out);
   void solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out);
   void read(Contacts& out);
-  Reach reach(const LatticePose& pose) const;
-  void write_input(const LatticePose& pose, const NearLists& near, bool rays);
+  void write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays);
 
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
   const PreparedScene& scene_;
   const Plan plan_;
-  gpu::GridConstants grid_{};
   PosedTool posed_;
   std::optional<RunTree> runs_;
   std::optional<BroadPhase> broad_phase_;
   FrameCapacity capacity_;
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
-  std::optional<FrameResponse> response_;
-  std::unique_ptr<HostContact> host_contact_;   ///< `refined`
-  bool host_decides_ = false;             ///< sets, too
-  bool host_solved_ = false;              ///< the last query's contact was decided by the host
+  std::optional<FrameResponse> response_;       ///< `paper`
+  std::optional<FrameField> field_;             ///< `refined`
+  std::unique_ptr<HostContact> host_contact_;   ///< decides all, where it is
+  bool host_solved_ = false;                    ///< the last query's contact was decided by the host
   FrameDecoder decoder_;
   /// From the pose to the sets; then, with contact, the response. Null after a failed record().
   std::unique_ptr<CommandRecorder> detect_, respond_;
@@ -122,16 +110,15 @@ void RecordedFrame::name_scene() {
   const PartitionBuffers& fine = scene_.fine.brick_slot ? scene_.fine : t.partition;
   const std::pair<std::int32_t, const VulkanBuffer*> all[] = {
       {kBindScene, &scene_.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
-      {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.sample_weight},
-      {kBindNeighbourBegin, &m.neighbour_begin}, {kBindNeighbours, &m.neighbours}, {kBindSeamBegin, &m.seam_begin},
-      {kBindSeams, &m.seams}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
+      {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.field_weight},
+      {kBindNeighbourBegin, &m.neighbour_begin}, {kBindNeighbours, &m.neighbours}, {kBindMockupPatches, &m.patch},
+      {kBindMockupExtras, &m.extras}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
       {kBindMockupListBegin, &m.partition.list_begin}, {kBindMockupListTriangles, &m.partition.list_triangles},
       {kBindMockupBoundaryPlace, &m.partition.boundary_place}, {kBindMockupMixedBrick, &m.partition.mixed_brick},
       {kBindToolVertices, &t.vertices}, {kBindToolTriangles, &t.triangles}, {kBindToolInfo, &t.triangle_info},
-      {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.sample_weight}, {kBindToolBrickSlot, &t.partition.brick_slot},
-      {kBindToolBricks, &t.partition.bricks}, {kBindFineBrickSlot, &fine.brick_slot}, {kBindFineBricks, &fine.bricks},
-      {kBindFineListBegin, &fine.list_begin}, {kBindFineListTriangles, &fine.list_triangles}, {kBindFineExit, &scene_.fine_exit},
-      {kBindToolNear, &scene_.tool_near}};
+      {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.field_weight}, {kBindToolExtras, &t.extras},
+      {kBindFineBrickSlot, &fine.brick_slot}, {kBindFineBricks, &fine.bricks},
+      {kBindFineListBegin, &fine.list_begin}, {kBindFineListTriangles, &fine.list_triangles}, {kBindFineExit, &scene_.fine_exit}};
   for (const auto& [binding, buffer] : all)
     if (*buffer) buffers_.name(binding, *buffer);   // `paper` has no partition of the tool
 }
@@ -139,14 +126,11 @@ void RecordedFrame::name_scene() {
 Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& first_capacity) {
   name_scene();
   const gpu::SceneConstants& constants = scene_.constants;
-  grid_ = constants.mockup.grid;
   const bool refined = constants.refined != 0;
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
 
   detection_ = FrameDetection::make(geometry_, scene_, plan_);
-  // An open tool's samples are asked by walks, which the host alone knows.
-  host_decides_ = refined && (device_.host_share == HostShare::kContacts || constants.tool.closed == 0);
-  const bool host_decides = host_decides_;
+  const bool host_decides = refined && device_.host_share == HostShare::kContacts;
   // Pipelines are compiled beside what the host builds; where it decides all, nobody needs them.
   if (!host_decides)
     if (auto r = make_pipelines(); !r) return r;
@@ -154,7 +138,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   auto broad_phase = BroadPhase::make(device_, geometry_, scene_, *runs_);
   if (!broad_phase) return broad_phase.error();
   broad_phase_.emplace(std::move(*broad_phase));
-  if (refined) {
+  if (host_decides) {
     auto contact = HostContact::make(device_, geometry_, scene_, runs_->order());
     if (!contact) return contact.error();
     host_contact_ = std::move(*contact);
@@ -169,7 +153,12 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
 /// Asks for them: they are made by other threads.
 Result<void> RecordedFrame::make_pipelines() {
   if (auto r = detection_->make_shaders(device_); !r) return r;
-  if (scene_.constants.refined != 0) return {};   // the field is the host's
+  if (scene_.constants.refined != 0) {
+    auto field = FrameField::create(device_, geometry_, scene_, plan_);
+    if (!field) return field.error();
+    field_.emplace(std::move(*field));
+    return {};
+  }
   auto response = FrameResponse::create(device_, plan_);
   if (!response) return response.error();
   response_.emplace(std::move(*response));
@@ -177,7 +166,7 @@ Result<void> RecordedFrame::make_pipelines() {
 }
 
 Result<void> RecordedFrame::finish() {
-  if (finished_ || host_decides_) return {};
+  if (finished_ || host_contact_) return {};
   if (auto r = record(); !r) return r;
   if (auto r = warm_up(device_, pipelines_); !r) return r;   // no frame of a loop should wait for a compiler
   finished_ = true;
@@ -188,6 +177,8 @@ Result<void> RecordedFrame::make_buffers() {
   if (auto r = detection_->make_buffers(device_, geometry_, scene_, capacity_, buffers_); !r) return r;
   if (response_)
     if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
+  if (field_)
+    if (auto r = field_->make_buffers(device_, capacity_, buffers_); !r) return r;
   return set_capacities();
 }
 
@@ -244,10 +235,9 @@ Result<void> RecordedFrame::record() {
   auto detect = recorded([&](FrameRecorder& recorder) { detection_->record(recorder); });
   if (!detect) return detect.error();
   auto respond = recorded([&](FrameRecorder& recorder) {
-    if (response_) {
-      response_->record(recorder);
-      recorder.barrier();
-    }
+    if (response_) response_->record(recorder);
+    if (field_) field_->record(recorder);
+    recorder.barrier();
     detection_->record_end(recorder);
   });
   if (!respond) return respond.error();
@@ -256,32 +246,8 @@ Result<void> RecordedFrame::record() {
   return {};
 }
 
-Reach RecordedFrame::reach(const LatticePose& pose) const {
-  // The tool's inside reaches beyond its triangles by less than a grown voxel (EXACTNESS.md, section 2); rounding of the corners
-  // and of vertices adds two steps.
-  const std::int32_t margin = geometry_.tool_grid.size + 5;
-  Reach out;
-  out.low = Int3(INT32_MAX);
-  out.high = Int3(INT32_MIN);
-  for (int corner = 0; corner < 8; ++corner) {
-    Int3 v;
-    for (int k = 0; k < 3; ++k) v[k] = (corner >> k & 1) != 0 ? geometry_.tool.box_max[k] + margin : geometry_.tool.box_min[k] - margin;
-    const Int3 p = transform(pose, v);
-    out.low = glm::min(out.low, p - 2);
-    out.high = glm::max(out.high, p + 2);
-  }
-  const std::int64_t side = std::int64_t{8} * grid_.size;
-  for (int k = 0; k < 3; ++k) {
-    out.first_brick[k] = std::max(floor_div(std::int64_t{out.low[k]} - grid_.origin[k] - 1, side), 0);
-    out.last_brick[k] = std::min(floor_div(std::int64_t{out.high[k]} - grid_.origin[k], side), grid_.bricks[k] - 1);
-  }
-  return out;
-}
-
-void RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, bool rays) {
-  const Reach reach = this->reach(pose);
+void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays) {
   gpu::FrameInput input{};
-  input.near_triangles = near.triangles.count;
   input.touch_candidates = near.touch.count;
   input.pair_candidates = near.pairs.count;
   input.sample_chunks = near.samples.count;
@@ -290,12 +256,7 @@ void RecordedFrame::write_input(const LatticePose& pose, const NearLists& near, 
   input.rays = rays ? 1 : 0;
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
-  input.brick_first = reach.first_brick;
-  input.brick_last = reach.last_brick;
-  input.tool_low = reach.low;
-  input.tool_high = reach.high;
-  const std::int32_t shadow = std::max(reach.high.y - reach.low.y, reach.high.z - reach.low.z);
-  while (shadow >> input.bin_shift >= detection_->bins()) ++input.bin_shift;
+  if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
   std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
 }
 
@@ -315,7 +276,6 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
   bool rays = false;
   if (!pose.beyond_lattice) {
     posed_.begin(pose);
-    near.triangles.room = mapped<gpu::NearTriangle>(gpu::kBindNearTriangles, gpu::kListNearTriangles);
     near.touch.room = mapped<gpu::TouchCandidate>(gpu::kBindTouchCandidates, gpu::kListTouchCandidates);
     near.pairs.room = mapped<gpu::PairCandidate>(gpu::kBindPairCandidates, gpu::kListPairCandidates);
     near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
@@ -327,7 +287,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
-  if (host_decides_) {
+  if (host_contact_) {
     solve_on_host(ignored, near, out);
     return {};
   }
@@ -336,7 +296,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
   const auto writing = Clock::now();
-  write_input(pose, near, rays);
+  write_input(pose, ignored, near, rays);
   out.times.push_back({"upload", us_since(writing)});
 
   if (!detect_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
@@ -349,14 +309,10 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
   const auto finished = Clock::now();
   read(out);
   out.times.push_back({"readback", us_since(finished)});
-  if (host_contact_ && out.contact && !out.truncated) {
-    const auto summing = Clock::now();
-    const auto& result = *buffers_[gpu::kBindResult].as<const gpu::FrameResult>();
-    host_contact_->sum_field(posed_, ignored, {buffers_[gpu::kBindResultStatics].as<const gpu::StaticResult>(), result.static_count},
-                             {buffers_[gpu::kBindResultMobiles].as<const gpu::MobileResult>(), result.mobile_count},
-                             {buffers_[gpu::kBindSamples].as<const gpu::FrameSample>(), result.sample_count}, out);
-    if (out.lists) gather_areas(geometry_, pose, out);
-    out.times.push_back({"field", us_since(summing)});
+  if (field_ && out.contact && out.lists && !out.truncated) {
+    const auto gathering = Clock::now();
+    gather_areas(geometry_, pose, out);
+    out.times.push_back({"areas", us_since(gathering)});
   }
   return {};
 }
@@ -402,6 +358,7 @@ void RecordedFrame::read(Contacts& out) {
          out);
   pairs_ = out.pairs;
   out.flags |= frame_flags_;
+  if (field_ && out.contact && !out.truncated) field_->decode(buffers_, *result, out);
   tables_clear_ = !out.truncated;
 }
 

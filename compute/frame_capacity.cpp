@@ -12,23 +12,13 @@ using namespace gpu;   // names of shaders/shared/frame.h
 // room to be made costs little beside. Where the device decides, a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of the second.
 constexpr std::uint64_t kHostDecides = 1u << 16, kDeviceDecides = 1u << 18;
 constexpr std::uint64_t kMostItems = 1u << 22;   // to begin with; a binding of 128 MiB holds that many of 32 bytes
-constexpr std::uint64_t kBinEntries = 12;   // a triangle, on average
 
-/// Tables and the bins, which are no lists: their names and the bits that say they are full.
-struct Other {
-  const char* name;
-  std::uint32_t overflow;
-  std::uint32_t FrameCapacity::*capacity;
-};
-constexpr std::array<Other, 2> kOthers = {{{"needle table", kOverflowNeedleTable, &FrameCapacity::needle_table},
-                                           {"bins of the tool's shadow", kOverflowBins, &FrameCapacity::bin_entries}}};
-
-constexpr std::array<const char*, 18> kListNames = {
-    "bricks of near triangles", "", "voxels to touch", "touched voxels", "samples found inside", "lists of touched voxels",
+constexpr std::array<const char*, 20> kListNames = {
+    "", "", "voxels to touch", "touched voxels", "samples found inside", "lists of touched voxels",
     "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
-    "samples near the tool's surface", "samples", "tool triangles of areas", "pierced areas", "",
-    "tiles of tool samples", "needle vertices"};
-static_assert(kListMobileTiles == 16 && kListNeedleVertices == 17);
+    "samples near the tool's surface", "samples", "tool triangles of areas", "", "",
+    "tiles of tool samples", "extra samples", "samples of the tool", "ignored patches"};
+static_assert(kListFieldTiles == 16 && kListIgnored == 19);
 
 std::uint32_t items(std::uint64_t wanted, std::uint64_t most) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, most));
@@ -52,7 +42,6 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand, const std::map<std
   const std::uint64_t samples = !refined ? 1 : demand.samples ? *demand.samples + mockup : kMostItems;
   FrameCapacity out;
   auto& l = out.lists;
-  l[kListNearTriangles] = room(per_triangle / 4, tool * (1 + scene.mockup.grid.mixed_bricks + (scene.mockup.has_internal != 0 ? kMostItems : 0)));
   l[kListTouchCandidates] = room(per_triangle, tool * all_voxels);
   l[kListTouchedVoxels] = room(per_triangle, voxels);
   l[kListStaticChunks] = room(per_triangle, voxels + entries / kStaticChunk);
@@ -63,17 +52,14 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand, const std::map<std
   l[kListSampleChunks] = demand.samples || !refined ? 1 : room(per_triangle, voxels + entries / kSampleChunk);
   l[kListInsideSamples] = l[kListOpenSamples] = l[kListSamples] = room(0, samples);
   l[kListMembers] = room(2, tool * kMaxFrameAreas);
-  l[kListPierces] = kMaxFrameAreas * kMaxFrameAreas;
-  l[kListMobileTiles] = refined ? room(2, ~0u) : 1;
-  l[kListNeedleVertices] = refined ? 1u << 15 : 1;
-  out.bin_entries = items(refined && scene.tool.closed == 0 ? std::max(kHostDecides, kBinEntries * tool) : 1, ~0u);
-  // Half full at most, so that probing stays short.
-  out.needle_table = doubled(l[kListNeedleVertices]);
+  l[kListFieldTiles] = refined ? room(2, ~0u) : 1;
+  l[kListMockupPoints] = room(0, scene.mockup_extras);
+  l[kListToolPoints] = refined ? room(0, ~0u) : 1;
+  l[kListIgnored] = room(0, refined ? mockup : 1);
   const auto put = [&](const char* name, std::uint32_t& capacity) {
     if (const auto asked = wanted.find(name); asked != wanted.end()) capacity = std::max(1u, asked->second);
   };
-  for (std::uint32_t list = 0; list < kListNames.size(); ++list) put(kListNames[list], l[list]);
-  for (const Other& other : kOthers) put(other.name, out.*other.capacity);
+  for (std::uint32_t list = 0; list < kListNames.size(); ++list) if (*kListNames[list] != 0) put(kListNames[list], l[list]);
   return out;
 }
 
@@ -84,20 +70,12 @@ bool FrameCapacity::grow(const FrameState& state, const std::array<std::uint32_t
     lists[list] = std::max(doubled(lists[list]), asked[list]);
     grown = true;
   }
-  for (const Other& other : kOthers) {
-    if ((state.overflow_other & other.overflow) == 0) continue;
-    this->*other.capacity = doubled(this->*other.capacity);
-    grown = true;
-  }
-  needle_table = std::max(needle_table, doubled(lists[kListNeedleVertices]));
   return grown;
 }
 
 const char* overflow_name(const FrameState& state) {
   const auto first = static_cast<std::uint32_t>(std::countr_zero(state.overflow));   // 32 when none
   if (const char* name = list_name(first)) return name;
-  for (const Other& other : kOthers)
-    if ((state.overflow_other & other.overflow) != 0) return other.name;
   if ((state.overflow_other & kOverflowAreas) != 0) return "areas";
   if ((state.overflow_other & kOverflowLoop) != 0) return "steps of one invocation";
   return state.overflow == 0 && state.overflow_other == 0 ? "" : "an unnamed list";

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "shaders/shared/frame.h"
-#include "shaders/shared/frame_response.h"
+#include "shaders/shared/frame_field.h"
 #include "shaders/shared/scene.h"
 
 namespace palpate {
@@ -22,10 +22,8 @@ struct FrameDemand {
 /// grows when asked.
 struct FrameCapacity {
   std::array<std::uint32_t, gpu::kListCount> lists{};   ///< by kList…; at least 1 for each list that the profile has
-  std::uint32_t needle_table = 1;                       ///< entries of a hash table; rounded up to a power of two
-  std::uint32_t bin_entries = 1;                        ///< places in all bins of the tool's shadow together
 
-  /// What a frame begins with. `wanted` overrides lists and tables by their names (overflow_name), for tests.
+  /// What a frame begins with. `wanted` overrides lists by their names (overflow_name), for tests.
   static FrameCapacity first(const FrameDemand& demand, const std::map<std::string, std::uint32_t>& wanted);
 
   /// Makes room for what a frame ran out of: at least double, and all that was `asked` for. False: what it ran out of is no

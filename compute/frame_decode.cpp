@@ -17,8 +17,8 @@ constexpr std::size_t kMostSpareZones = 4096;   // whose memory is kept (chosen)
 
 /// Whether all that overflowed, if anything, comes after the sets: lists of areas, tables of the response.
 bool sets_are_whole(const FrameState& state) {
-  constexpr std::uint32_t kAfterSets = 1u << kListMembers | 1u << kListPierces | ~0u << kListResponseFirst;
-  return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & (kOverflowBins | kOverflowLoop)) == 0;
+  constexpr std::uint32_t kAfterSets = 1u << kListMembers | ~0u << kListResponseFirst;
+  return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & kOverflowLoop) == 0;
 }
 
 void append_ids(std::vector<std::uint32_t>& to, std::span<const StaticResult> statics) {
@@ -33,7 +33,7 @@ void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
   area.direction = from.direction;
   area.rays = from.rays;
   area.max_height = from.max_height;
-  area.height_sum = from.faded_sum;   // with whole weights it is Σ H, whatever the plan
+  area.height_sum = from.height_sum;
   for (std::size_t k = 0; k < 3; ++k) area.voxel_sum[k] = points ? from.voxel_sum[k] : 0;
   area.voxel_count = points ? from.voxel_count : 0;
 }
@@ -102,7 +102,7 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
     if (first.area >= count) continue;
     const std::span run = statics_.subspan(begin, end - begin);
     ContactArea& area = out.areas[position[first.area]];
-    append_ids(area.static_ids, run);   // the next frame holds on to an area by them
+    append_ids(area.static_ids, run);
     if (!out.lists) continue;
     std::uint32_t& zone = zone_of_[first.zone];
     if (zone == kNone) {
@@ -149,9 +149,7 @@ void FrameDecoder::decode(const FrameOutput& output, Contacts& out) {
   out.pairs = result.pair_count;
   decode_sets(output, out);
   if (!out.contact || out.truncated) return;
-  if (!output.areas) return;
-  out.flags = result.flags;
-  decode_areas(output, out);
+  if (output.areas) decode_areas(output, out);
 }
 
 }  // namespace palpate

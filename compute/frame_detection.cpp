@@ -8,13 +8,8 @@
 #include "shaders/code.h"
 
 namespace palpate {
-namespace {
 
 using namespace gpu;   // names of shaders/shared/frame.h
-
-constexpr std::uint32_t kMostBinsBits = 9;
-
-}  // namespace
 
 std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
@@ -24,9 +19,6 @@ std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geomet
   out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
   out->listed_ = scene.samples && scene.samples->listed();
-  out->walks_ = scene.rays_walk();
-  // About a bin a triangle.
-  while (out->bins_bits_ < kMostBinsBits && (1u << 2 * out->bins_bits_) < scene.constants.tool.triangles) ++out->bins_bits_;
   return out;
 }
 
@@ -44,7 +36,6 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
     BufferKind kind = BufferKind::kDevice;
   };
   const List lists[] = {
-      {kListNearTriangles, kBindNearTriangles, sizeof(NearTriangle), BufferKind::kUpload},
       {kListTouchCandidates, kBindTouchCandidates, sizeof(TouchCandidate), BufferKind::kUpload},
       {kListTouchedVoxels, kBindTouchedVoxels, sizeof(FrameVoxel)},
       {kListStaticChunks, kBindStaticChunks, sizeof(StaticChunk)},
@@ -55,9 +46,8 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk), BufferKind::kUpload},
       {kListInsideSamples, kBindInsideSamples, sizeof(FrameSample), BufferKind::kUpload},
       {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample), BufferKind::kUpload},
-      {kListSamples, kBindSamples, sizeof(FrameSample), BufferKind::kReadback},
+      {kListSamples, kBindSamples, sizeof(FrameSample)},
       {kListMembers, kBindResultMembers, sizeof(AreaMember), BufferKind::kReadback},
-      {kListPierces, kBindResultPierces, sizeof(AreaPierce), BufferKind::kReadback},
   };
   for (const List& l : lists)
     if (auto r = buffers.make(device, l.binding, list_name(l.list), capacity.lists[l.list] * std::uint64_t{l.item_bytes}, l.kind); !r) return r;
@@ -78,15 +68,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
       {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * clusters * (kClusterSize / kRunSize)},
       {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
-      {kBindToolBins, "bins of the tool's shadow", sizeof(ToolBin) << (inside_ && !closed_ ? 2 * bins_bits_ : 0)},
-      {kBindBinEntries, "entries of bins", 4 * std::uint64_t{capacity.bin_entries}},
-      {kBindWideTriangles, "wide triangles", 4 * std::uint64_t{inside_ && !closed_ ? tool.triangles : 1}},
-      {kBindBinState, "state of bins", sizeof(BinState)},
-      {kBindRayLists, "lists of rays", walks_ ? sizeof(RayList) * std::uint64_t{capacity.lists[kListSamples]} : 4, BufferKind::kUpload},
-      {kBindRayPlaces, "tool triangles of rays", walks_ ? 4 * std::uint64_t{kRayPlaces} : 4, BufferKind::kUpload},
       {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
-      {kBindHeldStatics, "held triangles", sizeof(HeldStatic) * statics, BufferKind::kUpload},
-      {kBindHeldAreas, "held areas", sizeof(HeldDirection) * kMaxFrameAreas, BufferKind::kUpload},
       {kBindResult, "frame result", sizeof(FrameResult), BufferKind::kReadback},
       {kBindResultStatics, "results of the mock-up's triangles", sizeof(StaticResult) * statics, BufferKind::kReadback},
       {kBindResultMobiles, "results of the tool's triangles", sizeof(MobileResult) * std::uint64_t{capacity.lists[kListContactMobiles]}, BufferKind::kReadback},
@@ -123,8 +105,7 @@ Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeM
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const std::vector<SpecConstant> plan = plan_constants(plan_);
-  const SpecConstant no_inside[] = {{0, inside_ ? 0u : 1u}};
-  const SpecConstant counting[] = {{0, 1}, {1, bins_bits_}}, filling[] = {{0, 0}, {1, bins_bits_}}, begin[] = {{0, bins_bits_}};
+  const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;
@@ -134,21 +115,14 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   };
   const Made all[] = {
       {&list_close_, &spirv::list_close, true, 4},
-      {&frame_begin_, &spirv::frame_begin, true, 0, begin},
-      {&tool_clusters_place_, &spirv::tool_clusters, !walks_},
+      {&frame_begin_, &spirv::frame_begin},
+      {&tool_clusters_place_, &spirv::tool_clusters, !refined_},
       {&voxel_touch_, &spirv::voxel_touch},
       {&static_list_, &spirv::static_list},
       {&pair_test_, &spirv::pair_test},
       {&sample_take_, &spirv::sample_take, inside_ && listed_},
-      {&sample_walk_, &spirv::sample_walk, inside_ && closed_},
-      {&sample_touched_, &spirv::sample_touched, refined_ && !inside_},
-      {&sample_scan_, &spirv::sample_scan, refined_ && !(inside_ && listed_), 0, no_inside},
-      {&bins_begin_, &spirv::bins_begin, inside_ && !closed_},
-      {&bins_clear_, &spirv::bins_clear, inside_ && !closed_},
-      {&bins_count_, &spirv::bins_fill, inside_ && !closed_, 0, counting},
-      {&bins_place_, &spirv::bins_place, inside_ && !closed_},
-      {&bins_fill_, &spirv::bins_fill, inside_ && !closed_, 0, filling},
-      {&sample_winding_, &spirv::sample_winding, inside_ && !closed_, 0, filling},
+      {&sample_walk_, &spirv::sample_walk, inside_, 0, of_tool},
+      {&sample_scan_, &spirv::sample_scan, inside_ && !listed_},
       {&set_statics_, &spirv::set_statics},
       {&set_mobiles_, &spirv::set_mobiles},
       {&set_decide_, &spirv::set_decide},
@@ -170,7 +144,7 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.stage("transform");
   recorder.run(frame_begin_, 1);
   recorder.barrier();
-  if (!walks_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
+  if (!refined_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
 
   // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the tool's partition knows.
   recorder.stage(plan_.imt ? "imt" : "bmt");   // one dispatch decides both
@@ -181,14 +155,16 @@ void FrameDetection::record(FrameRecorder& recorder) const {
     recorder.stage("est");
     if (listed_) recorder.run_items(sample_take_, kListInsideSamples);
     else recorder.run_items(sample_scan_, kListSampleChunks);
-    if (!closed_) recorder.run_dispatch(bins_clear_, kDispatchBins);
   }
 
   // What is listed in touched voxels; samples that the tool's partition leaves open.
   recorder.stage("bst");
   recorder.close({kListTouchedVoxels, kListStaticChunks, kListOpenSamples});
   recorder.run_items(static_list_, kListStaticChunks);
-  if (refined_) record_samples(recorder);
+  if (inside_) {
+    recorder.stage("open");
+    recorder.run_items(sample_walk_, kListOpenSamples);
+  }
 
   recorder.stage("sets");
   recorder.close({kListPairs, kListContactStatics, kListContactMobiles, kListSamples});
@@ -198,29 +174,6 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.run(set_decide_, 1);
   recorder.barrier();
   recorder.run_dispatch(frame_reset_, kDispatchResetFree);
-}
-
-void FrameDetection::record_samples(FrameRecorder& recorder) const {
-  recorder.stage("open");
-  if (!inside_) {
-    recorder.run_items(sample_touched_, kListTouchedVoxels);
-    recorder.close({kListSampleChunks});
-    recorder.run_items(sample_scan_, kListSampleChunks);
-    return;
-  }
-  if (closed_) {
-    recorder.run_items(sample_walk_, kListOpenSamples);
-    return;
-  }
-  recorder.run(bins_begin_, 1);
-  recorder.barrier();
-  recorder.run_dispatch(bins_count_, kDispatchBinTriangles);
-  recorder.barrier();
-  recorder.run_dispatch(bins_place_, kDispatchBins);
-  recorder.barrier();
-  recorder.run_dispatch(bins_fill_, kDispatchBinTriangles);
-  recorder.barrier();
-  recorder.run_items(sample_winding_, kListOpenSamples);
 }
 
 void FrameDetection::record_end(FrameRecorder& recorder) const {

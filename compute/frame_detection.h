@@ -13,9 +13,6 @@
 
 namespace palpate {
 
-/// Tool triangles that the lists of a frame's rays may name; beyond it the device walks for them (chosen: a ray has 1 to 4).
-inline constexpr std::uint32_t kRayPlaces = 1u << 18;
-
 /// The first half of a frame: from the pose to the contact sets, pairs and counting samples (docs/EXACTNESS.md sections 3, 4),
 /// and the frame's last step, which empties what it filled. Makes its own buffers and pipelines.
 class FrameDetection {
@@ -33,8 +30,6 @@ class FrameDetection {
   void record(FrameRecorder& recorder) const;
   /// After the response: counts to the host, tables back to 0.
   void record_end(FrameRecorder& recorder) const;
-  /// Bins of the tool's shadow along each axis (FrameInput::bin_shift).
-  std::int32_t bins() const { return 1 << bins_bits_; }
   /// Ids of the tool's triangles in the order of clusters and runs.
   const std::vector<std::uint32_t>& order() const { return order_; }
   const FrameShader& list_close() const { return list_close_; }
@@ -43,19 +38,15 @@ class FrameDetection {
   FrameDetection() = default;
   Result<void> upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const;
   Result<void> upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const;
-  void record_samples(FrameRecorder& recorder) const;
 
   Plan plan_;
   bool refined_ = false;
   bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
-  bool closed_ = false;   ///< the tool's surface: open samples walk out of it
+  bool closed_ = false;   ///< the tool's surface, in `refined`: open samples ask for the winding
   bool listed_ = false;   ///< samples were listed by preparation
-  bool walks_ = false;    ///< rays walk through the tool's fine partition
-  std::uint32_t bins_bits_ = 0;   ///< 2^bins_bits bins along y and along z
   std::vector<std::uint32_t> order_;
-  FrameShader list_close_, frame_begin_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_touched_, sample_scan_, sample_take_,
-      sample_walk_, sample_winding_, bins_begin_, bins_clear_,
-      bins_count_, bins_place_, bins_fill_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
+  FrameShader list_close_, frame_begin_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_,
+      sample_walk_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
 };
 
 }  // namespace palpate

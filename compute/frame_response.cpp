@@ -21,20 +21,12 @@ struct BufferPlan {
 
 Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t tool_triangles, const FrameCapacity& capacity, FrameBuffers& buffers) const {
   const std::uint64_t statics = capacity.lists[kListContactStatics];
-  constexpr std::uint64_t kUnused = sizeof(std::uint32_t);   // what shaders bind and `paper` leaves out: the smallest buffer there is
   for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
            {kBindResponseState, "response state", sizeof(ResponseState)},
            {kBindAreas, "contact areas", kMaxFrameAreas * sizeof(AreaWork)},
-           {kBindSlots, "slots of contact triangles", statics * sizeof(SlotWork)},
+           {kBindSlotAreas, "areas of contact triangles", statics * sizeof(std::uint32_t)},
            {kBindParents, "union-find of contact triangles", statics * (plan_.zones ? 2 : 1) * sizeof(std::uint32_t)},
-           {kBindMobileWork, "tool triangles of areas", tool_triangles * std::uint64_t{sizeof(MobileWork)}},
-           {kBindHeights, "heights", statics * sizeof(std::uint32_t)},
-           {kBindFades, "fades of heights", kUnused},
-           {kBindHeldOverlap, "overlaps with held areas", kUnused},
-           {kBindMobileTiles, "tiles of tool samples", sizeof(MobileTile)},
-           {kBindSlotBoxes, "boxes of contact triangles", sizeof(LatticeBox)},
-           {kBindNeedleTable, "table of needle vertices", kUnused},
-           {kBindNeedleVertices, "needle vertices", sizeof(NeedleVertex)},
+           {kBindMobileAreas, "areas of tool triangles", tool_triangles * std::uint64_t{sizeof(std::uint32_t)}},
        })
     if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, BufferKind::kDevice); !made) return made.error();
   return {};
@@ -43,8 +35,7 @@ Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t too
 Result<FrameResponse> FrameResponse::create(VulkanDevice& device, const Plan& plan) {
   FrameResponse out;
   out.plan_ = plan;
-  std::vector<SpecConstant> constants = plan_constants(plan);
-  constants.push_back({0, 0u});   // not `refined`
+  const std::vector<SpecConstant> constants = plan_constants(plan);
   struct ShaderPlan {
     FrameShader& shader;
     const ShaderCode& code;
@@ -61,7 +52,6 @@ Result<FrameResponse> FrameResponse::create(VulkanDevice& device, const Plan& pl
            {out.mobile_normals_, spirv::mobile_normals},
            {out.areas_direct_, spirv::areas_direct},
            {out.centroids_trace_, spirv::centroids_trace},
-           {out.heights_sum_, spirv::heights_sum},
            {out.points_sum_, spirv::points_sum, plan.contact_point},
            {out.areas_result_, spirv::areas_result},
        }) {
@@ -101,8 +91,6 @@ void FrameResponse::record(FrameRecorder& recorder) const {
   recorder.barrier();
   recorder.stage("rays");
   recorder.run_dispatch(centroids_trace_, kDispatchContactStatics);
-  recorder.barrier();
-  recorder.run_dispatch(heights_sum_, kDispatchHeightRuns);
   recorder.barrier();
   recorder.run_dispatch(areas_result_, kDispatchContactOne);
 }

@@ -17,7 +17,7 @@ class FrameResponse {
   /// Makes the pipelines of what `plan` keeps.
   static Result<FrameResponse> create(VulkanDevice& device, const Plan& plan);
 
-  /// Makes the buffers 72 and above in `buffers`; those that are large enough already stay. Before the first record(), and again when the
+  /// Makes its buffers in `buffers`; those that are large enough already stay. Before the first record(), and again when the
   /// capacity has grown. Error: one buffer is beyond a limit, or out of memory.
   Result<void> make_buffers(VulkanDevice& device, std::uint32_t tool_triangles, const FrameCapacity& capacity, FrameBuffers& buffers) const;
 
@@ -29,7 +29,7 @@ class FrameResponse {
   void record_areas(FrameRecorder& recorder) const;
 
   Plan plan_;
-  FrameShader begin_, areas_begin_, areas_join_, areas_number_, areas_gather_, areas_associate_, areas_first_, mobile_normals_, areas_direct_, centroids_trace_, heights_sum_,
+  FrameShader begin_, areas_begin_, areas_join_, areas_number_, areas_gather_, areas_associate_, areas_first_, mobile_normals_, areas_direct_, centroids_trace_,
       points_sum_, areas_result_;
 };
 

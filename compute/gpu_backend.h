@@ -19,11 +19,10 @@ struct GpuFault {
   std::atomic<std::int64_t> after{0};     ///< so many of these calls succeed; then all fail
 };
 
-/// How much of a small contact the host works out; what it leaves, and all that is large or rare, the device does. No choice changes a bit.
+/// How much of a contact the host works out; what it leaves the device does. No choice changes a bit.
 enum class HostShare : std::uint8_t {
   kNear,       ///< lists of what is near
-  kAreas,      ///< then, once the device has found the sets, areas and directions
-  kContacts,   ///< all of it; in preparation samples and candidates of seams, too
+  kContacts,   ///< all of it in `refined`; in preparation the mock-up's samples, too
 };
 
 struct GpuOptions {
@@ -34,7 +33,7 @@ struct GpuOptions {
   std::shared_ptr<DiskCache> cache{};   ///< where prepared scenes are kept; may be null
   std::map<std::string, std::uint32_t> first_capacity{};   ///< for tests: items that a list of a frame holds to begin with, by its name in
                                                            ///< Contacts::truncated_capacity; lists not named here choose for themselves
-  std::optional<HostShare> host_share{};   ///< for tests; empty: kContacts where the device is the host's own processor (lavapipe), else kAreas
+  std::optional<HostShare> host_share{};   ///< for tests; empty: kContacts where the device is the host's own processor (lavapipe), else kNear
   bool own_memory = false;             ///< for tests: the host's own processor, or an integrated GPU, is taken for a GPU with memory of its own
   std::shared_ptr<GpuFault> fault{};   ///< for tests
 };

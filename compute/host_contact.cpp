@@ -1,7 +1,5 @@
 #include "compute/host_contact.h"
 
-#include <algorithm>
-
 namespace palpate {
 
 using namespace gpu;   // names of shaders/shared/frame.h
@@ -40,15 +38,6 @@ void HostContact::decide(PosedTool& tool, const NearLists& near, Contacts& out) 
   }
   for (const MobileResult& m : found_.mobiles)
     ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
-}
-
-void HostContact::sum_field(PosedTool& tool, const Ignored* ignored, std::span<const StaticResult> statics, std::span<const MobileResult> mobiles,
-                            std::span<const FrameSample> samples, Contacts& out) {
-  found_.statics.assign(statics.begin(), statics.end());
-  std::sort(found_.statics.begin(), found_.statics.end(), [](const StaticResult& a, const StaticResult& b) { return a.id < b.id; });
-  found_.mobiles.assign(mobiles.begin(), mobiles.end());
-  found_.samples.assign(samples.begin(), samples.end());
-  field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, out);
 }
 
 }  // namespace palpate

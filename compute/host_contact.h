@@ -30,9 +30,6 @@ class HostContact {
     field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, out);
     stage("field");
   }
-  /// The field alone, where the device has decided the sets: C_s in any order.
-  void sum_field(PosedTool& tool, const Ignored* ignored, std::span<const gpu::StaticResult> statics, std::span<const gpu::MobileResult> mobiles,
-                 std::span<const gpu::FrameSample> samples, Contacts& out);
   /// After solve().
   std::span<const gpu::ContactPair> pairs() const { return found_.pairs; }
 

@@ -21,7 +21,6 @@ struct HostList {
 
 /// What the host finds near at a pose: all that the device then decides exactly. Errs only towards "may meet".
 struct NearLists {
-  HostList<gpu::NearTriangle> triangles;
   HostList<gpu::TouchCandidate> touch;
   HostList<gpu::PairCandidate> pairs;
   HostList<gpu::SampleChunk> samples;           ///< where samples are not listed

@@ -21,7 +21,6 @@ void archive_numbers(Archive& a, Scene& scene) {
     a(partition.longest_list);
     a(partition.has_internal);
   });
-  for (auto* body : {&scene.mockup, &scene.tool}) a(body->seam_entries);
 }
 
 template <class Archive, class Samples>

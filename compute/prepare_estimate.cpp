@@ -17,7 +17,7 @@ Sizes sizes(const LatticeMesh& mesh, const SurfaceMeasure& m, const VoxelGrid& g
   const auto triangles = static_cast<double>(mesh.triangles.size());
   const double v = grid.size;
   Sizes out;
-  // Vertices, corners, flags, normals, weights, begins of neighbours and of seams; neighbours.
+  // Vertices, corners, flags, normals, weights, patches, begins of neighbours; neighbours.
   out.body = 12.0 * static_cast<double>(mesh.vertices.size()) + 40 * triangles + 4.0 * static_cast<double>(mesh.neighbours.size());
   out.boundary = 1.5 * m.area / (v * v);
   out.entries = kMoreEntries * (out.boundary + m.longest_edges / v + triangles);

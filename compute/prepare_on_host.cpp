@@ -14,8 +14,6 @@ namespace palpate {
 namespace {
 
 constexpr std::uint32_t kEntriesAShare = 1u << 14;   // of the voxels' lists (chosen: milliseconds)
-constexpr std::uint32_t kSharesARun = 64;            // of seams (chosen)
-constexpr std::size_t kMostPairsAShare = (std::size_t{128} << 20) / 8 / kSharesARun;
 
 std::int64_t floor_div(std::int64_t a, std::int64_t b) {   // b > 0
   const std::int64_t q = a / b;
@@ -217,127 +215,6 @@ HostPreparation::Outcome HostPreparation::list_points(std::int32_t spacing, cons
       for (std::uint32_t i = from.first(e); i < from.first(e + 1); ++i) put(out.sample(grid, from.axis(e), i), e - begin, from.axis(e));
   });
   return written ? Outcome::kDone : Outcome::kCancelled;
-}
-
-// ---- seams ---------------------------------------------------------------------------------------------------------------
-
-namespace {
-
-/// A triangle in a voxel.
-struct Listed {
-  std::uint32_t id;
-  std::array<std::uint32_t, 3> vertex;
-  std::array<Int3, 3> corner;
-  Int3 low, high;
-};
-
-/// Tenth of the voxel that holds a point, 0 … 9; what lies beyond counts as at its side.
-std::uint32_t tenth(std::int64_t at, std::int64_t size) { return static_cast<std::uint32_t>(std::clamp<std::int64_t>(10 * at / size, 0, 9)); }
-
-/// A plane through the common corner c that has the rest of s on one side, touching allowed, and the rest of t strictly on the other: then they
-/// meet nowhere else. m is within 2^30 + 4 a component, differences within 2^29: sums within 2^61.
-bool apart(const Int3& c, const Int3& s1, const Int3& s2, const Int3& t1, const Int3& t2, const std::int64_t (&m)[3]) {
-  const auto side = [&](const Int3& p) { return m[0] * (p.x - c.x) + m[1] * (p.y - c.y) + m[2] * (p.z - c.z); };
-  return side(s1) >= 0 && side(s2) >= 0 && side(t1) < 0 && side(t2) < 0;
-}
-
-/// Whether two triangles with one common corner (place i in s, j in t) are easily seen to meet nowhere else.
-bool meet_in_a_corner_alone(const Listed& s, const Listed& t, std::size_t i, std::size_t j) {
-  const Int3 &c = s.corner[i], &s1 = s.corner[(i + 1) % 3], &s2 = s.corner[(i + 2) % 3], &t1 = t.corner[(j + 1) % 3], &t2 = t.corner[(j + 2) % 3];
-  std::int64_t m[3];
-  for (int k = 0; k < 3; ++k) m[k] = std::int64_t{s1[k]} + s2[k] - t1[k] - t2[k];
-  if (apart(c, s1, s2, t1, t2, m)) return true;
-  // Sides of very different lengths: their directions instead. Floats propose, integers decide.
-  const auto direction = [&](const Int3& p) {
-    const double x = p.x - c.x, y = p.y - c.y, z = p.z - c.z, scale = 1 / std::sqrt(x * x + y * y + z * z);
-    return std::array<double, 3>{x * scale, y * scale, z * scale};
-  };
-  const auto d1 = direction(s1), d2 = direction(s2), e1 = direction(t1), e2 = direction(t2);
-  for (std::size_t k = 0; k < 3; ++k) m[k] = static_cast<std::int64_t>((d1[k] + d2[k] - e1[k] - e2[k]) * 0x1p26);
-  return apart(c, s1, s2, t1, t2, m);
-}
-
-/// Whether they may touch beyond an edge or a corner that they have in common.
-bool may_touch(const Listed& s, const Listed& t) {
-  for (int k = 0; k < 3; ++k)
-    if (s.low[k] > t.high[k] || t.low[k] > s.high[k]) return false;
-  std::size_t common = 0, at_s = 0, at_t = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      if (s.vertex[i] == t.vertex[j]) ++common, at_s = i, at_t = j;
-  return common == 0 || (common == 1 && !meet_in_a_corner_alone(s, t, at_s, at_t));
-}
-
-}  // namespace
-
-struct HostPreparation::Search {
-  std::vector<Listed> listed;
-  std::vector<std::uint32_t> masks;     // of each: tenths of the voxel that its box takes, as in shaders/seam_box.comp
-  std::vector<Int3> normals;            // of each, Q30
-  std::vector<std::uint64_t> found;     // the larger id above the smaller: in memory a Pair
-};
-
-void HostPreparation::seams_of(std::uint32_t boundary, std::int64_t least_cosine, Search& search) const {
-  const Int3 voxel = low_of(boundary);
-  search.listed.clear();
-  search.masks.clear();
-  search.normals.clear();
-  for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end; ++e) {
-    const std::uint32_t id = list_triangles_[e];
-    Listed t{id, mesh_->triangles[id], {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)}, {}, {}};
-    t.low = glm::min(glm::min(t.corner[0], t.corner[1]), t.corner[2]);
-    t.high = glm::max(glm::max(t.corner[0], t.corner[1]), t.corner[2]);
-    std::uint32_t mask = 0;
-    for (int k = 0; k < 3; ++k)
-      mask |= ((2u << tenth(std::int64_t{t.high[k]} - voxel[k], grid_.size)) - (1u << tenth(std::int64_t{t.low[k]} - voxel[k], grid_.size))) << (10 * k);
-    search.listed.push_back(t);
-    search.masks.push_back(mask);
-    search.normals.push_back(mesh_->unit_normal_q30[id]);
-  }
-  const std::size_t count = search.listed.size();
-  for (std::size_t i = 0; i < count && search.found.size() <= kMostPairsAShare; ++i) {
-    const std::uint32_t mask = search.masks[i];
-    const Int3 n = search.normals[i];
-    for (std::size_t j = i + 1; j < count; ++j) {
-      const std::uint32_t both = mask & search.masks[j];
-      if ((both & 0x3FFu) == 0 || (both & 0xFFC00u) == 0 || (both & 0x3FF00000u) == 0) continue;
-      const Int3& m = search.normals[j];
-      if (std::int64_t{n.x} * m.x + std::int64_t{n.y} * m.y + std::int64_t{n.z} * m.z < least_cosine) continue;
-      const Listed &s = search.listed[i], &t = search.listed[j];
-      if (may_touch(s, t)) search.found.push_back(std::uint64_t{t.id} << 32 | s.id);
-    }
-  }
-}
-
-HostPreparation::Outcome HostPreparation::find_seams(std::int64_t least_cosine, const std::function<bool(std::span<const Pair>, double)>& take) const {
-  static_assert(std::endian::native == std::endian::little);
-  const std::vector<std::uint32_t> shares = shares_of(kEntriesAShare);
-  const auto count = static_cast<std::uint32_t>(shares.size() - 1);
-  std::vector<std::vector<Pair>> found(kSharesARun);
-  std::atomic<bool> too_many{false};
-  const auto search = [&](std::uint32_t share, std::vector<Pair>& out) {
-    Search mine;
-    for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) {
-      seams_of(voxel, least_cosine, mine);
-      if (mine.found.size() > kMostPairsAShare) too_many = true;
-      if (too_many) return;
-    }
-    // Most are found in several voxels, and those lie near each other.
-    std::sort(mine.found.begin(), mine.found.end());
-    mine.found.erase(std::unique(mine.found.begin(), mine.found.end()), mine.found.end());
-    out.resize(mine.found.size());
-    if (!out.empty()) std::memcpy(out.data(), mine.found.data(), out.size() * sizeof(Pair));   // of nothing: not from nowhere, either
-  };
-  std::vector<Pair> all;
-  for (std::uint32_t first = 0; first < count; first += kSharesARun) {
-    const std::uint32_t run = std::min(kSharesARun, count - first);
-    in_shares(run, [&](std::uint32_t i) { search(first + i, found[i]); }, [](std::uint32_t) { return true; });
-    if (too_many) return Outcome::kTooMany;
-    all.clear();
-    for (std::uint32_t i = 0; i < run; ++i) all.insert(all.end(), found[i].begin(), found[i].end());
-    if (!take(all, static_cast<double>(first + run) / count)) return Outcome::kCancelled;
-  }
-  return Outcome::kDone;
 }
 
 }  // namespace palpate

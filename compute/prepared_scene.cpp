@@ -8,15 +8,24 @@
 
 #include "compute/prepare_partition.h"
 #include "compute/prepare_samples.h"
-#include "compute/prepare_seams.h"
 #include "compute/prepare_steps.h"
 #include "compute/search_tables.h"
+#include "model/field.h"
+#include "shaders/shared/frame_field.h"
 
 namespace palpate {
 namespace {
 
-/// Puts a mesh on the device as it is; `neighbours` only for the mock-up, `samples` only in refined.
-BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool neighbours, bool samples) {
+/// A mesh's extra samples as shaders read them.
+std::vector<gpu::ExtraSample> extras_of(const LatticeMesh& mesh) {
+  std::vector<gpu::ExtraSample> out;
+  out.reserve(mesh.extra_samples.size());
+  for (const ExtraSample& extra : mesh.extra_samples) out.push_back({extra.triangle, extra.point, extra.weight_q30});
+  return out;
+}
+
+/// Puts a mesh on the device as it is.
+BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool mockup, bool refined) {
   static const std::vector<std::uint32_t> none{0};
   BodyBuffers out;
   out.vertices = steps.filled("vertices", mesh.vertices);
@@ -24,11 +33,15 @@ BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool neigh
   std::vector<std::uint32_t> info(mesh.triangles.size());
   for (std::size_t i = 0; i < info.size(); ++i)
     info[i] = mesh.flags[i] | static_cast<std::uint32_t>(mesh.sample_axis[i]) << gpu::kInfoAxisShift;
+  if (refined)
+    for (const ExtraSample& extra : mesh.extra_samples) info[extra.triangle] |= gpu::kInfoHasExtra;
   out.triangle_info = steps.filled("flags of triangles", info);
   out.unit_normal = steps.filled("normals", mesh.unit_normal_q30);
-  out.sample_weight = steps.filled("weights of samples", samples ? mesh.sample_weight_q30 : none);
-  out.neighbour_begin = steps.filled("neighbours", neighbours ? mesh.neighbour_begin : none);
-  out.neighbours = steps.filled("neighbours", neighbours ? mesh.neighbours : none);
+  out.field_weight = steps.filled("weights of samples", refined ? mesh.field_weight_q30 : none);
+  out.patch = steps.filled("patches", mockup && refined ? mesh.patch : none);
+  out.extras = steps.filled("extra samples", refined ? extras_of(mesh) : std::vector<gpu::ExtraSample>());
+  out.neighbour_begin = steps.filled("neighbours", mockup ? mesh.neighbour_begin : none);
+  out.neighbours = steps.filled("neighbours", mockup ? mesh.neighbours : none);
   return out;
 }
 
@@ -91,7 +104,6 @@ Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& sce
   out.constants = scene.constants;
   out.samples = scene.samples;
   out.search = scene.search;
-  for (auto body : {&PreparedScene::mockup, &PreparedScene::tool}) (out.*body).seam_entries = (scene.*body).seam_entries;
   std::vector<const PartitionBuffers*> partitions;
   for_each_partition(scene, [&](const PartitionBuffers& p) { partitions.push_back(&p); });
   std::size_t i = 0;
@@ -118,26 +130,15 @@ Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& sce
   return out;
 }
 
-bool PreparedScene::rays_walk() const {
-  constexpr std::int32_t kMostRadius = 1 << 27;
-  return constants.refined != 0 && constants.tool.closed != 0 && constants.tool_radius <= kMostRadius;
-}
-
 Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
                                     const Progress& progress) {
   const bool refined = plan.profile == Profile::kRefined;
   PrepareSteps steps(device, progress);
   PreparedScene out;
-  // An area and a tool vertex share a word in the table of needle vertices (shaders/response/needle_pairs.comp).
-  constexpr std::size_t kMostToolVertices = (1u << 24) - 1;
-  if (const std::size_t n = geometry.tool.vertices.size(); n > kMostToolVertices)
-    return bad_value("the tool has " + std::to_string(n) + " vertices, at most " + std::to_string(kMostToolVertices) + " are possible on a device");
   upload_bodies(steps, geometry, plan, out);
 
   const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
-  steps.progress("seams", 0.9);
-  find_seams(steps, geometry, refined, pairs, out.mockup);
   make_search_tables(steps, geometry, out);
   if (refined) {
     const VoxelPairs tool_pairs =
@@ -149,13 +150,15 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   } else {
     make_empty(steps, out.tool.partition);
   }
-  out.tool.seam_begin = steps.buffer("unused", 1);
-  out.tool.seams = steps.buffer("unused", 1);
 
   out.constants.mockup = constants_of(geometry.mockup, out.mockup);
   out.constants.tool = constants_of(geometry.tool, out.tool);
-  out.constants.tool_gc = geometry.tool_gc;
   out.constants.tool_radius = geometry.tool_radius;
+  out.constants.lever_shift = lever_shift(geometry.tool_radius);
+  if (refined) {
+    out.constants.mockup_extras = static_cast<std::uint32_t>(geometry.mockup.extra_samples.size());
+    out.constants.tool_extras = static_cast<std::uint32_t>(geometry.tool.extra_samples.size());
+  }
   out.constants.sample_spacing = geometry.sample_spacing;
   out.constants.refined = refined ? 1 : 0;
   out.constants.fine = out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid;

@@ -34,12 +34,11 @@ struct BodyBuffers {
   VulkanBuffer triangles;         ///< uvec3, vertex indices
   VulkanBuffer triangle_info;     ///< uint32: flags and sample axis (kInfo… in shaders/shared/scene.h)
   VulkanBuffer unit_normal;       ///< ivec3, Q30
-  VulkanBuffer sample_weight;     ///< uint32, Q30
+  VulkanBuffer field_weight;      ///< uint32, Q30; `refined`
+  VulkanBuffer patch;             ///< uint32; mock-up only, `refined`
+  VulkanBuffer extras;            ///< gpu::ExtraSample, ascending by triangle; `refined`
   VulkanBuffer neighbour_begin;   ///< uint32, CSR over triangles, + 1; mock-up only
   VulkanBuffer neighbours;        ///< uint32: id · 2 + smooth; mock-up only
-  VulkanBuffer seam_begin;        ///< uint32, CSR over triangles, + 1; mock-up in `refined` only, else one entry 0 … 0
-  VulkanBuffer seams;             ///< uint32 ids joined without a shared edge, ascending (always smooth)
-  std::uint32_t seam_entries = 0;
   PartitionBuffers partition;     ///< empty for the tool in `paper`
 };
 
@@ -52,12 +51,10 @@ struct PreparedScene {
   BodyBuffers tool;
   PartitionBuffers fine;          ///< of a closed tool, in finer voxels; may be empty: then the tool's own serves
   VulkanBuffer fine_exit;         ///< uint32, one a boundary voxel of it: kBindFineExit
-  VulkanBuffer tool_near;         ///< bits: kBindToolNear; may be empty: all are near
+  VulkanBuffer tool_near;         ///< a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet the tool's solid; may be empty: all may
   std::shared_ptr<const HostSamples> samples;   ///< may be null or empty: frames work them out
   std::shared_ptr<const SearchTables> search;   ///< never null
   std::uint64_t memory_bytes() const;
-  /// Whether rays walk through the tool's fine partition: it is closed, and the bounds of shaders/lib/tool_walk.glsl hold.
-  bool rays_walk() const;
 };
 
 /// Calls visit(partition) for each partition of a prepared scene, const or not; always in the same order.
@@ -72,8 +69,6 @@ void for_each_partition(Scene& scene, Visit visit) {
 template <class Scene, class Visit>
 void for_each_made_buffer(Scene& scene, Visit visit) {
   visit(scene.scene);
-  for (auto* body : {&scene.mockup, &scene.tool})
-    for (auto* buffer : {&body->seam_begin, &body->seams}) visit(*buffer);
   for_each_partition(scene, [&](auto& p) {
     for (auto* buffer : {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) visit(*buffer);
   });
@@ -85,8 +80,8 @@ template <class Scene, class Visit>
 void for_each_buffer(Scene& scene, Visit visit) {
   for_each_made_buffer(scene, visit);
   for (auto* body : {&scene.mockup, &scene.tool})
-    for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->sample_weight,
-                         &body->neighbour_begin, &body->neighbours})
+    for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->field_weight,
+                         &body->patch, &body->extras, &body->neighbour_begin, &body->neighbours})
       visit(*buffer);
 }
 

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "shaders/shared/frame.h"
+#include "shaders/shared/frame_field.h"
 #include "shaders/shared/frame_response.h"
 
 namespace palpate {
@@ -21,17 +21,17 @@ struct BufferUse {
 const BufferUse kUses[] = {
     {"transform", {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists, kBindFrameState,
                    kBindDispatches, kBindToolRecords, kBindToolCorners, kBindClusterBoxes, kBindRunBoxes}},
-    {"cull", {kBindMockupBrickSlot, kBindMockupBricks, kBindMockupMixedBrick, kBindNearTriangles}},
+    {"cull", {kBindMockupBrickSlot, kBindMockupBricks, kBindMockupMixedBrick}},
     {"pairs", {kBindMockupVertices, kBindMockupTriangles, kBindMockupInfo, kBindMockupListBegin, kBindMockupListTriangles,
                kBindMockupBoundaryPlace, kBindMobileState, kBindTouchCandidates,
                kBindPairCandidates, kBindPairs, kBindStaticState, kBindStaticSlot, kBindContactStatics, kBindContactMobiles,
                kBindResult, kBindResultStatics, kBindResultMobiles}},
     {"bst", {kBindVoxelState, kBindTouchedVoxels, kBindStaticChunks}},
-    {"est", {kBindMockupWeights, kBindToolBrickSlot, kBindToolBricks, kBindFineBrickSlot, kBindFineBricks,
-             kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces, kBindFineExit, kBindToolNear, kBindInsideSamples, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
-    {"areas", {kBindNeighbourBegin, kBindNeighbours, kBindSeamBegin, kBindSeams, kBindMockupNormals, kBindToolNormals, kBindToolWeights,
-               kBindHeldStatics, kBindHeldAreas, kBindResultMembers, kBindResultPierces}},
-    {"rays", {kBindRayLists, kBindRayPlaces, kBindHeights, kBindFades, kBindNeedleTable, kBindNeedleVertices}},
+    {"est", {kBindFineBrickSlot, kBindFineBricks, kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces, kBindFineExit,
+             kBindInsideSamples, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
+    {"rays", {kBindMockupWeights, kBindMockupPatches, kBindMockupExtras, kBindToolWeights, kBindToolExtras, kBindFieldWork, kBindCarrierWork, kBindFieldTiles,
+              kBindMockupPoints, kBindToolPoints, kBindIgnored, kBindIgnoredState, kBindResultIgnored, kBindResultField, kBindResultCarriers}},
+    {"areas", {kBindNeighbourBegin, kBindNeighbours, kBindMockupNormals, kBindToolNormals, kBindResultMembers}},
 };
 
 /// What the response adds and no line above names belongs to the areas.

@@ -296,7 +296,7 @@ Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& opt
   if (!made) return Error{made.error().code, "no usable Vulkan device: " + made.error().sentence};
   device->fault_ = options.fault;
   device->guarded = options.guard_buffers;
-  device->host_share = options.host_share.value_or(device->processor_ ? HostShare::kContacts : HostShare::kAreas);
+  device->host_share = options.host_share.value_or(device->processor_ ? HostShare::kContacts : HostShare::kNear);
   return device;
 }
 

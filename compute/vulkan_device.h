@@ -88,7 +88,7 @@ class VulkanDevice {
   std::function<void(const char* kernel, std::uint64_t items, double seconds)> kernel_watch;
 
   /// GpuOptions::host_share, decided.
-  HostShare host_share = HostShare::kAreas;
+  HostShare host_share = HostShare::kNear;
   /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
   /// `guard_error`: the first that was found broken when its buffer died, or empty.
   bool guarded = false;

@@ -38,9 +38,8 @@ Result<std::optional<HostShare>> wanted_host_share() {
   const std::string name = text ? text : "";
   if (name.empty()) return std::optional<HostShare>();
   if (name == "near") return std::optional(HostShare::kNear);
-  if (name == "areas") return std::optional(HostShare::kAreas);
   if (name == "contacts") return std::optional(HostShare::kContacts);
-  return bad_value("PALPATE_HOST_SHARE is \"" + one_line(name) + "\", allowed are near, areas and contacts");
+  return bad_value("PALPATE_HOST_SHARE is \"" + one_line(name) + "\", allowed are near and contacts");
 }
 
 }  // namespace

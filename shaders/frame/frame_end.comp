@@ -11,4 +11,5 @@ void main() {
   if (gl_LocalInvocationIndex != 0u) return;
   result.state = frame_state;
   result.member_count = frame_lists[kListMembers].count;
+  result.ignored_count = frame_lists[kListIgnored].count;
 }

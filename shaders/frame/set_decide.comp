@@ -29,4 +29,5 @@ void main() {
   result.static_count = frame_lists[kListContactStatics].count;
   result.mobile_count = frame_lists[kListContactMobiles].count;
   result.member_count = 0u;
+  result.ignored_count = 0u;
 }

@@ -101,6 +101,7 @@ PALPATE_CONSTANT uint32_t kListSampleChunks = 10;                // by the host,
 PALPATE_CONSTANT uint32_t kListOpenSamples = 11;                 // by the host where samples are listed, else by the device
 PALPATE_CONSTANT uint32_t kListSamples = 12;
 PALPATE_CONSTANT uint32_t kListMembers = 13;                     // response: mobile triangles of areas; ids only, goes to the host as it is
+PALPATE_CONSTANT uint32_t kListIgnored = 19;                     // response: ignored patches that something touched
 PALPATE_CONSTANT uint32_t kListResponseFirst = 16;               // 16…31: lists of frame_field.h
 PALPATE_CONSTANT uint32_t kListCount = 32;
 
@@ -257,7 +258,7 @@ struct FrameResult {
   uint32_t mobile_count;          // entries of the mobiles' results
   uint32_t member_count;          // entries of the members
   uint32_t area_count;            // ≤ kMaxFrameAreas
-  uint32_t padding;               // whole 8 bytes
+  uint32_t ignored_count;         // entries of the ignored patches that something touched
   AreaResult areas[kMaxFrameAreas];
 };
 

@@ -25,7 +25,6 @@ PALPATE_CONSTANT int32_t kBindResultCarriers = 105;   // CarrierWork[C_s], by sl
 PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
 PALPATE_CONSTANT uint32_t kListMockupPoints = 17u;
 PALPATE_CONSTANT uint32_t kListToolPoints = 18u;
-PALPATE_CONSTANT uint32_t kListIgnored = 19u;
 
 PALPATE_CONSTANT int32_t kFieldTile = 8;              // grid points along an edge of a tile of tool samples: one workgroup
 PALPATE_CONSTANT int32_t kDepthSlack = 16;            // steps by which a distance may be off, and more (section 4)

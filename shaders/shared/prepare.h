@@ -10,7 +10,6 @@ PALPATE_CONSTANT uint32_t kScanChunk = 64u;        // numbers that one invocatio
 PALPATE_CONSTANT uint32_t kSmallCells = 64u;       // bricks in the box of a triangle that is tested against them at once
 PALPATE_CONSTANT int32_t kTopCells = 8;            // cells along an axis at the coarsest level
 PALPATE_CONSTANT uint32_t kRankSpan = 256u;        // entries of a list among which one invocation ranks one
-PALPATE_CONSTANT uint32_t kSeamSpan = 2048u;       // entries of a list that one invocation tests against one
 PALPATE_CONSTANT uint32_t kFindSteps = 256u;       // steps towards a root, before a union is left to the next run
 PALPATE_CONSTANT uint32_t kUnionTries = 16u;       // lost races of a union, before it is left to the next run
 PALPATE_CONSTANT int32_t kMostBricksAlong = 3500;  // bricks along an axis: a row is swept by one invocation, 9 steps a brick
@@ -60,15 +59,6 @@ struct EnclosedPush {
   uint32_t bricks;   // all
 };
 PALPATE_ASSERT_SIZE(EnclosedPush, 8);
-
-struct SeamPush {
-  int64_t least_cosine;   // Q60; pairs below can't be smooth
-  uint32_t count;         // entries of this run
-  uint32_t round;
-  uint32_t capacity;      // pairs
-  uint32_t first;         // entry
-};
-PALPATE_ASSERT_SIZE(SeamPush, 24);
 
 // Push constants of sample_list.comp.
 struct SampleListPush {

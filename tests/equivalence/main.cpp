@@ -20,7 +20,7 @@ constexpr int kAllEqual = 0, kSomeDiffer = 1, kBadUsage = 2, kSomeNotSupported =
 
 struct Options {
   std::vector<std::string> names, families;
-  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false, floats = false, guards = false, device_sets = false, device_areas = false, own_memory = false;
+  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false, floats = false, guards = false, device_sets = false, own_memory = false;
   std::string backend = "both", device, check, write, reason;
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> poses, pose;
@@ -52,8 +52,7 @@ Result<Backends> make_backends(const Options& options) {
     gpu.device = options.device;
     gpu.validation = options.validation;
     gpu.guard_buffers = options.guards;
-    if (options.device_sets) gpu.host_share = HostShare::kAreas;
-    if (options.device_areas) gpu.host_share = HostShare::kNear;
+    if (options.device_sets) gpu.host_share = HostShare::kNear;
     gpu.own_memory = options.own_memory;
     auto made = make_gpu_backend(gpu);
     if (!made) return made.error();
@@ -115,7 +114,7 @@ void print_repeat(const Case& c, const CaseRun& run, const Options& options, std
   const std::string text = run.findings.empty() ? "" : run.findings.front();
   const auto at = text.find("pose ");
   const std::string pose = at == std::string::npos ? "" : " --pose " + std::to_string(std::stoull(text.substr(at + 5)));
-  const std::string flags = std::string(options.guards ? " --guards" : "") + (options.device_sets ? " --device-sets" : "") + (options.device_areas ? " --device-areas" : "") + (options.own_memory ? " --own-memory" : "") + (options.validation ? " --validation" : "") +
+  const std::string flags = std::string(options.guards ? " --guards" : "") + (options.device_sets ? " --device-sets" : "") + (options.own_memory ? " --own-memory" : "") + (options.validation ? " --validation" : "") +
                             (options.twice || options.campaign > 0 ? " --twice" : "") + (options.backend == "cpu" ? " --backend cpu" : "");
   std::printf("    repeat: equivalence --case %s --seed %llu%s%s\n", c.name.c_str(), Count{seed}, pose.c_str(), flags.c_str());
 }
@@ -250,9 +249,8 @@ int run(int argc, char** argv) {
   app.add_flag("--floats", o.floats, "count what single precision would have judged otherwise");
   app.add_flag("--times", o.times, "print the median time of every stage");
   app.add_flag("--validation", o.validation, "with Vulkan's validation layer and its synchronisation checks");
-  app.add_flag("--device-sets", o.device_sets, "the device decides small contacts, too, not only large ones, whose areas the host then joins");
+  app.add_flag("--device-sets", o.device_sets, "the device decides all, where it is the host's own processor, too");
   app.add_flag("--own-memory", o.own_memory, "the host's own processor, or an integrated GPU, is taken for a GPU with memory of its own");
-  app.add_flag("--device-areas", o.device_areas, "the device decides small contacts, joins their areas and finds directions, too");
   app.add_flag("--guards", o.guards, "with guard bytes round every buffer of the device, checked after every scene and pose");
   app.add_option("--campaign", o.campaign, "this many poses over all cases, with changing seeds, everything asked twice");
   CLI11_PARSE(app, argc, argv);
