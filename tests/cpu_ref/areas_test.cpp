@@ -75,7 +75,7 @@ TEST(Areas, MoreThanTheLimitIsTruncationAndSaysSo) {
   std::vector<Triangle> many;
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 15; ++j) many.emplace_back(Int3(i * 40, j * 40, 0), Int3(i * 40 + 20, j * 40, 0), Int3(i * 40, j * 40 + 20, 0));
-  const auto scene = scene_of(many, lattice_box(Int3(-10, -10, -10), Int3(810, 610, 10)), 16, 4);
+  const auto scene = scene_of(many, lattice_box(Int3(-10, -10, -10), Int3(810, 610, 0)), 16, 4);
   const Contacts contacts = ask(scene, Profile::kPaper);
   EXPECT_TRUE(contacts.truncated);
   EXPECT_STREQ(contacts.truncated_capacity, "areas");
