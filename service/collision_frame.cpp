@@ -83,10 +83,9 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   result = {};
   result.tick = slot.sample.tick;
   result.change = felt_changes_;
-  result.field = refined;
   result.rotation = slot.sample.pose.rotation;
   result.gc = slot.sample.pose.position + slot.sample.pose.rotation * geometry_.tool_gc_m;
-  fill_law_result(slot.response, stiffness_, result);
+  fill_law_result(slot.response, refined, stiffness_, result);
   if (!torques_) {
     result.wrench.torque = Vec3(0);
     for (ContactPlane& plane : result.planes) plane.lever = Vec3(0);
