@@ -96,7 +96,9 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   slot.total_us = static_cast<double>(ns) / 1000;
   frame_ns_.add(ns);
   if (slot.contacts.truncated) ++truncated_frames_, truncated_capacity_ = slot.contacts.truncated_capacity;
-  if ((slot.response.flags & kFlagNoDirection) != 0 && no_direction_frames_++ == 0) no_direction_first_ = slot.sample;
+  // Where contacts are left out, nothing pushes because nobody wants it to.
+  const bool unknown = (slot.response.flags & kFlagNoDirection) != 0 && slot.contacts.ignored_touched.empty();
+  if (unknown && no_direction_frames_++ == 0) no_direction_first_ = slot.sample;
   areas_max_ = std::max(areas_max_, result.areas);
   if (result.areas > kMaxLawPlanes) ++merged_frames_;
   return {};

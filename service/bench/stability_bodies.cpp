@@ -82,7 +82,10 @@ BodyLoop body_loop(const SimulatedMaker& make, const BodyCase& what, LawKind law
     loop.contact = pads_contact(what.pads, stiffness, stiffness * kDeep, Pose{}, false);
     const Wrench held_up = pads_load(what.pads, stiffness * kDeep);
     loop.load = {-held_up.force, -held_up.torque};
-    if (coupling.stiffness_n_per_m > 0) loop.at_rest.position -= held_up.force / coupling.stiffness_n_per_m;
+    if (coupling.stiffness_n_per_m > 0) {
+      loop.at_rest.position -= held_up.force / coupling.stiffness_n_per_m;
+      loop.settle_ticks = 1000;   // what it is pressed with comes in at 100 N/s
+    }
     loop.reach_m = kDeep / 2;
   }
   return loop;
@@ -95,7 +98,11 @@ double highest_stable_body(const SimulatedMaker& make, const BodyCase& what, Law
   });
 }
 
-DeviceSettings bare_device() { return bare(); }
+DeviceSettings bare_device() {
+  DeviceSettings device = bare();
+  device.hand_angular_stiffness_nm = 5;   // or what is pressed on a corner topples, whatever the law
+  return device;
+}
 
 Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& what, PreparedCase& prepared, const DeviceSettings& device, LawKind law, int delay, double stiffness,
                                int ticks) {

@@ -34,7 +34,7 @@ Result<double> highest_stable_body_query(const SimulatedMaker& make, const Conta
 Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& what, PreparedCase& prepared, const DeviceSettings& device, LawKind law, int delay, double stiffness,
                                int ticks = 2000);
 
-/// 0.5 kg and 2 g·m², 1 N·s/m and 5 mN·m·s, held by next to nothing.
+/// 0.5 kg and 2 g·m², 1 N·s/m and 5 mN·m·s, held by next to nothing, but against toppling.
 DeviceSettings bare_device();
 
 }  // namespace palpate

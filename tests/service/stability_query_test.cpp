@@ -30,13 +30,14 @@ Result<std::unique_ptr<HapticDevice>> simulated(const DeviceSettings& settings, 
 
 TEST_P(StabilityQuery, TenMillisecondsCostLessThanATenthOfTheStiffness) {
   // b / (T/2) is 2000 N/m for whatever is no softer than its spring; with a wall in series K may be more.
-  const auto none = highest_stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 0);
-  ASSERT_TRUE(none) << none.error().sentence;
   const auto late = highest_stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 10);
   ASSERT_TRUE(late) << late.error().sentence;
-  std::printf("%s: %.0f N/m without delay, %.0f with results 10 ms old\n", what_.name.c_str(), *none, *late);
-  EXPECT_GE(*late, 0.9 * *none);
-  EXPECT_GE(*none, 1800) << "however large the contact";
+  std::printf("%s: %.0f N/m with results 10 ms old\n", what_.name.c_str(), *late);
+  EXPECT_GE(*late, 1800) << "however large the contact";
+  // Without delay a ninth more is not stable, either: one run of many queries in place of a dozen.
+  const auto none = stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 0, *late / 0.9);
+  ASSERT_TRUE(none) << none.error().sentence;
+  EXPECT_FALSE(*none) << "ten milliseconds cost more than a tenth";
 }
 
 TEST_P(StabilityQuery, DeeperIsPushedHarderAndThePlanesSayByHowMuch) {
