@@ -83,10 +83,9 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   result = {};
   result.tick = slot.sample.tick;
   result.change = felt_changes_;
-  result.field = refined;
   result.rotation = slot.sample.pose.rotation;
   result.gc = slot.sample.pose.position + slot.sample.pose.rotation * geometry_.tool_gc_m;
-  fill_law_result(slot.response, stiffness_, result);
+  fill_law_result(slot.response, refined, stiffness_, result);
   if (!torques_) {
     result.wrench.torque = Vec3(0);
     for (ContactPlane& plane : result.planes) plane.lever = Vec3(0);
@@ -97,7 +96,9 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   slot.total_us = static_cast<double>(ns) / 1000;
   frame_ns_.add(ns);
   if (slot.contacts.truncated) ++truncated_frames_, truncated_capacity_ = slot.contacts.truncated_capacity;
-  if ((slot.response.flags & kFlagNoDirection) != 0 && no_direction_frames_++ == 0) no_direction_first_ = slot.sample;
+  // Where contacts are left out, nothing pushes because nobody wants it to.
+  const bool unknown = (slot.response.flags & kFlagNoDirection) != 0 && slot.contacts.ignored_touched.empty();
+  if (unknown && no_direction_frames_++ == 0) no_direction_first_ = slot.sample;
   areas_max_ = std::max(areas_max_, result.areas);
   if (result.areas > kMaxLawPlanes) ++merged_frames_;
   return {};

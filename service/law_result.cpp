@@ -27,11 +27,12 @@ void fill_planes(const ContactResponse& response, PlaneSet& out) {
   for (const ContactPlane& plane : response.planes) add_plane(out, plane);
 }
 
-void fill_law_result(const ContactResponse& response, double stiffness, LawResult& out) {
+void fill_law_result(const ContactResponse& response, bool field, double stiffness, LawResult& out) {
   out.wrench = response.wrench;
   out.contact = response.contact;
   out.plane_count = 0;
-  if (!response.planes.empty()) {
+  out.field = field;
+  if (field) {
     fill_planes(response, out);
     out.areas = static_cast<std::uint32_t>(response.areas.size());
     return;

@@ -19,12 +19,12 @@ struct LawResult : PlaneSet {
 /// The planes of `refined` (ContactResponse::planes) as a set of fixed size, but for its pose: beyond kMaxLawPlanes, those most alike are made one.
 void fill_planes(const ContactResponse& response, PlaneSet& out);
 
-/// Fills everything but tick and pose. `stiffness` K in N/m.
+/// Fills everything but tick and pose. `field`: of profile `refined`, whose planes are the response's own; areas have none there. `stiffness` K in N/m.
 /// κ = K·∂d/∂h, within [K/4, K]: AreaResponse::slope, the exact derivative of the sums that d is made of, for with results c ticks old a κ of 0.95 times
 /// the contact's own stiffness loses most of the stable K.
 /// More areas than planes: the largest forces keep their planes; the rest share the last one, along their summed force, with their
 /// summed torque and κ = Σ κ (n·n_a)²; it is exact at the result's pose, and can't pull either. (Lost: a rest whose forces cancel
 /// keeps no plane, its couple is left out.) Never allocates.
-void fill_law_result(const ContactResponse& response, double stiffness, LawResult& out);
+void fill_law_result(const ContactResponse& response, bool field, double stiffness, LawResult& out);
 
 }  // namespace palpate

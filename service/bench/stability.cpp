@@ -154,21 +154,31 @@ void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& chart
   }
 }
 
-/// The real collision query in the loop: results 10 ticks old against none.
+SimulatedMaker simulated(const Parts& parts) {
+  return [&parts](const DeviceSettings& device, const Pose& start) {
+    Scene scene;
+    scene.device = device;
+    scene.start = start;
+    return parts.make_device("simulated", scene, Vec3(0), {});
+  };
+}
+
+/// The real collision query in the loop, a whole tool behind the spring that goes with it: results 10 ticks old against none.
 Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& table, Chart& chart) {
+  const SimulatedMaker make = simulated(parts);
   for (const LawKind law : kLaws) chart.series.push_back({name_of(law), {}, {}});
   chart.series.push_back({"no delay", {}, {}});
   for (const ContactCase& what : pressed_contacts()) {
     console.step("closing the loop over " + what.name);
     auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_cpu);
     if (!prepared) return prepared.error();
-    const auto none = highest_stable_query(what, **prepared, LawKind::kHold, 0);
+    const auto none = highest_stable_body_query(make, what, **prepared, bare_device(), LawKind::kCorrected, 0);
     if (!none) return none.error();
     chart.labels.push_back(what.name);
     const std::uint32_t areas = what.name == "four" ? 4 : 1;
-    add_cell(table, "query: " + what.name, {.law = LawKind::kHold, .delay = 0, .areas = areas}, *none, *none);
+    add_cell(table, "query: " + what.name, {.law = LawKind::kCorrected, .delay = 0, .areas = areas}, *none, *none);
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto k = highest_stable_query(what, **prepared, kLaws[i], 10);
+      const auto k = highest_stable_body_query(make, what, **prepared, bare_device(), kLaws[i], 10);
       if (!k) return k.error();
       add_cell(table, "query: " + what.name, {.law = kLaws[i], .delay = 10, .n = 10, .areas = areas}, *k, *none);
       chart.series[i].y.push_back(*k);
@@ -178,14 +188,9 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
   return {};
 }
 
-/// A whole tool in six degrees of freedom, its contact a formula; then the real query, flat and on four pads.
+/// A whole tool in six degrees of freedom, its contact a formula; then the real query, held by a hand.
 Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& table, Chart& chart) {
-  const SimulatedMaker make = [&](const DeviceSettings& device, const Pose& start) {
-    Scene scene;
-    scene.device = device;
-    scene.start = start;
-    return parts.make_device("simulated", scene, Vec3(0), {});
-  };
+  const SimulatedMaker make = simulated(parts);
   const auto row = [&](const std::string& model, LawKind law, int delay, const DeviceSettings& device, std::size_t areas, double found, double expected) {
     Cell cell{.law = law, .delay = delay, .n = std::max(delay, 1), .areas = static_cast<std::uint32_t>(areas)};
     cell.mass = device.mass_kg + device.hand_mass_kg, cell.damping = device.damping_n_s_per_m, cell.hand_damping = device.hand_damping_n_s_per_m;
@@ -217,18 +222,13 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
         spring > limit ? limit * spring / (spring - limit) / 4 : std::nan(""));
   }
   for (const ContactCase& what : pressed_contacts()) {
-    if (what.name != "flat" && what.name != "four") continue;
+    if (what.name != "flat" && what.name != "four" && what.name != "peg") continue;
     auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_cpu);
     if (!prepared) return prepared.error();
-    console.step("six degrees of freedom over the query: " + what.name);
-    for (const bool held : {false, true}) {
-      const DeviceSettings device = held ? DeviceSettings{} : plate.device;
-      for (const LawKind law : {LawKind::kHold, LawKind::kCorrected}) {
-        const auto k = highest_stable_body_query(make, what, **prepared, device, law, 10);
-        if (!k) return k.error();
-        row(fmt::format("body over the query: {}{}", what.name, held ? ", held by a hand" : ""), law, 10, device, what.name == "four" ? 4 : 1, *k, std::nan(""));
-      }
-    }
+    console.step("six degrees of freedom over the query, held by a hand: " + what.name);
+    const auto k = highest_stable_body_query(make, what, **prepared, DeviceSettings{}, LawKind::kCorrected, 10);
+    if (!k) return k.error();
+    row("body over the query, held by a hand: " + what.name, LawKind::kCorrected, 10, DeviceSettings{}, what.name == "four" ? 4 : 1, *k, std::nan(""));
   }
   return {};
 }

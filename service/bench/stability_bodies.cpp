@@ -82,7 +82,10 @@ BodyLoop body_loop(const SimulatedMaker& make, const BodyCase& what, LawKind law
     loop.contact = pads_contact(what.pads, stiffness, stiffness * kDeep, Pose{}, false);
     const Wrench held_up = pads_load(what.pads, stiffness * kDeep);
     loop.load = {-held_up.force, -held_up.torque};
-    if (coupling.stiffness_n_per_m > 0) loop.at_rest.position -= held_up.force / coupling.stiffness_n_per_m;
+    if (coupling.stiffness_n_per_m > 0) {
+      loop.at_rest.position -= held_up.force / coupling.stiffness_n_per_m;
+      loop.settle_ticks = 1000;   // what it is pressed with comes in at 100 N/s
+    }
     loop.reach_m = kDeep / 2;
   }
   return loop;
@@ -95,30 +98,60 @@ double highest_stable_body(const SimulatedMaker& make, const BodyCase& what, Law
   });
 }
 
-Result<double> highest_stable_body_query(const SimulatedMaker& make, const ContactCase& what, PreparedCase& prepared, const DeviceSettings& device, LawKind law,
-                                         int delay) {
+DeviceSettings bare_device() {
+  DeviceSettings device = bare();
+  device.hand_angular_stiffness_nm = 5;   // or what is pressed on a corner topples, whatever the law
+  return device;
+}
+
+Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& what, PreparedCase& prepared, const DeviceSettings& device, LawKind law, int delay, double stiffness,
+                               int ticks) {
   const Pose start = what.pose(0);
   const Vec3 gc_tool = prepared.geometry().tool_gc_m;
   Result<void> failed;
-  const double found = highest_stable(100, 20000, [&](double k) {
-    prepared.begin(k);
-    BodyLoop loop;
-    loop.make_device = make;
-    loop.device = device;
-    loop.delivery.delay = delay;
-    loop.law = {.kind = law, .stiffness_n_per_m = k, .transitions = std::max(delay, 1), .change_n_per_s = 100};
-    loop.at_rest = {start.position + start.rotation * gc_tool, start.rotation};
-    loop.contact = [&](const Pose& gc, LawResult& out) {
-      if (failed) failed = prepared.ask({gc.position - gc.rotation * gc_tool, gc.rotation}, out);
-    };
-    LawResult rest;
-    loop.contact(loop.at_rest, rest);
-    loop.load = {-rest.wrench.force, -rest.wrench.torque};
-    // About 50 µm: far above a row of samples' own step, far below the depth.
-    loop.kick = {Vec3(0, 0, 5e-5 * std::sqrt(k * (device.mass_kg + device.hand_mass_kg)) / 1e-3), Vec3(1e-3, 1e-3, 0)};
-    loop.settle_ticks = 100;
-    loop.reach_m = 2e-3;
-    return failed && AxisLoop::stable(loop.run(3000), 2e-5);
+  prepared.begin(stiffness);
+  const bool coupled = law == LawKind::kCorrected && prepared.spring().on();
+  BodyLoop loop;
+  loop.make_device = make;
+  loop.device = device;
+  loop.delivery.delay = delay;
+  loop.law = {.kind = law, .stiffness_n_per_m = stiffness, .transitions = std::max(delay, 1), .change_n_per_s = 100};
+  if (coupled) loop.coupling = prepared.spring();
+  loop.at_rest = {start.position + start.rotation * gc_tool, start.rotation};
+  loop.contact = [&](const Pose& gc, LawResult& out) {
+    const Pose tool{gc.position - gc.rotation * gc_tool, gc.rotation};
+    if (failed) failed = prepared.ask(tool, out);
+    if (!failed || coupled || !out.field) return;
+    const Result<Felt> felt = prepared.feel(tool);
+    if (!felt) failed = felt.error();
+    else out.wrench = felt->wrench;
+  };
+  LawResult rest;
+  if (failed = prepared.ask(start, rest); !failed) return failed.error();
+  Wrench load = rest.wrench;
+  if (rest.field) {
+    const Result<Felt> felt = prepared.feel(start);
+    if (!felt) return felt.error();
+    load = felt->wrench;
+  }
+  loop.load = {-load.force, -load.torque};
+  // About 50 µm: far above a row of samples' own step, far below the depth.
+  const double blow = 5e-5 * std::sqrt(stiffness * (device.mass_kg + device.hand_mass_kg)) / 1e-3;
+  loop.kick = {blow * what.kick, 0.02 * blow * what.twist};
+  loop.settle_ticks = 200;
+  loop.reach_m = 2e-3;
+  const bool stable = AxisLoop::stable(loop.run(ticks), 2e-5);
+  if (!failed) return failed.error();
+  return stable;
+}
+
+Result<double> highest_stable_body_query(const SimulatedMaker& make, const ContactCase& what, PreparedCase& prepared, const DeviceSettings& device, LawKind law,
+                                         int delay, int ticks) {
+  Result<void> failed;
+  const double found = highest_stable(200, 20000, [&](double k) {
+    const Result<bool> stable = stable_body_query(make, what, prepared, device, law, delay, k, ticks);
+    if (!stable) failed = stable.error();
+    return stable && *stable;
   });
   if (!failed) return failed.error();
   return found;

@@ -63,6 +63,9 @@ Mesh seam() { return together({box({-40, -40, -20}, {0, 40, 0}, 1), box({0, -40,
 
 Mesh sphere(double radius) { return solids::sphere(radius * kMm, 72, 36); }
 
+Mesh peg() { return solids::moved(solids::cylinder(10 * kMm, 60 * kMm, 24), {mm(0, 0, -30), Quat(1, 0, 0, 0)}); }
+Mesh hole(double radius) { return solids::moved(solids::ring(radius * kMm, 30 * kMm, 30 * kMm, 24), {mm(0, 0, -15), Quat(1, 0, 0, 0)}); }
+
 /// Every triangle in four until no edge is longer than 5 mm: the chapter asks at triangles' centroids, so a face of two would give it nothing.
 Mesh finer(Mesh mesh) {
   const auto longest = [&] {
@@ -112,7 +115,11 @@ std::vector<ContactCase> pressed_contacts() {
       {"flat", small, box({-10, -10, 0}, {10, 10, 20}), 1, at(mm(1.37, 2.11, -1))},
       {"sphere", small, sphere(25), 1, at(mm(1.37, 2.11, 25 - 3))},
       {"corner", small, box({-15, -15, -15}, {15, 15, 15}), 1, at(mm(1.37, 2.11, 15 * std::sqrt(3.0) - 4), corner_down())},
+      {"pad", box({-5, -5, -30}, {5, 5, 0}), box({-30, -30, 0}, {30, 30, 10}), 1, at(mm(0.37, 0.61, -1))},
       {"four", pillars(), box({-30, -30, 0}, {30, 30, 10}), 1, at(mm(0.37, 0.61, -1))},
+      // 20 mm in a hole 30 mm deep with 0.2 mm of play, tilted until both rims press, and 0.1 mm too thick.
+      {"peg", hole(10.1), peg(), 1, at(mm(0.6, 0.3, 0), rotation_by(Vec3(0.02, 0.03, 0))), Vec3(1, 1, 0)},
+      {"press fit", hole(9.95), peg(), 1, at(mm(0.1, 0.05, 0)), Vec3(1, 1, 0)},
   };
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "model/geometry_build.h"
@@ -30,6 +29,15 @@ Result<std::unique_ptr<PreparedCase>> PreparedCase::make(const ContactCase& what
 
 void PreparedCase::begin(double stiffness) {
   frame_ = std::make_unique<CollisionFrame>(geometry_, *backend_, profile_, stiffness, true);
+  lone_ = std::make_unique<LoneQuery>(geometry_, stiffness);
+  stiffness_ = stiffness;
+}
+
+Result<Felt> PreparedCase::feel(const Pose& pose) { return lone_->ask(*backend_, nullptr, pose, slot_.response); }
+
+CouplingSettings PreparedCase::spring() const {
+  if (profile_ == Profile::kPaper) return {};
+  return {stiffness_, stiffness_ * geometry_.tool_gyration_m * geometry_.tool_gyration_m};
 }
 
 Result<void> PreparedCase::ask(const Pose& pose, LawResult& out) {
@@ -37,44 +45,14 @@ Result<void> PreparedCase::ask(const Pose& pose, LawResult& out) {
   return frame_->solve(slot_, out);
 }
 
-Result<double> highest_stable_query(const ContactCase& what, PreparedCase& prepared, LawKind law, int delay) {
-  constexpr double kStep = 1e-6, kAsked = 1000;   // m, N/m
-  const Pose start = what.pose(0);
-  const Vec3 gc = start.rotation * prepared.geometry().tool_gc_m;
-  std::map<long, LawResult> known;
-  Result<void> failed;
-  prepared.begin(kAsked);
-  const double found = highest_stable(100, 20000, [&](double k) {
-    AxisLoop loop;
-    loop.axis = Vec3(0, 0, 1);
-    loop.at_rest = {start.position + gc, start.rotation};
-    loop.delivery.delay = delay;
-    loop.law = {.kind = law, .stiffness_n_per_m = k, .transitions = delay, .change_n_per_s = 100};
-    loop.encoder_step_m = kStep;
-    loop.contact = [&](double x, const Pose& pose, LawResult& out) {
-      const auto [at, fresh] = known.try_emplace(std::lround(x / kStep));
-      if (fresh)
-        if (auto done = prepared.ask({pose.position - gc, pose.rotation}, at->second); !done) failed = done;
-      out = at->second;
-      out.wrench.force *= k / kAsked;   // all forces are K times a depth
-      for (ContactPlane& plane : out.planes) plane.force *= k / kAsked, plane.stiffness *= k / kAsked;
-    };
-    LawResult rest;
-    loop.contact(0, loop.at_rest, rest);
-    loop.load_n = -rest.wrench.force.z;
-    loop.start_x = 5e-5;
-    loop.settle_ticks = 200;
-    loop.reach_m = 2e-4;
-    return failed && AxisLoop::stable(loop.run(10000), 5e-6);
-  });
-  if (!failed) return failed.error();
-  return found;
-}
-
 Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, const ForceLawSettings& law, int delay) {
   JumpStatistics out;
   prepared.begin(law.stiffness_n_per_m);
-  ForceLawState state(law);
+  const CouplingSettings spring = law.kind == LawKind::kCorrected ? prepared.spring() : CouplingSettings{};
+  ForceLawSettings settings = law;
+  if (spring.on()) settings.change_n_per_s = 0;   // the spring's (ControlTick::couple)
+  ForceLawState state(settings);
+  VirtualCoupling coupling(spring, law.change_n_per_s);
   const Vec3 gc_tool = prepared.geometry().tool_gc_m;
   LawResult pending, arrived;
   Wrench before, step_before;
@@ -82,7 +60,11 @@ Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, co
   double force_sum = 0, torque_sum = 0;
   const int ticks = static_cast<int>(std::lround(what.seconds * 1000));
   for (int i = 0; i < ticks; ++i) {
-    const Pose pose = what.pose(i * 1e-3);
+    Pose pose = what.pose(i * 1e-3);
+    if (spring.on()) {
+      const LawPose tool = coupling.follow(state, {i, pose.position + pose.rotation * gc_tool, pose.rotation});
+      pose = {tool.gc - tool.rotation * gc_tool, tool.rotation};
+    }
     const LawResult* fresh = nullptr;
     if (i % delay == 0) {
       arrived = pending;
@@ -94,7 +76,8 @@ Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, co
       if (auto done = prepared.ask(pose, pending); !done) return done.error();
       pending.tick = i;
     }
-    const Wrench force = state.step({i, pose.position + pose.rotation * gc_tool, pose.rotation}, fresh);
+    Wrench force = state.step({i, pose.position + pose.rotation * gc_tool, pose.rotation}, fresh);
+    if (spring.on()) force = coupling.force(force);
     const Wrench step{force.force - before.force, force.torque - before.torque};
     out.force_step_n = std::max(out.force_step_n, glm::length(step.force));
     out.torque_step_nm = std::max(out.torque_step_nm, glm::length(step.torque));

@@ -8,6 +8,8 @@
 #include "model/scene_geometry.h"
 #include "service/axis_loop.h"
 #include "service/collision_frame.h"
+#include "service/lone_query.h"
+#include "service/virtual_coupling.h"
 
 namespace palpate {
 
@@ -17,9 +19,10 @@ struct ContactCase {
   Mesh mockup, tool;                          ///< the mock-up in the world, the tool in its own frame
   double seconds = 1;                         ///< length of the motion
   std::function<Pose(double time_s)> pose;    ///< of the tool; at 0 for a contact that is only pressed
+  Vec3 kick{0, 0, 1}, twist{1, 1, 0};         ///< pressed: the ways that contact holds, along which it is disturbed
 };
 
-/// Contacts that a force loop is closed over: flat, sphere, corner, four at once; pressed down along −z.
+/// Contacts that a force loop is closed over: flat, sphere, corner, a pad, four pads, pressed down along −z; a tilted peg in its hole and a press fit off its middle.
 std::vector<ContactCase> pressed_contacts();
 
 /// Motions at which the chapter's response jumps: corner slide, edge roll-over, peg in hole, four contacts, pierced plate, seam, two
@@ -39,6 +42,11 @@ class PreparedCase {
   /// What the control loop would get for this pose of the tool. The first error is kept and returned from then on.
   Result<void> ask(const Pose& pose, LawResult& out);
 
+  /// What a hand would feel at the pose asked last.
+  Result<Felt> feel(const Pose& pose);
+  /// The spring of profile `refined`; none in `paper`.
+  CouplingSettings spring() const;
+
   const SceneGeometry& geometry() const { return geometry_; }
 
  private:
@@ -47,12 +55,10 @@ class PreparedCase {
   Profile profile_ = Profile::kRefined;
   std::unique_ptr<CollisionBackend> backend_;
   std::unique_ptr<CollisionFrame> frame_;
+  std::unique_ptr<LoneQuery> lone_;
+  double stiffness_ = 0;
   FrameSlot slot_;
 };
-
-/// Over the real query, from a push of 50 µm to what is left below 5 µm: the highest stable K of a contact that is pressed down, N/m, with
-/// results `delay` ticks old (0: none). The device resolves 1 µm, so that a place is asked about once and not ten thousand times.
-Result<double> highest_stable_query(const ContactCase& what, PreparedCase& prepared, LawKind law, int delay);
 
 /// Steps of the sent force and torque from tick to tick over a motion that no force changes.
 struct JumpStatistics {
@@ -62,7 +68,7 @@ struct JumpStatistics {
   double least_push_n = 0;                         ///< smallest force along the result's own, while it has contact; < 0: it pulled
 };
 
-/// Results `delay` ticks old and apart, a law, no device limits.
+/// Results `delay` ticks old and apart, a law and, where it goes with it, the case's spring; no device limits.
 Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, const ForceLawSettings& law, int delay);
 
 }  // namespace palpate

@@ -34,7 +34,7 @@ struct Output {
     std::shuffle(mobiles.begin(), mobiles.end(), random);
     std::shuffle(members.begin(), members.end(), random);
   }
-  FrameOutput lists() const { return {result.get(), statics.data(), mobiles.data(), members.data(), nullptr}; }
+  FrameOutput lists() const { return {result.get(), statics.data(), mobiles.data(), members.data()}; }
 
   std::unique_ptr<gpu::FrameResult> result = std::make_unique<gpu::FrameResult>();
   std::vector<gpu::StaticResult> statics;

@@ -9,13 +9,13 @@ namespace {
 
 using Ids = std::vector<std::uint32_t>;
 
-Contacts ask(const SceneGeometry& scene, Profile profile, const Int3& at = Int3(0), const Held* held = nullptr) {
+Contacts ask(const SceneGeometry& scene, Profile profile, const Int3& at = Int3(0)) {
   Plan plan;
   plan.profile = profile;
   const auto backend = make_cpu_backend();
   if (const auto prepared = backend->prepare(scene, plan, {}); !prepared) throw std::runtime_error(prepared.error().sentence);
   Contacts contacts;
-  if (const auto answered = backend->query(moved_by(at), held, contacts); !answered) throw std::runtime_error(answered.error().sentence);
+  if (const auto answered = backend->query(moved_by(at), nullptr, contacts); !answered) throw std::runtime_error(answered.error().sentence);
   return contacts;
 }
 
@@ -49,32 +49,6 @@ TEST(Areas, AFanOfEdgeNeighboursIsOne) {
   EXPECT_EQ(areas_of(ask(scene_of(fan, stamp(20), 16, 4), Profile::kRefined)), (std::vector<Ids>{{0, 1, 2, 3}}));
 }
 
-/// A long edge on one side of x = 0, split in two on the other: a T-junction at the origin.
-std::vector<Triangle> t_junction() {
-  return {Triangle(Int3(0, -40, 0), Int3(0, 40, 0), Int3(-60, 0, 0)), Triangle(Int3(0, -40, 0), Int3(60, 0, 0), Int3(0, 0, 0)),
-          Triangle(Int3(0, 0, 0), Int3(60, 0, 0), Int3(0, 40, 0))};
-}
-
-TEST(Areas, ATJunctionIsJoinedInRefinedAndNotInPaper) {
-  const auto scene = scene_of(t_junction(), stamp(15), 16, 4);
-  EXPECT_EQ(areas_of(ask(scene, Profile::kPaper)), (std::vector<Ids>{{0}, {1, 2}}));
-  const Contacts refined = ask(scene, Profile::kRefined);
-  ASSERT_EQ(areas_of(refined), (std::vector<Ids>{{0, 1, 2}}));
-  EXPECT_EQ(refined.areas[0].zones, (std::vector<Ids>{{0, 1, 2}}));
-}
-
-TEST(Areas, ASeamAcrossASharpAngleStaysASeam) {
-  auto bent = t_junction();
-  bent[0] = Triangle(Int3(0, -40, 0), Int3(0, 40, 0), Int3(-10, 0, -60));   // 80° down
-  EXPECT_EQ(areas_of(ask(scene_of(bent, stamp(15), 16, 4), Profile::kRefined)), (std::vector<Ids>{{0}, {1, 2}}));
-}
-
-TEST(Areas, OverlappingCoplanarTrianglesJoinInRefined) {
-  const auto scene = scene_of({Triangle(Int3(0, 0, 0), Int3(40, 0, 0), Int3(0, 40, 0)), Triangle(Int3(10, 10, 0), Int3(60, 10, 0), Int3(10, 60, 0))}, stamp(15), 16, 4);
-  EXPECT_EQ(areas_of(ask(scene, Profile::kPaper)).size(), 2u);
-  EXPECT_EQ(areas_of(ask(scene, Profile::kRefined)).size(), 1u);
-}
-
 TEST(Areas, ASharpEdgeMakesTwoZonesOfOneArea) {
   // Two faces of a box, at 90°, reached over their common edge.
   const auto scene = scene_of(lattice_box(Int3(-400, -400, -400), Int3(0, 400, 0)), stamp(60), 32, 8);
@@ -101,12 +75,13 @@ TEST(Areas, MoreThanTheLimitIsTruncationAndSaysSo) {
   std::vector<Triangle> many;
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 15; ++j) many.emplace_back(Int3(i * 40, j * 40, 0), Int3(i * 40 + 20, j * 40, 0), Int3(i * 40, j * 40 + 20, 0));
-  const auto scene = scene_of(many, lattice_box(Int3(-10, -10, -10), Int3(810, 610, 10)), 16, 4);
-  const Contacts contacts = ask(scene, Profile::kRefined);
+  const auto scene = scene_of(many, lattice_box(Int3(-10, -10, -10), Int3(810, 610, 0)), 16, 4);
+  const Contacts contacts = ask(scene, Profile::kPaper);
   EXPECT_TRUE(contacts.truncated);
   EXPECT_STREQ(contacts.truncated_capacity, "areas");
   EXPECT_TRUE(contacts.areas.empty());
-  EXPECT_EQ(contacts.cst.size() + contacts.est.size(), 300u);
+  EXPECT_EQ(contacts.cst.size(), 300u);
+  EXPECT_EQ(ask(scene, Profile::kRefined).areas.size(), 300u) << "people may look at as many as there are";
 }
 
 TEST(Sets, AreDisjointAndCoverTheContact) {

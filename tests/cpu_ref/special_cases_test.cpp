@@ -21,66 +21,11 @@ GeometrySettings voxels_of(double metres) {
   return settings;
 }
 
-TEST(Swallowed, AToolInsideIsPushedToTheNearestWayOut) {
-  BenchScene scene(block(), solids::sphere_of(5 * kMm, 500), voxels_of(2 * kMm));
-  const ContactResponse& answer = scene.ask(Vec3(3 * kMm, 2 * kMm, -20 * kMm));
-  EXPECT_TRUE(answer.contact);
-  EXPECT_TRUE(scene.contacts.cst.empty());
-  EXPECT_FALSE(scene.contacts.imt.empty());
-  EXPECT_TRUE(answer.flags & kFlagSwallowed);
-  EXPECT_TRUE(answer.flags & kFlagNearestExternal);
-  ASSERT_EQ(answer.areas.size(), 1u);
-  EXPECT_LT(angle_deg(answer.areas[0].normal, kUp), 8);   // to the centre of a voxel above, not straight up
-  // Its lowest point is 25 mm deep: within two voxels.
-  EXPECT_NEAR(answer.areas[0].depth, 25 * kMm, 4 * kMm);
-  EXPECT_GT(answer.wrench.force.z, 0);
-}
-
-TEST(Swallowed, TheDirectionItHadIsKept) {
-  BenchScene scene(block(), solids::sphere_of(5 * kMm, 500), voxels_of(2 * kMm));
-  Held held;
-  double before = 0;
-  // Pushed in from above and on past the middle: the nearest way out would be the bottom in the end.
-  for (double z = 6; z > -60; z -= 1) {
-    const ContactResponse& answer = scene.ask(Vec3(3 * kMm, 2 * kMm, z * kMm), &held);
-    EXPECT_GE(answer.wrench.force.z, 0) << z;
-    EXPECT_LT(std::fabs(answer.wrench.force.z - before), BenchScene::kStiffness * 8 * kMm) << z;   // N: a step, and two voxels of 2 mm
-    before = answer.wrench.force.z;
-  }
-  EXPECT_TRUE(scene.response.flags & kFlagSwallowed);
-  EXPECT_TRUE(scene.response.flags & kFlagHeld);
-  EXPECT_LT(angle_deg(scene.response.areas[0].normal, kUp), 0.01);
-}
-
-TEST(Swallowed, JustUnderTheSurfaceCountsAsWell) {
-  // Wholly inside by a fraction of a voxel: the face above is listed as near, and must not silence the way out.
-  BenchScene scene(block(), solids::sphere_of(5 * kMm, 500), voxels_of(2 * kMm));
-  const ContactResponse& answer = scene.ask(Vec3(3 * kMm, 2 * kMm, -5.5 * kMm));
-  EXPECT_TRUE(scene.contacts.cst.empty());
-  EXPECT_FALSE(scene.contacts.bst.empty());
-  EXPECT_TRUE(answer.flags & kFlagSwallowed);
-  EXPECT_GT(answer.wrench.force.z, BenchScene::kStiffness * 5 * kMm);
-}
-
 TEST(Swallowed, PaperIsSilent) {
   BenchScene scene(block(), solids::sphere_of(5 * kMm, 500), voxels_of(2 * kMm), Profile::kPaper);
   const ContactResponse& answer = scene.ask(Vec3(3 * kMm, 2 * kMm, -20 * kMm));
   EXPECT_TRUE(answer.contact);
   EXPECT_EQ(glm::length(answer.wrench.force), 0);
-}
-
-TEST(Needle, BetweenTheSamplesIsStillFelt) {
-  // A cone of 0.2 mm at the base of its 20 mm, tip down, 3 mm in: no sample at a spacing of 0.5 mm can be inside.
-  const Mesh cone = solids::revolve({{0.001 * kMm, 0}, {0.1 * kMm, 20 * kMm}}, 12, solids::Ends::kPoints);
-  BenchScene scene(block(), cone, voxels_of(2 * kMm));
-  for (const double deep : {1.0, 3.0, 6.0}) {
-    const ContactResponse& answer = scene.ask(Vec3(0.25 * kMm, 0.25 * kMm, -deep * kMm));
-    ASSERT_EQ(answer.areas.size(), 1u);
-    EXPECT_TRUE(answer.areas[0].flags & kFlagNeedle);
-    EXPECT_LT(angle_deg(answer.areas[0].normal, kUp), 0.001);
-    EXPECT_GT(answer.areas[0].depth, 0.3 * deep * kMm);
-    EXPECT_LT(answer.areas[0].depth, 1.05 * deep * kMm);
-  }
 }
 
 TEST(FlippedShell, PushesTheSameWay) {
@@ -97,73 +42,6 @@ TEST(FlippedShell, PushesTheSameWay) {
   }
 }
 
-/// A square without thickness, facing up or down.
-Mesh sheet(bool up) {
-  Mesh mesh;
-  const double a = 60 * kMm;
-  mesh.vertices = {Vec3(-a, -a, 0), Vec3(a, -a, 0), Vec3(a, a, 0), Vec3(-a, a, 0)};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  if (!up) mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
-  mesh.parts = {{"sheet", 0, 2}};
-  return mesh;
-}
-
-TEST(OpenSheet, PushesTowardsTheToolsCentreWhicheverWayItWasMade) {
-  for (const bool up : {true, false}) {
-    BenchScene scene(sheet(up), solids::sphere_of(10 * kMm, 2000), voxels_of(2 * kMm));
-    for (const double side : {1.0, -1.0}) {
-      const ContactResponse& answer = scene.ask(Vec3(1 * kMm, 2 * kMm, side * 8 * kMm));
-      ASSERT_EQ(answer.areas.size(), 1u);
-      EXPECT_TRUE(answer.areas[0].flags & kFlagSheet);
-      EXPECT_LT(angle_deg(answer.areas[0].normal, side * kUp), 1e-6);
-      // The cap's mean height: h = 2 mm on a sphere of 10 mm, V/A = 1.037 mm.
-      // A tenth of the spacing of samples, which is a quarter of the contact's radius.
-      EXPECT_NEAR(answer.areas[0].depth, 1.037 * kMm, 0.05 * kMm);
-    }
-  }
-}
-
-TEST(OpenSheet, KeepsItsSideWhileTheContactLasts) {
-  BenchScene scene(sheet(true), solids::sphere_of(10 * kMm, 2000), voxels_of(2 * kMm));
-  Held held;
-  for (double z = 12; z > -9; z -= 0.5) EXPECT_GE(scene.ask(Vec3(0, 0, z * kMm), &held).wrench.force.z, 0) << z;
-  EXPECT_TRUE(scene.response.flags & kFlagHeld);
-  EXPECT_LT(scene.ask(Vec3(0, 0, -8.5 * kMm)).wrench.force.z, 0);   // a lone query takes the side of gc
-}
-
-TEST(TJunction, DoesNotDoubleTheForce) {
-  // A plate whose left half is cut finer than its right half: seams all along the middle.
-  const double a = 60 * kMm;
-  Mesh fine = solids::box(Vec3(-a, -a, -50 * kMm), Vec3(a, a, 0), Int3(2, 1, 1)), seamed = fine;
-  const auto split = [&](Mesh& mesh) {
-    // Every top triangle of the left half is cut at the middle of its edge on x = 0, which the right half does not know.
-    const std::size_t count = mesh.triangles.size();
-    for (std::size_t t = 0; t < count; ++t) {
-      auto tri = mesh.triangles[t];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 p = mesh.vertices[tri[k]], q = mesh.vertices[tri[(k + 1) % 3]], r = mesh.vertices[tri[(k + 2) % 3]];
-        if (p.x != 0 || q.x != 0 || p.z != 0 || q.z != 0 || r.z != 0 || r.x > 0) continue;
-        const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.push_back(0.5 * (p + q));
-        mesh.triangles[t] = {tri[k], middle, tri[(k + 2) % 3]};
-        mesh.triangles.push_back({middle, tri[(k + 1) % 3], tri[(k + 2) % 3]});
-        return;
-      }
-    }
-    FAIL() << "no triangle to split";
-  };
-  split(seamed);
-  seamed.parts = {{"", 0, static_cast<std::uint32_t>(seamed.triangles.size())}};
-  const Mesh ball = solids::sphere_of(10 * kMm, 2000);
-  BenchScene whole(fine, ball, voxels_of(2 * kMm)), cut(seamed, ball, voxels_of(2 * kMm)), paper(seamed, ball, voxels_of(2 * kMm), Profile::kPaper);
-  ASSERT_EQ(cut.geometry->mockup.triangles.size(), whole.geometry->mockup.triangles.size() + 1);
-  const Vec3 at(0.3 * kMm, 1 * kMm, 8 * kMm);
-  const ContactResponse expected = whole.ask(at);
-  EXPECT_EQ(cut.ask(at).areas.size(), 1u);
-  EXPECT_NEAR(cut.response.wrench.force.z, expected.wrench.force.z, 1e-3 * expected.wrench.force.z);
-  EXPECT_EQ(paper.ask(at).areas.size(), 2u);
-}
-
 TEST(EqualMeshes, AToolEqualToTheMockUpIsAnsweredExactly) {
   const Mesh shape = solids::torus(20 * kMm, 6 * kMm, 32, 16);
   BenchScene scene(shape, shape, voxels_of(2 * kMm));
@@ -176,50 +54,6 @@ TEST(EqualMeshes, AToolEqualToTheMockUpIsAnsweredExactly) {
   // On a closed mesh every triangle meets at least itself and its three neighbours.
   EXPECT_GE(scene.contacts.pairs, std::uint64_t{4} * count);
   EXPECT_TRUE(std::isfinite(glm::length(answer.wrench.force)));
-}
-
-TEST(OpenTool, HasTheNearestHitsAndSaysSo) {
-  // A hemisphere without a lid.
-  Mesh bowl = solids::sphere_of(10 * kMm, 2000);
-  std::erase_if(bowl.triangles, [&](const auto& t) { return bowl.vertices[t[0]].z + bowl.vertices[t[1]].z + bowl.vertices[t[2]].z > 0; });
-  bowl.parts = {{"bowl", 0, static_cast<std::uint32_t>(bowl.triangles.size())}};
-  BenchScene scene(block(), bowl, voxels_of(2 * kMm));
-  const double centre = scene.geometry->tool_centre_m.z;
-  EXPECT_LT(centre, 0);
-  const ContactResponse& free = scene.ask(Vec3(0, 0, 12 * kMm));
-  EXPECT_FALSE(free.contact);
-  EXPECT_TRUE(free.flags & kFlagToolOpen);
-  const ContactResponse& answer = scene.ask(Vec3(1 * kMm, 2 * kMm, 9 * kMm));
-  ASSERT_EQ(answer.areas.size(), 1u);
-  EXPECT_TRUE(answer.areas[0].flags & kFlagToolOpen);
-  EXPECT_TRUE(scene.contacts.est.empty());
-  EXPECT_LT(angle_deg(answer.areas[0].normal, kUp), 1e-6);
-  // The cap is 1 mm deep: its mean height is 0.51 mm.
-  EXPECT_NEAR(answer.areas[0].depth, 0.51 * kMm, 0.05 * kMm);
-}
-
-/// Plates one below the other as one tool; z from … to of each, in mm.
-Mesh plates(std::initializer_list<std::pair<double, double>> heights) {
-  Mesh mesh;
-  for (const auto& [low, high] : heights)
-    solids::append(mesh, solids::box(Vec3(-10 * kMm, -10 * kMm, low * kMm), Vec3(10 * kMm, 10 * kMm, high * kMm)), "plate");
-  return mesh;
-}
-
-TEST(Heights, EndWhereTheRayFirstLeavesTheTool) {
-  // The upper plate reaches 1 mm into the block; another, 3 mm further down, is no part of that contact.
-  BenchScene scene(block(), plates({{-5, -4}, {-1, 2}}), voxels_of(2 * kMm));
-  const ContactResponse& answer = scene.ask(Vec3(1 * kMm, 2 * kMm, 0));
-  ASSERT_EQ(answer.areas.size(), 1u);
-  EXPECT_NEAR(answer.areas[0].depth, 1 * kMm, 1e-6);   // m: lattice steps and Q30
-}
-
-TEST(Heights, GoThroughPartsThatOverlap) {
-  // Two parts that overlap are one body 4 mm deep: the inner faces at 1 and 2 mm end nothing.
-  BenchScene scene(block(), plates({{-4, -1}, {-2, 2}}), voxels_of(2 * kMm));
-  const ContactResponse& answer = scene.ask(Vec3(1 * kMm, 2 * kMm, 0));
-  ASSERT_EQ(answer.areas.size(), 1u);
-  EXPECT_NEAR(answer.areas[0].depth, 4 * kMm, 1e-6);
 }
 
 TEST(Heights, InPaperAreOfTheAreasOwnToolTrianglesAlone) {

@@ -95,7 +95,7 @@ TEST_P(ContactsScene, ReachesTwoAndFourAreasAtOnceAndOneOnTheWay) {
   EXPECT_EQ(pressed(0.060, 0).areas, 4);
   for (const double height : {0.160, -0.040, 0.060}) {
     const Touch touch = pressed(height, 0);
-    EXPECT_LT(touch.wrench.force.y, -0.5);     // N: out of the obstacles, towards the hand
+    EXPECT_LT(touch.wrench.force.y, -0.1);     // N: out of the obstacles, towards the hand; two small pads on a cylinder press on little area
     EXPECT_EQ(main_axis(touch.wrench.force), 1);
     EXPECT_LT(touch.depth, 0.0015);            // m: no more than was pressed
   }

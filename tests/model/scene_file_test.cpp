@@ -41,6 +41,7 @@ TEST(SceneFile, EverySettingArrivesInItsPlace) {
                {"generate": {"name": "contacts", "triangles": 5000}}],
     "tool": {"mesh": "engine.glb", "scale": 0.5, "part": "Piston_1", "mass": 0.35, "centre_of_mass": [0, 0, 0.1]},
     "response": {"profile": "paper", "stiffness": 1500, "smooth_angle_deg": 45, "sample_spacing": 0.001, "voxel_size": "auto"},
+    "start": "ignore_initial",
     "control": {"transitions": 5, "virtual_delay_ticks": 4, "watchdog_ms": 30, "fade_in_ms": 100, "coupling_n_per_m": 900, "coupling_nm_per_rad": 3},
     "device": {"driver": "simulated", "path": "path.csv", "guide": "guide.csv", "stages": ["one", "two"],
                "actuated": ["fx", "tz"], "mass": 1, "inertia": 0.01, "damping": 2, "angular_damping": 0.1,
@@ -71,6 +72,7 @@ TEST(SceneFile, EverySettingArrivesInItsPlace) {
   EXPECT_EQ(scene->control.watchdog_ms, 30);
   EXPECT_EQ(scene->control.fade_in_ms, 100);
   EXPECT_EQ(scene->control.coupling_n_per_m, 900);
+  EXPECT_EQ(scene->start_contacts, StartContacts::kIgnoreInitial);
   EXPECT_EQ(scene->control.coupling_nm_per_rad, 3);
   const DeviceSettings& device = scene->device;
   EXPECT_EQ(device.actuated, (std::array<bool, 6>{true, false, false, false, false, true}));

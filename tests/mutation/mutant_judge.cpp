@@ -2,7 +2,6 @@
 //   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
 //                         "host" NUMBER             of the host's exact code (model/)
 //   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT; modules that include it
-//                          in: "near" NUMBER        the switch of a mutant of what the back end does on the host (compute/)
 //                          in: "intact"             whether the unchanged program still answers as at first
 // With --killers behind these only the killer cases are asked, with --probes no case of shaders but the probes alone; names of cases after --without are not asked, nor is any probe then.
 //   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when it is.
@@ -31,7 +30,6 @@
 #include "tests/mutation/module_probes.h"
 #include "tests/mutation/mutable_device.h"
 #include "tests/mutation/mutant_switch.h"
-#include "tests/mutation/near_probes.h"
 #include "tests/mutation/oracle.h"
 #include "tests/mutation/probes.h"
 #include "tests/mutation/shader_compiler.h"
@@ -175,15 +173,8 @@ class ShaderJudge {
     bool unasked = false;   // swapped in since the oracle was asked last
     std::vector<std::string> of_frames;   // changed modules that frames run
     bool scans = false;
-    // The device's own steps for areas and rays first, then what it does when the host has done the first half of them: both prepare alike.
     const auto ask = [&] {
       difference = oracle_.first_difference_now(at);
-      if (difference.empty() && !of_frames.empty()) {
-        device_.host_share(HostShare::kAreas);
-        difference = oracle_.first_difference_now(at);
-        device_.host_share(HostShare::kNear);
-        if (!difference.empty()) difference += " (areas on the host)";
-      }
       if (difference.empty() && !of_frames.empty()) {
         difference = oracle_.first_overflow_difference(at, [&](const char* name_of, std::uint32_t items) {
           device_.first_capacity(*name_of != 0 ? std::map<std::string, std::uint32_t>{{name_of, items}} : std::map<std::string, std::uint32_t>{});
@@ -248,33 +239,6 @@ class ShaderJudge {
     answer("differs", spent(), oracle_.name(at), difference);
   }
 
-  /// A mutant of the host's part of a query: the device's modules are the unchanged ones.
-  void judge_near(int mutant) {
-    const double before = cpu_seconds(RUSAGE_SELF);
-    std::size_t at = 0;
-    if (probed_ == 0) probed_ = near_probe();
-    limit_time(kProbeSeconds);
-    active = mutant;
-    const bool probe_differs = ask_probes_ && near_probe() != probed_;
-    std::string difference;
-    for (const bool without_samples : {false, true})
-      for (const HostShare share : {HostShare::kContacts, HostShare::kAreas}) {
-        if (probe_differs || !difference.empty() || (without_samples && share == HostShare::kAreas)) break;
-        device_.host_share(share);
-        device_.without_samples(without_samples);
-        difference = oracle_.first_difference_now(at);
-      }
-    device_.without_samples(false);
-    active = 0;
-    device_.host_share(HostShare::kNear);
-    limit_time(0);
-    const double seconds = cpu_seconds(RUSAGE_SELF) - before;
-    if (probe_differs) return answer("differs", seconds, "probe", "near_probe");
-    if (difference.empty()) return answer("survived", seconds, "", "");
-    oracle_.ask_first(at);
-    answer("differs", seconds, oracle_.name(at), difference);
-  }
-
  private:
   const std::string& original(const std::string& name) {
     std::string& code = originals_[name];
@@ -282,16 +246,16 @@ class ShaderJudge {
     return code;
   }
 
-  static constexpr double kProbeSeconds = 20;   // a probe takes a tenth of one
 
   Oracle& oracle_;
   MutableDevice& device_;
   ShaderProbes probes_;
   ModuleProbes modules_;
+  static constexpr double kProbeSeconds = 20;   // a probe takes a tenth of one
+
   Limits limits_;
   std::string root_;
   bool ask_probes_, ask_cases_;
-  std::uint64_t probed_ = 0;   // near_probe() of the unchanged program
   std::map<std::string, std::string> originals_;
 };
 
@@ -320,10 +284,6 @@ void judge_shaders(const std::string& root, bool killers, bool probes_alone, con
   ShaderJudge judge(oracle, device, root, without.empty(), !probes_alone);
   ready(oracle);
   for (std::string line; std::getline(std::cin, line);) {
-    if (line.starts_with("near ")) {
-      judge.judge_near(std::stoi(line.substr(5)));
-      continue;
-    }
     if (line != "intact") {
       judge.judge(line);
       continue;

@@ -42,7 +42,6 @@ shaders/frame/ shaders/""".split()
 HOST = [f"model/{name}.cpp" for name in "boundary edges orientation response side_winding smooth_angle".split()]
 
 # What the device's back end does on the host at a pose. Asked of the device's judge, in its process.
-NEAR = [f"compute/{name}.cpp" for name in "host_areas host_contact host_exact host_follow host_heights host_sets near_pairs near_rays near_samples nearest_external ray_packet".split()]
 
 
 def of_program(name):
@@ -54,7 +53,7 @@ def sources():
     """Files with mutants, in the order of FIRST."""
     names = [str(p.relative_to(ROOT)) for folder in ("cpu_ref", "shaders") for p in sorted((ROOT / folder).rglob("*"))
              if p.suffix in (".h", ".cpp", ".glsl", ".comp") and "shared" not in p.parts]
-    names += HOST + NEAR
+    names += HOST
     return sorted(names, key=lambda n: (next(i for i, f in enumerate(FIRST) if n.startswith(f)), n))
 
 
@@ -93,7 +92,7 @@ def all_jobs(only):
     order = sorted(modules, key=lambda m: (not m.startswith("tests/"), not m.startswith("shaders/frame/"), not m.startswith("shaders/response/"), m))
     first_number = 1
     numbers = {}
-    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST + NEAR:
+    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST:
         numbers[name] = first_number
         first_number += len(mutants((ROOT / name).read_text(), cpp=True))
     for name in sources():
@@ -104,7 +103,7 @@ def all_jobs(only):
         reference = of_program(name)
         for i, m in enumerate(mutants(text, cpp=reference)):
             if reference:
-                command = ("host " if name in HOST else "near " if name in NEAR else "") + str(numbers[name] + i)
+                command = ("host " if name in HOST else "") + str(numbers[name] + i)
             else:
                 # Places in bytes, for C++.
                 begin, end = (len(text[:at].encode()) for at in (m.begin, m.end))
@@ -264,7 +263,7 @@ def main():
                 batch = work.get_nowait()
             except queue.Empty:
                 break
-            back_end = "cpu" if of_program(batch[0].name) and batch[0].name not in NEAR else "gpu"
+            back_end = "cpu" if of_program(batch[0].name) else "gpu"
             judge = judges.setdefault(back_end, Judge(options.judge, back_end, flags, options.without))
             for start in range(0, len(batch), Judge.CHECK_EVERY):   # what is judged is kept when somebody ends us
                 part = batch[start:start + Judge.CHECK_EVERY]
@@ -314,7 +313,7 @@ def main():
             print(f"  {what}: {n} of {of} ({100 * n / of:.1f} %); of the {seen} that change something {100 * n / max(1, seen):.1f} %")
     tell("all", real)
     for side, of_side in (("reference", [j for j in real if j.name.startswith("cpu_ref/")]), ("host", [j for j in real if j.name in HOST]),
-                          ("the device's host", [j for j in real if j.name in NEAR]),
+                          
                           ("shaders", [j for j in real if not of_program(j.name)])):
         tell(side, of_side)
         for kinds in (("relation",), ("sign", "negative"), ("barrier",), ("logic", "not"), ("name",)):

@@ -67,19 +67,10 @@ const char* difference(const ContactResponse& a, const ContactResponse& b) {
   if (a.wrench.force != b.wrench.force || a.wrench.torque != b.wrench.torque) return "wrench";
   if (a.flags != b.flags || a.contact != b.contact || a.areas.size() != b.areas.size()) return "flags, contact or number of areas";
   const auto facts = [](const AreaResponse& r) {
-    return std::tuple(r.id, r.normal.x, r.normal.y, r.normal.z, r.depth, r.max_depth, r.slope, r.point.x, r.point.y, r.point.z, r.flags, r.silent);
+    return std::tuple(r.id, r.normal.x, r.normal.y, r.normal.z, r.depth, r.max_depth, r.slope, r.point.x, r.point.y, r.point.z, r.flags);
   };
   for (std::size_t i = 0; i < a.areas.size(); ++i)
     if (facts(a.areas[i]) != facts(b.areas[i]) || a.areas[i].force != b.areas[i].force || a.areas[i].torque != b.areas[i].torque) return "area";
-  return "";
-}
-
-const char* difference(const Held& a, const Held& b) {
-  if (a.last_direction != b.last_direction || a.areas.size() != b.areas.size()) return "held direction or number of areas";
-  for (std::size_t i = 0; i < a.areas.size(); ++i)
-    if (a.areas[i].static_ids != b.areas[i].static_ids || a.areas[i].direction != b.areas[i].direction ||
-        a.areas[i].sheet_sign != b.areas[i].sheet_sign || a.areas[i].silent != b.areas[i].silent)
-      return "held area";
   return "";
 }
 
@@ -125,22 +116,19 @@ void Oracle::answer(Case& c) {
   c.mockup = must(backend_.partition(false));
   if (wanted.profile == Profile::kRefined) c.tool = must(backend_.partition(true));
 
-  Held held;
+  for (std::uint32_t patch = 0; patch < c.geometry.mockup.patch_count; patch += 2) c.ignored.patches.push_back(patch);
   for (int i = 0; i < wanted.poses; ++i) {
     equivalence::Random random(kSeed, static_cast<std::uint64_t>(i));
     equivalence::Known known;
     Query q;
-    if (wanted.held && i % equivalence::kChain != 0)
+    if (wanted.ignoring && i % equivalence::kChain != 0)
       q.pose = equivalence::moved_on(c.queries.back().pose, c.geometry.mockup_grid.size, random);
     else
-      q.pose = scene.pose(c.geometry, random, known), held = {};
-    q.held = held;
-    q.remembers = wanted.held;
-    must(backend_.query(q.pose, q.remembers ? &q.held : nullptr, q.answer));
+      q.pose = scene.pose(c.geometry, random, known);
+    q.ignoring = wanted.ignoring;
+    must(backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, q.answer));
     if (q.answer.truncated && !c.name.starts_with("too_many_")) throw std::runtime_error(c.name + ": no room in " + q.answer.truncated_capacity);
-    respond(q.answer, q.pose, c.geometry, wanted.profile, kStiffness, q.response, q.remembers ? &q.held : nullptr);
-    remember(q.answer, q.response, held);
-    q.left = held;
+    respond(q.answer, q.pose, c.geometry, wanted.profile, kStiffness, q.response);
     c.queries.push_back(std::move(q));
   }
   c.answered = true;
@@ -160,7 +148,7 @@ std::string Oracle::ask(const Case& c) const {
   Contacts answer;
   for (std::size_t i = 0; i < c.queries.size(); ++i) {
     const Query& q = c.queries[i];
-    if (auto r = backend_.query(q.pose, q.remembers ? &q.held : nullptr, answer); !r) return r.error().sentence;
+    if (auto r = backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, answer); !r) return r.error().sentence;
     if (const std::string difference = first_difference(answer, q.answer); !difference.empty())
       return "pose " + std::to_string(i) + ": " + difference;
   }
@@ -172,14 +160,10 @@ std::string Oracle::ask_host(const Case& c) const {
   if (!scene) return scene.error().sentence;
   if (std::string different = difference(scene->geometry, c.geometry); !different.empty()) return different;
   ContactResponse response;
-  Held held;
   for (std::size_t i = 0; i < c.queries.size(); ++i) {
     const Query& q = c.queries[i];
-    held = q.held;
-    respond(q.answer, q.pose, c.geometry, c.plan.profile, kStiffness, response, q.remembers ? &q.held : nullptr);
+    respond(q.answer, q.pose, c.geometry, c.plan.profile, kStiffness, response);
     if (const char* what = difference(response, q.response); *what != 0) return "pose " + std::to_string(i) + ": response's " + what;
-    remember(q.answer, response, held);
-    if (const char* what = difference(held, q.left); *what != 0) return "pose " + std::to_string(i) + ": " + what;
   }
   return {};
 }
@@ -226,7 +210,7 @@ std::string Oracle::tell(std::size_t of, std::vector<std::string>& told) {
   told.clear();
   Contacts answer;
   for (const Query& q : std::span(c.queries).first(std::min(kPoses, c.queries.size()))) {
-    if (auto r = backend_.query(q.pose, q.remembers ? &q.held : nullptr, answer); !r) return r.error().sentence;
+    if (auto r = backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, answer); !r) return r.error().sentence;
     told.push_back(answer.truncated ? answer.truncated_capacity : first_difference(answer, q.answer));
   }
   return {};

@@ -57,11 +57,9 @@ class Oracle {
  private:
   struct Query {
     LatticePose pose;
-    Held held;
-    bool remembers = false;
+    bool ignoring = false;
     Contacts answer;
     ContactResponse response;
-    Held left;   ///< what the next frame may hold on to
   };
   struct Case {
     std::string name;
@@ -72,6 +70,7 @@ class Oracle {
     Plan plan;
     VoxelPartition mockup, tool;
     std::vector<Query> queries;
+    Ignored ignored;      ///< every second patch
   };
   /// A pose's answer when a list is too small.
   struct Overflow {

@@ -299,6 +299,9 @@ std::uint64_t responses() {
   geometry.lattice.step_m = 0.25;
   geometry.tool_gc_m = Vec3(3, 4, 5);
   geometry.tool_centre_m = Vec3(1, -2, 7);
+  geometry.sample_spacing = 3;
+  geometry.tool_radius = 40;
+  geometry.reference_area_m2 = 2;
   LatticePose pose;
   for (int k = 0; k < 3; ++k) pose.rotation_q30[k][(k + 1) % 3] = 1 << 30;
   pose.translation = Int3(8, -9, 10);
@@ -306,7 +309,6 @@ std::uint64_t responses() {
     Contacts contacts;
     contacts.contact = below(8) != 0;
     contacts.truncated = below(16) == 0;
-    Held held;
     const int count = 1 + below(4);
     for (int a = 0; a < count; ++a) {
       ContactArea area;
@@ -316,35 +318,29 @@ std::uint64_t responses() {
       if (below(5) != 0) area.direction = Int3(points.within(2), points.within(2), points.within(2));
       area.rays = static_cast<std::uint32_t>(below(3));
       area.max_height = static_cast<std::uint32_t>(below(3)) << 29;
-      area.weight_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(2)} << 30;
       area.height_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(3)} << 28;
-      area.faded_sum = below(3);
-      area.faded_rest = below(1 << 20);
-      area.weight_slope = points.within(3);
-      area.height_slope = points.within(1000);
-      for (auto& moment : area.moment) moment = {below(1000), points.within(10)};
+      area.field.samples = static_cast<std::uint32_t>(below(3));
+      area.field.max_depth = static_cast<std::uint32_t>(below(1000));
+      area.field.weight_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(2)} << 30;
+      area.field.depth_sum = below(4) == 0 ? 0 : 1 + below(1 << 20);
+      for (auto* sums : {&area.field.push, &area.field.moment})
+        for (auto& term : *sums) term = {below(1000), points.within(10)};
       area.voxel_count = static_cast<std::uint32_t>(below(3));
       for (auto& voxel : area.voxel_sum) voxel = points.within(100);
       if (area.voxel_count == 0) area.voxel_sum = {};
-      for (int b = 0; b < count; ++b)
-        if (b != a && below(3) == 0) area.pierces.push_back(static_cast<std::uint32_t>(b));
       contacts.areas.push_back(area);
     }
-    for (int h = below(4); h > 0; --h) {
-      HeldArea area;
-      for (std::uint32_t s = 0; s < 16; ++s)
-        if (below(3) == 0) area.static_ids.push_back(s);
-      area.direction = Int3(1 << 28, 0, 0);
-      area.silent = below(2) == 0;
-      held.areas.push_back(area);
-    }
-    if (below(5) == 0) {
-      contacts.flags = kFlagSwallowed;
-      if (below(4) != 0) contacts.swallowed_direction = Int3(points.within(2), 1, 0) * below(2);
-      contacts.swallowed_height = static_cast<std::uint32_t>(below(3)) << 20;
+    for (int b = below(4); b > 0; --b) {
+      FieldBin& bin = contacts.field.bins[static_cast<std::size_t>(below(static_cast<int>(kFieldBins)))];
+      bin.samples = 1;
+      for (auto* sums : {&bin.push, &bin.turn})
+        for (auto& term : *sums) term = {below(1000), points.within(10)};
+      bin.give = below(1000);
+      for (auto& term : bin.give_at) term = points.within(100);
+      for (auto& term : bin.give_spread) term = points.within(10000);
     }
     ContactResponse response;
-    respond(contacts, pose, geometry, i % 3 == 0 ? Profile::kPaper : Profile::kRefined, 1000, response, i % 4 == 0 ? nullptr : &held);
+    respond(contacts, pose, geometry, i % 3 == 0 ? Profile::kPaper : Profile::kRefined, 1000, response);
     add(response.gc);
     add(response.wrench.force);
     add(response.wrench.torque);
@@ -354,15 +350,9 @@ std::uint64_t responses() {
       for (const Vec3& v : {area.normal, area.point, area.force, area.torque, Vec3(area.depth, area.max_depth, area.slope)}) add(v);
       sum.add(area.id);
       sum.add(area.flags);
-      sum.add(area.silent);
     }
-    remember(contacts, response, held);
-    sum.add(held.last_direction);
-    for (const HeldArea& area : held.areas) {
-      sum.add(area.direction);
-      sum.add(area.silent);
-      sum.add(static_cast<std::int64_t>(area.static_ids.size()));
-    }
+    for (const ContactPlane& plane : response.planes)
+      for (const Vec3& v : {plane.normal, plane.lever, Vec3(plane.force, plane.stiffness, 0)}) add(v);
   }
   return sum.value();
 }

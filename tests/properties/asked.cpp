@@ -11,8 +11,8 @@
 
 #include "compute/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
-#include "model/patches.h"
 #include "model/geometry_build.h"
+#include "model/patches.h"
 #include "model/triangle.h"
 
 namespace palpate::properties {
@@ -75,13 +75,24 @@ std::string text_of(const ContactArea& area, Extent extent, const Mapping& mappi
   std::sort(zones.begin(), zones.end());
   std::string text = fmt::format("area {} zones {}", through(mapping.statics, area.static_ids), zones);
   if (extent != Extent::kAll) return text;
-  text += fmt::format(" mobile {} flags {:x} direction {} {} {} rays {} max {} weight {} heights {}", through(mapping.mobiles, area.mobile_ids),
-                      area.flags, area.direction.x, area.direction.y, area.direction.z, area.rays, area.max_height, area.weight_sum, area.height_sum);
-  text += fmt::format(" faded {} {} slopes {} {}", area.faded_sum, area.faded_rest, area.weight_slope, area.height_slope);
-  text += " moment";
-  for (int k = 0; k < 3; ++k) text += fmt::format(" {}", value_of(area.moment[static_cast<std::size_t>(k)]) + mapping.shift[k] * area.height_sum);
+  text += fmt::format(" mobile {} flags {:x} direction {} {} {} rays {} max {} heights {}", through(mapping.mobiles, area.mobile_ids), area.flags, area.direction.x,
+                      area.direction.y, area.direction.z, area.rays, area.max_height, area.height_sum);
+  text += fmt::format(" field {} {} {} {}", area.field.samples, area.field.max_depth, area.field.weight_sum, area.field.depth_sum);
+  for (const auto* sums : {&area.field.push, &area.field.moment})
+    for (const WideSum& sum : *sums) text += fmt::format(" {}", value_of(sum));
   for (int k = 0; k < 3; ++k) text += fmt::format(" {}", area.voxel_sum[static_cast<std::size_t>(k)] + mapping.shift[k] * std::int64_t{area.voxel_count});
-  return text + fmt::format(" voxels {} pierces {} sheet {}", area.voxel_count, area.pierces, static_cast<int>(area.sheet_sign));
+  return text + fmt::format(" voxels {}", area.voxel_count);
+}
+
+std::string text_of(const FieldSums& field) {
+  std::string text = fmt::format("deepest {}", field.max_depth);
+  for (const FieldBin& bin : field.bins) {
+    if (bin.samples == 0) continue;
+    text += fmt::format(" bin {} {} {} {}", bin.samples, bin.give, bin.give_at, bin.give_spread);
+    for (const auto* sums : {&bin.push, &bin.turn})
+      for (const WideSum& sum : *sums) text += fmt::format(" {}", value_of(sum));
+  }
+  return text;
 }
 
 }  // namespace
@@ -135,7 +146,7 @@ std::string text_of(const Answer& answer, Extent extent, const Mapping& mapping)
   if (extent == Extent::kAreas) std::sort(areas.begin(), areas.end());
   text += fmt::format("{}\n", fmt::join(areas, "\n"));
   if (extent == Extent::kAll)
-    text += fmt::format("flags {:x} swallowed {} {} {} {}\n", c.flags, c.swallowed_direction.x, c.swallowed_direction.y, c.swallowed_direction.z, c.swallowed_height);
+    text += fmt::format("flags {:x} {}\n", c.flags, text_of(c.field));
   return text;
 }
 

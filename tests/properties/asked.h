@@ -44,7 +44,7 @@ enum class Extent {
   kVoxels,   ///< and IMT, BMT, BST
   kSets,     ///< and EST, contact
   kAreas,    ///< and the areas' and zones' static triangles
-  kAll,      ///< and every integer of the areas, in the order of Contacts::areas
+  kAll,      ///< and every integer of the field and of the areas, in the order of Contacts::areas
 };
 
 /// How one question's triangles are those of another. Ids that are not in the map stand for themselves.

@@ -164,8 +164,8 @@ TEST(Axes, RenamingAndMirroringASoupKeepsPairsAndBoundary) {
   });
 }
 
-// The tool's triangles are summed, never numbered against each other; which corner comes first decides nothing for a solid: a triangle that
-// crosses nothing is wholly inside or wholly outside.
+// The tool's triangles are never numbered against each other in sets and areas; which corner comes first decides nothing for a solid: a triangle that
+// crosses nothing is wholly inside or wholly outside. (The field's extra samples stand on the triangle of the smallest id, of several alike.)
 TEST(Order, OfToolTrianglesAndOfCornersIsOfNoConsequence) {
   check("order of tool triangles and corners", solids(false), [](const Question& question, const Answer& answer) {
     Mapping mapping;
@@ -174,8 +174,7 @@ TEST(Order, OfToolTrianglesAndOfCornersIsOfNoConsequence) {
     other.tool = with_other_first_corners(in_order(question.tool, mapping.mobiles));
     other.mockup = with_other_first_corners(question.mockup);
     const Answer reordered = ask(other);
-    RC_ASSERT(text_of(reordered, Extent::kAll, mapping) == text_of(answer, Extent::kAll));
-    RC_ASSERT(same_wrench(reordered, answer));
+    RC_ASSERT(text_of(reordered, Extent::kAreas, mapping) == text_of(answer, Extent::kAreas));
   });
 }
 
@@ -234,8 +233,6 @@ TEST(Doubling, AllCoordinatesKeepsPairsVoxelsAndSets) {
 }
 
 // The halves cover the triangle, and its samples are theirs: same plane, same axis, same unit normal; the perturbed point is in one of them.
-// A half may leave C_s, and with it a way from neighbour to neighbour, so areas may fall apart; where there was and is one, without a
-// needle (its rays start from the pairs' middles), its samples and all that is summed over them are the same.
 TEST(Splitting, AnEdgeOfTheMockupKeepsWhatIsTouched) {
   check("splitting", solids(false), [](const Question& question, const Answer& answer) {
     // Both triangles on an edge that has a lattice point in its middle.
@@ -271,27 +268,12 @@ TEST(Splitting, AnEdgeOfTheMockupKeepsWhatIsTouched) {
     RC_ASSERT(split.contacts.contact == answer.contacts.contact);
     RC_ASSERT(contact_statics(split, whole) == contact_statics(answer, {}));
     for (const VoxelClass c : {VoxelClass::kBoundary, VoxelClass::kInternal}) RC_ASSERT(voxels_of(split, c) == voxels_of(answer, c));
-    if (question.profile == Profile::kPaper || split.contacts.areas.size() != 1 || answer.contacts.areas.size() != 1) return;
-    const ContactArea &a = answer.contacts.areas[0], &b = split.contacts.areas[0];
-    if (a.zones.size() != b.zones.size() || ((a.flags | b.flags) & kFlagNeedle) != 0) return;
-    RC_ASSERT(a.flags == b.flags);
-    RC_ASSERT(a.direction == b.direction);
-    RC_ASSERT(a.rays == b.rays);
-    RC_ASSERT(a.weight_sum == b.weight_sum);
-    RC_ASSERT(a.height_sum == b.height_sum);
-    RC_ASSERT(a.faded_sum == b.faded_sum);
-    RC_ASSERT(a.faded_rest == b.faded_rest);
-    RC_ASSERT(a.weight_slope == b.weight_slope);
-    RC_ASSERT(a.height_slope == b.height_slope);
-    RC_ASSERT(a.max_height == b.max_height);
   });
 }
 
-// Far away, at the end of the list: the grid grows by whole voxels, the first ids stay. Only the nearest V_ext voxel of a point beyond the
-// smaller grid could change; a swallowed tool may ask for that.
+// Far away, at the end of the list: the grid grows by whole voxels, the first ids stay.
 TEST(FarGeometry, ChangesNothing) {
   check("far geometry", solids(false), [](const Question& question, const Answer& answer) {
-    RC_PRE((answer.contacts.flags & kFlagSwallowed) == 0u);
     Question other = question;
     const Int3 away((random_below(2) == 0 ? -1 : 1) * (400 + random_below(100)), random_below(201) - 100, random_below(201) - 100);
     for (const Corners& t : mapped(question.tool, [&](const Int3& p) { return p + away; })) other.mockup.push_back(t);
@@ -344,6 +326,7 @@ void expect_sound(const Answer& answer) {
     RC_ASSERT(response.wrench.force == Vec3(0));
     RC_ASSERT(response.wrench.torque == Vec3(0));
   }
+  const bool paper = answer.contacts.carriers.empty();   // in `refined` every area has some
   Vec3 force(0), torque(0);
   for (const AreaResponse& area : response.areas) {
     RC_ASSERT(area.depth >= 0 && std::isfinite(area.depth));
@@ -351,14 +334,17 @@ void expect_sound(const Answer& answer) {
     const bool directed = area.normal != Vec3(0);
     RC_ASSERT(!directed || std::abs(glm::dot(area.normal, area.normal) - 1) <= kUnit);
     if ((area.flags & kFlagNoDirection) != 0) RC_ASSERT(area.force == Vec3(0));
-    if (area.silent || !directed) RC_ASSERT(area.force == Vec3(0) && area.torque == Vec3(0));
-    if (!area.silent) RC_ASSERT(area.force == kStiffness * area.depth * area.normal);   // eq. 3, the same products in the same order
+    if (!directed) RC_ASSERT(area.force == Vec3(0) && area.torque == Vec3(0));
+    if (paper) RC_ASSERT(area.force == kStiffness * area.depth * area.normal);   // eq. 3, the same products in the same order
     for (int k = 0; k < 3; ++k) RC_ASSERT(std::isfinite(area.point[k]) && std::isfinite(area.torque[k]));
     force += area.force;
     torque += area.torque;
   }
-  RC_ASSERT(response.wrench.force == force);
-  RC_ASSERT(response.wrench.torque == torque);
+  if (paper && !response.areas.empty()) {
+    RC_ASSERT(response.wrench.force == force);
+    RC_ASSERT(response.wrench.torque == torque);
+  }
+  for (int k = 0; k < 3; ++k) RC_ASSERT(std::isfinite(response.wrench.force[k]) && std::isfinite(response.wrench.torque[k]));
 }
 
 TEST(AnyAnswer, OfSolidsIsSound) {

@@ -116,6 +116,45 @@ TEST(VirtualCoupling, BalancesPushAndSpringAndIsNoStifferThanItWhateverTheWalls)
   }
 }
 
+TEST(VirtualCoupling, LetsTheForceJumpWithNoResultWhateverItIs) {
+  // |F(i) − F(i−1)| ≤ 3 K · way + 0.1 N, turns by their way at the springs' arm, and so for torque: results of walls a thousand times as stiff, there and gone again.
+  std::mt19937 random(41);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&](double reach) { return reach * Vec3(unit(random), unit(random), unit(random)); };
+  constexpr double kSpring = 2000, kArm = 0.03;
+  const CouplingSettings settings{kSpring, kSpring * kArm * kArm};
+  double largest = 0, deepest = 0;
+  for (int run = 0; run < 40; ++run) {
+    ForceLawState law({.transitions = 1 + run % 8});
+    VirtualCoupling coupling(settings, 100);
+    const double speed = run % 3 == 0 ? 0 : 5e-4 * (1 + unit(random));   // m a tick
+    LawPose device;
+    Wrench before;
+    for (int i = 0; i < 600; ++i) {
+      const Vec3 moved = vector(speed), turned = vector(10 * speed);
+      device = {i, device.gc + moved, glm::normalize(rotation_by(turned) * device.rotation)};
+      const LawPose tool = coupling.follow(law, device);
+      LawResult result;
+      result.tick = i - 1;
+      result.gc = tool.gc + vector(1e-3);
+      result.rotation = tool.rotation;
+      result.plane_count = static_cast<std::uint32_t>(32 * (1 + unit(random)));
+      for (std::uint32_t p = 0; p < result.plane_count; ++p)
+        result.planes[p] = {glm::normalize(vector(1) + Vec3(0, 0, 0.5)), vector(0.05), 500 * unit(random), std::pow(10, 5 + unit(random))};
+      const bool comes = unit(random) < -0.4;
+      law.step(tool, comes ? &result : nullptr);
+      const Wrench felt = coupling.force({});
+      const double step = std::hypot(length(felt.force - before.force), length(felt.torque - before.torque) / kArm);
+      ASSERT_LE(step, 3 * kSpring * std::hypot(length(moved), kArm * length(turned)) + 0.1 + 1e-6) << run << " " << i;
+      largest = std::max(largest, length(pushed(result, tool.gc, tool.rotation).force));
+      deepest = std::max(deepest, length(felt.force));
+      before = felt;
+    }
+  }
+  EXPECT_GT(largest, 5000) << "what the results said";
+  EXPECT_GT(deepest, 2) << "and something of it came through";
+}
+
 TEST(VirtualCoupling, LeavesTheToolWhereTheDeviceIsInFreeSpace) {
   const ForceLawState law({});
   VirtualCoupling coupling({1000, 2});

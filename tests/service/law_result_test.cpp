@@ -27,7 +27,7 @@ TEST(LawResult, TakesTheStiffnessFromTheSlopeOfTheDepthWithinAQuarterAndOne) {
     response.areas.back().slope = slopes[i];
   }
   LawResult out;
-  fill_law_result(response, kK, out);
+  fill_law_result(response, false, kK, out);
   ASSERT_EQ(out.plane_count, 5u);
   const double expected[] = {1000, 500, 2000, 2000, 500};
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(out.planes[i].stiffness, expected[i], 1e-9) << i;
@@ -64,7 +64,7 @@ TEST(LawResult, LeavesOutAreasThatDoNotPush) {
   response.areas = {area(1, Vec3(0, 0, 1), 1e-3, 1e-3, Vec3(0)), area(2, Vec3(0, 0, -1), 5e-3, 5e-3, Vec3(0)), area(3, Vec3(0), 0, 0, Vec3(0))};
   response.areas[1].force = Vec3(0);   // nothing of it is deep
   LawResult out;
-  fill_law_result(response, kK, out);
+  fill_law_result(response, false, kK, out);
   EXPECT_EQ(out.plane_count, 1u);
   EXPECT_EQ(out.areas, 1u);
 }
@@ -83,7 +83,7 @@ TEST(LawResult, MergesTheSmallestOfManyAreasIntoOnePlaneWithTheSameWrench) {
   }
   response.wrench = sum;
   LawResult out;
-  fill_law_result(response, kK, out);
+  fill_law_result(response, false, kK, out);
   EXPECT_EQ(out.areas, 100u);
   ASSERT_EQ(out.plane_count, kMaxLawPlanes);
   out.tick = 0, out.gc = response.gc;

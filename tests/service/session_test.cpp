@@ -140,6 +140,89 @@ TEST(Session, WithAVirtualCouplingAWallFeelsNoStifferThanItsSpring) {
   EXPECT_TRUE(device.closed_at_zero);
 }
 
+TEST(Session, HangsTheToolOnASpringOfKByItselfWhereTheProfileIsRefined) {
+  for (const Profile profile : {Profile::kRefined, Profile::kPaper}) {
+    LoadedScene scene = half_space_scene();
+    scene.scene.control.coupling_n_per_m.reset();
+    scene.scene.control.coupling_nm_per_rad.reset();
+    scene.scene.response.profile = profile;
+    add_dip(scene, 2);
+    HalfSpace backend;
+    WatchedDevice device(scene);
+    Watcher watcher;
+    ASSERT_TRUE(run_session(scene, backend, device, {.pace = Pace::kAsap}, &watcher));
+    int deep = 0;
+    for (const TickRecord& tick : watcher.ticks) {
+      if (!tick.contact || tick.pose.position.z > -1e-3) continue;
+      ++deep;
+      ASSERT_NEAR(tick.sent.force.z, -tick.pose.position.z * (profile == Profile::kRefined ? 500 : 1000), 0.03) << (profile == Profile::kPaper ? "paper" : "refined");
+    }
+    EXPECT_GT(deep, 100);
+  }
+}
+
+TEST(Session, CountsFramesWithoutADirectionAndKeepsTheFirst) {
+  class Directionless : public HalfSpace {
+    Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+      auto done = HalfSpace::query(pose, ignored, out);
+      if (out.contact) out.field = {}, out.flags |= kFlagNoDirection;
+      return done;
+    }
+  } backend;
+  LoadedScene scene = half_space_scene();
+  add_dip(scene, 1);
+  WatchedDevice device(scene);
+  const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, nullptr);
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(device.strongest, 0);
+  EXPECT_GT(summary->no_direction_frames, 50u);
+  EXPECT_GT(summary->no_direction_tick, 200);
+  EXPECT_LT(summary->no_direction_pose.position.z, 0);
+  ASSERT_FALSE(summary->notes.empty());
+  EXPECT_THAT(summary->notes.front(), HasSubstr("in contact with nothing that says which way"));
+}
+
+/// The half-space in three patches of which the tool touches the second and third wherever it is below −4 mm, the second below 0.
+class Patched : public HalfSpace {
+ public:
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    auto done = HalfSpace::query(pose, ignored, out);
+    sets.push_back(ignored ? ignored->patches : std::vector<std::uint32_t>());
+    const auto holds = [&](std::uint32_t patch) { return std::count(sets.back().begin(), sets.back().end(), patch) > 0; };
+    if (out.contact && holds(1)) out.field = {}, out.areas.clear(), out.ignored_touched.push_back(1);
+    if (pose.translation.z < -4 * 1049 && holds(2)) out.ignored_touched.push_back(2);
+    return done;
+  }
+  std::vector<std::vector<std::uint32_t>> sets;
+};
+
+TEST(Session, LeavesContactsOfTheStartOutUntilTheyHaveOpened) {
+  LoadedScene scene = half_space_scene();
+  scene.geometry.mockup.patch_count = 3;
+  scene.scene.start_contacts = StartContacts::kIgnoreInitial;
+  // From 8 mm deep up and out, and down again.
+  auto& path = scene.scene.device.path;
+  path.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) path[i].time_s = 0.5 * static_cast<double>(i), path[i].pose.position.z = i == 1 ? 0.008 : -0.008;
+  scene.scene.start = path.front().pose;
+  Patched backend;
+  WatchedDevice device(scene);
+  Watcher watcher;
+  const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, &watcher);
+  ASSERT_TRUE(summary) << summary.error().sentence;
+  ASSERT_GT(backend.sets.size(), 100u);
+  EXPECT_EQ(backend.sets[0], (std::vector<std::uint32_t>{0, 1, 2})) << "to begin with, all that may be touched";
+  EXPECT_EQ(backend.sets[1], (std::vector<std::uint32_t>{1, 2}));
+  EXPECT_TRUE(backend.sets.back().empty());
+  EXPECT_EQ(summary->ignored_patches_first, 2u);
+  EXPECT_EQ(summary->ignored_patches_end, 0u);
+  EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("left out on 2 faces of the mock-up; all had opened by the end")));
+  double early = 0, late = 0;
+  for (const TickRecord& tick : watcher.ticks) (tick.time_s < 0.5 ? early : late) = std::max(tick.time_s < 0.5 ? early : late, tick.sent.force.z);
+  EXPECT_EQ(early, 0);
+  EXPECT_GT(late, 0.2);
+}
+
 TEST(Session, GivesResultsTheAgeThatTheSceneConfigures) {
   LoadedScene scene = half_space_scene();
   scene.scene.control.virtual_delay_ticks = 7;

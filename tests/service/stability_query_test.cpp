@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "cpu_ref/cpu_backend.h"
+#include "driver/simulated_device.h"
+#include "service/bench/stability_bodies.h"
 #include "service/bench/stability_contacts.h"
 
 namespace palpate {
@@ -24,18 +26,22 @@ class StabilityQuery : public testing::TestWithParam<int> {
   std::unique_ptr<PreparedCase> prepared_;
 };
 
+Result<std::unique_ptr<HapticDevice>> simulated(const DeviceSettings& settings, const Pose& start) { return make_simulated_device(settings, start, Vec3(0)); }
+
 TEST_P(StabilityQuery, TenMillisecondsCostLessThanATenthOfTheStiffness) {
-  const auto none = highest_stable_query(what_, *prepared_, LawKind::kHold, 0);
-  ASSERT_TRUE(none) << none.error().sentence;
-  const auto late = highest_stable_query(what_, *prepared_, LawKind::kCorrected, 10);
+  // b / (T/2) is 2000 N/m for whatever is no softer than its spring; with a wall in series K may be more.
+  const auto late = highest_stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 10);
   ASSERT_TRUE(late) << late.error().sentence;
-  std::printf("%s: %.0f N/m without delay, %.0f with results 10 ms old\n", what_.name.c_str(), *none, *late);
-  EXPECT_GE(*late, 0.9 * *none);
-  // b / (T/2) = 2000 N/m for all areas together, and ∂d/∂h ≤ 1: four areas that share it have 500 each.
-  EXPECT_GE(*none, what_.name == "four" ? 490 : 1900);
+  std::printf("%s: %.0f N/m with results 10 ms old\n", what_.name.c_str(), *late);
+  EXPECT_GE(*late, 1800) << "however large the contact";
+  // Without delay a ninth more is not stable, either: one run of many queries in place of a dozen.
+  const auto none = stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 0, *late / 0.9);
+  ASSERT_TRUE(none) << none.error().sentence;
+  EXPECT_FALSE(*none) << "ten milliseconds cost more than a tenth";
 }
 
 TEST_P(StabilityQuery, DeeperIsPushedHarderAndThePlanesSayByHowMuch) {
+  if (what_.kick.z == 0) GTEST_SKIP() << "not pressed down along z";
   constexpr double kStep = 1e-5;   // m, a fiftieth of the samples' spacing
   double before = 0, told = 0;
   for (int i = -60; i <= 60; ++i) {
@@ -86,18 +92,19 @@ TEST(Seam, IsCrossedInStepsThatOneRowOfSamplesBounds) {
   EXPECT_LE(steps->force_step_n, 3 * 2000 * 38e-6 + 0.1);
 }
 
-TEST(PiercedPlate, KeepsItsSideUntilTheToolIsThrough) {
+TEST(PiercedPlate, IsLeftOnTheOtherSideWithoutAJump) {
+  // The field pushes a sphere back until its middle is through, and then out of the other side: in between the tool slips through, and the spring eases it over.
   const auto steps = jumps_of("pierced plate", Profile::kRefined, LawKind::kCorrected, 5);
   ASSERT_TRUE(steps);
-  std::printf("pierced plate: results step by up to %.3f N, the force by %.3f N a tick, least push %.3f N\n", steps->response_step_n, steps->force_step_n, steps->least_push_n);
-  // A result each 5 ms, 0.33 mm further: the depth, a mean, goes no further than the tool. What is left where the last of the tool leaves
-  // the front: a cap 0.5 mm high.
-  EXPECT_LE(steps->response_step_n, 2000 * (0.33e-3 + 0.5e-3));
-  EXPECT_GE(steps->least_push_n, 0);
+  std::printf("pierced plate: results step by up to %.3f N, the force by %.3f N a tick\n", steps->response_step_n, steps->force_step_n);
+  EXPECT_LE(steps->force_step_n, 3 * 2000 * 67e-6 + 0.1);   // 40 mm in 0.6 s (docs/SAFETY.md)
 }
 
-INSTANTIATE_TEST_SUITE_P(Contacts, StabilityQuery, testing::Range(0, 4),
-                         [](const auto& tested) { return pressed_contacts()[static_cast<std::size_t>(tested.param)].name; });
+INSTANTIATE_TEST_SUITE_P(Contacts, StabilityQuery, testing::Range(0, 7), [](const auto& tested) {
+                           std::string name = pressed_contacts()[static_cast<std::size_t>(tested.param)].name;
+                           std::erase(name, ' ');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace palpate
