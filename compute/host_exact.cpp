@@ -76,8 +76,6 @@ std::uint32_t height_of(Wide distance, Wide slope) {
   return static_cast<std::uint32_t>((distance << 30) / slope);   // both are below 2^91
 }
 
-bool before(const Int3& a, const Int3& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
-
 }  // namespace
 
 bool triangles_meet(const Corners& s, const Corners& t, const Normal& t_normal) {
@@ -144,21 +142,6 @@ int segment_crossing(const Int3& p, const Int3& q, const Corners& t) {
   if (plane_ahead(n, q, t[0]) == facing) return 0;   // both ends on one side
   const Int3 d = q - p;
   return edge_side(p, d, t[0], t[1]) == facing && edge_side(p, d, t[1], t[2]) == facing && edge_side(p, d, t[2], t[0]) == facing ? facing : 0;
-}
-
-bool edge_crossing(Int3 p, Int3 q, const Corners& t, Int3& out) {
-  if (before(q, p)) std::swap(p, q);   // so that the rounding does not depend on who asks
-  const Normal n = raw_normal(t);
-  const Wide dp = dot(n, p - t[0]), dq = dot(n, q - t[0]), span = dp - dq;
-  if (span == 0 || sign(dp) * sign(dq) > 0) return false;
-  const Int3 d = q - p;
-  std::array<int, 3> sides;
-  for (std::size_t k = 0; k < 3; ++k) sides[k] = sign(dot(raw_normal(p, t[k], t[(k + 1) % 3]), d));
-  if (!same_side(sides)) return false;
-  // The ends are on different sides, or on the plane: d_p and d_p − d_q have one sign, and the ratio is in [0, 1].
-  const auto ratio = static_cast<std::int64_t>(((span < 0 ? -dp : dp) << 30) / (span < 0 ? -span : span));
-  for (int k = 0; k < 3; ++k) out[k] = p[k] + static_cast<std::int32_t>((std::int64_t{d[k]} * ratio) >> 30);
-  return true;
 }
 
 int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv, std::int64_t u, std::int64_t v) {

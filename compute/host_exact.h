@@ -59,9 +59,6 @@ Crossing ray_crossing(const Int3& p, const Int3& d, const Corners& t);
 /// not cross. A collapsed triangle is not crossed.
 int segment_crossing(const Int3& p, const Int3& q, const Corners& t);
 
-/// Where the edge pq meets the closed triangle t, if their planes cross there in one point (section 7, needles). False: nowhere.
-bool edge_crossing(Int3 p, Int3 q, const Corners& t, Int3& out);
-
 /// Side of the edge from p to q on which the grid point (u, v), moved by (ε, ε²), lies (section 4). Coordinates within 2^28 and a spacing.
 int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv, std::int64_t u, std::int64_t v);
 

@@ -5,39 +5,12 @@
 #include "shaders/shared/frame_field.h"
 #include "shaders/lib/body.glsl"
 #include "shaders/lib/budget.glsl"
-#include "shaders/lib/direction.glsl"
-#include "shaders/lib/wide_integer.glsl"
+#include "shaders/lib/distance.glsl"
 
 struct Depth {
   int32_t steps;       // φ
   uint32_t triangle;   // the nearest one, of several the smallest id; kNone: there is none
 };
-
-int64_t wide_dot(ivec3 a, ivec3 b) { return mul_wide(a.x, b.x) + mul_wide(a.y, b.y) + mul_wide(a.z, b.z); }
-
-// floor(√v), 0 ≤ v < 2^62. A float's root is off by less than 2^10; what is left of v says by how much, to less than one.
-int32_t floor_root(int64_t v) {
-  int64_t r = int64_t(sqrt(float(v)));
-  if (r > 0l) r += int64_t(floor(float(v - r * r) / (2.0 * float(r))));
-  if (r * r > v) r -= 1l;
-  if (r * r > v) r -= 1l;
-  if ((r + 1l) * (r + 1l) <= v) r += 1l;
-  if ((r + 1l) * (r + 1l) <= v) r += 1l;
-  return int32_t(r);
-}
-
-// floor(a / b), 2^28 ≤ b < 2^30, the quotient within 2^30: in two steps as above.
-int32_t floor_quotient(int64_t a, int32_t b) {
-  const int64_t wide = int64_t(b);
-  const float one = 1.0 / float(b);
-  int64_t q = int64_t(float(a) * one);
-  q += int64_t(floor(float(a - q * wide) * one));
-  if (q * wide > a) q -= 1l;
-  if (q * wide > a) q -= 1l;
-  if ((q + 1l) * wide <= a) q += 1l;
-  if ((q + 1l) * wide <= a) q += 1l;
-  return int32_t(q);
-}
 
 // How far p is from a closed box along each axis.
 ivec3 box_gap(ivec3 p, ivec3 low, ivec3 high) { return max(max(low - p, p - high), ivec3(0)); }
@@ -49,22 +22,6 @@ bool may_be_nearer(ivec3 gap, Depth best) {
   return wide_dot(gap, gap) <= reach * reach;
 }
 
-// The squared distance by way of the edge from u to v, if the point lies on its outer side; the least of them so far, −1: none. No loops here:
-// they would count against what llvmpipe lets an invocation run.
-void pass_edge(ivec3 u, ivec3 v, ivec3 p, ivec3 n, int32_t height, inout int64_t least) {
-  const ivec3 edge = v - u, from = p - u;
-  const ivec3 along = normalise(i64vec3(edge));   // within 2^29
-  const ivec3 across = ivec3(i64vec3(mul_wide(along.y, n.z) - mul_wide(along.z, n.y), mul_wide(along.z, n.x) - mul_wide(along.x, n.z),
-                                     mul_wide(along.x, n.y) - mul_wide(along.y, n.x)) >> 30);
-  const int32_t size = floor_root(wide_dot(along, along));   // from 2^28 on
-  const int32_t side = floor_quotient(wide_dot(across, from), size);
-  if (side <= 0) return;
-  const int32_t at = floor_quotient(wide_dot(along, from), size);
-  const int32_t over = max(0, max(-at, at - floor_root(wide_dot(edge, edge))));
-  const int64_t squared = mul_wide(height, height) + mul_wide(side, side) + mul_wide(over, over);   // within 3 · 2^60
-  if (least == -1l || squared < least) least = squared;
-}
-
 // The distance to a triangle, where it may be the least.
 void look_at(uint32_t id, ivec3 p, inout Depth best) {
   if (id == best.triangle || !body_bounds_solid(id)) return;
@@ -72,14 +29,9 @@ void look_at(uint32_t id, ivec3 p, inout Depth best) {
   const ivec3 a = body_vertices[ids.x], b = body_vertices[ids.y], c = body_vertices[ids.z];
   if (!may_be_nearer(box_gap(p, min(min(a, b), c), max(max(a, b), c)), best)) return;
   const ivec3 n = body_normals[id];
-  const int32_t height = int32_t(abs((wide_dot(n, p - a) + (1l << 29)) >> 30));   // |n·(p − a)| within 3 · 2^59
+  const int32_t height = height_above(n, a, p);
   if (height > best.steps) return;
-
-  int64_t least = -1l;
-  pass_edge(a, b, p, n, height, least);
-  pass_edge(b, c, p, n, height, least);
-  pass_edge(c, a, p, n, height, least);
-  const int32_t steps = least == -1l ? height : floor_root(least);
+  const int32_t steps = distance_at(height, n, a, b, c, p);
   if (steps < best.steps || (steps == best.steps && id < best.triangle)) best = Depth(steps, id);
 }
 

@@ -6,12 +6,6 @@ int64_t largest_component(i64vec3 s) { return max(max(abs(s.x), abs(s.y)), abs(s
 
 i64vec3 vector_of(int64_t s[3]) { return i64vec3(s[0], s[1], s[2]); }
 
-// A sum that has not cancelled: 8·max|S_i| ≥ W, S ≠ 0. |S_i| < 2^60.
-bool usable(i64vec3 s, int64_t weight) {
-  const int64_t m = largest_component(s);
-  return m != 0l && 8l * m >= weight;
-}
-
 // Highest set bit of v > 0.
 int32_t highest_bit(int64_t v) {
   const uint32_t high = uint32_t(uint64_t(v) >> 32);

@@ -61,22 +61,4 @@ Crossing ray_crossing(ivec3 p, ivec3 d, ivec3 a, ivec3 b, ivec3 c) {
   return Crossing(facing, facing > 0 ? height_quotient(distance, slope) : height_quotient(split30_neg(distance), split30_neg(slope)));
 }
 
-// Side of the edge from u to v for the perturbed ray along +x: the same rule with d = (1, 0, 0).
-int edge_side_x(ivec3 p, ivec3 u, ivec3 v) {
-  const i64vec3 f = i64vec3(u - p), g = i64vec3(v - p);
-  const int side = sign_of(f.y * g.z - f.z * g.y);
-  if (side != 0) return side;
-  return v.z != u.z ? (v.z < u.z ? 1 : -1) : sign(v.y - u.y);
-}
-
-// Sign of the crossing of the ray from p along +x with abc, 0 without one.
-int x_crossing(ivec3 p, ivec3 a, ivec3 b, ivec3 c) {
-  const int facing = edge_side_x(p, a, b);
-  if (facing == 0 || edge_side_x(p, b, c) != facing || edge_side_x(p, c, a) != facing) return 0;
-  // Three equal sides: the projection has an area of that sign, N.x ≠ 0.
-  const i64vec3 n = raw_normal(a, b, c);
-  const int side = sign_dot(n, a - p);
-  return (side != 0 ? side : -first_sign(n)) == facing ? facing : 0;
-}
-
 #endif

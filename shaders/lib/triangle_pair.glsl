@@ -23,11 +23,6 @@ ivec3 corner_of(Triangle t, int k) {
   return k == 0 ? t.a : (k == 1 ? t.b : t.c);
 }
 
-bool boxes_meet(Triangle s, Triangle t) {
-  return all(lessThanEqual(min(min(s.a, s.b), s.c), max(max(t.a, t.b), t.c))) &&
-         all(lessThanEqual(min(min(t.a, t.b), t.c), max(max(s.a, s.b), s.c)));
-}
-
 // Sides of t's corners of the plane through p with normal n.
 ivec3 plane_sides(i64vec3 n, ivec3 p, Triangle t) {
   return ivec3(sign_dot(n, t.a - p), sign_dot(n, t.b - p), sign_dot(n, t.c - p));

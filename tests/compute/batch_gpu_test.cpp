@@ -111,7 +111,7 @@ TEST_P(Batch, EndsWithTheErrorOfAPoseThatFails) {
   const auto fault = std::make_shared<GpuFault>();
   GpuOptions options = options_here();
   options.fault = fault;
-  options.host_share = HostShare::kAreas;   // what the host solves is never submitted
+  options.host_share = HostShare::kNear;   // what the host solves is never submitted
   const auto backend = prepared(options, scene);
   std::vector<Contacts> out(scene.poses.size());
   ASSERT_TRUE(backend->query_batch(scene.poses, out));
@@ -285,7 +285,7 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShadersAndRightTablesForTheSea
     const auto geometry = build_geometry(mockup.mesh, contacts->tool, settings);
     ASSERT_TRUE(geometry) << geometry.error().sentence;
     std::shared_ptr<const HostSamples> by[2];
-    for (const HostShare share : {HostShare::kAreas, HostShare::kContacts}) {
+    for (const HostShare share : {HostShare::kNear, HostShare::kContacts}) {
       GpuOptions options;
       options.host_share = share;
       auto device = VulkanDevice::create(options);

@@ -1,9 +1,6 @@
-#include <set>
-
 #include "cpu_ref/ray.h"
 #include "cpu_ref/samples.h"
 #include "cpu_ref/triangle_cube.h"
-#include "cpu_ref/triangle_triangle.h"
 #include "tests/compute/module_test.h"
 
 namespace palpate {
@@ -192,102 +189,6 @@ TEST_F(LatticeModules, SamplesOfAVoxelAreTheReferences) {
   });
   EXPECT_GT(samples, 1000u);
   EXPECT_GT(corners, 50u);
-}
-
-TEST_F(LatticeModules, ABoxTakesTheTenthsThatItReaches) {
-  each("seam_box", spirv::seam_box, [](const ModuleRun& run, std::vector<Words>& want, auto&) {
-    const auto push = push_as<gpu::GridPush>(run);
-    const Soup soup(run);
-    for (std::uint32_t i = 0; i < push.count; ++i) {
-      const cpu_ref::Box box = soup[run.buffers[3][i]].box();
-      const Int3 low = low_of(push, run.buffers[4], run.buffers[5], run.buffers[2][i]);
-      want[6][i] = 0;
-      for (int k = 0; k < 3; ++k)
-        for (int tenth = 0; tenth < 10; ++tenth) {
-          // Half-open, but the last one.
-          const std::int32_t begin = low[k] + tenth * push.size / 10, end = low[k] + (tenth + 1) * push.size / 10;
-          const bool reached = (box.max[k] >= begin || tenth == 0) && (box.min[k] < end || tenth == 9);
-          if (reached) want[6][i] |= 1u << (10 * k + tenth);
-        }
-    }
-  });
-}
-
-/// Whether two triangles that share no edge touch in more than a common corner; and how many corners they share.
-struct Touch {
-  int common = 0;
-  bool touches = false;
-  Touch(const Soup& soup, std::uint32_t s, std::uint32_t t) {
-    int of_s = 0, of_t = 0;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        if (soup.corners(s)[i] == soup.corners(t)[j]) ++common, of_s = i, of_t = j;
-    const cpu_ref::Triangle a = soup[s], b = soup[t];
-    touches = common == 0 ? cpu_ref::triangles_intersect(a, b)
-                          : common == 1 && (cpu_ref::segment_meets_triangle(a[(of_s + 1) % 3], a[(of_s + 2) % 3], b) ||
-                                            cpu_ref::segment_meets_triangle(b[(of_t + 1) % 3], b[(of_t + 2) % 3], a));
-  }
-};
-
-TEST_F(LatticeModules, CandidatesForSeamsAreAllThatTouchAndNoneThatCannot) {
-  std::size_t candidates = 0, full = 0;
-  each("seam_find", spirv::seam_find, [&](const ModuleRun& run, std::vector<Words>& want, std::vector<Words>& got) {
-    using Pair = std::array<std::uint32_t, 2>;
-    const auto push = push_as<gpu::SeamPush>(run);
-    const Soup soup(run);
-    const auto normals = values_of<Int3>(run.buffers[2]);
-    std::set<Pair> may, must;
-    for (std::uint32_t i = push.first; i < push.first + push.count; ++i) {
-      const std::uint32_t first = i + 1 + push.round * gpu::kSeamSpan, s = run.buffers[4][i];
-      for (std::uint32_t j = first; j < std::min(first + gpu::kSeamSpan, run.buffers[3][run.buffers[8][i] + 1]); ++j) {
-        const std::uint32_t t = run.buffers[4][j], both = run.buffers[7][i] & run.buffers[7][j];
-        const Long3 a(normals[s]), b(normals[t]);
-        bool near = a.x * b.x + a.y * b.y + a.z * b.z >= push.least_cosine;
-        for (int k = 0; k < 3; ++k) near = near && (both >> (10 * k) & 1023) != 0;
-        if (!near || !soup[s].box().meets(soup[t].box())) continue;
-        const Touch touch(soup, s, t);
-        if (touch.common > 1) continue;
-        may.insert({s, t});
-        if (touch.common == 0 || touch.touches) must.insert({s, t});
-      }
-    }
-    const std::uint32_t found = got[5][0];
-    candidates += found;
-    EXPECT_GE(found, must.size());
-    EXPECT_LE(found, may.size());
-    std::set<Pair> listed;
-    std::size_t others = 0;
-    for (const Pair& pair : values_of<Pair>(got[6])) {
-      if (pair == Pair{lattice_cases::kUntouched, lattice_cases::kUntouched}) {
-        ++others;
-        continue;
-      }
-      listed.insert(pair);
-      EXPECT_TRUE(may.contains(pair)) << pair[0] << ", " << pair[1];
-    }
-    const std::size_t written = std::min(found, push.capacity);
-    EXPECT_EQ(listed.size(), written);   // each once
-    EXPECT_EQ(others, want[6].size() / 2 - written);
-    full += found > push.capacity ? 1 : 0;
-    EXPECT_TRUE(found > push.capacity || std::includes(listed.begin(), listed.end(), must.begin(), must.end()));
-    want[5] = got[5];
-    want[6] = got[6];
-  });
-  EXPECT_GT(candidates, 1000u);
-  EXPECT_EQ(full, 1u);
-}
-
-TEST_F(LatticeModules, PairsThatTouchAlongASeamAreTheReferences) {
-  std::size_t touching = 0;
-  each("seam_test", spirv::seam_test, [&](const ModuleRun& run, std::vector<Words>& want, auto&) {
-    const Soup soup(run);
-    for (std::uint32_t i = 0; i < run.push[0]; ++i) {
-      const std::uint32_t s = run.buffers[2][2 * i], t = run.buffers[2][2 * i + 1];
-      want[3][i] = Touch(soup, s, t).touches ? 1 : 0;
-      touching += want[3][i];
-    }
-  });
-  EXPECT_GT(touching, 500u);
 }
 
 }  // namespace

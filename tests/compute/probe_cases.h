@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <vector>
@@ -159,40 +160,11 @@ inline std::vector<gpu::WideCase> wide() {
   std::vector<gpu::WideCase> cases(20000);
   for (auto& c : cases) {
     for (auto& n : c.n) n = numbers.within((std::int64_t{1} << 60) + (std::int64_t{1} << 57));   // ≥ 2^60.2
-    c.x = numbers.within(INT64_MAX);
-    c.y = numbers.within(std::int64_t{1} << 61);
     c.d = numbers.point((1 << 29) + 1);
+    c.e = numbers.point((1 << 29) + 1);
     c.a = numbers.point(1 << 28);
     c.b = numbers.point(1 << 28);
     c.c = numbers.point(1 << 28);
-  }
-  return cases;
-}
-
-/// Triangles without, with one and with two common corners; a third of them in one plane, on a tiny grid most of the time.
-inline std::vector<gpu::SeamCase> seams() {
-  LatticePoints points(4);
-  std::vector<gpu::SeamCase> cases(60000);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    auto& c = cases[i];
-    do {
-      points.choose();
-      points.triangle(c.s);
-      points.triangle(c.t);
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        c.of_s[static_cast<int>(k)] = k;
-        c.of_t[static_cast<int>(k)] = 3 + k;
-      }
-      const int axis = static_cast<int>(i / 3 % 3);
-      if (i % 3 == 0)
-        for (int k = 0; k < 3; ++k) c.s[k][axis] = c.t[k][axis] = c.s[0][axis];
-      const auto share = [&](std::size_t of_s, std::size_t of_t) {
-        c.t[of_t] = c.s[of_s];
-        c.of_t[static_cast<int>(of_t)] = c.of_s[static_cast<int>(of_s)];
-      };
-      if (i % 8 != 0) share(i % 3, i / 3 % 3);
-      if (i % 16 == 1) share((i + 1) % 3, (i / 3 + 1 + i / 16 % 2) % 3);
-    } while (flat(c.s) || flat(c.t));
   }
   return cases;
 }
@@ -217,6 +189,27 @@ inline std::vector<gpu::RayCase> segments() {
   return cases;
 }
 
+/// Triangles and points anywhere on the lattice: at corners, on edges, above the inside, and far away.
+inline std::vector<gpu::DistanceCase> distances() {
+  LatticePoints points(12);
+  std::vector<gpu::DistanceCase> cases(60000);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto& c = cases[i];
+    do {
+      points.choose();
+      points.triangle(c.corner);
+    } while (flat(c.corner));
+    const Long3 n = LatticePoints::normal(c.corner);
+    const double x = static_cast<double>(n.x), y = static_cast<double>(n.y), z = static_cast<double>(n.z), scale = 0x1p30 / std::sqrt(x * x + y * y + z * z);
+    c.normal = {static_cast<int>(std::lround(x * scale)), static_cast<int>(std::lround(y * scale)), static_cast<int>(std::lround(z * scale))};
+    c.point = points.point();
+    if (i % 5 == 0) c.point = c.corner[i % 3];
+    if (i % 7 == 0) c.point = (c.corner[i % 3] + c.corner[(i + 1) % 3]) / 2;
+    if (i % 3 == 0) c.point = (c.corner[0] + c.corner[1] + c.corner[2]) / 3 + Int3(points.within(100), points.within(100), points.within(100));
+  }
+  return cases;
+}
+
 /// Points of grids of every size: on faces and a step beside them, within and beyond.
 inline std::vector<gpu::CellCase> cells() {
   std::mt19937_64 engine(8);
@@ -235,7 +228,7 @@ inline std::vector<gpu::CellCase> cells() {
   return cases;
 }
 
-/// Sums of normals of every size, with weights at the bound and a step beside it.
+/// Sums of normals of every size.
 inline std::vector<gpu::DirectionCase> directions() {
   LatticePoints points(6);
   std::vector<gpu::DirectionCase> cases(30000);
@@ -244,28 +237,7 @@ inline std::vector<gpu::DirectionCase> directions() {
     const auto places = static_cast<int>(i % 60);
     for (std::int64_t& component : c.sum) component = points.within(1 << 28) * (std::int64_t{1} << 31) >> places;
     if (i % 5 == 0) c.sum[i % 3] = (std::int64_t{1} << places) * (i % 2 == 0 ? 1 : -1);
-    std::int64_t most = 0;
-    for (const std::int64_t component : c.sum) most = std::max<std::int64_t>(most, std::llabs(component));
-    c.weight = most < std::int64_t{1} << 59 ? 8 * most + points.within(1) : 0;
-    if (i % 101 == 0) c = {{0, 0, 0}, static_cast<std::int64_t>(i % 2)};
-  }
-  return cases;
-}
-
-/// Heights up to and round each bound of the fade: none, H_0, 2 H_0, 3 H_0; weights up to the largest, √3 in Q30.
-inline std::vector<gpu::HeightCase> heights() {
-  LatticePoints points(7);
-  std::mt19937_64 engine(7);
-  std::vector<gpu::HeightCase> cases(40000);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    auto& c = cases[i];
-    points.choose();
-    c.point = points.point();
-    c.weight = (1u << 30) + static_cast<std::uint32_t>(engine() % 785'000'000);
-    c.fade = i % 3 == 0 ? static_cast<std::uint32_t>(engine() % 20) : static_cast<std::uint32_t>(engine() % (1u << (1 + engine() % 30)));
-    const std::uint64_t bound = std::uint64_t{c.fade} * (i % 4);
-    const std::uint64_t height = i % 2 == 0 ? bound + engine() % 5 : engine() % (4 * std::uint64_t{c.fade} + 9);
-    c.height = static_cast<std::uint32_t>(std::min<std::uint64_t>(height < 2 ? height : height - engine() % 3, 1u << 31));
+    if (i % 101 == 0) c = {{0, 0, 0}};
   }
   return cases;
 }

@@ -59,14 +59,12 @@ Big height(const Int3& point, const Int3& direction, const Int3 (&corner)[3]) {
 TEST_F(Rays, CrossWhereThePerturbedRayDoes) {
   const auto cases = probe_cases::rays();
   const auto answers = run_probe<gpu::RayAnswer>(spirv::probe_ray, cases);
-  std::size_t crossings = 0, along_x = 0;
+  std::size_t crossings = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto& c = cases[i];
     SCOPED_TRACE(i);
-    along_x += answers[i].x_sign != 0 ? 1u : 0u;
     const int expected = crossing_sign(c.point, c.direction, c.corner);
     ASSERT_EQ(answers[i].crossing_sign, expected);
-    ASSERT_EQ(answers[i].x_sign, crossing_sign(c.point, {1, 0, 0}, c.corner));
     ASSERT_EQ(answers[i].culled, 0);   // a cheap test that lets go what is crossed
     const exact::Crossing on_host = exact::ray_crossing(c.point, c.direction, {c.corner[0], c.corner[1], c.corner[2]});
     ASSERT_EQ(on_host.sign, expected);
@@ -76,7 +74,6 @@ TEST_F(Rays, CrossWhereThePerturbedRayDoes) {
     ++crossings;
   }
   EXPECT_GT(crossings, cases.size() / 20);
-  EXPECT_GT(along_x, cases.size() / 100);
 }
 
 TEST_F(Rays, ThroughEdgesAndCornersCrossAClosedSurfaceEvenly) {
@@ -100,14 +97,10 @@ TEST_F(Rays, ThroughEdgesAndCornersCrossAClosedSurfaceEvenly) {
         }
   const auto answers = run_probe<gpu::RayAnswer>(spirv::probe_ray, cases);
   for (std::size_t i = 0; i < cases.size(); i += 8) {
-    int along = 0, along_x = 0;
-    for (std::size_t face = 0; face < 8; ++face) {
-      along += answers[i + face].crossing_sign;
-      along_x += answers[i + face].x_sign;
-    }
+    int along = 0;
+    for (std::size_t face = 0; face < 8; ++face) along += answers[i + face].crossing_sign;
     const Int3 p = cases[i].point;
     const int norm = std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
-    ASSERT_EQ(along, along_x);
     ASSERT_GE(along, norm < 8 ? 1 : 0) << p.x << ' ' << p.y << ' ' << p.z;   // on the surface: either
     ASSERT_LE(along, norm > 8 ? 0 : 1) << p.x << ' ' << p.y << ' ' << p.z;
   }
@@ -124,52 +117,18 @@ int segment_sign(const gpu::RayCase& c) {
   return facing;
 }
 
-/// The point that an edge and a closed triangle have in common, if their planes cross there in one point: docs/EXACTNESS.md section 7.
-std::optional<Int3> common_point(const gpu::RayCase& c) {
-  __extension__ using Wide = __int128;
-  Int3 p = c.point, q = c.direction;
-  if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q);
-  const auto side = [](const Long3& n, const Int3& v) { return Wide{n.x} * v.x + Wide{n.y} * v.y + Wide{n.z} * v.z; };
-  const Long3 n = LatticePoints::normal(c.corner);
-  const Wide dp = side(n, p - c.corner[0]), dq = side(n, q - c.corner[0]);
-  if (dp == dq || (dp > 0 && dq > 0) || (dp < 0 && dq < 0)) return std::nullopt;
-  bool left = false, right = false;
-  for (int e = 0; e < 3; ++e) {
-    const Int3 line[3] = {p, c.corner[e], c.corner[(e + 1) % 3]};
-    const Wide s = side(LatticePoints::normal(line), q - p);
-    left = left || s > 0;
-    right = right || s < 0;
-  }
-  if (left && right) return std::nullopt;
-  const Wide span = dp > dq ? dp - dq : dq - dp, part = dp > dq ? dp : -dp;
-  const auto ratio = static_cast<std::int64_t>(Big(Big(part) * (1 << 30) / Big(span)));
-  Int3 at;
-  for (int k = 0; k < 3; ++k) at[k] = p[k] + static_cast<int>((std::int64_t{q[k]} - p[k]) * ratio >> 30);
-  return at;
-}
-
-TEST_F(Rays, SegmentsCrossWhereTheirPerturbedEndsSayAndEdgesMeetInTheRoundedPoint) {
+TEST_F(Rays, SegmentsCrossWhereTheirPerturbedEndsSay) {
   const auto cases = probe_cases::segments();
-  const auto answers = run_probe<gpu::SegmentAnswer>(spirv::probe_segment, cases);
-  std::size_t crossings = 0, meetings = 0;
+  const auto answers = run_probe<std::int32_t>(spirv::probe_segment, cases);
+  std::size_t crossings = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     SCOPED_TRACE(i);
     const int sign = segment_sign(cases[i]);
-    ASSERT_EQ(answers[i].crossing_sign, sign);
-    const exact::Corners corners{cases[i].corner[0], cases[i].corner[1], cases[i].corner[2]};
-    ASSERT_EQ(exact::segment_crossing(cases[i].point, cases[i].direction, corners), sign);
+    ASSERT_EQ(answers[i], sign);
+    ASSERT_EQ(exact::segment_crossing(cases[i].point, cases[i].direction, {cases[i].corner[0], cases[i].corner[1], cases[i].corner[2]}), sign);
     crossings += sign != 0 ? 1u : 0u;
-    const auto at = common_point(cases[i]);
-    Int3 on_host(0);
-    ASSERT_EQ(answers[i].meets != 0, at.has_value());
-    ASSERT_EQ(exact::edge_crossing(cases[i].point, cases[i].direction, corners, on_host), at.has_value());
-    if (!at) continue;
-    ASSERT_EQ(answers[i].at, *at);
-    ASSERT_EQ(on_host, *at);
-    ++meetings;
   }
   EXPECT_GT(crossings, cases.size() / 50);
-  EXPECT_GT(meetings, cases.size() / 20);
 }
 
 }  // namespace

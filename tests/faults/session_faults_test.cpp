@@ -58,7 +58,7 @@ class LosingBackend final : public CollisionBackend {
   LosingBackend(int healthy, CountingDevice& device) : healthy_(healthy), device_(device) {
     GpuOptions options;
     options.fault = fault_;
-    options.host_share = HostShare::kAreas;   // contacts are the device's
+    options.host_share = HostShare::kNear;   // contacts are the device's
     auto made = make_gpu_backend(options);
     if (!made) throw std::runtime_error(made.error().sentence);
     gpu_ = std::move(*made);
@@ -144,7 +144,7 @@ TEST(TooSmallInMidRun, GrowsAndGivesTheSameForcesAsEnoughRoom) {
   } roomy, grown;
   for (const bool small : {false, true}) {
     GpuOptions options;
-    options.host_share = HostShare::kAreas;
+    options.host_share = HostShare::kNear;
     if (small) options.first_capacity = {{"pairs", 3}, {"samples", 3}, {"tool triangles of areas", 3}};
     auto gpu = make_gpu_backend(options);
     ASSERT_TRUE(gpu) << gpu.error().sentence;

@@ -15,27 +15,17 @@ using Limit = Limits::Limit;
 const std::vector<Limit>& limits() {
   static const std::vector<Limit> all = {
       {"", "kMaxGroupsX", 3, {"groups_for("}, {"ball_on_block", "ball_on_block_paper", "needle_of_pieces", "folds_in_a_row", "open_ball", "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
-      {"shaders/lib/tool_ray.glsl", "kLevels", 2, {}, {"nested_tool", "nested_tool_open_with_inside", "bridge_and_overlap", "crossed_wedges"}},
-      {"shaders/lib/tool_ray.glsl", "kLevels", 1, {}, {"stacked_tool", "stacked_tool_open"}},
-      {"shaders/lib/tool_ray.glsl", "kCandidates", 2, {}, {"nested_tool_open_with_inside", "stacked_tool_open", "open_ball"}},
-      {"shaders/lib/tool_walk.glsl", "kPutBy", 1, {}, {"nested_tool", "bridge_and_overlap", "ball_on_block"}},
-      {"shaders/lib/tool_walk.glsl", "kLevels", 2, {}, {"nested_tool", "bridge_and_overlap"}},
-      {"shaders/lib/pierce.glsl", "kSlotBox", 1, {"kSlotBox", "find_pierced("}, {"pierced_near_corners", "fine_plates", "needle_through_plates"}},
-      {"shaders/lib/sample_chunks.glsl", "kLoopBudget", 0, {}, {"sheet_tool"}},
-      {"shaders/frame/sample_winding.comp", "kLoopBudget", 0, {}, {"open_ball", "open_box_and_boxes"}},
       {"shaders/frame/voxel_touch.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_on_block_paper"}},
-      {"shaders/response/mobile_tiles.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_over_bead"}},
       {"shaders/response/points_sum.comp", "kLoopBudget", 0, {}, {"ball_on_block_paper", "two_sheets_paper"}},
       {"shaders/response/points_sum.comp", "kLoopBudget", 3, {}, {"ball_on_block_paper", "two_sheets_paper"}},
-      {"shaders/response/needle_trace.comp", "kLoopBudget", 1, {}, {"needle_in_a_bud"}},
-      {"shaders/response/needle_pairs.comp", "kNeedleProbes", 0, {}, {"needle", "needle_leaning"}, "needle table"},
-      {"shaders/lib/sample_chunks.glsl", "", 0, {}, {"sheet_tool"}, "lists with samples"},
-      {"shaders/frame/bins_fill.comp", "", 0, {}, {"open_ball"}, "bins of the tool's shadow"},
       {"shaders/frame/sample_scan.comp", "", 0, {}, {"sheet_tool", "ball_on_block"}, "samples", true},
       {"shaders/frame/sample_scan.comp", "", 0, {}, {"ball_on_block"}, "samples near the tool's surface", true},
       {"shaders/frame/sample_scan.comp", "", 0, {}, {"between_the_samples"}, "samples near the tool's surface", true},
-      {"shaders/frame/sample_walk.comp", "", 0, {}, {"ball_on_block"}, "samples"},
-      {"shaders/frame/sample_winding.comp", "", 0, {}, {"open_ball"}, "samples"}};
+      {"shaders/field/field_mobiles.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_over_bead"}},
+      {"shaders/field/field_statics.comp", "", 0, {}, {"needle"}, "extra samples"},
+      {"shaders/field/field_points.comp", "", 0, {}, {"ball_on_block"}, "samples of the tool"},
+      {"shaders/lib/ignored.glsl", "", 0, {}, {"two_sheets_ignoring"}, "ignored patches"},
+      {"shaders/frame/sample_walk.comp", "", 0, {}, {"ball_on_block", "open_ball"}, "samples"}};
   return all;
 }
 
@@ -64,7 +54,7 @@ std::vector<Limits::Module> Limits::with(const Limit& limit, std::uint32_t value
 
 std::vector<std::string> Limits::having(const std::vector<const char*>& words) {
   if (texts_.empty()) {
-    for (const char* folder : {"shaders/frame", "shaders/response"})
+    for (const char* folder : {"shaders/frame", "shaders/response", "shaders/field"})
       for (const auto& entry : std::filesystem::directory_iterator(root_ + "/" + folder)) {
         std::ifstream file(entry.path());
         texts_[std::string(folder) + "/" + entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -87,13 +77,7 @@ Limits::Told Limits::tell(const Limit& limit, std::uint32_t value, std::size_t o
   if (*limit.list != 0) device_.first_capacity({{limit.list, *limit.constant == 0 ? value : kFullTable}});
   device_.without_samples(limit.unlisted);
   Told all;
-  for (const HostShare share : {HostShare::kNear, HostShare::kAreas}) {
-    device_.host_share(share);
-    Told told;
-    if (std::string failure = oracle_.tell(of, told); !failure.empty()) told.push_back(failure);
-    all.insert(all.end(), told.begin(), told.end());
-  }
-  device_.host_share(HostShare::kNear);
+  if (std::string failure = oracle_.tell(of, all); !failure.empty()) all.push_back(failure);
   device_.without_samples(false);
   device_.first_capacity({});
   return all;

@@ -87,12 +87,11 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
         (tool ? made.tool : made.mockup) = std::move(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
-      for (const bool without : {true, false})   // so that the pipelines of all ways are there to be swapped
-        for (const HostShare share : {HostShare::kNear, HostShare::kAreas}) {
-          kept_of_->scene.samples = without ? nullptr : kept_of_->samples;
-          device_->host_share = share;
-          if (auto other = make_frame(geometry); !other) return other.error();
-        }
+      for (const bool without : {true, false}) {   // so that the pipelines of all ways are there to be swapped
+        kept_of_->scene.samples = without ? nullptr : kept_of_->samples;
+        device_->host_share = HostShare::kNear;
+        if (auto other = make_frame(geometry); !other) return other.error();
+      }
     }
   } else {
     kept_of_ = &found->second;

@@ -25,12 +25,11 @@ ShaderProbes::ShaderProbes(VulkanDevice& device) : device_(device) {
   add<std::int32_t>("probe_triangle_pair", probe_cases::pairs());
   add<std::int32_t>("probe_triangle_voxel", probe_cases::boxes());
   add<gpu::RayAnswer>("probe_ray", probe_cases::rays());
-  add<gpu::SegmentAnswer>("probe_segment", probe_cases::segments());
+  add<std::int32_t>("probe_segment", probe_cases::segments());
   add<gpu::SampleAnswer>("probe_sample", probe_cases::samples());
+  add<std::int32_t>("probe_distance", probe_cases::distances());
   add<gpu::CellAnswer>("probe_cells", probe_cases::cells());
-  add<gpu::SeamAnswer>("probe_seam", probe_cases::seams());
-  add<gpu::DirectionAnswer>("probe_direction", probe_cases::directions());
-  add<gpu::HeightAnswer>("probe_heights", probe_cases::heights());
+  add<Int3>("probe_direction", probe_cases::directions());
   add<gpu::PoseAnswer>("probe_pose", probe_cases::poses());
   add<gpu::PartitionAnswer>("probe_partition", probe_cases::partitions());
   add<gpu::GroupsAnswer>("probe_groups", probe_cases::groups());

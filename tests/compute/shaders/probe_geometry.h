@@ -1,4 +1,4 @@
-// Both sides of the probes of lib/triangle_pair.glsl, lib/seam.glsl, lib/ray.glsl, lib/segment.glsl, lib/sample.glsl, lib/cells.glsl and lib/voxel_range.glsl.
+// Both sides of the probes of lib/triangle_pair.glsl, lib/ray.glsl, lib/segment.glsl, lib/sample.glsl, lib/cells.glsl and lib/voxel_range.glsl.
 #ifndef PALPATE_PROBE_GEOMETRY_H
 #define PALPATE_PROBE_GEOMETRY_H
 #include "shaders/shared/base.h"
@@ -19,32 +19,16 @@ PALPATE_ASSERT_SIZE(RayCase, 60);
 struct RayAnswer {
   int32_t crossing_sign;     // of ray_crossing along the direction
   uint32_t height;
-  int32_t x_sign;            // of x_crossing
   int32_t culled;            // 1: it crosses what lib/line_box.glsl leaves out
 };
-PALPATE_ASSERT_SIZE(RayAnswer, 16);
+PALPATE_ASSERT_SIZE(RayAnswer, 12);
 
-struct SegmentAnswer {       // of the segment from RayCase::point to RayCase::direction
-  int32_t crossing_sign;     // of segment_crossing
-  int32_t meets;             // of edge_crossing
-  ivec3 at;
+struct DistanceCase {
+  ivec3 point;
+  ivec3 corner[3];
+  ivec3 normal;              // Q30
 };
-PALPATE_ASSERT_SIZE(SegmentAnswer, 20);
-
-struct SeamCase {
-  ivec3 s[3];
-  ivec3 t[3];
-  uvec3 of_s, of_t;          // numbers of the corners
-};
-PALPATE_ASSERT_SIZE(SeamCase, 96);
-
-struct SeamAnswer {
-  int32_t touches;           // of touch_along_a_seam
-  int32_t share_edge;
-  int32_t alone;             // of meet_in_a_corner_alone
-  int32_t culled;            // 1: they meet, and boxes_meet says that they do not
-};
-PALPATE_ASSERT_SIZE(SeamAnswer, 16);
+PALPATE_ASSERT_SIZE(DistanceCase, 60);
 
 struct SampleCase {
   ivec3 corner[3];

@@ -18,5 +18,5 @@ void main() {
   vec3 e = ray_scaled(c.direction);
   ivec3 low = min(min(c.corner[0], c.corner[1]), c.corner[2]), high = max(max(c.corner[0], c.corner[1]), c.corner[2]);
   bool kept = ray_may_meet_triangle(c.point, e, c.corner[0], c.corner[1], c.corner[2]) && ray_may_meet_box(c.point, e, low, high);
-  answers[i] = RayAnswer(crossing.sign, crossing.height, x_crossing(c.point, c.corner[0], c.corner[1], c.corner[2]), crossing.sign != 0 && !kept ? 1 : 0);
+  answers[i] = RayAnswer(crossing.sign, crossing.height, crossing.sign != 0 && !kept ? 1 : 0);
 }

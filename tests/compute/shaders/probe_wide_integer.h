@@ -6,29 +6,22 @@
 PALPATE_SHARED_BEGIN
 struct WideCase {
   int64_t n[3];
-  int64_t x, y;
-  ivec3 d;
+  ivec3 d, e;
   ivec3 a, b, c;
+  int32_t unused;
 };
 PALPATE_ASSERT_SIZE(WideCase, 88);
 
 struct WideAnswer {
-  int64_t dot_high;
-  uint64_t dot_low;
-  int64_t product_high;
-  uint64_t product_low;
-  int64_t sum_high;
-  uint64_t sum_low;
-  int64_t difference_high;
-  uint64_t difference_low;
+  int64_t dot_high, dot_low;   // Split30
+  int64_t sum_high, sum_low;
+  int64_t difference_high, difference_low;
   int64_t normal[3];
-  uint64_t ratio;
-  uint64_t ratio_two;
   int32_t sign_;
-  int32_t wide_sign;
-  int32_t less;
-  int32_t unused;
+  int32_t negated_sign;
+  int32_t is_zero;
+  int32_t number_sign;
 };
-PALPATE_ASSERT_SIZE(WideAnswer, 120);
+PALPATE_ASSERT_SIZE(WideAnswer, 88);
 PALPATE_SHARED_END
 #endif
