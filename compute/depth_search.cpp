@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "compute/host_exact.h"
+#include "compute/processor.h"
 #include "compute/turned_boxes.h"
 
 namespace palpate {
@@ -50,23 +51,25 @@ void DepthSearch::look_at(Search& search, std::uint32_t id) const {
   const std::int64_t height = std::abs((product(n, search.point - corners[0]) + (std::int64_t{1} << 29)) >> 30);
   if (height > search.best || !bounds_solid(mesh, id)) return;
 
-  // Each edge in doubles first. A side is off by less than 4 steps and 2^-27 of the way there: m is rounded by a step in 2^28, L likewise, n by 2^-31.
-  const double best = static_cast<double>(search.best), h = static_cast<double>(height);
+  // Each edge in doubles first, squared, so that there is one root a triangle. A side is off by less than 4 steps and 2^-27 of the way there: m is rounded by a
+  // step in 2^28, L likewise, n by 2^-31.
+  const double x = search.point.x, y = search.point.y, z = search.point.z, h = static_cast<double>(height);
+  const double slack = 8 + 0x1p-25 * (std::fabs(x - corners[0].x) + std::fabs(y - corners[0].y) + std::fabs(z - corners[0].z) +
+                                      std::fabs(double(corners[1].x) - corners[0].x) + std::fabs(double(corners[1].y) - corners[0].y) + std::fabs(double(corners[1].z) - corners[0].z) +
+                                      std::fabs(double(corners[2].x) - corners[0].x) + std::fabs(double(corners[2].y) - corners[0].y) + std::fabs(double(corners[2].z) - corners[0].z));
+  const double best = static_cast<double>(search.best) + 2, far = std::sqrt(std::max(best * best - h * h, 0.0)) + slack;   // beyond it an edge is too far away
   bool unsure = false;
   for (int k = 0; k < 3; ++k) {
     const Int3 &u = corners[k], &v = corners[k == 2 ? 0 : k + 1];
     const double ex = v.x - double(u.x), ey = v.y - double(u.y), ez = v.z - double(u.z);
-    const double fx = search.point.x - double(u.x), fy = search.point.y - double(u.y), fz = search.point.z - double(u.z);
-    const double out = (ey * n.z - ez * n.y) * fx + (ez * n.x - ex * n.z) * fy + (ex * n.y - ey * n.x) * fz;   // side · |e| · 2^30
-    const double size = ex * ex + ey * ey + ez * ez;
-    const double slack = 8 + 0x1p-26 * (std::fabs(fx) + std::fabs(fy) + std::fabs(fz));
-    const double limit = 0x1p30 * std::sqrt(size);
-    if (out < -slack * limit) continue;                      // surely side ≤ 0
-    if (out > slack * limit) {
-      const double side = out / limit - slack;
-      if (h * h + side * side > (best + 2) * (best + 2)) return;   // too far away
+    const double out = (ey * n.z - ez * n.y) * (x - u.x) + (ez * n.x - ex * n.z) * (y - u.y) + (ex * n.y - ey * n.x) * (z - u.z);   // side · |e| · 2^30
+    const double unit = 0x1p60 * (ex * ex + ey * ey + ez * ez), squared = out * out;
+    if (out < 0) {
+      unsure = unsure || squared <= slack * slack * unit;
+    } else {
+      if (squared > far * far * unit) return;
+      unsure = true;
     }
-    unsure = true;
   }
   std::int64_t distance = height;
   if (unsure) {
@@ -167,10 +170,12 @@ void DepthSearch::look_round(Search& search) const {
 }
 
 DepthSearch::Depth DepthSearch::below(const Int3& point, std::uint32_t guess) const {
-  Search search{.point = point};
-  if (guess != kNobody) look_at(search, guess);
-  look_round(search);
-  return {static_cast<std::uint32_t>(search.best), search.triangle};
+  return on_this_processor([&] {
+    Search search{.point = point};
+    if (guess != kNobody) look_at(search, guess);
+    look_round(search);
+    return Depth{static_cast<std::uint32_t>(search.best), search.triangle};
+  });
 }
 
 InsideSearch::InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes)
@@ -183,8 +188,13 @@ bool InsideSearch::inside(const Int3& point) {
   const Int3 voxel = partition_->voxel_of(point);
   const HostPartition::Voxel at = partition_->at(voxel);
   if (at.boundary == kNoVoxel) return at.kind == kVoxelInternal;
+  return on_this_processor([&] { return inside_boundary(point, voxel, at.boundary); });
+}
+
+/// In a V_bnd voxel.
+bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary) {
   if (mesh_->closed) {
-    std::uint8_t& way = way_[at.boundary];
+    std::uint8_t& way = way_[boundary];
     if (way == 0) way = shortest_way(voxel);
     const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1, true);
     return out.net + (out.kind == kVoxelInternal ? winding_of(out.voxel) : 0) != 0;

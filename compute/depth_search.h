@@ -53,6 +53,7 @@ class InsideSearch {
     Int3 voxel;           ///< where it ends
     std::uint32_t kind;   ///< of that voxel
   };
+  bool inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary);
   Walk walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const;
   int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary, bool sheets) const;
   std::uint8_t shortest_way(const Int3& voxel) const;

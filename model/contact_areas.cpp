@@ -134,10 +134,14 @@ void gather_areas(const SceneGeometry& geometry, const LatticePose& pose, Contac
     for (int k = 0; k < 3; ++k) bounds[area_at[first]].include(mesh.corner(carrier.id, k));
   }
   for (ContactArea& area : contacts.areas) {
-    Long3 sum(0);   // of a push, less its lowest bits: terms within 2^62 >> 32, fewer than 2^31 of them
+    // A push that may not fit 64 bits loses its low 32, all of its components alike: terms within 2^62 >> 32, fewer than 2^31 of them.
+    const auto large = [](const WideSum& push) { return std::llabs(push.high + (push.low >> 32)) >= std::int64_t{1} << 29; };
+    const bool wide = std::any_of(area.field.push.begin(), area.field.push.end(), large);
+    Long3 sum(0);
     for (int k = 0; k < 3; ++k) {
       const WideSum& push = area.field.push[static_cast<std::size_t>(k)];
-      sum[k] = push.high + (push.low >> 32);
+      const std::int64_t high = push.high + (push.low >> 32);
+      sum[k] = wide ? high : high * (std::int64_t{1} << 32) + (push.low & 0xFFFFFFFF);
     }
     if (sum != Long3(0)) area.direction = lattice_direction(sum);
   }

@@ -34,6 +34,7 @@ void fill_law_result(const ContactResponse& response, bool field, double stiffne
   out.field = field;
   if (field) {
     fill_planes(response, out);
+    for (std::uint32_t i = 0; i < out.plane_count; ++i) out.planes[i].stiffness *= kFirmer;
     out.areas = static_cast<std::uint32_t>(response.areas.size());
     return;
   }

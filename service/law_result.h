@@ -16,6 +16,12 @@ struct LawResult : PlaneSet {
   std::uint32_t areas = 0;            ///< areas with a force, before the merge below
 };
 
+/// How much firmer than the field says its planes are for the law. Planes leave out how facets turn and how a push along n gives way across n (n·u < 1, EXACTNESS section 8),
+/// so they say too little where a corner or a tilted peg presses; and what a late result says too little of, the loop is driven by (docs/CONTROL.md). Too much is no harm behind the
+/// spring: the tool comes to its place a result later (measured: a corner behind 1500 N/m, results 10 ticks old, needs more than 1.5; a contact as soft as the spring is
+/// carried on a third too stiffly until the next result).
+inline constexpr double kFirmer = 2;
+
 /// The planes of `refined` (ContactResponse::planes) as a set of fixed size, but for its pose: beyond kMaxLawPlanes, those most alike are made one.
 void fill_planes(const ContactResponse& response, PlaneSet& out);
 

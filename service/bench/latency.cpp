@@ -39,7 +39,7 @@ Result<std::vector<Subject>> measure(const BenchOptions& options, const std::str
       for (std::size_t k = 0; k < subjects.size(); ++k) {
         Subject& subject = subjects[(i + k) % subjects.size()];   // nobody is always the first
         const Stopwatch watch(options.cpu_clock);
-        if (auto done = answer_pose(*subject.scene, (*poses)[i], answer); !done) return done.error();
+        if (auto done = answer_frame(*subject.scene, (*poses)[i], answer); !done) return done.error();
         const double total_us = watch.us();
         if (round > 0) subject.times.add(answer.contacts, total_us);
       }

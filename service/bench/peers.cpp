@@ -86,7 +86,7 @@ Result<void> check(const Parts& parts, Race& race, Console& console) {
     judge->find(*pose, exact);
     std::sort(exact.begin(), exact.end());
     race.exact_pairs += exact.size();
-    if (auto done = answer_pose(*race.scene, race.poses[i], answer); !done) return done;
+    if (auto done = answer_frame(*race.scene, race.poses[i], answer); !done) return done;
     race.kinds.push_back(frame_kind(answer.contacts));
 
     std::vector<std::uint32_t> statics, mobiles;
@@ -126,7 +126,7 @@ Result<void> time_all(const BenchOptions& options, Race& race, Console& console)
         const std::size_t runner = (i + k) % runners;
         const Stopwatch watch(options.cpu_clock);
         if (runner == race.peers.size()) {
-          if (auto done = answer_pose(*race.scene, race.poses[i], answer); !done) return done;
+          if (auto done = answer_frame(*race.scene, race.poses[i], answer); !done) return done;
           race.ours.add(race.kinds[i], watch.us());
           continue;
         }

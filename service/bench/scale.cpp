@@ -75,7 +75,7 @@ Result<Figures> measure(const BenchOptions& options, const std::string& file, co
   for (std::uint64_t round = 0; round <= options.rounds; ++round)
     for (std::size_t i = 0; i < poses->size(); ++i) {
       const Stopwatch watch(options.cpu_clock);
-      if (auto done = answer_pose(scene, (*poses)[i], answer); !done) return done.error();
+      if (auto done = answer_frame(scene, (*poses)[i], answer); !done) return done.error();
       if (const double us = watch.us(); round > 0) out.times.add(frame_kind(answer.contacts), us);
       if (i % 16 == 0 && !console.progress("poses", static_cast<double>(round) / static_cast<double>(options.rounds + 1))) return Error{ErrorCode::kInternal, "interrupted"};
     }

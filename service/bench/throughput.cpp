@@ -49,7 +49,7 @@ Result<Outcome> measure(const BenchOptions& options, HostedScene& scene, const s
   console.step("measuring");
   for (std::uint64_t round = 0; round <= options.rounds; ++round) {
     for (const Pose& pose : all) {
-      if (auto done = answer_pose(scene, pose, answer); !done) return done.error();
+      if (auto done = answer_frame(scene, pose, answer); !done) return done.error();
       if (round == 0) continue;
       out.single_us.push_back(answer.total_us);
       out.stages_us.push_back(sum_of_stages(answer.contacts));

@@ -6,25 +6,43 @@
 
 namespace palpate {
 
-Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) { return answer_pose(scene.loaded, *scene.backend, pose, out); }
+namespace {
 
-Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  const SceneGeometry& geometry = scene.geometry;
-  const Result<LatticePose> lattice = to_lattice(pose, geometry);
+using Clock = std::chrono::steady_clock;
+
+double us_since(Clock::time_point start) { return std::chrono::duration<double, std::micro>(Clock::now() - start).count(); }
+
+Result<void> evaluate(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out) {
+  const Result<LatticePose> lattice = to_lattice(pose, scene.geometry);
   if (!lattice) return lattice.error();
   if (auto done = backend.query(*lattice, nullptr, out.contacts); !done) return done;
   const ResponseSettings& settings = scene.scene.response;
-  respond(out.contacts, *lattice, geometry, settings.profile, settings.stiffness_n_per_m, out.response);
+  respond(out.contacts, *lattice, scene.geometry, settings.profile, settings.stiffness_n_per_m, out.response);
+  return {};
+}
+
+}  // namespace
+
+Result<void> answer_frame(HostedScene& scene, const Pose& pose, Answer& out) {
+  const auto start = Clock::now();
+  if (auto done = evaluate(scene.loaded, *scene.backend, pose, out); !done) return done;
+  out.total_us = us_since(start);
+  return {};
+}
+
+Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) { return answer_pose(scene.loaded, *scene.backend, pose, out); }
+
+Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out) {
+  const auto start = Clock::now();
+  if (auto done = evaluate(scene, backend, pose, out); !done) return done;
+  const ResponseSettings& settings = scene.scene.response;
   if (settings.profile == Profile::kRefined)
-    if (auto felt = LoneQuery(geometry, settings.stiffness_n_per_m).feel(backend, nullptr, pose, out.response); !felt) return felt;
-  out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    if (auto felt = LoneQuery(scene.geometry, settings.stiffness_n_per_m).feel(backend, nullptr, pose, out.response); !felt) return felt;
+  out.total_us = us_since(start);
   return {};
 }
 
 Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
-  using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const SceneGeometry& geometry = scene.loaded.geometry;
   out.poses.clear();
@@ -43,7 +61,7 @@ Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, Batch
     if (settings.profile != Profile::kRefined) continue;
     if (auto felt = lone.feel(*scene.backend, nullptr, poses[i], out.responses[i]); !felt) return felt;
   }
-  out.total_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  out.total_us = us_since(start);
   return {};
 }
 

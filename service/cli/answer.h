@@ -27,6 +27,9 @@ struct BatchAnswer {
 /// Answers poses side by side where the back end can; each as answer_pose would, but for the times. Errors likewise.
 Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out);
 
+/// One frame, as a session asks it: the field at the pose itself, no balance with a spring. What benches time.
+Result<void> answer_frame(HostedScene& scene, const Pose& pose, Answer& out);
+
 /// Answers one pose; a lone query holds nothing from a frame before. Errors: not a pose; the back end failed.
 Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out);
 /// The same by another back end that has the scene prepared.

@@ -92,6 +92,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   // Pairs are exported pose by pose: a back end knows those of its last answer alone.
   const bool together = options.batch && options.export_directory.empty();
   BatchAnswer batch;
+  Answer asked;
   for (std::size_t first = 0, count = 0; first < poses.size(); first += count) {
     text.clear();
     if (together) {
@@ -102,8 +103,11 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     } else {
       count = 1;
       if (auto done = answer_pose(scene, poses[first], answer); !done) return done;
-      if (!options.export_directory.empty())
+      if (!options.export_directory.empty()) {
+        // A back end knows the pairs of its last evaluation alone, which was where the tool would be.
+        if (auto done = answer_frame(scene, poses[first], asked); !done) return done;
         if (auto done = export_pairs(options.export_directory, *scene.backend, first); !done) return done;
+      }
       print(first, answer.total_us, answer.contacts, answer.response);
     }
     if (auto done = put(text); !done) return done;

@@ -125,7 +125,8 @@ TEST(OneTriangle, AgainstABallIsFeltFromTheSideItFaces) {
   EXPECT_THAT(above->contacts.cst, ElementsAre(0u));
   ASSERT_EQ(above->response.areas.size(), 1u);
   EXPECT_GT(above->response.wrench.force.z, 0);
-  EXPECT_LT(std::hypot(above->response.wrench.force.x, above->response.wrench.force.y), 1e-9 * above->response.wrench.force.z);
+  // A sheet is pushed the way out of the ball: straight up where it is symmetric about the ball's axis, which a triangle is not quite.
+  EXPECT_LT(std::hypot(above->response.wrench.force.x, above->response.wrench.force.y), 0.01 * above->response.wrench.force.z);
 }
 
 }  // namespace

@@ -65,10 +65,10 @@ class LosingBackend final : public CollisionBackend {
   }
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override { return gpu_->prepare(geometry, plan, progress); }
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
-    if (healthy_-- == 0) {
+    if (healthy_-- <= 0) {   // a pose that touches nothing submits nothing and loses nothing
       fault_->call = Call::kSubmit;
       auto lost = gpu_->query(pose, ignored, out);
-      device_.failed = true;
+      if (!lost) device_.failed = true;
       return lost;
     }
     return gpu_->query(pose, ignored, out);
@@ -145,7 +145,7 @@ TEST(TooSmallInMidRun, GrowsAndGivesTheSameForcesAsEnoughRoom) {
   for (const bool small : {false, true}) {
     GpuOptions options;
     options.host_share = HostShare::kNear;
-    if (small) options.first_capacity = {{"pairs", 3}, {"samples", 3}, {"tool triangles of areas", 3}};
+    if (small) options.first_capacity = {{"pairs", 3}, {"samples", 3}};
     auto gpu = make_gpu_backend(options);
     ASSERT_TRUE(gpu) << gpu.error().sentence;
     SteadyBackend backend(std::move(*gpu), nullptr);
@@ -154,7 +154,7 @@ TEST(TooSmallInMidRun, GrowsAndGivesTheSameForcesAsEnoughRoom) {
     const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap, .duration_s = 0.1}, small ? &grown : &roomy);
     ASSERT_TRUE(summary);
     EXPECT_FALSE(summary->failure);
-    for (const char* name : {"pairs", "tool triangles of areas"})   // of several at once the first is named
+    for (const char* name : {"pairs"})   // of several at once the first is named
       EXPECT_EQ(std::any_of(summary->notes.begin(), summary->notes.end(),
                             [&](const std::string& note) { return note.find("too little room for " + std::string(name) + ":") != std::string::npos; }),
                 small)

@@ -20,17 +20,14 @@ SHARED_STORAGE = {'StorageBuffer', 'Uniform', 'UniformConstant', 'PushConstant',
 
 RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding, contracted or not, and exact tests follow'
 CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
+DEPTH = 'in which cell a coordinate lies (as above), and quotients and roots of lib/distance.glsl: floats estimate them, integer remainders settle them'
 CULLS = {
     'centroids_trace': RAYS,
-    'heights_trace': RAYS,
-    'mobile_samples': CELL,
+    'field_from_mockup': DEPTH,
+    'field_from_tool': DEPTH,
+    'field_points': CELL,
     'sample_scan': CELL,
     'sample_walk': CELL,
-    'swallow_march': CELL,
-    'needle_pairs': RAYS,
-    'pierce_find': RAYS,
-    'seam_find': 'a plane that may separate two triangles (lib/seam.glsl): integers decide whether it does, and exact tests follow where it does not',
-    'seam_box': 'in which tenths of a voxel a triangle lies: rounding is monotone, so two triangles that share a point share a tenth, and exact tests follow',
 }
 
 

@@ -181,11 +181,7 @@ std::uint64_t directions() {
     if (i % 5 == 0) v[i % 3] = (std::int64_t{1} << places) * (i % 2 == 0 ? 1 : -1);
     if (v == Long3(0)) continue;
     sum.add(normalise(v));
-    const std::int64_t most = std::max({std::llabs(v.x), std::llabs(v.y), std::llabs(v.z)});
-    if (most < std::int64_t{1} << 59)
-      for (const int more : {-1, 0, 1}) sum.add(usable(v, 8 * most + more));
   }
-  sum.add(usable(Long3(0), 0));
   return sum.value();
 }
 

@@ -111,9 +111,9 @@ TEST(Session, PressesBackWithTheDepthOfTheContact) {
   EXPECT_NEAR(summary->force_max_N, 0.01 * 135 * 1000 / 1135, 0.25);
   for (const TickRecord& tick : watcher.ticks) {
     ASSERT_GE(tick.sent.force.z, 0) << "never pulls";
-    // A wall's plane is exact, so apart from the ramp at touch and release the law knows the force of this very tick.
+    // Apart from the ramp at touch and release the law knows the force of this very tick, but that planes are carried on firmer (kFirmer).
     if (tick.contact && tick.pose.position.z < -1e-3) {
-      ASSERT_NEAR(tick.sent.force.z, -1000 * tick.pose.position.z, 0.02);
+      ASSERT_NEAR(tick.sent.force.z, -1000 * tick.pose.position.z, 0.05);
     }
   }
   EXPECT_TRUE(device.closed_at_zero);
