@@ -105,8 +105,8 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
   return device_->check_guards();
 }
 
-Result<void> MutableDevice::query(const LatticePose& pose, const Held* held, Contacts& out) {
-  if (auto r = frame_->query(pose, held, out); !r) return r;
+Result<void> MutableDevice::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
+  if (auto r = frame_->query(pose, ignored, out); !r) return r;
   return device_->check_guards();
 }
 

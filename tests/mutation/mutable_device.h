@@ -24,7 +24,7 @@ class MutableDevice final : public CollisionBackend {
   MutableDevice();
 
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override;
-  Result<void> query(const LatticePose& pose, const Held* held, Contacts& out) override;
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<VoxelPartition> partition(bool tool) const override;
   bool has_internal_voxels() const override { return scene().mockup.partition.has_internal; }
   std::string name() const override { return "gpu"; }
