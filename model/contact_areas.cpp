@@ -144,6 +144,7 @@ void gather_areas(const SceneGeometry& geometry, const LatticePose& pose, Contac
       sum[k] = wide ? high : high * (std::int64_t{1} << 32) + (push.low & 0xFFFFFFFF);
     }
     if (sum != Long3(0)) area.direction = lattice_direction(sum);
+    area.rays = area.field.samples;
   }
   associate(geometry, pose, bounds, contacts);
 }

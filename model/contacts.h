@@ -30,7 +30,7 @@ struct ContactArea {
   std::uint32_t flags = 0;                          ///< ContactFlag bits
   Int3 direction{0};                                ///< n_c unnormalised, largest |component| in [2^28, 2^29), or 0
   CarrierSums field;                                ///< `refined`: what its triangles carry
-  std::uint32_t rays = 0;                           ///< `paper`: centroids whose ray met the tool
+  std::uint32_t rays = 0;                           ///< `paper`: centroids whose ray met the tool; `refined`: samples inside it
   std::uint32_t max_height = 0;                     ///< `paper`: largest H
   std::int64_t height_sum = 0;                      ///< `paper`: Σ H
   std::array<std::int64_t, 3> voxel_sum{};          ///< `paper`: Σ centres of the area's V_bnd voxels

@@ -4,7 +4,7 @@ import subprocess
 
 from harness import *
 
-FIELDS = ['pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'truncated', 'time_us']
+FIELDS = ['pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'tool', 'evaluations', 'truncated', 'time_us']
 AREA_FIELDS = ['id', 'zones', 'static', 'mobile', 'normal', 'depth', 'point', 'force', 'torque', 'flags']
 SETS = ['cst', 'bst', 'cmt', 'bmt', 'imt', 'est']
 HEADER = 'x,y,z,qx,qy,qz,qw\n'
@@ -30,15 +30,18 @@ def test_a_line_has_the_contracts_fields_in_its_order():
     expect(sorted(i for zone in area['zones'] for i in zone) == area['static'], 'zones partition the area')
 
 
-def test_a_ball_pressed_into_a_block_is_pushed_out_with_k_times_d():
+def test_a_ball_pressed_into_a_block_is_pushed_out_by_the_spring():
     folder = Folder()
     (line,) = lines_of(palpate('query', folder.save(), '--pose', PRESSED))
     (area,) = line['areas']
-    h = 2e-3
-    mean = math.pi * h * h * (3 * 0.02 - h) / 3 / (math.pi * (2 * 0.02 * h - h * h))   # METHOD section 8
+    h, r = 2e-3, 0.02
+    a2 = 2 * r * h - h * h
+    mean = (r * a2 - 2 / 3 * (r ** 3 - (r - h) ** 3)) / a2   # of the depth below the sphere, over the disc
     expect(abs(area['depth'] / mean - 1) < 0.10, f"d {area['depth']} m instead of {mean} m; 12 rows of facets and samples allow 10 %")
     expect(area['normal'][2] > math.cos(math.radians(0.5)), area['normal'])
-    expect(abs(line['force'][2] - 2000 * area['depth'] * area['normal'][2]) < 1e-9, line['force'])   # rounding of a product
+    expect(0 < line['force'][2] <= 2000 * h, line['force'])   # no stiffer than the spring
+    expect(abs(line['force'][0]) + abs(line['force'][1]) < 0.01 * line['force'][2], line['force'])
+    expect(abs(2000 * line['tool'][2] - 2000 * 0.018 - line['force'][2]) < 0.02 * line['force'][2], line['tool'])   # the spring's own length, but for what the tool turned
 
 
 def test_free_near_and_far():

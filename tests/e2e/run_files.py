@@ -35,7 +35,7 @@ def expect_contract(out):
     trace = (out / 'trace.csv').read_text().splitlines()
     expect(trace[0].startswith(TRACE), trace[0])
     summary = json.loads((out / 'summary.json').read_text())
-    expect([key for key in summary if key != 'notes'] == SUMMARY, list(summary))
+    expect([key for key in summary if key not in ('notes', 'no_direction_first')] == SUMMARY, list(summary))
     expect(list(summary['lateness_us']) == ['p50', 'p99', 'p999', 'max'], summary['lateness_us'])
     expect(list(summary['result_age_ticks']) == ['p50', 'max'] and list(summary['frame_us']) == ['p50', 'p99', 'max'], summary)
     expect(summary['ticks'] == len(trace) - 1 and summary['missed_ticks'] == 0, summary)
