@@ -108,8 +108,8 @@ void DepthSearch::look_into(Search& search, const Int3& voxel, std::uint32_t bou
     at[k] = static_cast<std::int32_t>(std::floor(std::clamp(place, -20000.0, 20000.0)));   // further away nothing is asked
   }
   const auto limit = [&] {
-    const double reach = static_cast<double>(search.best + kRounding) * per_part_ + 1;
-    return search.best == INT64_MAX || reach > 20000 ? std::int32_t{INT32_MAX} : static_cast<std::int32_t>(reach * reach) + 1;
+    const double reach = (static_cast<double>(search.best) + kRounding) * per_part_ + 1;
+    return reach > 20000 ? std::int32_t{INT32_MAX} : static_cast<std::int32_t>(reach * reach) + 1;
   };
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < count; first += kAtOnce) {

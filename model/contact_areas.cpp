@@ -84,13 +84,13 @@ void associate(const SceneGeometry& geometry, const LatticePose& pose, const std
 }  // namespace
 
 Int3 lattice_direction(const Long3& sum) {
-  std::int64_t largest = std::max({std::llabs(sum.x), std::llabs(sum.y), std::llabs(sum.z)});
-  int shift = 0;
-  while (largest << shift < std::int64_t{1} << 28) ++shift;
-  while (largest >> -shift >= std::int64_t{1} << 29) --shift;
+  const std::int64_t largest = std::max({std::llabs(sum.x), std::llabs(sum.y), std::llabs(sum.z)});
+  int left = 0, right = 0;
+  while (largest << left < std::int64_t{1} << 28) ++left;
+  while (largest >> right >= std::int64_t{1} << 29) ++right;
   Int3 out;
   for (int k = 0; k < 3; ++k) {
-    const std::int64_t size = shift >= 0 ? std::llabs(sum[k]) << shift : std::llabs(sum[k]) >> -shift;
+    const std::int64_t size = std::llabs(sum[k]) << left >> right;   // one of them is 0
     out[k] = static_cast<std::int32_t>(sum[k] < 0 ? -size : size);
   }
   return out;
