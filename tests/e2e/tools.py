@@ -80,12 +80,12 @@ def test_without_a_vulkan_device_the_cpu_answers_and_says_so():
 def test_who_decides_small_contacts_changes_no_answer():
     folder = Folder()
     query = ['query', folder.save(), '--backend', 'gpu', '--pose', '0 0 0.019 0 0 0 1']
-    answers = [palpate(*query, PALPATE_HOST_SHARE=share) for share in ('near', 'areas', 'contacts')]
+    answers = [palpate(*query, PALPATE_HOST_SHARE=share) for share in ('near', 'contacts')]
     first = lines_of(answers[0])[0]
     expect(first['contact'], first)
     for answer in answers:
         expect({**lines_of(answer)[0], 'time_us': 0} == {**first, 'time_us': 0}, 'the same answer')
-    expect_refused(palpate(*query[:2], *query[4:], PALPATE_HOST_SHARE='all'), 3, 'PALPATE_HOST_SHARE', 'near, areas and contacts')
+    expect_refused(palpate(*query[:2], *query[4:], PALPATE_HOST_SHARE='all'), 3, 'PALPATE_HOST_SHARE', 'near and contacts')
 
 
 def test_plan_gives_a_reason_for_each_of_the_thirteen_stages():
