@@ -112,11 +112,11 @@ void RecordedFrame::name_scene() {
       {kBindScene, &scene_.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
       {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.field_weight},
       {kBindNeighbourBegin, &m.neighbour_begin}, {kBindNeighbours, &m.neighbours}, {kBindMockupPatches, &m.patch},
-      {kBindMockupExtras, &m.extras}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
+      {kBindMockupExtras, &m.extras}, {kBindMockupLevels, &m.levels}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
       {kBindMockupListBegin, &m.partition.list_begin}, {kBindMockupListTriangles, &m.partition.list_triangles},
       {kBindMockupBoundaryPlace, &m.partition.boundary_place}, {kBindMockupMixedBrick, &m.partition.mixed_brick},
       {kBindToolVertices, &t.vertices}, {kBindToolTriangles, &t.triangles}, {kBindToolInfo, &t.triangle_info},
-      {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.field_weight}, {kBindToolExtras, &t.extras},
+      {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.field_weight}, {kBindToolExtras, &t.extras}, {kBindToolLevels, &t.levels},
       {kBindFineBrickSlot, &fine.brick_slot}, {kBindFineBricks, &fine.bricks},
       {kBindFineListBegin, &fine.list_begin}, {kBindFineListTriangles, &fine.list_triangles}, {kBindFineExit, &scene_.fine_exit}};
   for (const auto& [binding, buffer] : all)

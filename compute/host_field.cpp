@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 
 #include "compute/host_exact.h"
@@ -35,6 +36,20 @@ Int3 to_tool(const LatticePose& pose, const Int3& point) {
   return at;
 }
 
+/// The last level of samples that a grid point is of (EXACTNESS section 4): how often both its numbers can be halved, twice, and once more where they stop together.
+int level_of(const Int3& sample, int axis, std::int32_t spacing) {
+  const auto i = static_cast<std::uint32_t>(sample[(axis + 1) % 3] / spacing), j = static_cast<std::uint32_t>(sample[(axis + 2) % 3] / spacing);
+  const std::uint32_t ends = 1u << kSampleLevels;
+  const int ni = std::countr_zero(i | ends), nj = std::countr_zero(j | ends);
+  return 2 * std::min(ni, nj) + (ni == nj ? 1 : 0);
+}
+
+/// 256 log2(count), count > 0, straight between powers of two.
+std::uint32_t log_q8(std::uint64_t count) {
+  const auto whole = static_cast<std::uint32_t>(std::bit_width(count) - 1);
+  return 256 * whole + static_cast<std::uint32_t>((count << 8) >> whole) - 256;
+}
+
 void add_term(WideSum& sum, std::int64_t term) {
   sum.low += term & 0xFFFFFFFF;
   sum.high += term >> 32;
@@ -47,7 +62,7 @@ struct HostField::Push {
   Int3 at;
   Int3 along, against;      ///< n and u
   std::uint32_t depth;
-  std::uint32_t weight;     ///< the sample's own
+  std::uint32_t weight;     ///< the sample's own, Q24
   bool sheet;
 };
 
@@ -73,7 +88,7 @@ HostField HostField::make(const SceneGeometry& geometry, const DepthSearch& mock
   out.lever_shift_ = lever_shift(geometry.tool_radius);
   out.own_begin_.assign(1, 0);
   const std::size_t triangles = geometry.tool.triangles.size();
-  const double density = static_cast<double>(geometry.sample_spacing) * geometry.sample_spacing;
+  const double density = static_cast<double>(geometry.tool_sample_spacing) * geometry.tool_sample_spacing;
   if (geometry.tool_surface.area / density + static_cast<double>(triangles) > static_cast<double>(kMostListed)) {
     out.own_begin_.clear();
     return out;
@@ -82,7 +97,10 @@ HostField HostField::make(const SceneGeometry& geometry, const DepthSearch& mock
   std::vector<Int3> samples;
   for (std::uint32_t id = 0; id < triangles; ++id) {
     out.own_begin_.clear();   // for_tool_samples then works them out
-    out.for_tool_samples(id, [&](const Int3& p) { samples.push_back(p); });
+    out.for_tool_samples(id, [&](const Int3& p, int level) {
+      samples.push_back(p);
+      out.own_levels_.push_back(static_cast<std::uint8_t>(level));
+    });
     begin.push_back(static_cast<std::uint32_t>(samples.size()));
   }
   out.own_begin_ = std::move(begin);
@@ -93,14 +111,36 @@ HostField HostField::make(const SceneGeometry& geometry, const DepthSearch& mock
 template <class Take>
 void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   if (!own_begin_.empty()) {
-    for (std::uint32_t i = own_begin_[mobile]; i < own_begin_[mobile + 1]; ++i) take(own_samples_[i]);
+    for (std::uint32_t i = own_begin_[mobile]; i < own_begin_[mobile + 1]; ++i) take(own_samples_[i], own_levels_[i]);
     return;
   }
   const LatticeMesh& tool = geometry_->tool;
   if (tool.collapsed(mobile)) return;
   const exact::Corners corners{tool.corner(mobile, 0), tool.corner(mobile, 1), tool.corner(mobile, 2)};
   const exact::Box box = exact::box_of(corners);
-  exact::for_samples(corners, tool.sample_axis[mobile], geometry_->sample_spacing, box.low - Int3(1), box.high + Int3(1), take);
+  const int axis = tool.sample_axis[mobile];
+  const std::int32_t spacing = geometry_->tool_sample_spacing;
+  exact::for_samples(corners, axis, spacing, box.low - Int3(1), box.high + Int3(1), [&](const Int3& p) { take(p, level_of(p, axis, spacing)); });
+}
+
+void HostField::choose_level(std::size_t samples, std::size_t mobiles) {
+  const std::uint64_t wanted = geometry_->contact_samples, count = samples + mobiles / 4;
+  const std::uint32_t level = wanted != 0 && count > wanted ? std::min(log_q8(count) - log_q8(wanted), 256u * kSampleLevels) : 0;
+  level_ = level >> 8;
+  between_ = level & 255;
+}
+
+/// Of a grid sample in this frame, Q30.
+std::uint64_t HostField::weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const {
+  const std::uint32_t place = mesh.levels_of[triangle];
+  if (place == 0 || (level_ | between_) == 0) return mesh.field_weight_q30[triangle];
+  const SideLevels& side = mesh.side_levels[place - 1];
+  const auto at = [&](std::uint32_t taken) -> std::uint64_t {
+    taken = std::min(taken, side.coarsest);
+    if (level < static_cast<int>(taken)) return 0;
+    return taken == 0 ? mesh.field_weight_q30[triangle] : ((std::uint64_t{mesh.field_weight_q30[triangle]} * side.factor_q30[taken - 1]) >> 30) << taken;
+  };
+  return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
 }
 
 bool HostField::is_ignored(std::uint32_t static_id) {
@@ -114,7 +154,7 @@ bool HostField::is_ignored(std::uint32_t static_id) {
 void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out) {
   const std::uint32_t weight = push.weight >> (push.sheet ? 0 : 1);
   const Int3 &n = push.along, r = push.at;
-  const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 20);
+  const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 14);
   constexpr std::int32_t kLeast = 444764242;   // tan 22.5° in Q30
   std::size_t number = 0;
   for (int k = 2; k >= 0; --k) number = 3 * number + static_cast<std::size_t>(1 + (n[k] > kLeast ? 1 : 0) - (n[k] < -kLeast ? 1 : 0));
@@ -128,7 +168,7 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   }
   const Int3& u = push.against;
   const std::int64_t steep = std::max<std::int64_t>((std::int64_t{n.x} * u.x + std::int64_t{n.y} * u.y + std::int64_t{n.z} * u.z) >> 30, 0);
-  const std::int64_t give = (std::int64_t{weight} * steep) >> 40;
+  const std::int64_t give = (std::int64_t{weight} * steep) >> 34;
   const std::int64_t x = r.x >> lever_shift_, y = r.y >> lever_shift_, z = r.z >> lever_shift_;
   bin.give += give;
   bin.give_at[0] += give * x;
@@ -152,7 +192,7 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   }
   if (push.sheet) out.flags |= kFlagSheet;
   if (carrier == nullptr) return;
-  const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 20);
+  const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);
   ++carrier->samples;
   carrier->max_depth = std::max(carrier->max_depth, push.depth);
   carrier->weight_sum += push.weight;
@@ -172,9 +212,7 @@ void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_i
   add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against, below.steps, weight, sheet}, static_id, below.triangle, carrier, out);
 }
 
-void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out) {
-  const Int3 point = transform(pose, own);
-  if (!in_mockup_.inside(point)) return;
+void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight, Contacts& out) {
   const DepthSearch::Depth below = mockup_depth_.below(point, near_mockup_);
   near_mockup_ = below.triangle;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle)) return;
@@ -185,6 +223,7 @@ void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, co
 
 void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, Contacts& out) {
   const LatticePose& pose = tool.pose();
+  choose_level(found.samples.size(), found.mobiles.size());
   const LatticeMesh &mockup = geometry_->mockup, &own = geometry_->tool;
   out.field = {};
   out.carriers.clear();
@@ -199,17 +238,30 @@ void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& foun
     const auto at = std::lower_bound(out.carriers.begin(), out.carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
     return at != out.carriers.end() && at->id == id ? &*at : nullptr;
   };
-  for (const FrameSample& sample : found.samples)
-    if (const std::uint32_t weight = mockup.field_weight_q30[sample.static_id]; weight != 0)
-      push_from_mockup(pose, sample.static_id, sample.point, weight, carrier(sample.static_id), out);
+  const bool all = (level_ | between_) == 0;
+  for (const FrameSample& sample : found.samples) {
+    const std::uint32_t id = sample.static_id;
+    const int level = all || mockup.levels_of[id] == 0 ? 0 : level_of(sample.point, mockup.sample_axis[id], geometry_->sample_spacing);
+    if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0)
+      push_from_mockup(pose, id, sample.point, static_cast<std::uint32_t>(weight >> 6), carrier(id), out);
+  }
   if (tool_has_inside_)
     for (const StaticResult& result : found.statics)
       for (const ExtraSample& extra : mockup_extras_.of(result.id))
-        if (sets.inside(tool, extra.point)) push_from_mockup(pose, result.id, extra.point, extra.weight_q30, carrier(result.id), out);
+        if (sets.inside(tool, extra.point)) push_from_mockup(pose, result.id, extra.point, extra.weight_q30 >> 6, carrier(result.id), out);
   for (const MobileResult& result : found.mobiles) {
-    if (const std::uint32_t weight = own.field_weight_q30[result.id]; weight != 0)
-      for_tool_samples(result.id, [&](const Int3& p) { push_from_tool(pose, result.id, p, weight, out); });
-    for (const ExtraSample& extra : tool_extras_.of(result.id)) push_from_tool(pose, result.id, extra.point, extra.weight_q30, out);
+    // What touches nothing is on one side of the mock-up, with its first corner.
+    const bool hit = (result.state & kMobileHit) != 0;
+    if (!hit && !in_mockup_.inside(transform(pose, own.corner(result.id, 0)))) continue;
+    const auto push = [&](const Int3& p, std::uint64_t weight) {
+      const Int3 point = transform(pose, p);
+      if (!hit || in_mockup_.inside(point)) push_from_tool(pose, result.id, point, static_cast<std::uint32_t>(weight >> 4), out);
+    };
+    if (own.field_weight_q30[result.id] != 0)
+      for_tool_samples(result.id, [&](const Int3& p, int level) {
+        if (const std::uint64_t weight = weight_of(own, result.id, level); weight != 0) push(p, weight);
+      });
+    for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, extra.weight_q30);
   }
 
   std::sort(touched_.begin(), touched_.end());

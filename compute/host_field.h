@@ -41,10 +41,12 @@ class HostField {
   };
   void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out);
   void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out);
-  void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& own, std::uint32_t weight, Contacts& out);
+  void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight, Contacts& out);
   bool is_ignored(std::uint32_t static_id);
   template <class Take>
   void for_tool_samples(std::uint32_t mobile, Take&& take) const;
+  void choose_level(std::size_t samples, std::size_t mobiles);
+  std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const;
 
   const SceneGeometry* geometry_ = nullptr;
   DepthSearch tool_depth_, mockup_depth_;
@@ -54,6 +56,8 @@ class HostField {
   int lever_shift_ = 0;
   std::vector<std::uint32_t> own_begin_;   ///< by tool triangle, and one more; empty: the tool's samples are too many to list
   std::vector<Int3> own_samples_;          ///< of the tool, in its lattice frame
+  std::vector<std::uint8_t> own_levels_;   ///< of these
+  std::uint32_t level_ = 0, between_ = 0;  ///< of this frame: the level of samples, and how far to the next, 1/256
   std::uint32_t near_tool_ = DepthSearch::kNobody, near_mockup_ = DepthSearch::kNobody;   ///< the last sample's nearest triangles
   const Ignored* ignored_ = nullptr;       ///< of this frame
   std::vector<std::uint32_t> touched_;     ///< ignored patches, in any order

@@ -24,6 +24,17 @@ std::vector<gpu::ExtraSample> extras_of(const LatticeMesh& mesh) {
   return out;
 }
 
+/// A mesh's sample levels as shaders read them.
+std::vector<std::uint32_t> levels_of(const LatticeMesh& mesh) {
+  static_assert(kSampleLevels == gpu::kMostSampleLevel);
+  std::vector<std::uint32_t> out = mesh.levels_of;
+  for (const SideLevels& side : mesh.side_levels) {
+    out.push_back(side.coarsest);
+    out.insert(out.end(), side.factor_q30.begin(), side.factor_q30.end());
+  }
+  return out;
+}
+
 /// Puts a mesh on the device as it is.
 BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool mockup, bool refined) {
   static const std::vector<std::uint32_t> none{0};
@@ -40,6 +51,7 @@ BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool mocku
   out.field_weight = steps.filled("weights of samples", refined ? mesh.field_weight_q30 : none);
   out.patch = steps.filled("patches", mockup && refined ? mesh.patch : none);
   out.extras = steps.filled("extra samples", refined ? extras_of(mesh) : std::vector<gpu::ExtraSample>());
+  out.levels = steps.filled("levels of samples", refined ? levels_of(mesh) : none);
   out.neighbour_begin = steps.filled("neighbours", mockup ? mesh.neighbour_begin : none);
   out.neighbours = steps.filled("neighbours", mockup ? mesh.neighbours : none);
   return out;
@@ -160,6 +172,8 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
     out.constants.tool_extras = static_cast<std::uint32_t>(geometry.tool.extra_samples.size());
   }
   out.constants.sample_spacing = geometry.sample_spacing;
+  out.constants.tool_sample_spacing = geometry.tool_sample_spacing;
+  out.constants.contact_samples = geometry.contact_samples;
   out.constants.refined = refined ? 1 : 0;
   out.constants.fine = out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid;
   out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);

@@ -37,6 +37,7 @@ struct BodyBuffers {
   VulkanBuffer field_weight;      ///< uint32, Q30; `refined`
   VulkanBuffer patch;             ///< uint32; mock-up only, `refined`
   VulkanBuffer extras;            ///< gpu::ExtraSample, ascending by triangle; `refined`
+  VulkanBuffer levels;            ///< uint32: kBindMockupLevels in shaders/shared/frame_field.h; `refined`
   VulkanBuffer neighbour_begin;   ///< uint32, CSR over triangles, + 1; mock-up only
   VulkanBuffer neighbours;        ///< uint32: id · 2 + smooth; mock-up only
   PartitionBuffers partition;     ///< empty for the tool in `paper`
@@ -81,7 +82,7 @@ void for_each_buffer(Scene& scene, Visit visit) {
   for_each_made_buffer(scene, visit);
   for (auto* body : {&scene.mockup, &scene.tool})
     for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->field_weight,
-                         &body->patch, &body->extras, &body->neighbour_begin, &body->neighbours})
+                         &body->patch, &body->extras, &body->levels, &body->neighbour_begin, &body->neighbours})
       visit(*buffer);
 }
 

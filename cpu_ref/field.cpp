@@ -23,7 +23,7 @@ struct Push {
   Int3 along{0};               ///< n: the way it pushes the tool, Q30
   Int3 against{0};             ///< u: φ falls as the tool moves along it, Q30
   std::uint32_t depth = 0;     ///< φ, steps
-  std::uint32_t weight = 0;    ///< w, Q30: half of the sample's, for the other body's samples say the same once more; all of it where they can't (sheets)
+  std::uint32_t weight = 0;    ///< w, Q24: half of the sample's, for the other body's samples say the same once more; all of it where they can't (sheets)
   std::uint32_t whole = 0;     ///< the sample's own
 };
 
@@ -35,14 +35,41 @@ std::uint32_t bin_of(const Int3& n) {
   return bin;
 }
 
+/// How many times the whole number can be halved, as far as levels go.
+int halvings(std::int64_t value) {
+  int times = 0;
+  while (times < kSampleLevels && value % 2 == 0) {
+    value /= 2;
+    ++times;
+  }
+  return times;
+}
+
+/// The last level whose grid points (i, j) is one of: level 2k has i and j divisible by 2^k, level 2k + 1 besides (i + j)/2^k even.
+int level_of(std::int64_t i, std::int64_t j) {
+  const int ni = halvings(i), nj = halvings(j);
+  return 2 * std::min(ni, nj) + (ni == nj ? 1 : 0);
+}
+
+/// 256 log2(count), straight between powers of two.
+std::int64_t binary_log_q8(std::int64_t count) {
+  int whole = 0;
+  while ((count >> whole) >= 2) ++whole;
+  return 256 * whole + (count * 256 >> whole) - 256;
+}
+
 class Summing {
  public:
-  Summing(const Frame& frame, Contacts& out) : frame_(frame), out_(out), shift_(lever_shift(frame.scene.geometry->tool_radius)) {}
+  Summing(const Frame& frame, Contacts& out) : frame_(frame), out_(out), shift_(lever_shift(frame.scene.geometry->tool_radius)) {
+    const std::int64_t wanted = frame.scene.geometry->contact_samples;
+    const auto count = static_cast<std::int64_t>(frame.counting.size() + frame.contact_mobile.size() / 4);
+    if (wanted > 0 && count > wanted) grade_ = std::min<std::int64_t>(binary_log_q8(count) - binary_log_q8(wanted), 256 * kSampleLevels);
+  }
 
   void add_push(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier) {
     const Long3 r = difference(push.at, frame_.pose.translation);          // within tool_radius + a few
     const Long3 turned = cross(r, Long3(push.along));                      // within 2^60
-    const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 20);   // below 2^42
+    const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);   // below 2^46
     FieldBin& bin = out_.field.bins[bin_of(push.along)];
     bin.samples += 1;
     for (int k = 0; k < 3; ++k) {
@@ -54,7 +81,7 @@ class Summing {
     std::int64_t steep = 0;
     for (int k = 0; k < 3; ++k) steep += std::int64_t{push.along[k]} * push.against[k];
     steep = std::max<std::int64_t>(steep >> 30, 0);
-    const std::int64_t give = (std::int64_t{push.weight} * steep) >> 40;   // Q20
+    const std::int64_t give = (std::int64_t{push.weight} * steep) >> 34;   // Q20
     const Long3 lever(r.x >> shift_, r.y >> shift_, r.z >> shift_);
     bin.give += give;
     for (int k = 0; k < 3; ++k) {
@@ -75,7 +102,7 @@ class Summing {
     if (carrier == nullptr) return;
     carrier->samples += 1;
     carrier->max_depth = std::max(carrier->max_depth, push.depth);
-    const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.whole) >> 20);
+    const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.whole) >> 14);
     carrier->weight_sum += push.whole;
     carrier->depth_sum += whole;
     for (int k = 0; k < 3; ++k) {
@@ -89,11 +116,12 @@ class Summing {
   void mockup_in_tool() {
     const LatticeMesh& mockup = frame_.mockup();
     for (const Sample& sample : frame_.counting)
-      if (const std::uint32_t weight = mockup.field_weight_q30[sample.triangle]; weight != 0) mockup_sample(sample.triangle, sample.point, weight);
+      if (const std::uint64_t weight = weight_of(mockup, sample.triangle, sample.point, frame_.scene.geometry->sample_spacing); weight != 0)
+        mockup_sample(sample.triangle, sample.point, static_cast<std::uint32_t>(weight >> 6));
     if (!frame_.scene.tool_has_inside) return;
     for (const ExtraSample& extra : mockup.extra_samples)
       if (std::binary_search(frame_.contact_static.begin(), frame_.contact_static.end(), extra.triangle) && inside_tool(frame_, extra.point))
-        mockup_sample(extra.triangle, extra.point, extra.weight_q30);
+        mockup_sample(extra.triangle, extra.point, extra.weight_q30 >> 6);
   }
 
   /// The tool's samples in the mock-up's depth.
@@ -102,11 +130,15 @@ class Summing {
     Box everywhere;
     everywhere.min = Int3(std::numeric_limits<std::int32_t>::min());
     everywhere.max = Int3(std::numeric_limits<std::int32_t>::max());
-    for (const std::uint32_t m : frame_.contact_mobile)
-      if (const std::uint32_t weight = tool.field_weight_q30[m]; weight != 0)
-        for_each_sample(tool, m, frame_.scene.geometry->sample_spacing, everywhere, [&](const Int3& own) { tool_sample(m, own, weight); });
+    const std::int32_t spacing = frame_.scene.geometry->tool_sample_spacing;
+    for (const std::uint32_t m : frame_.contact_mobile) {
+      if (tool.field_weight_q30[m] == 0) continue;
+      for_each_sample(tool, m, spacing, everywhere, [&](const Int3& own) {
+        if (const std::uint64_t weight = weight_of(tool, m, own, spacing); weight != 0) tool_sample(m, own, static_cast<std::uint32_t>(weight >> 4));
+      });
+    }
     for (const ExtraSample& extra : tool.extra_samples)
-      if (std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle)) tool_sample(extra.triangle, extra.point, extra.weight_q30);
+      if (std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle)) tool_sample(extra.triangle, extra.point, extra.weight_q30 >> 4);
   }
 
   /// CST and EST, ascending, with nothing on them yet.
@@ -120,6 +152,27 @@ class Summing {
   void list_touched() { out_.ignored_touched.assign(touched_.begin(), touched_.end()); }
 
  private:
+  /// What a grid sample weighs in this frame, Q30: between what it weighs at one level and at the next.
+  std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& sample, std::int32_t spacing) const {
+    const int axis = mesh.sample_axis[triangle];
+    const int level = level_of(sample[(axis + 1) % 3] / spacing, sample[(axis + 2) % 3] / spacing);
+    const SideLevels* side = mesh.levels_of[triangle] == 0 ? nullptr : &mesh.side_levels[mesh.levels_of[triangle] - 1];
+    const auto at = [&](std::int64_t wanted) -> std::uint64_t {
+      const int taken = side == nullptr ? 0 : static_cast<int>(std::min<std::int64_t>(wanted, side->coarsest));
+      if (level < taken) return 0;
+      if (taken == 0) return mesh.field_weight_q30[triangle];
+      return ((std::uint64_t{mesh.field_weight_q30[triangle]} * side->factor_q30[static_cast<std::size_t>(taken - 1)]) >> 30) << taken;
+    };
+    const std::int64_t whole = grade_ / 256, part = grade_ % 256;
+    return (static_cast<std::uint64_t>(256 - part) * at(whole) + static_cast<std::uint64_t>(part) * at(whole + 1)) >> 8;
+  }
+
+  /// Whether a point of a mobile triangle counts as inside the mock-up: what touches nothing is on one side of it, with its first corner.
+  bool counts_inside(std::uint32_t m, const Int3& point) const {
+    if (std::binary_search(out_.cmt.begin(), out_.cmt.end(), m)) return inside_mockup(frame_, point);
+    return inside_mockup(frame_, transform(frame_.pose, frame_.tool_mesh().corner(m, 0)));
+  }
+
   void mockup_sample(std::uint32_t id, const Int3& point, std::uint32_t weight) {
     const LatticeMesh &mockup = frame_.mockup(), &tool = frame_.tool_mesh();
     const auto below = nearest(tool, frame_.scene.tool_rest_tree, to_tool(frame_.pose, point));
@@ -136,7 +189,7 @@ class Summing {
   void tool_sample(std::uint32_t m, const Int3& own, std::uint32_t weight) {
     const LatticeMesh &mockup = frame_.mockup(), &tool = frame_.tool_mesh();
     const Int3 point = transform(frame_.pose, own);
-    if (!inside_mockup(frame_, point)) return;
+    if (!counts_inside(m, point)) return;
     const auto below = nearest(mockup, frame_.scene.mockup_tree, point);
     if (!below || ignored(below->triangle)) return;
     const bool sheet = is_sheet(tool, m) || !frame_.scene.tool_has_inside;
@@ -165,6 +218,7 @@ class Summing {
   const Frame& frame_;
   Contacts& out_;
   int shift_;
+  std::int64_t grade_ = 0;            ///< the level of samples, Q8
   std::set<std::uint32_t> touched_;   ///< ignored patches in which something would push
 };
 

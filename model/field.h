@@ -48,7 +48,7 @@ struct CarrierSums {
   std::uint32_t id = 0;
   std::uint32_t samples = 0;
   std::uint32_t max_depth = 0;                ///< steps
-  std::int64_t weight_sum = 0;                ///< Σ w, Q30
+  std::int64_t weight_sum = 0;                ///< Σ w, Q24
   std::int64_t depth_sum = 0;                 ///< Σ P
   std::array<WideSum, 3> push{};              ///< Σ P n
   std::array<WideSum, 3> moment{};            ///< Σ (P >> 10) r

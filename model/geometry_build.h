@@ -14,6 +14,7 @@ struct GeometrySettings {
   std::optional<double> sample_spacing_m{}; ///< default a quarter of a voxel; at least 1/64 of one
   double smooth_angle_deg = 30;
   std::optional<Vec3> centre_of_mass_m{};   ///< tool frame of the file; default: of the volume, of the area when open
+  std::uint32_t contact_samples = kContactSamples;
 };
 
 /// Chooses the lattice, snaps, welds, orients (METHOD section 2) both bodies, and sets both grids.

@@ -29,6 +29,16 @@ struct ExtraSample {
   bool operator==(const ExtraSample&) const = default;
 };
 
+/// Every second sample, every fourth …: the field leaves samples out of large contacts, level by level (docs/EXACTNESS.md section 4).
+inline constexpr int kSampleLevels = 4;
+
+/// By which factor the weights of a side's samples grow besides 2^level when the field takes only those of a level.
+struct SideLevels {
+  std::uint32_t coarsest = 0;                                  ///< the last level that still sees the side fairly, at least 1
+  std::array<std::uint32_t, kSampleLevels> factor_q30{};       ///< of levels 1 to `coarsest`
+  bool operator==(const SideLevels&) const = default;
+};
+
 /// A body snapped to the lattice, welded and oriented; made once at load on the host and read by both back ends.
 struct LatticeMesh {
   std::vector<Int3> vertices;                             ///< distinct points, |c| ≤ kLatticeReach
@@ -46,6 +56,8 @@ struct LatticeMesh {
   std::vector<std::uint32_t> field_weight_q30;            ///< what the pressure field takes for sample_weight_q30: of small and thin
                                                           ///< faces scaled, so that s²·w adds up to their area; 0 if collapsed
   std::vector<ExtraSample> extra_samples;                 ///< of faces that the grid misses; ascending by triangle, which may have several
+  std::vector<std::uint32_t> levels_of;                   ///< by triangle: 1 + its place in `side_levels`; 0: all its samples count always
+  std::vector<SideLevels> side_levels;                    ///< of large sides
   bool closed = false;                                    ///< edges, each with its direction, cancel point for point
   Int3 box_min{0}, box_max{0};                            ///< of all triangles that did not collapse
 

@@ -19,6 +19,8 @@ constexpr double kFairly = 0.0625;
 constexpr double kHardlySeen = 0.5;
 /// An extra sample of a side larger than s² stands for at most this part of s² (chosen: denser than the grid, for such sides are narrow).
 constexpr double kExtraShare = 0.25;
+/// So many samples a side keeps at its coarsest level, at least (chosen: about what a small contact has).
+constexpr double kLeastOfLevel = 16;
 constexpr double kMostExtras = 1024;   // on one triangle (chosen: memory)
 
 /// Triangles joined into components; the smallest is the root.
@@ -78,9 +80,9 @@ std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
 }
 std::int64_t ceil_divide(std::int64_t value, std::int64_t divisor) { return -floor_divide(-value, divisor); }
 
-/// A weight, at least 1: an extra sample that weighs nothing would be none.
+/// A weight, at least 2^-24, with which the field counts: an extra sample that weighs nothing would be none.
 std::uint32_t weight_q30(double weight) {
-  return static_cast<std::uint32_t>(std::clamp(std::nearbyint(weight * 0x1p30), 1.0, 4294967295.0));
+  return static_cast<std::uint32_t>(std::clamp(std::nearbyint(weight * 0x1p30), 64.0, 4294967295.0));
 }
 
 /// Cuts a triangle from its longest edge to the opposite corner into `count` of equal area; the centroid of number i of them, rounded down.
@@ -119,24 +121,43 @@ struct Side {
   Facing facing{};
 };
 
-/// The factor of its samples' weights with which they stand for all of it; 0 when they can't.
-double factor_of(const LatticeMesh& mesh, std::int32_t spacing, double square, Side& side) {
-  Facing &is = side.facing, seen;
+void measure(const LatticeMesh& mesh, Side& side) {
   for (const std::uint32_t t : side.triangles) {
     const Vec3 raw(raw_normal(mesh, t));
     const double size = length(raw);
-    is.add(size / 2, raw / size);
-    if (const std::uint64_t samples = count_samples(mesh, t, spacing); samples != 0)
-      seen.add(square * static_cast<double>(samples) * (mesh.sample_weight_q30[t] * 0x1p-30), raw / size);
+    side.facing.add(size / 2, raw / size);
+  }
+}
+
+/// The factor of the weights of its samples of at least `level` with which they stand for all of it; 0 when they can't. `square`: s².
+double factor_of(const LatticeMesh& mesh, std::int32_t spacing, double square, int level, const Side& side) {
+  const Facing& is = side.facing;
+  Facing seen;
+  for (const std::uint32_t t : side.triangles) {
+    const Vec3 raw(raw_normal(mesh, t));
+    if (const std::uint64_t samples = count_samples(mesh, t, spacing, level); samples != 0)
+      seen.add(std::ldexp(square, level) * static_cast<double>(samples) * (mesh.sample_weight_q30[t] * 0x1p-30), raw / length(raw));
   }
   const double fair = kFairly * is.area;
   const auto fits = [&](double factor) {
     return length(factor * seen.sum - is.sum) <= fair && length(factor * seen.spread - is.spread) <= fair;
   };
-  if (is.area >= kLarge * square && std::abs(seen.area - is.area) <= fair && fits(1)) return 1;
+  if (is.area >= kLarge * square && std::abs(seen.area - is.area) <= fair && fits(1) && level == 0) return 1;
   if (seen.area < kHardlySeen * is.area) return 0;
   const double factor = is.area / seen.area;
   return fits(factor) ? factor : 0;   // a round side seen only in places would push askew
+}
+
+/// The levels at which a side that the grid sees, with its weights times `grid_factor`, is still seen.
+SideLevels levels_of(const LatticeMesh& mesh, std::int32_t spacing, double square, double grid_factor, const Side& side) {
+  SideLevels out;
+  for (int level = 1; level <= kSampleLevels && side.facing.area >= kLeastOfLevel * std::ldexp(square, level); ++level) {
+    const double factor = factor_of(mesh, spacing, square, level, side) / grid_factor;
+    if (factor == 0 || factor >= 4) break;   // 4: what Q30 holds
+    out.factor_q30[static_cast<std::size_t>(level - 1)] = weight_q30(factor);
+    out.coarsest = static_cast<std::uint32_t>(level);
+  }
+  return out;
 }
 
 /// Gives a side extra samples for all of its area.
@@ -167,10 +188,11 @@ void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh) {
   mesh.patch_count = found.count;
 }
 
-std::uint64_t count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std::int32_t spacing) {
+std::uint64_t count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std::int32_t spacing, int level) {
   if (mesh.collapsed(triangle)) return 0;
   const int axis = mesh.sample_axis[triangle], u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const std::int64_t facing = looks_back(mesh, triangle) ? -1 : 1, s = spacing;
+  const std::int64_t facing = looks_back(mesh, triangle) ? -1 : 1, s = std::int64_t{spacing} << (level / 2);
+  const bool odd = level % 2 != 0;   // of these every second one, as on a chessboard
   const Int3 corners[3] = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
   const auto [min_v, max_v] = std::minmax({corners[0][v], corners[1][v], corners[2][v]});
   const std::int64_t first = ceil_divide(min_v, s), last = floor_divide(max_v, s);
@@ -190,7 +212,8 @@ std::uint64_t count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std
       if (along_v == 0 && (reach < 0 || (reach == 0 && along_u < 0))) high = low - 1;
     }
     if (low > high) continue;
-    const std::int64_t in_row = floor_divide(high, s) - ceil_divide(low, s) + 1;
+    const std::int64_t most = floor_divide(high, s), least = ceil_divide(low, s);
+    const std::int64_t in_row = odd ? floor_divide(most - j, 2) - ceil_divide(least - j, 2) + 1 : most - least + 1;
     if (in_row > 0) count += static_cast<std::uint64_t>(in_row);
   }
   return count;
@@ -212,12 +235,19 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
 
   mesh.field_weight_q30.assign(count, 0);
   mesh.extra_samples.clear();
+  mesh.levels_of.assign(count, 0);
+  mesh.side_levels.clear();
   for (std::uint32_t s = 0; s < sides.count; ++s) {
     Side side{.triangles = std::span(order).subspan(begin[s], begin[s + 1] - begin[s])};
-    const double factor = factor_of(mesh, spacing, square, side);
+    measure(mesh, side);
+    const double factor = factor_of(mesh, spacing, square, 0, side);
     if (factor == 0) {
       place_extras(mesh, square, side);
       continue;
+    }
+    if (const SideLevels levels = levels_of(mesh, spacing, square, factor, side); levels.coarsest != 0) {
+      mesh.side_levels.push_back(levels);
+      for (const std::uint32_t t : side.triangles) mesh.levels_of[t] = static_cast<std::uint32_t>(mesh.side_levels.size());
     }
     for (const std::uint32_t t : side.triangles)
       mesh.field_weight_q30[t] = factor == 1 ? mesh.sample_weight_q30[t] : weight_q30(factor * (mesh.sample_weight_q30[t] * 0x1p-30));

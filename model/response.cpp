@@ -11,6 +11,7 @@ namespace palpate {
 namespace {
 
 constexpr double kQ30 = 1073741824.0;   // 2^30
+constexpr double kQ24 = 16777216.0;     // 2^24
 
 Vec3 to_metres(const Lattice& lattice, const Vec3& steps) { return lattice.origin_m + lattice.step_m * steps; }
 
@@ -47,7 +48,7 @@ void respond_by_field(const CarrierSums& sums, const LatticePose& pose, const Sc
   if (sums.samples == 0 || sums.weight_sum == 0) return;
   const double step = geometry.lattice.step_m, side = step * geometry.sample_spacing;
   const double pressed = static_cast<double>(sums.depth_sum) / 1024;   // Σ φ w, steps
-  out.depth = step * pressed * kQ30 / static_cast<double>(sums.weight_sum);
+  out.depth = step * pressed * kQ24 / static_cast<double>(sums.weight_sum);
   out.max_depth = step * sums.max_depth;
   const Vec3 push(to_double(sums.push[0]), to_double(sums.push[1]), to_double(sums.push[2]));
   out.force = (field_modulus(geometry, stiffness) * step * side * side / kQ30) * push;

@@ -40,6 +40,7 @@ struct ResponseSettings {
   double stiffness_n_per_m = 2000;           ///< K
   double smooth_angle_deg = 30;
   std::optional<double> sample_spacing_m;    ///< empty: auto
+  std::uint32_t contact_samples = kContactSamples;   ///< SceneGeometry::contact_samples
   std::optional<double> voxel_size_m;        ///< empty: auto
 };
 

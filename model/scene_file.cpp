@@ -20,7 +20,7 @@ const std::map<std::string, std::vector<std::string>>& scene_keys() {
       {"static", {"mesh", "generate", "units", "scale", "part", "without", "position", "rotation"}},
       {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
-      {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size"}},
+      {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size", "contact_samples"}},
       {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms", "change_n_per_s", "slew_ms", "passivity",
                    "coupling_n_per_m", "coupling_nm_per_rad"}},
       {"device",
@@ -142,6 +142,9 @@ void read_response(const SceneObject& scene_json, ResponseSettings& response) {
   body.number("smooth_angle_deg", {0, 90, " degrees"}, response.smooth_angle_deg);
   read_length(body, "sample_spacing", response.sample_spacing_m);
   read_length(body, "voxel_size", response.voxel_size_m);
+  int samples = static_cast<int>(response.contact_samples);
+  body.whole("contact_samples", 0, 1 << 20, samples);
+  response.contact_samples = static_cast<std::uint32_t>(samples);
 }
 
 /// A spring that may be "auto".

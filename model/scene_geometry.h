@@ -9,6 +9,9 @@
 
 namespace palpate {
 
+/// Default of SceneGeometry::contact_samples (docs/ACCURACY.md).
+inline constexpr std::uint32_t kContactSamples = 128;
+
 /// Everything a back end needs to know of a scene's shape: integers only, the same for every back end.
 struct SceneGeometry {
   Lattice lattice;
@@ -22,6 +25,8 @@ struct SceneGeometry {
   VoxelGrid mockup_grid;
   VoxelGrid tool_grid;                ///< in the tool's lattice frame, same voxel size
   std::int32_t sample_spacing = 0;    ///< steps, ≥ 1, ≥ voxel size / 64
+  std::int32_t tool_sample_spacing = 0;   ///< steps: twice sample_spacing
+  std::uint32_t contact_samples = 0;  ///< about so many samples of each body say what a contact pushes with; larger ones are taken at a coarser level; 0: all
   double reference_area_m2 = 0;       ///< A_ref: a flat contact of this area is as stiff as K, m²
   double tool_gyration_m = 0;         ///< ρ: radius of gyration of the tool's surface about gc, m
   SmoothAngle smooth_angle;

@@ -133,7 +133,7 @@ Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const Impo
     if (!tell(progress, "geometry", 0)) return cancelled;
     auto geometry = build_geometry(meshes->mockup, meshes->tool,
                                    {scene.response.voxel_size_m, scene.response.sample_spacing_m, scene.response.smooth_angle_deg,
-                                    scene.tool.centre_of_mass_m},
+                                    scene.tool.centre_of_mass_m, scene.response.contact_samples},
                                    [&] { return tell(progress, "geometry", 0); });
     if (!geometry) return Error{geometry.error().code, scene.file + ": " + geometry.error().sentence};
     loaded.geometry = std::move(*geometry);

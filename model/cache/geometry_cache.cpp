@@ -36,6 +36,8 @@ void archive_mesh(Archive& a, LatticeMeshOrConst& mesh) {
   a(mesh.patch_count);
   a(mesh.field_weight_q30);
   a(mesh.extra_samples);
+  a(mesh.levels_of);
+  a(mesh.side_levels);
   a(mesh.closed);
   a(mesh.box_min);
   a(mesh.box_max);
@@ -79,6 +81,8 @@ void archive_shape(Archive& a, Geometry& g) {
   archive_grid(a, g.mockup_grid);
   archive_grid(a, g.tool_grid);
   a(g.sample_spacing);
+  a(g.tool_sample_spacing);
+  a(g.contact_samples);
   a(g.reference_area_m2);
   a(g.tool_gyration_m);
   a(g.smooth_angle.cos2_numerator);
@@ -181,6 +185,7 @@ std::optional<ContentKey> geometry_key(const Scene& scene) {
   add_optional(key, scene.response.voxel_size_m);
   add_optional(key, scene.response.sample_spacing_m);
   key.value(scene.response.smooth_angle_deg);
+  key.value(scene.response.contact_samples);
   return key.finish();
 }
 

@@ -17,6 +17,7 @@ READ(kBindMockupInfo, uint32_t, mockup_info);
 READ(kBindMockupNormals, ivec3, mockup_normals);
 READ(kBindMockupWeights, uint32_t, mockup_weights);
 READ(kBindMockupPatches, uint32_t, mockup_patches);
+READ(kBindMockupLevels, uint32_t, mockup_levels);
 READ(kBindStaticState, uint32_t, static_state);
 READ(kBindStaticSlot, uint32_t, static_slot);
 READ(kBindToolRecords, uint64_t, tool_records);
@@ -44,6 +45,8 @@ EDIT_ONE(kBindFrameState, FrameState, frame_state);
 #include "shaders/lib/field_sums.glsl"
 #include "shaders/lib/ignored.glsl"
 #include "shaders/lib/tool_winding.glsl"
+#include "shaders/lib/sample_levels.glsl"
+SAMPLE_WEIGHT(mockup_weight, mockup_levels, scene.mockup.triangles)
 
 bool inside_tool(ivec3 point, ivec3 at) {
   const ivec3 voxel = body_voxel_of(at);
@@ -65,7 +68,9 @@ bool push_of(uint32_t item, out Push push) {
     const FrameSample work = frame_samples[item];
     point = work.point;
     id = work.static_id;
-    weight = mockup_weights[id];
+    const uint32_t axis = mockup_info[id] >> kInfoAxisShift & 3u;
+    const ivec2 ij = ivec2(point[(axis + 1u) % 3u], point[(axis + 2u) % 3u]) / scene.sample_spacing;
+    weight = uint32_t(mockup_weight(id, mockup_weights[id], ij) >> 6);
   }
   const ivec3 at = tool_from_world(point);
   if (weight == 0u || (EXTRA && !inside_tool(point, at))) return false;

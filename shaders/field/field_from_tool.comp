@@ -14,6 +14,9 @@ CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindToolPoints, FieldPoint, tool_points);
 READ(kBindToolInfo, uint32_t, tool_info);
 READ(kBindToolNormals, ivec3, tool_normals);
+READ(kBindToolVertices, ivec3, tool_vertices);
+READ(kBindToolTriangles, uvec3, tool_triangles);
+READ(kBindMobileState, uint32_t, mobile_state);
 READ(kBindMockupVertices, ivec3, body_vertices);
 READ(kBindMockupTriangles, uvec3, body_triangles);
 READ(kBindMockupInfo, uint32_t, body_info);
@@ -48,7 +51,9 @@ bool inside_mockup(ivec3 point) {
 // False: nothing pushes.
 bool push_of(uint32_t item, out Push push) {
   const FieldPoint work = tool_points[item];
-  if (!inside_mockup(work.point)) return false;
+  // What touches nothing is on one side of the mock-up, with its first corner.
+  const bool hit = (mobile_state[work.triangle] & kMobileHit) != 0u;
+  if (!inside_mockup(hit ? work.point : world_from_tool(tool_vertices[tool_triangles[work.triangle].x]))) return false;
   const Depth depth = body_depth(work.point);
   if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
   push.at = work.point;

@@ -26,7 +26,7 @@ void list_extras(uint32_t mobile) {
   const uint32_t first = first_extra(mobile, scene.tool_extras), count = extras_from(first, mobile, scene.tool_extras);
   const uint32_t at = take_room(kListToolPoints, count);
   for (uint32_t i = 0u; i < count && at + i < frame_lists[kListToolPoints].capacity; ++i)
-    tool_points[at + i] = FieldPoint(world_from_tool(extras[first + i].point), mobile, extras[first + i].weight);
+    tool_points[at + i] = FieldPoint(world_from_tool(extras[first + i].point), mobile, extras[first + i].weight >> 4);
 }
 
 // The box of grid points: those in it and just outside are decided one by one later.
@@ -35,7 +35,7 @@ void list_tiles(uint32_t mobile, uint32_t info) {
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
   const uint32_t axis = info >> kInfoAxisShift & 3u, u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
   const ivec3 low = min(min(a, b), c), high = max(max(a, b), c);
-  const int32_t s = scene.sample_spacing;
+  const int32_t s = scene.tool_sample_spacing;
   const int32_t u_first = floor_div(low[u], s), v_first = floor_div(low[v], s);
   const uint32_t across = uint32_t(floor_div(high[u], s) - u_first) / uint32_t(kFieldTile) + 1u;
   const uint32_t down = uint32_t(floor_div(high[v], s) - v_first) / uint32_t(kFieldTile) + 1u;

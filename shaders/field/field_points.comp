@@ -1,5 +1,6 @@
 #version 460
-// One workgroup: a tile of a tool triangle's sample grid; one invocation: a grid point. Lists the samples that lie in a V_bnd or V_int voxel of the mock-up.
+// One workgroup: a tile of a tool triangle's sample grid; one invocation: a grid point. Lists the samples that weigh something, and lie in a V_bnd or V_int voxel of the
+// mock-up, or with their triangle's first corner where it touches nothing.
 // Reads field_tiles, the tool in its own frame, the mock-up's partition. Writes tool_points.
 // Before: field_mobiles; its list is closed.
 #extension GL_GOOGLE_include_directive : require
@@ -15,6 +16,8 @@ READ(kBindToolVertices, ivec3, tool_vertices);
 READ(kBindToolTriangles, uvec3, tool_triangles);
 READ(kBindToolInfo, uint32_t, tool_info);
 READ(kBindToolWeights, uint32_t, tool_weights);
+READ(kBindToolLevels, uint32_t, tool_levels);
+READ(kBindMobileState, uint32_t, mobile_state);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
 READ(kBindMockupBricks, Brick, mockup_bricks);
 EDIT(kBindToolPoints, FieldPoint, tool_points);
@@ -28,6 +31,8 @@ EDIT_ONE(kBindFrameState, FrameState, frame_state);
 #define PARTITION_SLOTS mockup_brick_slots
 #define PARTITION_BRICKS mockup_bricks
 #include "shaders/lib/partition.glsl"
+#include "shaders/lib/sample_levels.glsl"
+SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
 void main() {
   if (flat_group() >= frame_lists[kListFieldTiles].count) return;
@@ -37,10 +42,13 @@ void main() {
   const int32_t axis = int32_t(tool_info[tile.mobile] >> kInfoAxisShift & 3u);
   const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
   const ivec2 place = ivec2(gl_LocalInvocationIndex % uint32_t(kFieldTile), gl_LocalInvocationIndex / uint32_t(kFieldTile));
-  const ivec2 g = scene.sample_spacing * (ivec2(tile.first_u, tile.first_v) + place);
+  const ivec2 ij = ivec2(tile.first_u, tile.first_v) + place, g = scene.tool_sample_spacing * ij;
   if (!grid_point_inside(triangle, g)) return;
+  const uint32_t weight = uint32_t(tool_weight(tile.mobile, tool_weights[tile.mobile], ij) >> 4);
+  if (weight == 0u) return;
   const ivec3 p = world_from_tool(sample_point(triangle, g));
-  if (mockup_class_of(mockup_voxel_of(p)) == kVoxelExternal) return;
+  const bool hit = (mobile_state[tile.mobile] & kMobileHit) != 0u;
+  if (mockup_class_of(mockup_voxel_of(hit ? p : world_from_tool(a))) == kVoxelExternal) return;
   const uint32_t at = take_room(kListToolPoints, 1u);
-  if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(p, tile.mobile, tool_weights[tile.mobile]);
+  if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(p, tile.mobile, weight);
 }

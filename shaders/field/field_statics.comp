@@ -30,5 +30,5 @@ void main() {
   const uint32_t first = first_extra(id, scene.mockup_extras), count = extras_from(first, id, scene.mockup_extras);
   const uint32_t at = take_room(kListMockupPoints, count);
   for (uint32_t i = 0u; i < count && at + i < frame_lists[kListMockupPoints].capacity; ++i)
-    mockup_points[at + i] = FieldPoint(extras[first + i].point, id, extras[first + i].weight);
+    mockup_points[at + i] = FieldPoint(extras[first + i].point, id, extras[first + i].weight >> 6);
 }

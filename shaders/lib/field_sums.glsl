@@ -14,7 +14,7 @@ struct Push {
   ivec3 along;         // n
   ivec3 against;       // u
   uint32_t depth;
-  uint32_t weight;     // the sample's own
+  uint32_t weight;     // the sample's own, Q24
   bool sheet;
   uint32_t static_id, mobile;
   uint32_t slot;       // of the carrier; kNone: none carries it
@@ -45,12 +45,12 @@ uint32_t bin_of(ivec3 n) {
 void put_push(Push push) {
   const i64vec3 n = i64vec3(push.along), u = i64vec3(push.against), r = i64vec3(push.at) - i64vec3(frame_input.translation);
   const uint32_t weight = push.weight >> (push.sheet ? 0u : 1u);
-  const int64_t p = int64_t((uint64_t(push.depth) * uint64_t(weight)) >> 20);
+  const int64_t p = int64_t((uint64_t(push.depth) * uint64_t(weight)) >> 14);
   put_term(0u, 1l);
   put_wide(1u, p * (n >> 10));
   put_wide(7u, (p >> 10) * (i64vec3(r.y * n.z - r.z * n.y, r.z * n.x - r.x * n.z, r.x * n.y - r.y * n.x) >> 30));
   const int64_t steep = (n.x * u.x + n.y * u.y + n.z * u.z) >> 30;
-  const int64_t give = steep > 0l ? (int64_t(weight) * steep) >> 40 : 0l;
+  const int64_t give = steep > 0l ? (int64_t(weight) * steep) >> 34 : 0l;
   const i64vec3 lever = r >> scene.lever_shift, moment = give * lever;
   put_term(13u, give);
   for (uint32_t k = 0u; k < 3u; ++k) {
@@ -63,7 +63,7 @@ void put_push(Push push) {
   deepest[kGroupSize + gl_LocalInvocationIndex] = uint64_t(push.depth) << 32 | uint64_t(~push.mobile);
   if (push.sheet) any_sheet = 1u;   // whoever writes it
   if (!CARRIERS || push.slot == kNone) return;
-  const int64_t whole = int64_t((uint64_t(push.depth) * uint64_t(push.weight)) >> 20);
+  const int64_t whole = int64_t((uint64_t(push.depth) * uint64_t(push.weight)) >> 14);
   put_term(kFieldBinWords, 1l);
   put_term(kFieldBinWords + 1u, int64_t(push.weight));
   put_term(kFieldBinWords + 2u, whole);

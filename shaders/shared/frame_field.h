@@ -21,6 +21,11 @@ PALPATE_CONSTANT int32_t kBindIgnoredState = 102;     // a bit a patch: it is in
 PALPATE_CONSTANT int32_t kBindResultIgnored = 103;    // kListIgnored: uint32_t patches in which something would push; mapped
 PALPATE_CONSTANT int32_t kBindResultField = 104;      // FieldWork, one; mapped, read by the host
 PALPATE_CONSTANT int32_t kBindResultCarriers = 105;   // CarrierWork[C_s], by slot; mapped
+PALPATE_CONSTANT int32_t kBindMockupLevels = 106;     // a uint32_t a triangle: 1 + place of its side's levels, or 0; then kSideLevelWords a place: the coarsest level, factors (Q30)
+PALPATE_CONSTANT int32_t kBindToolLevels = 107;       // likewise
+
+PALPATE_CONSTANT uint32_t kMostSampleLevel = 4u;      // kSampleLevels of model/lattice_mesh.h
+PALPATE_CONSTANT uint32_t kSideLevelWords = 1u + kMostSampleLevel;
 
 PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
 PALPATE_CONSTANT uint32_t kListMockupPoints = 17u;
@@ -42,7 +47,7 @@ struct ExtraSample {
 struct FieldPoint {
   ivec3 point;               // world lattice
   uint32_t triangle;         // its own
-  uint32_t weight;           // Q30
+  uint32_t weight;           // Q24
 };
 
 // kFieldTile² points of a tool triangle's sample grid, beginning at grid point (first_u, first_v)·spacing.

@@ -44,7 +44,10 @@ Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& to
   scene.mockup_grid = make_grid(scene.mockup.box_min, scene.mockup.box_max, voxel);
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;
-  for (LatticeMesh* mesh : {&scene.mockup, &scene.tool}) weigh_for_field(scene.sample_spacing, *mesh);
+  scene.contact_samples = 12;   // few, so that many contacts are sampled coarsely
+  scene.tool_sample_spacing = 2 * scene.sample_spacing;
+  weigh_for_field(scene.sample_spacing, scene.mockup);
+  weigh_for_field(scene.tool_sample_spacing, scene.tool);
   scene.reference_area_m2 = 1;
   scene.tool_gyration_m = 1;
   double radius = 0;

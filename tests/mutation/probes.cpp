@@ -317,7 +317,7 @@ std::uint64_t responses() {
       area.height_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(3)} << 28;
       area.field.samples = static_cast<std::uint32_t>(below(3));
       area.field.max_depth = static_cast<std::uint32_t>(below(1000));
-      area.field.weight_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(2)} << 30;
+      area.field.weight_sum = below(4) == 0 ? 0 : std::int64_t{1 + below(2)} << 24;
       area.field.depth_sum = below(4) == 0 ? 0 : 1 + below(1 << 20);
       for (auto* sums : {&area.field.push, &area.field.moment})
         for (auto& term : *sums) term = {below(1000), points.within(10)};

@@ -57,7 +57,7 @@ class HalfSpace : public CollisionBackend {
     area.max_height = static_cast<std::uint32_t>(depth * 4);
     area.voxel_count = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) area.voxel_sum[axis] = pose.translation[static_cast<int>(axis)];
-    area.field = {.id = 0, .samples = 1, .max_depth = static_cast<std::uint32_t>(depth), .weight_sum = std::int64_t{1} << 30, .depth_sum = depth << 10, .push = {}, .moment = {}};
+    area.field = {.id = 0, .samples = 1, .max_depth = static_cast<std::uint32_t>(depth), .weight_sum = std::int64_t{1} << 24, .depth_sum = depth << 10, .push = {}, .moment = {}};
     area.field.push[2] = {.low = (depth & 3) << 30, .high = depth >> 2};   // φ · 2^30
     FieldBin& up = out.field.bins[22];   // 0 0 1
     up.samples = 1;

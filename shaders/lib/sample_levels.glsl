@@ -1,0 +1,38 @@
+// What a grid sample weighs in the field: in large contacts samples are left out, level by level (docs/EXACTNESS.md sections 4 and 8).
+// The including shader has scene and frame_lists; its lists of samples and of C_m are closed.
+#ifndef PALPATE_LIB_SAMPLE_LEVELS
+#define PALPATE_LIB_SAMPLE_LEVELS
+#include "shaders/shared/frame_field.h"
+
+// The last level that grid point ij is of.
+uint32_t level_of_point(ivec2 ij) {
+  const uvec2 halvings = min(uvec2(findLSB(ij)), uvec2(kMostSampleLevel));   // of 0: -1, so the most
+  return 2u * min(halvings.x, halvings.y) + (halvings.x == halvings.y ? 1u : 0u);
+}
+
+// 256 log2(count), count > 0, straight between powers of two.
+uint32_t log_q8(uint32_t count) {
+  const uint32_t whole = uint32_t(findMSB(count));
+  return 256u * whole + uint32_t(uint64_t(count) << 8 >> whole) - 256u;
+}
+
+// Of this frame, Q8.
+uint32_t frame_level() {
+  const uint32_t count = frame_lists[kListSamples].count + frame_lists[kListContactMobiles].count / 4u, wanted = scene.contact_samples;
+  return wanted != 0u && count > wanted ? min(log_q8(count) - log_q8(wanted), 256u * kMostSampleLevel) : 0u;
+}
+
+#define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                                               \
+  uint64_t NAME##_at(uint32_t base, uint32_t place, uint32_t level, uint32_t wanted) {                                       \
+    const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS[words]);                   \
+    if (level < taken) return 0ul;                                                                                           \
+    return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS[words + taken]) >> 30) << taken;                 \
+  }                                                                                                                          \
+  /* Q30. `base`: the triangle's field weight. */                                                                            \
+  uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij) {                                                                \
+    const uint32_t place = LEVELS[triangle], now = frame_level(), part = now & 255u;                                         \
+    if (place == 0u || now == 0u) return uint64_t(base);                                                                     \
+    const uint32_t level = level_of_point(ij);                                                                               \
+    return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) + uint64_t(part) * NAME##_at(base, place, level, (now >> 8) + 1u)) >> 8; \
+  }
+#endif
