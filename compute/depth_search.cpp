@@ -36,59 +36,136 @@ bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flag
 
 }  // namespace
 
+namespace {
+
+/// A number for each edge of a triangle, and a fourth that counts for nothing. Every processor has such vectors.
+using Lanes = float __attribute__((vector_size(16)));
+
+Lanes lanes(float value) { return Lanes{value, value, value, value}; }
+Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
+
+}  // namespace
+
+/// A triangle as the search asks for it time and again. Floats are relative to the first corner, in steps.
+struct DepthSearch::Known {
+  Lanes out_x, out_y, out_z, out_at;   ///< by edge, of unit length: away from the triangle in its plane; the last lane is never outside
+  Lanes along_x, along_y, along_z, along_at, length;
+  Int3 normal, corner;
+  float slack;                     ///< by how much the floats' sides may be off, besides kFloatSlack of the way to the first corner
+  std::uint32_t id = kNobody;
+  bool solid;
+  unsigned edges;                  ///< bits: those that are known in integers
+  struct Edge {
+    Int3 from, along, out;         ///< as EXACTNESS section 4 has them: u, e, m
+    std::int64_t size, length;     ///< L, floor(√((v − u)·(v − u)))
+  } edge[3];
+};
+
 struct DepthSearch::Search {
   Int3 point;
+  Int3 home{0}, parts{0};          ///< the voxel of the point, and where it lies there in parts of a voxel, rounded down
   std::int64_t best = INT64_MAX;   ///< steps
   std::uint32_t triangle = kNobody;
 };
 
-/// The distance to one triangle, where it may be the least.
-void DepthSearch::look_at(Search& search, std::uint32_t id) const {
-  if (id == search.triangle) return;
+namespace {
+
+/// Of a float's side or place along an edge: three products of a rounded unit vector and a rounded difference, and three sums, each off by 2^-24 of itself, are off by less
+/// than 2^-21 of the way; a quarter of it is room.
+constexpr float kFloatSlack = 0x1p-19F;
+
+}  // namespace
+
+DepthSearch::Known& DepthSearch::know(std::uint32_t id) {
+  Known& known = known_[id % kKnown];
+  if (known.id == id) return known;
   const LatticeMesh& mesh = *mesh_;
   const auto& [ia, ib, ic] = mesh.triangles[id];
-  const Int3 n = mesh.unit_normal_q30[id], corners[3] = {mesh.vertices[ia], mesh.vertices[ib], mesh.vertices[ic]};
-  const std::int64_t height = std::abs((product(n, search.point - corners[0]) + (std::int64_t{1} << 29)) >> 30);
-  if (height > search.best || !bounds_solid(mesh, id)) return;
-
-  // Each edge in doubles first, squared, so that there is one root a triangle. A side is off by less than 4 steps and 2^-27 of the way there: m is rounded by a
-  // step in 2^28, L likewise, n by 2^-31.
-  const double x = search.point.x, y = search.point.y, z = search.point.z, h = static_cast<double>(height);
-  const double slack = 8 + 0x1p-25 * (std::fabs(x - corners[0].x) + std::fabs(y - corners[0].y) + std::fabs(z - corners[0].z) +
-                                      std::fabs(double(corners[1].x) - corners[0].x) + std::fabs(double(corners[1].y) - corners[0].y) + std::fabs(double(corners[1].z) - corners[0].z) +
-                                      std::fabs(double(corners[2].x) - corners[0].x) + std::fabs(double(corners[2].y) - corners[0].y) + std::fabs(double(corners[2].z) - corners[0].z));
-  const double best = static_cast<double>(search.best) + 2, far = std::sqrt(std::max(best * best - h * h, 0.0)) + slack;   // beyond it an edge is too far away
-  bool unsure = false;
-  for (int k = 0; k < 3; ++k) {
+  const Int3 corners[3] = {mesh.vertices[ia], mesh.vertices[ib], mesh.vertices[ic]};
+  known.id = id;
+  known.edges = 0;
+  known.solid = bounds_solid(mesh, id);
+  known.normal = mesh.unit_normal_q30[id];
+  known.corner = corners[0];
+  const double nx = known.normal.x * 0x1p-30, ny = known.normal.y * 0x1p-30, nz = known.normal.z * 0x1p-30;
+  double reach = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
     const Int3 &u = corners[k], &v = corners[k == 2 ? 0 : k + 1];
-    const double ex = v.x - double(u.x), ey = v.y - double(u.y), ez = v.z - double(u.z);
-    const double out = (ey * n.z - ez * n.y) * (x - u.x) + (ez * n.x - ex * n.z) * (y - u.y) + (ex * n.y - ey * n.x) * (z - u.z);   // side · |e| · 2^30
-    const double unit = 0x1p60 * (ex * ex + ey * ey + ez * ez), squared = out * out;
-    if (out < 0) {
-      unsure = unsure || squared <= slack * slack * unit;
-    } else {
-      if (squared > far * far * unit) return;
-      unsure = true;
-    }
+    const double fx = double(u.x) - corners[0].x, fy = double(u.y) - corners[0].y, fz = double(u.z) - corners[0].z;
+    const double ex = double(v.x) - u.x, ey = double(v.y) - u.y, ez = double(v.z) - u.z, length = std::sqrt(ex * ex + ey * ey + ez * ez);
+    const double ax = ex / length, ay = ey / length, az = ez / length;
+    const double ox = ay * nz - az * ny, oy = az * nx - ax * nz, oz = ax * ny - ay * nx;
+    known.out_x[k] = static_cast<float>(ox);
+    known.out_y[k] = static_cast<float>(oy);
+    known.out_z[k] = static_cast<float>(oz);
+    known.out_at[k] = static_cast<float>(ox * fx + oy * fy + oz * fz);
+    known.along_x[k] = static_cast<float>(ax);
+    known.along_y[k] = static_cast<float>(ay);
+    known.along_z[k] = static_cast<float>(az);
+    known.along_at[k] = static_cast<float>(ax * fx + ay * fy + az * fz);
+    known.length[k] = static_cast<float>(length);
+    reach = std::max({reach, std::fabs(fx) + std::fabs(fy) + std::fabs(fz), length});
   }
-  std::int64_t distance = height;
-  if (unsure) {
-    std::int64_t least = -1;
-    for (int k = 0; k < 3; ++k) {
-      const Int3 &u = corners[k], &v = corners[k == 2 ? 0 : k + 1];
-      const Int3 edge = v - u, from = search.point - u;
-      const Int3 along = exact::normalise({edge.x, edge.y, edge.z});
-      const exact::Normal across = exact::cross(along, n);
-      const Int3 out(static_cast<std::int32_t>(across.x >> 30), static_cast<std::int32_t>(across.y >> 30), static_cast<std::int32_t>(across.z >> 30));
-      const std::int64_t size = root(product(along, along)), side = floor_quotient(product(out, from), size);
-      if (side <= 0) continue;
-      const std::int64_t at = floor_quotient(product(along, from), size);
-      const std::int64_t over = std::max({std::int64_t{0}, -at, at - root(product(edge, edge))});
-      const std::int64_t squared = height * height + side * side + over * over;
-      if (least < 0 || squared < least) least = squared;
+  for (Lanes* of : {&known.out_x, &known.out_y, &known.out_z, &known.along_x, &known.along_y, &known.along_z, &known.along_at, &known.length}) (*of)[3] = 0;
+  known.out_at[3] = 0x1p60F;
+  known.slack = 8 + kFloatSlack * static_cast<float>(reach);   // 8: m is rounded by a step in 2^28, L likewise, n by 2^-31, and what is left is rounded down
+  return known;
+}
+
+/// As EXACTNESS section 4 has it, over the edges of `mask`; of the others it is known that the point is not outside them.
+std::int64_t DepthSearch::distance_to(const Int3& point, Known& known, std::int64_t height, unsigned mask) const {
+  std::int64_t least = -1;
+  for (int k = 0; k < 3; ++k) {
+    if ((mask >> k & 1) == 0) continue;
+    Known::Edge& edge = known.edge[k];
+    if ((known.edges >> k & 1) == 0) {
+      edge.from = mesh_->corner(known.id, k);
+      const Int3 way = mesh_->corner(known.id, k == 2 ? 0 : k + 1) - edge.from;
+      edge.along = exact::normalise({way.x, way.y, way.z});
+      const exact::Normal across = exact::cross(edge.along, known.normal);
+      edge.out = Int3(static_cast<std::int32_t>(across.x >> 30), static_cast<std::int32_t>(across.y >> 30), static_cast<std::int32_t>(across.z >> 30));
+      edge.size = root(product(edge.along, edge.along));
+      edge.length = root(product(way, way));
+      known.edges |= 1U << k;
     }
-    if (least >= 0) distance = root(least);
+    const Int3 from = point - edge.from;
+    const std::int64_t side = floor_quotient(product(edge.out, from), edge.size);
+    if (side <= 0) continue;
+    const std::int64_t at = floor_quotient(product(edge.along, from), edge.size);
+    const std::int64_t over = std::max({std::int64_t{0}, -at, at - edge.length});
+    const std::int64_t squared = height * height + side * side + over * over;
+    if (least < 0 || squared < least) least = squared;
   }
+  return least < 0 ? height : root(least);
+}
+
+/// The distance to one triangle, where it may be the least.
+void DepthSearch::look_at(Search& search, std::uint32_t id) {
+  if (id == search.triangle) return;
+  Known& known = know(id);
+  const Int3 from = search.point - known.corner;
+  const std::int64_t height = std::abs((product(known.normal, from) + (std::int64_t{1} << 29)) >> 30);
+  if (height > search.best || !known.solid) return;
+
+  const float x = static_cast<float>(from.x), y = static_cast<float>(from.y), z = static_cast<float>(from.z), h = static_cast<float>(height);
+  const float slack = known.slack + kFloatSlack * (std::fabs(x) + std::fabs(y) + std::fabs(z));
+  const Lanes out = known.out_x * x + known.out_y * y + known.out_z * z - known.out_at, at = known.along_x * x + known.along_y * y + known.along_z * z - known.along_at;
+  const Lanes over = larger(larger(-at, at - known.length) - slack, lanes(0)), side = larger(out - slack, lanes(0)), squared = side * side + over * over;
+  // Outside no edge: the height. Outside some: the least of theirs, and no less than the floats say with all their slack against it.
+  unsigned mask = 0;
+  bool certain = false;
+  float least = 0x1p120F;
+  for (int k = 0; k < 3; ++k) {
+    if (out[k] < -slack) continue;
+    mask |= 1U << k;
+    certain = certain || out[k] > slack;
+    least = std::min(least, squared[k]);
+  }
+  if (certain) {
+    const float best = static_cast<float>(search.best) + 2;
+    if ((h * h + least) * (1 - 0x1p-20F) > best * best * (1 + 0x1p-20F)) return;   // each side is off by at most 6 roundings
+  }
+  const std::int64_t distance = mask == 0 ? height : distance_to(search.point, known, height, mask);
   if (distance < search.best || (distance == search.best && id < search.triangle)) {
     search.best = distance;
     search.triangle = id;
@@ -96,20 +173,16 @@ void DepthSearch::look_at(Search& search, std::uint32_t id) const {
 }
 
 /// What the V_bnd voxel lists, as far as its boxes there are near enough.
-void DepthSearch::look_into(Search& search, const Int3& voxel, std::uint32_t boundary) const {
+void DepthSearch::look_into(Search& search, const Int3& voxel, std::uint32_t boundary) {
   const auto list = partition_->list(boundary);
   const std::size_t count = list.size();
-  const GridConstants& grid = partition_->grid();
   const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
   // Everything in parts of the voxel, rounded down: a box reaches a part further than its highs, the point a part further than its place.
-  std::int32_t at[3];
-  for (int k = 0; k < 3; ++k) {
-    const double place = (search.point[k] - (grid.origin[k] + double(grid.size) * voxel[k])) * per_part_;
-    at[k] = static_cast<std::int32_t>(std::floor(std::clamp(place, -20000.0, 20000.0)));   // further away nothing is asked
-  }
+  constexpr std::int32_t kFar = 20000;   // further away nothing is asked
+  const Int3 at = glm::clamp(search.parts - (voxel - search.home) * static_cast<std::int32_t>(kVoxelParts), Int3(-kFar), Int3(kFar));
   const auto limit = [&] {
     const double reach = (static_cast<double>(search.best) + kRounding) * per_part_ + 1;
-    return reach > 20000 ? std::int32_t{INT32_MAX} : static_cast<std::int32_t>(reach * reach) + 1;
+    return reach > kFar ? std::int32_t{INT32_MAX} : static_cast<std::int32_t>(reach * reach) + 1;
   };
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < count; first += kAtOnce) {
@@ -128,12 +201,18 @@ void DepthSearch::look_into(Search& search, const Int3& voxel, std::uint32_t bou
 }
 
 DepthSearch::DepthSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes)
-    : mesh_(&mesh), partition_(&partition), boxes_(boxes), per_part_(static_cast<double>(kVoxelParts) / partition.grid().size) {}
+    : mesh_(&mesh), partition_(&partition), boxes_(boxes), per_part_(static_cast<double>(kVoxelParts) / partition.grid().size), known_(kKnown) {}
+DepthSearch::DepthSearch() = default;
+DepthSearch::DepthSearch(const DepthSearch&) = default;
+DepthSearch& DepthSearch::operator=(const DepthSearch&) = default;
+DepthSearch::~DepthSearch() = default;
 
 /// Voxels in rings round the point's own, as far as they may hold something nearer.
-void DepthSearch::look_round(Search& search) const {
+void DepthSearch::look_round(Search& search) {
   const GridConstants& grid = partition_->grid();
   const Int3 home = partition_->voxel_of(search.point), in_home = search.point - (grid.origin + grid.size * home);
+  search.home = home;
+  for (int k = 0; k < 3; ++k) search.parts[k] = static_cast<std::int32_t>(std::floor(std::clamp(in_home[k] * per_part_, -1e8, 1e8)));
   const std::int64_t size = grid.size;
   const Int3 voxels = grid.bricks * 8;
   if (const HostPartition::Voxel at = partition_->at(home); at.boundary != kNoVoxel) look_into(search, home, at.boundary);
@@ -169,7 +248,7 @@ void DepthSearch::look_round(Search& search) const {
   }
 }
 
-DepthSearch::Depth DepthSearch::below(const Int3& point, std::uint32_t guess) const {
+DepthSearch::Depth DepthSearch::below(const Int3& point, std::uint32_t guess) {
   return on_this_processor([&] {
     Search search{.point = point};
     if (guess != kNobody) look_at(search, guess);

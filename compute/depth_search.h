@@ -9,7 +9,8 @@
 namespace palpate {
 
 /// How far a point lies below a body's surface (docs/EXACTNESS.md section 4), on the host: through the voxels round the point, nearest first, as far as something
-/// may still be nearer, and in each of them through those triangles alone whose boxes are near enough. Arguments outlive this. One thread; never allocates.
+/// may still be nearer, and in each of them through those triangles alone whose boxes are near enough. What it has worked out of triangles it keeps, as far as there is
+/// room. Arguments outlive this. One thread; only making and copying one allocates.
 class DepthSearch {
  public:
   struct Depth {
@@ -18,23 +19,31 @@ class DepthSearch {
   };
   static constexpr std::uint32_t kNobody = UINT32_MAX;
 
-  DepthSearch() = default;
+  DepthSearch();
+  DepthSearch(const DepthSearch&);
+  DepthSearch& operator=(const DepthSearch&);
+  ~DepthSearch();
   /// `partition` lists every triangle of `mesh` in every voxel that it touches; `boxes`: SearchTables::boxes of it.
   DepthSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes);
 
   /// `guess`: a triangle that may be near, as the one of a point beside it; kNobody: none. It changes nothing but the time.
-  Depth below(const Int3& point, std::uint32_t guess) const;
+  Depth below(const Int3& point, std::uint32_t guess);
 
  private:
   struct Search;
-  void look_at(Search& search, std::uint32_t triangle) const;
-  void look_into(Search& search, const Int3& voxel, std::uint32_t boundary) const;
-  void look_round(Search& search) const;
+  struct Known;
+  static constexpr std::uint32_t kKnown = 4096;   // triangles (chosen: 1 MiB, what a second-level cache holds)
+  Known& know(std::uint32_t triangle);
+  std::int64_t distance_to(const Int3& point, Known& known, std::int64_t height, unsigned mask) const;
+  void look_at(Search& search, std::uint32_t triangle);
+  void look_into(Search& search, const Int3& voxel, std::uint32_t boundary);
+  void look_round(Search& search);
 
   const LatticeMesh* mesh_ = nullptr;
   const HostPartition* partition_ = nullptr;
   std::span<const std::uint8_t> boxes_;
   double per_part_ = 0;   ///< parts of a voxel a step
+  std::vector<Known> known_;   ///< by triangle, where a newer one takes an older one's place
 };
 
 /// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4): by walks along axes to voxels that list nothing.

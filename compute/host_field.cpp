@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
+#include <optional>
 
 #include "compute/host_exact.h"
 
@@ -252,10 +253,11 @@ void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& foun
   for (const MobileResult& result : found.mobiles) {
     // What touches nothing is on one side of the mock-up, with its first corner.
     const bool hit = (result.state & kMobileHit) != 0;
-    if (!hit && !in_mockup_.inside(transform(pose, own.corner(result.id, 0)))) continue;
+    std::optional<bool> inside;
     const auto push = [&](const Int3& p, std::uint64_t weight) {
       const Int3 point = transform(pose, p);
-      if (!hit || in_mockup_.inside(point)) push_from_tool(pose, result.id, point, static_cast<std::uint32_t>(weight >> 4), out);
+      if (!hit && !inside) inside = in_mockup_.inside(transform(pose, own.corner(result.id, 0)));
+      if (hit ? in_mockup_.inside(point) : *inside) push_from_tool(pose, result.id, point, static_cast<std::uint32_t>(weight >> 4), out);
     };
     if (own.field_weight_q30[result.id] != 0)
       for_tool_samples(result.id, [&](const Int3& p, int level) {
