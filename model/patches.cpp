@@ -17,8 +17,9 @@ constexpr double kLarge = 64;
 constexpr double kFairly = 0.0625;
 /// Samples that stand for less than this part of a side can't stand for it all: weights are at most √3, and 2√3 < 4 is what Q30 holds.
 constexpr double kHardlySeen = 0.5;
-/// An extra sample of a side larger than s² stands for at most this part of s² (chosen: denser than the grid, for such sides are narrow).
-constexpr double kExtraShare = 0.25;
+/// Triangles of a side larger than s² share an extra sample as long as they are no larger than s², and reach no further than this many s (chosen: sides that the grid
+/// misses are often narrow, and a contact across one must not slip between).
+constexpr double kExtraReach = 1.5;
 /// So many samples a side keeps at its coarsest level, at least (chosen: about what a small contact has).
 constexpr double kLeastOfLevel = 16;
 constexpr double kMostExtras = 1024;   // on one triangle (chosen: memory)
@@ -163,20 +164,30 @@ SideLevels levels_of(const LatticeMesh& mesh, std::int32_t spacing, double squar
 /// Gives a side extra samples for all of its area.
 void place_extras(LatticeMesh& mesh, double square, const Side& side) {
   const bool one = side.facing.area <= square;
+  const double most_reach = kExtraReach * std::sqrt(square);
   double gathered = 0, most = -1;
   std::uint32_t largest = 0;
-  for (const std::uint32_t t : side.triangles) {
+  Vec3 low(INFINITY), high(-INFINITY);   // of what is gathered
+  for (std::size_t i = 0; i < side.triangles.size(); ++i) {
+    const std::uint32_t t = side.triangles[i];
     const Vec3 raw(raw_normal(mesh, t));
     gathered += length(raw) / 2;
     if (const double shows = glm::dot(raw, side.facing.sum); shows > most) most = shows, largest = t;
-    if (t != side.triangles.back() && (one || gathered < kExtraShare * square)) continue;
+    for (int k = 0; k < 3; ++k) {
+      low = glm::min(low, Vec3(mesh.corner(t, k)));
+      high = glm::max(high, Vec3(mesh.corner(t, k)));
+    }
+    const double reach = length(high - low);
+    if (i + 1 < side.triangles.size() && (one || (gathered < square && reach < most_reach))) continue;
     const double weight = gathered / square;
-    const double count = one ? 1 : std::clamp(std::ceil(weight / kExtraShare), 1.0, kMostExtras);
+    const double count = one ? 1 : std::clamp(std::ceil(std::max(weight, reach / most_reach)), 1.0, kMostExtras);
     const auto whole = static_cast<std::int64_t>(count);
-    for (std::int64_t i = 0; i < whole; ++i)
-      mesh.extra_samples.push_back({largest, middle_of_share(mesh, largest, i, whole), weight_q30(weight / count)});
+    for (std::int64_t share = 0; share < whole; ++share)
+      mesh.extra_samples.push_back({largest, middle_of_share(mesh, largest, share, whole), weight_q30(weight / count)});
     gathered = 0;
     most = -1;
+    low = Vec3(INFINITY);
+    high = Vec3(-INFINITY);
   }
 }
 
