@@ -1,6 +1,7 @@
 #include "compute/depth_search.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -258,9 +259,10 @@ DepthSearch::Depth DepthSearch::below(const Int3& point, std::uint32_t guess) {
 }
 
 InsideSearch::InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes)
-    : mesh_(&mesh), partition_(&partition), boxes_(boxes), per_part_(static_cast<double>(kVoxelParts) / partition.grid().size), way_(partition.grid().boundary_voxels) {
+    : mesh_(&mesh), partition_(&partition), boxes_(boxes), per_part_(static_cast<double>(kVoxelParts) / partition.grid().size), way_(mesh.closed ? partition.grid().boundary_voxels : 0) {
   constexpr std::size_t kMostKnown = std::size_t{1} << 14;   // 256 KiB (chosen)
   windings_.resize(kMostKnown);
+  if (!mesh.closed) middle_.assign(partition.grid().boundary_voxels, kUnknown);
 }
 
 bool InsideSearch::inside(const Int3& point) {
@@ -278,13 +280,52 @@ bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::ui
     const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1, true);
     return out.net + (out.kind == kVoxelInternal ? winding_of(out.voxel) : 0) != 0;
   }
-  int inside = 0;
+  std::int16_t& winding = middle_[boundary];
+  if (winding == kUnknown) winding = winding_by_walks(voxel);
+  const Int3 middle = partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
+  return winding + (point == middle ? 0 : crossed_within(point, middle, voxel, boundary)) > 0;
+}
+
+/// Of a V_bnd voxel's middle: what most of six walks say.
+std::int16_t InsideSearch::winding_by_walks(const Int3& voxel) const {
+  const Int3 middle = partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
+  std::array<int, 6> said{};
   for (int axis = 0; axis < 3; ++axis)
     for (const int way : {1, -1}) {
-      const Walk out = walk(point, voxel, axis, way, false);
-      inside += (out.kind == kVoxelInternal ? out.net >= 0 : out.net != 0) ? 1 : 0;
+      const Walk out = walk(middle, voxel, axis, way, false);
+      said[static_cast<std::size_t>(2 * axis + (way > 0 ? 1 : 0))] = out.net + (out.kind == kVoxelInternal ? 1 : 0);
     }
-  return inside > 3;
+  std::sort(said.begin(), said.end());
+  return static_cast<std::int16_t>(std::clamp(said[2], -30000, 30000));
+}
+
+/// What the straight way from one end to the other, both in the voxel, crosses of what the voxel lists and what bounds a solid.
+int InsideSearch::crossed_within(const Int3& from, const Int3& to, const Int3& voxel, std::uint32_t boundary) const {
+  const GridConstants& grid = partition_->grid();
+  const auto list = partition_->list(boundary);
+  const std::size_t count = list.size();
+  const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
+  std::int32_t low[3], high[3];   // of the way, in parts of the voxel, with a part to spare
+  for (int k = 0; k < 3; ++k) {
+    const double corner = grid.origin[k] + double(grid.size) * voxel[k];
+    low[k] = static_cast<std::int32_t>((std::min(from[k], to[k]) - corner) * per_part_) - 1;
+    high[k] = static_cast<std::int32_t>((std::max(from[k], to[k]) - corner) * per_part_) + 1;
+  }
+  int net = 0;
+  constexpr std::size_t kAtOnce = 64;
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    const std::size_t some = std::min(kAtOnce, count - first);
+    std::uint8_t near[kAtOnce];
+    const std::uint8_t *lx = boxes + first, *ly = lx + count, *lz = ly + count, *hx = lz + count, *hy = hx + count, *hz = hy + count;
+    for (std::size_t i = 0; i < some; ++i)
+      near[i] = lx[i] <= high[0] && hx[i] >= low[0] && ly[i] <= high[1] && hy[i] >= low[1] && lz[i] <= high[2] && hz[i] >= low[2] ? 1 : 0;
+    for (std::size_t i = 0; i < some; ++i) {
+      if (near[i] == 0) continue;
+      const std::uint32_t id = list[first + i];
+      if (bounds_solid(*mesh_, id)) net += exact::segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+    }
+  }
+  return net;
 }
 
 /// Along an axis to the first voxel that is not V_bnd. `sheets`: their triangles count, too.

@@ -46,8 +46,8 @@ class DepthSearch {
   std::vector<Known> known_;   ///< by triangle, where a newer one takes an older one's place
 };
 
-/// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4): by walks along axes to voxels that list nothing.
-/// Arguments outlive this. One thread; only the constructor allocates.
+/// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4): by walks along axes to voxels that list nothing,
+/// of a body that is not closed once a voxel. Arguments outlive this. One thread; only the constructor allocates.
 class InsideSearch {
  public:
   InsideSearch() = default;
@@ -65,6 +65,8 @@ class InsideSearch {
   bool inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary);
   Walk walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const;
   int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary, bool sheets) const;
+  int crossed_within(const Int3& from, const Int3& to, const Int3& voxel, std::uint32_t boundary) const;
+  std::int16_t winding_by_walks(const Int3& voxel) const;
   std::uint8_t shortest_way(const Int3& voxel) const;
   int winding_of(const Int3& voxel);
 
@@ -73,6 +75,8 @@ class InsideSearch {
   std::span<const std::uint8_t> boxes_;
   double per_part_ = 0;                    ///< parts of a voxel a step
   std::vector<std::uint8_t> way_;          ///< by V_bnd voxel of a closed body: the shortest way out of such voxels, axis · 2 + up + 1; 0: not known yet
+  static constexpr std::int16_t kUnknown = INT16_MIN;
+  std::vector<std::int16_t> middle_;       ///< by V_bnd voxel of a body that is not closed: how deep in its middle is, in shells
   struct Known {
     std::uint64_t voxel;                   ///< its number + 1; 0: nothing
     int winding;

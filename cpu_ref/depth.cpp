@@ -1,6 +1,7 @@
 #include "cpu_ref/depth.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "cpu_ref/direction.h"
@@ -74,46 +75,56 @@ std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const
   return best;
 }
 
-bool inside_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point) {
-  int inside = 0;
+namespace {
+
+/// Σ of the signs of the crossings between a lattice point and another, with triangles that bound a solid.
+int crossed(const LatticeMesh& mesh, const BoxTree& tree, const Int3& from, const Int3& to) {
+  if (from == to) return 0;
+  const Int3 direction = to - from;
   std::vector<std::uint32_t> candidates;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int way : {1, -1}) {
-      // The walk ends at the middle of the first voxel on the line that lists nothing.
-      Int3 voxel = partition.holding(point);
-      VoxelClass end = VoxelClass::kExternal;
-      Int3 last = voxel;
-      while (partition.in_grid(voxel) && (end = partition.classes.at(voxel)) == VoxelClass::kBoundary) {
-        last = voxel;
-        voxel[axis] += way;
-        end = VoxelClass::kExternal;
-      }
-      Int3 direction(0), until = partition.centre(last);
-      direction[axis] = way;
-      until[axis] += way * partition.grid.size;
-      candidates.clear();
-      tree.along_ray(point, direction, candidates);
-      int net = 0;
-      for (const std::uint32_t t : candidates) {
-        if (mesh.collapsed(t) || is_sheet(mesh, t)) continue;
-        const Triangle triangle = triangle_of(mesh, t);
-        // What is crossed beyond the end is crossed from there, too: no triangle touches the end's voxel.
-        Int3 beyond = point;
-        beyond[axis] = until[axis];
-        const auto crossing = ray_crosses(point, direction, triangle);
-        if (crossing && !ray_crosses(beyond, direction, triangle)) net += crossing->sign;
-      }
-      const bool votes_inside = end == VoxelClass::kInternal ? net >= 0 : net != 0;
-      inside += votes_inside ? 1 : 0;
+  tree.along_ray(from, direction, candidates);
+  int net = 0;
+  for (const std::uint32_t t : candidates) {
+    if (mesh.collapsed(t) || is_sheet(mesh, t)) continue;
+    const Triangle triangle = triangle_of(mesh, t);
+    // What is crossed beyond the end is crossed from there, too.
+    const auto crossing = ray_crosses(from, direction, triangle);
+    if (crossing && !ray_crosses(to, direction, triangle)) net += crossing->sign;
+  }
+  return net;
+}
+
+/// How deep in a V_bnd voxel's middle is, in shells: what most of six walks say that end in the next voxels that are not V_bnd.
+int winding_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& voxel) {
+  std::array<int, 6> said{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    const int axis = static_cast<int>(i / 2), way = i % 2 == 0 ? 1 : -1;
+    Int3 end = voxel;
+    VoxelClass kind = VoxelClass::kBoundary;
+    while (kind == VoxelClass::kBoundary) {
+      end[axis] += way;
+      kind = partition.in_grid(end) ? partition.classes.at(end) : VoxelClass::kExternal;
     }
-  return inside > 3;
+    Int3 until = partition.centre(voxel);
+    until[axis] += (end[axis] - voxel[axis]) * partition.grid.size;
+    said[i] = crossed(mesh, tree, partition.centre(voxel), until) + (kind == VoxelClass::kInternal ? 1 : 0);
+  }
+  std::sort(said.begin(), said.end());
+  return said[2];
+}
+
+}  // namespace
+
+bool inside_open(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point) {
+  const Int3 voxel = partition.holding(point);
+  return winding_by_walks(mesh, tree, partition, voxel) + crossed(mesh, tree, point, partition.centre(voxel)) > 0;
 }
 
 bool inside_mockup(const Frame& frame, const Int3& point) {
   const VoxelClass voxel_class = frame.scene.mockup.class_of(point);
   if (voxel_class != VoxelClass::kBoundary) return voxel_class == VoxelClass::kInternal;
   const LatticeMesh& mesh = frame.mockup();
-  if (!mesh.closed) return inside_by_walks(mesh, frame.scene.mockup_tree, frame.scene.mockup, point);
+  if (!mesh.closed) return inside_open(mesh, frame.scene.mockup_tree, frame.scene.mockup, point);
   std::vector<std::uint32_t> candidates;
   const Int3 along_x(1, 0, 0);
   frame.scene.mockup_tree.along_ray(point, along_x, candidates);

@@ -18,8 +18,8 @@ std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const In
 /// The nearest triangle that bounds a solid: neither collapsed nor of a sheet. `tree` holds the boxes of `mesh`'s triangles.
 std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point);
 
-/// Whether a point in a V_bnd voxel of a body that is not `closed` lies inside it: six walks to the next voxel that is not V_bnd (EXACTNESS section 4).
-bool inside_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point);
+/// Whether a point in a V_bnd voxel of a body that is not `closed` lies inside it: what most of six walks say of the voxel's middle, and what lies between (EXACTNESS section 4).
+bool inside_open(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point);
 
 /// Whether a world lattice point lies inside the mock-up.
 bool inside_mockup(const Frame& frame, const Int3& point);

@@ -15,11 +15,18 @@ int32_t body_crossing(ivec3 from, ivec3 to, uint32_t id) {
   return segment_crossing(from, to, a, b, c);
 }
 
-// A body that is not closed: six walks to the first voxel that is not V_bnd, and what most of them say. Sheets do not count.
+// A body that is not closed: what most of six walks from the voxel's middle say, and what lies between it and the point. Sheets do not count.
 bool body_walks_inside(ivec3 point, ivec3 home) {
+  const ivec3 middle = BODY_GRID.origin + BODY_GRID.size * home + ivec3(BODY_GRID.size / 2);
+  const uint32_t first = body_boundary_index(home);
+  int32_t between = 0;
+  if (point != middle)
+    for (uint32_t i = body_list_begin[first]; i < body_list_begin[first + 1u] && !spent(1u); ++i)
+      if (body_bounds_solid(body_list[i])) between += body_crossing(point, middle, body_list[i]);
+  // Inside where four of six walks say that the point is in a shell.
   uint32_t inside = 0u, way = 0u, entry = 0u, last = 0u;
-  int32_t net = 0;
-  ivec3 voxel = home, from = point, to = point;
+  int32_t net = between;
+  ivec3 voxel = home, from = middle, to = middle;
   while (way < 6u && !spent(1u)) {
     if (entry < last) {
       const uint32_t id = body_list[entry++];
@@ -28,11 +35,11 @@ bool body_walks_inside(ivec3 point, ivec3 home) {
     }
     const uint32_t boundary = body_boundary_index(voxel);
     if (boundary == kNoVoxel) {
-      if (body_class_of(voxel) == kVoxelInternal ? net >= 0 : net != 0) ++inside;
+      if (net + (body_class_of(voxel) == kVoxelInternal ? 1 : 0) > 0) ++inside;
       ++way;
-      net = 0;
+      net = between;
       voxel = home;
-      to = point;
+      to = middle;
       continue;
     }
     const int axis = int(way >> 1);
