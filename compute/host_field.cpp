@@ -125,7 +125,7 @@ void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
 }
 
 void HostField::choose_level(std::size_t samples, std::size_t mobiles) {
-  const std::uint64_t wanted = geometry_->contact_samples, count = samples + mobiles / 4;
+  const std::uint64_t wanted = geometry_->contact_samples, count = samples + mobiles / 16;
   const std::uint32_t level = wanted != 0 && count > wanted ? std::min(log_q8(count) - log_q8(wanted), 256u * kSampleLevels) : 0;
   level_ = level >> 8;
   between_ = level & 255;

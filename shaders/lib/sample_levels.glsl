@@ -18,7 +18,7 @@ uint32_t log_q8(uint32_t count) {
 
 // Of this frame, Q8.
 uint32_t frame_level() {
-  const uint32_t count = frame_lists[kListSamples].count + frame_lists[kListContactMobiles].count / 4u, wanted = scene.contact_samples;
+  const uint32_t count = frame_lists[kListSamples].count + frame_lists[kListContactMobiles].count / 16u, wanted = scene.contact_samples;
   return wanted != 0u && count > wanted ? min(log_q8(count) - log_q8(wanted), 256u * kMostSampleLevel) : 0u;
 }
 
