@@ -136,6 +136,14 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
                    "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; `breaks` in results.json sums up.");
   numerics->callback([&] { outcome = bench_numerics(options, parts); });
 
+  CLI::App* force = bench->add_subcommand("force", "the force on fits, plates, thin and open parts against symmetry and closed forms, or along poses before a scene");
+  add_common(*force, options, false);
+  add_poses(*force, options);
+  one_backend(*force);
+  force->footer("A row a path: the largest force, the largest step between neighbours in K times the tool's way, work lost round loops, how far ∂F is from symmetric, what is lost\n"
+                "while going deeper, turns by more than 90° between neighbours, poses without a direction, and in words what breaks a limit. A scene's path is divided evenly into --frames poses.");
+  force->callback([&] { outcome = bench_force(options, parts); });
+
   CLI::App* jitter = bench->add_subcommand("jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
   add_common(*jitter, options);
   jitter->add_option("--seconds", options.seconds, "how long (60)")->check(CLI::Range(0.1, 86400.0).description(""))->type_name("S");

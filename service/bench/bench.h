@@ -38,6 +38,7 @@ Result<void> bench_peers(const BenchOptions& options, const Parts& parts);
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts);
 Result<void> bench_plan(const BenchOptions& options, const Parts& parts);
 Result<void> bench_numerics(const BenchOptions& options, const Parts& parts);
+Result<void> bench_force(const BenchOptions& options, const Parts& parts);
 Result<void> bench_jitter(const BenchOptions& options, const Parts& parts);
 
 /// Adds `bench` with its subcommands; `options`, `parts` and `outcome` outlive the parsing.
