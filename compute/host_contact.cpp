@@ -11,6 +11,7 @@ Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, con
   auto boxes = SearchTables::boxes_of(device, geometry.tool, scene.tool.partition);
   if (!boxes) return boxes.error();
   out->tool_boxes_ = std::move(*boxes);
+  out->tool_triangles_ = TriangleTree::make(geometry.tool, [] { return true; });
   out->search_ = scene.search;
   out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
   auto sets = HostSets::make(device, geometry, scene, order, out->in_tool_);
@@ -18,8 +19,8 @@ Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, con
   out->sets_ = std::move(*sets);
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
-  out->field_ = HostField::make(geometry, DepthSearch(geometry.mockup, out->mockup_, scene.search->boxes), InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
-                                DepthSearch(geometry.tool, out->tool_, out->tool_boxes_), tool.closed != 0 || tool.has_internal != 0);
+  out->field_ = HostField::make(geometry, DepthSearch(geometry.mockup, scene.search->triangles), InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
+                                DepthSearch(geometry.tool, out->tool_triangles_), tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 

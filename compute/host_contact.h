@@ -39,6 +39,7 @@ class HostContact {
 
   HostPartition mockup_, tool_;
   std::vector<std::uint8_t> tool_boxes_;   ///< SearchTables::boxes_of
+  TriangleTree tool_triangles_;
   std::shared_ptr<const SearchTables> search_;
   IdMarks statics_;
   InsideSearch in_tool_;

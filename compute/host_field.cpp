@@ -206,7 +206,7 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
 
 void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out) {
   const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point), near_tool_);
-  near_tool_ = below.triangle;
+  near_tool_ = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
@@ -215,7 +215,7 @@ void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_i
 
 void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight, Contacts& out) {
   const DepthSearch::Depth below = mockup_depth_.below(point, near_mockup_);
-  near_mockup_ = below.triangle;
+  near_mockup_ = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];

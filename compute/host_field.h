@@ -5,6 +5,7 @@
 
 #include "compute/depth_search.h"
 #include "compute/host_sets.h"
+#include "compute/inside_search.h"
 #include "compute/posed_tool.h"
 #include "model/contacts.h"
 #include "model/scene_geometry.h"
@@ -58,7 +59,7 @@ class HostField {
   std::vector<Int3> own_samples_;          ///< of the tool, in its lattice frame
   std::vector<std::uint8_t> own_levels_;   ///< of these
   std::uint32_t level_ = 0, between_ = 0;  ///< of this frame: the level of samples, and how far to the next, 1/256
-  std::uint32_t near_tool_ = DepthSearch::kNobody, near_mockup_ = DepthSearch::kNobody;   ///< the last sample's nearest triangles
+  std::uint32_t near_tool_ = DepthSearch::kNobody, near_mockup_ = DepthSearch::kNobody;   ///< places of the last samples' nearest triangles in their trees
   const Ignored* ignored_ = nullptr;       ///< of this frame
   std::vector<std::uint32_t> touched_;     ///< ignored patches, in any order
 };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compute/cell_memo.h"
-#include "compute/depth_search.h"
+#include "compute/inside_search.h"
 #include "compute/host_partition.h"
 #include "compute/id_marks.h"
 #include "compute/near_lists.h"

@@ -37,6 +37,9 @@ template <class Archive, class Tables>
 void archive_tables(Archive& a, Tables& tables) {
   a(tables.boxes);
   a(tables.parts);
+  a(tables.triangles.order);
+  a(tables.triangles.boxes);
+  a(tables.triangles.level_begin);
 }
 
 }  // namespace

@@ -128,6 +128,7 @@ Result<std::shared_ptr<const SearchTables>> SearchTables::make(VulkanDevice& dev
           make_boxes(geometry.mockup, lists, slot, out->boxes);
       },
       [&](std::uint32_t) { return go_on(); });
+  if (done) out->triangles = TriangleTree::make(geometry.mockup, go_on);
   if (!done || !go_on()) return std::shared_ptr<const SearchTables>();
   return std::shared_ptr<const SearchTables>(std::move(out));
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compute/prepared_scene.h"
+#include "compute/triangle_tree.h"
 #include "model/scene_geometry.h"
 
 namespace palpate {
@@ -16,6 +17,8 @@ struct SearchTables {
   std::vector<std::uint8_t> boxes;
   /// Parts of the mock-up, connected by corners, that would fit into the tool: low x, y, z, high x, y, z; steps.
   std::vector<std::array<std::int32_t, 6>> parts;
+
+  TriangleTree triangles;   ///< of the mock-up
 
   static constexpr std::size_t kBoxesAtOnce = 16;   ///< may be read from any place on
 

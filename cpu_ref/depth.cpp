@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <glm/common.hpp>
 
 #include "cpu_ref/direction.h"
 #include "cpu_ref/ray.h"
@@ -19,6 +20,8 @@ std::int64_t root(std::int64_t v) {
   }
   return low;
 }
+
+constexpr std::int64_t kRounding = 16;   // steps by which `distance` may be off, and more
 
 std::int64_t product(const Long3& a, const Long3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
@@ -43,7 +46,13 @@ std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const In
     const std::int64_t squared = height * height + side * side + over * over;   // within 3 · 2^60
     if (least < 0 || squared < least) least = squared;
   }
-  return static_cast<std::uint32_t>(least < 0 ? height : root(least));
+  if (least >= 0) return static_cast<std::uint32_t>(root(least));
+  // A needle thinner than a step has ends that its sides say nothing of: its box does.
+  Box box;
+  for (int k = 0; k < 3; ++k) box.include(mesh.corner(triangle, k));
+  const Long3 gap(glm::max(glm::max(difference(box.min, point), difference(point, box.max)), Long3(0)));
+  const std::int64_t to_box = root(product(gap, gap));
+  return static_cast<std::uint32_t>(to_box > height + kRounding ? to_box : height);
 }
 
 std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point) {
@@ -66,7 +75,6 @@ std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const
   };
   // Cubes twice as large each time until one holds something; whatever is nearer than that lies in a cube of its distance, and rounding.
   for (std::int64_t reach = 1024; !best && reach <= std::int64_t{1} << 31; reach *= 2) within(reach);
-  constexpr std::int64_t kRounding = 16;   // steps by which `distance` may be off, and more
   if (best) {
     const std::int64_t reach = best->steps + kRounding;
     best.reset();

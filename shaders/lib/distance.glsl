@@ -2,6 +2,7 @@
 // what llvmpipe lets an invocation run, triangle by triangle.
 #ifndef PALPATE_LIB_DISTANCE
 #define PALPATE_LIB_DISTANCE
+#include "shaders/shared/frame_field.h"
 #include "shaders/lib/direction.glsl"
 #include "shaders/lib/wide_integer.glsl"
 
@@ -55,6 +56,10 @@ int32_t distance_at(int32_t height, ivec3 n, ivec3 a, ivec3 b, ivec3 c, ivec3 p)
   pass_edge(a, b, p, n, height, least);
   pass_edge(b, c, p, n, height, least);
   pass_edge(c, a, p, n, height, least);
-  return least == -1l ? height : floor_root(least);
+  if (least != -1l) return floor_root(least);
+  // Beyond the end of a needle thinner than a step no side is above 0.
+  const ivec3 gap = max(max(min(min(a, b), c) - p, p - max(max(a, b), c)), ivec3(0));
+  const int32_t to_box = floor_root(wide_dot(gap, gap));
+  return to_box > height + kDepthSlack ? to_box : height;
 }
 #endif

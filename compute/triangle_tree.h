@@ -1,0 +1,34 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "model/lattice_mesh.h"
+
+namespace palpate {
+
+/// A bounding volume hierarchy over the triangles of a body that bound a solid: runs of eight triangles, eight runs, and so on, each with the boxes of
+/// its eight in its body's lattice frame. 8 bytes a triangle.
+struct TriangleTree {
+  static constexpr std::size_t kEight = 8;
+  /// Lows and highs by axis, steps. The last Boxes of a level may hold fewer than eight; the rest says nothing.
+  struct Boxes {
+    std::array<std::array<std::int32_t, kEight>, 3> low, high;
+  };
+
+  std::vector<std::uint32_t> order;         ///< triangles by place; run r is what stands from place 8 r on
+  std::vector<Boxes> boxes;                 ///< of runs first, then of eight of these, …; the last one is the root
+  std::vector<std::uint32_t> level_begin;   ///< of each level in `boxes`
+
+  /// How many runs there are, for level 0; for others, how many Boxes of the level before.
+  std::uint32_t nodes(std::uint32_t level) const {
+    if (level == 0) return static_cast<std::uint32_t>((order.size() + kEight - 1) / kEight);
+    return (level == level_begin.size() ? static_cast<std::uint32_t>(boxes.size()) : level_begin[level]) - level_begin[level - 1];
+  }
+
+  /// On all cores; `go_on` is asked now and then on this thread. Cancelled: empty.
+  static TriangleTree make(const LatticeMesh& mesh, const std::function<bool()>& go_on);
+};
+
+}  // namespace palpate

@@ -1,0 +1,124 @@
+#include "compute/depth_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cpu_ref/depth.h"
+#include "tests/cpu_ref/lattice_scene.h"
+
+namespace palpate {
+namespace {
+
+struct Case {
+  std::string name;
+  LatticeMesh mesh;
+};
+
+/// Triangles that lie anywhere and are needles now and then; none is a sheet.
+LatticeMesh soup(std::size_t count, std::int32_t reach, std::int32_t size, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto within = [&](std::int32_t most) { return std::uniform_int_distribution<std::int32_t>(-most, most)(random); };
+  std::vector<cpu_ref::Triangle> triangles;
+  while (triangles.size() < count) {
+    const Int3 a(within(reach), within(reach), within(reach)), way(within(size), within(size), within(size));
+    const bool needle = triangles.size() % 3 == 0;
+    triangles.emplace_back(a, a + way, needle ? a + way / 2 + Int3(within(2), within(2), within(2)) : a + Int3(within(size), within(size), within(size)));
+  }
+  LatticeMesh mesh = cpu_ref::lattice_mesh_of(triangles);
+  for (auto& flags : mesh.flags) flags &= static_cast<std::uint8_t>(~kTriangleSheet);
+  return mesh;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> out;
+  out.push_back({"box", cpu_ref::lattice_mesh_of(cpu_ref::lattice_box(Int3(-1000, -500, -2000), Int3(1000, 700, 90)))});
+  out.push_back({"sphere", cpu_ref::lattice_mesh_of(cpu_ref::lattice_sphere(1 << 20, 40, 30))});
+  out.push_back({"as large as the lattice", cpu_ref::lattice_mesh_of(cpu_ref::lattice_sphere((1 << 28) - 1, 12, 9))});
+  out.push_back({"one triangle", soup(1, 1000, 1000, 1)});
+  out.push_back({"eight", soup(8, 1000, 1000, 2)});
+  out.push_back({"nine", soup(9, 1000, 1000, 3)});
+  out.push_back({"small ones", soup(700, 1 << 16, 60, 4)});
+  out.push_back({"far apart", soup(700, 1 << 27, 1 << 12, 5)});
+  out.push_back({"long ones", soup(300, 1 << 27, 1 << 27, 6)});
+  return out;
+}
+
+/// EXACTNESS section 4, asked of every triangle.
+DepthSearch::Depth of_all(const LatticeMesh& mesh, const Int3& point) {
+  DepthSearch::Depth best{UINT32_MAX, DepthSearch::kNobody, 0};
+  for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id) {
+    if ((mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) != 0) continue;
+    const std::uint32_t steps = cpu_ref::distance(mesh, id, point);
+    if (steps < best.steps) best = {steps, id, 0};
+  }
+  return best;
+}
+
+TEST(TriangleTree, HoldsEveryTriangleThatBoundsASolidOnceAndItsBoxesHoldThem) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const TriangleTree tree = TriangleTree::make(c.mesh, [] { return true; });
+    std::vector<std::uint32_t> sorted = tree.order, wanted;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t id = 0; id < c.mesh.triangles.size(); ++id)
+      if ((c.mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0) wanted.push_back(id);
+    EXPECT_EQ(sorted, wanted);
+    ASSERT_FALSE(wanted.empty());
+    for (std::size_t place = 0; place < tree.order.size(); ++place)
+      for (std::size_t level = 0, node = place / 8; level < tree.level_begin.size(); ++level, node /= 8)
+        for (int corner = 0; corner < 3; ++corner)
+          for (std::size_t k = 0; k < 3; ++k) {
+            const TriangleTree::Boxes& boxes = tree.boxes[tree.level_begin[level] + node / 8];
+            const std::int32_t at = c.mesh.corner(tree.order[place], corner)[static_cast<int>(k)];
+            ASSERT_LE(boxes.low[k][node % 8], at);
+            ASSERT_GE(boxes.high[k][node % 8], at);
+          }
+    EXPECT_EQ(tree.nodes(static_cast<std::uint32_t>(tree.level_begin.size())), 1u);
+  }
+}
+
+TEST(TriangleTree, LeavesSheetsOutAndCanBeCancelled) {
+  LatticeMesh mesh = soup(100, 1000, 100, 7);
+  mesh.flags[3] |= kTriangleSheet;
+  const TriangleTree tree = TriangleTree::make(mesh, [] { return true; });
+  EXPECT_EQ(std::count(tree.order.begin(), tree.order.end(), 3u), 0);
+  EXPECT_TRUE(TriangleTree::make(mesh, [] { return false; }).order.empty());
+  for (auto& flags : mesh.flags) flags |= kTriangleSheet;
+  const TriangleTree none = TriangleTree::make(mesh, [] { return true; });
+  EXPECT_EQ(DepthSearch(mesh, none).below(Int3(0), DepthSearch::kNobody).triangle, DepthSearch::kNobody);
+}
+
+TEST(DepthSearch, SaysWhatAskingEveryTriangleSays) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const TriangleTree tree = TriangleTree::make(c.mesh, [] { return true; });
+    DepthSearch search(c.mesh, tree);
+    std::mt19937 random(11);
+    const auto any = [&](std::uint32_t below) { return std::uniform_int_distribution<std::uint32_t>(0, below - 1)(random); };
+    const auto triangles = static_cast<std::uint32_t>(tree.order.size());
+    std::uint32_t last = DepthSearch::kNobody;
+    for (int i = 0; i < 3000; ++i) {
+      // On corners, sides and triangles, near them, and anywhere.
+      const std::uint32_t id = tree.order[any(triangles)];
+      const Int3 a = c.mesh.corner(id, 0), b = c.mesh.corner(id, 1), d = c.mesh.corner(id, 2);
+      Int3 point = i % 5 == 0 ? a : i % 5 == 1 ? a / 2 + b / 2 : i % 5 == 2 ? a / 3 + b / 3 + d / 3 : i % 5 == 3 ? a + (b - a) / 4 * 5 : Int3(0);
+      const std::int32_t off = std::int32_t{1} << any(29);
+      for (int k = 0; k < 3; ++k)
+        point[k] = std::clamp(point[k] + (i % 2 == 0 ? std::uniform_int_distribution<std::int32_t>(-off, off)(random) : static_cast<std::int32_t>(any(5)) - 2), -(1 << 29), 1 << 29);
+      const std::uint32_t guess = i % 3 == 0 ? DepthSearch::kNobody : i % 3 == 1 ? any(triangles) : last;
+      const DepthSearch::Depth found = search.below(point, guess), wanted = of_all(c.mesh, point);
+      ASSERT_EQ(found.steps, wanted.steps) << point.x << " " << point.y << " " << point.z;
+      ASSERT_EQ(found.triangle, wanted.triangle) << point.x << " " << point.y << " " << point.z;
+      ASSERT_EQ(tree.order[found.place], found.triangle);
+      last = found.place;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
