@@ -59,7 +59,8 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       ->expected(1, 2)
       ->type_name("gpu|cpu");
   latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing near). Stages are the\n"
-                  "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out.");
+                  "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out. The frames are a loop's\n"
+                  "that nobody watches: without lists of triangles, and `refined` without areas.");
   latency->callback([&] { outcome = bench_latency(options, parts); });
 
   const auto one_backend = [&options](CLI::App& to) {

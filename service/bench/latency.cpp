@@ -23,7 +23,7 @@ Result<std::vector<Subject>> measure(const BenchOptions& options, const std::str
   const std::vector<std::string> backends = options.backends.empty() ? std::vector<std::string>{""} : options.backends;
   std::vector<Subject> subjects;
   for (const std::string& backend : backends) {
-    auto prepared = prepare_scene({file, backend, options.profile, false}, Purpose::kQuery, parts, console);
+    auto prepared = prepare_scene({file, backend, options.profile, false}, Purpose::kSession, parts, console);
     if (!prepared) return prepared.error();
     if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
     subjects.push_back({std::move(*prepared), {}});

@@ -38,7 +38,7 @@ struct TestScene {
 /// Everything that two back ends compute is compared bit for bit; a case needs no tolerance.
 struct Case {
   std::string name;
-  std::string family;              ///< solids, chapter, touch, topology or rules
+  std::string family;              ///< solids, chapter, touch, topology, rules or fits
   std::string about;               ///< what it meets that others do not, and what is known of it beforehand
   std::function<Result<TestScene>(std::uint64_t seed)> make;   ///< most scenes do not depend on the seed
   Profile profile = Profile::kRefined;
@@ -69,5 +69,6 @@ std::vector<Case> touch_cases();
 std::vector<Case> topology_cases();
 std::vector<Case> rule_cases();
 std::vector<Case> limit_cases();   // of family rules, too
+std::vector<Case> fit_cases();
 
 }  // namespace palpate::equivalence

@@ -233,7 +233,7 @@ int run(int argc, char** argv) {
   Options o;
   CLI::App app("Compares back ends bit by bit, and each of them with stored hashes and with what is known beforehand.", "equivalence");
   app.add_option("--case", o.names, "these cases alone");
-  app.add_option("--family", o.families, "these families alone: solids, chapter, touch, topology, rules");
+  app.add_option("--family", o.families, "these families alone: solids, chapter, touch, topology, rules, fits");
   app.add_flag("--killer", o.killer, "the few cases that together reach every rule, in seconds");
   app.add_flag("--list", o.list, "list the chosen cases and stop");
   app.add_option("--backend", o.backend, "who answers: gpu, cpu, or both, compared")->check(CLI::IsMember({"gpu", "cpu", "both"}));
