@@ -73,3 +73,52 @@ static NearTriangles to_triangles(const TriangleRun& run, const Int3& point, flo
   }
   return {bits_of(near), bits_of(above)};
 }
+
+// What of a run may be as near as the best so far, the nearest first.
+static void look_into(DepthSearch::Tables& tables, Search& search, std::uint32_t number) {
+  const std::size_t first = kEight * number;
+  const unsigned there = 0xFFU >> (kEight - std::min(kEight, tables.tree.order.size() - first));
+  alignas(32) float squared[kEight], slack[kEight];
+  const NearTriangles found = to_triangles(tables.run(number), search.point, search.most(), squared, slack);
+  for (unsigned near = there & found.near; near != 0;) {
+    int nearest = std::countr_zero(near);
+    for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1)
+      if (squared[std::countr_zero(rest)] < squared[nearest]) nearest = std::countr_zero(rest);
+    near &= ~(1U << nearest);
+    const float reach = search.most() + slack[nearest];
+    if (squared[nearest] <= reach * reach * (1 + kSquareSlack)) tables.look_at(search, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(nearest), (found.above >> nearest & 1) != 0);
+  }
+}
+
+// From the root to runs, the nearest of each node first.
+static void descend(DepthSearch::Tables& tables, Search& search, std::uint32_t guess) {
+  struct Open {
+    std::uint32_t level, node;
+    float squared;
+  };
+  std::array<Open, kEight * 12> open;   // a level leaves at most seven nodes waiting, and 8^12 triangles are more than a mesh can have
+  const std::uint32_t seen = guess == kNobody ? kNobody : guess / static_cast<std::uint32_t>(kEight);
+  if (seen != kNobody) look_into(tables, search, seen);
+  std::size_t count = 0;
+  open[count++] = {static_cast<std::uint32_t>(tables.tree.level_begin.size()), 0, 0};   // level 0: a run; level n: a node of level n - 1's boxes
+  alignas(32) float squared[kEight];
+  while (count != 0) {
+    const Open next = open[--count];
+    const float most = search.most(), limit = most * most * (1 + kSquareSlack);
+    if (next.squared > limit) continue;
+    if (next.level == 0) {
+      if (next.node != seen) look_into(tables, search, next.node);
+      continue;
+    }
+    const std::uint32_t first = static_cast<std::uint32_t>(kEight) * next.node;
+    const unsigned there = 0xFFU >> (kEight - std::min<std::size_t>(kEight, tables.tree.nodes(next.level - 1) - first));
+    std::size_t nearest = count;
+    for (unsigned near = there & to_boxes(tables.tree.boxes[tables.tree.level_begin[next.level - 1] + next.node], search.point, limit, squared); near != 0; near &= near - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
+      open[count] = {next.level - 1, first + i, squared[i]};
+      if (squared[i] < open[nearest].squared) nearest = count;
+      ++count;
+    }
+    if (nearest != count) std::swap(open[nearest], open[count - 1]);
+  }
+}

@@ -1,6 +1,6 @@
 #pragma once
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "compute/triangle_tree.h"
 #include "model/lattice_mesh.h"
@@ -9,7 +9,7 @@ namespace palpate {
 
 /// How far a point lies below a body's surface (docs/EXACTNESS.md section 4), on the host: down the body's tree, eight boxes or triangles at a time in single precision,
 /// which only sorts out; what is left, integers decide. What it has worked out of triangles it keeps, as far as there is room. Arguments outlive this. One thread; only
-/// making and copying one allocates.
+/// making one allocates.
 class DepthSearch {
  public:
   struct Depth {
@@ -20,8 +20,8 @@ class DepthSearch {
   static constexpr std::uint32_t kNobody = UINT32_MAX;
 
   DepthSearch();
-  DepthSearch(const DepthSearch&);
-  DepthSearch& operator=(const DepthSearch&);
+  DepthSearch(DepthSearch&&) noexcept;
+  DepthSearch& operator=(DepthSearch&&) noexcept;
   ~DepthSearch();
   /// `tree` is the mesh's.
   DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree);
@@ -29,26 +29,10 @@ class DepthSearch {
   /// The point is within ±2^30. `guess`: the place of a triangle that may be near, as for a point beside it; kNobody: none. It changes nothing but the time.
   Depth below(const Int3& point, std::uint32_t guess);
 
- private:
-  struct Search;
-  struct Run;
-  struct Known;
-  static constexpr std::uint32_t kRuns = 512;     // runs of triangles (chosen: 600 KiB)
-  static constexpr std::uint32_t kKnown = 1024;   // triangles (chosen: 220 KiB)
-  const Run& run(std::uint32_t number);
-  Known& know(std::uint32_t triangle);
-  std::int64_t distance_to(const Int3& point, std::uint32_t triangle);
-  std::int64_t height_above(const Int3& point, std::uint32_t triangle) const;
-  void look_at(Search& search, std::uint32_t place, bool above);
-  template <class Lanes>
-  void look_into(Search& search, std::uint32_t run, Lanes lanes);
-  template <class Lanes>
-  void descend(Search& search, std::uint32_t guess, Lanes lanes);
+  struct Tables;   ///< depth_search.cpp's own
 
-  const LatticeMesh* mesh_ = nullptr;
-  const TriangleTree* tree_ = nullptr;
-  std::vector<Run> runs_;      ///< by run, where a newer one takes an older one's place
-  std::vector<Known> known_;   ///< by triangle, likewise
+ private:
+  std::unique_ptr<Tables> tables_;
 };
 
 }  // namespace palpate

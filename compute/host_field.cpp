@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdlib>
 #include <optional>
+#include <utility>
 
 #include "compute/host_exact.h"
 
@@ -77,11 +78,11 @@ std::span<const ExtraSample> HostField::Extras::of(std::uint32_t triangle) const
   return {range.begin(), range.end()};
 }
 
-HostField HostField::make(const SceneGeometry& geometry, const DepthSearch& mockup_depth, const InsideSearch& in_mockup, const DepthSearch& tool_depth, bool tool_has_inside) {
+HostField HostField::make(const SceneGeometry& geometry, DepthSearch mockup_depth, const InsideSearch& in_mockup, DepthSearch tool_depth, bool tool_has_inside) {
   HostField out;
   out.geometry_ = &geometry;
-  out.tool_depth_ = tool_depth;
-  out.mockup_depth_ = mockup_depth;
+  out.tool_depth_ = std::move(tool_depth);
+  out.mockup_depth_ = std::move(mockup_depth);
   out.in_mockup_ = in_mockup;
   out.tool_has_inside_ = tool_has_inside;
   out.mockup_extras_ = Extras(geometry.mockup);

@@ -17,7 +17,7 @@ namespace palpate {
 class HostField {
  public:
   /// What the arguments refer to outlives this.
-  static HostField make(const SceneGeometry& geometry, const DepthSearch& mockup_depth, const InsideSearch& in_mockup, const DepthSearch& tool_depth, bool tool_has_inside);
+  static HostField make(const SceneGeometry& geometry, DepthSearch mockup_depth, const InsideSearch& in_mockup, DepthSearch tool_depth, bool tool_has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
