@@ -102,7 +102,7 @@ TEST(DepthSearch, SaysWhatAskingEveryTriangleSays) {
     const auto any = [&](std::uint32_t below) { return std::uniform_int_distribution<std::uint32_t>(0, below - 1)(random); };
     const auto triangles = static_cast<std::uint32_t>(tree.order.size());
     std::uint32_t last = DepthSearch::kNobody;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
       // On corners, sides and triangles, near them, and anywhere.
       const std::uint32_t id = tree.order[any(triangles)];
       const Int3 a = c.mesh.corner(id, 0), b = c.mesh.corner(id, 1), d = c.mesh.corner(id, 2);
