@@ -242,6 +242,19 @@ std::optional<Error> failure_of(const Run& run) {
   return run.observer.error();
 }
 
+/// The simulated hand is a mass before a spring: held against a contact as stiff as K it swings, which is no fault of the response. Empty: another device, no force, or well damped.
+std::string swing_of_the_hand(const Scene& scene, double force_max_N) {
+  const DeviceSettings& device = scene.device;
+  if (device.driver != "simulated" || device.path.empty() || force_max_N <= 0) return {};
+  const double mass = device.mass_kg + device.hand_mass_kg, damping = device.damping_n_s_per_m + device.hand_damping_n_s_per_m;
+  const double stiffness = scene.response.stiffness_n_per_m + device.hand_stiffness_n_per_m;
+  constexpr double kDamped = 0.4;   // of critical damping: a step overshoots by a quarter (chosen)
+  if (damping > kDamped * 2 * std::sqrt(mass * stiffness)) return {};
+  const double hertz = std::sqrt(stiffness / mass) / (2 * 3.14159265358979323846);
+  return "the simulated hand, " + number(std::round(100 * mass) / 100) + " kg with its device, swings when it meets a contact, at up to " + number(std::round(10 * hertz) / 10) +
+         " Hz: such swings of the force after a first touch are the hand's";
+}
+
 SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend, const HapticDevice& device) {
   SessionSummary out;
   out.static_triangles = scene.geometry.mockup.triangles.size();
@@ -291,6 +304,7 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
       note("contacts of the start were left out on " + std::to_string(out.ignored_patches_first) + (out.ignored_patches_first > 1 ? " faces" : " face") + " of the mock-up; " +
            (out.ignored_patches_end > 0 ? "on " + std::to_string(out.ignored_patches_end) + " they had not opened by the end" : "all had opened by the end"));
   }
+  if (std::string swing = swing_of_the_hand(run.scene, out.force_max_N); !swing.empty()) note(std::move(swing));
   if (!run.realtime_note.empty()) note(run.realtime_note);
   for (std::string& sentence : backend.take_notes()) note(std::move(sentence));
   if (run.options.plans)

@@ -397,6 +397,25 @@ TEST_P(SessionExit, GivesNoForceForATruncatedFrame) {
   EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("pairs")));
 }
 
+TEST(Session, SaysThatTheSimulatedHandSwingsUnlessItIsWellDamped) {
+  const auto swings = [](double damping, bool touches) {
+    LoadedScene scene = half_space_scene();
+    add_dip(scene, 1);
+    if (!touches) scene.scene.device.path[1].pose.position.z = 0.01;
+    scene.scene.device.driver = "simulated";
+    scene.scene.device.hand_damping_n_s_per_m = damping;
+    HalfSpace backend;
+    WatchedDevice device(scene);
+    const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, nullptr);
+    EXPECT_TRUE(summary);
+    EXPECT_EQ(summary->force_max_N > 0, touches);
+    return testing::Value(summary->notes, testing::Contains(HasSubstr("5.2 Hz: such swings")));   // √(1,135 N/m / 1.05 kg) / 2π
+  };
+  EXPECT_TRUE(swings(6.5, true));
+  EXPECT_FALSE(swings(6.5, false));
+  EXPECT_FALSE(swings(80, true));
+}
+
 TEST(Session, FadesToZeroWhileTheBackEndIsStuckAndKeepsTicking) {
   LoadedScene scene = half_space_scene();
   scene.scene.start.position.z = -0.005;
