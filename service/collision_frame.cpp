@@ -26,8 +26,8 @@ void clear(Contacts& contacts) {
 }  // namespace
 
 CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques, PlanSwitch* plans,
-                               StartContacts start)
-    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques) {
+                               StartContacts start, double slow_us)
+    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques), slow_us_(slow_us) {
   if (start != StartContacts::kIgnoreInitial) return;
   ignored_.patches.resize(geometry.mockup.patch_count);
   std::iota(ignored_.patches.begin(), ignored_.patches.end(), 0u);
@@ -40,6 +40,15 @@ void CollisionFrame::ignore_what_has_not_opened(const Contacts& contacts) {
   ignored_.patches = contacts.ignored_touched;
   if (!ignored_known_) ignored_at_first_ = ignored_.patches.size();
   ignored_known_ = true;
+}
+
+void CollisionFrame::note_slow(const FrameSlot& slot) noexcept {
+  if (slot.total_us <= slow_us_) return;
+  ++slow_frames_;
+  if (slot.total_us <= slowest_.us) return;
+  slowest_ = {.sample = slot.sample, .us = slot.total_us};
+  for (const Contacts::StageTime& time : slot.contacts.times)
+    if (time.us > slowest_.stage_us) slowest_.stage = time.stage, slowest_.stage_us = time.us;
 }
 
 /// Goes over to another plan, if one is ready.
@@ -95,6 +104,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count();
   slot.total_us = static_cast<double>(ns) / 1000;
   frame_ns_.add(ns);
+  note_slow(slot);
   if (slot.contacts.truncated) ++truncated_frames_, truncated_capacity_ = slot.contacts.truncated_capacity;
   // Where contacts are left out, nothing pushes because nobody wants it to.
   const bool unknown = (slot.response.flags & kFlagNoDirection) != 0 && slot.contacts.ignored_touched.empty();

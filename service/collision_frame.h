@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 
 #include "model/collision_backend.h"
 #include "model/plan.h"
@@ -32,14 +33,22 @@ struct FrameSlot {
   }
 };
 
+/// A frame that took long, and where most of its time went.
+struct SlowFrame {
+  PoseSample sample;
+  double us = 0;
+  const char* stage = "";   ///< empty: the back end told none
+  double stage_us = 0;
+};
+
 /// Answers one pose after the other: query, respond, and what the force law needs of it.
 /// Used by one thread at a time. Allocates only as the back end and growing lists do.
 class CollisionFrame {
  public:
   /// All outlive this. `plans`: where other plans come from in mid-run, with back ends of their own; may be null. `torques`: the device has torque axes; without them the plan may have left out
-  /// contact points, so torques and levers are not used. `start`: what becomes of contacts that the first frame has.
+  /// contact points, so torques and levers are not used. `start`: what becomes of contacts that the first frame has. `slow_us`: frames that take longer are counted.
   CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques,
-                 PlanSwitch* plans = nullptr, StartContacts start = StartContacts::kAsIs);
+                 PlanSwitch* plans = nullptr, StartContacts start = StartContacts::kAsIs, double slow_us = std::numeric_limits<double>::infinity());
 
   /// Fills `slot` (its sample is set by the caller) and `result`. An error means that the back end failed, by
   /// status or by exception, or that the pose isn't one: the caller sends zero force.
@@ -47,6 +56,8 @@ class CollisionFrame {
 
   const Histogram& frame_ns() const { return frame_ns_; }
   std::uint64_t frames() const { return frame_ns_.total(); }
+  std::uint64_t slow_frames() const { return slow_frames_; }
+  const SlowFrame& slowest() const { return slowest_; }                     ///< of slow_frames(); tick −1: there is none
   std::uint64_t truncated_frames() const { return truncated_frames_; }
   const char* truncated_capacity() const { return truncated_capacity_; }   ///< of the last truncated frame
   std::uint64_t no_direction_frames() const { return no_direction_frames_; }   ///< with contact and nothing that pushes (kFlagNoDirection)
@@ -60,6 +71,7 @@ class CollisionFrame {
 
  private:
   void take_plan() noexcept;
+  void note_slow(const FrameSlot& slot) noexcept;
   void ignore_what_has_not_opened(const Contacts& contacts);
   Result<void> answer(FrameSlot& slot, LawResult& result);
 
@@ -73,6 +85,9 @@ class CollisionFrame {
   bool ignored_known_ = true;    ///< false: it is still every patch
   std::size_t ignored_at_first_ = 0;
   Histogram frame_ns_;
+  double slow_us_;
+  std::uint64_t slow_frames_ = 0;
+  SlowFrame slowest_;
   std::uint64_t plan_changes_ = 0;
   std::uint32_t felt_changes_ = 0;
   std::uint64_t truncated_frames_ = 0, merged_frames_ = 0;

@@ -18,6 +18,7 @@
 #include "service/collision_frame.h"
 #include "service/collision_worker.h"
 #include "service/control_loop.h"
+#include "service/realtime_estimate.h"
 #include "service/thread_share.h"
 
 namespace palpate {
@@ -100,16 +101,26 @@ class GuardedObserver {
   std::optional<Error> error_;
 };
 
+int in_ticks(double ms) { return static_cast<int>(std::lround(ms / 1000 / kTickSeconds)); }
+int watchdog_ticks(const Scene& scene) { return in_ticks(scene.control.watchdog_ms); }
+
+/// From where on a frame is slow: while one of that length is under way, the watchdog runs out.
+double slow_us(const Scene& scene) {
+  return watchdog_ticks(scene) > 0 ? 1e6 * kTickSeconds * watchdog_ticks(scene) : std::numeric_limits<double>::infinity();
+}
+
 /// Everything that both paces use.
 struct Run {
   Run(const LoadedScene& loaded, CollisionBackend& backend, SafeDevice& safe, const SessionOptions& session_options, RunObserver* run_observer)
       : scene(loaded.scene),
         options(session_options),
         device(safe),
-        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans, loaded.scene.start_contacts),
+        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans, loaded.scene.start_contacts,
+              slow_us(loaded.scene)),
         tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m, couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
              loaded.scene.response.profile == Profile::kRefined),
         observer(run_observer),
+        estimate(watchdog_ticks(loaded.scene)),
         ticks(tick_count(safe, session_options)) {}
 
   static bool has_torques(const SafeDevice& safe) {
@@ -129,6 +140,7 @@ struct Run {
   CollisionFrame frame;
   ControlTick tick;
   GuardedObserver observer;
+  RealtimeEstimate estimate;   ///< of virtual time
   std::uint64_t ticks;
   LoopTiming timing;
   std::uint64_t dropped_ticks = 0, dropped_frames = 0;
@@ -151,7 +163,7 @@ class Changes {
 };
 
 /// Virtual time: the answer to the pose of tick i arrives at tick i + delay, and then the next query starts.
-/// Nothing here asks a clock, so equal scenes give equal bytes.
+/// Nothing here asks a clock but to tell how real time would have been, so equal scenes give equal bytes.
 void run_asap(Run& run) {
   const std::int64_t delay = run.scene.control.virtual_delay_ticks;
   FrameSlot slot;
@@ -174,8 +186,10 @@ void run_asap(Run& run) {
         run.error = solved.error();
         return;
       }
+      run.estimate.frame(i, slot.total_us);
       if (!run.observer.frame(slot.record())) return;
     }
+    run.estimate.tick(i);
     if (!run.observer.tick(run.tick.act(fresh))) return;
   }
 }
@@ -255,6 +269,36 @@ std::string swing_of_the_hand(const Scene& scene, double force_max_N) {
          " Hz: such swings of the force after a first touch are the hand's";
 }
 
+std::string ticks_text(double ticks) { return number(std::round(ticks)) + (std::round(ticks) == 1 ? " tick" : " ticks"); }
+std::string position_text(const Pose& pose) { return number(pose.position.x) + " " + number(pose.position.y) + " " + number(pose.position.z) + " m"; }
+
+/// What a run in virtual time shows is what a hand would have felt only where the machine would have brought results as early.
+std::optional<RealtimeOutlook> outlook(const Run& run, const SessionSummary& summary) {
+  const bool virtual_time = run.options.pace == Pace::kAsap;
+  // A run that ended before a result was due says nothing of the machine.
+  if (run.tick.result_age().total() == 0 && (virtual_time || summary.watchdog_ticks == 0)) return {};
+  const bool any = (virtual_time ? run.estimate.result_age() : run.tick.result_age()).total() > 0;
+  RealtimeOutlook out;
+  out.result_age_ticks = virtual_time ? percentiles(run.estimate.result_age(), 1) : summary.result_age_ticks;
+  out.watchdog_ticks = virtual_time ? run.estimate.watchdog_ticks() : summary.watchdog_ticks;
+  out.kept_up = any && out.watchdog_ticks == 0 && out.result_age_ticks.p99 <= summary.result_age_ticks.p99;
+  const std::string could = virtual_time ? (out.kept_up ? "this machine would have kept up" : "this machine could not have kept up")
+                                         : (out.kept_up ? "this machine kept up" : "this machine did not keep up");
+  out.sentence = could + ": ";
+  if (!any) {
+    out.sentence += std::string("no result ") + (virtual_time ? "would have come in " : "came in ") + ticks_text(static_cast<double>(run.tick.ticks()));
+    return out;
+  }
+  if (out.watchdog_ticks > 0)
+    out.sentence += std::string("the watchdog ") + (virtual_time ? "would have faded" : "faded") + " the force out in " + std::to_string(out.watchdog_ticks) + " of " +
+                    std::to_string(run.tick.ticks()) + " ticks, ";
+  out.sentence += std::string("results ") + (virtual_time ? "would have been " : "were ") + ticks_text(out.result_age_ticks.p50) + " old, " +
+                  number(std::round(out.result_age_ticks.p99)) + " at p99, " + number(std::round(out.result_age_ticks.max)) + " at most";
+  if (virtual_time) out.sentence += " (in this run " + number(std::round(summary.result_age_ticks.p50)) + ", " + number(std::round(summary.result_age_ticks.p99)) + ", " +
+                                    number(std::round(summary.result_age_ticks.max)) + ")";
+  return out;
+}
+
 SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend, const HapticDevice& device) {
   SessionSummary out;
   out.static_triangles = scene.geometry.mockup.triangles.size();
@@ -282,6 +326,7 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.no_direction_pose = run.frame.no_direction_first().pose;
   out.watchdog_ticks = run.device.watchdog_ticks();
   out.saturated_ticks = run.device.saturated_ticks();
+  out.realtime = outlook(run, out);
   out.dropped_ticks = run.dropped_ticks;
   out.dropped_frames = run.dropped_frames;
   out.stopped = run.timing.stopped;
@@ -291,11 +336,13 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.failure = failure_of(run);
 
   const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
+  if (const SlowFrame& slowest = run.frame.slowest(); run.frame.slow_frames() > 0)
+    note(std::to_string(run.frame.slow_frames()) + " of " + std::to_string(out.frames) + " frames took longer than the watchdog's " + number(run.scene.control.watchdog_ms) +
+         " ms; the slowest, " + number(std::round(slowest.us / 100) / 10) + " ms at tick " + std::to_string(slowest.sample.tick) + " with the tool at " + position_text(slowest.sample.pose) +
+         (*slowest.stage ? std::string(", was ") + number(std::round(slowest.stage_us / 100) / 10) + " ms in stage " + slowest.stage : std::string()));
   if (out.no_direction_frames > 0) {
-    const Vec3& at = out.no_direction_pose.position;
     note(std::to_string(out.no_direction_frames) + (out.no_direction_frames > 1 ? " frames were" : " frame was") +
-         " in contact with nothing that says which way, and gave no force of it; the first at tick " + std::to_string(out.no_direction_tick) + ", the tool at " + number(at.x) + " " +
-         number(at.y) + " " + number(at.z) + " m");
+         " in contact with nothing that says which way, and gave no force of it; the first at tick " + std::to_string(out.no_direction_tick) + ", the tool at " + position_text(out.no_direction_pose));
   }
   if (run.scene.start_contacts == StartContacts::kIgnoreInitial) {
     if (run.scene.response.profile == Profile::kPaper)
@@ -335,10 +382,9 @@ Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& b
   if (auto fine = check(scene.scene, options); !fine) return fine.error();
   if (auto finished = backend.finish_preparing(); !finished) return finished.error();
   const ControlSettings& control = scene.scene.control;
-  const auto in_ticks = [](double ms) { return static_cast<int>(std::lround(ms / 1000 / kTickSeconds)); };
   SafetySettings safety;
   safety.fade_in_ticks = in_ticks(control.fade_in_ms);
-  safety.watchdog_ticks = in_ticks(control.watchdog_ms);
+  safety.watchdog_ticks = watchdog_ticks(scene.scene);
   safety.slew_ticks = control.slew_ms / 1000 / kTickSeconds;
   safety.passivity = control.passivity;
   // From here on every way out passes SafeDevice's destructor: zero force, then closed.

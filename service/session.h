@@ -49,6 +49,14 @@ struct HistogramBin {
   std::uint64_t count = 0;
 };
 
+/// How the run stood in real time; of one in virtual time, how it would have stood (service/realtime_estimate.h).
+struct RealtimeOutlook {
+  bool kept_up = false;                      ///< the watchdog never faded the force, and no result was older at p99 than in the run itself
+  Percentiles result_age_ticks;
+  std::uint64_t watchdog_ticks = 0;          ///< ticks without a fresh result for longer than the watchdog
+  std::string sentence;
+};
+
 /// What summary.json tells, with the names it has there, and a few more.
 struct SessionSummary {
   std::uint64_t static_triangles = 0, tool_triangles = 0;   ///< of the scene's meshes
@@ -71,6 +79,7 @@ struct SessionSummary {
   Pose no_direction_pose;                    ///< and its tool pose
   std::uint64_t ignored_patches_first = 0;   ///< patches of the mock-up whose contacts at the start were left out
   std::uint64_t ignored_patches_end = 0;     ///< of them, those that had not opened by the end
+  std::optional<RealtimeOutlook> realtime;   ///< empty: the run ended before a result was due
   std::uint64_t watchdog_ticks = 0;          ///< ticks without a fresh result for longer than the watchdog
   std::uint64_t saturated_ticks = 0;         ///< ticks where a device limit shortened force or torque
   std::uint64_t plan_changes = 0;            ///< in mid-run

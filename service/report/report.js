@@ -13,6 +13,13 @@
   byId('title').textContent = data.name;
   byId('subtitle').textContent = data.subtitle;
 
+  if (summary.real_time) {
+    const line = byId('real-time');
+    line.hidden = false;
+    line.className = summary.real_time.kept_up ? '' : 'notes';
+    line.textContent = 'In real time ' + summary.real_time.sentence + '.';
+  }
+
   const tile = (value, label) => {
     const box = document.createElement('div');
     box.className = 'tile';

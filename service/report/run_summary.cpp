@@ -19,7 +19,12 @@ std::string summary_json(const SessionSummary& summary) {
     for (const HistogramBin& bin : bins) out.push_back({bin.low, bin.high, bin.count});
     return out;
   };
-  Json json = {{"static_triangles", summary.static_triangles},
+  Json json = Json::object();
+  if (summary.realtime) {
+    const RealtimeOutlook& real = *summary.realtime;
+    json["real_time"] = {{"kept_up", real.kept_up}, {"result_age_ticks", percentiles(real.result_age_ticks)}, {"watchdog_ticks", real.watchdog_ticks}, {"sentence", real.sentence}};
+  }
+  json.update({{"static_triangles", summary.static_triangles},
                      {"tool_triangles", summary.tool_triangles},
                      {"backend", summary.backend},
                      {"device", summary.device},
@@ -28,12 +33,12 @@ std::string summary_json(const SessionSummary& summary) {
                      {"ticks", summary.ticks},
                      {"missed_ticks", summary.missed_ticks},
                      {"lateness_us", {{"p50", late.p50}, {"p99", late.p99}, {"p999", late.p999}, {"max", late.max}}},
-                     {"result_age_ticks", {{"p50", summary.result_age_ticks.p50}, {"max", summary.result_age_ticks.max}}},
+                     {"result_age_ticks", percentiles(summary.result_age_ticks)},
                      {"frame_us", percentiles(summary.frame_us)},
                      {"stages_reached", summary.stages_reached},
                      {"areas_max", summary.areas_max},
                      {"force_max_N", summary.force_max_N},
-                     {"torque_max_Nm", summary.torque_max_Nm}};
+                     {"torque_max_Nm", summary.torque_max_Nm}});
   json["lateness_histogram_us"] = histogram(summary.lateness_bins_us);
   json["result_age_histogram_ticks"] = histogram(summary.result_age_bins_ticks);
   if (summary.ignored_patches_first > 0) json["ignored_patches"] = {{"first", summary.ignored_patches_first}, {"end", summary.ignored_patches_end}};
@@ -63,6 +68,7 @@ std::string stage_text(int stage, const std::vector<std::string>& stage_names) {
 std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSummary& summary, const std::vector<std::string>& stage_names) {
   std::vector<std::pair<std::string, std::string>> lines;
   const auto line = [&](const char* name, std::string value) { lines.emplace_back(name, std::move(value)); };
+  if (summary.realtime) line("real time", summary.realtime->sentence);
   line("mock-up", count_text(summary.static_triangles) + " triangles");
   line("tool", count_text(summary.tool_triangles) + " triangles");
   line("back end", fmt::format("{}, {}", summary.backend, summary.device));
@@ -72,7 +78,7 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
   if (summary.lateness_us.max > 0)
     line("lateness", fmt::format("{:.0f} µs median, {:.0f} µs p99, {:.0f} µs at most", summary.lateness_us.p50, summary.lateness_us.p99,
                                  summary.lateness_us.max));
-  line("result age", fmt::format("{:.0f} ticks median, {:.0f} at most", summary.result_age_ticks.p50, summary.result_age_ticks.max));
+  line("result age", fmt::format("{:.0f} ticks median, {:.0f} p99, {:.0f} at most", summary.result_age_ticks.p50, summary.result_age_ticks.p99, summary.result_age_ticks.max));
   line("frames", fmt::format("{}: {:.3g} ms median, {:.3g} ms p99, {:.3g} ms at most", count_text(summary.frames), summary.frame_us.p50 / 1000,
                              summary.frame_us.p99 / 1000, summary.frame_us.max / 1000));
   std::string stages;

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -90,6 +92,61 @@ std::string slurp(const std::filesystem::path& path) {
 }
 
 // --- Virtual time ---
+
+/// A back end that takes 30 ms a query; nothing that decides may see it, the summary must.
+TEST(Session, TellsWhatRealTimeWouldHaveMadeOfIt) {
+  LoadedScene scene = half_space_scene();
+  add_dip(scene, 0.3);
+  scene.scene.control.virtual_delay_ticks = 10;
+  std::array<Watcher, 2> watchers;
+  std::array<SessionSummary, 2> summaries;
+  for (const std::size_t slow : {0u, 1u}) {
+    HalfSpace backend;
+    if (slow)
+      backend.on_query = [](int) -> Result<void> {
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        return {};
+      };
+    WatchedDevice device(scene);
+    auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, &watchers[slow]);
+    ASSERT_TRUE(summary) << summary.error().sentence;
+    summaries[slow] = *summary;
+  }
+  ASSERT_EQ(watchers[0].ticks.size(), watchers[1].ticks.size());
+  for (std::size_t i = 0; i < watchers[0].ticks.size(); ++i) {
+    EXPECT_EQ(watchers[0].ticks[i].sent.force, watchers[1].ticks[i].sent.force) << i;
+    EXPECT_EQ(watchers[0].ticks[i].result_age_ticks, watchers[1].ticks[i].result_age_ticks) << i;
+  }
+  // A sleep may take longer than asked, never shorter.
+  const SessionSummary& late = summaries[1];
+  ASSERT_TRUE(late.realtime);
+  EXPECT_FALSE(late.realtime->kept_up);
+  EXPECT_GE(late.realtime->watchdog_ticks, 90u) << "10 of every 30 ticks";
+  EXPECT_GE(late.realtime->result_age_ticks.max, 59);
+  EXPECT_EQ(late.watchdog_ticks, 0u) << "virtual time itself had none";
+  EXPECT_THAT(late.realtime->sentence, HasSubstr("this machine could not have kept up: the watchdog would have faded the force out in "));
+  EXPECT_THAT(late.notes, testing::Contains(testing::AllOf(HasSubstr("31 of 31 frames took longer than the watchdog's 20 ms; the slowest, "), HasSubstr(" with the tool at 0 0 "))));
+}
+
+TEST(Session, SaysThatRealTimeWouldHaveKeptUp) {
+  LoadedScene scene = half_space_scene();
+  add_dip(scene, 3);
+  scene.scene.control.virtual_delay_ticks = 1000;
+  scene.scene.control.watchdog_ms = 60'000;
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, nullptr);
+  ASSERT_TRUE(summary) << summary.error().sentence;
+  ASSERT_TRUE(summary->realtime);
+  EXPECT_TRUE(summary->realtime->kept_up);
+  EXPECT_THAT(summary->realtime->sentence, HasSubstr("this machine would have kept up: results would have been 1 tick old"));
+  EXPECT_THAT(summary->realtime->sentence, HasSubstr("(in this run 1"));
+  // A run that ends before a result was due says nothing of the machine.
+  WatchedDevice brief(scene);
+  const auto one = run_session(scene, backend, brief, {.pace = Pace::kAsap, .duration_s = 0.5}, nullptr);
+  ASSERT_TRUE(one) << one.error().sentence;
+  EXPECT_FALSE(one->realtime);
+}
 
 TEST(Session, PressesBackWithTheDepthOfTheContact) {
   LoadedScene scene = half_space_scene();
