@@ -281,10 +281,11 @@ std::optional<RealtimeOutlook> outlook(const Run& run, const SessionSummary& sum
   RealtimeOutlook out;
   out.result_age_ticks = virtual_time ? percentiles(run.estimate.result_age(), 1) : summary.result_age_ticks;
   out.watchdog_ticks = virtual_time ? run.estimate.watchdog_ticks() : summary.watchdog_ticks;
-  out.kept_up = any && out.watchdog_ticks == 0 && out.result_age_ticks.p99 <= summary.result_age_ticks.p99;
+  out.kept_up = any && out.watchdog_ticks == 0;
   const std::string could = virtual_time ? (out.kept_up ? "this machine would have kept up" : "this machine could not have kept up")
                                          : (out.kept_up ? "this machine kept up" : "this machine did not keep up");
-  out.sentence = could + ": ";
+  const bool older = out.result_age_ticks.p99 > summary.result_age_ticks.p99;
+  out.sentence = could + (out.kept_up && older ? ", with older results than this run's: " : ": ");
   if (!any) {
     out.sentence += std::string("no result ") + (virtual_time ? "would have come in " : "came in ") + ticks_text(static_cast<double>(run.tick.ticks()));
     return out;

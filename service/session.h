@@ -51,7 +51,7 @@ struct HistogramBin {
 
 /// How the run stood in real time; of one in virtual time, how it would have stood (service/realtime_estimate.h).
 struct RealtimeOutlook {
-  bool kept_up = false;                      ///< the watchdog never faded the force, and no result was older at p99 than in the run itself
+  bool kept_up = false;                      ///< results came, and the watchdog never faded the force; the sentence also says whether they were older than in virtual time
   Percentiles result_age_ticks;
   std::uint64_t watchdog_ticks = 0;          ///< ticks without a fresh result for longer than the watchdog
   std::string sentence;
