@@ -182,7 +182,7 @@ void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearL
   samples_.find(pose, first, last, lists);
 }
 
-bool BroadPhase::find(PosedTool& tool, NearLists& lists) {
+bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
   const LatticePose& pose = tool.pose();
   if (whole_.half[0] < 0) return false;
   const Turn turn(pose);
@@ -199,7 +199,13 @@ bool BroadPhase::find(PosedTool& tool, NearLists& lists) {
     search.voxels.above[r] = static_cast<float>(at + margin);
     search.voxels.end[r] = static_cast<float>(8 * grid_.bricks[static_cast<int>(r)]);
   }
-  on_this_processor([&] { descend(search); });
+  // Where the last pose wanted samples this one mostly does, too: they are looked for beside the pairs.
+  const bool ahead = helper != nullptr && has_inside_ && met_;
+  NearLists beside = lists;
+  share_parts(helper, ahead ? 2 : 1, [&](std::uint32_t part, int) {
+    if (part == 0) on_this_processor([&] { descend(search); });
+    else find_samples(pose, whole, beside);
+  });
   if (lists.full != gpu::kNone) return false;
   if (!has_inside_) return lists.touch.count != 0;
   bool meet = always_samples_ || lists.pairs.count != 0;
@@ -209,7 +215,15 @@ bool BroadPhase::find(PosedTool& tool, NearLists& lists) {
     meet = part[0] >= whole.low[0] && part[1] >= whole.low[1] && part[2] >= whole.low[2] && part[3] <= whole.high[0] && part[4] <= whole.high[1] &&
            part[5] <= whole.high[2];
   }
-  if (meet) find_samples(pose, whole, lists);
+  met_ = meet;
+  if (meet && ahead) {
+    lists.samples = beside.samples;
+    lists.inside = beside.inside;
+    lists.open = beside.open;
+    lists.full = beside.full;
+  } else if (meet) {
+    find_samples(pose, whole, lists);
+  }
   return meet;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compute/brick_bits.h"
+#include "compute/frame_helper.h"
 #include "compute/near_lists.h"
 #include "compute/near_pairs.h"
 #include "compute/near_samples.h"
@@ -22,7 +23,7 @@ namespace palpate {
 
 /// What of tool and mock-up may meet at a pose, from boxes that turn with the tool: on the host, so that a frame which can't touch
 /// costs no submission, and one that can begins with what is near. Errs only towards "may meet".
-/// One thread; find() neither allocates nor blocks.
+/// One thread and its helper; find() neither allocates nor blocks.
 class BroadPhase {
  public:
   /// `runs`: of the tool; they, geometry and scene outlive this. Reads the mock-up's partition back from the
@@ -31,8 +32,8 @@ class BroadPhase {
 
   /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may come,
   /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be
-  /// beyond the lattice.
-  bool find(PosedTool& tool, NearLists& lists);
+  /// beyond the lattice. `helper` may be null.
+  bool find(PosedTool& tool, FrameHelper* helper, NearLists& lists);
 
  private:
   struct Box {
@@ -59,6 +60,7 @@ class BroadPhase {
   double inside_margin_ = 0;      ///< steps
   bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
   bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
+  bool met_ = false;              ///< at the last pose, bodies might meet
   Box whole_{};
   const RunTree* tree_ = nullptr;
   std::vector<EightTriangles> runs_;

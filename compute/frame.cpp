@@ -55,6 +55,7 @@ class RecordedFrame final : public Frame {
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   Result<void> enlarge() override;
+  void share(bool wanted) override { sharing_ = wanted && host_contact_ != nullptr; }   // elsewhere the device does the work
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
@@ -73,6 +74,7 @@ class RecordedFrame final : public Frame {
   template <class Body>
   Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
   Result<void> run(CommandRecorder& commands, Contacts& out);
+  FrameHelper* helper();
   void solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out);
   void read(Contacts& out);
   void write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays);
@@ -90,6 +92,8 @@ class RecordedFrame final : public Frame {
   std::optional<FrameResponse> response_;       ///< `paper`
   std::optional<FrameField> field_;             ///< `refined`
   std::unique_ptr<HostContact> host_contact_;   ///< decides all, where it is
+  std::unique_ptr<FrameHelper> helper_;
+  bool sharing_ = false, helper_tried_ = false;
   bool host_solved_ = false;                    ///< the last query's contact was decided by the host
   FrameDecoder decoder_;
   /// From the pose to the sets; then, with contact, the response. Null after a failed record().
@@ -171,6 +175,14 @@ Result<void> RecordedFrame::finish() {
   if (auto r = warm_up(device_, pipelines_); !r) return r;   // no frame of a loop should wait for a compiler
   finished_ = true;
   return {};
+}
+
+/// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on its processors, and a loop's are chosen well.
+FrameHelper* RecordedFrame::helper() {
+  if (!sharing_) return nullptr;
+  if (!helper_tried_) helper_ = FrameHelper::make();
+  helper_tried_ = true;
+  return helper_.get();
 }
 
 Result<void> RecordedFrame::make_buffers() {
@@ -281,7 +293,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
     near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
     near.inside.room = mapped<gpu::FrameSample>(gpu::kBindInsideSamples, gpu::kListInsideSamples);
     near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
-    rays = broad_phase_->find(posed_, near);
+    rays = broad_phase_->find(posed_, helper(), near);
   }
   out.times.push_back({"cull", us_since(start)});
   near_full_ = near.full;
@@ -324,7 +336,7 @@ void RecordedFrame::solve_on_host(const Ignored* ignored, const NearLists& near,
     out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count()});
     last = now;
   };
-  host_contact_->solve(posed_, ignored, near, out, stage);
+  host_contact_->solve(posed_, ignored, near, helper(), out, stage);
   host_solved_ = true;
   pairs_ = out.pairs;
   if (out.contact && out.lists) {

@@ -65,7 +65,10 @@ class GpuBackend final : public CollisionBackend {
     batched_ += poses.size();
     if (!workers_ && !no_workers_ && batched_ >= kWorthHelpers) set_helpers_up();
     if (!workers_ || poses.size() < 2) return CollisionBackend::query_batch(poses, out);
-    if (auto r = workers_->answer(*frame_, poses, out); !r) return r;
+    frame_->share(false);   // the other processors have poses of their own
+    auto answered = workers_->answer(*frame_, poses, out);
+    frame_->share(true);
+    if (!answered) return answered;
     return device_->check_guards();
   }
 
@@ -100,6 +103,7 @@ class GpuBackend final : public CollisionBackend {
     auto frame = Frame::create(*device_, *geometry_, *scene_, options_.first_capacity, plan);
     if (!frame) return frame.error();
     frame_ = std::move(*frame);
+    frame_->share(true);
     return device_->check_guards();
   }
 

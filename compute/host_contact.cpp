@@ -24,8 +24,8 @@ Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, con
   return out;
 }
 
-void HostContact::decide(PosedTool& tool, const NearLists& near, Contacts& out) {
-  sets_.decide(tool, near, statics_, found_);
+void HostContact::decide(PosedTool& tool, const NearLists& near, FrameHelper* helper, Contacts& out) {
+  sets_.decide(tool, near, statics_, helper, found_);
   out.contact = found_.state.contact != 0;
   out.pairs = found_.pairs.size();
   if (!out.lists) return;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "compute/frame_helper.h"
 #include "compute/host_field.h"
 #include "compute/host_partition.h"
 #include "compute/host_sets.h"
@@ -16,18 +17,18 @@
 namespace palpate {
 
 /// A whole contact on the host, from the lists of what is near to the field: where the device is the host's own processor, a few thousand exact questions are
-/// sooner answered one after the other than in dispatches (docs/PERFORMANCE.md). `refined`. One thread; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
+/// sooner answered one after the other than in dispatches (docs/PERFORMANCE.md). `refined`. One thread and its helper; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
 class HostContact {
  public:
   static Result<std::unique_ptr<HostContact>> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
-  /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `stage(name)` is called at the end of each stage.
+  /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `helper` may be null. `stage(name)` is called at the end of each stage.
   template <class Stage>
-  void solve(PosedTool& tool, const Ignored* ignored, const NearLists& near, Contacts& out, Stage stage) {
-    decide(tool, near, out);
+  void solve(PosedTool& tool, const Ignored* ignored, const NearLists& near, FrameHelper* helper, Contacts& out, Stage stage) {
+    decide(tool, near, helper, out);
     stage("sets");
     if (!out.contact) return;
-    field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, out);
+    field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, helper, out);
     stage("field");
   }
   /// After solve().
@@ -35,7 +36,7 @@ class HostContact {
 
  private:
   HostContact() = default;
-  void decide(PosedTool& tool, const NearLists& near, Contacts& out);
+  void decide(PosedTool& tool, const NearLists& near, FrameHelper* helper, Contacts& out);
 
   HostPartition mockup_, tool_;
   std::vector<std::uint8_t> tool_boxes_;   ///< SearchTables::boxes_of

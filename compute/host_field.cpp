@@ -57,6 +57,34 @@ void add_term(WideSum& sum, std::int64_t term) {
   sum.high += term >> 32;
 }
 
+void add_sum(WideSum& sum, const WideSum& more) {
+  sum.low += more.low;
+  sum.high += more.high;
+}
+
+void add_bin(FieldBin& bin, const FieldBin& more) {
+  bin.samples += more.samples;
+  bin.give += more.give;
+  for (std::size_t k = 0; k < 3; ++k) {
+    add_sum(bin.push[k], more.push[k]);
+    add_sum(bin.turn[k], more.turn[k]);
+    bin.give_at[k] += more.give_at[k];
+  }
+  for (std::size_t k = 0; k < 6; ++k) bin.give_spread[k] += more.give_spread[k];
+}
+
+/// The deepest of both, of several the smallest ids.
+void add_deepest(FieldSums& field, std::uint32_t depth, std::uint32_t static_id, std::uint32_t mobile) {
+  if (depth > field.max_depth) {
+    field.max_depth = depth;
+    field.deepest_static = static_id;
+    field.deepest_mobile = mobile;
+  } else if (depth == field.max_depth && depth > 0) {
+    field.deepest_static = std::min(field.deepest_static, static_id);
+    field.deepest_mobile = std::min(field.deepest_mobile, mobile);
+  }
+}
+
 }  // namespace
 
 /// A sample inside the other body (EXACTNESS section 8).
@@ -145,15 +173,15 @@ std::uint64_t HostField::weight_of(const LatticeMesh& mesh, std::uint32_t triang
   return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
 }
 
-bool HostField::is_ignored(std::uint32_t static_id) {
+bool HostField::is_ignored(std::uint32_t static_id, Side& side) const {
   if (ignored_ == nullptr || ignored_->patches.empty()) return false;
   const std::uint32_t patch = geometry_->mockup.patch[static_id];
   if (!std::binary_search(ignored_->patches.begin(), ignored_->patches.end(), patch)) return false;
-  touched_.push_back(patch);
+  side.touched.push_back(patch);
   return true;
 }
 
-void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out) {
+void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Side& out) const {
   const std::uint32_t weight = push.weight >> (push.sheet ? 0 : 1);
   const Int3 &n = push.along, r = push.at;
   const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 14);
@@ -183,15 +211,7 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   bin.give_spread[4] += (give * y * z) >> 8;
   bin.give_spread[5] += (give * z * x) >> 8;
 
-  FieldSums& field = out.field;
-  if (push.depth > field.max_depth) {
-    field.max_depth = push.depth;
-    field.deepest_static = static_id;
-    field.deepest_mobile = mobile;
-  } else if (push.depth == field.max_depth && push.depth > 0) {
-    field.deepest_static = std::min(field.deepest_static, static_id);
-    field.deepest_mobile = std::min(field.deepest_mobile, mobile);
-  }
+  add_deepest(out.field, push.depth, static_id, mobile);
   if (push.sheet) out.flags |= kFlagSheet;
   if (carrier == nullptr) return;
   const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);
@@ -205,52 +225,47 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   }
 }
 
-void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out) {
+void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier) {
   const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point), near_tool_);
   near_tool_ = below.place;
-  if (below.triangle == DepthSearch::kNobody || is_ignored(static_id)) return;
+  if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, of_mockup_)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
-  add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against, below.steps, weight, sheet}, static_id, below.triangle, carrier, out);
+  add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against, below.steps, weight, sheet}, static_id, below.triangle, carrier, of_mockup_);
 }
 
-void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight, Contacts& out) {
+void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight) {
   const DepthSearch::Depth below = mockup_depth_.below(point, near_mockup_);
   near_mockup_ = below.place;
-  if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle)) return;
+  if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, of_tool_)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
-  add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]), against, below.steps, weight, sheet}, below.triangle, mobile, nullptr, out);
+  add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]), against, below.steps, weight, sheet}, below.triangle, mobile, nullptr, of_tool_);
 }
 
-void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, Contacts& out) {
-  const LatticePose& pose = tool.pose();
-  choose_level(found.samples.size(), found.mobiles.size());
-  const LatticeMesh &mockup = geometry_->mockup, &own = geometry_->tool;
-  out.field = {};
-  out.carriers.clear();
-  ignored_ = wanted.ignored;
-  touched_.clear();
-
-  // C_s ascends; of it CST and EST carry.
-  if (wanted.carriers)
-    for (const StaticResult& result : found.statics)
-      if ((result.state & (kStaticHit | kStaticSampled)) != 0) out.carriers.emplace_back().id = result.id;
+/// Of the mock-up's samples inside the tool. `carriers` ascend by id.
+void HostField::sum_mockup(PosedTool& tool, const HostSets& sets, const FoundSets& found, std::span<CarrierSums> carriers) {
+  const LatticeMesh& mockup = geometry_->mockup;
   const auto carrier = [&](std::uint32_t id) -> CarrierSums* {
-    const auto at = std::lower_bound(out.carriers.begin(), out.carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
-    return at != out.carriers.end() && at->id == id ? &*at : nullptr;
+    const auto at = std::lower_bound(carriers.begin(), carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
+    return at != carriers.end() && at->id == id ? &*at : nullptr;
   };
   const bool all = (level_ | between_) == 0;
   for (const FrameSample& sample : found.samples) {
     const std::uint32_t id = sample.static_id;
     const int level = all || mockup.levels_of[id] == 0 ? 0 : level_of(sample.point, mockup.sample_axis[id], geometry_->sample_spacing);
     if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0)
-      push_from_mockup(pose, id, sample.point, static_cast<std::uint32_t>(weight >> 6), carrier(id), out);
+      push_from_mockup(tool.pose(), id, sample.point, static_cast<std::uint32_t>(weight >> 6), carrier(id));
   }
-  if (tool_has_inside_)
-    for (const StaticResult& result : found.statics)
-      for (const ExtraSample& extra : mockup_extras_.of(result.id))
-        if (sets.inside(tool, extra.point)) push_from_mockup(pose, result.id, extra.point, extra.weight_q30 >> 6, carrier(result.id), out);
+  if (!tool_has_inside_) return;
+  for (const StaticResult& result : found.statics)
+    for (const ExtraSample& extra : mockup_extras_.of(result.id))
+      if (sets.inside(tool, extra.point)) push_from_mockup(tool.pose(), result.id, extra.point, extra.weight_q30 >> 6, carrier(result.id));
+}
+
+/// Of the samples of C_m inside the mock-up.
+void HostField::sum_tool(const LatticePose& pose, const FoundSets& found) {
+  const LatticeMesh& own = geometry_->tool;
   for (const MobileResult& result : found.mobiles) {
     // What touches nothing is on one side of the mock-up, with its first corner.
     const bool hit = (result.state & kMobileHit) != 0;
@@ -258,7 +273,7 @@ void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& foun
     const auto push = [&](const Int3& p, std::uint64_t weight) {
       const Int3 point = transform(pose, p);
       if (!hit && !inside) inside = in_mockup_.inside(transform(pose, own.corner(result.id, 0)));
-      if (hit ? in_mockup_.inside(point) : *inside) push_from_tool(pose, result.id, point, static_cast<std::uint32_t>(weight >> 4), out);
+      if (hit ? in_mockup_.inside(point) : *inside) push_from_tool(pose, result.id, point, static_cast<std::uint32_t>(weight >> 4));
     };
     if (own.field_weight_q30[result.id] != 0)
       for_tool_samples(result.id, [&](const Int3& p, int level) {
@@ -266,10 +281,37 @@ void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& foun
       });
     for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, extra.weight_q30);
   }
+}
 
-  std::sort(touched_.begin(), touched_.end());
-  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-  out.ignored_touched = touched_;
+void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out) {
+  choose_level(found.samples.size(), found.mobiles.size());
+  out.carriers.clear();
+  ignored_ = wanted.ignored;
+  for (Side* side : {&of_mockup_, &of_tool_}) {
+    side->field = {};
+    side->flags = 0;
+    side->touched.clear();
+  }
+  // C_s ascends; of it CST and EST carry.
+  if (wanted.carriers)
+    for (const StaticResult& result : found.statics)
+      if ((result.state & (kStaticHit | kStaticSampled)) != 0) out.carriers.emplace_back().id = result.id;
+
+  // Nothing is written by both: each body's samples are searched for in the other's tables.
+  share_parts(helper, 2, [&](std::uint32_t part, int) {
+    if (part == 0) sum_tool(tool.pose(), found);
+    else sum_mockup(tool, sets, found, out.carriers);
+  });
+
+  out.field = of_mockup_.field;
+  for (std::size_t i = 0; i < kFieldBins; ++i) add_bin(out.field.bins[i], of_tool_.field.bins[i]);
+  add_deepest(out.field, of_tool_.field.max_depth, of_tool_.field.deepest_static, of_tool_.field.deepest_mobile);
+  out.flags |= of_mockup_.flags | of_tool_.flags;
+  std::vector<std::uint32_t>& touched = of_mockup_.touched;
+  touched.insert(touched.end(), of_tool_.touched.begin(), of_tool_.touched.end());
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  out.ignored_touched = touched;
   if (std::none_of(out.field.bins.begin(), out.field.bins.end(), [](const FieldBin& bin) { return bin.samples != 0; })) out.flags |= kFlagNoDirection;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "compute/depth_search.h"
+#include "compute/frame_helper.h"
 #include "compute/host_sets.h"
 #include "compute/inside_search.h"
 #include "compute/posed_tool.h"
@@ -12,7 +14,7 @@
 
 namespace palpate {
 
-/// The pressure field at a pose (docs/EXACTNESS.md section 8), on the host. One thread; make() keeps references to its arguments; sum() allocates only when a contact is
+/// The pressure field at a pose (docs/EXACTNESS.md section 8), on the host. One thread and its helper; make() keeps references to its arguments; sum() allocates only when a contact is
 /// larger than all before.
 class HostField {
  public:
@@ -24,11 +26,17 @@ class HostField {
     const Ignored* ignored = nullptr;
     bool carriers = true;
   };
-  /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags.
-  void sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, Contacts& out);
+  /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags. `helper` may be null.
+  void sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out);
 
  private:
   struct Push;
+  /// What one body's samples say.
+  struct Side {
+    FieldSums field;
+    std::uint32_t flags = 0;
+    std::vector<std::uint32_t> touched;   ///< ignored patches, in any order
+  };
   /// Extra samples by triangle; few have some.
   class Extras {
    public:
@@ -40,10 +48,12 @@ class HostField {
     std::span<const ExtraSample> all_;
     std::vector<std::uint64_t> has_;   ///< a bit a triangle
   };
-  void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Contacts& out);
-  void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier, Contacts& out);
-  void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight, Contacts& out);
-  bool is_ignored(std::uint32_t static_id);
+  void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Side& out) const;
+  void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier);
+  void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight);
+  void sum_mockup(PosedTool& tool, const HostSets& sets, const FoundSets& found, std::span<CarrierSums> carriers);
+  void sum_tool(const LatticePose& pose, const FoundSets& found);
+  bool is_ignored(std::uint32_t static_id, Side& side) const;
   template <class Take>
   void for_tool_samples(std::uint32_t mobile, Take&& take) const;
   void choose_level(std::size_t samples, std::size_t mobiles);
@@ -61,7 +71,7 @@ class HostField {
   std::uint32_t level_ = 0, between_ = 0;  ///< of this frame: the level of samples, and how far to the next, 1/256
   std::uint32_t near_tool_ = DepthSearch::kNobody, near_mockup_ = DepthSearch::kNobody;   ///< places of the last samples' nearest triangles in their trees
   const Ignored* ignored_ = nullptr;       ///< of this frame
-  std::vector<std::uint32_t> touched_;     ///< ignored patches, in any order
+  Side of_mockup_, of_tool_;               ///< each one thread's
 };
 
 }  // namespace palpate

@@ -11,6 +11,7 @@ using namespace gpu;   // names of shaders/shared/frame.h
 
 namespace {
 
+constexpr std::uint32_t kOpenPart = 256;   // open samples that one thread takes at a time: some 50 us (chosen)
 constexpr std::size_t kAhead = 4;   // voxels whose lists are called for before their turn: they lie far apart (chosen)
 
 }  // namespace
@@ -46,7 +47,7 @@ bool HostSets::inside(PosedTool& tool, const Int3& point) const {
   const Int3 at = tool_point(tool.pose(), point);
   if (!geometry_->tool.closed) return in_tool_->inside(at);
   const std::uint32_t kind = fine_.at(fine_.voxel_of(at)).kind;
-  return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(tool, point));
+  return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(tool.pose(), point, [&](std::uint32_t id) -> const exact::Corners& { return tool.corners(id); }));
 }
 
 /// Samples and first corners of listed triangles in a voxel, where preparation has not listed them.
@@ -64,21 +65,21 @@ void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
 
 /// The cells of open points. Point by point the way from voxel to list, triangles and sides is one long chain of loads, and what is decided at its end
 /// keeps the processor from the next point; step by step all points' loads run side by side.
-void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> samples) {
+void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> samples, std::vector<OpenPoint>& all) const {
   // From a plane, in steps: roundings and the rounded matrix come to less than 2.5, the rounded normal to less than 0.8 (derived).
   constexpr std::int64_t kFar = std::int64_t{4} << 30;
   const LatticeMesh& mesh = geometry_->tool;
-  open_.clear();
+  all.clear();
   for (std::uint32_t i = 0; i < samples.size(); ++i) {
     if (i != 0 && samples[i].point == samples[i - 1].point) continue;
     const Int3 at = tool_point(pose, samples[i].point);
-    open_.push_back({i, at, fine_.at(fine_.voxel_of(at)).boundary, {}, 0, false});
+    all.push_back({i, at, fine_.at(fine_.voxel_of(at)).boundary, {}, 0, false});
   }
-  for (OpenPoint& open : open_) {
+  for (OpenPoint& open : all) {
     open.list = fine_.list(open.voxel);
     __builtin_prefetch(open.list.data());
   }
-  for (OpenPoint& open : open_) {
+  for (OpenPoint& open : all) {
     std::uint32_t sides = 0;
     bool far = open.list.size() <= CellMemo::kMostPlanes;
     for (const std::uint32_t id : open.list) {
@@ -95,18 +96,21 @@ void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> 
 
 /// Whether the winding at an open sample is not 0. In the tool's frame the planes of all that the sample's voxel lists divide the voxel into convex cells that
 /// nothing passes through, so that all samples of a cell have one answer, at every pose (docs/EXACTNESS.md, section 9).
-bool HostSets::open_inside(PosedTool& tool, const Int3& point, const OpenPoint& open) {
-  if (!open.in_cell) return walks_out(tool, point);
+bool HostSets::open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open) {
+  // Few are walked for, and the threads of a frame can't share moved triangles.
+  const LatticeMesh& mesh = geometry_->tool;
+  const auto corners = [&](std::uint32_t id) { return exact::Corners{transform(pose, mesh.corner(id, 0)), transform(pose, mesh.corner(id, 1)), transform(pose, mesh.corner(id, 2))}; };
+  if (!open.in_cell) return walks_out(pose, point, corners);
   if (const std::optional<bool> answer = cells_.find(open.voxel, open.sides)) return *answer;
-  const bool answer = walks_out(tool, point);
+  const bool answer = walks_out(pose, point, corners);
   cells_.keep(open.voxel, open.sides, answer);
   return answer;
 }
 
 /// The same by a walk: the winding is what a walk out of the tool crosses, along an axis of its fine grid.
 /// shaders/frame/sample_walk.comp has the proof that each voxel on the way lists all that is crossed in it.
-bool HostSets::walks_out(PosedTool& tool, const Int3& point) const {
-  const LatticePose& pose = tool.pose();
+template <class Corners>
+bool HostSets::walks_out(const LatticePose& pose, const Int3& point, Corners&& corners_of) const {
   Int3 from = point, at = tool_point(pose, point);
   Int3 voxel = fine_.voxel_of(at);
   HostPartition::Voxel here = fine_.at(voxel);
@@ -117,12 +121,27 @@ bool HostSets::walks_out(PosedTool& tool, const Int3& point) const {
     at[axis] = fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up);
     const Int3 to = transform(pose, at);
     if (here.boundary != kNoVoxel && from != to)
-      for (const std::uint32_t id : fine_.list(here.boundary)) winding += exact::segment_crossing(from, to, tool.corners(id));
+      for (const std::uint32_t id : fine_.list(here.boundary)) winding += exact::segment_crossing(from, to, corners_of(id));
     from = to;
     voxel[axis] += 2 * up - 1;
     here = fine_.at(voxel);
   } while (here.kind != kVoxelExternal);
   return winding != 0;
+}
+
+/// EST of open samples.
+void HostSets::decide_open(const LatticePose& pose, std::span<const FrameSample> samples, Lane& lane) {
+  if (!geometry_->tool.closed) {
+    for (const FrameSample& sample : samples)
+      if (in_tool_->inside(tool_point(pose, sample.point))) lane.inside.push_back(sample);
+    return;
+  }
+  on_this_processor([&] { find_cells(pose, samples, lane.open); });
+  for (std::size_t i = 0; i < lane.open.size(); ++i) {
+    const std::size_t first = lane.open[i].first, end = i + 1 < lane.open.size() ? lane.open[i + 1].first : samples.size();
+    if (!open_inside(pose, samples[first].point, lane.open[i])) continue;
+    for (std::size_t j = first; j < end; ++j) lane.inside.push_back(samples[j]);
+  }
 }
 
 /// CST and CMT.
@@ -213,7 +232,7 @@ void HostSets::list(IdMarks& statics, FoundSets& out) {
   });
 }
 
-void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out) {
+void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();
@@ -223,9 +242,20 @@ void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
   statics.clear();
   mobiles_.clear();
 
-  decide_pairs(tool, near, statics, out);
-  decide_voxels(tool, near);
-  mark_lists(statics);
+  for (Lane& lane : lanes_) lane.inside.clear();
+
+  const std::span<const FrameSample> open = near.open.room.first(near.open.count);
+  const auto parts = static_cast<std::uint32_t>(1 + (open.size() + kOpenPart - 1) / kOpenPart);
+  share_parts(helper, parts, [&](std::uint32_t part, int lane) {
+    if (part == 0) {
+      decide_pairs(tool, near, statics, out);
+      decide_voxels(tool, near);
+      mark_lists(statics);
+      return;
+    }
+    const std::size_t begin = (part - 1) * std::size_t{kOpenPart};
+    decide_open(tool.pose(), open.subspan(begin, std::min<std::size_t>(kOpenPart, open.size() - begin)), lanes_[static_cast<std::size_t>(lane)]);
+  });
 
   // Samples inside the tool: EST. A first corner tells EST and does not count.
   const auto take = [&](const FrameSample& sample) {
@@ -233,19 +263,8 @@ void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
     if ((sample.static_id & kCornerProbe) == 0) out.samples.push_back(sample);
   };
   for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
-  const std::span<const FrameSample> open = near.open.room.first(near.open.count);
-  if (!geometry_->tool.closed) {
-    for (const FrameSample& sample : open)
-      if (inside(tool, sample.point)) take(sample);
-    open_.clear();
-  } else {
-    on_this_processor([&] { find_cells(tool.pose(), open); });
-  }
-  for (std::size_t i = 0; i < open_.size(); ++i) {
-    const std::size_t first = open_[i].first, end = i + 1 < open_.size() ? open_[i + 1].first : open.size();
-    if (!open_inside(tool, open[first].point, open_[i])) continue;
-    for (std::size_t j = first; j < end; ++j) take(open[j]);
-  }
+  for (const Lane& lane : lanes_)
+    for (const FrameSample& sample : lane.inside) take(sample);
   for (const SampleChunk& chunk : near.samples.room.first(near.samples.count))
     scan(chunk, [&](const FrameSample& sample) {
       if (inside(tool, sample.point)) take(sample);

@@ -1,9 +1,11 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "compute/cell_memo.h"
+#include "compute/frame_helper.h"
 #include "compute/inside_search.h"
 #include "compute/host_partition.h"
 #include "compute/id_marks.h"
@@ -26,14 +28,14 @@ struct FoundSets {
 
 /// Decides on the host what the device's shaders decide about the lists of what is near (docs/EXACTNESS.md sections 3 and 4): sets, pairs and
 /// samples inside the tool in `refined`. The same questions, answered exactly, so the same bits.
-/// One thread; make() keeps references to its arguments; decide() allocates only when a contact is larger than all before.
+/// One thread and its helper; make() keeps references to its arguments; decide() allocates only when a contact is larger than all before.
 class HostSets {
  public:
   /// `order`: ids of the tool's triangles by place. `in_tool` outlives this and answers for a tool that is not closed. `refined`.
   static Result<HostSets> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
-  /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered.
-  void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out);
+  /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. `helper` may be null.
+  void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
 
   /// Whether a world lattice point lies inside the tool (section 4).
   bool inside(PosedTool& tool, const Int3& point) const;
@@ -52,10 +54,17 @@ class HostSets {
     std::uint32_t sides;                    ///< a bit a plane of a listed triangle: the point is on its outer side
     bool in_cell;                           ///< it is far enough from all of them
   };
-  void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples);
-  bool open_inside(PosedTool& tool, const Int3& point, const OpenPoint& open);
+  /// What one of a frame's threads keeps of open samples.
+  struct Lane {
+    std::vector<OpenPoint> open;                  ///< of the part at hand
+    std::vector<gpu::FrameSample> inside;         ///< of this frame: those that lie inside
+  };
+  void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::vector<OpenPoint>& open) const;
+  void decide_open(const LatticePose& pose, std::span<const gpu::FrameSample> samples, Lane& lane);
+  bool open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
-  bool walks_out(PosedTool& tool, const Int3& point) const;
+  template <class Corners>
+  bool walks_out(const LatticePose& pose, const Int3& point, Corners&& corners_of) const;
   template <class Take>
   void scan(const gpu::SampleChunk& chunk, Take&& take) const;
 
@@ -65,7 +74,7 @@ class HostSets {
   HostPartition mockup_, fine_;
   PairFilter filter_;
   HostCopy<std::uint32_t> fine_exit_;
-  std::vector<OpenPoint> open_;                 ///< of this frame
+  std::array<Lane, FrameHelper::kLanes> lanes_;
   CellMemo cells_;                              ///< of fine V_bnd voxels: whether they are inside
   std::vector<std::uint8_t> touched_;           ///< by V_bnd voxel; 0 between frames
   std::vector<std::uint32_t> touched_voxels_;   ///< of this frame

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include "compute/host_exact.h"
 #include "compute/processor.h"
@@ -39,8 +40,12 @@ bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::ui
     const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1, true);
     return out.net + (out.kind == kVoxelInternal ? winding_of(out.voxel) : 0) != 0;
   }
-  std::int16_t& winding = middle_[boundary];
-  if (winding == kUnknown) winding = winding_by_walks(voxel);
+  const std::atomic_ref<std::int16_t> known(middle_[boundary]);   // whoever comes first: all find the same
+  std::int16_t winding = known.load(std::memory_order_relaxed);
+  if (winding == kUnknown) {
+    winding = winding_by_walks(voxel);
+    known.store(winding, std::memory_order_relaxed);
+  }
   const Int3 middle = partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
   return winding + (point == middle ? 0 : crossed_within(point, middle, voxel, boundary)) > 0;
 }

@@ -9,7 +9,7 @@
 namespace palpate {
 
 /// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4): by walks along axes to voxels that list nothing,
-/// of a body that is not closed once a voxel. Arguments outlive this. One thread; only the constructor allocates.
+/// of a body that is not closed once a voxel. Arguments outlive this. One thread, but of a body that is not closed any number; only the constructor allocates.
 class InsideSearch {
  public:
   InsideSearch() = default;
