@@ -60,7 +60,7 @@ class BroadPhase {
   double inside_margin_ = 0;      ///< steps
   bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
   bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
-  bool met_ = false;              ///< at the last pose, bodies might meet
+  bool met_ = false;              ///< at the last pose that was searched, the bodies might meet
   Box whole_{};
   const RunTree* tree_ = nullptr;
   std::vector<EightTriangles> runs_;

@@ -92,8 +92,9 @@ class RecordedFrame final : public Frame {
   std::optional<FrameResponse> response_;       ///< `paper`
   std::optional<FrameField> field_;             ///< `refined`
   std::unique_ptr<HostContact> host_contact_;   ///< decides all, where it is
-  std::unique_ptr<FrameHelper> helper_;
-  bool sharing_ = false, helper_tried_ = false;
+  std::unique_ptr<FrameHelper> helper_;         ///< null: not asked for yet (helper_tried_), or there is none
+  bool sharing_ = false;                        ///< share()
+  bool helper_tried_ = false;
   bool host_solved_ = false;                    ///< the last query's contact was decided by the host
   FrameDecoder decoder_;
   /// From the pose to the sets; then, with contact, the response. Null after a failed record().

@@ -12,8 +12,8 @@ namespace palpate {
 /// so a frame is never later than alone but by a part that it has begun. What a part leaves may not depend on who did it.
 class FrameHelper {
  public:
-  static constexpr std::uint32_t kMostParts = 0xFFFF;
-  static constexpr int kLanes = 2;
+  static constexpr std::uint32_t kMostParts = 0xFFFF;   ///< of a round: 16 bits of next_
+  static constexpr int kLanes = 2;                      ///< threads: the asker's, 0, and the helper's, 1
 
   /// Null where there is but one processor for this process, or no thread to be had.
   static std::unique_ptr<FrameHelper> make();
@@ -41,7 +41,7 @@ class FrameHelper {
   std::atomic<bool> stop_{false};
   Call call_ = nullptr;                  ///< of the round; whoever has taken a part of it may read
   void* context_ = nullptr;
-  std::array<std::exception_ptr, kLanes> thrown_;
+  std::array<std::exception_ptr, kLanes> thrown_;   ///< in this round, by each thread
   std::thread thread_;
 };
 

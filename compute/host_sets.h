@@ -74,7 +74,7 @@ class HostSets {
   HostPartition mockup_, fine_;
   PairFilter filter_;
   HostCopy<std::uint32_t> fine_exit_;
-  std::array<Lane, FrameHelper::kLanes> lanes_;
+  std::array<Lane, FrameHelper::kLanes> lanes_;   ///< by thread of the frame
   CellMemo cells_;                              ///< of fine V_bnd voxels: whether they are inside
   std::vector<std::uint8_t> touched_;           ///< by V_bnd voxel; 0 between frames
   std::vector<std::uint32_t> touched_voxels_;   ///< of this frame

@@ -45,6 +45,7 @@ SIGINT (Ctrl-C) or SIGTERM ends the run with zero force and complete files.
 
 With --pace realtime the loop keeps to the clock at 1 kHz and a result is as old as it happens to be. With --pace asap
 time is virtual: as fast as the machine goes, a result always control.virtual_delay_ticks old, trace.csv the same bytes every time.
+The first line of the summary says whether this machine kept up, or would have.
 
 Examples:
   palpate run scenes/disassembly.json --pace asap --out a
