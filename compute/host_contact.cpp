@@ -19,8 +19,7 @@ Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, con
   out->sets_ = std::move(*sets);
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
-  out->field_ = HostField::make(geometry, DepthSearch(geometry.mockup, scene.search->triangles), InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
-                                DepthSearch(geometry.tool, out->tool_triangles_), tool.closed != 0 || tool.has_internal != 0);
+  out->field_ = HostField::make(geometry, scene.search->triangles, InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes), out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 

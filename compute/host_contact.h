@@ -28,7 +28,7 @@ class HostContact {
     decide(tool, near, helper, out);
     stage("sets");
     if (!out.contact) return;
-    field_.sum(tool, sets_, found_, {.ignored = ignored, .carriers = out.lists}, helper, out);
+    field_.sum(tool.pose(), sets_, found_, {.ignored = ignored, .carriers = out.lists}, helper, out);
     stage("field");
   }
   /// After solve().

@@ -16,6 +16,7 @@ using namespace gpu;   // names of shaders/shared/frame.h
 namespace {
 
 constexpr std::size_t kMostListed = std::size_t{1} << 22;   // samples of the tool (chosen: 48 MiB)
+constexpr std::size_t kPart = 64;                           // samples or triangles of a part of the sum (chosen: a tenth of a millisecond)
 
 bool is_sheet(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & kTriangleSheet) != 0; }
 
@@ -106,12 +107,14 @@ std::span<const ExtraSample> HostField::Extras::of(std::uint32_t triangle) const
   return {range.begin(), range.end()};
 }
 
-HostField HostField::make(const SceneGeometry& geometry, DepthSearch mockup_depth, const InsideSearch& in_mockup, DepthSearch tool_depth, bool tool_has_inside) {
+HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& mockup, const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside) {
   HostField out;
   out.geometry_ = &geometry;
-  out.tool_depth_ = std::move(tool_depth);
-  out.mockup_depth_ = std::move(mockup_depth);
-  out.in_mockup_ = in_mockup;
+  for (Lane& lane : out.lanes_) {
+    lane.mockup_depth = DepthSearch(geometry.mockup, mockup);
+    lane.tool_depth = DepthSearch(geometry.tool, tool);
+    lane.in_mockup = in_mockup;
+  }
   out.tool_has_inside_ = tool_has_inside;
   out.mockup_extras_ = Extras(geometry.mockup);
   out.tool_extras_ = Extras(geometry.tool);
@@ -173,22 +176,30 @@ std::uint64_t HostField::weight_of(const LatticeMesh& mesh, std::uint32_t triang
   return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
 }
 
-bool HostField::is_ignored(std::uint32_t static_id, Side& side) const {
+std::uint64_t HostField::weight_of(const ExtraSample& extra) const {
+  const auto at = [&](std::uint32_t level) -> std::uint64_t {
+    level = std::min<std::uint32_t>(level, kSampleLevels);
+    return level == 0 ? extra.weight_q30 : std::uint64_t{extra.coarse_q30[level - 1]} << level;
+  };
+  return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
+}
+
+bool HostField::is_ignored(std::uint32_t static_id, Lane& lane) const {
   if (ignored_ == nullptr || ignored_->patches.empty()) return false;
   const std::uint32_t patch = geometry_->mockup.patch[static_id];
   if (!std::binary_search(ignored_->patches.begin(), ignored_->patches.end(), patch)) return false;
-  side.touched.push_back(patch);
+  lane.touched.push_back(patch);
   return true;
 }
 
-void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Side& out) const {
+void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Lane& lane) const {
   const std::uint32_t weight = push.weight >> (push.sheet ? 0 : 1);
   const Int3 &n = push.along, r = push.at;
   const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 14);
   constexpr std::int32_t kLeast = 444764242;   // tan 22.5° in Q30
   std::size_t number = 0;
   for (int k = 2; k >= 0; --k) number = 3 * number + static_cast<std::size_t>(1 + (n[k] > kLeast ? 1 : 0) - (n[k] < -kLeast ? 1 : 0));
-  FieldBin& bin = out.field.bins[number];
+  FieldBin& bin = lane.field.bins[number];
   ++bin.samples;
   const exact::Normal turn = exact::cross(r, n);
   const std::int64_t turns[3] = {turn.x >> 30, turn.y >> 30, turn.z >> 30};
@@ -211,8 +222,8 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   bin.give_spread[4] += (give * y * z) >> 8;
   bin.give_spread[5] += (give * z * x) >> 8;
 
-  add_deepest(out.field, push.depth, static_id, mobile);
-  if (push.sheet) out.flags |= kFlagSheet;
+  add_deepest(lane.field, push.depth, static_id, mobile);
+  if (push.sheet) lane.flags |= kFlagSheet;
   if (carrier == nullptr) return;
   const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);
   ++carrier->samples;
@@ -225,93 +236,111 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   }
 }
 
-void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint32_t weight, CarrierSums* carrier) {
-  const DepthSearch::Depth below = tool_depth_.below(to_tool(pose, point), near_tool_);
-  near_tool_ = below.place;
-  if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, of_mockup_)) return;
+void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const {
+  const DepthSearch::Depth below = lane.tool_depth.below(to_tool(pose, point), lane.near_tool);
+  lane.near_tool = below.place;
+  if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, lane)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
-  add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against, below.steps, weight, sheet}, static_id, below.triangle, carrier, of_mockup_);
+  add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against, below.steps, static_cast<std::uint32_t>(weight_q30 >> 6), sheet}, static_id, below.triangle, carrier, lane);
 }
 
-void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint32_t weight) {
-  const DepthSearch::Depth below = mockup_depth_.below(point, near_mockup_);
-  near_mockup_ = below.place;
-  if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, of_tool_)) return;
+void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint64_t weight_q30, Lane& lane) const {
+  const DepthSearch::Depth below = lane.mockup_depth.below(point, lane.near_mockup);
+  lane.near_mockup = below.place;
+  if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, lane)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
-  add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]), against, below.steps, weight, sheet}, below.triangle, mobile, nullptr, of_tool_);
+  add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]), against, below.steps, static_cast<std::uint32_t>(weight_q30 >> 4), sheet}, below.triangle, mobile, nullptr, lane);
 }
 
-/// Of the mock-up's samples inside the tool. `carriers` ascend by id.
-void HostField::sum_mockup(PosedTool& tool, const HostSets& sets, const FoundSets& found, std::span<CarrierSums> carriers) {
+namespace {
+
+/// `carriers` ascend by id.
+CarrierSums* carrier_of(std::span<CarrierSums> carriers, std::uint32_t id) {
+  const auto at = std::lower_bound(carriers.begin(), carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
+  return at != carriers.end() && at->id == id ? &*at : nullptr;
+}
+
+}  // namespace
+
+/// Of the mock-up's samples inside the tool.
+void HostField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples, std::span<CarrierSums> carriers, Lane& lane) const {
   const LatticeMesh& mockup = geometry_->mockup;
-  const auto carrier = [&](std::uint32_t id) -> CarrierSums* {
-    const auto at = std::lower_bound(carriers.begin(), carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
-    return at != carriers.end() && at->id == id ? &*at : nullptr;
-  };
   const bool all = (level_ | between_) == 0;
-  for (const FrameSample& sample : found.samples) {
+  for (const FrameSample& sample : samples) {
     const std::uint32_t id = sample.static_id;
     const int level = all || mockup.levels_of[id] == 0 ? 0 : level_of(sample.point, mockup.sample_axis[id], geometry_->sample_spacing);
-    if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0)
-      push_from_mockup(tool.pose(), id, sample.point, static_cast<std::uint32_t>(weight >> 6), carrier(id));
+    if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0) push_from_mockup(pose, id, sample.point, weight, carrier_of(carriers, id), lane);
   }
-  if (!tool_has_inside_) return;
-  for (const StaticResult& result : found.statics)
+}
+
+/// Of the mock-up's extra samples that lie inside the tool.
+void HostField::sum_extras(const LatticePose& pose, const HostSets& sets, std::span<const StaticResult> statics, std::span<CarrierSums> carriers, Lane& lane) const {
+  for (const StaticResult& result : statics)
     for (const ExtraSample& extra : mockup_extras_.of(result.id))
-      if (sets.inside(tool, extra.point)) push_from_mockup(tool.pose(), result.id, extra.point, extra.weight_q30 >> 6, carrier(result.id));
+      if (const std::uint64_t weight = weight_of(extra); weight != 0 && sets.inside(pose, extra.point))
+        push_from_mockup(pose, result.id, extra.point, weight, carrier_of(carriers, result.id), lane);
 }
 
 /// Of the samples of C_m inside the mock-up.
-void HostField::sum_tool(const LatticePose& pose, const FoundSets& found) {
+void HostField::sum_tool(const LatticePose& pose, std::span<const MobileResult> mobiles, Lane& lane) const {
   const LatticeMesh& own = geometry_->tool;
-  for (const MobileResult& result : found.mobiles) {
+  for (const MobileResult& result : mobiles) {
     // What touches nothing is on one side of the mock-up, with its first corner.
     const bool hit = (result.state & kMobileHit) != 0;
     std::optional<bool> inside;
     const auto push = [&](const Int3& p, std::uint64_t weight) {
+      if (weight == 0) return;
       const Int3 point = transform(pose, p);
-      if (!hit && !inside) inside = in_mockup_.inside(transform(pose, own.corner(result.id, 0)));
-      if (hit ? in_mockup_.inside(point) : *inside) push_from_tool(pose, result.id, point, static_cast<std::uint32_t>(weight >> 4));
+      if (!hit && !inside) inside = lane.in_mockup.inside(transform(pose, own.corner(result.id, 0)));
+      if (hit ? lane.in_mockup.inside(point) : *inside) push_from_tool(pose, result.id, point, weight, lane);
     };
     if (own.field_weight_q30[result.id] != 0)
-      for_tool_samples(result.id, [&](const Int3& p, int level) {
-        if (const std::uint64_t weight = weight_of(own, result.id, level); weight != 0) push(p, weight);
-      });
-    for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, extra.weight_q30);
+      for_tool_samples(result.id, [&](const Int3& p, int level) { push(p, weight_of(own, result.id, level)); });
+    for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, weight_of(extra));
   }
 }
 
-void HostField::sum(PosedTool& tool, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out) {
+void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out) {
   choose_level(found.samples.size(), found.mobiles.size());
   out.carriers.clear();
   ignored_ = wanted.ignored;
-  for (Side* side : {&of_mockup_, &of_tool_}) {
-    side->field = {};
-    side->flags = 0;
-    side->touched.clear();
+  for (Lane& lane : lanes_) {
+    lane.field = {};
+    lane.flags = 0;
+    lane.touched.clear();
   }
   // C_s ascends; of it CST and EST carry.
   if (wanted.carriers)
     for (const StaticResult& result : found.statics)
       if ((result.state & (kStaticHit | kStaticSampled)) != 0) out.carriers.emplace_back().id = result.id;
 
-  // Nothing is written by both: each body's samples are searched for in the other's tables.
-  share_parts(helper, 2, [&](std::uint32_t part, int) {
-    if (part == 0) sum_tool(tool.pose(), found);
-    else sum_mockup(tool, sets, found, out.carriers);
+  // Whole numbers are summed, so it is the same who sums which. Carriers are written by whoever has the mock-up's samples, so where they are wanted these are one part.
+  const auto parts_of = [](std::size_t count, bool one) { return one ? std::size_t{1} : (count + kPart - 1) / kPart; };
+  const std::span<const StaticResult> statics = tool_has_inside_ && !mockup_extras_.empty() ? std::span(found.statics) : std::span<const StaticResult>();
+  const std::size_t of_samples = parts_of(found.samples.size(), wanted.carriers), of_statics = parts_of(statics.size(), wanted.carriers), of_tool = parts_of(found.mobiles.size(), false);
+  const auto piece = []<class T>(std::span<const T> all, std::size_t part, std::size_t parts) {
+    return parts == 1 ? all : all.subspan(part * kPart, std::min(kPart, all.size() - part * kPart));
+  };
+  share_parts(helper, static_cast<std::uint32_t>(of_samples + of_statics + of_tool), [&](std::uint32_t part, int number) {
+    Lane& lane = lanes_[static_cast<std::size_t>(number)];
+    if (part < of_samples) sum_samples(pose, piece(std::span<const FrameSample>(found.samples), part, of_samples), out.carriers, lane);
+    else if (part < of_samples + of_statics) sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), out.carriers, lane);
+    else sum_tool(pose, piece(std::span<const MobileResult>(found.mobiles), part - of_samples - of_statics, of_tool), lane);
   });
 
-  out.field = of_mockup_.field;
-  for (std::size_t i = 0; i < kFieldBins; ++i) add_bin(out.field.bins[i], of_tool_.field.bins[i]);
-  add_deepest(out.field, of_tool_.field.max_depth, of_tool_.field.deepest_static, of_tool_.field.deepest_mobile);
-  out.flags |= of_mockup_.flags | of_tool_.flags;
-  std::vector<std::uint32_t>& touched = of_mockup_.touched;
-  touched.insert(touched.end(), of_tool_.touched.begin(), of_tool_.touched.end());
+  const Lane &first = lanes_[0], &second = lanes_[1];
+  static_assert(FrameHelper::kLanes == 2);
+  out.field = first.field;
+  for (std::size_t i = 0; i < kFieldBins; ++i) add_bin(out.field.bins[i], second.field.bins[i]);
+  add_deepest(out.field, second.field.max_depth, second.field.deepest_static, second.field.deepest_mobile);
+  out.flags |= first.flags | second.flags;
+  out.ignored_touched = first.touched;
+  std::vector<std::uint32_t>& touched = out.ignored_touched;
+  touched.insert(touched.end(), second.touched.begin(), second.touched.end());
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  out.ignored_touched = touched;
   if (std::none_of(out.field.bins.begin(), out.field.bins.end(), [](const FieldBin& bin) { return bin.samples != 0; })) out.flags |= kFlagNoDirection;
 }
 

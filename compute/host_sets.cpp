@@ -43,11 +43,11 @@ Int3 HostSets::tool_point(const LatticePose& pose, const Int3& point) const {
   return at;
 }
 
-bool HostSets::inside(PosedTool& tool, const Int3& point) const {
-  const Int3 at = tool_point(tool.pose(), point);
+bool HostSets::inside(const LatticePose& pose, const Int3& point) const {
+  const Int3 at = tool_point(pose, point);
   if (!geometry_->tool.closed) return in_tool_->inside(at);
   const std::uint32_t kind = fine_.at(fine_.voxel_of(at)).kind;
-  return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(tool.pose(), point, [&](std::uint32_t id) -> const exact::Corners& { return tool.corners(id); }));
+  return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(pose, point));
 }
 
 /// Samples and first corners of listed triangles in a voxel, where preparation has not listed them.
@@ -97,20 +97,18 @@ void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> 
 /// Whether the winding at an open sample is not 0. In the tool's frame the planes of all that the sample's voxel lists divide the voxel into convex cells that
 /// nothing passes through, so that all samples of a cell have one answer, at every pose (docs/EXACTNESS.md, section 9).
 bool HostSets::open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open) {
-  // Few are walked for, and the threads of a frame can't share moved triangles.
-  const LatticeMesh& mesh = geometry_->tool;
-  const auto corners = [&](std::uint32_t id) { return exact::Corners{transform(pose, mesh.corner(id, 0)), transform(pose, mesh.corner(id, 1)), transform(pose, mesh.corner(id, 2))}; };
-  if (!open.in_cell) return walks_out(pose, point, corners);
+  if (!open.in_cell) return walks_out(pose, point);
   if (const std::optional<bool> answer = cells_.find(open.voxel, open.sides)) return *answer;
-  const bool answer = walks_out(pose, point, corners);
+  const bool answer = walks_out(pose, point);
   cells_.keep(open.voxel, open.sides, answer);
   return answer;
 }
 
 /// The same by a walk: the winding is what a walk out of the tool crosses, along an axis of its fine grid.
 /// shaders/frame/sample_walk.comp has the proof that each voxel on the way lists all that is crossed in it.
-template <class Corners>
-bool HostSets::walks_out(const LatticePose& pose, const Int3& point, Corners&& corners_of) const {
+/// Moves what it meets itself, for the threads of a frame can't share moved triangles.
+bool HostSets::walks_out(const LatticePose& pose, const Int3& point) const {
+  const LatticeMesh& mesh = geometry_->tool;
   Int3 from = point, at = tool_point(pose, point);
   Int3 voxel = fine_.voxel_of(at);
   HostPartition::Voxel here = fine_.at(voxel);
@@ -121,7 +119,8 @@ bool HostSets::walks_out(const LatticePose& pose, const Int3& point, Corners&& c
     at[axis] = fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up);
     const Int3 to = transform(pose, at);
     if (here.boundary != kNoVoxel && from != to)
-      for (const std::uint32_t id : fine_.list(here.boundary)) winding += exact::segment_crossing(from, to, corners_of(id));
+      for (const std::uint32_t id : fine_.list(here.boundary))
+        winding += exact::segment_crossing(from, to, {transform(pose, mesh.corner(id, 0)), transform(pose, mesh.corner(id, 1)), transform(pose, mesh.corner(id, 2))});
     from = to;
     voxel[axis] += 2 * up - 1;
     here = fine_.at(voxel);
@@ -267,7 +266,7 @@ void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
     for (const FrameSample& sample : lane.inside) take(sample);
   for (const SampleChunk& chunk : near.samples.room.first(near.samples.count))
     scan(chunk, [&](const FrameSample& sample) {
-      if (inside(tool, sample.point)) take(sample);
+      if (inside(tool.pose(), sample.point)) take(sample);
     });
 
   list(statics, out);

@@ -37,8 +37,8 @@ class HostSets {
   /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. `helper` may be null.
   void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
 
-  /// Whether a world lattice point lies inside the tool (section 4).
-  bool inside(PosedTool& tool, const Int3& point) const;
+  /// Whether a world lattice point lies inside the tool (section 4). Any number of threads.
+  bool inside(const LatticePose& pose, const Int3& point) const;
 
  private:
   void decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out);
@@ -63,8 +63,7 @@ class HostSets {
   void decide_open(const LatticePose& pose, std::span<const gpu::FrameSample> samples, Lane& lane);
   bool open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
-  template <class Corners>
-  bool walks_out(const LatticePose& pose, const Int3& point, Corners&& corners_of) const;
+  bool walks_out(const LatticePose& pose, const Int3& point) const;
   template <class Take>
   void scan(const gpu::SampleChunk& chunk, Take&& take) const;
 

@@ -1,5 +1,6 @@
 #include "compute/prepared_scene.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -20,7 +21,10 @@ namespace {
 std::vector<gpu::ExtraSample> extras_of(const LatticeMesh& mesh) {
   std::vector<gpu::ExtraSample> out;
   out.reserve(mesh.extra_samples.size());
-  for (const ExtraSample& extra : mesh.extra_samples) out.push_back({extra.triangle, extra.point, extra.weight_q30});
+  for (const ExtraSample& extra : mesh.extra_samples) {
+    gpu::ExtraSample& sample = out.emplace_back(gpu::ExtraSample{extra.triangle, extra.point, {extra.weight_q30}});
+    std::ranges::copy(extra.coarse_q30, sample.weights + 1);
+  }
   return out;
 }
 

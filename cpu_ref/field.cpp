@@ -120,8 +120,8 @@ class Summing {
         mockup_sample(sample.triangle, sample.point, static_cast<std::uint32_t>(weight >> 6));
     if (!frame_.scene.tool_has_inside) return;
     for (const ExtraSample& extra : mockup.extra_samples)
-      if (std::binary_search(frame_.contact_static.begin(), frame_.contact_static.end(), extra.triangle) && inside_tool(frame_, extra.point))
-        mockup_sample(extra.triangle, extra.point, extra.weight_q30 >> 6);
+      if (const std::uint64_t weight = weight_of(extra); weight != 0 && std::binary_search(frame_.contact_static.begin(), frame_.contact_static.end(), extra.triangle) && inside_tool(frame_, extra.point))
+        mockup_sample(extra.triangle, extra.point, static_cast<std::uint32_t>(weight >> 6));
   }
 
   /// The tool's samples in the mock-up's depth.
@@ -138,7 +138,8 @@ class Summing {
       });
     }
     for (const ExtraSample& extra : tool.extra_samples)
-      if (std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle)) tool_sample(extra.triangle, extra.point, extra.weight_q30 >> 4);
+      if (const std::uint64_t weight = weight_of(extra); weight != 0 && std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle))
+        tool_sample(extra.triangle, extra.point, static_cast<std::uint32_t>(weight >> 4));
   }
 
   /// CST and EST, ascending, with nothing on them yet.
@@ -163,6 +164,20 @@ class Summing {
       if (taken == 0) return mesh.field_weight_q30[triangle];
       return ((std::uint64_t{mesh.field_weight_q30[triangle]} * side->factor_q30[static_cast<std::size_t>(taken - 1)]) >> 30) << taken;
     };
+    return blended(at);
+  }
+
+  /// Likewise of an extra sample.
+  std::uint64_t weight_of(const ExtraSample& extra) const {
+    return blended([&](std::int64_t wanted) -> std::uint64_t {
+      if (wanted == 0) return extra.weight_q30;
+      const std::int64_t taken = std::min<std::int64_t>(wanted, kSampleLevels);
+      return std::uint64_t{extra.coarse_q30[static_cast<std::size_t>(taken - 1)]} << taken;
+    });
+  }
+
+  template <class AtLevel>
+  std::uint64_t blended(AtLevel&& at) const {
     const std::int64_t whole = grade_ / 256, part = grade_ % 256;
     return (static_cast<std::uint64_t>(256 - part) * at(whole) + static_cast<std::uint64_t>(part) * at(whole + 1)) >> 8;
   }

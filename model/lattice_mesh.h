@@ -21,16 +21,17 @@ using EdgeNeighbour = std::uint32_t;
 
 inline constexpr std::uint32_t kNoPatch = 0xFFFFFFFF;
 
+/// Every second sample, every fourth …: the field leaves samples out of large contacts, level by level (docs/EXACTNESS.md section 4).
+inline constexpr int kSampleLevels = 4;
+
 /// A point of a triangle that stands for what the grid of samples misses (docs/EXACTNESS.md section 4).
 struct ExtraSample {
   std::uint32_t triangle = 0;
   Int3 point{0};                  ///< within a step of the triangle's plane
   std::uint32_t weight_q30 = 0;   ///< of s², > 0
+  std::array<std::uint32_t, kSampleLevels> coarse_q30{};   ///< of levels 1, 2, …, of 2^level s²: its own and those of others that it stands for there; 0: another stands for it
   bool operator==(const ExtraSample&) const = default;
 };
-
-/// Every second sample, every fourth …: the field leaves samples out of large contacts, level by level (docs/EXACTNESS.md section 4).
-inline constexpr int kSampleLevels = 4;
 
 /// By which factor the weights of a side's samples grow besides 2^level when the field takes only those of a level.
 struct SideLevels {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -23,6 +24,7 @@ constexpr double kExtraReach = 1.5;
 /// So many samples a side keeps at its coarsest level, at least (chosen: about what a small contact has).
 constexpr double kLeastOfLevel = 16;
 constexpr double kMostExtras = 1024;   // on one triangle (chosen: memory)
+constexpr double kMostOfOne = 3.99;    // 2^level s² that one extra sample stands for: below 4, which is what Q30 holds
 
 /// Triangles joined into components; the smallest is the root.
 class Components {
@@ -191,6 +193,60 @@ void place_extras(LatticeMesh& mesh, double square, const Side& side) {
   }
 }
 
+/// Which of 27 ways a normal looks: along an axis no more than tan 22.5° is neither up nor down.
+std::int64_t way_of(const Int3& normal) {
+  constexpr std::int32_t kLeast = 444764242;   // tan 22.5° in Q30
+  std::int64_t way = 0;
+  for (int k = 2; k >= 0; --k) way = 3 * way + 1 + (normal[k] > kLeast ? 1 : 0) - (normal[k] < -kLeast ? 1 : 0);
+  return way;
+}
+
+/// At a level extra samples of a patch that look one way, in a cube of so many s, are one.
+std::int64_t cube_of_level(int level) { return std::int64_t{1} << level / 2; }
+
+/// Fills coarse_q30: of extra samples that are one at a level, the one nearest to their middle and to where they look on average stands for all.
+void level_extras(std::int32_t spacing, LatticeMesh& mesh) {
+  std::vector<ExtraSample>& extras = mesh.extra_samples;
+  struct Keyed {
+    std::array<std::int64_t, 5> key;   ///< patch, way, cube
+    std::uint32_t extra;
+    auto operator<=>(const Keyed&) const = default;
+  };
+  std::vector<Keyed> keyed(extras.size());
+  // A patch counts from the corner of its own, so that it is cut the same wherever its body lies.
+  std::vector<Int3> corner(mesh.patch_count, Int3(std::numeric_limits<std::int32_t>::max()));
+  for (const ExtraSample& extra : extras) corner[mesh.patch[extra.triangle]] = glm::min(corner[mesh.patch[extra.triangle]], extra.point);
+  for (int level = 1; level <= kSampleLevels; ++level) {
+    const std::int64_t edge = spacing * cube_of_level(level);
+    const auto place = [&](std::uint32_t i) { return extras[i].point - corner[mesh.patch[extras[i].triangle]]; };
+    for (std::uint32_t i = 0; i < extras.size(); ++i) {
+      const std::uint32_t triangle = extras[i].triangle;
+      keyed[i] = {{mesh.patch[triangle], way_of(mesh.unit_normal_q30[triangle]), place(i).x / edge, place(i).y / edge, place(i).z / edge}, i};
+    }
+    std::sort(keyed.begin(), keyed.end());
+    for (std::size_t first = 0, end = 0; first < keyed.size(); first = end) {
+      double sum = 0;
+      Vec3 middle(0), facing(0);
+      for (end = first; end < keyed.size() && keyed[end].key == keyed[first].key; ++end) {
+        const ExtraSample& extra = extras[keyed[end].extra];
+        const double weight = extra.weight_q30 * 0x1p-30;
+        if (end > first && sum + weight >= std::ldexp(kMostOfOne, level)) break;   // the rest of the cube is another one
+        sum += weight;
+        middle += weight * Vec3(place(keyed[end].extra));
+        facing += weight * 0x1p-30 * Vec3(mesh.unit_normal_q30[extra.triangle]);
+      }
+      double least = INFINITY;
+      std::uint32_t chosen = 0;
+      for (std::size_t i = first; i < end; ++i) {
+        const ExtraSample& extra = extras[keyed[i].extra];
+        const Vec3 away = (Vec3(place(keyed[i].extra)) - middle / sum) / static_cast<double>(edge), turn = 0x1p-30 * Vec3(mesh.unit_normal_q30[extra.triangle]) - facing / sum;
+        if (const double off = glm::dot(away, away) + glm::dot(turn, turn); off < least) least = off, chosen = keyed[i].extra;
+      }
+      extras[chosen].coarse_q30[static_cast<std::size_t>(level - 1)] = weight_q30(std::ldexp(sum, -level));
+    }
+  }
+}
+
 }  // namespace
 
 void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh) {
@@ -265,6 +321,7 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   }
   std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),
                    [](const ExtraSample& a, const ExtraSample& b) { return a.triangle < b.triangle; });
+  level_extras(spacing, mesh);
 }
 
 }  // namespace palpate

@@ -1,7 +1,7 @@
 #version 460
-// One invocation: a member of C_m. Lists its extra samples, and the tiles of its sample grid.
+// One invocation: a member of C_m. Lists its extra samples that weigh something, and the tiles of its sample grid.
 // Reads C_m, the tool's triangles in its own frame, its extra samples. Writes tool_points, field_tiles.
-// Before: the list of C_m is closed.
+// Before: the lists of samples and of C_m are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_field.h"
@@ -21,12 +21,16 @@ EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/extra_samples.glsl"
+#include "shaders/lib/sample_levels.glsl"
 
 void list_extras(uint32_t mobile) {
   const uint32_t first = first_extra(mobile, scene.tool_extras), count = extras_from(first, mobile, scene.tool_extras);
-  const uint32_t at = take_room(kListToolPoints, count);
-  for (uint32_t i = 0u; i < count && at + i < frame_lists[kListToolPoints].capacity; ++i)
-    tool_points[at + i] = FieldPoint(world_from_tool(extras[first + i].point), mobile, extras[first + i].weight >> 4);
+  for (uint32_t i = 0u; i < count; ++i) {
+    const uint32_t weight = uint32_t(extra_weight(extras[first + i].weights) >> 4);
+    if (weight == 0u) continue;
+    const uint32_t at = take_room(kListToolPoints, 1u);
+    if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(world_from_tool(extras[first + i].point), mobile, weight);
+  }
 }
 
 // The box of grid points: those in it and just outside are decided one by one later.

@@ -1,7 +1,7 @@
 #version 460
-// One invocation: a slot of C_s. Empties what it carries, and lists its extra samples.
+// One invocation: a slot of C_s. Empties what it carries, and lists its extra samples that weigh something.
 // Reads C_s, the mock-up's extra samples. Writes carrier_work, mockup_points.
-// Before: the list of C_s is closed.
+// Before: the lists of samples, C_s and C_m are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_field.h"
@@ -19,6 +19,7 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #include "shaders/lib/extra_samples.glsl"
+#include "shaders/lib/sample_levels.glsl"
 
 void main() {
   const uint32_t slot = flat_invocation();
@@ -28,7 +29,10 @@ void main() {
   const uint32_t id = contact_statics[slot];
   if (!INSIDE || (mockup_info[id] & kInfoHasExtra) == 0u) return;
   const uint32_t first = first_extra(id, scene.mockup_extras), count = extras_from(first, id, scene.mockup_extras);
-  const uint32_t at = take_room(kListMockupPoints, count);
-  for (uint32_t i = 0u; i < count && at + i < frame_lists[kListMockupPoints].capacity; ++i)
-    mockup_points[at + i] = FieldPoint(extras[first + i].point, id, extras[first + i].weight >> 6);
+  for (uint32_t i = 0u; i < count; ++i) {
+    const uint32_t weight = uint32_t(extra_weight(extras[first + i].weights) >> 6);
+    if (weight == 0u) continue;
+    const uint32_t at = take_room(kListMockupPoints, 1u);
+    if (at < frame_lists[kListMockupPoints].capacity) mockup_points[at] = FieldPoint(extras[first + i].point, id, weight);
+  }
 }

@@ -1,4 +1,4 @@
-// What a grid sample weighs in the field: in large contacts samples are left out, level by level (docs/EXACTNESS.md sections 4 and 8).
+// What a sample weighs in the field: in large contacts samples are left out, level by level (docs/EXACTNESS.md sections 4 and 8).
 // The including shader has scene and frame_lists; its lists of samples and of C_m are closed.
 #ifndef PALPATE_LIB_SAMPLE_LEVELS
 #define PALPATE_LIB_SAMPLE_LEVELS
@@ -20,6 +20,12 @@ uint32_t log_q8(uint32_t count) {
 uint32_t frame_level() {
   const uint32_t count = frame_lists[kListSamples].count + frame_lists[kListContactMobiles].count / 16u, wanted = scene.contact_samples;
   return wanted != 0u && count > wanted ? min(log_q8(count) - log_q8(wanted), 256u * kMostSampleLevel) : 0u;
+}
+
+// Q30. `weights`: an extra sample's.
+uint64_t extra_weight(uint32_t weights[kMostSampleLevel + 1u]) {
+  const uint32_t now = frame_level(), part = now & 255u, level = now >> 8, next = min(level + 1u, kMostSampleLevel);
+  return (uint64_t(256u - part) * (uint64_t(weights[level]) << level) + uint64_t(part) * (uint64_t(weights[next]) << next)) >> 8;
 }
 
 #define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                                               \

@@ -40,7 +40,7 @@ PALPATE_CONSTANT int32_t kDepthSlack = 16;            // steps by which a distan
 struct ExtraSample {
   uint32_t triangle;
   ivec3 point;
-  uint32_t weight;           // Q30
+  uint32_t weights[kMostSampleLevel + 1u];   // by level, Q30, of 2^level s²
 };
 
 // A sample that pushes if it lies inside the other body.
@@ -98,7 +98,7 @@ PALPATE_CONSTANT uint32_t kWordCarrierDepth = kCarrierSumWords;
 PALPATE_CONSTANT uint32_t kCarrierWords = 16u;
 PALPATE_ASSERT_SIZE(CarrierWork, 8 * kCarrierWords);
 
-PALPATE_ASSERT_SIZE(ExtraSample, 20);
+PALPATE_ASSERT_SIZE(ExtraSample, 36);
 PALPATE_ASSERT_SIZE(FieldPoint, 20);
 
 PALPATE_SHARED_END

@@ -244,6 +244,49 @@ TEST(ExtraSamples, LieOnTheirTrianglesAndAscend) {
   EXPECT_GT(count, 20u);
 }
 
+// A fine comb: 0.3 mm teeth under samples 1.4 mm apart.
+TEST(ExtraSamples, OfCoarserLevelsAreFewerAndStandForTheSameAreaPatchByPatch) {
+  Mesh comb = needle(0.0003, 0.0006, 0.05);
+  for (int i = 1; i < 8; ++i) solids::append(comb, solids::moved(needle(0.0003, 0.0006, 0.05), {Vec3(0.002 * i, 0, 0), Quat(1, 0, 0, 0)}), "tooth");
+  const LatticeMesh mesh = build(comb);
+  ASSERT_GT(mesh.extra_samples.size(), 200u);
+  std::vector<double> area(mesh.patch_count, 0);
+  for (const ExtraSample& extra : mesh.extra_samples) area[mesh.patch[extra.triangle]] += extra.weight_q30 * 0x1p-30;
+  std::size_t before = mesh.extra_samples.size();
+  for (int level = 1; level <= kSampleLevels; ++level) {
+    std::vector<double> coarse(mesh.patch_count, 0);
+    std::size_t count = 0;
+    for (const ExtraSample& extra : mesh.extra_samples) {
+      const std::uint32_t weight = extra.coarse_q30[static_cast<std::size_t>(level - 1)];
+      coarse[mesh.patch[extra.triangle]] += std::ldexp(weight, level - 30);
+      count += weight != 0 ? 1 : 0;
+    }
+    for (std::size_t p = 0; p < area.size(); ++p) EXPECT_NEAR(coarse[p], area[p], std::ldexp(static_cast<double>(before), level - 31)) << "level " << level << ", patch " << p;   // each rounded by half a Q30
+    EXPECT_LE(count, before);
+    before = count;
+  }
+  EXPECT_LT(before, mesh.extra_samples.size() / 4);
+}
+
+TEST(ExtraSamples, OfOneLevelLieInTheCubesOfThoseTheyStandFor) {
+  const LatticeMesh mesh = build(solids::moved(needle(0.0003, 0.0006, 0.05), {Vec3(0.0007, 0.0003, 0), glm::normalize(Quat(1, 0.3, 0.2, -0.1))}));
+  std::vector<Int3> corner(mesh.patch_count, Int3(std::numeric_limits<std::int32_t>::max()));
+  for (const ExtraSample& one : mesh.extra_samples) corner[mesh.patch[one.triangle]] = glm::min(corner[mesh.patch[one.triangle]], one.point);
+  for (int level = 1; level <= kSampleLevels; ++level) {
+    const int edge = kSpacing << level / 2;
+    for (const ExtraSample& one : mesh.extra_samples) {
+      bool stood_for = false;
+      for (const ExtraSample& other : mesh.extra_samples) {
+        if (other.coarse_q30[static_cast<std::size_t>(level - 1)] == 0 || mesh.patch[other.triangle] != mesh.patch[one.triangle]) continue;
+        bool same = true;
+        for (int k = 0; k < 3; ++k) same = same && (one.point - corner[mesh.patch[one.triangle]])[k] / edge == (other.point - corner[mesh.patch[one.triangle]])[k] / edge;
+        stood_for = stood_for || (same && glm::dot(normal_of(mesh, one.triangle), normal_of(mesh, other.triangle)) > 0);
+      }
+      EXPECT_TRUE(stood_for) << "level " << level;
+    }
+  }
+}
+
 TEST(Gyration, OfABoxAboutItsMiddleAndAboutACorner) {
   // A cube's surface of side 2a about its middle: a² for the face's own axis, a²/3 for each of the others.
   const LatticeMesh cube = build(solids::box(Vec3(-0x1p-6), Vec3(0x1p-6), Int3(2, 3, 5)));
