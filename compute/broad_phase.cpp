@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+constexpr std::size_t kMostGroups = 256;   // into which the tool is divided for two threads (chosen)
 constexpr std::int32_t kManyBricks = 3;   // along an axis, beyond which bricks are asked and not voxels (chosen)
 
 // Transformed vertices are rounded by half a step an axis, and doubles by far less than a thousandth: two steps hold both, and
@@ -36,7 +37,6 @@ struct BroadPhase::Turn {
 
 struct BroadPhase::Search {
   PosedTool& tool;
-  NearLists& lists;
   VoxelTurn voxels;
 };
 
@@ -47,9 +47,11 @@ Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& g
   out.order_ = runs.order();
   out.has_inside_ = scene.constants.refined != 0 && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
-  auto pairs = NearPairs::make(device, geometry, scene);
+  auto pairs = NearPairs::make(device, scene);
   if (!pairs) return pairs.error();
   out.pairs_ = std::move(*pairs);
+  out.seen_[0].resize(geometry.mockup.triangles.size());
+  out.statics_ = geometry.mockup.triangles.size();
   if (out.has_inside_) {
     auto samples = NearSamples::make(device, geometry, scene);
     if (!samples) return samples.error();
@@ -131,24 +133,32 @@ bool BroadPhase::meets(BrickBits::Range voxels) const {
   return occupied_[level].for_bricks(voxels, [](std::int32_t, std::int32_t, std::int32_t) { return true; });
 }
 
-/// From the whole tool to runs of triangles.
-void BroadPhase::descend(Search& search) {
-  tree_->descend(
-      search.voxels,
-      [&](const EightRanges& voxels) {
-        unsigned out = 0;
-        for (unsigned near = cubes_.near(voxels); near != 0; near &= near - 1)
-          if (const int i = std::countr_zero(near); meets(voxels.range(static_cast<std::size_t>(i)))) out |= 1u << i;
-        return out;
-      },
-      [&](std::uint32_t run) {
-        take_run(search, run);
-        return search.lists.full == gpu::kNone;
-      });
+void BroadPhase::share() {
+  for (NearPairs::Seen& seen : seen_) seen.resize(statics_);
+}
+
+/// A bit each: which of eight ranges of voxels have one that is occupied.
+unsigned BroadPhase::occupied(const EightRanges& voxels) const {
+  unsigned out = 0;
+  for (unsigned near = cubes_.near(voxels); near != 0; near &= near - 1)
+    if (const int i = std::countr_zero(near); meets(voxels.range(static_cast<std::size_t>(i)))) out |= 1u << i;
+  return out;
+}
+
+/// From some nodes of the tool's tree to runs of triangles.
+void BroadPhase::descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen, NearLists& lists) const {
+  on_this_processor([&] {
+    tree_->descend(
+        search.voxels, from, [&](const EightRanges& voxels) { return occupied(voxels); },
+        [&](std::uint32_t run) {
+          take_run(search, run, seen, lists);
+          return lists.full == gpu::kNone;
+        });
+  });
 }
 
 /// The triangles of a run, each by the box of its corners.
-void BroadPhase::take_run(Search& search, std::size_t run) {
+void BroadPhase::take_run(const Search& search, std::size_t run, NearPairs::Seen& seen, NearLists& lists) const {
   const BrickBits& occupied = occupied_.front();
   EightRanges voxels;
   voxels_of(search.voxels, runs_[run], voxels);
@@ -160,12 +170,47 @@ void BroadPhase::take_run(Search& search, std::size_t run) {
     occupied.for_bricks(voxels.range(i), [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       const Int3 brick(x, y, z);
       const std::uint32_t slot = occupied.slot(occupied.number(x, y, z));
-      if (!begun && !pairs_.begin(search.tool.corners(order_[place]), place, voxels, i, triangle)) return true;
+      if (!begun && !pairs_.begin(search.tool.corners(order_[place]), place, voxels, i, seen, triangle)) return true;
       begun = true;
-      return !pairs_.take(triangle, brick, slot, search.lists);
+      return !pairs_.take(triangle, brick, slot, seen, lists);
     });
-    if (search.lists.full != gpu::kNone) return;
+    if (lists.full != gpu::kNone) return;
   }
+}
+
+namespace {
+
+/// Puts what `more` holds behind what `list` holds. False: there is no room.
+template <class T>
+bool append(HostList<T>& list, const HostList<T>& more) {
+  if (more.count > list.room.size() - list.count) return false;
+  std::copy_n(more.room.begin(), more.count, list.room.begin() + list.count);
+  list.count += more.count;
+  return true;
+}
+
+}  // namespace
+
+/// Pairs in parts beside each other, and samples, too, where `samples_of` is not null.
+void BroadPhase::find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, NearLists& lists) {
+  std::array<RunTree::Group, kMostGroups> groups;
+  const std::size_t count = tree_->divide(search.voxels, [&](const EightRanges& voxels) { return occupied(voxels); }, groups);
+  if (second_touch_.size() != lists.touch.room.size()) second_touch_.resize(lists.touch.room.size());   // at first, and when the lists have been enlarged
+  if (second_pairs_.size() != lists.pairs.room.size()) second_pairs_.resize(lists.pairs.room.size());
+  NearLists samples = lists, second{.touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
+  const std::uint32_t ahead = samples_of != nullptr ? 1 : 0;
+  share_parts(&helper, static_cast<std::uint32_t>(count) + ahead, [&](std::uint32_t part, int lane) {
+    if (part < ahead) find_samples(search.tool.pose(), *samples_of, samples);
+    else descend(search, groups[part - ahead], seen_[static_cast<std::size_t>(lane)], lane == 0 ? lists : second);
+  });
+  if (lists.full == gpu::kNone) lists.full = second.full;
+  if (lists.full == gpu::kNone && !append(lists.touch, second.touch)) lists.full = gpu::kListTouchCandidates;
+  if (lists.full == gpu::kNone && !append(lists.pairs, second.pairs)) lists.full = gpu::kListPairCandidates;
+  if (ahead == 0) return;
+  lists.samples = samples.samples;
+  lists.inside = samples.inside;
+  lists.open = samples.open;
+  if (lists.full == gpu::kNone) lists.full = samples.full;
 }
 
 void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const {
@@ -188,7 +233,7 @@ bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
   const Turn turn(pose);
   const Reach whole = reach(turn, whole_);
   if (!meets(whole) && !always_samples_) return false;
-  Search search{tool, lists, {}};
+  Search search{tool, {}};
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t c = 0; c < 3; ++c) search.voxels.rotation[r][c] = static_cast<float>(turn.rotation[r][c] * per_voxel_);
     // Coordinates and entries rounded to 24 bits, three products, their sum, a box's half besides its centre, and the sum with the place: below
@@ -201,11 +246,8 @@ bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
   }
   // Where the last pose wanted samples this one mostly does, too: they are looked for beside the pairs.
   const bool ahead = helper != nullptr && has_inside_ && met_;
-  NearLists beside = lists;
-  share_parts(helper, ahead ? 2 : 1, [&](std::uint32_t part, int) {
-    if (part == 0) on_this_processor([&] { descend(search); });
-    else find_samples(pose, whole, beside);
-  });
+  if (helper != nullptr) find_beside(search, ahead ? &whole : nullptr, *helper, lists);
+  else descend(search, tree_->root(), seen_[0], lists);
   if (lists.full != gpu::kNone) return false;
   if (!has_inside_) return lists.touch.count != 0;
   bool meet = always_samples_ || lists.pairs.count != 0;
@@ -216,14 +258,8 @@ bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
            part[5] <= whole.high[2];
   }
   met_ = meet;
-  if (meet && ahead) {
-    lists.samples = beside.samples;
-    lists.inside = beside.inside;
-    lists.open = beside.open;
-    lists.full = beside.full;
-  } else if (meet) {
-    find_samples(pose, whole, lists);
-  }
+  if (ahead && !meet) lists.samples.count = lists.inside.count = lists.open.count = 0;
+  if (meet && !ahead) find_samples(pose, whole, lists);
   return meet;
 }
 

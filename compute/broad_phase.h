@@ -23,12 +23,14 @@ namespace palpate {
 
 /// What of tool and mock-up may meet at a pose, from boxes that turn with the tool: on the host, so that a frame which can't touch
 /// costs no submission, and one that can begins with what is near. Errs only towards "may meet".
-/// One thread and its helper; find() neither allocates nor blocks.
+/// One thread and its helper; find() does not block, and allocates only where with a helper the lists are larger than before.
 class BroadPhase {
  public:
   /// `runs`: of the tool; they, geometry and scene outlive this. Reads the mock-up's partition back from the
   /// device. Allocates.
   static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const RunTree& runs);
+  /// Before find() has a helper: what that one needs for itself. Allocates.
+  void share();
 
   /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may come,
   /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be
@@ -50,12 +52,18 @@ class BroadPhase {
   Reach reach(const Turn& turn, const Box& box) const;
   bool meets(const Reach& reach) const;
   bool meets(BrickBits::Range voxels) const;
-  void descend(Search& search);
-  void take_run(Search& search, std::size_t run);
+  unsigned occupied(const EightRanges& voxels) const;
+  void descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen, NearLists& lists) const;
+  void find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, NearLists& lists);
+  void take_run(const Search& search, std::size_t run, NearPairs::Seen& seen, NearLists& lists) const;
   void find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const;
 
   std::span<const std::uint32_t> order_;
+  std::size_t statics_ = 0;   ///< triangles of the mock-up
   NearPairs pairs_;
+  std::array<NearPairs::Seen, FrameHelper::kLanes> seen_;   ///< by thread of the frame
+  std::vector<gpu::TouchCandidate> second_touch_;           ///< what the helper finds, as large as the lists
+  std::vector<gpu::PairCandidate> second_pairs_;
   NearSamples samples_;
   double inside_margin_ = 0;      ///< steps
   bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool

@@ -181,7 +181,7 @@ Result<void> RecordedFrame::finish() {
 /// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on its processors, and a loop's are chosen well.
 FrameHelper* RecordedFrame::helper() {
   if (!sharing_) return nullptr;
-  if (!helper_tried_) helper_ = FrameHelper::make();
+  if (!helper_tried_ && (helper_ = FrameHelper::make())) broad_phase_->share();
   helper_tried_ = true;
   return helper_.get();
 }

@@ -12,6 +12,7 @@ using namespace gpu;   // names of shaders/shared/frame.h
 namespace {
 
 constexpr std::uint32_t kOpenPart = 256;   // open samples that one thread takes at a time: some 50 us (chosen)
+constexpr std::size_t kPairPart = 512;   // likewise of pairs
 constexpr std::size_t kAhead = 4;   // voxels whose lists are called for before their turn: they lie far apart (chosen)
 
 }  // namespace
@@ -143,10 +144,9 @@ void HostSets::decide_open(const LatticePose& pose, std::span<const FrameSample>
   }
 }
 
-/// CST and CMT.
-void HostSets::decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out) {
+/// Pairs that meet. The search has moved their tool triangles.
+void HostSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& found) const {
   const LatticeMesh& mockup = geometry_->mockup;
-  const std::span<const PairCandidate> candidates = near.pairs.room.first(near.pairs.count);
   std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
   for (std::size_t begin = 0; begin < candidates.size(); begin += PairFilter::kLanes) {
     for (std::size_t i = begin + 2 * PairFilter::kLanes; i < std::min(begin + 3 * PairFilter::kLanes, candidates.size()); ++i)
@@ -156,19 +156,17 @@ void HostSets::decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& sta
     const std::span<const PairCandidate> now = candidates.subspan(begin, std::min(PairFilter::kLanes, candidates.size() - begin));
     for (std::size_t lane = 0; lane < now.size(); ++lane) {
       const std::uint32_t s = now[lane].static_id;
-      filter_.put(lane, {mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, tool.corners(order_[now[lane].place]));
+      found.filter.put(lane, {mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, tool.moved(order_[now[lane].place]));
     }
-    filter_.judge(verdicts);
+    found.filter.judge(verdicts);
     for (std::size_t lane = 0; lane < now.size(); ++lane) {
       if (verdicts[lane] == PairFilter::kApart) continue;
       const std::uint32_t s = now[lane].static_id, id = order_[now[lane].place];
       if (verdicts[lane] == PairFilter::kUnknown) {
-        const exact::Corners& t = tool.corners(id);
+        const exact::Corners& t = tool.moved(id);
         if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, t, exact::raw_normal(t))) continue;
       }
-      out.pairs.push_back({s, id});
-      statics.add(s, kStaticHit);
-      mobiles_.add(id, kMobileHit);
+      found.pairs.push_back({s, id});
     }
   }
 }
@@ -241,19 +239,32 @@ void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
   statics.clear();
   mobiles_.clear();
 
-  for (Lane& lane : lanes_) lane.inside.clear();
+  for (Lane& lane : lanes_) {
+    lane.pairs.clear();
+    lane.inside.clear();
+  }
+  const auto parts_of = [](std::size_t count, std::size_t part) { return static_cast<std::uint32_t>((count + part - 1) / part); };
+  const auto piece = [](auto all, std::size_t part, std::size_t size) { return all.subspan(part * size, std::min(size, all.size() - part * size)); };
+  const auto lane_of = [&](int lane) -> Lane& { return lanes_[static_cast<std::size_t>(lane)]; };
+
+  const std::span<const PairCandidate> candidates = near.pairs.room.first(near.pairs.count);
+  share_parts(helper, parts_of(candidates.size(), kPairPart), [&](std::uint32_t part, int lane) { decide_pairs(tool, piece(candidates, part, kPairPart), lane_of(lane)); });
+  // CST and CMT.
+  for (const Lane& lane : lanes_)
+    for (const ContactPair& pair : lane.pairs) {
+      out.pairs.push_back(pair);
+      statics.add(pair.static_id, kStaticHit);
+      mobiles_.add(pair.mobile, kMobileHit);
+    }
 
   const std::span<const FrameSample> open = near.open.room.first(near.open.count);
-  const auto parts = static_cast<std::uint32_t>(1 + (open.size() + kOpenPart - 1) / kOpenPart);
-  share_parts(helper, parts, [&](std::uint32_t part, int lane) {
+  share_parts(helper, 1 + parts_of(open.size(), kOpenPart), [&](std::uint32_t part, int lane) {
     if (part == 0) {
-      decide_pairs(tool, near, statics, out);
       decide_voxels(tool, near);
       mark_lists(statics);
       return;
     }
-    const std::size_t begin = (part - 1) * std::size_t{kOpenPart};
-    decide_open(tool.pose(), open.subspan(begin, std::min<std::size_t>(kOpenPart, open.size() - begin)), lanes_[static_cast<std::size_t>(lane)]);
+    decide_open(tool.pose(), piece(open, part - 1, kOpenPart), lane_of(lane));
   });
 
   // Samples inside the tool: EST. A first corner tells EST and does not count.

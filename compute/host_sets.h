@@ -34,14 +34,13 @@ class HostSets {
   /// `order`: ids of the tool's triangles by place. `in_tool` outlives this and answers for a tool that is not closed. `refined`.
   static Result<HostSets> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
-  /// `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. `helper` may be null.
+  /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. `helper` may be null.
   void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
 
   /// Whether a world lattice point lies inside the tool (section 4). Any number of threads.
   bool inside(const LatticePose& pose, const Int3& point) const;
 
  private:
-  void decide_pairs(PosedTool& tool, const NearLists& near, IdMarks& statics, FoundSets& out);
   void decide_voxels(PosedTool& tool, const NearLists& near);
   void mark_lists(IdMarks& statics);
   void list(IdMarks& statics, FoundSets& out);
@@ -54,11 +53,14 @@ class HostSets {
     std::uint32_t sides;                    ///< a bit a plane of a listed triangle: the point is on its outer side
     bool in_cell;                           ///< it is far enough from all of them
   };
-  /// What one of a frame's threads keeps of open samples.
+  /// What one of a frame's threads keeps.
   struct Lane {
+    PairFilter filter;
+    std::vector<gpu::ContactPair> pairs;          ///< of this frame: those that meet
     std::vector<OpenPoint> open;                  ///< of the part at hand
     std::vector<gpu::FrameSample> inside;         ///< of this frame: those that lie inside
   };
+  void decide_pairs(const PosedTool& tool, std::span<const gpu::PairCandidate> candidates, Lane& lane) const;
   void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::vector<OpenPoint>& open) const;
   void decide_open(const LatticePose& pose, std::span<const gpu::FrameSample> samples, Lane& lane);
   bool open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open);
@@ -71,7 +73,6 @@ class HostSets {
   InsideSearch* in_tool_ = nullptr;
   std::span<const std::uint32_t> order_;
   HostPartition mockup_, fine_;
-  PairFilter filter_;
   HostCopy<std::uint32_t> fine_exit_;
   std::array<Lane, FrameHelper::kLanes> lanes_;   ///< by thread of the frame
   CellMemo cells_;                              ///< of fine V_bnd voxels: whether they are inside

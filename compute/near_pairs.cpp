@@ -15,7 +15,7 @@ constexpr std::int32_t kFewVoxels = 64;   // beyond, a look at the brick as a wh
 
 }  // namespace
 
-Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
+Result<NearPairs> NearPairs::make(VulkanDevice& device, const PreparedScene& scene) {
   NearPairs out;
   const PartitionBuffers& mockup = scene.mockup.partition;
   out.grid_ = mockup.grid;
@@ -26,12 +26,11 @@ Result<NearPairs> NearPairs::make(VulkanDevice& device, const SceneGeometry& geo
   if (auto r = out.bricks_.read(device, mockup.bricks, mockup.grid.mixed_bricks); !r) return r.error();
   if (auto r = out.list_begin_.read(device, mockup.list_begin, std::size_t{mockup.grid.boundary_voxels} + 1); !r) return r.error();
   if (auto r = out.list_triangles_.read(device, mockup.list_triangles, mockup.grid.list_entries); !r) return r.error();
-  out.seen_by_.resize(geometry.mockup.triangles.size());
   out.boxes_ = scene.search->boxes;
   return out;
 }
 
-bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Triangle& out) {
+bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Seen& seen, Triangle& out) const {
   const exact::Normal n = exact::raw_normal(corners);
   if (n == exact::Normal{}) return false;
   out.place = place;
@@ -49,9 +48,9 @@ bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const 
     out.parts[k + 3] = boxes.high[k][i];
   }
   out.look.slack = slack_;
-  if (++looker_ == 0) {   // once in 2^32 triangles
-    std::fill(seen_by_.begin(), seen_by_.end(), 0u);
-    looker_ = 1;
+  if (++seen.looker_ == 0) {   // once in 2^32 triangles
+    std::fill(seen.by_.begin(), seen.by_.end(), 0u);
+    seen.looker_ = 1;
   }
   return true;
 }
@@ -67,7 +66,7 @@ bool NearPairs::off_plane(const Triangle& triangle, const Int3& low, std::int32_
 
 /// Of the static triangles that a voxel lists, those whose boxes there meet the triangle's and its plane. Where two triangles are within kCloseSteps
 /// of each other, the static one is so in some voxel that lists it, and there all of this lets it pass.
-bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists) {
+bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, Seen& seen, NearLists& lists) const {
   ListLook& look = triangle.look;
   double distance = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -81,18 +80,18 @@ bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t b
   for (std::size_t first = 0; first < count; first += kMostBoxes)
     for (std::uint64_t rest = near_boxes(look, &boxes_[6 * begin + first], count, std::min(count - first, kMostBoxes)); rest != 0; rest &= rest - 1) {
       const std::uint32_t id = list_triangles_[begin + first + static_cast<std::size_t>(std::countr_zero(rest))];
-      if (seen_by_[id] == looker_) continue;   // one pair lies in many voxels
-      seen_by_[id] = looker_;
+      if (seen.by_[id] == seen.looker_) continue;   // one pair lies in many voxels
+      seen.by_[id] = seen.looker_;
       if (!lists.push(lists.pairs, gpu::kListPairCandidates, {id, triangle.place})) return false;
     }
   return true;
 }
 
-bool NearPairs::take(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
-  return on_this_processor([&] { return take_brick(triangle, brick, slot, lists); });
+bool NearPairs::take(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen, NearLists& lists) const {
+  return on_this_processor([&] { return take_brick(triangle, brick, slot, seen, lists); });
 }
 
-bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists) {
+bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen, NearLists& lists) const {
   const std::int32_t size = grid_.size;
   const Int3 origin = grid_.origin + 8 * size * brick;
   if (slot == gpu::kBrickInternal) {
@@ -121,7 +120,7 @@ bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t 
         const std::uint32_t number = listed ? voxels.first[word] + static_cast<std::uint32_t>(std::popcount(boundary & (bit - 1))) : gpu::kNoVoxel;
         const Int3 voxel = 8 * brick + Int3(x, y, z);
         if (!lists.push(lists.touch, gpu::kListTouchCandidates, {triangle.place, number, voxel.x | voxel.y << 16, voxel.z})) return false;
-        if (listed && !take_list(triangle, voxel, number, lists)) return false;
+        if (listed && !take_list(triangle, voxel, number, seen, lists)) return false;
       }
     }
   return true;

@@ -10,15 +10,26 @@
 #include "compute/near_lists.h"
 #include "compute/prepared_scene.h"
 #include "compute/turned_boxes.h"
-#include "model/scene_geometry.h"
 
 namespace palpate {
 
 /// Goes from tool triangles near a brick to the voxels that they may touch and to the static triangles whose boxes theirs meet.
-/// The device decides both exactly. One thread; nothing but make() allocates.
+/// The device decides both exactly. Any number of threads, each with what it has Seen; nothing but make() and Seen's resize() allocates.
 class NearPairs {
  public:
-  static Result<NearPairs> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
+  /// Which static triangles a thread has taken for its present tool triangle.
+  class Seen {
+   public:
+    void resize(std::size_t statics) { by_.resize(statics); }
+    bool empty() const { return by_.empty(); }
+
+   private:
+    friend class NearPairs;
+    std::vector<std::uint32_t> by_;   ///< by static triangle: the last tool triangle that took it
+    std::uint32_t looker_ = 0;        ///< number of the present one
+  };
+
+  static Result<NearPairs> make(VulkanDevice& device, const PreparedScene& scene);
 
   /// A tool triangle at a pose.
   struct Triangle {
@@ -33,14 +44,14 @@ class NearPairs {
     std::array<std::int32_t, 6> parts;  ///< low and high of the same box, in parts of a voxel from the grid's origin on
   };
   /// Lane `i` of `boxes` is the box of `corners`, in the world. False: collinear, it meets nothing.
-  bool begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Triangle& out);
+  bool begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i, Seen& seen, Triangle& out) const;
   /// Appends what lies in one brick. False: a list had no room.
-  bool take(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
+  bool take(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen, NearLists& lists) const;
 
  private:
   bool off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const;
-  bool take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, NearLists& lists);
-  bool take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, NearLists& lists);
+  bool take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen, NearLists& lists) const;
+  bool take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, Seen& seen, NearLists& lists) const;
 
   gpu::GridConstants grid_{};
   double per_part_ = 0;    ///< parts of a voxel a step
@@ -48,8 +59,6 @@ class NearPairs {
   HostCopy<gpu::Brick> bricks_;
   HostCopy<std::uint32_t> list_begin_, list_triangles_;
   std::span<const std::uint8_t> boxes_;  ///< SearchTables::boxes
-  std::vector<std::uint32_t> seen_by_;   ///< by static triangle: the last tool triangle that took it
-  std::uint32_t looker_ = 0;             ///< number of the present one
 };
 
 }  // namespace palpate

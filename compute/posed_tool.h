@@ -28,6 +28,8 @@ class PosedTool {
     }
     return corners_[id];
   }
+  /// Of a triangle that corners() has moved since begin(): any number of threads.
+  const exact::Corners& moved(std::uint32_t id) const { return corners_[id]; }
 
  private:
   const LatticeMesh* tool_;
