@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "compute/processor.h"
 #include "compute/search_tables.h"
@@ -228,6 +229,13 @@ void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearL
 }
 
 bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
+  const bool meet = search_all(tool, helper, lists);
+  looks_ = lists.samples.count + lists.inside.count + lists.open.count;
+  for (NearPairs::Seen& seen : seen_) looks_ += std::exchange(seen.looks, 0);
+  return meet;
+}
+
+bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
   const LatticePose& pose = tool.pose();
   if (whole_.half[0] < 0) return false;
   const Turn turn(pose);

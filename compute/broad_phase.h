@@ -36,6 +36,8 @@ class BroadPhase {
   /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be
   /// beyond the lattice. `helper` may be null.
   bool find(PosedTool& tool, FrameHelper* helper, NearLists& lists);
+  /// Voxels, list entries and samples that the last find() looked at.
+  std::uint64_t looks() const { return looks_; }
 
  private:
   struct Box {
@@ -52,6 +54,7 @@ class BroadPhase {
   Reach reach(const Turn& turn, const Box& box) const;
   bool meets(const Reach& reach) const;
   bool meets(BrickBits::Range voxels) const;
+  bool search_all(PosedTool& tool, FrameHelper* helper, NearLists& lists);
   unsigned occupied(const EightRanges& voxels) const;
   void descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen, NearLists& lists) const;
   void find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, NearLists& lists);
@@ -62,6 +65,7 @@ class BroadPhase {
   std::size_t statics_ = 0;   ///< triangles of the mock-up
   NearPairs pairs_;
   std::array<NearPairs::Seen, FrameHelper::kLanes> seen_;   ///< by thread of the frame
+  std::uint64_t looks_ = 0;
   std::vector<gpu::TouchCandidate> second_touch_;           ///< what the helper finds, as large as the lists
   std::vector<gpu::PairCandidate> second_pairs_;
   NearSamples samples_;

@@ -76,6 +76,7 @@ static NearTriangles to_triangles(const TriangleRun& run, const Int3& point, flo
 
 // What of a run may be as near as the best so far, the nearest first.
 static void look_into(DepthSearch::Tables& tables, Search& search, std::uint32_t number) {
+  ++tables.looks;
   const std::size_t first = kEight * number;
   const unsigned there = 0xFFU >> (kEight - std::min(kEight, tables.tree.order.size() - first));
   alignas(32) float squared[kEight], slack[kEight];
@@ -110,6 +111,7 @@ static void descend(DepthSearch::Tables& tables, Search& search, std::uint32_t g
       if (next.node != seen) look_into(tables, search, next.node);
       continue;
     }
+    ++tables.looks;
     const std::uint32_t first = static_cast<std::uint32_t>(kEight) * next.node;
     const unsigned there = 0xFFU >> (kEight - std::min<std::size_t>(kEight, tables.tree.nodes(next.level - 1) - first));
     std::size_t nearest = count;

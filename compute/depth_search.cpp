@@ -82,6 +82,7 @@ struct DepthSearch::Tables {
   const TriangleTree& tree;
   std::vector<Run> runs = std::vector<Run>(kRuns);          ///< by run, where a newer one takes an older one's place
   std::vector<Known> known = std::vector<Known>(kKnown);    ///< by triangle, likewise
+  std::uint64_t looks = 0;
 
   const Run& run(std::uint32_t number);
   Known& know(std::uint32_t triangle);
@@ -206,6 +207,8 @@ DepthSearch::DepthSearch() = default;
 DepthSearch::DepthSearch(DepthSearch&&) noexcept = default;
 DepthSearch& DepthSearch::operator=(DepthSearch&&) noexcept = default;
 DepthSearch::~DepthSearch() = default;
+
+std::uint64_t DepthSearch::looks() const { return tables_->looks; }
 
 DepthSearch::Depth DepthSearch::below(const Int3& point, std::uint32_t guess) {
   Search search{.point = point};

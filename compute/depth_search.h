@@ -28,6 +28,8 @@ class DepthSearch {
 
   /// The point is within ±2^30. `guess`: the place of a triangle that may be near, as for a point beside it; kNobody: none. It changes nothing but the time.
   Depth below(const Int3& point, std::uint32_t guess);
+  /// How many groups of eight boxes or triangles it has looked at in all.
+  std::uint64_t looks() const;
 
   struct Tables;   ///< depth_search.cpp's own
 

@@ -296,7 +296,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
     near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
     rays = broad_phase_->find(posed_, helper(), near);
   }
-  out.times.push_back({"cull", us_since(start)});
+  out.times.push_back({"cull", us_since(start), pose.beyond_lattice ? 0 : broad_phase_->looks()});
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
@@ -332,9 +332,9 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
 
 void RecordedFrame::solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out) {
   auto last = Clock::now();
-  const auto stage = [&](const char* name) {
+  const auto stage = [&](const char* name, std::uint64_t looks) {
     const auto now = Clock::now();
-    out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count()});
+    out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count(), looks});
     last = now;
   };
   host_contact_->solve(posed_, ignored, near, helper(), out, stage);
@@ -342,7 +342,7 @@ void RecordedFrame::solve_on_host(const Ignored* ignored, const NearLists& near,
   pairs_ = out.pairs;
   if (out.contact && out.lists) {
     gather_areas(geometry_, posed_.pose(), out);
-    stage("areas");
+    stage("areas", out.cst.size() + out.est.size());
   }
 }
 

@@ -22,14 +22,15 @@ class HostContact {
  public:
   static Result<std::unique_ptr<HostContact>> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
 
-  /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `helper` may be null. `stage(name)` is called at the end of each stage.
+  /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `helper` may be null. `stage(name, looks)` is called at the end of each stage, as Contacts::StageTime has it.
   template <class Stage>
   void solve(PosedTool& tool, const Ignored* ignored, const NearLists& near, FrameHelper* helper, Contacts& out, Stage stage) {
     decide(tool, near, helper, out);
-    stage("sets");
+    stage("sets", near.pairs.count + near.touch.count + near.open.count + found_.statics.size() + found_.mobiles.size() + found_.samples.size());
     if (!out.contact) return;
+    const std::uint64_t before = field_.looks();
     field_.sum(tool.pose(), sets_, found_, {.ignored = ignored, .carriers = out.lists}, helper, out);
-    stage("field");
+    stage("field", field_.looks() - before + found_.mobiles.size() + found_.samples.size() + found_.statics.size());
   }
   /// After solve().
   std::span<const gpu::ContactPair> pairs() const { return found_.pairs; }

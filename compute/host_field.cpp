@@ -302,6 +302,12 @@ void HostField::sum_tool(const LatticePose& pose, std::span<const MobileResult> 
   }
 }
 
+std::uint64_t HostField::looks() const {
+  std::uint64_t out = 0;
+  for (const Lane& lane : lanes_) out += lane.mockup_depth.looks() + lane.tool_depth.looks();
+  return out;
+}
+
 void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out) {
   choose_level(found.samples.size(), found.mobiles.size());
   out.carriers.clear();

@@ -28,6 +28,8 @@ class HostField {
   };
   /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags. `helper` may be null.
   void sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out);
+  /// Groups of eight boxes or triangles that sums have looked at in all.
+  std::uint64_t looks() const;
 
  private:
   struct Push;

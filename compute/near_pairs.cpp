@@ -77,6 +77,7 @@ bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t b
   }
   look.plane = static_cast<float>(distance * triangle.half_parts) + triangle.half_facing;
   const std::size_t begin = list_begin_[boundary], count = list_begin_[boundary + 1] - begin;
+  seen.looks += 1 + count;
   for (std::size_t first = 0; first < count; first += kMostBoxes)
     for (std::uint64_t rest = near_boxes(look, &boxes_[6 * begin + first], count, std::min(count - first, kMostBoxes)); rest != 0; rest &= rest - 1) {
       const std::uint32_t id = list_triangles_[begin + first + static_cast<std::size_t>(std::countr_zero(rest))];

@@ -21,7 +21,7 @@ class NearPairs {
   class Seen {
    public:
     void resize(std::size_t statics) { by_.resize(statics); }
-    bool empty() const { return by_.empty(); }
+    std::uint64_t looks = 0;          ///< voxels and their list entries that it has looked at
 
    private:
     friend class NearPairs;

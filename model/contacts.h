@@ -57,8 +57,12 @@ struct Contacts {
   std::uint32_t flags = 0;
   bool contact_points = true;           ///< false: the plan leaves them out; `paper`: voxel_sum is 0
   bool lists = true;                    ///< false: the plan leaves the six sets, zones and mobile_ids out
-  struct StageTime { const char* stage; double us; };
-  std::vector<StageTime> times;         ///< wall or device time by stage; the only fields that may differ
+  struct StageTime {
+    const char* stage;
+    double us;
+    std::uint64_t looks = 0;            ///< how many things the stage looked at: boxes, triangles, voxels, samples; 0 where nobody counts
+  };
+  std::vector<StageTime> times;         ///< wall or device time by stage, and its work; the only fields that may differ
 };
 
 }  // namespace palpate
