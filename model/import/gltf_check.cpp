@@ -172,6 +172,25 @@ std::string find_json(std::string_view bytes, std::string_view& json) {
 
 }  // namespace
 
+std::vector<std::uint64_t> faces_of_gltf(std::string_view bytes) {
+  std::vector<std::uint64_t> out;
+  std::string_view text;
+  if (!find_json(bytes, text).empty()) return out;
+  const Json root = Json::parse(text, nullptr, false);
+  if (!root.is_object()) return out;
+  const Json& accessors = list(root, "accessors");
+  for (const Json& mesh : list(root, "meshes"))
+    for (const Json& primitive : list(mesh, "primitives")) {
+      out.push_back(0);
+      constexpr std::uint64_t kTriangles = 4;
+      if (!primitive.is_object() || number(primitive, "mode", kTriangles) != kTriangles || primitive.contains("extensions")) continue;
+      const Json& attributes = primitive.contains("attributes") ? primitive["attributes"] : primitive;
+      const std::uint64_t corners = number(primitive, "indices", attributes.is_object() ? number(attributes, "POSITION", UINT64_MAX) : UINT64_MAX);
+      if (corners < accessors.size()) out.back() = number(accessors[corners], "count", 0) / 3;
+    }
+  return out;
+}
+
 std::string distrust_gltf(std::string_view bytes, const std::string& path) {
   std::string_view text;
   if (std::string wrong = find_json(bytes, text); !wrong.empty()) return wrong;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdint>
@@ -80,6 +81,8 @@ std::string distrust_off(std::string_view bytes) {
     if (line.empty()) return fmt::format("is cut short: it promises {} faces and has {}", faces, f);
     std::uint64_t corners = 0, index = 0;
     if (!take_number(line, corners)) return fmt::format("has no corner count in face {}", f);
+    constexpr std::uint64_t kMostCorners = 9;   // the library leaves larger ones out
+    if (corners > kMostCorners) return fmt::format("has {} corners in face {}; OFF faces of more than {} can't be read", corners, f, kMostCorners);
     for (std::uint64_t k = 0; k < corners; ++k) {
       if (!take_number(line, index)) return fmt::format("is cut short in face {}: {} of {} corners", f, k, corners);
       if (index >= vertices) return fmt::format("has vertex index {} in face {}, beyond the vertex list (size {})", index, f, vertices);
@@ -88,7 +91,110 @@ std::string distrust_off(std::string_view bytes) {
   return {};
 }
 
+namespace {
+
+/// Faces of an OBJ: indices from 1 on, or from −1 back.
+std::string distrust_obj_face(std::string_view line, std::uint64_t before, std::uint64_t all, std::size_t number) {
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
+    std::string_view word = line.substr(0, end);
+    line = trimmed(line.substr(end));
+    const std::string_view index = word.substr(0, word.find('/'));
+    std::int64_t value = 0;
+    const auto [rest, error] = std::from_chars(index.data(), index.data() + index.size(), value);
+    if (error != std::errc() || rest != index.data() + index.size()) return fmt::format("has '{}' for a vertex in line {}", word.substr(0, 40), number);
+    if (value == 0) return fmt::format("has vertex index 0 in line {}; they begin with 1", number);
+    if (value > 0 ? static_cast<std::uint64_t>(value) > all : static_cast<std::uint64_t>(-value) > before)
+      return fmt::format("has vertex index {} in line {}, beyond the vertex list (size {})", value, number, value > 0 ? all : before);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string distrust_obj(std::string_view bytes) {
+  for (const std::string_view mark : {std::string_view("\xFF\xFE", 2), std::string_view("\xFE\xFF", 2)})
+    if (bytes.substr(0, 2) == mark) return "is UTF-16 text; save it as UTF-8 or ASCII";
+  std::string joined;   // where lines go on in the next: a backslash and a line's end are a blank
+  if (bytes.find("\\\n") != std::string_view::npos || bytes.find("\\\r\n") != std::string_view::npos) {
+    joined = bytes;
+    for (std::size_t at = joined.find('\\'); at != std::string::npos; at = joined.find('\\', at + 1)) {
+      const std::size_t end = joined.compare(at + 1, 2, "\r\n") == 0 ? at + 2 : at + 1;
+      if (end < joined.size() && joined[end] == '\n') std::fill(joined.begin() + static_cast<std::ptrdiff_t>(at), joined.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
+    }
+    bytes = joined;
+  }
+  // Twice: vertices may stand behind the faces that name them.
+  std::uint64_t all = 0;
+  for (const bool count : {true, false}) {
+    std::uint64_t before = 0;
+    std::size_t number = 0;
+    for (std::string_view text = bytes; !text.empty();) {
+      const std::size_t end = text.find('\n');
+      std::string_view line = trimmed(text.substr(0, end));
+      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+      ++number;
+      if (line.size() < 2 || !blank(line[1])) continue;
+      if (line[0] == 'v') ++(count ? all : before);
+      if (count || line[0] != 'f') continue;
+      line = trimmed(line.substr(1, line.find('#') == std::string_view::npos ? std::string_view::npos : line.find('#') - 1));
+      if (std::string wrong = distrust_obj_face(line, before, all, number); !wrong.empty()) return wrong;
+    }
+  }
+  return {};
+}
+
+namespace {
+
+/// The value of a tag's attribute, "" if it has none; `name` with the blank before it and the = behind it.
+std::string_view attribute_of(std::string_view tag, std::string_view name) {
+  std::size_t at = tag.find(name);
+  if (at == std::string_view::npos) return {};
+  at += name.size();
+  const char quote = at < tag.size() ? tag[at] : '\0';
+  if (quote != '"' && quote != '\'') return {};
+  return tag.substr(at + 1, tag.find(quote, at + 1) - at - 1);
+}
+
+/// Every accessor of a COLLADA file against the numbers that its array really holds; where there are fewer the library reads what lies behind them.
+std::string distrust_dae_arrays(std::string_view bytes) {
+  std::map<std::string_view, std::uint64_t> holds;   // by id
+  const auto value = [](std::string_view digits, std::uint64_t otherwise) {
+    std::uint64_t out = 0;
+    return take_number(digits, out) ? out : otherwise;
+  };
+  for (const bool arrays : {true, false})
+    for (std::size_t at = bytes.find('<'); at != std::string_view::npos; at = bytes.find('<', at + 1)) {
+      const std::string_view rest = bytes.substr(at), tag = rest.substr(0, rest.find('>'));
+      if (arrays && rest.substr(0, 12) == "<float_array") {
+        std::uint64_t numbers = 0;
+        if (tag.empty() || tag.back() != '/') {
+          const std::string_view content = rest.substr(std::min(rest.size(), tag.size() + 1));
+          bool in_word = false;
+          for (const char c : content.substr(0, content.find('<'))) {
+            if (!blank(c) && !in_word) ++numbers;
+            in_word = !blank(c);
+          }
+        }
+        holds[attribute_of(tag, " id=")] = numbers;
+      }
+      if (!arrays && rest.substr(0, 9) == "<accessor") {
+        const std::string_view source = attribute_of(tag, " source=");
+        const auto array = source.empty() ? holds.end() : holds.find(source.substr(1));
+        if (array == holds.end()) continue;
+        const std::uint64_t count = value(attribute_of(tag, " count="), 0), stride = value(attribute_of(tag, " stride="), 1), offset = value(attribute_of(tag, " offset="), 0);
+        if (count == 0) continue;
+        if (offset > array->second || (stride != 0 && count > (array->second - offset) / stride))
+          return fmt::format("has an accessor of {} times {} numbers from number {} on, beyond its array '{}' of {}", count, stride, offset, array->first.substr(0, 40), array->second);
+      }
+    }
+  return {};
+}
+
+}  // namespace
+
 std::string distrust_dae(std::string_view bytes) {
+  if (std::string wrong = distrust_dae_arrays(bytes); !wrong.empty()) return wrong;
   // Which nodes hold which: by nesting, and by <instance_node url="#id"/>. Reads tags alone, and what index lists hold.
   std::map<std::string, std::vector<std::string>, std::less<>> holds;
   std::vector<std::string> open;

@@ -1,6 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpate {
 
@@ -14,5 +16,9 @@ std::string distrust_off(std::string_view bytes);
 std::string distrust_ply(std::string_view bytes);
 std::string distrust_gltf(std::string_view bytes, const std::string& path);   ///< .gltf and .glb
 std::string distrust_dae(std::string_view bytes);
+std::string distrust_obj(std::string_view bytes);
+
+/// How many triangles each primitive of a glTF must have, in order; 0 where that can't be told. For a file that distrust_gltf() has nothing against.
+std::vector<std::uint64_t> faces_of_gltf(std::string_view bytes);
 
 }  // namespace palpate

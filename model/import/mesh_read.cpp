@@ -1,6 +1,7 @@
 #include "model/import/mesh_read.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/config.h>
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 
 #include "model/file_view.h"
 #include "model/import/import_checks.h"
+#include "model/import/polygon_split.h"
 #include "model/lattice_build.h"
 #include "model/one_line.h"
 #include "model/weld.h"
@@ -84,11 +86,12 @@ std::string path_name(const aiNode& node, const std::string& otherwise, std::uno
 
 class Flattener {
  public:
-  Flattener(const aiScene& scene, double scale, const std::string& file) : scene_(scene), scale_(scale), file_(file) {}
+  /// `turn`: what the file's coordinates are turned by before all else.
+  Flattener(const aiScene& scene, double scale, const std::string& file, const Transform& turn) : scene_(scene), scale_(scale), file_(file), turn_(turn) {}
 
   Result<Mesh> run(std::vector<std::string>& notes) {
     // Depth first with a stack of our own, children in order: pushed back to front.
-    std::vector<Visit> stack{{scene_.mRootNode, Transform{}, ""}};
+    std::vector<Visit> stack{{scene_.mRootNode, turn_, ""}};
     std::unordered_map<std::string, int> root_names;
     stack.back().path = path_name(*scene_.mRootNode, std::filesystem::path(file_).stem().string(), root_names);
     while (!stack.empty()) {
@@ -111,7 +114,8 @@ class Flattener {
       return bad_value(fmt::format("'{}' has no triangles{}", file_, lines_ + points_ ? ", only lines or points" : ""));
     if (lines_) notes.push_back(fmt::format("dropped {} line primitives", lines_));
     if (points_) notes.push_back(fmt::format("dropped {} point primitives", points_));
-    if (polygons_) notes.push_back(fmt::format("split {} polygons as fans", polygons_));
+    if (polygons_) notes.push_back(fmt::format("split {} polygons into triangles", polygons_));
+    if (crossing_) notes.push_back(fmt::format("{} polygons cross themselves, the first is face {} of '{}': they bound no one area, and were split as fans from their first corners", crossing_, first_crossing_, crossing_path_));
     if (mirrored_) notes.push_back(fmt::format("turned the triangles of {} mirrored nodes", mirrored_));
     return std::move(mesh_);
   }
@@ -168,8 +172,15 @@ class Flattener {
         continue;
       }
       if (face.mNumIndices > 3) ++polygons_;
-      const auto corner = [&](unsigned i) { return static_cast<std::uint32_t>(base + face.mIndices[i]); };
-      for (unsigned i = 2; i < face.mNumIndices; ++i) mesh_.triangles.push_back({corner(0), corner(i - 1), corner(i)});
+      corners_.clear();
+      split_.clear();
+      for (unsigned i = 0; i < face.mNumIndices; ++i) corners_.push_back(mesh_.vertices[base + face.mIndices[i]]);
+      if (split_polygon(corners_, split_) == PolygonKind::kCrossing && ++crossing_ == 1) {
+        first_crossing_ = f;
+        crossing_path_ = path;
+      }
+      const auto corner = [&](std::uint32_t i) { return static_cast<std::uint32_t>(base + face.mIndices[i]); };
+      for (const auto& [a, b, c] : split_) mesh_.triangles.push_back({corner(a), corner(b), corner(c)});
     }
     return {};
   }
@@ -177,8 +188,13 @@ class Flattener {
   const aiScene& scene_;
   double scale_;
   const std::string& file_;
+  Transform turn_;
   Mesh mesh_;
-  std::size_t lines_ = 0, points_ = 0, polygons_ = 0, mirrored_ = 0;
+  std::size_t lines_ = 0, points_ = 0, polygons_ = 0, mirrored_ = 0, crossing_ = 0;
+  unsigned first_crossing_ = 0;
+  std::string crossing_path_;
+  std::vector<Vec3> corners_;                              ///< of the face at hand
+  std::vector<std::array<std::uint32_t, 3>> split_;
 };
 
 std::string extension_of(const std::string& path) {
@@ -193,6 +209,7 @@ std::string distrust(const std::string& extension, std::string_view bytes, const
   if (extension == ".ply") return distrust_ply(bytes);
   if (extension == ".gltf" || extension == ".glb") return distrust_gltf(bytes, path);
   if (extension == ".dae") return distrust_dae(bytes);
+  if (extension == ".obj") return distrust_obj(bytes);
   return {};
 }
 
@@ -201,6 +218,42 @@ void note_unit(const aiScene& scene, ImportReport& report) {
   const Transform root = Transform::of(scene.mRootNode->mTransformation);
   const double unit = std::sqrt(root.m[0][0] * root.m[0][0] + root.m[1][0] * root.m[1][0] + root.m[2][0] * root.m[2][0]);
   if (std::abs(unit - 1) > 1e-4) report.notes.push_back(fmt::format("the file states a unit of {:.6g} m, applied besides the scale asked for", unit));
+}
+
+/// One rule for all formats: coordinates are the file's own, whichever axis is up. The library turns two formats so that y is up: COLLADA, where it can be told not to, and 3DS.
+Transform undo_turn(const std::string& extension) {
+  if (extension == ".3ds") return {{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}}};
+  return {};
+}
+
+void note_up_axis(const std::string& extension, std::string_view bytes, ImportReport& report) {
+  if (extension == ".3ds") report.notes.push_back("z is up in 3DS files; coordinates are the file's own");
+  if (extension != ".dae") return;
+  constexpr std::string_view kTag = "<up_axis>";
+  const std::size_t at = bytes.find(kTag);
+  const std::string_view axis = at == std::string_view::npos ? "Y_UP" : bytes.substr(at + kTag.size(), 4);
+  if (axis != "Y_UP" && (axis == "Z_UP" || axis == "X_UP"))
+    report.notes.push_back(fmt::format("the file says that {} is up; coordinates are the file's own", axis == "Z_UP" ? "z" : "x"));
+}
+
+/// Whether the library would pass over the first byte of a binary PLY's data: it skips a line end behind the header's, and a number may begin like one.
+bool begins_like_a_line_end(const std::string& extension, std::string_view bytes) {
+  if (extension != ".ply") return false;
+  const std::size_t format = bytes.substr(0, 4096).find("format binary"), end = bytes.find("end_header");
+  if (format == std::string_view::npos || end == std::string_view::npos || format > end) return false;
+  const std::size_t data = bytes.find('\n', end);
+  return data != std::string_view::npos && data + 1 < bytes.size() && bytes[data + 1] == '\n';
+}
+
+/// The same file with one byte more in front of its data: an edge, for which nobody asks. (Of elements that it does not know the library gets the number wrong.)
+std::string with_a_first_byte(std::string_view bytes) {
+  const std::size_t end = bytes.find("end_header"), data = bytes.find('\n', end) + 1, first = std::min(bytes.find("\nelement") + 1, end);
+  std::string out(bytes.substr(0, first));
+  out += "element edge 1\nproperty uchar begin\n";
+  out += bytes.substr(first, data - first);
+  out += '.';
+  out += bytes.substr(data);
+  return out;
 }
 
 /// What the library says of a failure, without the line ends and full stops that it adds.
@@ -214,22 +267,31 @@ std::string words_of(std::string text) {
 
 Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder) {
   report = {path, {}};
+  const std::string extension = extension_of(path);
+  std::string in_memory;                 // what is read in the file's place, if anything
+  std::vector<std::uint64_t> faces;      // that a glTF's meshes must have
   {
     const Result<FileView> file = FileView::open(path);
     if (!file) return file.error();
-    if (const std::string wrong = distrust(extension_of(path), file->bytes(), path); !wrong.empty())
-      return bad_value(fmt::format("'{}' {}", path, wrong));
+    const std::string_view bytes = file->bytes();
+    if (const std::string wrong = distrust(extension, bytes, path); !wrong.empty()) return bad_value(fmt::format("'{}' {}", path, wrong));
+    note_up_axis(extension, bytes, report);
+    if (begins_like_a_line_end(extension, bytes)) in_memory = with_a_first_byte(bytes);
+    if (extension == ".gltf" || extension == ".glb") faces = faces_of_gltf(bytes);
   }
   try {
     // No post-processing: joining vertices, triangulating or sorting by type would renumber or reorder faces.
     Assimp::Importer importer;
     if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));   // the importer's own from here on
-    if (!importer.IsExtensionSupported(extension_of(path)))
-      return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension_of(path)));
-    const aiScene* scene = importer.ReadFile(path, 0);
+    if (!importer.IsExtensionSupported(extension)) return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension));
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0) : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(), 0, extension.c_str() + 1);
     if (!scene || !scene->mRootNode) return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
-    if (extension_of(path) == ".dae") note_unit(*scene, report);
-    return Flattener(*scene, scale, path).run(report.notes);
+    if (extension == ".dae") note_unit(*scene, report);
+    for (std::size_t m = 0; m < std::min<std::size_t>(faces.size(), scene->mNumMeshes); ++m)   // the library leaves out what it can't make sense of
+      if (scene->mMeshes[m]->mNumFaces < faces[m])
+        return bad_value(fmt::format("'{}' has {} triangles in primitive {} of which {} can be read: the others name vertices that don't exist", path, faces[m], m, scene->mMeshes[m]->mNumFaces));
+    return Flattener(*scene, scale, path, undo_turn(extension)).run(report.notes);
   } catch (const std::exception& error) {
     return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(error.what())));
   }

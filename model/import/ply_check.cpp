@@ -58,6 +58,7 @@ std::string read_header(std::string_view bytes, Header& header) {
     } else if (word == "element") {
       Element element;
       if (!(line >> element.name >> element.count)) return kNoHeader;
+      if (element.name == "tristrips") return "keeps its triangles in strips (element 'tristrips'), which can't be read; save it with faces";
       if (!names.insert(element.name).second) return fmt::format("has two elements '{}'", element.name.substr(0, 40));
       header.elements.push_back(element);
     } else if (word == "property") {
@@ -80,6 +81,17 @@ std::string read_header(std::string_view bytes, Header& header) {
     }
   }
   return kNoHeader;
+}
+
+/// Of an element with a name that the library does not know it gets the number wrong, and with it the place of all that follows.
+std::string distrust_order(const Header& header) {
+  static const std::set<std::string, std::less<>> known = {"vertex", "face", "edge", "material"};
+  for (std::size_t i = 0; i + 1 < header.elements.size(); ++i) {
+    const Element& element = header.elements[i];
+    if (element.count != 0 && known.count(element.name) == 0)
+      return fmt::format("has {} elements '{}' in front of others, which can't be passed over; save it with vertices and faces alone", element.count, element.name.substr(0, 40));
+  }
+  return {};
 }
 
 std::string cut_short(const Element& element, std::uint64_t have) {
@@ -145,6 +157,7 @@ std::string distrust_ascii(std::string_view body, const Header& header) {
 std::string distrust_ply(std::string_view bytes) {
   Header header;
   if (std::string wrong = read_header(bytes, header); !wrong.empty()) return wrong;
+  if (std::string wrong = distrust_order(header); !wrong.empty()) return wrong;
   const std::string_view body = bytes.substr(header.length);
   if (header.format == "ascii") return distrust_ascii(body, header);
   if (header.format == "binary_little_endian" || header.format == "binary_big_endian") return distrust_binary(body, header);
