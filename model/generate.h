@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct GeneratedScene {
 Result<GeneratedScene> generate_scene(const std::string& name, std::uint64_t triangles, std::uint64_t tool_triangles);
 
 std::vector<std::string> generator_names();
+
+/// Binary STL of a mesh, in metres. Errors: the file can't be written.
+Result<void> write_stl(const std::filesystem::path& file, const Mesh& mesh);
 
 /// Writes mock-up and tool (binary STL or PLY), path, guide and scene.json to `directory`, which is made if missing.
 Result<void> write_generated(const GeneratedScene& scene, const std::string& name, const std::string& directory);

@@ -68,13 +68,15 @@ std::string scene_text(const GeneratedScene& scene, const std::string& name) {
 
 }  // namespace
 
+Result<void> write_stl(const std::filesystem::path& file, const Mesh& mesh) { return write_file(file, stl_bytes(mesh)); }
+
 Result<void> write_generated(const GeneratedScene& scene, const std::string& name, const std::string& directory) {
   const std::filesystem::path folder(directory);
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
   if (!std::filesystem::is_directory(folder, fault)) return bad_value(directory + " is no directory and cannot be made one");
-  if (auto done = write_file(folder / "mockup.stl", stl_bytes(scene.mockup)); !done) return done;
-  if (auto done = write_file(folder / "tool.stl", stl_bytes(scene.tool)); !done) return done;
+  if (auto done = write_stl(folder / "mockup.stl", scene.mockup); !done) return done;
+  if (auto done = write_stl(folder / "tool.stl", scene.tool); !done) return done;
   if (auto done = write_file(folder / "path.csv", path_text(scene.path, !scene.guide.empty())); !done) return done;
   if (!scene.guide.empty())
     if (auto done = write_file(folder / "guide.csv", guide_text(scene.guide)); !done) return done;

@@ -51,7 +51,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
-  CLI::App* latency = bench->add_subcommand("latency", "a frame's time by stage: p50, p95, p99, p99.9, max; contact and free apart");
+  CLI::App* latency = bench->add_subcommand("latency", "a frame's time by stage: p50, p95, p99, p99.9 (of 1,000 frames and more), max; contact and free apart");
   add_common(*latency, options);
   add_poses(*latency, options);
   latency->add_option("--backend", options.backends, "gpu, cpu, or both in turns; without it gpu, else cpu")
@@ -74,14 +74,15 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
                      "share_of_stages: time of a pose in the batch over the sum of a single query's stages.");
   throughput->callback([&] { outcome = bench_throughput(options, parts); });
 
-  CLI::App* scale = bench->add_subcommand("scale", "a frame's time against the number of triangles: around the same contact, finer, of the tool");
+  CLI::App* scale = bench->add_subcommand("scale", "a frame's time against the number of triangles: around the same contact, finer, of the tool; or of scenes of your own, refined");
   add_common(*scale, options, false);
   add_poses(*scale, options);
   one_backend(*scale);
   scale->add_option("--most", options.most_triangles, "triangles of the largest mock-up, 100,000 to 10,000,000 (1,000,000)")
       ->check(CLI::Range(std::uint64_t{100'000}, std::uint64_t{10'000'000}).description(""))
       ->type_name("N");
-  scale->footer("Scenes are made, not named; their files stay below DIR/scenes. peak_bytes is the most memory that the process had while it read, prepared and measured.");
+  scale->footer("Without scenes three series are made; with scenes, and --poses, each is measured as it is, with its edges in two, and in four. Files stay below\n"
+                "DIR/scenes. peak_bytes is the most memory that the process had while it read, prepared and measured.");
   scale->callback([&] { outcome = bench_scale(options, parts); });
 
   CLI::App* prepare = bench->add_subcommand("prepare", "a scene's first start by stage, its start from the cache, and other libraries' trees beside them");

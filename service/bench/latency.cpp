@@ -55,7 +55,7 @@ void add_rows(const std::string& scene, const Subject& subject, BenchTable& tabl
     for (const std::string& stage : subject.times.stages()) {
       const TimePercentiles p = percentiles(subject.times.times(kind, stage));
       if (p.count > 0)
-        table.rows.push_back({scene, subject.scene->backend->name(), kFrameKindNames[kind], stage, std::uint64_t{p.count}, p.p50, p.p95, p.p99, p.p999, p.max});
+        table.rows.push_back({scene, subject.scene->backend->name(), kFrameKindNames[kind], stage, std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max});
     }
 }
 
@@ -67,7 +67,7 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
   BenchFacts facts{.command = "latency", .device = {}, .more = {}};
   BenchTable table{{"scene", "backend", "frames", "stage", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us"}, {}};
   BenchChart stages{.title = "Median of each stage, frames in contact", .unit = "µs", .labels = {}, .series = {}, .stacked = true, .x_title = {}};
-  BenchChart tails{.title = "Whole frame, all frames", .unit = "µs", .labels = {"p50", "p95", "p99", "p99.9", "max"}, .series = {}, .log_y = true, .x_title = {}};
+  BenchChart tails{.title = "Whole frame, all frames", .unit = "µs", .labels = {"p50", "p95", "p99", "max"}, .series = {}, .log_y = true, .x_title = {}};
   const double load = load_average();
   for (const std::string& file : options.scenes) {
     const auto subjects = measure(options, file, parts, console);
@@ -77,11 +77,11 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
       const std::string name = scene_name(file), label = subjects->size() > 1 ? name + ", " + scene.backend->name() : name;
       add_rows(name, subject, table);
       const TimePercentiles all = percentiles(subject.times.times(3, "total"));
-      tails.series.push_back({label, {}, {all.p50, all.p95, all.p99, all.p999, all.max}});
+      tails.series.push_back({label, {}, {all.p50, all.p95, all.p99, all.max}});
       // One bar a subject, one colour a stage.
       stages.labels.push_back(label);
       for (const std::string& stage : subject.times.stages()) {
-        if (stage == "total" || stage == "cull") continue;
+        if (stage == "total") continue;
         auto series = std::find_if(stages.series.begin(), stages.series.end(), [&](const auto& s) { return s.label == stage; });
         if (series == stages.series.end()) series = stages.series.insert(series, {stage, {}, {}});
         series->y.resize(stages.labels.size() - 1);

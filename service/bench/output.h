@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,6 +17,9 @@ namespace palpate {
 
 /// A value of a row; an empty string is "none" (null in JSON, nothing in CSV).
 using BenchCell = std::variant<std::string, double, std::uint64_t>;
+
+/// Empty where there is none.
+inline BenchCell cell_of(const std::optional<double>& value) { return value ? BenchCell(*value) : BenchCell(std::string()); }
 
 struct BenchTable {
   std::vector<std::string> columns;

@@ -163,7 +163,7 @@ void add_rows(const std::string& scene, const Race& race, BenchTable& table) {
     const TimePercentiles ours = percentiles(race.ours.times(kind, "total"));
     if (ours.count == 0) continue;
     const auto row = [&](const std::string& name, const TimePercentiles& p, const Difference& d) {
-      table.rows.push_back({scene, name, kFrameKindNames[kind], std::uint64_t{p.count}, p.p50, p.p95, p.p99, p.p999, p.max, ours.p50 / p.p50,
+      table.rows.push_back({scene, name, kFrameKindNames[kind], std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max, ours.p50 / p.p50,
                             ours.p99 / p.p99, d.pairs, d.missing, d.extra, d.poses});
     };
     row("palpate " + race.scene->backend->name(), ours, race.our_difference);

@@ -1,16 +1,21 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "model/generate.h"
+#include "model/mesh.h"
+#include "model/scene_file.h"
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
 #include "service/bench/process_memory.h"
 #include "service/bench/times.h"
 #include "service/cli/answer.h"
+#include "service/report/run_summary.h"
 
 namespace palpate {
 namespace {
@@ -54,6 +59,18 @@ Json scene_of(const Case& c, bool paper, double spacing_m) {
   return {{"static", statics}, {"tool", tool}, {"response", response}, {"device", {{"driver", "simulated"}}}};
 }
 
+/// The same surface with each edge in two: four triangles for one. Middles are those of both neighbours, to the bit.
+Mesh refined(const Mesh& mesh) {
+  Mesh out;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k], ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    out.vertices.insert(out.vertices.end(), {a, b, c, ab, bc, ca});
+    for (const std::array<std::uint32_t, 3>& t : {std::array<std::uint32_t, 3>{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}) out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return out;
+}
+
 struct Figures {
   TimeTable times;
   std::uint64_t triangles = 0, tool = 0, kept = 0, peak = 0;
@@ -92,53 +109,122 @@ Result<Figures> measure(const BenchOptions& options, const std::string& file, co
   return out;
 }
 
+/// A scene of the bench: its file, and the series that it belongs to.
+struct Step {
+  std::string series, file;
+  bool of_tool = false;        ///< the tool's triangles are what grows
+  bool keeps_samples = false;  ///< has the samples of its series' first
+};
+
+/// Rows and curve of all steps. `write` makes a step's file once it is known how far apart the first's samples are (0: not yet).
+class Scale {
+ public:
+  Scale(const BenchOptions& options, const Parts& parts) : options_(options), parts_(parts) {}
+
+  template <class Write>
+  Result<void> add(const Step& step, Write write) {
+    const double spacing_m = step.keeps_samples && spacing_m_.count(step.series) != 0 ? spacing_m_.at(step.series) : 0;
+    if (auto written = write(spacing_m); !written) return written;
+    const Result<Figures> figures = measure(options_, step.file, parts_, console_);
+    if (!figures) return figures.error();
+    spacing_m_.emplace(step.series, figures->spacing_m);
+    for (std::size_t kind = 0; kind < 4; ++kind) {
+      const TimePercentiles p = percentiles(figures->times.times(kind, "total"));
+      if (p.count == 0) continue;
+      const std::string line = fmt::format("{} {}", step.series, kind);
+      const double smallest = first_.emplace(line, p.p50).first->second, before = last_.emplace(line, p.p50).first->second;
+      last_[line] = p.p50;
+      table_.rows.push_back({step.series, figures->triangles, figures->tool, std::string(kFrameKindNames[kind]), std::uint64_t{p.count}, p.p50, p.p99, p.p50 / smallest, p.p50 / before,
+                             1000 * figures->voxel_m, figures->prepare_s, figures->kept, figures->peak, figures->backend});
+      if (kind != 0) continue;
+      if (growth_.series.empty() || growth_.series.back().label != step.series) growth_.series.push_back({step.series, {}, {}});
+      growth_.series.back().x.push_back(static_cast<double>(step.of_tool ? figures->tool : figures->triangles));
+      growth_.series.back().y.push_back(p.p50);
+    }
+    facts_.device = figures->device;
+    return {};
+  }
+
+  void tell(const std::string& name, const std::string& what) { facts_.more.emplace_back(name, what); }
+  Console& console() { return console_; }
+  Result<void> write() {
+    facts_.more.emplace_back("clock", options_.cpu_clock ? "CPU time of this process" : "wall");
+    facts_.more.emplace_back("load average", fmt::format("{:.1f} at the start, {:.1f} at the end", load_, load_average()));
+    return write_bench(options_.out, facts_, table_, {growth_});
+  }
+
+ private:
+  const BenchOptions& options_;
+  const Parts& parts_;
+  Console console_;
+  double load_ = load_average();
+  std::map<std::string, double> first_, last_;   ///< by series and kind of frame: the median of its smallest scene, and of the scene before
+  std::map<std::string, double> spacing_m_;      ///< by series, of its first: other samples would be another contact
+  BenchFacts facts_{.command = "scale", .device = {}, .more = {}};
+  BenchTable table_{{"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us", "times_the_first", "times_the_last", "voxel_mm", "prepare_s", "kept_bytes", "peak_bytes", "backend"}, {}};
+  BenchChart growth_{.title = "Median of a frame in contact", .unit = "µs", .labels = {}, .series = {}, .log_x = true, .log_y = true, .x_title = "triangles of the mock-up, or of the tool"};
+};
+
+Result<void> write_json(const std::string& file, const Json& scene) {
+  std::ofstream out(file, std::ios::trunc);
+  out << scene.dump(1) << "\n";
+  if (!out.flush()) return bad_value(file + ": the file can't be written");
+  return {};
+}
+
+Result<void> measure_generated(const BenchOptions& options, const std::filesystem::path& folder, Scale& scale) {
+  for (const Case& c : cases(options.most_triangles)) {
+    const bool around = std::string_view(c.series) == "around";
+    const std::string file = (folder / fmt::format("{}_{}_{}.json", c.series, c.triangles, c.tool)).string();
+    const Step step{c.series, file, std::string_view(c.series) == "tool", around};
+    if (auto done = scale.add(step, [&](double spacing_m) { return write_json(file, scene_of(c, options.profile == Profile::kPaper, spacing_m)); }); !done) return done;
+  }
+  scale.tell("around", fmt::format("the disassembly of {} triangles, and others {} m aside that are never touched; the samples of the first for all", kContact, kAside_m));
+  scale.tell("finer", "the same surfaces in more triangles");
+  scale.tell("tool", fmt::format("the mock-up of {} triangles, the tool's surface in more", kContact));
+  return {};
+}
+
+/// A scene as it is, with each edge in two, and in four.
+Result<void> measure_refined(const BenchOptions& options, const std::string& scene_file, const std::filesystem::path& folder, Scale& scale) {
+  const std::string name = scene_name(scene_file);
+  if (auto done = scale.add({name, scene_file, false, true}, [](double) { return Result<void>(); }); !done) return done;
+  auto scene = read_scene(scene_file, options.profile);
+  if (!scene) return scene.error();
+  auto meshes = import_scene(*scene, {});
+  if (!meshes) return meshes.error();
+  for (const int parts : {2, 4}) {
+    meshes->mockup = refined(meshes->mockup);
+    meshes->tool = refined(meshes->tool);
+    const std::string stem = fmt::format("{}_{}", name, parts), file = (folder / (stem + ".json")).string();
+    if (auto done = write_stl(folder / (stem + "_mockup.stl"), meshes->mockup); !done) return done;
+    if (auto done = write_stl(folder / (stem + "_tool.stl"), meshes->tool); !done) return done;
+    const auto write = [&](double spacing_m) {
+      Json response = {{"profile", options.profile.value_or(scene->response.profile) == Profile::kPaper ? "paper" : "refined"}, {"sample_spacing", spacing_m}};
+      return write_json(file, {{"static", Json::array({{{"mesh", stem + "_mockup.stl"}, {"units", "m"}}})}, {"tool", {{"mesh", stem + "_tool.stl"}, {"units", "m"}}}, {"response", response}});
+    };
+    if (auto done = scale.add({name, file, false, true}, write); !done) return done;
+  }
+  scale.tell(name, "the scene as it is, with each edge in two, and in four: the same surfaces in 4 and 16 times the triangles; the samples of the first for all");
+  return {};
+}
+
 }  // namespace
 
 Result<void> bench_scale(const BenchOptions& options, const Parts& parts) {
   catch_interrupts();
-  Console console;
-  BenchFacts facts{.command = "scale", .device = {}, .more = {}};
-  BenchTable table{{"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us", "times_the_first", "times_the_last", "voxel_mm", "prepare_s", "kept_bytes", "peak_bytes", "backend"}, {}};
-  BenchChart growth{.title = "Median of a frame in contact", .unit = "µs", .labels = {}, .series = {}, .log_x = true, .log_y = true, .x_title = "triangles of the mock-up, or of the tool"};
+  if (!options.scenes.empty() && (options.poses.empty() || options.poses == "run"))
+    return Error{ErrorCode::kUsage, "bench scale: a scene of one's own wants poses: name a file with --poses (a refined scene has no path)"};
   const std::filesystem::path folder = std::filesystem::path(options.out) / "scenes";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", folder.string(), error.message()));
-  const double load = load_average();
-  std::map<std::string, double> first, last;   // by series and kind of frame: the median of its smallest scene, and of the scene before
-  double around_spacing_m = 0;   // of the first: other samples would be another contact
-  for (const Case& c : cases(options.most_triangles)) {
-    const bool around = std::string_view(c.series) == "around";
-    const std::filesystem::path file = folder / fmt::format("{}_{}_{}.json", c.series, c.triangles, c.tool);
-    {
-      std::ofstream out(file, std::ios::trunc);
-      out << scene_of(c, options.profile == Profile::kPaper, around ? around_spacing_m : 0).dump(1) << "\n";
-      if (!out.flush()) return bad_value(file.string() + ": the file can't be written");
-    }
-    const Result<Figures> figures = measure(options, file.string(), parts, console);
-    if (!figures) return figures.error();
-    if (around && around_spacing_m == 0) around_spacing_m = figures->spacing_m;
-    for (std::size_t kind = 0; kind < 4; ++kind) {
-      const TimePercentiles p = percentiles(figures->times.times(kind, "total"));
-      if (p.count == 0) continue;
-      const std::string line = fmt::format("{} {}", c.series, kind);
-      const double smallest = first.emplace(line, p.p50).first->second, before = last.emplace(line, p.p50).first->second;
-      last[line] = p.p50;
-      table.rows.push_back({std::string(c.series), figures->triangles, figures->tool, std::string(kFrameKindNames[kind]), std::uint64_t{p.count}, p.p50, p.p99,
-                            p.p50 / smallest, p.p50 / before, 1000 * figures->voxel_m, figures->prepare_s, figures->kept, figures->peak, figures->backend});
-      if (kind != 0) continue;
-      if (growth.series.empty() || growth.series.back().label != c.series) growth.series.push_back({c.series, {}, {}});
-      growth.series.back().x.push_back(static_cast<double>(std::string_view(c.series) == "tool" ? figures->tool : figures->triangles));
-      growth.series.back().y.push_back(p.p50);
-    }
-    facts.device = figures->device;
-  }
-  facts.more.emplace_back("around", fmt::format("the disassembly of {} triangles, and others {} m aside that are never touched; the samples of the first for all", kContact, kAside_m));
-  facts.more.emplace_back("finer", "the same surfaces in more triangles");
-  facts.more.emplace_back("tool", fmt::format("the mock-up of {} triangles, the tool's surface in more", kContact));
-  facts.more.emplace_back("clock", options.cpu_clock ? "CPU time of this process" : "wall");
-  facts.more.emplace_back("load average", fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
-  return write_bench(options.out, facts, table, {growth});
+  Scale scale(options, parts);
+  if (options.scenes.empty())
+    if (auto done = measure_generated(options, folder, scale); !done) return done;
+  for (const std::string& file : options.scenes)
+    if (auto done = measure_refined(options, file, folder, scale); !done) return done;
+  return scale.write();
 }
 
 }  // namespace palpate

@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ class Stopwatch {
 /// Percentiles of measured times, nearest rank; all 0 without samples.
 struct TimePercentiles {
   std::size_t count = 0;
-  double p50 = 0, p95 = 0, p99 = 0, p999 = 0, max = 0;   ///< µs
+  double p50 = 0, p95 = 0, p99 = 0, max = 0;   ///< µs
+  std::optional<double> p999;                  ///< of at least 1,000 samples: of fewer it would be the largest by another name
 };
 TimePercentiles percentiles(std::vector<double> times_us);
 

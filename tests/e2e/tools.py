@@ -117,4 +117,25 @@ def test_plan_leaves_out_what_the_scene_does_not_need():
     expect(not line['kept'] and line['memory_bytes'] == 0, line)
 
 
+def test_bench_scale_refines_a_scene_of_ones_own():
+    folder = Folder()
+    folder.write('block.stl', stl(box((0.06, 0.06, 0.03), (0, 0, -0.015))))
+    folder.write('ball.stl', stl(sphere(0.01)))
+    folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n' + ''.join(f'{0.001 * i},{0.0007 * i},0.009,0,0,0,1\n' for i in range(8)))
+    scene = folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
+    done = palpate('bench', 'scale', scene, '--poses', folder / 'poses.csv', '--rounds', '1', '--out', folder / 'out')
+    expect(done.code == 0, done)
+    rows = [row for row in json.loads((folder / 'out' / 'results.json').read_text())['rows'] if row['frames'] == 'contact']
+    balls = len(sphere(0.01))
+    expect([(row['static_triangles'], row['tool_triangles']) for row in rows] == [(12 * n, balls * n) for n in (1, 4, 16)], rows)
+    expect(all(row['count'] == 8 and row['p50_us'] > 0 for row in rows), 'the same poses meet in all three')
+    expect_refused(palpate('bench', 'scale', scene, '--out', folder / 'none'), 2, '--poses')
+    # p99.9 of fewer than a thousand frames would be the longest by another name.
+    done = palpate('bench', 'latency', scene, '--poses', folder / 'poses.csv', '--rounds', '1', '--out', folder / 'latency')
+    expect(done.code == 0, done)
+    rows = json.loads((folder / 'latency' / 'results.json').read_text())['rows']
+    expect(rows and all(row['p999_us'] is None for row in rows), rows)
+    expect('cull' in (folder / 'latency' / 'report.html').read_text(), 'the chart shows every stage')
+
+
 main(globals())
