@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <glm/common.hpp>
 
+#include "model/sample_grid.h"
 #include "model/vector.h"
 
 namespace palpate::exact {
@@ -62,28 +63,24 @@ int segment_crossing(const Int3& p, const Int3& q, const Corners& t);
 /// Side of the edge from p to q on which the grid point (u, v), moved by (ε, ε²), lies (section 4). Coordinates within 2^28 and a spacing.
 int grid_side(std::int64_t pu, std::int64_t pv, std::int64_t qu, std::int64_t qv, std::int64_t u, std::int64_t v);
 
-/// Calls take(sample) for each sample of a triangle (section 4) in the closed box [low, high], seen along the triangle's sample axis k.
+/// Calls take(sample, i, j) for each sample of a triangle (section 4) in the closed box [low, high], seen along the triangle's sample axis k.
 template <class Take>
 void for_samples(const Corners& t, int k, std::int32_t spacing, const Int3& low, const Int3& high, Take&& take) {
   const int iu = (k + 1) % 3, iv = (k + 2) % 3;
-  const double per_spacing = 1.0 / spacing;
-  const auto first = [&](int axis) {   // the first grid line not before the box
-    const std::int64_t at = std::max(low[axis], std::min({t[0][axis], t[1][axis], t[2][axis]}));
-    auto q = static_cast<std::int64_t>(static_cast<double>(at) * per_spacing);   // off by one at most
-    while (q * spacing < at) ++q;
-    while ((q - 1) * spacing >= at) --q;
-    return q * spacing;
-  };
-  const auto last = [&](int axis) { return std::int64_t{std::min(high[axis], std::max({t[0][axis], t[1][axis], t[2][axis]}))}; };
-  const std::int64_t u0 = first(iu), u1 = last(iu), v0 = first(iv), v1 = last(iv);
+  const SampleGrid grid{spacing};
+  const auto least = [&](int axis) { return std::int64_t{std::max(low[axis], std::min({t[0][axis], t[1][axis], t[2][axis]}))}; };
+  const auto most = [&](int axis) { return std::int64_t{std::min(high[axis], std::max({t[0][axis], t[1][axis], t[2][axis]}))}; };
+  const std::int64_t u0 = least(iu), u1 = most(iu), v0 = least(iv), v1 = most(iv);
   if (u0 > u1 || v0 > v1) return;
   const Normal n = raw_normal(t);
   const std::int64_t parts[3] = {n.x, n.y, n.z}, nk = parts[k];
   const int facing = nk < 0 ? -1 : 1;
   // Of a small triangle: |N_u|, |N_v| ≤ |N_k|, so that sums are within 2^62.
   const bool small = std::abs(nk) < std::int64_t{1} << 36 && u1 - u0 < 1 << 24 && v1 - v0 < 1 << 24 && std::abs(u0 - t[0][iu]) < 1 << 24 && std::abs(v0 - t[0][iv]) < 1 << 24;
-  for (std::int64_t v = v0; v <= v1; v += spacing)
-    for (std::int64_t u = u0; u <= u1; u += spacing) {
+  for (std::int64_t j = grid.cell(v0), last_j = grid.cell(v1), first_i = grid.cell(u0), last_i = grid.cell(u1); j <= last_j; ++j)
+    for (std::int64_t i = first_i; i <= last_i; ++i) {
+      const std::int64_t u = grid.u(i, j), v = grid.v(i, j);
+      if (u < u0 || u > u1 || v < v0 || v > v1) continue;
       bool within = true;
       for (std::size_t e = 0; e < 3 && within; ++e) {
         const Int3 &p = t[e], &q = t[(e + 1) % 3];
@@ -101,7 +98,7 @@ void for_samples(const Corners& t, int k, std::int32_t spacing, const Int3& low,
       }
       p[iu] = static_cast<std::int32_t>(u);
       p[iv] = static_cast<std::int32_t>(v);
-      if (p[k] >= low[k] && p[k] <= high[k]) take(p);
+      if (p[k] >= low[k] && p[k] <= high[k]) take(p, i, j);
     }
 }
 

@@ -39,14 +39,6 @@ Int3 to_tool(const LatticePose& pose, const Int3& point) {
   return at;
 }
 
-/// The last level of samples that a grid point is of (EXACTNESS section 4): how often both its numbers can be halved, twice, and once more where they stop together.
-int level_of(const Int3& sample, int axis, std::int32_t spacing) {
-  const auto i = static_cast<std::uint32_t>(sample[(axis + 1) % 3] / spacing), j = static_cast<std::uint32_t>(sample[(axis + 2) % 3] / spacing);
-  const std::uint32_t ends = 1u << kSampleLevels;
-  const int ni = std::countr_zero(i | ends), nj = std::countr_zero(j | ends);
-  return 2 * std::min(ni, nj) + (ni == nj ? 1 : 0);
-}
-
 /// 256 log2(count), count > 0, straight between powers of two.
 std::uint32_t log_q8(std::uint64_t count) {
   const auto whole = static_cast<std::uint32_t>(std::bit_width(count) - 1);
@@ -153,7 +145,7 @@ void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   const exact::Box box = exact::box_of(corners);
   const int axis = tool.sample_axis[mobile];
   const std::int32_t spacing = geometry_->tool_sample_spacing;
-  exact::for_samples(corners, axis, spacing, box.low - Int3(1), box.high + Int3(1), [&](const Int3& p) { take(p, level_of(p, axis, spacing)); });
+  exact::for_samples(corners, axis, spacing, box.low - Int3(1), box.high + Int3(1), [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
 }
 
 void HostField::choose_level(std::size_t samples, std::size_t mobiles) {
@@ -267,10 +259,12 @@ CarrierSums* carrier_of(std::span<CarrierSums> carriers, std::uint32_t id) {
 /// Of the mock-up's samples inside the tool.
 void HostField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples, std::span<CarrierSums> carriers, Lane& lane) const {
   const LatticeMesh& mockup = geometry_->mockup;
+  const SampleGrid grid{geometry_->sample_spacing};
   const bool all = (level_ | between_) == 0;
   for (const FrameSample& sample : samples) {
     const std::uint32_t id = sample.static_id;
-    const int level = all || mockup.levels_of[id] == 0 ? 0 : level_of(sample.point, mockup.sample_axis[id], geometry_->sample_spacing);
+    const int axis = mockup.sample_axis[id];
+    const int level = all || mockup.levels_of[id] == 0 ? 0 : SampleGrid::level(grid.cell(sample.point[(axis + 1) % 3]), grid.cell(sample.point[(axis + 2) % 3]));
     if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0) push_from_mockup(pose, id, sample.point, weight, carrier_of(carriers, id), lane);
   }
 }

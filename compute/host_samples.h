@@ -2,13 +2,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/sample_grid.h"
 #include "model/vector.h"
 #include "shaders/shared/prepare.h"
 
 namespace palpate {
 
 /// Samples and first corners of the mock-up's triangles, voxel by voxel: they do not depend on the pose, and only the host reads them. A sample is
-/// its place in the voxel's grid of samples, two numbers below 64, and its height above the voxel's low side along its triangle's sample axis.
+/// the place of its cell among those that reach into the voxel, two numbers below 64, and its height above the voxel's low side along its triangle's sample axis.
 struct HostSamples {
   struct Begin {
     std::uint32_t point, sample, owner;   ///< numbers of the voxel's first ones
@@ -43,14 +44,11 @@ struct HostSamples {
 
   /// A voxel's samples as lattice points. Steps.
   struct Voxel {
-    Int3 low;    ///< its lowest lattice point
-    Int3 grid;   ///< its first grid point, axis by axis
-    std::int32_t spacing;
-    Voxel(const Int3& lowest, std::int32_t sample_spacing) : low(lowest), spacing(sample_spacing) {
-      for (int k = 0; k < 3; ++k) {
-        const std::int32_t q = low[k] / spacing;
-        grid[k] = spacing * (q + (q * spacing < low[k] ? 1 : 0));
-      }
+    Int3 low;     ///< its lowest lattice point
+    Int3 first;   ///< the first cell of samples that reaches into it, axis by axis
+    SampleGrid grid;
+    Voxel(const Int3& lowest, std::int32_t spacing) : low(lowest), grid{spacing} {
+      for (int k = 0; k < 3; ++k) first[k] = static_cast<std::int32_t>(grid.cell(low[k]));
     }
   };
   /// Sample `number` along `axis` of all voxels' samples.
@@ -60,8 +58,9 @@ struct HostSamples {
     const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
     Int3 out;
     out[axis] = voxel.low[axis] + static_cast<std::int32_t>(height);
-    out[u] = voxel.grid[u] + voxel.spacing * static_cast<std::int32_t>(place & 63);
-    out[v] = voxel.grid[v] + voxel.spacing * static_cast<std::int32_t>(place >> 6);
+    const std::int32_t i = voxel.first[u] + static_cast<std::int32_t>(place & 63), j = voxel.first[v] + static_cast<std::int32_t>(place >> 6);
+    out[u] = static_cast<std::int32_t>(voxel.grid.u(i, j));
+    out[v] = static_cast<std::int32_t>(voxel.grid.v(i, j));
     return out;
   }
 };

@@ -60,7 +60,7 @@ void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
     const std::uint32_t id = mockup_.listed(i);
     const exact::Corners t{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
     if (t[0] == glm::clamp(t[0], low, high)) take(FrameSample{t[0], id | kCornerProbe});
-    exact::for_samples(t, mesh.sample_axis[id], geometry_->sample_spacing, low, high, [&](const Int3& p) { take(FrameSample{p, id}); });
+    exact::for_samples(t, mesh.sample_axis[id], geometry_->sample_spacing, low, high, [&](const Int3& p, std::int64_t, std::int64_t) { take(FrameSample{p, id}); });
   }
 }
 

@@ -20,20 +20,18 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {   // b > 0
   return q - (a % b < 0 ? 1 : 0);
 }
 
-/// The first multiple of `spacing` not below v.
-std::int64_t grid_from(std::int64_t v, std::int64_t spacing) { return -floor_div(-v, spacing) * spacing; }
-
-/// Twice the area that edge pq spans with a grid point, times the triangle's facing, and more than 0 exactly where grid_side() says inside: a
-/// point on the edge is moved by (ε, ε²). Steps along u and v are constant. Differences within 2^29 + 1.
+/// Twice the area that edge pq spans with a point, times the triangle's facing, and more than 0 exactly where grid_side() says inside: a point on the edge is moved by
+/// (ε, ε²). Differences within 2^29 + 1.
 struct EdgeSide {
-  std::int64_t at, along_u, along_v;
-  EdgeSide(const Int3& p, const Int3& q, int iu, int iv, int facing, std::int64_t u, std::int64_t v, std::int64_t spacing) {
+  std::int64_t from, along_u, along_v;
+  EdgeSide(const Int3& p, const Int3& q, int iu, int iv, int facing) {
     const std::int64_t du = std::int64_t{q[iu]} - p[iu], dv = std::int64_t{q[iv]} - p[iv];
     const int on_edge = dv != 0 ? (dv < 0 ? 1 : -1) : (du > 0 ? 1 : du < 0 ? -1 : 0);
-    at = facing * (du * (v - p[iv]) - dv * (u - p[iu])) + (on_edge == facing ? 1 : 0);
-    along_u = -facing * dv * spacing;
-    along_v = facing * du * spacing;
+    along_u = -facing * dv;
+    along_v = facing * du;
+    from = (on_edge == facing ? 1 : 0) - along_u * p[iu] - along_v * p[iv];   // within 2^59
   }
+  std::int64_t at(std::int64_t u, std::int64_t v) const { return from + along_u * u + along_v * v; }
 };
 
 /// A triangle whose first corner lies in a voxel: that vertex, and the entry of the voxel's list.
@@ -79,6 +77,7 @@ Int3 HostPreparation::low_of(std::uint32_t boundary) const {
 void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing, std::uint64_t most_words, std::uint32_t* begin, std::vector<std::uint32_t>& words,
                                    bool wide) const {
   const Int3 low = low_of(boundary), high = low + (grid_.size - 1);   // the last lattice point of the half-open cube
+  const SampleGrid grid{spacing};
   for (std::uint32_t e = list_begin_[boundary], end = list_begin_[boundary + 1]; e < end && words.size() <= most_words; ++e) {
     const std::uint32_t id = list_triangles_[e];
     const exact::Corners t{mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)};
@@ -87,22 +86,22 @@ void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing,
     *begin++ = static_cast<std::uint32_t>(words.size() / (wide ? 2 : 1)) | (corner ? gpu::kSampleCorner : 0u) | static_cast<std::uint32_t>(k) << gpu::kSampleAxisShift;
 
     const Int3 least = glm::min(glm::min(t[0], t[1]), t[2]), most = glm::max(glm::max(t[0], t[1]), t[2]);
-    const std::int64_t u0 = grid_from(std::max(low[iu], least[iu]), spacing), v0 = grid_from(std::max(low[iv], least[iv]), spacing);
-    const std::int64_t u1 = std::min(high[iu], most[iu]), v1 = std::min(high[iv], most[iv]);
+    const std::int64_t u0 = std::max(low[iu], least[iu]), v0 = std::max(low[iv], least[iv]), u1 = std::min(high[iu], most[iu]), v1 = std::min(high[iv], most[iv]);
     if (u0 > u1 || v0 > v1) continue;
     const exact::Normal n = exact::raw_normal(t);
     const std::int64_t parts[3] = {n.x, n.y, n.z}, nk = parts[k];
     if (nk == 0) continue;   // collapsed
     const int facing = nk < 0 ? -1 : 1;
-    const std::int64_t grid_u = grid_from(low[iu], spacing), grid_v = grid_from(low[iv], spacing), under = facing * nk;
+    const std::int64_t under = facing * nk;
     // |N_u|, |N_v| ≤ |N_k|: with differences below 2^extent the height's two products and their sum fit 64 bits.
     const std::int64_t extent = std::max(most[iu] - least[iu], most[iv] - least[iv]);
     const bool fits = extent == 0 || under <= (INT64_MAX >> 1) / extent;
-    EdgeSide a(t[0], t[1], iu, iv, facing, u0, v0, spacing), b(t[1], t[2], iu, iv, facing, u0, v0, spacing), c(t[2], t[0], iu, iv, facing, u0, v0, spacing);
-    for (std::int64_t v = v0; v <= v1; v += spacing) {
-      std::int64_t at_a = a.at, at_b = b.at, at_c = c.at;
-      for (std::int64_t u = u0; u <= u1; u += spacing, at_a += a.along_u, at_b += b.along_u, at_c += c.along_u) {
-        if (at_a <= 0 || at_b <= 0 || at_c <= 0) continue;
+    const EdgeSide a(t[0], t[1], iu, iv, facing), b(t[1], t[2], iu, iv, facing), c(t[2], t[0], iu, iv, facing);
+    const std::int64_t first_i = grid.cell(low[iu]), first_j = grid.cell(low[iv]), last_i = grid.cell(u1), last_j = grid.cell(v1);
+    for (std::int64_t j = grid.cell(v0); j <= last_j; ++j) {
+      for (std::int64_t i = grid.cell(u0); i <= last_i; ++i) {
+        const std::int64_t u = grid.u(i, j), v = grid.v(i, j);
+        if (u < u0 || u > u1 || v < v0 || v > v1 || a.at(u, v) <= 0 || b.at(u, v) <= 0 || c.at(u, v) <= 0) continue;
         // floor(a_k − (N_u (u − a_u) + N_v (v − a_v)) / N_k), from the voxel's low side
         std::int64_t height = std::int64_t{t[0][k]} - low[k];
         const std::int64_t du = u - t[0][iu], dv = v - t[0][iv];
@@ -113,7 +112,7 @@ void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing,
           height += static_cast<std::int64_t>(over % under < 0 ? q - 1 : q);
         }
         if (height < 0 || height >= grid_.size) continue;
-        const auto place = static_cast<std::uint32_t>((u - grid_u) / spacing) | static_cast<std::uint32_t>((v - grid_v) / spacing) << 6;
+        const auto place = static_cast<std::uint32_t>(i - first_i) | static_cast<std::uint32_t>(j - first_j) << 6;
         if (wide) {
           words.push_back(static_cast<std::uint32_t>(height));
           words.push_back(place);
@@ -121,9 +120,6 @@ void HostPreparation::sample_voxel(std::uint32_t boundary, std::int32_t spacing,
           words.push_back(static_cast<std::uint32_t>(height) | place << 20);
         }
       }
-      a.at += a.along_v;
-      b.at += b.along_v;
-      c.at += c.along_v;
     }
   }
 }

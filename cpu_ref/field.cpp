@@ -35,22 +35,6 @@ std::uint32_t bin_of(const Int3& n) {
   return bin;
 }
 
-/// How many times the whole number can be halved, as far as levels go.
-int halvings(std::int64_t value) {
-  int times = 0;
-  while (times < kSampleLevels && value % 2 == 0) {
-    value /= 2;
-    ++times;
-  }
-  return times;
-}
-
-/// The last level whose grid points (i, j) is one of: level 2k has i and j divisible by 2^k, level 2k + 1 besides (i + j)/2^k even.
-int level_of(std::int64_t i, std::int64_t j) {
-  const int ni = halvings(i), nj = halvings(j);
-  return 2 * std::min(ni, nj) + (ni == nj ? 1 : 0);
-}
-
 /// 256 log2(count), straight between powers of two.
 std::int64_t binary_log_q8(std::int64_t count) {
   int whole = 0;
@@ -156,7 +140,7 @@ class Summing {
   /// What a grid sample weighs in this frame, Q30: between what it weighs at one level and at the next.
   std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& sample, std::int32_t spacing) const {
     const int axis = mesh.sample_axis[triangle];
-    const int level = level_of(sample[(axis + 1) % 3] / spacing, sample[(axis + 2) % 3] / spacing);
+    const int level = level_of({floor_divide(std::int64_t{sample[(axis + 1) % 3]}, std::int64_t{spacing}), floor_divide(std::int64_t{sample[(axis + 2) % 3]}, std::int64_t{spacing})});
     const SideLevels* side = mesh.levels_of[triangle] == 0 ? nullptr : &mesh.side_levels[mesh.levels_of[triangle] - 1];
     const auto at = [&](std::int64_t wanted) -> std::uint64_t {
       const int taken = side == nullptr ? 0 : static_cast<int>(std::min<std::int64_t>(wanted, side->coarsest));

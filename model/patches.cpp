@@ -1,29 +1,38 @@
 #include "model/patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <vector>
 
+#include "model/sample_grid.h"
 #include "model/triangle.h"
 
 namespace palpate {
 namespace {
 
-/// Sides of at least so many s² keep the weights of the grid where it sees them fairly (chosen).
-constexpr double kLarge = 64;
 /// What the grid may miss or add of a side's area, and of the sum of its normals, as a part of its area (chosen).
 constexpr double kFairly = 0.0625;
 /// Samples that stand for less than this part of a side can't stand for it all: weights are at most √3, and 2√3 < 4 is what Q30 holds.
 constexpr double kHardlySeen = 0.5;
+/// How much of the identity there is in a side's tilt, in its area (chosen: a thousandth of the error is left, and no weight is far from the others).
+constexpr double kOpen = 1e-4;
+/// Tilted weights stay within (chosen: a side that has to be tilted by more is seen badly; 2√3·1.15 < 4 is what Q30 holds).
+constexpr double kLeastTilt = 0.5, kMostTilt = 1.15;
 /// Triangles of a side larger than s² share an extra sample as long as they are no larger than s², and reach no further than this many s (chosen: sides that the grid
 /// misses are often narrow, and a contact across one must not slip between).
 constexpr double kExtraReach = 1.5;
 /// So many samples a side keeps at its coarsest level, at least (chosen: about what a small contact has).
 constexpr double kLeastOfLevel = 16;
+/// Narrower than so many s a side has extra samples (chosen, on pins and needles): a round one, a flat one; and from which sum of normals over area on it is flat.
+constexpr double kNarrowRound = 4, kNarrow = 1, kFlat = 0.98;
+/// They lie so many of its widths apart, no closer than this part of s (chosen).
+constexpr double kOfWidth = 0.5, kClosest = 0.25;
 constexpr double kMostExtras = 1024;   // on one triangle (chosen: memory)
+constexpr double kMostCells = 1 << 20;   // of a triangle whose samples are counted (chosen: milliseconds; what so many miss of its area is a thousandth)
 constexpr double kMostOfOne = 3.99;    // 2^level s² that one extra sample stands for: below 4, which is what Q30 holds
 
 /// Triangles joined into components; the smallest is the root.
@@ -81,7 +90,6 @@ std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
   const std::int64_t quotient = value / divisor;
   return value % divisor < 0 ? quotient - 1 : quotient;
 }
-std::int64_t ceil_divide(std::int64_t value, std::int64_t divisor) { return -floor_divide(-value, divisor); }
 
 /// A weight, at least 2^-24, with which the field counts: an extra sample that weighs nothing would be none.
 std::uint32_t weight_q30(double weight) {
@@ -122,40 +130,88 @@ struct Facing {
 struct Side {
   std::span<const std::uint32_t> triangles;   ///< ascending
   Facing facing{};
+  double width = 0;                               ///< area over the length of its box's diagonal, steps
+  std::array<Facing, kSampleLevels + 1> seen{};   ///< by samples of at least each level, s²·2^level for each
+  std::vector<double> sampled{};                  ///< by triangle: area that its samples stand for, s² for each
 };
 
-void measure(const LatticeMesh& mesh, Side& side) {
+/// `square`: s².
+void measure(const LatticeMesh& mesh, std::int32_t spacing, double square, Side& side) {
+  Vec3 low(INFINITY), high(-INFINITY);
   for (const std::uint32_t t : side.triangles) {
     const Vec3 raw(raw_normal(mesh, t));
     const double size = length(raw);
     side.facing.add(size / 2, raw / size);
+    for (int k = 0; k < 3; ++k) {
+      low = glm::min(low, Vec3(mesh.corner(t, k)));
+      high = glm::max(high, Vec3(mesh.corner(t, k)));
+    }
+    const auto samples = count_samples(mesh, t, spacing);
+    side.sampled.push_back(square * samples[0] * (mesh.sample_weight_q30[t] * 0x1p-30));
+    for (int level = 0; level <= kSampleLevels; ++level)
+      if (const double count = samples[static_cast<std::size_t>(level)]; count != 0)
+        side.seen[static_cast<std::size_t>(level)].add(std::ldexp(square, level) * count * (mesh.sample_weight_q30[t] * 0x1p-30), raw / size);
   }
+  side.width = side.facing.area / length(high - low);
+}
+
+/// Whether a side is so narrow that a contact across it would meet too few of the grid's samples: a round one sooner, for they have to see all ways that it faces.
+bool is_narrow(double square, const Side& side) {
+  const bool round = length(side.facing.sum) < kFlat * side.facing.area;
+  return side.width < (round ? kNarrowRound : kNarrow) * std::sqrt(square);
 }
 
 /// The factor of the weights of its samples of at least `level` with which they stand for all of it; 0 when they can't. `square`: s².
-double factor_of(const LatticeMesh& mesh, std::int32_t spacing, double square, int level, const Side& side) {
-  const Facing& is = side.facing;
-  Facing seen;
-  for (const std::uint32_t t : side.triangles) {
-    const Vec3 raw(raw_normal(mesh, t));
-    if (const std::uint64_t samples = count_samples(mesh, t, spacing, level); samples != 0)
-      seen.add(std::ldexp(square, level) * static_cast<double>(samples) * (mesh.sample_weight_q30[t] * 0x1p-30), raw / length(raw));
-  }
+double factor_of(int level, const Side& side) {
+  const Facing &is = side.facing, &seen = side.seen[static_cast<std::size_t>(level)];
   const double fair = kFairly * is.area;
   const auto fits = [&](double factor) {
     return length(factor * seen.sum - is.sum) <= fair && length(factor * seen.spread - is.spread) <= fair;
   };
-  if (is.area >= kLarge * square && std::abs(seen.area - is.area) <= fair && fits(1) && level == 0) return 1;
   if (seen.area < kHardlySeen * is.area) return 0;
   const double factor = is.area / seen.area;
   return fits(factor) ? factor : 0;   // a round side seen only in places would push askew
 }
 
+/// What weights are worth by where their triangle faces: 1 + a + b·n̂.
+struct Tilt {
+  std::array<double, 4> of{};   ///< a, b
+  double at(const Vec3& normal) const { return 1 + of[0] + of[1] * normal.x + of[2] * normal.y + of[3] * normal.z; }
+};
+
+/// With its weights times `factor`, how to tilt them so that a side's samples have its area and its sum of normals exactly, or nearly so: least squares with a little of the
+/// identity, as a flat side leaves most of it open. (A closed body under the same pressure all round is then pushed nowhere.)
+Tilt tilt_of(const LatticeMesh& mesh, double factor, const Side& side) {
+  double a[4][4] = {}, b[4] = {side.facing.area, side.facing.sum.x, side.facing.sum.y, side.facing.sum.z};
+  for (std::size_t i = 0; i < side.triangles.size(); ++i) {
+    if (side.sampled[i] == 0) continue;
+    const Vec3 raw(raw_normal(mesh, side.triangles[i])), n = raw / length(raw);
+    const double one[4] = {1, n.x, n.y, n.z}, weight = factor * side.sampled[i];
+    for (int k = 0; k < 4; ++k) {
+      b[k] -= weight * one[k];
+      for (int l = 0; l < 4; ++l) a[k][l] += weight * one[k] * one[l];
+    }
+  }
+  for (int k = 0; k < 4; ++k) a[k][k] += kOpen * side.facing.area;
+  for (int k = 0; k < 4; ++k)   // symmetric and positive: no pivots
+    for (int l = k + 1; l < 4; ++l) {
+      const double share = a[l][k] / a[k][k];
+      for (int m = k; m < 4; ++m) a[l][m] -= share * a[k][m];
+      b[l] -= share * b[k];
+    }
+  Tilt out;
+  for (int k = 4; k-- > 0;) {
+    for (int l = k + 1; l < 4; ++l) b[k] -= a[k][l] * out.of[static_cast<std::size_t>(l)];
+    out.of[static_cast<std::size_t>(k)] = b[k] / a[k][k];
+  }
+  return out;
+}
+
 /// The levels at which a side that the grid sees, with its weights times `grid_factor`, is still seen.
-SideLevels levels_of(const LatticeMesh& mesh, std::int32_t spacing, double square, double grid_factor, const Side& side) {
+SideLevels levels_of(double square, double grid_factor, const Side& side) {
   SideLevels out;
   for (int level = 1; level <= kSampleLevels && side.facing.area >= kLeastOfLevel * std::ldexp(square, level); ++level) {
-    const double factor = factor_of(mesh, spacing, square, level, side) / grid_factor;
+    const double factor = factor_of(level, side) / grid_factor;
     if (factor == 0 || factor >= 4) break;   // 4: what Q30 holds
     out.factor_q30[static_cast<std::size_t>(level - 1)] = weight_q30(factor);
     out.coarsest = static_cast<std::uint32_t>(level);
@@ -165,8 +221,9 @@ SideLevels levels_of(const LatticeMesh& mesh, std::int32_t spacing, double squar
 
 /// Gives a side extra samples for all of its area.
 void place_extras(LatticeMesh& mesh, double square, const Side& side) {
-  const bool one = side.facing.area <= square;
-  const double most_reach = kExtraReach * std::sqrt(square);
+  const double apart = std::clamp(kOfWidth * side.width, kClosest * std::sqrt(square), std::sqrt(square));
+  const double share_of_one = apart * apart, most_reach = kExtraReach * apart;
+  const bool one = side.facing.area <= share_of_one;
   double gathered = 0, most = -1;
   std::uint32_t largest = 0;
   Vec3 low(INFINITY), high(-INFINITY);   // of what is gathered
@@ -180,9 +237,9 @@ void place_extras(LatticeMesh& mesh, double square, const Side& side) {
       high = glm::max(high, Vec3(mesh.corner(t, k)));
     }
     const double reach = length(high - low);
-    if (i + 1 < side.triangles.size() && (one || (gathered < square && reach < most_reach))) continue;
+    if (i + 1 < side.triangles.size() && (one || (gathered < share_of_one && reach < most_reach))) continue;
     const double weight = gathered / square;
-    const double count = one ? 1 : std::clamp(std::ceil(std::max(weight, reach / most_reach)), 1.0, kMostExtras);
+    const double count = one ? 1 : std::clamp(std::ceil(std::max(gathered / share_of_one, reach / most_reach)), 1.0, kMostExtras);
     const auto whole = static_cast<std::int64_t>(count);
     for (std::int64_t share = 0; share < whole; ++share)
       mesh.extra_samples.push_back({largest, middle_of_share(mesh, largest, share, whole), weight_q30(weight / count)});
@@ -255,34 +312,35 @@ void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh) {
   mesh.patch_count = found.count;
 }
 
-std::uint64_t count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std::int32_t spacing, int level) {
-  if (mesh.collapsed(triangle)) return 0;
+std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std::int32_t spacing) {
+  std::array<double, kSampleLevels + 1> count{};
+  if (mesh.collapsed(triangle)) return count;
   const int axis = mesh.sample_axis[triangle], u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const std::int64_t facing = looks_back(mesh, triangle) ? -1 : 1, s = std::int64_t{spacing} << (level / 2);
-  const bool odd = level % 2 != 0;   // of these every second one, as on a chessboard
+  const SampleGrid grid{spacing};
   const Int3 corners[3] = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
-  const auto [min_v, max_v] = std::minmax({corners[0][v], corners[1][v], corners[2][v]});
-  const std::int64_t first = ceil_divide(min_v, s), last = floor_divide(max_v, s);
-  if (first > last) return 0;
   const auto [min_u, max_u] = std::minmax({corners[0][u], corners[1][u], corners[2][u]});
-  if (ceil_divide(min_u, s) > floor_divide(max_u, s)) return 0;
-  std::uint64_t count = 0;
-  for (std::int64_t j = first; j <= last; ++j) {
-    // Along a row of the grid every edge leaves one half of the line; what lies on an edge goes where (ε, ε²) says.
-    std::int64_t low = min_u, high = max_u;
-    for (int k = 0; k < 3 && low <= high; ++k) {
-      const Int3 &p = corners[k], &q = corners[(k + 1) % 3];
-      const std::int64_t along_u = facing * (std::int64_t{q[u]} - p[u]), along_v = facing * (std::int64_t{q[v]} - p[v]);
-      const std::int64_t reach = along_u * (j * s - p[v]);   // within 2^58
-      if (along_v > 0) high = std::min(high, p[u] + ceil_divide(reach, along_v) - 1);
-      if (along_v < 0) low = std::max(low, p[u] + ceil_divide(-reach, -along_v));
-      if (along_v == 0 && (reach < 0 || (reach == 0 && along_u < 0))) high = low - 1;
-    }
-    if (low > high) continue;
-    const std::int64_t most = floor_divide(high, s), least = ceil_divide(low, s);
-    const std::int64_t in_row = odd ? floor_divide(most - j, 2) - ceil_divide(least - j, 2) + 1 : most - least + 1;
-    if (in_row > 0) count += static_cast<std::uint64_t>(in_row);
+  const auto [min_v, max_v] = std::minmax({corners[0][v], corners[1][v], corners[2][v]});
+  const std::int64_t first_i = grid.cell(min_u), last_i = grid.cell(max_u), first_j = grid.cell(min_v), last_j = grid.cell(max_v);
+  const Long3 raw = raw_normal(mesh, triangle);
+  const std::int64_t facing = raw[axis] < 0 ? -1 : 1;
+  if (static_cast<double>(last_i - first_i + 1) * static_cast<double>(last_j - first_j + 1) > kMostCells) {
+    for (int level = 0; level <= kSampleLevels; ++level)
+      count[static_cast<std::size_t>(level)] = std::ldexp(0.5 * std::abs(static_cast<double>(raw[axis])) / (double{1} * spacing * spacing), -level);
+    return count;
   }
+  for (std::int64_t j = first_j; j <= last_j; ++j)
+    for (std::int64_t i = first_i; i <= last_i; ++i) {
+      const std::int64_t at_u = grid.u(i, j), at_v = grid.v(i, j);
+      bool inside = true;
+      for (int k = 0; k < 3 && inside; ++k) {
+        const Int3 &p = corners[k], &q = corners[(k + 1) % 3];
+        const std::int64_t along_u = facing * (std::int64_t{q[u]} - p[u]), along_v = facing * (std::int64_t{q[v]} - p[v]);
+        const std::int64_t side = along_u * (at_v - p[v]) - along_v * (at_u - p[u]);   // within 2^59
+        inside = side > 0 || (side == 0 && (along_v < 0 || (along_v == 0 && along_u > 0)));   // on an edge: where (ε, ε²) says
+      }
+      if (!inside) continue;
+      for (int level = SampleGrid::level(i, j); level >= 0; --level) count[static_cast<std::size_t>(level)] += 1;
+    }
   return count;
 }
 
@@ -306,18 +364,21 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   mesh.side_levels.clear();
   for (std::uint32_t s = 0; s < sides.count; ++s) {
     Side side{.triangles = std::span(order).subspan(begin[s], begin[s + 1] - begin[s])};
-    measure(mesh, side);
-    const double factor = factor_of(mesh, spacing, square, 0, side);
+    measure(mesh, spacing, square, side);
+    const double factor = is_narrow(square, side) ? 0 : factor_of(0, side);
     if (factor == 0) {
       place_extras(mesh, square, side);
       continue;
     }
-    if (const SideLevels levels = levels_of(mesh, spacing, square, factor, side); levels.coarsest != 0) {
+    if (const SideLevels levels = levels_of(square, factor, side); levels.coarsest != 0) {
       mesh.side_levels.push_back(levels);
       for (const std::uint32_t t : side.triangles) mesh.levels_of[t] = static_cast<std::uint32_t>(mesh.side_levels.size());
     }
-    for (const std::uint32_t t : side.triangles)
-      mesh.field_weight_q30[t] = factor == 1 ? mesh.sample_weight_q30[t] : weight_q30(factor * (mesh.sample_weight_q30[t] * 0x1p-30));
+    const Tilt tilt = tilt_of(mesh, factor, side);
+    for (const std::uint32_t t : side.triangles) {
+      const Vec3 raw(raw_normal(mesh, t));
+      mesh.field_weight_q30[t] = weight_q30(factor * std::clamp(tilt.at(raw / length(raw)), kLeastTilt, kMostTilt) * (mesh.sample_weight_q30[t] * 0x1p-30));
+    }
   }
   std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),
                    [](const ExtraSample& a, const ExtraSample& b) { return a.triangle < b.triangle; });

@@ -13,7 +13,7 @@ inline constexpr double kMaxBoundaryVoxels = 8e6;              ///< estimated, o
 inline constexpr double kMaxVoxelEntries = 128e6;              ///< estimated entries of the voxels' triangle lists (chosen: memory)
 inline constexpr double kMaxBricks = 16.0 * 1024 * 1024 - 2;   ///< of either grid: 8 bytes a brick and two entries more fit 128 MiB, the storage buffer every Vulkan device offers
 inline constexpr std::int32_t kSamplesPerVoxelSide = 4;        ///< default sample spacing: voxel / 4 (METHOD section 4)
-inline constexpr std::int32_t kMaxSamplesPerVoxelSide = 64;
+inline constexpr std::int32_t kMaxSamplesPerVoxelSide = 63;      ///< a voxel is reached into by at most 64 of its cells
 
 /// A body as the choice of the voxel size sees it.
 struct VoxelSubject {
@@ -26,7 +26,7 @@ struct VoxelSubject {
 Result<std::int32_t> choose_voxel_size(const VoxelSubject& mockup, const VoxelSubject& tool, double step_m,
                                        std::optional<double> asked_m);
 
-/// Sample spacing in steps. Error (kBadValue): not finite, under a step, under 1/64 of a voxel, or over 8 voxels.
+/// Sample spacing in steps. Error (kBadValue): not finite, under a step, under 1/63 of a voxel, or over 8 voxels.
 Result<std::int32_t> choose_sample_spacing(std::int32_t voxel_size, double step_m, std::optional<double> asked_m);
 
 }  // namespace palpate

@@ -144,6 +144,7 @@ Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, c
   const Metric metric{geometry_.tool_gyration_m};
   constexpr double kEnough = 1e-8, kEnoughShare = 1e-6;   // m, and of the way: 20 µN at 2 kN/m (chosen)
   constexpr int kMostTries = 10;                          // places along one step (chosen: a stiff wall is found to a thousandth of the step)
+  constexpr double kLevel = 0.1;                          // of the slope where a step begins: lower it need not get (chosen; Wolfe's second condition)
   constexpr double kNear = 1e-2;                          // of the way: from here on planes lead on by themselves (chosen)
   Anderson anderson(metric);
   Vec6 apart{}, rest = pull(at_pose.wrench, apart), image = next(device, apart), best = image;
@@ -155,7 +156,7 @@ Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, c
     if (!(metric.product(rest, step) > 0)) step = way;
     // `rest` is minus the slope of E + ½ spring. A step is taken that leads to half as much left or goes on downhill; else the lowest place is looked for along it
     // (regula falsi, Illinois): planes that are left too far are forgotten, and a step may go right through a wall.
-    double low = 0, low_slope = metric.product(rest, step), high = 0, high_slope = 0, share = 1;
+    double slope_here = metric.product(rest, step), low = 0, low_slope = slope_here, high = 0, high_slope = 0, share = 1;
     for (int tried = 1; out.evaluations < kMostEvaluations; ++tried) {
       const Vec6 there = plus(apart, share, step);
       if (auto done = evaluate(backend, ignored, apart_from(device, there, spring_)); !done) return done.error();
@@ -166,7 +167,7 @@ Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, c
         least = left_there;
         best = image_there;
       }
-      if (left_there <= (tried == 1 ? 0.5 : 0.8) * left || (slope >= 0 && high == 0) || tried == kMostTries || out.evaluations == kMostEvaluations) {
+      if (left_there <= (tried == 1 ? 0.5 : 0.8) * left || (slope >= 0 && high == 0) || std::fabs(slope) <= kLevel * slope_here || tried == kMostTries || out.evaluations == kMostEvaluations) {
         apart = there;
         rest = rest_there;
         image = image_there;
@@ -176,7 +177,7 @@ Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, c
       if (tried == 1 && left < kNear * metric.length(image)) {   // what planes alone say, for Anderson's method has been misled
         anderson.forget();
         step = way;
-        low_slope = metric.product(rest, step);
+        low_slope = slope_here = metric.product(rest, step);
         continue;
       }
       if (slope < 0) {

@@ -21,11 +21,6 @@ layout(scalar, set = 0, binding = 7) buffer Begin { uint32_t begins[]; };
 layout(scalar, set = 0, binding = 8) writeonly buffer Samples { uint32_t samples[]; };
 layout(push_constant, scalar) uniform Push { SampleListPush push; };
 
-int32_t floor_div(int32_t a, int32_t b) {
-  const int32_t q = a / b;
-  return q - int32_t(a < q * b);
-}
-
 #include "shaders/lib/cells.glsl"
 #include "shaders/lib/sample.glsl"
 
@@ -45,19 +40,18 @@ void main() {
   t.normal = raw_normal(t.a, t.b, t.c);
   uint32_t count = 0u;
   const uint32_t begin = EMIT != 0u ? begins[entry] : 0u;
-  const ivec2 low_seen = seen_along(t.axis, low);
-  const ivec2 grid = push.spacing * ivec2(-floor_div(-low_seen.x, push.spacing), -floor_div(-low_seen.y, push.spacing));
-  // Grid points of the voxel that lie in the triangle's box; at most 64 an axis, as a voxel is at most 64 spacings.
-  const ivec2 from = seen_along(t.axis, max(low, min(min(t.a, t.b), t.c)));
-  const ivec2 to = seen_along(t.axis, min(high, max(max(t.a, t.b), t.c)));
-  const ivec2 first = push.spacing * ivec2(-floor_div(-from.x, push.spacing), -floor_div(-from.y, push.spacing));
-  for (int32_t v = first.y; v <= to.y; v += push.spacing) {
-    for (int32_t u = first.x; u <= to.x; u += push.spacing) {
-      if (!grid_point_inside(t, ivec2(u, v))) continue;
-      const ivec3 point = sample_point(t, ivec2(u, v));
-      if (point[t.axis] < low[t.axis] || point[t.axis] > high[t.axis]) continue;
+  const ivec2 grid = cell_of_sample(seen_along(t.axis, low), push.spacing);
+  // Cells that reach into the voxel and into the triangle's box; at most 64 an axis, as a voxel is at most 63 spacings.
+  const ivec2 first = cell_of_sample(seen_along(t.axis, max(low, min(min(t.a, t.b), t.c))), push.spacing);
+  const ivec2 last = cell_of_sample(seen_along(t.axis, min(high, max(max(t.a, t.b), t.c))), push.spacing);
+  for (int32_t j = first.y; j <= last.y; ++j) {
+    for (int32_t i = first.x; i <= last.x; ++i) {
+      const ivec2 g = sample_of_cell(ivec2(i, j), push.spacing);
+      if (!grid_point_inside(t, g)) continue;
+      const ivec3 point = sample_point(t, g);
+      if (any(lessThan(point, low)) || any(greaterThan(point, high))) continue;
       if (EMIT != 0u) {
-        const uint32_t place = uint32_t((u - grid.x) / push.spacing) | uint32_t((v - grid.y) / push.spacing) << 6;
+        const uint32_t place = uint32_t(i - grid.x) | uint32_t(j - grid.y) << 6;
         const uint32_t height = uint32_t(point[t.axis] - low[t.axis]), at = begin - push.base + count;
         if (push.wide != 0u) {
           samples[2u * at] = height;

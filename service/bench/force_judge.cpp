@@ -62,7 +62,8 @@ Vec3 turn_between(const Quat& from, const Quat& to) {
   return sine > 0 ? v * (2 * std::atan2(sine, by.w) / sine) : 2.0 * v;
 }
 
-/// |A − Aᵀ| / |A + Aᵀ| by central differences; poses turn about the centre of mass.
+/// |A − Aᵀ| / |A + Aᵀ| by central differences; poses turn about the centre of mass. Small turns about two axes don't commute, so of a conservative torque, too,
+/// ∂T_i/∂θ_j − ∂T_j/∂θ_i is not 0 but ε_ijk T_k, which is left out.
 Result<double> antisymmetry(Asking& asking, const SceneGeometry& geometry, const Pose& pose) {
   const double step = 20e-6, rho = geometry.tool_gyration_m;   // about what the hand moves in a tick
   const Vec3 gc = geometry.tool_gc_m;
@@ -89,6 +90,10 @@ Result<double> antisymmetry(Asking& asking, const SceneGeometry& geometry, const
       a[i + 3][j] = (ends[1].torque[static_cast<int>(i)] - ends[0].torque[static_cast<int>(i)]) / (2 * step * rho);
     }
   }
+  const Result<Answer> here = asking.at(pose);
+  if (!here) return here.error();
+  const Vec3 torque = here->wrench.torque / (rho * rho);
+  for (std::size_t k = 0; k < 3; ++k) a[3 + (k + 1) % 3][3 + (k + 2) % 3] -= torque[static_cast<int>(k)];
   double odd = 0, even = 0;
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j) {

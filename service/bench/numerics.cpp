@@ -91,10 +91,10 @@ class NumericsBench {
     if (auto r = sweep("aspect", "length over width of the triangles", {1, 4, 16, 64, 256, 1024, 4096}, [](Extreme& e, double n) { e.strips = static_cast<int>(n); }); !r) return r;
     if (auto r = sweep("depth", "voxels", {0.001, 0.01, 0.1, 0.3, 1, 3, 5}, [](Extreme& e, double h) {
           e.depth = h * kVoxel;
-          e.spacing = std::max(kVoxel / 64, std::min(e.spacing, e.depth / 12));
+          e.spacing = std::max(kVoxel / 63, std::min(e.spacing, e.depth / 12));
         }); !r)
       return r;
-    if (auto r = sweep("sample_spacing", "voxels", {1.0 / 65, 1.0 / 64, 1.0 / 16, 1.0 / 4, 1, 2, 4}, [](Extreme& e, double s) { e.spacing = s * kVoxel; }); !r) return r;
+    if (auto r = sweep("sample_spacing", "voxels", {1.0 / 64, 1.0 / 63, 1.0 / 16, 1.0 / 4, 1, 2, 4}, [](Extreme& e, double s) { e.spacing = s * kVoxel; }); !r) return r;
     touching();
     delay();
     breaking_points();

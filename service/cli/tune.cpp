@@ -11,6 +11,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "model/voxel_size.h"
 #include "service/bench/error_sweep.h"
 #include "service/bench/output.h"
 #include "service/bench/scene_subject.h"
@@ -88,7 +89,7 @@ class Tune {
   ErrorSetting setting(Profile profile, double times, double spacing) const {
     ErrorSetting out{profile, "", 0, scene_.subject.settings, 0};
     out.geometry.voxel_size_m = scene_.voxel_m * times;
-    out.geometry.sample_spacing_m = std::max(spacing, scene_.voxel_m * times / 64);
+    out.geometry.sample_spacing_m = std::max(spacing, scene_.voxel_m * times / kMaxSamplesPerVoxelSide);
     return out;
   }
 

@@ -69,7 +69,7 @@ bool push_of(uint32_t item, out Push push) {
     point = work.point;
     id = work.static_id;
     const uint32_t axis = mockup_info[id] >> kInfoAxisShift & 3u;
-    const ivec2 ij = ivec2(point[(axis + 1u) % 3u], point[(axis + 2u) % 3u]) / scene.sample_spacing;
+    const ivec2 ij = cell_of_sample(ivec2(point[(axis + 1u) % 3u], point[(axis + 2u) % 3u]), scene.sample_spacing);
     weight = uint32_t(mockup_weight(id, mockup_weights[id], ij) >> 6);
   }
   const ivec3 at = tool_from_world(point);

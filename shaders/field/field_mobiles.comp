@@ -33,7 +33,7 @@ void list_extras(uint32_t mobile) {
   }
 }
 
-// The box of grid points: those in it and just outside are decided one by one later.
+// Of the cells that reach into the triangle's box; they are decided one by one later.
 void list_tiles(uint32_t mobile, uint32_t info) {
   const uvec3 corners = tool_triangles[mobile];
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];

@@ -70,15 +70,15 @@ void main() {
     t.axis = int(mockup_info[id] >> kInfoAxisShift & 3u);
     t.normal = raw_normal(t.a, t.b, t.c);
     if (all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) probe(t.a, id);
-    // Grid points of the voxel that lie in the triangle's box; at most 64 an axis, as a voxel is at most 64 spacings.
-    const ivec2 from = seen_along(t.axis, max(low, min(min(t.a, t.b), t.c)));
-    const ivec2 to = seen_along(t.axis, min(high, max(max(t.a, t.b), t.c)));
-    const ivec2 first = spacing * ivec2(-floor_div(-from.x, spacing), -floor_div(-from.y, spacing));
-    for (int32_t v = first.y; v <= to.y; v += spacing) {
-      for (int32_t u = first.x; u <= to.x; u += spacing) {
-        if (!grid_point_inside(t, ivec2(u, v))) continue;
-        const ivec3 point = sample_point(t, ivec2(u, v));
-        if (point[t.axis] >= low[t.axis] && point[t.axis] <= high[t.axis]) take(point, id);
+    // Cells that reach into the voxel and into the triangle's box; at most 64 an axis, as a voxel is at most 63 spacings.
+    const ivec2 first = cell_of_sample(seen_along(t.axis, max(low, min(min(t.a, t.b), t.c))), spacing);
+    const ivec2 last = cell_of_sample(seen_along(t.axis, min(high, max(max(t.a, t.b), t.c))), spacing);
+    for (int32_t j = first.y; j <= last.y; ++j) {
+      for (int32_t i = first.x; i <= last.x; ++i) {
+        const ivec2 g = sample_of_cell(ivec2(i, j), spacing);
+        if (!grid_point_inside(t, g)) continue;
+        const ivec3 point = sample_point(t, g);
+        if (all(greaterThanEqual(point, low)) && all(lessThanEqual(point, high))) take(point, id);
       }
     }
   }

@@ -20,7 +20,26 @@ ivec2 seen_along(int axis, ivec3 p) {
   return axis == 0 ? p.yz : (axis == 1 ? p.zx : p.xy);
 }
 
-// Whether the triangle has a sample at grid point g = (u, v).
+// 2^32 times the fractional part of n times the golden ratio.
+uint32_t golden(int32_t n) {
+  return uint32_t(n) * 2654435769u;
+}
+
+// The sample of cell ij, as (u, v).
+ivec2 sample_of_cell(ivec2 ij, int32_t spacing) {
+  uint32_t moved_u, moved_v, low;
+  umulExtended(golden(ij.y), uint32_t(spacing), moved_u, low);
+  umulExtended(golden(ij.x), uint32_t(spacing), moved_v, low);
+  return spacing * ij + ivec2(moved_u, moved_v);
+}
+
+// The cell that holds (u, v).
+ivec2 cell_of_sample(ivec2 g, int32_t spacing) {
+  const ivec2 q = g / spacing;
+  return q - ivec2(greaterThan(q * spacing, g));
+}
+
+// Whether the triangle has a sample at g = (u, v).
 bool grid_point_inside(SampledTriangle t, ivec2 g) {
   const ivec2 a = seen_along(t.axis, t.a), b = seen_along(t.axis, t.b), c = seen_along(t.axis, t.c);
   const int facing = sign_of(t.normal[t.axis]);
@@ -48,7 +67,7 @@ int32_t height_on_triangle(SampledTriangle t, ivec2 g) {
   return t.a[t.axis] + int32_t(q);
 }
 
-// The sample at grid point g.
+// The sample at g.
 ivec3 sample_point(SampledTriangle t, ivec2 g) {
   const int32_t h = height_on_triangle(t, g);
   return t.axis == 0 ? ivec3(h, g.x, g.y) : (t.axis == 1 ? ivec3(g.y, h, g.x) : ivec3(g.x, g.y, h));

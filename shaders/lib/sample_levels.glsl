@@ -3,11 +3,18 @@
 #ifndef PALPATE_LIB_SAMPLE_LEVELS
 #define PALPATE_LIB_SAMPLE_LEVELS
 #include "shaders/shared/frame_field.h"
+#include "shaders/lib/sample.glsl"
 
-// The last level that grid point ij is of.
-uint32_t level_of_point(ivec2 ij) {
-  const uvec2 halvings = min(uvec2(findLSB(ij)), uvec2(kMostSampleLevel));   // of 0: -1, so the most
-  return 2u * min(halvings.x, halvings.y) + (halvings.x == halvings.y ? 1u : 0u);
+// The last level that the sample of cell ij is of, at most kMostSampleLevel.
+uint32_t level_of_cell(ivec2 ij) {
+  for (uint32_t level = 0u; level < kMostSampleLevel; level += 2u) {
+    const ivec2 block = ij >> 1, within = ij & 1;
+    const ivec2 stands = ivec2(golden(block.y) >> 31, golden(block.x) >> 31);
+    if (all(notEqual(within, stands))) return level + 1u;
+    if (any(notEqual(within, stands))) return level;
+    ij = block;
+  }
+  return kMostSampleLevel;
 }
 
 // 256 log2(count), count > 0, straight between powers of two.
@@ -38,7 +45,7 @@ uint64_t extra_weight(uint32_t weights[kMostSampleLevel + 1u]) {
   uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij) {                                                                \
     const uint32_t place = LEVELS[triangle], now = frame_level(), part = now & 255u;                                         \
     if (place == 0u || now == 0u) return uint64_t(base);                                                                     \
-    const uint32_t level = level_of_point(ij);                                                                               \
+    const uint32_t level = level_of_cell(ij);                                                                               \
     return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) + uint64_t(part) * NAME##_at(base, place, level, (now >> 8) + 1u)) >> 8; \
   }
 #endif

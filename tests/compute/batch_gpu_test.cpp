@@ -195,7 +195,7 @@ testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeome
     bool same = true;
     for_triangles([&](std::uint32_t e, const exact::Corners& t) {
       const std::uint8_t axis = geometry.mockup.sample_axis[lists.ids[e]];
-      exact::for_samples(t, axis, geometry.sample_spacing, low, high, [&](const Int3& point) {
+      exact::for_samples(t, axis, geometry.sample_spacing, low, high, [&](const Int3& point, std::int64_t, std::int64_t) {
         put(point, e - lists.begin[voxel], axis);
         same = same && number < samples.count() && samples.sample(grid, axis, number) == point;
         ++number;
@@ -359,7 +359,7 @@ TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
     EXPECT_EQ(samples.entries.back(), HostSamples::kLongestList - 1);
     EXPECT_EQ(samples.owners.size(), HostSamples::kLongestList);   // of one corner
     EXPECT_EQ(samples.owners.back(), HostSamples::kLongestList - 1);
-    EXPECT_EQ(samples.count(), HostSamples::kLongestList);   // (40, 40) alone lies inside
+    EXPECT_EQ(samples.count(), 4 * HostSamples::kLongestList);   // of cells (1, 0), (0, 1), (2, 0) and (0, 2)
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <map>
 #include <random>
 #include <set>
@@ -33,24 +35,44 @@ TEST(Samples, APlateOfTwoAndOf20000TrianglesHasTheSame) {
   }
 }
 
-TEST(Samples, AreTheGridPointsOfAHalfOpenRectangle) {
-  const auto samples = samples_of(lattice_mesh_of(lattice_plate(Int3(-20, -10, 5), Int3(20, 10, 5), 1)), 5);
+/// The fractional part of n times the golden ratio. (The definition's 32 bits are off by n · 10^-10.)
+double golden(int n) {
+  const double times = n * (std::sqrt(5.0) - 1) / 2;
+  return times - std::floor(times);
+}
+
+TEST(Samples, AreOneACellMovedByGoldenParts) {
+  const auto samples = samples_of(lattice_mesh_of(lattice_plate(Int3(-200, -100, 5), Int3(200, 100, 5), 1)), 50);
   std::set<Key> expected;
-  for (int x = -20; x < 20; x += 5)
-    for (int y = -10; y < 10; y += 5) expected.emplace(x, y, 5);
+  for (int i = -4; i < 4; ++i)
+    for (int j = -2; j < 2; ++j) expected.emplace(50 * i + static_cast<int>(50 * golden(j)), 50 * j + static_cast<int>(50 * golden(i)), 5);
   ASSERT_EQ(samples.size(), expected.size());
   for (const auto& [point, times] : samples) EXPECT_TRUE(expected.count(point));
 }
 
-TEST(Samples, StayTheSameWhenTheTriangleMoves) {
-  // Anchored at the lattice's origin, not at the triangle: the grid does not move with it.
-  const auto here = samples_of(lattice_mesh_of(lattice_plate(Int3(-21, -21, 0), Int3(21, 21, 0), 1)), 7);
-  const auto there = samples_of(lattice_mesh_of(lattice_plate(Int3(-18, -19, 0), Int3(24, 23, 0), 1)), 7);
-  for (const auto& [point, times] : there) {
-    EXPECT_EQ(std::get<0>(point) % 7, 0);
-    EXPECT_EQ(std::get<1>(point) % 7, 0);
-  }
-  EXPECT_EQ(here.size(), there.size());
+TEST(Samples, LevelsAreNestedAndHalveEachTime) {
+  std::array<int, kSampleLevels + 1> count{};
+  for (int i = -32; i < 32; ++i)
+    for (int j = -32; j < 32; ++j)
+      for (int level = level_of({i, j}); level >= 0; --level) ++count[static_cast<std::size_t>(level)];
+  for (int level = 0; level <= kSampleLevels; ++level) EXPECT_EQ(count[static_cast<std::size_t>(level)], 64 * 64 >> level);
+  // Every block of a level's own cells has one of it, or two to a pair of blocks on a chessboard.
+  for (int a = 1; a <= kSampleLevels / 2; ++a)
+    for (int i = -32; i < 32; i += 1 << a)
+      for (int j = -32; j < 32; j += 1 << a) {
+        int of_block = 0;
+        for (int k = i; k < i + (1 << a); ++k)
+          for (int l = j; l < j + (1 << a); ++l) of_block += level_of({k, l}) >= 2 * a ? 1 : 0;
+        EXPECT_EQ(of_block, 1);
+      }
+}
+
+TEST(Samples, StayWhereTheyAreWhenTheTriangleMoves) {
+  // Anchored at the lattice's origin, not at the triangle.
+  const Box both{Int3(-18, -19, 0), Int3(20, 20, 0)};
+  const auto here = samples_of(lattice_mesh_of(lattice_plate(Int3(-21, -21, 0), Int3(21, 21, 0), 1)), 7, both);
+  EXPECT_GT(here.size(), 20u);
+  EXPECT_EQ(here, samples_of(lattice_mesh_of(lattice_plate(Int3(-18, -19, 0), Int3(24, 23, 0), 1)), 7, both));
 }
 
 TEST(Samples, ASlopedTriangleIsRoundedDown) {
@@ -83,7 +105,7 @@ TEST(Samples, AClosedMeshHasEachProjectedPointAsOftenUpAsDown) {
     for_each_sample(mesh, t, 10, kEverywhere, [&](const Int3& p) { above[{p.y, p.z}] += triangle_of(mesh, t).normal.x > 0 ? 1 : -1000; });
   }
   for (const auto& [place, count] : above) EXPECT_EQ(count, 1 - 1000);
-  EXPECT_EQ(above.size(), 288u);   // 2·12² points of the square |y| + |z| < 120, half of its border
+  EXPECT_NEAR(static_cast<double>(above.size()), 288, 34);   // cells of 10² in the square |y| + |z| < 120; its border crosses 68, and each may have its sample on either side
 }
 
 TEST(Samples, ClippingLeavesOutWhatIsOutsideAlone) {

@@ -1,7 +1,9 @@
 // What a force must be where parts fit: its way, no net force where sides cancel, couples that right, no steps, no work from round trips (docs/ACCURACY.md).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <initializer_list>
 #include <stdexcept>
 
 #include "compute/gpu_backend.h"
@@ -21,11 +23,14 @@ bool is_quick(const std::string& name) {
   return false;
 }
 
-/// What falls short (docs/ACCURACY.md): a grid of samples says forces well and their derivatives less so; strips narrower than the grid at an edge fall between its points.
-/// `palpate bench force` reports all of it. A case that no longer falls short has to leave this list.
-bool falls_short(const std::string& name, const std::string& sentence) {
-  if (sentence.starts_with("∂F is")) return true;
-  return name == "box off a table" && sentence.ends_with("of the work is lost round the loop");
+/// What falls short (docs/ACCURACY.md): contacts of few samples have a rough derivative, and where stiff ones lean on a soft spring, a thousandth of the force is a tenth of how it
+/// gives way across; strips much narrower than a cell lose work. `palpate bench force` reports all of it.
+bool falls_short(const std::string& name, double voxels, const std::string& sentence) {
+  const auto any_of = [&](std::initializer_list<const char*> starts) { return std::any_of(starts.begin(), starts.end(), [&](const char* one) { return name.starts_with(one); }); };
+  if (sentence.starts_with("∂F is"))
+    return any_of({"sphere over an edge", "plate of", "pin on a plate", "plate on a pin", "needle", "tool wholly swallowed", "peg of 240 sides tilted, play 3 mm"}) ||
+           (voxels != 1 && any_of({"peg of", "shaft in two bearings", "gears", "sheet", "open box"}));
+  return name == "box off a table" && voxels >= 1 && sentence.ends_with("of the work is lost round the loop");
 }
 
 class Forces : public testing::TestWithParam<ForceCaseMaker> {};
@@ -40,9 +45,9 @@ TEST_P(Forces, AreAsThePartsSay) {
     ASSERT_TRUE(figures) << figures.error().sentence;
     EXPECT_GT(figures->touching, 0u);
     for (const std::string& sentence : figures->broken)
-      if (!falls_short(subject.name, sentence)) ADD_FAILURE() << subject.name << ", voxels × " << voxels << ": " << sentence;
+      if (!falls_short(subject.name, voxels, sentence)) ADD_FAILURE() << subject.name << ", voxels × " << voxels << ": " << sentence;
     if (subject.name == "box off a table") {
-      EXPECT_GT(figures->loop_share, kMostLoop);
+      EXPECT_LT(figures->loop_share, 0.1);   // a strip of 0.3 mm under cells of 0.4 to 1 mm; on a square grid all of it would be lost
     }
   }
 }

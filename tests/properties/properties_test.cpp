@@ -70,8 +70,8 @@ bool same_wrench(const Answer& a, const Answer& b) {
   return a.response.wrench.force == b.response.wrench.force && a.response.wrench.torque == b.response.wrench.torque;
 }
 
-// Grids of voxels and samples are anchored at lattice 0: a shift by whole voxels, that is by whole spacings, takes them to themselves, and
-// everything else is made of differences. Sums of points move by their weight.
+// Grids of voxels are anchored at lattice 0: a shift by whole voxels takes them to themselves, and everything else is made of differences. Sums of points move by
+// their weight. Samples are moved within their cells by the cells' own numbers, so in `refined` what hangs on samples is another.
 TEST(Moving, BothByWholeVoxelsMovesTheAnswerAlong) {
   check("moving both by whole voxels", solids(false), [](const Question& question, const Answer& answer) {
     Mapping mapping;
@@ -80,7 +80,9 @@ TEST(Moving, BothByWholeVoxelsMovesTheAnswerAlong) {
     other.mockup = mapped(question.mockup, [&](const Int3& p) { return p + mapping.shift; });
     other.pose.translation += mapping.shift;
     const Answer along = ask(other);
-    RC_ASSERT(text_of(along, Extent::kAll) == text_of(answer, Extent::kAll, mapping));
+    const Extent extent = question.profile == Profile::kPaper ? Extent::kAll : Extent::kVoxels;
+    RC_ASSERT(text_of(along, extent) == text_of(answer, extent, mapping));
+    if (extent != Extent::kAll) return;
     // Force is made of d and n_c, which are the same. cp is a quotient of rounded sums, off by 3 · 2^-53 of itself, within 1024 steps, in
     // either answer; gc, the tool's lattice origin, is exact. A cross product takes two such products a component.
     RC_ASSERT(along.response.wrench.force == answer.response.wrench.force);
