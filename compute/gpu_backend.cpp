@@ -79,7 +79,9 @@ class GpuBackend final : public CollisionBackend {
 
   Result<VoxelPartition> partition(bool tool) const override {
     if (!scene_) return Error{ErrorCode::kInternal, "partition before prepare"};
-    return read_partition(*device_, tool ? scene_->tool.partition : scene_->mockup.partition);
+    const auto read = read_partition(*device_, tool ? scene_->tool.partition : scene_->mockup.partition);
+    if (!read) return read.error();
+    return dense(*read);
   }
 
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "compute/host_samples.h"
+#include "compute/scene/partition.h"
 #include "compute/vulkan_buffer.h"
 #include "compute/vulkan_device.h"
 #include "model/collision_backend.h"
@@ -97,6 +98,6 @@ Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, 
 Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene);
 
 /// Reads a partition back.
-Result<VoxelPartition> read_partition(VulkanDevice& device, const PartitionBuffers& partition);
+Result<Partition> read_partition(VulkanDevice& device, const PartitionBuffers& partition);
 
 }  // namespace palpate

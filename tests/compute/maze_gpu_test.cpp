@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "compute/native/prepare/partition_build.h"
 #include "compute/prepared_scene.h"
 #include "cpu_ref/cpu_backend.h"
 #include "tests/compute/gpu_test.h"
+#include "tests/compute/partition_equality.h"
 #include "tests/compute/module_run.h"
 #include "tests/equivalence/lattice_shapes.h"
 
@@ -85,11 +87,15 @@ class Mazes : public GpuTest {
       const auto scene = prepare_scene(device(), *geometry, Plan{}, {});
       ASSERT_TRUE(scene) << scene.error().sentence;
       for (const bool of_tool : {false, true}) {
-        const auto got = read_partition(device(), (of_tool ? scene->tool : scene->mockup).partition);
+        const auto on_device = read_partition(device(), (of_tool ? scene->tool : scene->mockup).partition);
+        const auto on_host = of_tool ? native::make_partition(geometry->tool, geometry->tool_grid, gpu::kToolVoxelGrowth, "tool", [] { return true; })
+                                     : native::make_partition(geometry->mockup, geometry->mockup_grid, 0, "mock-up", [] { return true; });
         const auto want = cpu->partition(of_tool);
-        ASSERT_TRUE(got && want);
-        ASSERT_TRUE(got->classes == want->classes) << (of_tool ? "tool" : "mock-up");
-        ASSERT_TRUE(got->list_begin == want->list_begin && got->list_triangles == want->list_triangles) << (of_tool ? "tool" : "mock-up");
+        ASSERT_TRUE(on_device && on_host && want);
+        expect_equal(*on_device, *on_host, of_tool ? "tool" : "mock-up");
+        const VoxelPartition got = dense(*on_device);
+        ASSERT_TRUE(got.classes == want->classes) << (of_tool ? "tool" : "mock-up");
+        ASSERT_TRUE(got.list_begin == want->list_begin && got.list_triangles == want->list_triangles) << (of_tool ? "tool" : "mock-up");
         internal_ += static_cast<std::uint64_t>(std::count(want->classes.begin(), want->classes.end(), VoxelClass::kInternal));
       }
       const HostSamples its = scene->samples ? *scene->samples : HostSamples{};

@@ -5,17 +5,19 @@
 #include <random>
 
 #include "compute/gpu_backend.h"
+#include "compute/native/prepare/partition_build.h"
 #include "compute/nearest_external.h"
 #include "compute/prepared_scene.h"
 #include "cpu_ref/cpu_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 #include "tests/compute/gpu_test.h"
+#include "tests/compute/partition_equality.h"
 
 namespace palpate {
 namespace {
 
-/// Both back ends prepare a mock-up and a tool. The GPU's partitions of both must be the reference's, bit for bit; each
+/// All engines prepare a mock-up and a tool. The partitions of both must be the same, bit for bit; each
 /// test then adds what is known without a reference.
 class Partition : public GpuTest {
  protected:
@@ -99,15 +101,20 @@ class Partition : public GpuTest {
  private:
   void compare(const PreparedScene& scene, const CollisionBackend& cpu, bool tool) {
     const char* body = tool ? "tool" : "mock-up";
-    auto got = read_partition(device(), (tool ? scene.tool : scene.mockup).partition);
-    ASSERT_TRUE(got) << got.error().sentence;
+    const auto on_device = read_partition(device(), (tool ? scene.tool : scene.mockup).partition);
+    ASSERT_TRUE(on_device) << on_device.error().sentence;
+    const auto on_host = tool ? native::make_partition(geometry_.tool, geometry_.tool_grid, gpu::kToolVoxelGrowth, body, [] { return true; })
+                              : native::make_partition(geometry_.mockup, geometry_.mockup_grid, 0, body, [] { return true; });
+    ASSERT_TRUE(on_host) << on_host.error().sentence;
+    expect_equal(*on_device, *on_host, body);
+    auto got = dense(*on_device);
     auto want = cpu.partition(tool);
     ASSERT_TRUE(want) << want.error().sentence;
-    EXPECT_TRUE(got->classes == want->classes) << body;
-    EXPECT_TRUE(got->boundary_voxels == want->boundary_voxels) << body;
-    EXPECT_TRUE(got->list_begin == want->list_begin) << body;
-    EXPECT_TRUE(got->list_triangles == want->list_triangles) << body;
-    (tool ? tool_partition_ : partition_) = std::move(*got);
+    EXPECT_TRUE(got.classes == want->classes) << body;
+    EXPECT_TRUE(got.boundary_voxels == want->boundary_voxels) << body;
+    EXPECT_TRUE(got.list_begin == want->list_begin) << body;
+    EXPECT_TRUE(got.list_triangles == want->list_triangles) << body;
+    (tool ? tool_partition_ : partition_) = std::move(got);
   }
 };
 

@@ -84,7 +84,7 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
         if (!of.brick_slot) continue;   // `paper` has none of the tool
         auto partition = read_partition(*device_, of);
         if (!partition) return partition.error();
-        (tool ? made.tool : made.mockup) = std::move(*partition);
+        (tool ? made.tool : made.mockup) = dense(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
       for (const bool without : {true, false}) {   // so that the pipelines of all ways are there to be swapped
@@ -110,7 +110,11 @@ Result<void> MutableDevice::query(const LatticePose& pose, const Ignored* ignore
 }
 
 Result<VoxelPartition> MutableDevice::partition(bool tool) const {
-  if (fresh_) return read_partition(*device_, tool ? fresh_->tool.partition : fresh_->mockup.partition);
+  if (fresh_) {
+    const auto read = read_partition(*device_, tool ? fresh_->tool.partition : fresh_->mockup.partition);
+    if (!read) return read.error();
+    return dense(*read);
+  }
   return tool ? kept_of_->tool : kept_of_->mockup;
 }
 
