@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "compute/gpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
 #include "driver/device_list.h"
 #include "model/one_line.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "compute/prepared_scene.h"
+#include "compute/gpu/prepare/prepared_scene.h"
 #include "model/generate.h"
 #include "model/geometry_build.h"
 

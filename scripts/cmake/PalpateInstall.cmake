@@ -23,7 +23,7 @@ install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LI
 install(DIRECTORY model driver service DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT library
   FILES_MATCHING PATTERN "*.h" PATTERN "service/server" EXCLUDE PATTERN "service/viewer" EXCLUDE PATTERN "service/report" EXCLUDE PATTERN "service/clients" EXCLUDE
   PATTERN "service/deploy" EXCLUDE)
-install(FILES compute/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute COMPONENT library)
+install(FILES compute/gpu/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute COMPONENT library)
 install(FILES cpu_ref/cpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/cpu_ref COMPONENT library)
 
 configure_package_config_file(scripts/cmake/palpateConfig.cmake.in "${PROJECT_BINARY_DIR}/palpateConfig.cmake"

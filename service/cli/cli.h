@@ -25,7 +25,7 @@ struct DeviceLine {
 
 /// What main.cpp plugs in; it alone knows back ends and drivers by name.
 struct Parts {
-  /// Must be called before any thread exists (compute/gpu_backend.h). `cached`: what it prepares is looked for and kept in `cache`.
+  /// Must be called before any thread exists (compute/gpu/gpu_backend.h). `cached`: what it prepares is looked for and kept in `cache`.
   std::function<Result<std::unique_ptr<CollisionBackend>>(bool cached)> make_gpu;
   std::function<std::unique_ptr<CollisionBackend>()> make_cpu;
   /// Keeps what loading and preparing worked out; null: nothing is kept.

@@ -11,12 +11,12 @@
 #include <string_view>
 #include <thread>
 
-#include "compute/gpu_backend.h"
-#include "compute/host_exact.h"
-#include "compute/prepare_estimate.h"
-#include "compute/prepare_on_host.h"
-#include "compute/prepared_scene.h"
-#include "compute/search_tables.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/scene/exact.h"
+#include "compute/scene/estimate.h"
+#include "compute/native/prepare/sample_lists.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/search_tables.h"
 #include "model/generate.h"
 #include "model/geometry_build.h"
 #include "model/path_file.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "compute/gpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 

@@ -1,4 +1,4 @@
-#include "compute/pair_filter.h"
+#include "compute/native/narrow_phase/pair_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "compute/listed_boxes.h"
-#include "compute/search_tables.h"
-#include "compute/turned_boxes.h"
+#include "compute/search/listed_boxes.h"
+#include "compute/scene/search_tables.h"
+#include "compute/search/turned_boxes.h"
 #include "tests/compute/geometry_cases.h"
 
 namespace palpate {

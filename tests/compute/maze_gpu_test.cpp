@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "compute/native/prepare/partition_build.h"
-#include "compute/prepared_scene.h"
+#include "compute/gpu/prepare/prepared_scene.h"
 #include "cpu_ref/cpu_backend.h"
 #include "tests/compute/gpu_test.h"
 #include "tests/compute/partition_equality.h"

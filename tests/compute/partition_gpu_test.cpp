@@ -1,13 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
-#include <random>
 
-#include "compute/gpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
 #include "compute/native/prepare/partition_build.h"
-#include "compute/nearest_external.h"
-#include "compute/prepared_scene.h"
+#include "compute/gpu/prepare/prepared_scene.h"
 #include "cpu_ref/cpu_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
@@ -35,7 +32,6 @@ class Partition : public GpuTest {
     compare(*scene, *cpu, false);
     compare(*scene, *cpu, true);
     EXPECT_EQ(scene->mockup.partition.has_internal, count(VoxelClass::kInternal) > 0);
-    scene_.emplace(std::move(*scene));
   }
 
   std::uint64_t count(VoxelClass c) const {
@@ -53,48 +49,7 @@ class Partition : public GpuTest {
     return partition_.classes[number];
   }
 
-  /// What the host finds nearest of all V_ext voxels is what a look at each of them says.
-  void expect_nearest_external(const std::vector<Int3>& points) const {
-    const PartitionBuffers& buffers = scene_->mockup.partition;
-    const VoxelGrid& g = partition_.grid;
-    HostCopy<std::uint32_t> slots;
-    HostCopy<gpu::Brick> bricks;
-    ASSERT_TRUE(slots.read(device(), buffers.brick_slot, partition_.classes.size() / 512));
-    ASSERT_TRUE(bricks.read(device(), buffers.bricks, buffers.grid.mixed_bricks));
-    for (const Int3& p : points) {
-      std::int64_t least = INT64_MAX;
-      Int3 want(0);
-      std::size_t number = 0;
-      for (Int3 v(0); v.z < g.voxels().z; ++v.z)
-        for (v.y = 0; v.y < g.voxels().y; ++v.y)
-          for (v.x = 0; v.x < g.voxels().x; ++v.x, ++number) {
-            if (partition_.classes[number] != VoxelClass::kExternal) continue;
-            const Int3 way = g.origin + v * g.size + g.size / 2 - p, twice = 2 * g.origin + (2 * v + 1) * g.size - 2 * p;
-            const std::int64_t distance = std::int64_t{twice.x} * twice.x + std::int64_t{twice.y} * twice.y + std::int64_t{twice.z} * twice.z;
-            if (distance >= least) continue;
-            least = distance;
-            want = way;
-          }
-      EXPECT_EQ(way_to_nearest_external(buffers.grid, slots, bricks, p), want) << p.x << ' ' << p.y << ' ' << p.z;
-    }
-  }
-  /// Points in the grid and up to half its size beyond, every other one on faces, edges or corners of voxels or in their middle.
-  std::vector<Int3> points_round_the_grid(std::size_t count) const {
-    const VoxelGrid& g = partition_.grid;
-    std::mt19937 random(7);
-    std::vector<Int3> points(count);
-    for (std::size_t i = 0; i < count; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const int size = g.voxels()[k] * g.size;
-        int& at = points[i][k];
-        at = g.origin[k] + std::uniform_int_distribution<int>(i % 4 == 0 ? -size / 2 : 0, i % 4 == 0 ? size + size / 2 : size)(random);
-        if (i % 2 == 0) at -= (at - g.origin[k]) % (i % 3 == 0 ? g.size : std::max(1, g.size / 2));
-      }
-    return points;
-  }
-
   SceneGeometry geometry_;
-  std::optional<PreparedScene> scene_;
   VoxelPartition partition_;        ///< the mock-up's
   VoxelPartition tool_partition_;
 
@@ -146,20 +101,15 @@ TEST_F(Partition, OfNestedShellsCountsWindingsNotParity) {
   EXPECT_EQ(at(Vec3(0.153, 0.003, 0.003)), VoxelClass::kInternal);
 }
 
-TEST_F(Partition, TellsTheNearestExternalVoxelOfAnyPoint) {
-  // Bricks of every kind: in the middle of the ball some that are V_int as a whole, in the hollow of the second V_ext ones far from the border.
-  prepare(solids::sphere(0.2, 24, 12), 0.0045);
-  expect_nearest_external(points_round_the_grid(60));
-  Mesh mesh = solids::box(Vec3(-0.125), Vec3(0.125));
+TEST_F(Partition, OfAHollowHasExternalVoxelsFarFromTheBorder) {
+  Mesh both;
+  solids::append(both, solids::box(Vec3(-0.125), Vec3(0.125)), "wall");
   Mesh hollow = solids::box(Vec3(-0.0625, -0.0625, -0.03125), Vec3(0.0625));
   for (auto& t : hollow.triangles) std::swap(t[0], t[1]);
-  Mesh both;
-  solids::append(both, mesh, "wall");
   solids::append(both, hollow, "hollow, facing inwards");
   prepare(both, 1.0 / 256);
   EXPECT_EQ(at(Vec3(0)), VoxelClass::kExternal);
-  expect_nearest_external(points_round_the_grid(60));
-  expect_nearest_external({Int3(0), Int3(1, 0, 0), (geometry_.mockup.box_min + geometry_.mockup.box_max) >> 1});
+  EXPECT_EQ(at(Vec3(-0.09)), VoxelClass::kInternal);
 }
 
 TEST_F(Partition, OfOverlappingBoxesIsInsideInTheOverlapToo) {

@@ -1,7 +1,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "compute/host_copy.h"
+#include "compute/gpu/host_copy.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
 

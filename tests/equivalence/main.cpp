@@ -8,7 +8,7 @@
 #include <iostream>
 #include <map>
 
-#include "compute/gpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
 #include "tests/equivalence/case_run.h"
 #include "tests/equivalence/hashes_file.h"

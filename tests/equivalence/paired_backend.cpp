@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "compute/gpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
 #include "tests/cpu_ref/bench_backend.h"
 #include "tests/equivalence/contacts_difference.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "compute/gpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "compute/frame_capacity.h"
+#include "compute/gpu/frame/capacity.h"
 #include "tests/faults/fault_scene.h"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "compute/frame_capacity.h"
+#include "compute/gpu/frame/capacity.h"
 
 namespace palpate::mutation {
 namespace {

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "compute/frame.h"
-#include "compute/gpu_backend.h"
-#include "compute/prepared_scene.h"
-#include "compute/vulkan_device.h"
-#include "compute/vulkan_pipeline.h"
+#include "compute/gpu/frame/frame.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/vulkan/device.h"
+#include "compute/vulkan/pipeline.h"
 #include "model/collision_backend.h"
 
 namespace palpate::mutation {

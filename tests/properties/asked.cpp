@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "compute/gpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/cpu_backend.h"
 #include "model/geometry_build.h"
 #include "model/patches.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "compute/host_exact.h"
-#include "compute/host_shares.h"
+#include "compute/scene/exact.h"
+#include "compute/scene/shares.h"
 #include "compute/native/prepare/partition_build.h"
 
 namespace palpate::native {

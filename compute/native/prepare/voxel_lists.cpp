@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "compute/host_exact.h"
-#include "compute/host_shares.h"
+#include "compute/scene/exact.h"
+#include "compute/scene/shares.h"
 #include "compute/native/prepare/partition_build.h"
 #include "shaders/shared/prepare.h"
 

@@ -1,0 +1,189 @@
+#include "compute/gpu/prepare/prepared_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compute/gpu/prepare/partition.h"
+#include "compute/gpu/prepare/samples.h"
+#include "compute/gpu/prepare/steps.h"
+#include "compute/scene/search_tables.h"
+#include "model/field.h"
+#include "shaders/shared/frame_field.h"
+
+namespace palpate {
+namespace {
+
+/// A mesh's extra samples as shaders read them.
+std::vector<gpu::ExtraSample> extras_of(const LatticeMesh& mesh) {
+  std::vector<gpu::ExtraSample> out;
+  out.reserve(mesh.extra_samples.size());
+  for (const ExtraSample& extra : mesh.extra_samples) {
+    gpu::ExtraSample& sample = out.emplace_back(gpu::ExtraSample{extra.triangle, extra.point, {extra.weight_q30}});
+    std::ranges::copy(extra.coarse_q30, sample.weights + 1);
+  }
+  return out;
+}
+
+/// A mesh's sample levels as shaders read them.
+std::vector<std::uint32_t> levels_of(const LatticeMesh& mesh) {
+  static_assert(kSampleLevels == gpu::kMostSampleLevel);
+  std::vector<std::uint32_t> out = mesh.levels_of;
+  for (const SideLevels& side : mesh.side_levels) {
+    out.push_back(side.coarsest);
+    out.insert(out.end(), side.factor_q30.begin(), side.factor_q30.end());
+  }
+  return out;
+}
+
+/// Puts a mesh on the device as it is.
+BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool mockup, bool refined) {
+  static const std::vector<std::uint32_t> none{0};
+  BodyBuffers out;
+  out.vertices = steps.filled("vertices", mesh.vertices);
+  out.triangles = steps.filled("triangles", mesh.triangles);
+  std::vector<std::uint32_t> info(mesh.triangles.size());
+  for (std::size_t i = 0; i < info.size(); ++i)
+    info[i] = mesh.flags[i] | static_cast<std::uint32_t>(mesh.sample_axis[i]) << gpu::kInfoAxisShift;
+  if (refined)
+    for (const ExtraSample& extra : mesh.extra_samples) info[extra.triangle] |= gpu::kInfoHasExtra;
+  out.triangle_info = steps.filled("flags of triangles", info);
+  out.unit_normal = steps.filled("normals", mesh.unit_normal_q30);
+  out.field_weight = steps.filled("weights of samples", refined ? mesh.field_weight_q30 : none);
+  out.patch = steps.filled("patches", mockup && refined ? mesh.patch : none);
+  out.extras = steps.filled("extra samples", refined ? extras_of(mesh) : std::vector<gpu::ExtraSample>());
+  out.levels = steps.filled("levels of samples", refined ? levels_of(mesh) : none);
+  out.neighbour_begin = steps.filled("neighbours", mockup ? mesh.neighbour_begin : none);
+  out.neighbours = steps.filled("neighbours", mockup ? mesh.neighbours : none);
+  return out;
+}
+
+void upload_bodies(PrepareSteps& steps, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out) {
+  const bool refined = plan.profile == Profile::kRefined;
+  out.mockup = upload_body(steps, geometry.mockup, true, refined);
+  out.tool = upload_body(steps, geometry.tool, false, refined);
+}
+
+gpu::BodyConstants constants_of(const LatticeMesh& mesh, const BodyBuffers& body) {
+  gpu::BodyConstants out{};
+  out.vertices = static_cast<std::uint32_t>(mesh.vertices.size());
+  out.triangles = static_cast<std::uint32_t>(mesh.triangles.size());
+  out.closed = mesh.closed ? 1 : 0;
+  out.has_internal = body.partition.has_internal ? 1 : 0;
+  out.grid = body.partition.grid;
+  return out;
+}
+
+/// Buffers of a partition that is not made: each can be bound.
+void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
+  for (VulkanBuffer* buffer :
+       {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) {
+    *buffer = steps.buffer("unused", 1);
+    if (steps.ok()) steps.fill(*buffer, 0);
+  }
+}
+
+void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
+  steps.progress("search", 0.95);
+  if (!steps.ok()) return;
+  auto made = SearchTables::make(steps.device(), geometry, out.mockup.partition, [&] {
+    steps.progress("search", 0.95);
+    return steps.ok();
+  });
+  if (made)
+    out.search = std::move(*made);
+  else
+    steps.fail(made.error());
+}
+
+}  // namespace
+
+std::uint64_t PreparedScene::memory_bytes() const {
+  std::uint64_t sum = 0;
+  for_each_buffer(*this, [&](const VulkanBuffer& buffer) { sum += buffer.bytes(); });
+  return sum + (samples ? samples->bytes() : 0);
+}
+
+Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out) {
+  const Progress nobody;
+  PrepareSteps steps(device, nobody);
+  upload_bodies(steps, geometry, plan, out);
+  if (!steps.ok()) return steps.error();
+  return {};
+}
+
+Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene) {
+  PreparedScene out;
+  out.constants = scene.constants;
+  out.samples = scene.samples;
+  out.search = scene.search;
+  std::vector<const PartitionBuffers*> partitions;
+  for_each_partition(scene, [&](const PartitionBuffers& p) { partitions.push_back(&p); });
+  std::size_t i = 0;
+  for_each_partition(out, [&](PartitionBuffers& p) {
+    const PartitionBuffers& from = *partitions[i++];
+    p.grid = from.grid;
+    p.longest_list = from.longest_list;
+    p.has_internal = from.has_internal;
+  });
+  std::vector<const VulkanBuffer*> buffers;
+  for_each_buffer(scene, [&](const VulkanBuffer& buffer) { buffers.push_back(&buffer); });
+  i = 0;
+  std::optional<Error> failed;
+  for_each_buffer(out, [&](VulkanBuffer& buffer) {
+    const VulkanBuffer& from = *buffers[i++];
+    if (failed || !from) return;
+    auto made = VulkanBuffer::alias(device, from);
+    if (made)
+      buffer = std::move(*made);
+    else
+      failed = made.error();
+  });
+  if (failed) return *failed;
+  return out;
+}
+
+Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
+                                    const Progress& progress) {
+  const bool refined = plan.profile == Profile::kRefined;
+  PrepareSteps steps(device, progress);
+  PreparedScene out;
+  upload_bodies(steps, geometry, plan, out);
+
+  const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
+  classify(steps, geometry.mockup, pairs, out.mockup);
+  make_search_tables(steps, geometry, out);
+  if (refined) {
+    const VoxelPairs tool_pairs =
+        build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);
+    classify(steps, geometry.tool, tool_pairs, out.tool);
+    steps.progress("samples", 0.95);
+    refine_tool(steps, geometry, out);
+    if (geometry.tool.closed || out.tool.partition.has_internal) list_samples(steps, geometry, pairs, out);
+  } else {
+    make_empty(steps, out.tool.partition);
+  }
+
+  out.constants.mockup = constants_of(geometry.mockup, out.mockup);
+  out.constants.tool = constants_of(geometry.tool, out.tool);
+  out.constants.tool_radius = geometry.tool_radius;
+  out.constants.lever_shift = lever_shift(geometry.tool_radius);
+  if (refined) {
+    out.constants.mockup_extras = static_cast<std::uint32_t>(geometry.mockup.extra_samples.size());
+    out.constants.tool_extras = static_cast<std::uint32_t>(geometry.tool.extra_samples.size());
+  }
+  out.constants.sample_spacing = geometry.sample_spacing;
+  out.constants.tool_sample_spacing = geometry.tool_sample_spacing;
+  out.constants.contact_samples = geometry.contact_samples;
+  out.constants.refined = refined ? 1 : 0;
+  out.constants.fine = out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid;
+  out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
+  steps.progress("prepared", 1);
+  if (!steps.ok()) return steps.error();
+  return out;
+}
+
+}  // namespace palpate
