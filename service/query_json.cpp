@@ -158,6 +158,8 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   }
   json.key("truncated");
   json.boolean(contacts.truncated);
+  json.key("engine");
+  json.text(contacts.engine);
   json.key("time_us");
   json.open('{');
   json.key("total");

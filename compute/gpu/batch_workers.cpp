@@ -1,12 +1,9 @@
 #include "compute/gpu/batch_workers.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace palpate {
 namespace {
-
-constexpr std::size_t kMostAtOnce = 8;   // poses that a thread takes at a time (chosen: less handing over; few, so that all end together)
 
 /// Answers a pose, with more room where the frame has too little.
 Result<void> answer_pose(Frame& frame, const LatticePose& pose, Contacts& out) {
@@ -38,18 +35,14 @@ Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& opt
     out->helpers_.push_back(std::move(helper));
   }
   // Threads last: making a device reads the environment.
-  for (const auto& helper : out->helpers_) helper->thread = std::thread([&workers = *out, &frame = *helper->frame] { workers.serve(frame); });
+  std::vector<PoseThreads::Answer> answers;
+  for (const auto& helper : out->helpers_) answers.push_back([&frame = *helper->frame](const LatticePose& pose, Contacts& contacts) { return answer_pose(frame, pose, contacts); });
+  out->threads_.emplace(std::move(answers));
   return out;
 }
 
 BatchWorkers::~BatchWorkers() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  begun_.notify_all();
-  for (const auto& helper : helpers_)
-    if (helper->thread.joinable()) helper->thread.join();
+  threads_.reset();
   // Frames go before the scenes they name, scenes before their devices.
   for (const auto& helper : helpers_) {
     helper->frame.reset();
@@ -63,57 +56,8 @@ std::uint64_t BatchWorkers::memory_bytes() const {
   return sum;
 }
 
-/// Takes poses until none is left.
-void BatchWorkers::work(Frame& frame) {
-  const std::size_t threads = helpers_.size() + 1;
-  for (;;) {
-    std::size_t first = 0, last = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      if (next_ == poses_.size()) return;
-      first = next_;
-      last = next_ += std::clamp<std::size_t>((poses_.size() - next_) / (2 * threads), 1, kMostAtOnce);
-    }
-    for (std::size_t i = first; i < last; ++i) {
-      auto answered = answer_pose(frame, poses_[i], out_[i]);
-      if (answered) continue;
-      const std::lock_guard lock(mutex_);
-      if (outcome_) outcome_ = std::move(answered);
-      next_ = poses_.size();
-      return;
-    }
-  }
-}
-
-void BatchWorkers::serve(Frame& frame) {
-  std::uint64_t seen = 0;
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    begun_.wait(lock, [&] { return stop_ || round_ != seen; });
-    if (stop_) return;
-    seen = round_;
-    lock.unlock();
-    work(frame);
-    lock.lock();
-    if (--busy_ == 0) finished_.notify_one();
-  }
-}
-
 Result<void> BatchWorkers::answer(Frame& own, std::span<const LatticePose> poses, std::span<Contacts> out) {
-  {
-    const std::lock_guard lock(mutex_);
-    poses_ = poses;
-    out_ = out;
-    next_ = 0;
-    outcome_ = {};
-    busy_ = helpers_.size();
-    ++round_;
-  }
-  begun_.notify_all();
-  work(own);
-  std::unique_lock lock(mutex_);
-  finished_.wait(lock, [&] { return busy_ == 0; });
-  return outcome_;
+  return threads_->answer([&](const LatticePose& pose, Contacts& contacts) { return answer_pose(own, pose, contacts); }, poses, out);
 }
 
 }  // namespace palpate

@@ -1,21 +1,19 @@
 #pragma once
-#include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <span>
-#include <thread>
 #include <vector>
 
 #include "compute/gpu/frame/frame.h"
 #include "compute/gpu/gpu_backend.h"
 #include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/pose_threads.h"
 #include "compute/vulkan/device.h"
 
 namespace palpate {
 
-/// Threads that answer poses of a batch beside the caller's, each with a frame of its own, all on one scene. Where what a frame does runs on the thread
+/// Frames that answer poses of a batch beside the caller's, each on a thread of its own, all on one scene. Where what a frame does runs on the thread
 /// that asks (lavapipe), each has a device, too, and the devices share the scene in host memory (VulkanDevice::shares_memory): a thread is a core's worth.
 /// Elsewhere all frames are the one device's: while one waits for it others search, so that several are under way. One caller at a time.
 class BatchWorkers {
@@ -38,22 +36,11 @@ class BatchWorkers {
     std::unique_ptr<VulkanDevice> device;   ///< where each has one, with …
     PreparedScene scene;                    ///< … what it has of the scene
     std::unique_ptr<Frame> frame;
-    std::thread thread;
   };
   BatchWorkers() = default;
-  void work(Frame& frame);
-  void serve(Frame& frame);
 
   std::vector<std::unique_ptr<Helper>> helpers_;
-  std::mutex mutex_;
-  std::condition_variable begun_, finished_;
-  bool stop_ = false;
-  std::uint64_t round_ = 0;       ///< batches begun
-  std::size_t busy_ = 0;          ///< helpers at work on it
-  std::span<const LatticePose> poses_;
-  std::span<Contacts> out_;
-  std::size_t next_ = 0;
-  Result<void> outcome_;
+  std::optional<PoseThreads> threads_;   ///< of the helpers
 };
 
 }  // namespace palpate

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kWorthHelpers = 128;   // poses of all batches so far from which on threads are set up for them (chosen)
 constexpr unsigned kMostHelpers = 7;         // each takes a frame's memory (chosen)
 
-/// The Vulkan back end: a device, the scene on it, and the frame that answers queries.
+/// The device engine: a device, the scene on it, and the frame that answers queries.
 class GpuBackend final : public CollisionBackend {
  public:
   GpuBackend(std::unique_ptr<VulkanDevice> device, const GpuOptions& options)
@@ -65,10 +65,7 @@ class GpuBackend final : public CollisionBackend {
     batched_ += poses.size();
     if (!workers_ && !no_workers_ && batched_ >= kWorthHelpers) set_helpers_up();
     if (!workers_ || poses.size() < 2) return CollisionBackend::query_batch(poses, out);
-    frame_->share(false);   // the other processors have poses of their own
-    auto answered = workers_->answer(*frame_, poses, out);
-    frame_->share(true);
-    if (!answered) return answered;
+    if (auto answered = workers_->answer(*frame_, poses, out); !answered) return answered;
     return device_->check_guards();
   }
 
@@ -105,7 +102,6 @@ class GpuBackend final : public CollisionBackend {
     auto frame = Frame::create(*device_, *geometry_, *scene_, options_.first_capacity, plan);
     if (!frame) return frame.error();
     frame_ = std::move(*frame);
-    frame_->share(true);
     return device_->check_guards();
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -18,6 +19,7 @@ class HostCopy {
   /// `count` entries from the beginning. Allocates.
   Result<void> read(VulkanDevice& device, const VulkanBuffer& buffer, std::size_t count) {
     copy_.reset();
+    count_ = count;
     data_ = buffer.as<const T>();
     if (data_ != nullptr || count == 0) return {};
     auto& known = device.host_copies[buffer.handle()];
@@ -31,11 +33,12 @@ class HostCopy {
     data_ = reinterpret_cast<const T*>(copy_->data());
     return {};
   }
-  const T& operator[](std::size_t i) const { return data_[i]; }
+  std::span<const T> all() const { return {data_, count_}; }
 
  private:
   std::shared_ptr<std::vector<std::uint64_t>> copy_;
   const T* data_ = nullptr;
+  std::size_t count_ = 0;
 };
 
 }  // namespace palpate

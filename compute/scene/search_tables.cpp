@@ -5,10 +5,8 @@
 #include <numeric>
 #include <utility>
 
-#include "compute/gpu/host_copy.h"
 #include "compute/scene/exact.h"
 #include "compute/scene/shares.h"
-#include "compute/search/turned_boxes.h"
 #include "shaders/shared/frame.h"
 
 namespace palpate {
@@ -18,38 +16,21 @@ constexpr std::uint32_t kBricksAShare = 64;   // chosen: milliseconds
 
 using Box = std::array<std::int32_t, 6>;
 
-/// The mock-up's lists, for make_boxes().
-struct Lists {
-  gpu::GridConstants grid{};
-  HostCopy<std::uint32_t> mixed_brick, begin, triangles;
-  HostCopy<gpu::Brick> bricks;
-
-  Result<void> read(VulkanDevice& device, const PartitionBuffers& from) {
-    grid = from.grid;
-    if (auto r = mixed_brick.read(device, from.mixed_brick, grid.mixed_bricks); !r) return r;
-    if (auto r = bricks.read(device, from.bricks, grid.mixed_bricks); !r) return r;
-    if (auto r = begin.read(device, from.list_begin, std::size_t{grid.boundary_voxels} + 1); !r) return r;
-    return triangles.read(device, from.list_triangles, grid.list_entries);
-  }
-};
-
 /// Boxes of what the voxels of a mixed brick list. A product's rounding is far less than the steps by which a tool triangle's box is grown.
-void make_boxes(const LatticeMesh& mesh, const Lists& lists, std::uint32_t slot, std::vector<std::uint8_t>& boxes) {
+void make_boxes(const LatticeMesh& mesh, const PartitionView& lists, std::uint32_t slot, std::vector<std::uint8_t>& boxes) {
   const gpu::GridConstants& grid = lists.grid;
   const double per_part = static_cast<double>(kVoxelParts) / grid.size;
   const auto part = [&](std::int32_t at) { return static_cast<std::uint8_t>(std::clamp(at, 0, grid.size - 1) * per_part); };
-  const auto nx = static_cast<std::uint32_t>(grid.bricks.x), ny = static_cast<std::uint32_t>(grid.bricks.y);
-  const std::uint32_t place = lists.mixed_brick[slot];
-  const Int3 brick(place % nx, place / nx % ny, place / (nx * ny));
+  const Int3 brick = brick_at(grid.bricks, lists.mixed_brick[slot]);
   const gpu::Brick& voxels = lists.bricks[slot];
   for (std::uint32_t word = 0; word < 16; ++word) {
     std::uint32_t boundary = voxels.first[word];
     for (std::uint32_t rest = voxels.boundary[word]; rest != 0; rest &= rest - 1, ++boundary) {
       const auto bit = static_cast<std::int32_t>(word << 5) + std::countr_zero(rest);
       const Int3 low = grid.origin + grid.size * (8 * brick + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
-      const std::size_t begin = lists.begin[boundary], count = lists.begin[boundary + 1] - begin;
+      const std::size_t begin = lists.list_begin[boundary], count = lists.list_begin[boundary + 1] - begin;
       for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t id = lists.triangles[begin + i];
+        const std::uint32_t id = lists.list_triangles[begin + i];
         const exact::Box box = exact::box_of({mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)});
         for (std::size_t k = 0; k < 3; ++k) {
           const int axis = static_cast<int>(k);
@@ -101,21 +82,16 @@ std::vector<Box> find_parts(const LatticeMesh& mockup, std::int32_t tool_radius)
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> SearchTables::boxes_of(VulkanDevice& device, const LatticeMesh& mesh, const PartitionBuffers& partition) {
-  Lists lists;
-  if (auto r = lists.read(device, partition); !r) return r.error();
-  std::vector<std::uint8_t> boxes(6 * std::size_t{lists.grid.list_entries} + kBoxesAtOnce);
-  for (std::uint32_t slot = 0; slot < lists.grid.mixed_bricks; ++slot) make_boxes(mesh, lists, slot, boxes);
+std::vector<std::uint8_t> SearchTables::boxes_of(const LatticeMesh& mesh, const PartitionView& partition) {
+  std::vector<std::uint8_t> boxes(6 * std::size_t{partition.grid.list_entries} + kBoxesAtOnce);
+  for (std::uint32_t slot = 0; slot < partition.grid.mixed_bricks; ++slot) make_boxes(mesh, partition, slot, boxes);
   return boxes;
 }
 
-Result<std::shared_ptr<const SearchTables>> SearchTables::make(VulkanDevice& device, const SceneGeometry& geometry, const PartitionBuffers& mockup,
-                                                               const std::function<bool()>& go_on) {
-  Lists lists;
-  if (auto r = lists.read(device, mockup); !r) return r.error();
+std::shared_ptr<const SearchTables> SearchTables::make(const SceneGeometry& geometry, const PartitionView& mockup, const std::function<bool()>& go_on) {
   auto out = std::make_shared<SearchTables>();
-  out->boxes.resize(6 * std::size_t{lists.grid.list_entries} + kBoxesAtOnce);
-  const std::uint32_t bricks = lists.grid.mixed_bricks, shares = (bricks + kBricksAShare - 1) / kBricksAShare;
+  out->boxes.resize(6 * std::size_t{mockup.grid.list_entries} + kBoxesAtOnce);
+  const std::uint32_t bricks = mockup.grid.mixed_bricks, shares = (bricks + kBricksAShare - 1) / kBricksAShare;
   // The parts are one share, and the longest: the first.
   const bool done = in_shares(
       shares + 1,
@@ -124,13 +100,11 @@ Result<std::shared_ptr<const SearchTables>> SearchTables::make(VulkanDevice& dev
           out->parts = find_parts(geometry.mockup, geometry.tool_radius);
           return;
         }
-        for (std::uint32_t slot = (share - 1) * kBricksAShare; slot < std::min(share * kBricksAShare, bricks); ++slot)
-          make_boxes(geometry.mockup, lists, slot, out->boxes);
+        for (std::uint32_t slot = (share - 1) * kBricksAShare; slot < std::min(share * kBricksAShare, bricks); ++slot) make_boxes(geometry.mockup, mockup, slot, out->boxes);
       },
       [&](std::uint32_t) { return go_on(); });
   if (done) out->triangles = TriangleTree::make(geometry.mockup, go_on);
-  if (!done || !go_on()) return std::shared_ptr<const SearchTables>();
-  return std::shared_ptr<const SearchTables>(std::move(out));
+  return done && go_on() ? out : nullptr;
 }
 
 }  // namespace palpate

@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "compute/gpu/host_copy.h"
-#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
 #include "model/vector.h"
 
 namespace palpate {
@@ -36,16 +35,8 @@ class BrickBits {
 
   enum class Of { kOccupied, kInternal };   ///< not V_ext; V_int
 
-  /// Reads the partition back from the device; allocates.
-  Result<void> read(VulkanDevice& device, const PartitionBuffers& from, Of of) {
-    const Int3 size = from.grid.bricks;
-    std::vector<std::uint32_t> slots(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
-    std::vector<gpu::Brick> bricks(from.grid.mixed_bricks);
-    if (auto r = download(device, from.brick_slot, 0, slots.data(), slots.size() * 4); !r) return r;
-    if (auto r = download(device, from.bricks, 0, bricks.data(), bricks.size() * sizeof bricks[0]); !r) return r;
-    make(size, std::move(slots), bricks, of);
-    return {};
-  }
+  /// Allocates.
+  void make(const PartitionView& from, Of of) { make(from.grid.bricks, {from.brick_slot.begin(), from.brick_slot.end()}, from.bricks, of); }
   /// `size` in bricks; `slots` as brick_slot has them.
   void make(const Int3& size, std::vector<std::uint32_t> slots, std::span<const gpu::Brick> bricks, Of of) {
     size_ = size;

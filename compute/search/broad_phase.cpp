@@ -41,27 +41,20 @@ struct BroadPhase::Search {
   VoxelTurn voxels;
 };
 
-Result<BroadPhase> BroadPhase::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const RunTree& runs) {
-  const PartitionBuffers& mockup = scene.mockup.partition;
+BroadPhase BroadPhase::make(const SceneGeometry& geometry, const SceneTables& scene, const RunTree& runs) {
   BroadPhase out;
   out.tree_ = &runs;
   out.order_ = runs.order();
   out.has_inside_ = scene.constants.refined != 0 && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
-  auto pairs = NearPairs::make(device, scene);
-  if (!pairs) return pairs.error();
-  out.pairs_ = std::move(*pairs);
+  out.pairs_ = NearPairs::make(scene);
   out.seen_[0].resize(geometry.mockup.triangles.size());
   out.statics_ = geometry.mockup.triangles.size();
-  if (out.has_inside_) {
-    auto samples = NearSamples::make(device, geometry, scene);
-    if (!samples) return samples.error();
-    out.samples_ = std::move(*samples);
-  }
+  if (out.has_inside_) out.samples_ = NearSamples::make(geometry, scene);
   out.inside_margin_ = 1.75 * geometry.tool_grid.size + 16;   // a grown voxel's diagonal
   out.make_runs(geometry.tool);
   out.tool_radius_ = geometry.tool_radius;
-  if (auto r = out.read_occupancy(device, mockup); !r) return r.error();
+  out.make_occupancy(scene.mockup);
   out.parts_ = scene.search->parts;
   return out;
 }
@@ -87,13 +80,12 @@ void BroadPhase::make_runs(const LatticeMesh& tool) {
   }
 }
 
-Result<void> BroadPhase::read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup) {
+void BroadPhase::make_occupancy(const PartitionView& mockup) {
   grid_ = mockup.grid;
   per_voxel_ = 1.0 / grid_.size;
-  if (auto r = occupied_.emplace_back().read(device, mockup, BrickBits::Of::kOccupied); !r) return r;
+  occupied_.emplace_back().make(mockup, BrickBits::Of::kOccupied);
   cubes_.make(occupied_.front());
   while (std::max({occupied_.back().size().x, occupied_.back().size().y, occupied_.back().size().z}) > kManyBricks) occupied_.push_back(occupied_.back().coarser());
-  return {};
 }
 
 BroadPhase::Reach BroadPhase::reach(const Turn& turn, const Box& box) const {

@@ -11,7 +11,7 @@
 #include "compute/search/near_samples.h"
 #include "compute/search/occupied_cubes.h"
 #include "compute/search/posed_tool.h"
-#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
 #include "compute/search/run_tree.h"
 #include "compute/search/turned_boxes.h"
 #include "model/lattice.h"
@@ -26,9 +26,8 @@ namespace palpate {
 /// One thread and its helper; find() does not block, and allocates only where with a helper the lists are larger than before.
 class BroadPhase {
  public:
-  /// `runs`: of the tool; they, geometry and scene outlive this. Reads the mock-up's partition back from the
-  /// device. Allocates.
-  static Result<BroadPhase> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const RunTree& runs);
+  /// `runs`: of the tool; they, geometry and scene outlive this. Allocates.
+  static BroadPhase make(const SceneGeometry& geometry, const SceneTables& scene, const RunTree& runs);
   /// Before find() has a helper: what that one needs for itself. Allocates.
   void share();
 
@@ -50,7 +49,7 @@ class BroadPhase {
   struct Search;
 
   void make_runs(const LatticeMesh& tool);
-  Result<void> read_occupancy(VulkanDevice& device, const PartitionBuffers& mockup);
+  void make_occupancy(const PartitionView& mockup);
   Reach reach(const Turn& turn, const Box& box) const;
   bool meets(const Reach& reach) const;
   bool meets(BrickBits::Range voxels) const;

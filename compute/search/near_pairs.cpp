@@ -15,17 +15,17 @@ constexpr std::int32_t kFewVoxels = 64;   // beyond, a look at the brick as a wh
 
 }  // namespace
 
-Result<NearPairs> NearPairs::make(VulkanDevice& device, const PreparedScene& scene) {
+NearPairs NearPairs::make(const SceneTables& scene) {
   NearPairs out;
-  const PartitionBuffers& mockup = scene.mockup.partition;
+  const PartitionView& mockup = scene.mockup;
   out.grid_ = mockup.grid;
   out.per_part_ = static_cast<double>(kVoxelParts) / mockup.grid.size;
   // Boxes of parts reach a part further than their highs. A test is off by less than a sixteenth of a half part: sums in single precision
   // below 2048 half parts by less than 2^-10, and doubles before that by far less.
   out.slack_ = 1 + static_cast<float>(2 * out.per_part_ * (gpu::kCloseSteps + 1)) + 0x1p-4F;
-  if (auto r = out.bricks_.read(device, mockup.bricks, mockup.grid.mixed_bricks); !r) return r.error();
-  if (auto r = out.list_begin_.read(device, mockup.list_begin, std::size_t{mockup.grid.boundary_voxels} + 1); !r) return r.error();
-  if (auto r = out.list_triangles_.read(device, mockup.list_triangles, mockup.grid.list_entries); !r) return r.error();
+  out.bricks_ = mockup.bricks;
+  out.list_begin_ = mockup.list_begin;
+  out.list_triangles_ = mockup.list_triangles;
   out.boxes_ = scene.search->boxes;
   return out;
 }

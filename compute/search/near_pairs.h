@@ -4,11 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "compute/gpu/host_copy.h"
 #include "compute/scene/exact.h"
 #include "compute/search/listed_boxes.h"
 #include "compute/search/near_lists.h"
-#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
 #include "compute/search/turned_boxes.h"
 
 namespace palpate {
@@ -29,7 +28,7 @@ class NearPairs {
     std::uint32_t looker_ = 0;        ///< number of the present one
   };
 
-  static Result<NearPairs> make(VulkanDevice& device, const PreparedScene& scene);
+  static NearPairs make(const SceneTables& scene);
 
   /// A tool triangle at a pose.
   struct Triangle {
@@ -56,8 +55,8 @@ class NearPairs {
   gpu::GridConstants grid_{};
   double per_part_ = 0;    ///< parts of a voxel a step
   float slack_ = 0;        ///< of a test against a plane, half parts
-  HostCopy<gpu::Brick> bricks_;
-  HostCopy<std::uint32_t> list_begin_, list_triangles_;
+  std::span<const gpu::Brick> bricks_;
+  std::span<const std::uint32_t> list_begin_, list_triangles_;
   std::span<const std::uint8_t> boxes_;  ///< SearchTables::boxes
 };
 

@@ -51,9 +51,9 @@ struct BrickVoxels {
   std::size_t count = 0;
 };
 
-/// Which fine voxels are near to the tool's solid (PreparedScene::tool_near).
+/// Which fine voxels are near to the tool's solid (SceneTables::tool_near).
 struct NearCells {
-  const HostCopy<std::uint32_t>& bits;
+  std::span<const std::uint32_t> bits;
   std::int32_t size[3];   ///< fine voxels, …
   double end[3];          ///< … the same
   double beyond;    ///< what reaches so far out of the grid has its nearest voxel of the solid seen from the border: the grid is padded by two voxels
@@ -118,33 +118,30 @@ struct NearSamples::Search {
   }
 };
 
-Result<NearSamples> NearSamples::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
+NearSamples NearSamples::make(const SceneGeometry& geometry, const SceneTables& scene) {
   NearSamples out;
-  const PartitionBuffers& m = scene.mockup.partition;
+  const PartitionView& m = scene.mockup;
   out.mockup_ = m.grid;
   out.fine_ = scene.constants.fine;
   out.per_fine_ = 1.0 / out.fine_.size;
   out.per_cube_ = 1.0 / (8.0 * out.fine_.size);
-  out.has_near_ = static_cast<bool>(scene.tool_near);
+  out.has_near_ = !scene.tool_near.empty();
   out.listed_ = scene.samples && scene.samples->listed();
   out.mesh_ = &geometry.mockup;
   out.spacing_ = geometry.sample_spacing;
   out.sampled_ = scene.samples;
   const Int3 cubes = out.fine_.bricks;
-  const std::size_t count = static_cast<std::size_t>(cubes.x) * static_cast<std::size_t>(cubes.y) * static_cast<std::size_t>(cubes.z);
-  const Int3 n = m.grid.bricks;
-  if (auto r = out.slots_.read(device, m.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r) return r.error();
-  if (auto r = out.bricks_.read(device, m.bricks, m.grid.mixed_bricks); !r) return r.error();
-  if (auto r = out.list_begin_.read(device, m.list_begin, std::size_t{m.grid.boundary_voxels} + 1); !r) return r.error();
+  out.slots_ = m.brick_slot;
+  out.bricks_ = m.bricks;
+  out.list_begin_ = m.list_begin;
   if (out.listed_) {
-    const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
-    if (auto r = out.list_triangles_.read(device, m.list_triangles, m.grid.list_entries); !r) return r.error();
-    if (auto r = out.solid_.read(device, fine, BrickBits::Of::kOccupied); !r) return r.error();
-    if (auto r = out.internal_.read(device, fine, BrickBits::Of::kInternal); !r) return r.error();
+    out.list_triangles_ = m.list_triangles;
+    out.solid_.make(scene.fine, BrickBits::Of::kOccupied);
+    out.internal_.make(scene.fine, BrickBits::Of::kInternal);
   }
-  std::vector<std::uint8_t> any(count, 1);
+  std::vector<std::uint8_t> any(brick_count(cubes), 1);
   if (out.has_near_) {
-    if (auto r = out.near_.read(device, scene.tool_near, count * 16); !r) return r.error();
+    out.near_ = scene.tool_near;
     std::fill(any.begin(), any.end(), std::uint8_t{0});
     const Int3 cells = 8 * cubes;
     Int3 c;

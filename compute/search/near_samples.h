@@ -1,13 +1,13 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "compute/search/brick_bits.h"
-#include "compute/gpu/host_copy.h"
 #include "compute/scene/samples.h"
 #include "compute/search/near_lists.h"
-#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
 #include "model/lattice.h"
 #include "model/scene_geometry.h"
 
@@ -19,7 +19,7 @@ namespace palpate {
 class NearSamples {
  public:
   /// Geometry and scene outlive this.
-  static Result<NearSamples> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene);
+  static NearSamples make(const SceneGeometry& geometry, const SceneTables& scene);
   /// Appends to lists.inside and open, or to lists.samples, for bricks first … last of the mock-up's grid. Where it has no room, the search ends.
   void find(const LatticePose& pose, const Int3& first, const Int3& last, NearLists& lists) const;
 
@@ -42,8 +42,8 @@ class NearSamples {
   double per_fine_ = 0, per_cube_ = 0;   ///< fine voxels and cubes of them a step
   Level brick_, octant_;
   bool has_near_ = false, listed_ = false;
-  HostCopy<std::uint32_t> slots_, near_, list_begin_, list_triangles_;
-  HostCopy<gpu::Brick> bricks_;
+  std::span<const std::uint32_t> slots_, near_, list_begin_, list_triangles_;
+  std::span<const gpu::Brick> bricks_;
   BrickBits solid_, internal_;   ///< the tool's fine voxels that are not V_ext, those that are V_int
   const LatticeMesh* mesh_ = nullptr;
   std::int32_t spacing_ = 1;

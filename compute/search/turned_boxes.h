@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "compute/scene/scene_tables.h"
 #include "compute/search/brick_bits.h"
 
 namespace palpate {
@@ -24,7 +25,6 @@ struct VoxelTurn {
   float rotation[3][3], below[3], above[3];
   float end[3];   ///< the grid's voxels
 };
-inline constexpr std::int32_t kVoxelParts = 256;   ///< a byte says which of a voxel's side
 
 /// Voxels first … last along each axis, clipped to the grid. `may` 0: none.
 struct EightRanges {

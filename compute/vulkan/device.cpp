@@ -1,6 +1,6 @@
 #include "compute/vulkan/device.h"
 
-#include "compute/vulkan/address_space.h"
+#include "model/address_space.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -115,6 +115,7 @@ VulkanDeviceInfo describe(VkPhysicalDevice device) {
   info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
   const std::string why = refusal(device);
   info.usable = why.empty();
+  info.processor = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   info.reason = info.usable ? "usable, Vulkan " + version_text(p.properties.apiVersion) : "refused: " + why;
   return info;
 }
@@ -287,7 +288,7 @@ Result<void> VulkanDevice::make_device(bool own_memory) {
   return {};
 }
 
-Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& options) {
+Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const DeviceOptions& options) {
   const InlineExecution inline_execution(options.inline_execution);
   std::unique_ptr<VulkanDevice> device(new VulkanDevice);
   Result<void> made = device->make_instance(options.validation);
@@ -296,7 +297,6 @@ Result<std::unique_ptr<VulkanDevice>> VulkanDevice::create(const GpuOptions& opt
   if (!made) return Error{made.error().code, "no usable Vulkan device: " + made.error().sentence};
   device->fault_ = options.fault;
   device->guarded = options.guard_buffers;
-  device->host_share = options.host_share.value_or(device->processor_ ? HostShare::kContacts : HostShare::kNear);
   return device;
 }
 

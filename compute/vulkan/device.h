@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "compute/vulkan/compilers.h"
-#include "compute/gpu/gpu_backend.h"
+#include "compute/vulkan/options.h"
 #include "model/result.h"
 
 namespace palpate {
@@ -23,7 +23,7 @@ struct PendingPipeline;
 /// The sentence for a Vulkan call that failed: "vkQueueSubmit2 failed: device lost".
 Error vulkan_error(const char* call, VkResult result);
 
-/// An instance, one device and its one compute queue. Owned by GpuBackend; everything made from it must die first.
+/// An instance, one device and its one compute queue. Everything made from it must die first.
 /// One thread at a time, but that several may make and drop buffers, record, submit and wait, each with recorders of its own.
 class VulkanDevice {
  public:
@@ -36,7 +36,7 @@ class VulkanDevice {
   };
 
   /// Error (kNoDevice): one sentence with the reason for every device that was refused.
-  static Result<std::unique_ptr<VulkanDevice>> create(const GpuOptions& options);
+  static Result<std::unique_ptr<VulkanDevice>> create(const DeviceOptions& options);
   /// All devices and why each can't be used; an empty list when there is no Vulkan at all.
   static std::vector<VulkanDeviceInfo> list();
   ~VulkanDevice();
@@ -68,7 +68,7 @@ class VulkanDevice {
   /// Success, or the first message of the validation layer since the last call of this.
   Result<void> take_validation_error();
 
-  /// VK_SUCCESS, or what GpuOptions::fault wants this call to come to.
+  /// VK_SUCCESS, or what DeviceOptions::fault wants this call to come to.
   VkResult injected(GpuFault::Call call);
 
   /// Bytes of device memory now held by buffers.
@@ -84,11 +84,9 @@ class VulkanDevice {
   /// Makes them, while whoever asked goes on.
   std::unique_ptr<Compilers> compilers = std::make_unique<Compilers>();
 
-  /// For benches: told how long each kernel of preparation took on how many items; may be empty.
+  /// For benches: told how long each shader that its owner watches took on how many items; may be empty.
   std::function<void(const char* kernel, std::uint64_t items, double seconds)> kernel_watch;
 
-  /// GpuOptions::host_share, decided.
-  HostShare host_share = HostShare::kNear;
   /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
   /// `guard_error`: the first that was found broken when its buffer died, or empty.
   bool guarded = false;

@@ -164,7 +164,7 @@ std::string device_text(const CollisionBackend& backend, const Parts& parts) {
 
 Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts) {
   const double load = load_average();
-  auto backend = choose_backend(options.backends.empty() ? "" : options.backends.front(), parts, console);
+  auto backend = choose_backend(options.backends.empty() ? "" : options.backends.front(), std::nullopt, parts, console);
   if (!backend) return backend.error();
   facts.device = device_text(**backend, parts);
   facts.more.emplace_back("load average", fmt::format("{:.1f} at the start", load));

@@ -16,7 +16,7 @@ namespace palpate {
 class GpuTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    GpuOptions options;
+    DeviceOptions options;
     options.validation = true;
     auto made = VulkanDevice::create(options);
     ASSERT_TRUE(made) << made.error().sentence;

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <string>
 
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/native/prepare/scene.h"
 #include "compute/scene/partition.h"
 
 namespace palpate {
@@ -24,6 +26,26 @@ inline void expect_equal(const Partition& a, const Partition& b, const std::stri
       ASSERT_EQ(a.bricks[i].internal_[word], b.bricks[i].internal_[word]) << body << ", brick " << i << ", word " << word;
       ASSERT_EQ(a.bricks[i].first[word], b.bricks[i].first[word]) << body << ", brick " << i << ", word " << word;
     }
+}
+
+/// What both engines have made of a scene beside the partitions of its bodies.
+inline void expect_equal_tables(VulkanDevice& device, const PreparedScene& gpu, const native::Scene& native) {
+  EXPECT_EQ(std::memcmp(&gpu.constants, &native.constants, sizeof gpu.constants), 0);
+  EXPECT_EQ(static_cast<bool>(gpu.fine.brick_slot), !native.fine.brick_slot.empty());
+  if (gpu.fine.brick_slot) {
+    const auto fine = read_partition(device, gpu.fine);
+    ASSERT_TRUE(fine) << fine.error().sentence;
+    expect_equal(*fine, native.fine, "tool in finer voxels");
+  }
+  const auto words = [&](const VulkanBuffer& buffer, std::size_t count) {
+    std::vector<std::uint32_t> out(buffer ? count : 0);
+    EXPECT_TRUE(out.empty() || download(device, buffer, 0, out.data(), 4 * out.size()));
+    return out;
+  };
+  EXPECT_TRUE(words(gpu.fine_exit, native.fine_exit.size()) == native.fine_exit);
+  EXPECT_TRUE(words(gpu.tool_near, native.tool_near.size()) == native.tool_near);
+  EXPECT_EQ(gpu.samples != nullptr, native.samples != nullptr);
+  EXPECT_TRUE(!gpu.samples || !native.samples || *gpu.samples == *native.samples);
 }
 
 }  // namespace palpate

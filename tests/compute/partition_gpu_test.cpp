@@ -3,9 +3,10 @@
 #include <memory>
 
 #include "compute/gpu/gpu_backend.h"
-#include "compute/native/prepare/partition_build.h"
+#include "compute/native/native_backend.h"
+#include "compute/native/prepare/scene.h"
 #include "compute/gpu/prepare/prepared_scene.h"
-#include "cpu_ref/cpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 #include "tests/compute/gpu_test.h"
@@ -26,11 +27,14 @@ class Partition : public GpuTest {
     geometry_ = std::move(*geometry);
     auto scene = prepare_scene(device(), geometry_, Plan{}, {});
     ASSERT_TRUE(scene) << scene.error().sentence;
-    auto cpu = make_cpu_backend();
-    auto cpu_done = cpu->prepare(geometry_, Plan{}, {});
-    ASSERT_TRUE(cpu_done) << cpu_done.error().sentence;
-    compare(*scene, *cpu, false);
-    compare(*scene, *cpu, true);
+    auto native = native::prepare_scene(geometry_, Plan{}, {});
+    ASSERT_TRUE(native) << native.error().sentence;
+    auto ref = make_ref_backend();
+    auto ref_done = ref->prepare(geometry_, Plan{}, {});
+    ASSERT_TRUE(ref_done) << ref_done.error().sentence;
+    compare(*scene, *native, *ref, false);
+    compare(*scene, *native, *ref, true);
+    expect_equal_tables(device(), *scene, *native);
     EXPECT_EQ(scene->mockup.partition.has_internal, count(VoxelClass::kInternal) > 0);
   }
 
@@ -54,16 +58,13 @@ class Partition : public GpuTest {
   VoxelPartition tool_partition_;
 
  private:
-  void compare(const PreparedScene& scene, const CollisionBackend& cpu, bool tool) {
+  void compare(const PreparedScene& scene, const native::Scene& native, const CollisionBackend& ref, bool tool) {
     const char* body = tool ? "tool" : "mock-up";
     const auto on_device = read_partition(device(), (tool ? scene.tool : scene.mockup).partition);
     ASSERT_TRUE(on_device) << on_device.error().sentence;
-    const auto on_host = tool ? native::make_partition(geometry_.tool, geometry_.tool_grid, gpu::kToolVoxelGrowth, body, [] { return true; })
-                              : native::make_partition(geometry_.mockup, geometry_.mockup_grid, 0, body, [] { return true; });
-    ASSERT_TRUE(on_host) << on_host.error().sentence;
-    expect_equal(*on_device, *on_host, body);
+    expect_equal(*on_device, tool ? native.tool : native.mockup, body);
     auto got = dense(*on_device);
-    auto want = cpu.partition(tool);
+    auto want = ref.partition(tool);
     ASSERT_TRUE(want) << want.error().sentence;
     EXPECT_TRUE(got.classes == want->classes) << body;
     EXPECT_TRUE(got.boundary_voxels == want->boundary_voxels) << body;
@@ -207,26 +208,37 @@ TEST_F(Partition, OfAToolIsGrownByThreeSteps) {
   EXPECT_GT(std::count(tool_partition_.classes.begin(), tool_partition_.classes.end(), VoxelClass::kInternal), 0);
 }
 
-TEST(Preparation, CanBeCancelled) {
+/// Both engines.
+std::vector<std::unique_ptr<CollisionBackend>> engines() {
+  std::vector<std::unique_ptr<CollisionBackend>> out;
   auto gpu = make_gpu_backend({});
-  ASSERT_TRUE(gpu) << gpu.error().sentence;
+  EXPECT_TRUE(gpu) << gpu.error().sentence;
+  if (gpu) out.push_back(std::move(*gpu));
+  out.push_back(make_native_backend());
+  return out;
+}
+
+TEST(Preparation, CanBeCancelled) {
   auto geometry = build_geometry(solids::sphere(0.2), solids::box(Vec3(-0.01), Vec3(0.01)), {});
   ASSERT_TRUE(geometry);
-  auto done = (*gpu)->prepare(*geometry, Plan{}, [](const char*, double progress) { return progress < 0.3; });
-  ASSERT_FALSE(done);
-  EXPECT_EQ(done.error().sentence, "preparation was cancelled");
+  for (const auto& engine : engines())
+    for (const double at : {0.0, 0.35, 0.7, 1.0}) {
+      auto done = engine->prepare(*geometry, Plan{}, [at](const char*, double progress) { return progress < at; });
+      ASSERT_FALSE(done) << engine->name() << " at " << at;
+      EXPECT_EQ(done.error().sentence, "preparation was cancelled") << engine->name();
+    }
 }
 
 TEST(Preparation, RefusesAGridThatDoesNotFit) {
-  auto gpu = make_gpu_backend({});
-  ASSERT_TRUE(gpu) << gpu.error().sentence;
   GeometrySettings settings;
   settings.voxel_size_m = 2e-5;   // 50,000 voxels along the wire
   auto geometry = build_geometry(solids::box(Vec3(-0.5, 0, 0), Vec3(0.5, 1e-5, 1e-5)), solids::box(Vec3(-1e-4), Vec3(1e-4)), settings);
   ASSERT_TRUE(geometry) << geometry.error().sentence;
-  auto done = (*gpu)->prepare(*geometry, Plan{}, {});
-  ASSERT_FALSE(done);
-  EXPECT_NE(done.error().sentence.find("choose a larger voxel"), std::string::npos) << done.error().sentence;
+  for (const auto& engine : engines()) {
+    auto done = engine->prepare(*geometry, Plan{}, {});
+    ASSERT_FALSE(done) << engine->name();
+    EXPECT_NE(done.error().sentence.find("choose a larger voxel"), std::string::npos) << done.error().sentence;
+  }
 }
 
 TEST(Devices, AreListedWithAReasonEach) {

@@ -71,7 +71,6 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
   const auto found = kept_.find(&geometry);
   const bool by_mutant = prepares_ && !aside_;
   if (by_mutant || found == kept_.end()) {
-    device_->host_share = HostShare::kNear;   // all of preparation by the device's modules
     auto scene = prepare_scene(*device_, geometry, plan, progress);
     if (!scene) return scene.error();
     if (by_mutant) {
@@ -89,7 +88,6 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
       for (const bool without : {true, false}) {   // so that the pipelines of all ways are there to be swapped
         kept_of_->scene.samples = without ? nullptr : kept_of_->samples;
-        device_->host_share = HostShare::kNear;
         if (auto other = make_frame(geometry); !other) return other.error();
       }
     }
@@ -97,7 +95,6 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
     kept_of_ = &found->second;
   }
   if (!fresh_) kept_of_->scene.samples = without_samples_ ? nullptr : kept_of_->samples;
-  device_->host_share = host_share_;
   auto frame = make_frame(geometry);
   if (!frame) return frame.error();
   frame_ = std::move(*frame);

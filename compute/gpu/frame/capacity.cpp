@@ -8,9 +8,8 @@ namespace {
 
 using namespace gpu;   // names of shaders/shared/frame.h
 
-// Chosen. The host leaves to the device what has more than 2^16 candidates of a kind (compute/native/narrow_phase/contact.h), which takes tens of milliseconds:
-// room to be made costs little beside. Where the device decides, a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of the second.
-constexpr std::uint64_t kHostDecides = 1u << 16, kDeviceDecides = 1u << 18;
+// Chosen: a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of it.
+constexpr std::uint64_t kUsual = 1u << 18, kPerTriangle = 16;
 constexpr std::uint64_t kMostItems = 1u << 22;   // to begin with; a binding of 128 MiB holds that many of 32 bytes
 
 constexpr std::array<const char*, 20> kListNames = {
@@ -33,23 +32,22 @@ std::uint32_t doubled(std::uint32_t capacity) {
 FrameCapacity FrameCapacity::first(const FrameDemand& demand, const std::map<std::string, std::uint32_t>& wanted) {
   const SceneConstants& scene = demand.scene;
   const bool refined = scene.refined != 0;
-  const std::uint64_t usual = demand.host_decides ? kHostDecides : kDeviceDecides, per_triangle = demand.host_decides ? 4 : 16;
   const std::uint64_t tool = scene.tool.triangles, mockup = scene.mockup.triangles, voxels = scene.mockup.grid.boundary_voxels;
   const std::uint64_t entries = scene.mockup.grid.list_entries, all_voxels = voxels + (scene.mockup.has_internal != 0 ? kMostItems : 0);
   // Of every list: what is usual, more for a large tool, and never more than there is.
-  const auto room = [&](std::uint64_t a_tool_triangle, std::uint64_t most) { return items(std::min(std::max(usual, a_tool_triangle * tool), most), kMostItems); };
+  const auto room = [&](std::uint64_t a_tool_triangle, std::uint64_t most) { return items(std::min(std::max(kUsual, a_tool_triangle * tool), most), kMostItems); };
   // Samples and first corners.
   const std::uint64_t samples = !refined ? 1 : demand.samples ? *demand.samples + mockup : kMostItems;
   FrameCapacity out;
   auto& l = out.lists;
-  l[kListTouchCandidates] = room(per_triangle, tool * all_voxels);
-  l[kListTouchedVoxels] = room(per_triangle, voxels);
-  l[kListStaticChunks] = room(per_triangle, voxels + entries / kStaticChunk);
-  l[kListPairCandidates] = room(per_triangle, tool * mockup);   // both below 2^32
-  l[kListPairs] = room(per_triangle, tool * mockup);
+  l[kListTouchCandidates] = room(kPerTriangle, tool * all_voxels);
+  l[kListTouchedVoxels] = room(kPerTriangle, voxels);
+  l[kListStaticChunks] = room(kPerTriangle, voxels + entries / kStaticChunk);
+  l[kListPairCandidates] = room(kPerTriangle, tool * mockup);   // both below 2^32
+  l[kListPairs] = room(kPerTriangle, tool * mockup);
   l[kListContactStatics] = room(0, mockup);
   l[kListContactMobiles] = items(tool, ~0u);
-  l[kListSampleChunks] = demand.samples || !refined ? 1 : room(per_triangle, voxels + entries / kSampleChunk);
+  l[kListSampleChunks] = demand.samples || !refined ? 1 : room(kPerTriangle, voxels + entries / kSampleChunk);
   l[kListInsideSamples] = l[kListOpenSamples] = l[kListSamples] = room(0, samples);
   l[kListMembers] = room(2, tool * kMaxFrameAreas);
   l[kListFieldTiles] = refined ? room(2, ~0u) : 1;

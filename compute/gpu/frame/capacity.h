@@ -15,7 +15,6 @@ namespace palpate {
 struct FrameDemand {
   const gpu::SceneConstants& scene;
   std::optional<std::uint64_t> samples;   ///< of the mock-up, where preparation has listed them and the host searches among them
-  bool host_decides = false;              ///< small contacts are wholly the host's: the device sees only what is large
 };
 
 /// How many items each list of a frame holds. Chosen so that usual contacts fit, and no more than the scene can ask for; what has overflowed

@@ -18,10 +18,10 @@
 #include "compute/gpu/frame/plan.h"
 #include "compute/gpu/frame/recorder.h"
 #include "compute/gpu/frame/response.h"
-#include "compute/native/narrow_phase/contact.h"
 #include "compute/search/posed_tool.h"
 #include "compute/search/run_tree.h"
 #include "compute/gpu/frame/stage_memory.h"
+#include "compute/gpu/scene_copies.h"
 #include "model/contact_areas.h"
 
 namespace palpate {
@@ -55,7 +55,6 @@ class RecordedFrame final : public Frame {
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   Result<void> enlarge() override;
-  void share(bool wanted) override { sharing_ = wanted && host_contact_ != nullptr; }   // elsewhere the device does the work
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
@@ -74,8 +73,6 @@ class RecordedFrame final : public Frame {
   template <class Body>
   Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
   Result<void> run(CommandRecorder& commands, Contacts& out);
-  FrameHelper* helper();
-  void solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out);
   void read(Contacts& out);
   void write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays);
 
@@ -84,6 +81,7 @@ class RecordedFrame final : public Frame {
   const PreparedScene& scene_;
   const Plan plan_;
   PosedTool posed_;
+  SceneCopies copies_;
   std::optional<RunTree> runs_;
   std::optional<BroadPhase> broad_phase_;
   FrameCapacity capacity_;
@@ -91,11 +89,6 @@ class RecordedFrame final : public Frame {
   std::unique_ptr<FrameDetection> detection_;
   std::optional<FrameResponse> response_;       ///< `paper`
   std::optional<FrameField> field_;             ///< `refined`
-  std::unique_ptr<HostContact> host_contact_;   ///< decides all, where it is
-  std::unique_ptr<FrameHelper> helper_;         ///< null: not asked for yet (helper_tried_), or there is none
-  bool sharing_ = false;                        ///< share()
-  bool helper_tried_ = false;
-  bool host_solved_ = false;                    ///< the last query's contact was decided by the host
   FrameDecoder decoder_;
   /// From the pose to the sets; then, with contact, the response. Null after a failed record().
   std::unique_ptr<CommandRecorder> detect_, respond_;
@@ -135,22 +128,14 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
 
   detection_ = FrameDetection::make(geometry_, scene_, plan_);
-  const bool host_decides = refined && device_.host_share == HostShare::kContacts;
-  // Pipelines are compiled beside what the host builds; where it decides all, nobody needs them.
-  if (!host_decides)
-    if (auto r = make_pipelines(); !r) return r;
+  // Pipelines are compiled beside what the host builds.
+  if (auto r = make_pipelines(); !r) return r;
   runs_.emplace(geometry_.tool, detection_->order());
-  auto broad_phase = BroadPhase::make(device_, geometry_, scene_, *runs_);
-  if (!broad_phase) return broad_phase.error();
-  broad_phase_.emplace(std::move(*broad_phase));
-  if (host_decides) {
-    auto contact = HostContact::make(device_, geometry_, scene_, runs_->order());
-    if (!contact) return contact.error();
-    host_contact_ = std::move(*contact);
-  }
+  if (auto r = copies_.read(device_, scene_); !r) return r;
+  broad_phase_.emplace(BroadPhase::make(geometry_, copies_.tables(), *runs_));
   std::optional<std::uint64_t> samples;
   if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
-  capacity_ = FrameCapacity::first({.scene = constants, .samples = samples, .host_decides = host_decides}, first_capacity);
+  capacity_ = FrameCapacity::first({.scene = constants, .samples = samples}, first_capacity);
   if (auto r = make_buffers(); !r) return r;
   return finish();
 }
@@ -171,19 +156,11 @@ Result<void> RecordedFrame::make_pipelines() {
 }
 
 Result<void> RecordedFrame::finish() {
-  if (finished_ || host_contact_) return {};
+  if (finished_) return {};
   if (auto r = record(); !r) return r;
   if (auto r = warm_up(device_, pipelines_); !r) return r;   // no frame of a loop should wait for a compiler
   finished_ = true;
   return {};
-}
-
-/// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on its processors, and a loop's are chosen well.
-FrameHelper* RecordedFrame::helper() {
-  if (!sharing_) return nullptr;
-  if (!helper_tried_ && (helper_ = FrameHelper::make())) broad_phase_->share();
-  helper_tried_ = true;
-  return helper_.get();
 }
 
 Result<void> RecordedFrame::make_buffers() {
@@ -277,6 +254,7 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
   const auto start = Clock::now();
   out.times.clear();
   decoder_.clear(out);
+  out.engine = "gpu";
   pairs_ = 0;
   out.contact_points = plan_.contact_point;
   out.lists = plan_.telemetry;
@@ -284,7 +262,6 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
     return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
   if (!pose.beyond_lattice) out.flags = frame_flags_;
   near_full_ = gpu::kNone;
-  host_solved_ = false;
   NearLists near;
   bool rays = false;
   if (!pose.beyond_lattice) {
@@ -294,16 +271,12 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
     near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
     near.inside.room = mapped<gpu::FrameSample>(gpu::kBindInsideSamples, gpu::kListInsideSamples);
     near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
-    rays = broad_phase_->find(posed_, helper(), near);
+    rays = broad_phase_->find(posed_, nullptr, near);
   }
   out.times.push_back({"cull", us_since(start), pose.beyond_lattice ? 0 : broad_phase_->looks()});
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
-  if (host_contact_) {
-    solve_on_host(ignored, near, out);
-    return {};
-  }
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
@@ -328,22 +301,6 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
     out.times.push_back({"areas", us_since(gathering)});
   }
   return {};
-}
-
-void RecordedFrame::solve_on_host(const Ignored* ignored, const NearLists& near, Contacts& out) {
-  auto last = Clock::now();
-  const auto stage = [&](const char* name, std::uint64_t looks) {
-    const auto now = Clock::now();
-    out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count(), looks});
-    last = now;
-  };
-  host_contact_->solve(posed_, ignored, near, helper(), out, stage);
-  host_solved_ = true;
-  pairs_ = out.pairs;
-  if (out.contact && out.lists) {
-    gather_areas(geometry_, posed_.pose(), out);
-    stage("areas", out.cst.size() + out.est.size());
-  }
 }
 
 /// Submits, waits, and notes the stages' times.
@@ -377,8 +334,7 @@ void RecordedFrame::read(Contacts& out) {
 
 Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pairs() const {
   std::vector<gpu::ContactPair> found(pairs_);
-  if (host_solved_) found.assign(host_contact_->pairs().begin(), host_contact_->pairs().end());
-  else if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(), found.size() * sizeof(gpu::ContactPair)); !r) return r.error();
+  if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(), found.size() * sizeof(gpu::ContactPair)); !r) return r.error();
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
   for (const gpu::ContactPair& pair : found) out.emplace_back(pair.static_id, pair.mobile);
   std::sort(out.begin(), out.end());

@@ -10,8 +10,9 @@
 #include "compute/gpu/prepare/partition.h"
 #include "compute/gpu/prepare/samples.h"
 #include "compute/gpu/prepare/steps.h"
+#include "compute/gpu/scene_copies.h"
+#include "compute/scene/scene_constants.h"
 #include "compute/scene/search_tables.h"
-#include "model/field.h"
 #include "shaders/shared/frame_field.h"
 
 namespace palpate {
@@ -67,16 +68,6 @@ void upload_bodies(PrepareSteps& steps, const SceneGeometry& geometry, const Pla
   out.tool = upload_body(steps, geometry.tool, false, refined);
 }
 
-gpu::BodyConstants constants_of(const LatticeMesh& mesh, const BodyBuffers& body) {
-  gpu::BodyConstants out{};
-  out.vertices = static_cast<std::uint32_t>(mesh.vertices.size());
-  out.triangles = static_cast<std::uint32_t>(mesh.triangles.size());
-  out.closed = mesh.closed ? 1 : 0;
-  out.has_internal = body.partition.has_internal ? 1 : 0;
-  out.grid = body.partition.grid;
-  return out;
-}
-
 /// Buffers of a partition that is not made: each can be bound.
 void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
   for (VulkanBuffer* buffer :
@@ -89,14 +80,12 @@ void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
 void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
   steps.progress("search", 0.95);
   if (!steps.ok()) return;
-  auto made = SearchTables::make(steps.device(), geometry, out.mockup.partition, [&] {
+  PartitionCopy lists;
+  if (auto r = lists.read(steps.device(), out.mockup.partition); !r) return steps.fail(r.error());
+  out.search = SearchTables::make(geometry, lists.view(), [&] {
     steps.progress("search", 0.95);
     return steps.ok();
   });
-  if (made)
-    out.search = std::move(*made);
-  else
-    steps.fail(made.error());
 }
 
 }  // namespace
@@ -167,19 +156,8 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
     make_empty(steps, out.tool.partition);
   }
 
-  out.constants.mockup = constants_of(geometry.mockup, out.mockup);
-  out.constants.tool = constants_of(geometry.tool, out.tool);
-  out.constants.tool_radius = geometry.tool_radius;
-  out.constants.lever_shift = lever_shift(geometry.tool_radius);
-  if (refined) {
-    out.constants.mockup_extras = static_cast<std::uint32_t>(geometry.mockup.extra_samples.size());
-    out.constants.tool_extras = static_cast<std::uint32_t>(geometry.tool.extra_samples.size());
-  }
-  out.constants.sample_spacing = geometry.sample_spacing;
-  out.constants.tool_sample_spacing = geometry.tool_sample_spacing;
-  out.constants.contact_samples = geometry.contact_samples;
-  out.constants.refined = refined ? 1 : 0;
-  out.constants.fine = out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid;
+  const auto grid_of = [](const PartitionBuffers& p) { return PreparedGrid{p.grid, p.has_internal}; };
+  out.constants = scene_constants(geometry, plan, grid_of(out.mockup.partition), grid_of(out.tool.partition), out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid);
   out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
   steps.progress("prepared", 1);
   if (!steps.ok()) return steps.error();

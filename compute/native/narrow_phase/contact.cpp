@@ -4,19 +4,15 @@ namespace palpate {
 
 using namespace gpu;   // names of shaders/shared/frame.h
 
-Result<std::unique_ptr<HostContact>> HostContact::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order) {
+std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order) {
   std::unique_ptr<HostContact> out(new HostContact);
-  if (auto r = out->mockup_.read(device, scene.mockup.partition); !r) return r.error();
-  if (auto r = out->tool_.read(device, scene.tool.partition); !r) return r.error();
-  auto boxes = SearchTables::boxes_of(device, geometry.tool, scene.tool.partition);
-  if (!boxes) return boxes.error();
-  out->tool_boxes_ = std::move(*boxes);
+  out->mockup_ = HostPartition(scene.mockup);
+  out->tool_ = HostPartition(scene.tool);
+  out->tool_boxes_ = SearchTables::boxes_of(geometry.tool, scene.tool);
   out->tool_triangles_ = TriangleTree::make(geometry.tool, [] { return true; });
   out->search_ = scene.search;
   out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
-  auto sets = HostSets::make(device, geometry, scene, order, out->in_tool_);
-  if (!sets) return sets.error();
-  out->sets_ = std::move(*sets);
+  out->sets_ = HostSets::make(geometry, scene, order, out->in_tool_);
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
   out->field_ = HostField::make(geometry, scene.search->triangles, InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes), out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);

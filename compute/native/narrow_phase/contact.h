@@ -6,21 +6,20 @@
 
 #include "compute/search/frame_helper.h"
 #include "compute/native/force/field.h"
-#include "compute/native/narrow_phase/partition_lookup.h"
+#include "compute/scene/partition_lookup.h"
 #include "compute/native/narrow_phase/sets.h"
 #include "compute/native/narrow_phase/id_marks.h"
 #include "compute/search/near_lists.h"
 #include "compute/search/posed_tool.h"
-#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
 #include "compute/scene/search_tables.h"
 
 namespace palpate {
 
-/// A whole contact on the host, from the lists of what is near to the field: where the device is the host's own processor, a few thousand exact questions are
-/// sooner answered one after the other than in dispatches (docs/PERFORMANCE.md). `refined`. One thread and its helper; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
+/// A whole contact, from the lists of what is near to the field (docs/EXACTNESS.md sections 3, 4 and 8). `refined`. One thread and its helper; make() keeps references to its arguments; solve() allocates only when a contact is larger than all before.
 class HostContact {
  public:
-  static Result<std::unique_ptr<HostContact>> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order);
+  static std::unique_ptr<HostContact> make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order);
 
   /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `helper` may be null. `stage(name, looks)` is called at the end of each stage, as Contacts::StageTime has it.
   template <class Stage>

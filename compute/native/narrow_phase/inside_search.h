@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/native/narrow_phase/partition_lookup.h"
+#include "compute/scene/partition_lookup.h"
 #include "model/lattice_mesh.h"
 
 namespace palpate {

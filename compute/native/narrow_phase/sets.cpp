@@ -17,19 +17,17 @@ constexpr std::size_t kAhead = 4;   // voxels whose lists are called for before 
 
 }  // namespace
 
-Result<HostSets> HostSets::make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool) {
+HostSets HostSets::make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool) {
   HostSets out;
   out.geometry_ = &geometry;
   out.in_tool_ = &in_tool;
   out.order_ = order;
-  const PartitionBuffers& fine = scene.fine.brick_slot ? scene.fine : scene.tool.partition;
-  if (auto r = out.mockup_.read(device, scene.mockup.partition); !r) return r.error();
-  if (auto r = out.fine_.read(device, fine); !r) return r.error();
-  if (geometry.tool.closed)
-    if (auto r = out.fine_exit_.read(device, scene.fine_exit, fine.grid.boundary_voxels); !r) return r.error();
-  out.touched_.resize(scene.mockup.partition.grid.boundary_voxels);
+  out.mockup_ = HostPartition(scene.mockup);
+  out.fine_ = HostPartition(scene.fine);
+  out.fine_exit_ = scene.fine_exit;
+  out.touched_.resize(scene.mockup.grid.boundary_voxels);
   out.mobiles_.resize(order.size());
-  out.cells_ = CellMemo(fine.grid.boundary_voxels);
+  out.cells_ = CellMemo(scene.fine.grid.boundary_voxels);
   return out;
 }
 

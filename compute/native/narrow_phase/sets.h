@@ -7,12 +7,12 @@
 #include "compute/native/narrow_phase/cell_memo.h"
 #include "compute/search/frame_helper.h"
 #include "compute/native/narrow_phase/inside_search.h"
-#include "compute/native/narrow_phase/partition_lookup.h"
+#include "compute/scene/partition_lookup.h"
 #include "compute/native/narrow_phase/id_marks.h"
 #include "compute/search/near_lists.h"
 #include "compute/native/narrow_phase/pair_filter.h"
 #include "compute/search/posed_tool.h"
-#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
 #include "model/scene_geometry.h"
 
 namespace palpate {
@@ -32,7 +32,7 @@ struct FoundSets {
 class HostSets {
  public:
   /// `order`: ids of the tool's triangles by place. `in_tool` outlives this and answers for a tool that is not closed. `refined`.
-  static Result<HostSets> make(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool);
+  static HostSets make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
   /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. `helper` may be null.
   void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
@@ -73,7 +73,7 @@ class HostSets {
   InsideSearch* in_tool_ = nullptr;
   std::span<const std::uint32_t> order_;
   HostPartition mockup_, fine_;
-  HostCopy<std::uint32_t> fine_exit_;
+  std::span<const std::uint32_t> fine_exit_;
   std::array<Lane, FrameHelper::kLanes> lanes_;   ///< by thread of the frame
   CellMemo cells_;                              ///< of fine V_bnd voxels: whether they are inside
   std::vector<std::uint8_t> touched_;           ///< by V_bnd voxel; 0 between frames

@@ -3,25 +3,17 @@
 #include <cstdint>
 #include <span>
 
-#include "compute/gpu/host_copy.h"
-#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
 #include "model/vector.h"
 
 namespace palpate {
 
-/// A voxel partition that the host looks things up in (shaders/lib/partition.glsl says the same of it). The buffers outlive this.
+/// A voxel partition to look things up in. What the view names outlives this.
 class HostPartition {
  public:
-  /// Allocates where the buffers are not mapped.
-  Result<void> read(VulkanDevice& device, const PartitionBuffers& from) {
-    grid_ = from.grid;
-    per_voxel_ = 1.0 / grid_.size;
-    const Int3 n = grid_.bricks;
-    if (auto r = slots_.read(device, from.brick_slot, static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)); !r) return r;
-    if (auto r = bricks_.read(device, from.bricks, grid_.mixed_bricks); !r) return r;
-    if (auto r = list_begin_.read(device, from.list_begin, std::size_t{grid_.boundary_voxels} + 1); !r) return r;
-    return list_triangles_.read(device, from.list_triangles, grid_.list_entries);
-  }
+  HostPartition() = default;
+  explicit HostPartition(const PartitionView& from)
+      : grid_(from.grid), per_voxel_(1.0 / from.grid.size), slots_(from.brick_slot), list_begin_(from.list_begin), list_triangles_(from.list_triangles), bricks_(from.bricks) {}
   const gpu::GridConstants& grid() const { return grid_; }
 
   struct Voxel {
@@ -79,8 +71,8 @@ class HostPartition {
  private:
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;   ///< voxels a step
-  HostCopy<std::uint32_t> slots_, list_begin_, list_triangles_;
-  HostCopy<gpu::Brick> bricks_;
+  std::span<const std::uint32_t> slots_, list_begin_, list_triangles_;
+  std::span<const gpu::Brick> bricks_;
 };
 
 }  // namespace palpate

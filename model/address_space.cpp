@@ -1,4 +1,4 @@
-#include "compute/vulkan/address_space.h"
+#include "model/address_space.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

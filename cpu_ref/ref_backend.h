@@ -6,6 +6,6 @@
 namespace palpate {
 
 /// The reference: plain, exact, independent of the GPU's algorithms.
-std::unique_ptr<CollisionBackend> make_cpu_backend();
+std::unique_ptr<CollisionBackend> make_ref_backend();
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "cpu_ref/cpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 
 #include <chrono>
 #include <exception>
@@ -35,7 +35,7 @@ class StageClock {
 /// Tools grow their boundary by this many steps, for the rounding of transformed vertices (METHOD section 2).
 constexpr std::int32_t kToolGrow = 3;
 
-class CpuBackend final : public CollisionBackend {
+class RefBackend final : public CollisionBackend {
  public:
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
     try {
@@ -71,6 +71,7 @@ class CpuBackend final : public CollisionBackend {
 
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     out = Contacts();
+    out.engine = "ref";
     pairs_.clear();
     if (!scene_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
     try {
@@ -97,7 +98,7 @@ class CpuBackend final : public CollisionBackend {
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override { return pairs_; }
 
   bool has_internal_voxels() const override { return scene_ && scene_->mockup.has_internal; }
-  std::string name() const override { return "cpu"; }
+  std::string name() const override { return "ref"; }
   std::string device() const override { return "CPU reference"; }
   std::uint64_t memory_bytes() const override {
     return scene_ ? scene_->mockup.memory_bytes() + scene_->tool.memory_bytes() + scene_->mockup_tree.memory_bytes() +
@@ -171,6 +172,6 @@ class CpuBackend final : public CollisionBackend {
 
 }  // namespace
 
-std::unique_ptr<CollisionBackend> make_cpu_backend() { return std::make_unique<CpuBackend>(); }
+std::unique_ptr<CollisionBackend> make_ref_backend() { return std::make_unique<RefBackend>(); }
 
 }  // namespace palpate
