@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
             options.cache = cached ? cache : nullptr;
             return palpate::make_gpu_backend(options);
           },
-      .make_cpu = palpate::make_native_backend,
+      .make_cpu = [&cache](bool cached) { return palpate::make_native_backend(cached ? cache : nullptr); },
       .make_ref = palpate::make_ref_backend,
       .has_gpu =
           [] {

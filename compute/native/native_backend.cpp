@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "compute/native/frame.h"
+#include "compute/native/prepare/cache.h"
 #include "compute/native/prepare/scene.h"
 #include "compute/scene/estimate.h"
 #include "compute/scene/pose_threads.h"
@@ -44,6 +46,8 @@ std::uint64_t memory_limit() {
 
 class NativeBackend final : public CollisionBackend {
  public:
+  explicit NativeBackend(std::shared_ptr<DiskCache> cache) : cache_(std::move(cache)) {}
+
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
     drop_frames();
     scene_.reset();
@@ -51,9 +55,7 @@ class NativeBackend final : public CollisionBackend {
     if (const std::uint64_t bytes = estimate_preparation(geometry, plan), most = memory_limit(); bytes > most)
       return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles takes up to " + std::to_string(bytes >> 20) + " MiB, more than the " +
                        std::to_string(most >> 20) + " MiB of memory that this process may have");
-    auto scene = native::prepare_scene(geometry, plan, progress);
-    if (!scene) return scene.error();
-    scene_.emplace(std::move(*scene));
+    if (auto found = scene_for(geometry, plan, progress); !found) return found;
     geometry_ = &geometry;
     make_frame(plan);
     return {};
@@ -107,6 +109,18 @@ class NativeBackend final : public CollisionBackend {
   }
 
  private:
+  /// Fills scene_, from the cache if it is there.
+  Result<void> scene_for(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    const ContentKey key = cache_ ? native::scene_key(geometry) : ContentKey{};
+    if (cache_) scene_ = native::find_scene(*cache_, key);
+    if (scene_) return {};
+    auto scene = native::prepare_scene(geometry, plan, progress);
+    if (!scene) return scene.error();
+    scene_.emplace(std::move(*scene));
+    if (cache_) native::keep_scene(*cache_, key, *scene_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    return {};
+  }
   void make_frame(const Plan& plan) {
     plan_ = plan;
     frame_.emplace(*geometry_, scene_->tables(), plan);
@@ -129,6 +143,7 @@ class NativeBackend final : public CollisionBackend {
     threads_.emplace(std::move(answers));
   }
 
+  const std::shared_ptr<DiskCache> cache_;    ///< may be null
   const std::string device_ = processor_name();
   const SceneGeometry* geometry_ = nullptr;   ///< of scene_
   Plan plan_;                                 ///< of frame_
@@ -141,6 +156,6 @@ class NativeBackend final : public CollisionBackend {
 
 }  // namespace
 
-std::unique_ptr<CollisionBackend> make_native_backend() { return std::make_unique<NativeBackend>(); }
+std::unique_ptr<CollisionBackend> make_native_backend(std::shared_ptr<DiskCache> cache) { return std::make_unique<NativeBackend>(std::move(cache)); }
 
 }  // namespace palpate

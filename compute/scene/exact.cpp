@@ -64,18 +64,6 @@ bool edge_parts(const Int3& f, const Int3& p, const Int3& q, std::int64_t e) {
   return parted(of_p.x, of_q.x, e * (y + z)) || parted(of_p.y, of_q.y, e * (z + x)) || parted(of_p.z, of_q.z, e * (x + y));
 }
 
-/// Of a number that is not negative, off by less than 2^-52 of it.
-double rounded(Wide v) { return static_cast<double>(static_cast<std::uint64_t>(v >> 64)) * 0x1p64 + static_cast<double>(static_cast<std::uint64_t>(v)); }
-
-/// floor(2^30 · distance / slope), at most 2^31. The quotient of doubles is off by less than 2^-50 of it, so by 2^-19.
-std::uint32_t height_of(Wide distance, Wide slope) {
-  constexpr double kError = 0x1p-18;
-  const double height = rounded(distance) * 0x1p30 / rounded(slope) + 1;   // 1: rounded towards 0 below
-  const auto least = static_cast<std::int64_t>(height - kError), most = static_cast<std::int64_t>(height + kError);
-  if (least == most) return static_cast<std::uint32_t>(least - 1);
-  return static_cast<std::uint32_t>((distance << 30) / slope);   // both are below 2^91
-}
-
 }  // namespace
 
 bool triangles_meet(const Corners& s, const Corners& t, const Normal& t_normal) {
@@ -120,19 +108,6 @@ bool triangle_touches_cube(const Corners& t, const Box& box, const Int3& low, st
   const Wide distance = dot(normal, p), reach = Wide{side} * (Wide{std::abs(normal.x)} + std::abs(normal.y) + std::abs(normal.z));
   if (distance > reach || -distance > reach) return false;
   return !edge_parts(t[1] - t[0], p, r, side) && !edge_parts(t[2] - t[1], q, p, side) && !edge_parts(t[0] - t[2], r, q, side);
-}
-
-Crossing ray_crossing(const Int3& p, const Int3& d, const Corners& t) {
-  const Normal n = raw_normal(t);
-  const Wide slope = dot(n, d);
-  const int facing = sign(slope);
-  if (facing == 0) return {};
-  if (edge_side(p, d, t[0], t[1]) != facing || edge_side(p, d, t[1], t[2]) != facing || edge_side(p, d, t[2], t[0]) != facing) return {};
-  const Wide distance = dot(n, t[0] - p);
-  const int side = sign(distance);
-  if (side == 0) return {first_sign(n) == -facing ? facing : 0, 0};
-  if (side != facing) return {};
-  return {facing, height_of(distance * facing, slope * facing)};
 }
 
 int segment_crossing(const Int3& p, const Int3& q, const Corners& t) {

@@ -47,14 +47,6 @@ inline Box box_of(const Corners& t) { return {glm::min(glm::min(t[0], t[1]), t[2
 /// Whether a closed triangle, not collapsed, touches the closed cube [low, low + side]. `box` is the triangle's.
 bool triangle_touches_cube(const Corners& t, const Box& box, const Int3& low, std::int32_t side);
 
-/// A crossing of the perturbed ray.
-struct Crossing {
-  int sign = 0;               ///< +1 leaving through an outward face, −1 entering, 0 none
-  std::uint32_t height = 0;   ///< floor(t · 2^30)
-};
-/// The ray from p along d through a triangle; the largest |component| of d is in [2^28, 2^29).
-Crossing ray_crossing(const Int3& p, const Int3& d, const Corners& t);
-
 /// +1 when the way from p to q, p ≠ q, both perturbed alike, leaves through the triangle's outward face, −1 when it enters, 0 when it does
 /// not cross. A collapsed triangle is not crossed.
 int segment_crossing(const Int3& p, const Int3& q, const Corners& t);

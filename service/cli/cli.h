@@ -27,7 +27,8 @@ struct DeviceLine {
 struct Parts {
   /// Must be called before any thread exists (compute/gpu/gpu_backend.h). `cached`: what it prepares is looked for and kept in `cache`.
   std::function<Result<std::unique_ptr<CollisionBackend>>(bool cached)> make_gpu;
-  std::function<std::unique_ptr<CollisionBackend>()> make_cpu, make_ref;   ///< the native engine and the reference
+  std::function<std::unique_ptr<CollisionBackend>(bool cached)> make_cpu;   ///< the native engine
+  std::function<std::unique_ptr<CollisionBackend>()> make_ref;
   /// Whether Vulkan shows a device that can be used and is not the host's own processor.
   std::function<bool()> has_gpu;
   /// Keeps what loading and preparing worked out; null: nothing is kept.

@@ -49,7 +49,7 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
   using Backend = std::unique_ptr<CollisionBackend>;
   const auto steady = [](Backend first, SteadyBackend::Make spare) -> Backend { return std::make_unique<SteadyBackend>(std::move(first), std::move(spare)); };
   // What the native engine can't do, the profile `paper` above all, the reference does.
-  const auto native = [steady, make_cpu = parts.make_cpu, make_ref = parts.make_ref] { return steady(make_cpu(), make_ref); };
+  const auto native = [steady, cached, make_cpu = parts.make_cpu, make_ref = parts.make_ref] { return steady(make_cpu(cached), make_ref); };
   if (name == "ref") return parts.make_ref();
   if (name == "cpu") return native();
   if (name == "gpu") {   // who asks for the device gets it or a refusal
@@ -76,7 +76,7 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
   note("no GPU can be used: the engine gpu answers in paper, on " + (*gpu)->device() + (profile ? "" : ", and the engine cpu in refined"));
   if (profile) return steady(std::move(*gpu), parts.make_ref);
   const auto shaders = std::make_shared<Backend>(std::move(*gpu));   // taken once
-  return steady(parts.make_cpu(), [steady, shaders, make_ref = parts.make_ref] { return steady(std::move(*shaders), make_ref); });
+  return steady(parts.make_cpu(cached), [steady, shaders, make_ref = parts.make_ref] { return steady(std::move(*shaders), make_ref); });
 }
 
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts, Console& console) {

@@ -120,7 +120,7 @@ TEST_P(LostInMidRun, WithoutASpareTheRunEndsWithZeroForceAndTheSummarySaysWhy) {
 TEST_P(LostInMidRun, WithASpareTheNativeEngineGoesOnAndTheSummarySaysSo) {
   const LoadedScene scene = pressed();
   CountingDevice device(scene);
-  SteadyBackend backend(std::make_unique<LosingBackend>(30, device), make_native_backend);
+  SteadyBackend backend(std::make_unique<LosingBackend>(30, device), [] { return make_native_backend(); });
   ASSERT_TRUE(backend.prepare(scene.geometry, {}, {}));
   device.enough = 2 * (kWatchdogTicks + kFadeTicks);   // more than was on its way when the device was lost
   const auto summary = run_session(scene, backend, device, {.pace = GetParam(), .duration_s = 120, .stop = &device.stop}, nullptr);

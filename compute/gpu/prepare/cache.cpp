@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/scene/archive.h"
 #include "compute/scene/search_tables.h"
 #include "model/cache/archive.h"
 #include "model/cache/geometry_cache.h"
@@ -18,28 +19,8 @@ void archive_numbers(Archive& a, Scene& scene) {
   a(scene.constants);
   for_each_partition(scene, [&](auto& partition) {
     a(partition.grid);
-    a(partition.longest_list);
     a(partition.has_internal);
   });
-}
-
-template <class Archive, class Samples>
-void archive_samples(Archive& a, Samples& samples) {
-  a(samples.begin);
-  a(samples.points);
-  a(samples.entries);
-  a(samples.owners);
-  a(samples.words);
-  a(samples.wide);
-}
-
-template <class Archive, class Tables>
-void archive_tables(Archive& a, Tables& tables) {
-  a(tables.boxes);
-  a(tables.parts);
-  a(tables.triangles.order);
-  a(tables.triangles.boxes);
-  a(tables.triangles.level_begin);
 }
 
 }  // namespace

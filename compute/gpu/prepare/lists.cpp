@@ -204,7 +204,7 @@ void ListBuilder::scatter(VoxelPairs& pairs) {
   steps_.run([&](CommandRecorder& r) { r.copy(p.list_begin, 0, cursors, 0, cursors.bytes()); });
   steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, p.list_triangles, pairs.entry_voxel},
                    pairs.count, pairs.count);
-  p.longest_list = sort_lists(steps_, pairs.entry_voxel, p.list_begin, p.list_triangles, pairs.count);
+  sort_lists(steps_, pairs.entry_voxel, p.list_begin, p.list_triangles, pairs.count);
 }
 
 VoxelPairs ListBuilder::build() {

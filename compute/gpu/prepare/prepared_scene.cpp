@@ -115,7 +115,6 @@ Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& sce
   for_each_partition(out, [&](PartitionBuffers& p) {
     const PartitionBuffers& from = *partitions[i++];
     p.grid = from.grid;
-    p.longest_list = from.longest_list;
     p.has_internal = from.has_internal;
   });
   std::vector<const VulkanBuffer*> buffers;

@@ -25,7 +25,6 @@ struct PartitionBuffers {
   VulkanBuffer boundary_place;    ///< uint32, one a boundary voxel: slot · 512 + bit; ascending
   VulkanBuffer list_begin;        ///< uint32, CSR over boundary voxels, + 1
   VulkanBuffer list_triangles;    ///< uint32 ids, ascending in each voxel
-  std::uint32_t longest_list = 0;  ///< no list has more entries
   bool has_internal = false;
 };
 
