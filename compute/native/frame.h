@@ -29,6 +29,8 @@ class Frame {
 
   /// As CollisionBackend::query. Error: the plan leaves out what the pose needs.
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out);
+  /// From the next query on.
+  void replan(const Plan& plan) { plan_ = plan; }
   /// Whether parts of a query may run on a second thread of the frame's own; false to begin with.
   void share(bool wanted) { sharing_ = wanted; }
   /// Pairs that intersect at the last query's pose.

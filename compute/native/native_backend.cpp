@@ -57,14 +57,17 @@ class NativeBackend final : public CollisionBackend {
                        std::to_string(most >> 20) + " MiB of memory that this process may have");
     if (auto found = scene_for(geometry, plan, progress); !found) return found;
     geometry_ = &geometry;
-    make_frame(plan);
+    plan_ = plan;
+    frame_.emplace(geometry, scene_->tables(), plan);
+    frame_->share(true);
     return {};
   }
 
   Result<void> replan(const Plan& plan) override {
-    if (!scene_ || plan.profile != Profile::kRefined) return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
-    drop_frames();
-    make_frame(plan);
+    if (!frame_ || plan.profile != Profile::kRefined) return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
+    plan_ = plan;
+    frame_->replan(plan);
+    for (const auto& helper : helpers_) helper->replan(plan);
     return {};
   }
 
@@ -120,11 +123,6 @@ class NativeBackend final : public CollisionBackend {
     scene_.emplace(std::move(*scene));
     if (cache_) native::keep_scene(*cache_, key, *scene_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return {};
-  }
-  void make_frame(const Plan& plan) {
-    plan_ = plan;
-    frame_.emplace(*geometry_, scene_->tables(), plan);
-    frame_->share(true);
   }
   void drop_frames() {
     threads_.reset();

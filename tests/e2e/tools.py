@@ -91,6 +91,7 @@ def test_every_engine_gives_the_same_answer_and_its_name():
         expect({**line, 'time_us': 0, 'engine': 0} == {**first, 'time_us': 0, 'engine': 0}, 'the same answer')
     by_default = palpate(*query, '--backend', 'auto')
     expect({**lines_of(by_default)[0], 'time_us': 0, 'engine': 0} == {**first, 'time_us': 0, 'engine': 0}, 'the same answer')
+    expect(lines_of(palpate(*query, '--profile', 'paper'))[0]['engine'] == 'gpu', 'shaders answer in paper wherever they can')
     in_paper = palpate(*query, '--backend', 'cpu', '--profile', 'paper')
     expect(lines_of(in_paper)[0]['engine'] == 'ref' and in_paper.err.count('the engine ref answers instead') == 1, in_paper)
 
