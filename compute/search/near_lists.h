@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// A list that the host fills for one frame, in mapped memory.
+/// A list that the search fills for one frame, in memory of the engine's.
 template <class T>
 struct HostList {
   std::span<T> room;
@@ -19,7 +19,7 @@ struct HostList {
   }
 };
 
-/// What the host finds near at a pose: all that the device then decides exactly. Errs only towards "may meet".
+/// What the search finds near at a pose: all that the engine then decides exactly. Errs only towards "may meet".
 struct NearLists {
   HostList<gpu::TouchCandidate> touch;
   HostList<gpu::PairCandidate> pairs;

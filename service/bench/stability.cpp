@@ -334,7 +334,7 @@ void measure_energy(BenchTable&, BenchFacts& facts) {
 
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
   Console console;
-  BenchFacts facts{.command = "stability", .device = "the CPU reference, in virtual time", .more = {}};
+  BenchFacts facts{.command = "stability", .device = "ref on the processor, in virtual time", .more = {}};
   BenchTable table{{"law", "stiffness_model", "delay_ticks", "n", "mass_kg", "damping", "hand_damping", "areas", "critical_k", "theory_k"}, {}};
   std::vector<Chart> charts;
   measure_formulas(console, table, charts);

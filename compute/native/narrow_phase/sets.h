@@ -26,7 +26,7 @@ struct FoundSets {
   std::vector<gpu::ContactPair> pairs;
 };
 
-/// Decides on the host what the device's shaders decide about the lists of what is near (docs/EXACTNESS.md sections 3 and 4): sets, pairs and
+/// Decides about the lists of what is near what the device engine's shaders decide there (docs/EXACTNESS.md sections 3 and 4): sets, pairs and
 /// samples inside the tool in `refined`. The same questions, answered exactly, so the same bits.
 /// One thread and its helper; make() keeps references to its arguments; decide() allocates only when a contact is larger than all before.
 class HostSets {
