@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <new>
 #include <optional>
 #include <string>
 #include <thread>
@@ -55,12 +56,18 @@ class NativeBackend final : public CollisionBackend {
     if (const std::uint64_t bytes = estimate_preparation(geometry, plan), most = memory_limit(); bytes > most)
       return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles takes up to " + std::to_string(bytes >> 20) + " MiB, more than the " +
                        std::to_string(most >> 20) + " MiB of memory that this process may have");
-    if (auto found = scene_for(geometry, plan, progress); !found) return found;
-    geometry_ = &geometry;
-    plan_ = plan;
-    frame_.emplace(geometry, scene_->tables(), plan);
-    frame_->share(true);
-    return {};
+    try {
+      if (auto found = scene_for(geometry, plan, progress); !found) return found;
+      geometry_ = &geometry;
+      plan_ = plan;
+      frame_.emplace(geometry, scene_->tables(), plan);
+      frame_->share(true);
+      return {};
+    } catch (const std::bad_alloc&) {
+      frame_.reset();
+      scene_.reset();
+      return Error{ErrorCode::kInternal, "there was no memory left for preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles"};
+    }
   }
 
   Result<void> replan(const Plan& plan) override {

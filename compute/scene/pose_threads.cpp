@@ -1,6 +1,8 @@
 #include "compute/scene/pose_threads.h"
 
 #include <algorithm>
+#include <new>
+#include <system_error>
 #include <utility>
 
 namespace palpate {
@@ -11,7 +13,14 @@ constexpr std::size_t kMostAtOnce = 8;   // poses that a thread takes at a time 
 }  // namespace
 
 PoseThreads::PoseThreads(std::vector<Answer> helpers) : helpers_(std::move(helpers)) {
-  for (const Answer& helper : helpers_) threads_.emplace_back([this, &helper] { serve(helper); });
+  threads_.reserve(helpers_.size());
+  for (const Answer& helper : helpers_) {
+    try {
+      threads_.emplace_back([this, &helper] { serve(helper); });
+    } catch (const std::system_error&) {
+      return;   // those that can't be had are done without
+    }
+  }
 }
 
 PoseThreads::~PoseThreads() {
@@ -25,7 +34,7 @@ PoseThreads::~PoseThreads() {
 
 /// Takes poses until none is left.
 void PoseThreads::work(const Answer& by) {
-  const std::size_t threads = helpers_.size() + 1;
+  const std::size_t threads = threads_.size() + 1;
   for (;;) {
     std::size_t first = 0, last = 0;
     {
@@ -35,7 +44,11 @@ void PoseThreads::work(const Answer& by) {
       last = next_ += std::clamp<std::size_t>((poses_.size() - next_) / (2 * threads), 1, kMostAtOnce);
     }
     for (std::size_t i = first; i < last; ++i) {
-      auto answered = by(poses_[i], out_[i]);
+      Result<void> answered = Error{ErrorCode::kInternal, "there was no memory left for a pose of a batch"};
+      try {
+        answered = by(poses_[i], out_[i]);
+      } catch (const std::bad_alloc&) {   // must not end a helper's thread, and the program with it
+      }
       if (answered) continue;
       const std::lock_guard lock(mutex_);
       if (outcome_) outcome_ = std::move(answered);
@@ -66,7 +79,7 @@ Result<void> PoseThreads::answer(const Answer& own, std::span<const LatticePose>
     out_ = out;
     next_ = 0;
     outcome_ = {};
-    busy_ = helpers_.size();
+    busy_ = threads_.size();
     ++round_;
   }
   begun_.notify_all();

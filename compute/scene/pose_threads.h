@@ -17,7 +17,7 @@ namespace palpate {
 class PoseThreads {
  public:
   using Answer = std::function<Result<void>(const LatticePose& pose, Contacts& out)>;
-  /// A thread for each of `helpers`. What they refer to outlives this.
+  /// A thread for each of `helpers`, as far as threads can be had. What they refer to outlives this.
   explicit PoseThreads(std::vector<Answer> helpers);
   ~PoseThreads();
   PoseThreads(const PoseThreads&) = delete;
