@@ -25,7 +25,7 @@ struct StageMemory {
 };
 
 /// Finds contacts. prepare() once, off the loops; query() each frame, by one thread at a time.
-/// Two implementations answer every query with identical integers: compute (Vulkan) and cpu_ref.
+/// Three engines answer every query with identical integers: compute/gpu (Vulkan), compute/native (this processor) and cpu_ref.
 class CollisionBackend {
  public:
   virtual ~CollisionBackend() = default;
@@ -76,8 +76,8 @@ class CollisionBackend {
   }
 
   virtual bool has_internal_voxels() const = 0;   ///< the mock-up has V_int voxels
-  virtual std::string name() const = 0;           ///< "gpu" or "cpu"
-  virtual std::string device() const = 0;         ///< "llvmpipe (LLVM 15.0.6, 256 bits)", "CPU reference"
+  virtual std::string name() const = 0;           ///< the engine: "gpu", "cpu" or "ref"
+  virtual std::string device() const = 0;         ///< what it runs on: "llvmpipe (LLVM 15.0.6, 256 bits)", "AMD EPYC, 2 threads"
   virtual std::uint64_t memory_bytes() const = 0; ///< kept for the prepared scene
   /// memory_bytes() by stage; what several stages use counts for the first of them. Empty: this back end doesn't tell them apart.
   virtual std::vector<StageMemory> memory_by_stage() const { return {}; }

@@ -45,6 +45,7 @@ struct Ignored {
 
 /// The exact outcome of one pose: identical on every back end.
 struct Contacts {
+  const char* engine = "";              ///< who answered: the back end's name, "gpu", "cpu" or "ref"; empty: nobody had to be asked
   bool contact = false;
   bool truncated = false;               ///< a capacity was too small; `truncated_capacity` names it; no force
   const char* truncated_capacity = "";

@@ -21,6 +21,7 @@ void clear(Contacts& contacts) {
   contacts.carriers.clear();
   contacts.ignored_touched.clear();
   contacts.times.clear();
+  contacts.engine = "";
 }
 
 }  // namespace

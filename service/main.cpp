@@ -1,11 +1,11 @@
 // The program: the one place that knows every back end and driver by name.
-#include <cstdlib>
+#include <algorithm>
 #include <string>
 
-#include "compute/gpu_backend.h"
-#include "cpu_ref/cpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/native/native_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "driver/device_list.h"
-#include "model/one_line.h"
 #include "service/cli/cli.h"
 #include "service/bench/peer.h"
 
@@ -32,16 +32,6 @@ Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const
   return device;
 }
 
-/// Who decides small contacts, where PALPATE_HOST_SHARE says so (docs/PERFORMANCE.md): the device alone, for measuring and checking it.
-Result<std::optional<HostShare>> wanted_host_share() {
-  const char* const text = std::getenv("PALPATE_HOST_SHARE");
-  const std::string name = text ? text : "";
-  if (name.empty()) return std::optional<HostShare>();
-  if (name == "near") return std::optional(HostShare::kNear);
-  if (name == "contacts") return std::optional(HostShare::kContacts);
-  return bad_value("PALPATE_HOST_SHARE is \"" + one_line(name) + "\", allowed are near and contacts");
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -49,15 +39,18 @@ int main(int argc, char** argv) {
   const auto cache = folder ? std::make_shared<palpate::DiskCache>(palpate::DiskCache::Settings{.folder = *folder}) : nullptr;
   const palpate::Parts parts{
       .make_gpu =
-          [&cache](bool cached) -> palpate::Result<std::unique_ptr<palpate::CollisionBackend>> {
+          [&cache](bool cached) {
             palpate::GpuOptions options;
-            const auto share = wanted_host_share();
-            if (!share) return share.error();
-            options.host_share = *share;
             options.cache = cached ? cache : nullptr;
             return palpate::make_gpu_backend(options);
           },
-      .make_cpu = palpate::make_cpu_backend,
+      .make_cpu = [&cache](bool cached) { return palpate::make_native_backend(cached ? cache : nullptr); },
+      .make_ref = palpate::make_ref_backend,
+      .has_gpu =
+          [] {
+            const auto devices = palpate::list_vulkan_devices();
+            return std::any_of(devices.begin(), devices.end(), [](const auto& device) { return device.usable && !device.processor; });
+          },
       .cache = cache,
       .make_device = make_device,
       .list_devices = list_devices,

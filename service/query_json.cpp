@@ -33,6 +33,11 @@ class Writer {
     separate();
     fmt::format_to(std::back_inserter(out_), "\"{}\"", value);
   }
+  void text_or_null(std::string_view value) {
+    if (!value.empty()) return text(value);
+    separate();
+    out_ += "null";
+  }
   void boolean(bool value) {
     separate();
     out_ += value ? "true" : "false";
@@ -158,6 +163,8 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   }
   json.key("truncated");
   json.boolean(contacts.truncated);
+  json.key("engine");
+  json.text_or_null(contacts.engine);
   json.key("time_us");
   json.open('{');
   json.key("total");

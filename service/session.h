@@ -60,7 +60,7 @@ struct RealtimeOutlook {
 /// What summary.json tells, with the names it has there, and a few more.
 struct SessionSummary {
   std::uint64_t static_triangles = 0, tool_triangles = 0;   ///< of the scene's meshes
-  std::string backend, device;               ///< "gpu" or "cpu"; the back end's own device
+  std::string backend, device;               ///< the engine that answered last, "gpu", "cpu" or "ref", and what it runs on
   std::string haptic_device;
   std::string profile;                       ///< "paper" or "refined"
   std::string law;                           ///< "printed" or "corrected"

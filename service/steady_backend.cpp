@@ -12,20 +12,21 @@ SteadyBackend::SteadyBackend(std::unique_ptr<CollisionBackend> first, Make make_
 Result<void> SteadyBackend::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
   geometry_ = &geometry;
   plan_ = plan;
-  spare_ready_ = by_spare_ = false;   // what a spare has prepared is another scene
+  first_ready_ = spare_ready_ = by_spare_ = false;   // what has been prepared is another scene
   full_.clear();
   if (!first_) return prepare_spare(progress);
   bool cancelled = false;
   const Progress watched = [&](const char* what, double done) { return !(cancelled = cancelled || (progress && !progress(what, done))); };
   const Result<void> prepared = first_->prepare(geometry, plan, watched);
+  first_ready_ = static_cast<bool>(prepared);
   if (prepared || cancelled || !make_spare_) return prepared;
   note("the scene can't be prepared on " + first_->device() + ": " + prepared.error().sentence);
-  first_.reset();
+  if (prepared.error().code != ErrorCode::kBadValue) first_.reset();   // a scene that it can't take says nothing of the next
   return prepare_spare(progress);
 }
 
 Result<void> SteadyBackend::finish_preparing() {
-  if (!first_) return {};
+  if (!first_ready_) return spare_ready_ ? spare_->finish_preparing() : Result<void>{};
   const Result<void> finished = first_->finish_preparing();
   if (finished || !make_spare_) return finished;
   first_failed(finished.error());
@@ -33,7 +34,7 @@ Result<void> SteadyBackend::finish_preparing() {
 }
 
 Result<void> SteadyBackend::replan(const Plan& plan) {
-  if (first_)
+  if (first_ready_)
     if (auto done = first_->replan(plan); !done) return done;
   if (spare_ready_)
     if (auto done = spare_->replan(plan); !done) return done;
@@ -45,7 +46,7 @@ Result<void> SteadyBackend::prepare_spare(const Progress& progress) {
   if (!spare_) spare_ = make_spare_();
   if (auto prepared = spare_->prepare(*geometry_, plan_, progress); !prepared) return prepared;
   spare_ready_ = true;
-  note("the " + spare_->name() + " back end answers instead");
+  note("the engine " + spare_->name() + " answers instead");
   return {};
 }
 
@@ -63,7 +64,7 @@ Result<void> SteadyBackend::ask_first(const LatticePose& pose, const Ignored* ig
 
 Result<void> SteadyBackend::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   by_spare_ = false;
-  if (first_) {
+  if (first_ready_) {
     const Result<void> answered = ask_first(pose, ignored, out);
     // More areas than a frame may have is truncation by definition, whoever answers.
     if (answered && (!out.truncated || std::strcmp(out.truncated_capacity, "areas") == 0)) return answered;
@@ -77,7 +78,7 @@ Result<void> SteadyBackend::query(const LatticePose& pose, const Ignored* ignore
 }
 
 Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
-  if (!first_) return CollisionBackend::query_batch(poses, out);   // pose by pose
+  if (!first_ready_) return spare_ready_ ? spare_->query_batch(poses, out) : CollisionBackend::query_batch(poses, out);   // pose by pose
   // Whatever is wrong with the batch shows again, and is dealt with, pose by pose.
   const Result<void> answered = first_->query_batch(poses, out);
   for (std::size_t i = 0; i < poses.size(); ++i)
@@ -87,8 +88,9 @@ Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std:
 }
 
 void SteadyBackend::first_failed(const Error& error) {
-  note("the " + first_->name() + " back end has failed: " + error.sentence);
+  note("the engine " + first_->name() + " has failed: " + error.sentence);
   first_.reset();
+  first_ready_ = false;
 }
 
 std::uint64_t SteadyBackend::memory_bytes() const {
@@ -96,6 +98,9 @@ std::uint64_t SteadyBackend::memory_bytes() const {
 }
 
 std::vector<std::string> SteadyBackend::take_notes() {
+  for (CollisionBackend* part : {first_.get(), spare_.get()})
+    if (part != nullptr)
+      for (std::string& sentence : part->take_notes()) note(std::move(sentence));
   std::vector<std::string> fresh(notes_.begin() + static_cast<std::ptrdiff_t>(told_), notes_.end());
   told_ = notes_.size();
   return fresh;

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// A back end that goes on. Where a list was too small it makes room and asks again; where the first back end fails, or a frame is more
-/// than it can hold, a spare one answers from then on, or that frame. All back ends give the same integers, so no answer tells who gave it;
+/// A back end that goes on. Where a list was too small it makes room and asks again; where the first back end fails, a spare one answers from then on; what
+/// is more than it can take, a scene or a frame, the spare answers alone. All back ends give the same integers, so no answer tells who gave it;
 /// take_notes() does. A query that enlarges or prepares the spare takes as long as it takes: in real time the watchdog holds the force at
 /// zero meanwhile.
 class SteadyBackend final : public CollisionBackend {
@@ -42,7 +42,7 @@ class SteadyBackend final : public CollisionBackend {
   std::vector<std::string> take_notes() override;
 
  private:
-  const CollisionBackend& now() const { return first_ ? *first_ : *spare_; }
+  const CollisionBackend& now() const { return first_ready_ || !spare_ ? *first_ : *spare_; }
   Result<void> ask_first(const LatticePose& pose, const Ignored* ignored, Contacts& out);
   Result<void> prepare_spare(const Progress& progress);
   void first_failed(const Error& error);
@@ -50,6 +50,7 @@ class SteadyBackend final : public CollisionBackend {
 
   std::unique_ptr<CollisionBackend> first_, spare_;   ///< first_ is gone once it has failed
   Make make_spare_;
+  bool first_ready_ = false;         ///< it has prepared the scene
   bool spare_ready_ = false;
   bool by_spare_ = false;            ///< the last query was answered by the spare
   const SceneGeometry* geometry_ = nullptr;

@@ -1,6 +1,6 @@
 #version 460
 // One invocation: an entry of the mock-up's lists, from `first` on, a triangle in a voxel. Counts the triangle's samples that lie in the
-// voxel (EMIT 0), or lists them, and whether its first corner lies in it (EMIT 1; form: compute/host_samples.h).
+// voxel (EMIT 0), or lists them, and whether its first corner lies in it (EMIT 1; form: compute/scene/samples.h).
 // Reads the mock-up and its partition. Writes begins[]; EMIT 1 also samples[], from those of number `base` on.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

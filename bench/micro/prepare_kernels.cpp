@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "compute/prepared_scene.h"
+#include "compute/gpu/prepare/prepared_scene.h"
 #include "model/generate.h"
 #include "model/geometry_build.h"
 
@@ -55,7 +55,6 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   GpuOptions options;
-  options.host_share = HostShare::kNear;   // every kernel, also where the host would do its work
   auto device = VulkanDevice::create(options);
   if (!device) {
     std::fprintf(stderr, "%s\n", device.error().sentence.c_str());

@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 include(InstallRequiredSystemLibraries)
 
 set(palpate_libraries)
-foreach(name model shaders compute cpu_ref driver service)
+foreach(name model shaders scene native gpu cpu_ref driver service)
   if(TARGET palpate_${name})
     list(APPEND palpate_libraries palpate_${name})
   endif()
@@ -23,8 +23,10 @@ install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LI
 install(DIRECTORY model driver service DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT library
   FILES_MATCHING PATTERN "*.h" PATTERN "service/server" EXCLUDE PATTERN "service/viewer" EXCLUDE PATTERN "service/report" EXCLUDE PATTERN "service/clients" EXCLUDE
   PATTERN "service/deploy" EXCLUDE)
-install(FILES compute/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute COMPONENT library)
-install(FILES cpu_ref/cpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/cpu_ref COMPONENT library)
+install(FILES compute/gpu/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute/gpu COMPONENT library)
+install(FILES compute/vulkan/options.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute/vulkan COMPONENT library)
+install(FILES compute/native/native_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute/native COMPONENT library)
+install(FILES cpu_ref/ref_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/cpu_ref COMPONENT library)
 
 configure_package_config_file(scripts/cmake/palpateConfig.cmake.in "${PROJECT_BINARY_DIR}/palpateConfig.cmake"
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate PATH_VARS PALPATE_IMPORT_PATH)

@@ -18,6 +18,9 @@ Examples:
 
 CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMember(words).description(""); }
 
+const std::vector<std::string> kEngines = {"auto", "gpu", "cpu", "ref"};
+constexpr const char* kEngineHelp = "the engine, as for run (auto)";
+
 void add_common(CLI::App& app, BenchOptions& options, bool scenes_required = true) {
   app.add_option("scenes", options.scenes, "scene files (JSON)")->required(scenes_required)->type_name("SCENE");
   app.add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
@@ -54,17 +57,17 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   CLI::App* latency = bench->add_subcommand("latency", "a frame's time by stage: p50, p95, p99, p99.9 (of 1,000 frames and more), max; contact and free apart");
   add_common(*latency, options);
   add_poses(*latency, options);
-  latency->add_option("--backend", options.backends, "gpu, cpu, or both in turns; without it gpu, else cpu")
-      ->check(one_of({"gpu", "cpu"}))
-      ->expected(1, 2)
-      ->type_name("gpu|cpu");
+  latency->add_option("--backend", options.backends, "the engine, or several in turns, as for run (auto)")
+      ->check(one_of(kEngines))
+      ->expected(1, 3)
+      ->type_name("auto|gpu|cpu|ref");
   latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing near). Stages are the\n"
                   "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out. The frames are a loop's\n"
                   "that nobody watches: without lists of triangles, and `refined` without areas.");
   latency->callback([&] { outcome = bench_latency(options, parts); });
 
   const auto one_backend = [&options](CLI::App& to) {
-    to.add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+    to.add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
   };
   CLI::App* throughput = bench->add_subcommand("throughput", "poses a second against the size of a batch, beside poses asked singly");
   add_common(*throughput, options);
@@ -99,7 +102,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   CLI::App* error = bench->add_subcommand("error", "error of the response against time, for every knob: four closed forms, and scenes against a converged run");
   add_common(*error, options, false);
   add_poses(*error, options);
-  error->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  error->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
   error->add_flag("--scenes-only", options.scenes_only, "without the four closed forms");
   error->footer("Errors are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 over the poses in contact. Times are whole frames.\n"
                 "A scene's truth is the refined profile at a spacing of a 16th of a voxel; the sweep towards it shows its convergence.");
@@ -123,7 +126,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
 
   CLI::App* plan = bench->add_subcommand("plan", "scenes that lack something: the whole plan beside their own, the same bits, time and memory");
   plan->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
-  plan->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  plan->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
   plan->add_option("--rounds", options.rounds, "times that all poses are gone through, the two plans in turns (3)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))
       ->type_name("N");
@@ -133,7 +136,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
 
   CLI::App* numerics = bench->add_subcommand("numerics", "stiff and extreme cases beside the same method in plain single and double precision: where each breaks");
   numerics->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
-  numerics->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  numerics->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
   numerics->footer("Swept: K, scale, offset from the origin, aspect of triangles, depth, sample spacing, gaps, age of results. The error is of the force, relative; for\n"
                    "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; `breaks` in results.json sums up.");
   numerics->callback([&] { outcome = bench_numerics(options, parts); });
@@ -149,7 +152,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   CLI::App* jitter = bench->add_subcommand("jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
   add_common(*jitter, options);
   jitter->add_option("--seconds", options.seconds, "how long (60)")->check(CLI::Range(0.1, 86400.0).description(""))->type_name("S");
-  jitter->add_option("--backend", options.backends, "gpu or cpu; without it gpu, else cpu")->check(one_of({"gpu", "cpu"}))->expected(1)->type_name("gpu|cpu");
+  jitter->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
   jitter->footer("The session of the (first) scene runs in real time along its path, to and fro, its back end asked as fast as it\n"
                  "answers. cyclictest (Debian: rt-tests) runs meanwhile with the same period,\n"
                  "priority and processor, where it is installed. What was not allowed is said. A tick that comes a whole period late is missed.");

@@ -156,15 +156,20 @@ std::string page(const Json& data) {
 }  // namespace
 
 std::string device_text(const CollisionBackend& backend, const Parts& parts) {
+  const std::string engine = backend.name() + " on ";
   if (backend.name() == "gpu")
     for (const DeviceLine& line : parts.list_devices())
-      if (line.kind == "vulkan" && line.usable && line.name == backend.device()) return line.name + ", " + line.reason;
-  return backend.device();
+      if (line.kind == "vulkan" && line.usable && line.name == backend.device()) return engine + line.name + ", " + line.reason;
+  return engine + backend.device();
 }
 
 Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts) {
   const double load = load_average();
-  auto backend = choose_backend(options.backends.empty() ? "" : options.backends.front(), parts, console);
+  // Who answers which profile is part of what a time means.
+  auto backend = choose_backend(options.backends.empty() ? "" : options.backends.front(), std::nullopt, parts, [&](const std::string& sentence) {
+    console.note(sentence);
+    facts.more.emplace_back("engines", sentence);
+  });
   if (!backend) return backend.error();
   facts.device = device_text(**backend, parts);
   facts.more.emplace_back("load average", fmt::format("{:.1f} at the start", load));

@@ -50,7 +50,7 @@ struct BenchFacts {
   std::vector<std::pair<std::string, std::string>> more;   ///< of this bench: scenes, poses, versions of libraries
 };
 
-/// Name and driver of the back end's device, "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6 (LLVM 15.0.6)". Call after the
+/// The engine, and name and driver of its device: "gpu on llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6 (LLVM 15.0.6)". Call after the
 /// back end was made: listing devices is not allowed before.
 std::string device_text(const CollisionBackend& backend, const Parts& parts);
 

@@ -170,7 +170,7 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
   chart.series.push_back({"no delay", {}, {}});
   for (const ContactCase& what : pressed_contacts()) {
     console.step("closing the loop over " + what.name);
-    auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_cpu);
+    auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_ref);
     if (!prepared) return prepared.error();
     const auto none = highest_stable_body_query(make, what, **prepared, bare_device(), LawKind::kCorrected, 0);
     if (!none) return none.error();
@@ -223,7 +223,7 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
   }
   for (const ContactCase& what : pressed_contacts()) {
     if (what.name != "flat" && what.name != "four" && what.name != "peg") continue;
-    auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_cpu);
+    auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_ref);
     if (!prepared) return prepared.error();
     console.step("six degrees of freedom over the query, held by a hand: " + what.name);
     const auto k = highest_stable_body_query(make, what, **prepared, DeviceSettings{}, LawKind::kCorrected, 10);
@@ -263,7 +263,7 @@ Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Con
     for (const bool own : {false, true}) {
       SceneOptions common;
       common.scene = file;
-      common.backend = "cpu";
+      common.backend = "ref";
       if (!own) common.profile = Profile::kPaper;
       Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(common, Purpose::kSession, parts, console);
       if (!prepared) return prepared.error();
@@ -295,7 +295,7 @@ Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& fac
     console.step("jumps: " + what.name);
     JumpStatistics found[2];
     for (const bool refined : {false, true}) {
-      auto prepared = PreparedCase::make(what, refined ? Profile::kRefined : Profile::kPaper, parts.make_cpu);
+      auto prepared = PreparedCase::make(what, refined ? Profile::kRefined : Profile::kPaper, parts.make_ref);
       if (!prepared) return prepared.error();
       const ForceLawSettings law{.kind = refined ? LawKind::kCorrected : LawKind::kPrinted, .stiffness_n_per_m = 2000, .transitions = kDelay,
                                  .change_n_per_s = 100};
@@ -334,7 +334,7 @@ void measure_energy(BenchTable&, BenchFacts& facts) {
 
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
   Console console;
-  BenchFacts facts{.command = "stability", .device = "the CPU reference, in virtual time", .more = {}};
+  BenchFacts facts{.command = "stability", .device = "ref on the processor, in virtual time", .more = {}};
   BenchTable table{{"law", "stiffness_model", "delay_ticks", "n", "mass_kg", "damping", "hand_damping", "areas", "critical_k", "theory_k"}, {}};
   std::vector<Chart> charts;
   measure_formulas(console, table, charts);

@@ -67,9 +67,10 @@ Examples:
 CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMember(words).description(""); }
 
 CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
-  return app.add_option("--backend", options.backend, "gpu or cpu; without it gpu, else cpu with a sentence on standard error")
-      ->check(one_of({"gpu", "cpu"}))
-      ->type_name("gpu|cpu");
+  return app.add_option("--backend", options.backend, "the engine that answers: gpu, everything in shaders; cpu, native code on this processor; ref, the reference; auto: gpu on a GPU, else cpu, "
+                                                                 "with a sentence on standard error (auto)")
+      ->check(one_of({"auto", "gpu", "cpu", "ref"}))
+      ->type_name("auto|gpu|cpu|ref");
 }
 
 void add_import_limits(CLI::App& app, ImportLimits& limits) {

@@ -25,9 +25,12 @@ struct DeviceLine {
 
 /// What main.cpp plugs in; it alone knows back ends and drivers by name.
 struct Parts {
-  /// Must be called before any thread exists (compute/gpu_backend.h). `cached`: what it prepares is looked for and kept in `cache`.
+  /// Must be called before any thread exists (compute/gpu/gpu_backend.h). `cached`: what it prepares is looked for and kept in `cache`.
   std::function<Result<std::unique_ptr<CollisionBackend>>(bool cached)> make_gpu;
-  std::function<std::unique_ptr<CollisionBackend>()> make_cpu;
+  std::function<std::unique_ptr<CollisionBackend>(bool cached)> make_cpu;   ///< the native engine
+  std::function<std::unique_ptr<CollisionBackend>()> make_ref;
+  /// Whether Vulkan shows a device that can be used and is not the host's own processor.
+  std::function<bool()> has_gpu;
   /// Keeps what loading and preparing worked out; null: nothing is kept.
   std::shared_ptr<DiskCache> cache;
   /// A haptic device by name, closed; `tool_gc_m` is the tool's centre of mass, tool frame. Errors: kBadValue for an unknown name or a
@@ -43,7 +46,7 @@ struct Parts {
 /// What several commands share.
 struct SceneOptions {
   std::string scene;                  ///< path of the scene file
-  std::string backend;                ///< "gpu", "cpu" or empty: gpu, else cpu with a sentence
+  std::string backend;                ///< "gpu", "cpu" or "ref"; "auto" or empty: gpu on a GPU, else cpu with a sentence
   std::optional<Profile> profile;     ///< in place of the scene's
   bool full_plan = false;
   bool second_backend = false;        ///< for going over to another plan in mid-run

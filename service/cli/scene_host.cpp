@@ -44,20 +44,43 @@ std::string prepared_text(const HostedScene& prepared) {
 
 }  // namespace
 
-Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts,
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts,
                                                          const std::function<void(const std::string& sentence)>& note, bool cached) {
-  if (name == "cpu") return parts.make_cpu();
-  Result<std::unique_ptr<CollisionBackend>> gpu = parts.make_gpu(cached);
-  // Who asks for the device gets it or a refusal; else the CPU reference steps in where the device can't go on.
-  if (gpu) return std::unique_ptr<CollisionBackend>(std::make_unique<SteadyBackend>(std::move(*gpu), name == "gpu" ? nullptr : parts.make_cpu));
-  if (name == "gpu") return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
-  if (gpu.error().code == ErrorCode::kBadValue) return gpu.error();   // a wish that can't be met, not a device that is missing
-  note(gpu.error().sentence + "; the CPU reference answers");
-  return parts.make_cpu();
+  using Backend = std::unique_ptr<CollisionBackend>;
+  const auto steady = [](Backend first, SteadyBackend::Make spare) -> Backend { return std::make_unique<SteadyBackend>(std::move(first), std::move(spare)); };
+  // What the native engine can't do, the profile `paper` above all, the reference does.
+  const auto native = [steady, cached, make_cpu = parts.make_cpu, make_ref = parts.make_ref] { return steady(make_cpu(cached), make_ref); };
+  if (name == "ref") return parts.make_ref();
+  if (name == "cpu") return native();
+  if (name == "gpu") {   // who asks for the device gets it or a refusal
+    auto gpu = parts.make_gpu(cached);
+    if (!gpu) return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
+    return steady(std::move(*gpu), nullptr);
+  }
+  if (parts.has_gpu()) {
+    auto gpu = parts.make_gpu(cached);
+    if (gpu) return steady(std::move(*gpu), native);
+    note(gpu.error().sentence + ": the engine cpu answers");
+    return native();
+  }
+  // On the processor the native engine is the quicker one by far; `paper` it leaves to the shaders, where there is a driver that runs them here.
+  if (profile == Profile::kRefined) {
+    note("no GPU can be used: the engine cpu answers");
+    return native();
+  }
+  auto gpu = parts.make_gpu(cached);
+  if (!gpu) {
+    note(gpu.error().sentence + (profile ? ": the engine ref answers" : ": the engines cpu and ref answer"));
+    return profile ? parts.make_ref() : native();
+  }
+  note("no GPU can be used: the engine gpu answers in paper, on " + (*gpu)->device() + (profile ? "" : ", and the engine cpu in refined"));
+  if (profile) return steady(std::move(*gpu), parts.make_ref);
+  const auto shaders = std::make_shared<Backend>(std::move(*gpu));   // taken once
+  return steady(parts.make_cpu(cached), [steady, shaders, make_ref = parts.make_ref] { return steady(std::move(*shaders), make_ref); });
 }
 
-Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console) {
-  return choose_backend(name, parts, [&console](const std::string& sentence) { console.note(sentence); });
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts, Console& console) {
+  return choose_backend(name, profile, parts, [&console](const std::string& sentence) { console.note(sentence); });
 }
 
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, const PrepareWatch& watch) {
@@ -66,11 +89,12 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   if (!scene) return scene.error();
 
   // The back end comes before the meshes: their import may start threads.
-  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, parts, watch.note, watch.cached);
+  const std::optional<Profile> profile = options.second_backend ? std::nullopt : std::optional(scene->response.profile);
+  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, profile, parts, watch.note, watch.cached);
   if (!backend) return backend.error();
   prepared->backend = std::move(*backend);
   if (options.second_backend) {
-    auto second = choose_backend(options.backend, parts, [](const std::string&) {}, watch.cached);
+    auto second = choose_backend(options.backend, profile, parts, [](const std::string&) {}, watch.cached);
     if (!second) return second.error();
     prepared->second = std::move(*second);
   }

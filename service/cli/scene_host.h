@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "model/plan.h"
@@ -49,9 +50,10 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
 /// The same with notes and progress on `console`.
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console);
 
-/// gpu, else cpu with one sentence; or the one that `name` asks for. Error kNoDevice: gpu was asked for and there is none.
-Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts,
+/// The engine that `name` asks for, for scenes of a profile; empty: of either. "auto" or empty: gpu on a GPU, else cpu, with one sentence. What an engine
+/// can't do another does, but for gpu asked for by name. Error kNoDevice: that, and there is no device.
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts,
                                                          const std::function<void(const std::string& sentence)>& note, bool cached = true);
-Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, const Parts& parts, Console& console);
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts, Console& console);
 
 }  // namespace palpate

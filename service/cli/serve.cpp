@@ -27,9 +27,9 @@ void add_serve_command(CLI::App& app, ServeOptions& options, const Parts& parts,
   serve_app->add_option("--tls-certificate", options.certificate, "certificate chain, PEM")->type_name("FILE");
   serve_app->add_option("--tls-key", options.key, "its key, PEM")->type_name("FILE");
   serve_app->add_option("--host", options.hosts, "a further name under which this server is asked; may be repeated")->type_name("NAME");
-  serve_app->add_option("--backend", options.backend, "gpu or cpu; without it gpu, else cpu with a line in the log")
-      ->check(CLI::IsMember({"gpu", "cpu"}).description(""))
-      ->type_name("gpu|cpu");
+  serve_app->add_option("--backend", options.backend, "the engine that answers, as for run (auto)")
+      ->check(CLI::IsMember({"auto", "gpu", "cpu", "ref"}).description(""))
+      ->type_name("auto|gpu|cpu|ref");
   const auto mebibytes = [&](const char* flag, std::uint64_t& bytes, const char* text) {
     serve_app->add_option_function<std::uint64_t>(flag, [&bytes](const std::uint64_t& mib) { bytes = mib << 20; }, text)
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description(""))

@@ -61,8 +61,8 @@ class Tune {
 
     ErrorSetting own = setting(scene_.profile, 1, scene_.spacing_m);
     if (auto done = measure(own, true); !done) return done;
-    // The other back end only gets its turn where it is the quicker one on the scene's own settings.
-    if (wanted.empty() && first == "gpu") {
+    // The other engine only gets its turn where it is the quicker one on the scene's own settings.
+    if ((wanted.empty() || wanted == "auto") && first == "gpu") {
       if (auto done = use("cpu"); !done) return done;
       if (auto done = measure(own, true); !done) return done;
       if (tried_[1].us_p95 >= tried_[0].us_p95)
@@ -80,7 +80,7 @@ class Tune {
 
  private:
   Result<void> use(const std::string& name) {
-    auto made = choose_backend(name, parts_, console_);
+    auto made = choose_backend(name, std::nullopt, parts_, console_);
     if (!made) return made.error();
     backend_ = std::move(*made);
     return {};
@@ -208,7 +208,7 @@ void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, R
   tune->add_option("--poses", options.bench.poses, "poses, as for query; without it the path's, deeper than a hand gets")->type_name("FILE");
   tune->add_option("--frames", options.bench.frames, "poses taken from them, evenly (60)")->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100000}).description(""))->type_name("N");
   tune->add_option("--rounds", options.bench.rounds, "times that all poses are gone through (3)")->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))->type_name("N");
-  tune->add_option("--backend", options.bench.backends, "gpu or cpu; without it the quicker one")->check(CLI::IsMember({"gpu", "cpu"}).description(""))->expected(1)->type_name("gpu|cpu");
+  tune->add_option("--backend", options.bench.backends, "the engine, as for run; without it, on a GPU, the quicker of gpu and cpu")->check(CLI::IsMember({"auto", "gpu", "cpu", "ref"}).description(""))->expected(1)->type_name("auto|gpu|cpu|ref");
   tune->add_flag("--json", options.json, "one JSON object: chosen, measured");
   tune->footer("Measures voxel size, sample spacing and profile as bench error does: errors are of the force, against the refined profile at a spacing of a 16th of a voxel;\n"
                "the scene's own settings are among them. Other work on the machine is part of what is measured.");

@@ -64,8 +64,8 @@ std::string script_safe(std::string json) {
 
 std::string report_page(const SessionSummary& summary, const LoadedScene& loaded, const ReportFacts& facts, const ReportSeries& series) {
   const std::string subtitle =
-      fmt::format("{:.1f} s in {} with the {} device; contact found by {} on {}", static_cast<double>(summary.ticks) * 1e-3,
-                  facts.pace == "asap" ? "virtual time" : "real time", summary.haptic_device, summary.backend == "gpu" ? "Vulkan" : "the CPU", summary.device);
+      fmt::format("{:.1f} s in {} with the {} device; contact found by the engine {} on {}", static_cast<double>(summary.ticks) * 1e-3,
+                  facts.pace == "asap" ? "virtual time" : "real time", summary.haptic_device, summary.backend, summary.device);
   std::string data = "{\"name\":" + dump(scene_name(loaded.scene.file));
   data += ",\"subtitle\":" + dump(subtitle);
   data += ",\"notes\":" + dump(summary.notes);

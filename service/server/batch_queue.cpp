@@ -222,7 +222,7 @@ void BatchQueue::answer_slice(Batch& batch) {
       }
       ++metrics_.poses;
       metrics_.query_s.add(batch.answer.total_us / 1e6);
-      for (const auto& time : batch.answer.contacts.times) metrics_.add_stage(time.stage, time.us);
+      for (const auto& time : batch.answer.contacts.times) metrics_.add_stage(batch.answer.contacts.engine, time.stage, time.us);
       if (batch.answer.contacts.truncated) ++metrics_.truncated;
       if (request.binary)
         append_wrench(batch.answer, batch.made);

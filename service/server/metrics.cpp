@@ -44,9 +44,9 @@ void Metrics::count_request(const std::string& route, unsigned status) {
   ++requests_[{route, status}];
 }
 
-void Metrics::add_stage(const char* stage, double us) {
+void Metrics::add_stage(const char* engine, const char* stage, double us) {
   const std::lock_guard lock(mutex_);
-  auto& [sum, frames] = stages_[stage];
+  auto& [sum, frames] = stages_[{engine, stage}];
   sum += us;
   ++frames;
 }
@@ -89,10 +89,12 @@ std::string Metrics::text(const std::vector<Gauge>& gauges) {
   distribution(session_frame_s, "palpate_session_frame_seconds", "A frame of a session, waiting for its turn included.");
 
   const std::lock_guard lock(mutex_);
-  out += "# HELP palpate_stage_seconds_total Time in a stage of the frame.\n# TYPE palpate_stage_seconds_total counter\n";
-  for (const auto& [stage, sum] : stages_) fmt::format_to(std::back_inserter(out), "palpate_stage_seconds_total{{stage=\"{}\"}} {}\n", stage, sum.first / 1e6);
+  out += "# HELP palpate_stage_seconds_total Time in a stage of the frame, by the engine that answered.\n# TYPE palpate_stage_seconds_total counter\n";
+  for (const auto& [stage, sum] : stages_)
+    fmt::format_to(std::back_inserter(out), "palpate_stage_seconds_total{{engine=\"{}\",stage=\"{}\"}} {}\n", stage.first, stage.second, sum.first / 1e6);
   out += "# HELP palpate_stage_frames_total Frames that had the stage.\n# TYPE palpate_stage_frames_total counter\n";
-  for (const auto& [stage, sum] : stages_) fmt::format_to(std::back_inserter(out), "palpate_stage_frames_total{{stage=\"{}\"}} {}\n", stage, sum.second);
+  for (const auto& [stage, sum] : stages_)
+    fmt::format_to(std::back_inserter(out), "palpate_stage_frames_total{{engine=\"{}\",stage=\"{}\"}} {}\n", stage.first, stage.second, sum.second);
   out += "# HELP palpate_requests_total Requests by route and status.\n# TYPE palpate_requests_total counter\n";
   for (const auto& [key, count] : requests_)
     fmt::format_to(std::back_inserter(out), "palpate_requests_total{{route=\"{}\",status=\"{}\"}} {}\n", key.first, key.second, count);

@@ -34,7 +34,7 @@ struct Metrics {
 
   void count_request(const std::string& route, unsigned status);
   /// A frame's stages, as Contacts::times has them.
-  void add_stage(const char* stage, double us);
+  void add_stage(const char* engine, const char* stage, double us);
 
   struct Gauge {
     std::string name, help;
@@ -46,7 +46,7 @@ struct Metrics {
  private:
   std::mutex mutex_;
   std::map<std::pair<std::string, unsigned>, std::uint64_t> requests_;
-  std::map<std::string, std::pair<double, std::uint64_t>> stages_;   ///< sum of µs, frames
+  std::map<std::pair<std::string, std::string>, std::pair<double, std::uint64_t>> stages_;   ///< by engine and stage: sum of µs, frames
 };
 
 }  // namespace palpate

@@ -308,8 +308,8 @@ void RemoteLoops::answer(Loop& loop) {
   } else {
     std::string& out = message.head;
     fmt::format_to(std::back_inserter(out),
-                   R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
-                   pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated, contacts.pairs, json(response.gc), json(response.told().force),
+                   R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"engine":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
+                   pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated, *contacts.engine != 0 ? fmt::format("\"{}\"", contacts.engine) : "null", contacts.pairs, json(response.gc), json(response.told().force),
                    json(response.told().torque));
     for (std::size_t i = 0; i < areas.size(); ++i) {
       const AreaResponse& area = areas[i];

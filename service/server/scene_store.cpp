@@ -414,7 +414,7 @@ Aside SceneStore::aside(const SceneLease& lease) {
   }
   evicted.clear();
   const auto note = [&](const std::string& sentence) { log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}}); };
-  auto made = choose_backend(backend_, parts_, note, !entry->content.uploaded);
+  auto made = choose_backend(backend_, scene.loaded.scene.response.profile, parts_, note, !entry->content.uploaded);
   Result<void> prepared = made ? Result<void>() : made.error();
   if (made) prepared = (*made)->prepare(scene.loaded.geometry, scene.plan.plan, [this](const char*, double) { return !stopping_; });
   if (prepared) prepared = (*made)->finish_preparing();

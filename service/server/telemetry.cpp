@@ -57,7 +57,7 @@ void append_area(const ContactArea& area, const AreaResponse& response, std::str
 Result<void> Telemetry::on_frame(const FrameRecord& frame) {
   frame_us_ = frame.total_us;
   metrics_.session_frame_s.add(frame.total_us / 1e6);
-  for (const auto& time : frame.contacts.times) metrics_.add_stage(time.stage, time.us);
+  for (const auto& time : frame.contacts.times) metrics_.add_stage(frame.contacts.engine, time.stage, time.us);
   // A frame for each message is enough; making more would cost as much as the frames themselves.
   const auto now = Clock::now();
   if (now - last_frame_ >= kPeriod * 3 / 4 && viewers() > 0) {

@@ -1,4 +1,4 @@
-// What the plan of a frame leaves out, as specialisation constants; compute/frame_plan.cpp sets those that differ from these.
+// What the plan of a frame leaves out, as specialisation constants; compute/gpu/frame/plan.cpp sets those that differ from these.
 #ifndef PALPATE_LIB_PLAN
 #define PALPATE_LIB_PLAN
 layout(constant_id = 16) const bool ROTATES = true;         // false: every pose's rotation is the identity

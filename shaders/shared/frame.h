@@ -2,7 +2,7 @@
 //
 // One descriptor set (set 0); a binding number names one buffer for all shaders of a frame: 0…31 the prepared scene, 32…71 the
 // frame, 72 and above the response (frame_response.h, frame_field.h). A shader declares the buffers that it uses and no other, with
-// READ or EDIT of lib/frame.glsl; compute/frame_recorder.h binds them by these numbers.
+// READ or EDIT of lib/frame.glsl; compute/gpu/frame/recorder.h binds them by these numbers.
 //
 // *Lists.* Everything of unknown length is a list: a buffer of items and a FrameList (count, capacity, group counts).
 //   append:  uint i = atomicAdd(frame_lists[kListPairs].count, 1u); if (i < frame_lists[kListPairs].capacity) pairs[i] = …;
@@ -27,7 +27,7 @@ PALPATE_CONSTANT uint32_t kNone = 0xFFFFFFFFu;                   // no item
 
 // ---- bindings ------------------------------------------------------------------------------------------------------------
 
-// The prepared scene (compute/prepared_scene.h).
+// The prepared scene (compute/gpu/prepare/prepared_scene.h).
 PALPATE_CONSTANT int32_t kBindScene = 0;               // SceneConstants, one
 PALPATE_CONSTANT int32_t kBindMockupVertices = 1;      // ivec3
 PALPATE_CONSTANT int32_t kBindMockupTriangles = 2;     // uvec3
@@ -191,7 +191,7 @@ struct ToolRecord {
   uint32_t padding;
 };
 
-// A tool triangle that comes near a voxel that is V_bnd or V_int, found by the host (compute/near_pairs.h).
+// A tool triangle that comes near a voxel that is V_bnd or V_int, found by the host (compute/search/near_pairs.h).
 struct TouchCandidate {
   uint32_t place;                 // in the order of clusters
   uint32_t boundary;              // number of the V_bnd voxel; kNoVoxel: V_int

@@ -73,7 +73,7 @@ struct SampleListPush {
 };
 PALPATE_ASSERT_SIZE(SampleListPush, 48);
 
-// begins[] after the samples were written (compute/host_samples.h).
+// begins[] after the samples were written (compute/scene/samples.h).
 PALPATE_CONSTANT uint32_t kSampleCorner = 1u << 29;
 PALPATE_CONSTANT uint32_t kSampleAxisShift = 30u;
 

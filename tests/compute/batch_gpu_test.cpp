@@ -11,16 +11,19 @@
 #include <string_view>
 #include <thread>
 
-#include "compute/gpu_backend.h"
-#include "compute/host_exact.h"
-#include "compute/prepare_estimate.h"
-#include "compute/prepare_on_host.h"
-#include "compute/prepared_scene.h"
-#include "compute/search_tables.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/scene/exact.h"
+#include "compute/scene/estimate.h"
+#include "compute/native/native_backend.h"
+#include "compute/native/prepare/sample_lists.h"
+#include "compute/native/prepare/scene.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/search_tables.h"
 #include "model/generate.h"
 #include "model/geometry_build.h"
 #include "model/path_file.h"
 #include "shaders/shared/frame.h"
+#include "tests/compute/partition_equality.h"
 #include "tests/equivalence/contacts_difference.h"
 
 namespace palpate {
@@ -98,6 +101,18 @@ TEST_P(Batch, IsTheBitsOfSingleQueries) {
   }
 }
 
+TEST(NativeBatch, IsTheBitsOfSingleQueries) {
+  const Subject scene = subject("disassembly", 8000, 300);
+  const auto backend = make_native_backend();
+  ASSERT_TRUE(backend->prepare(scene.geometry, Plan{}, {}));
+  const std::uint64_t bytes = backend->memory_bytes();
+  expect_same(*backend, scene.poses, scene.poses.size() / 4);
+  expect_same(*backend, std::span(scene.poses).subspan(120, 7), 0);
+  if (std::thread::hardware_concurrency() > 1) {
+    EXPECT_GT(backend->memory_bytes(), bytes) << "no thread has a frame";
+  }
+}
+
 TEST_P(Batch, EnlargesWhatIsTooSmallOnEveryThread) {
   const Subject scene = subject("disassembly", 8000, 200);
   GpuOptions options = options_here();
@@ -111,7 +126,6 @@ TEST_P(Batch, EndsWithTheErrorOfAPoseThatFails) {
   const auto fault = std::make_shared<GpuFault>();
   GpuOptions options = options_here();
   options.fault = fault;
-  options.host_share = HostShare::kNear;   // what the host solves is never submitted
   const auto backend = prepared(options, scene);
   std::vector<Contacts> out(scene.poses.size());
   ASSERT_TRUE(backend->query_batch(scene.poses, out));
@@ -139,53 +153,31 @@ Mesh soup(std::size_t triangles) {
   return mesh;
 }
 
-/// What the mock-up's V_bnd voxels list, as the device has it.
-struct VoxelLists {
-  VoxelLists(VulkanDevice& device, const PartitionBuffers& from) : grid(from.grid) {
-    const auto read = [&](const VulkanBuffer& buffer, std::size_t count, std::vector<std::uint32_t>& to) {
-      to.resize(count);
-      EXPECT_TRUE(download(device, buffer, 0, to.data(), count * 4));
-    };
-    read(from.list_begin, grid.boundary_voxels + 1, begin);
-    read(from.list_triangles, grid.list_entries, ids);
-    read(from.boundary_place, grid.boundary_voxels, places);
-    read(from.mixed_brick, grid.mixed_bricks, bricks);
-  }
-  /// The lowest lattice point of a voxel, world frame, steps.
-  Int3 low(std::size_t voxel) const {
-    const std::uint32_t brick = bricks[places[voxel] >> 9], bit = places[voxel] & 511;
-    const auto nx = static_cast<std::uint32_t>(grid.bricks.x), ny = static_cast<std::uint32_t>(grid.bricks.y);
-    return grid.origin + grid.size * (8 * Int3(brick % nx, brick / nx % ny, brick / (nx * ny)) + Int3(bit & 7, bit >> 3 & 7, bit >> 6));
-  }
-  gpu::GridConstants grid;
-  std::vector<std::uint32_t> begin, ids, places, bricks;
-};
-
 /// Whether every voxel's points are the 1024ths that hold its triangles' first corners, each once and with all that begin there, and then their samples,
 /// one by one, with axis and entry.
-testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
-  const PartitionBuffers& p = scene.mockup.partition;
+testing::AssertionResult points_are_right(const SceneGeometry& geometry, const native::Scene& scene) {
+  const PartitionView lists = scene.mockup;
+  const gpu::GridConstants& grid_of_voxels = lists.grid;
   const HostSamples& samples = *scene.samples;
-  const VoxelLists lists(device, p);
   std::vector<std::uint32_t> expected;
   std::vector<std::uint16_t> entries, owners;
   std::vector<HostSamples::Begin> begins{{0, 0, 0}};
   std::uint32_t number = 0;   // of the next sample
-  for (std::size_t voxel = 0; voxel < lists.places.size(); ++voxel) {
-    const Int3 low = lists.low(voxel), high = low + (p.grid.size - 1);
+  for (std::size_t voxel = 0; voxel < lists.boundary_place.size(); ++voxel) {
+    const Int3 low = grid_of_voxels.origin + grid_of_voxels.size * lists.boundary_voxel(static_cast<std::uint32_t>(voxel)), high = low + (grid_of_voxels.size - 1);
     const HostSamples::Voxel grid(low, geometry.sample_spacing);
     const auto put = [&](const Int3& point, std::size_t entry, std::uint32_t axis) {
-      const auto part = [&](int k) { return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / p.grid.size)); };   // exact: below 2^39
+      const auto part = [&](int k) { return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / grid_of_voxels.size)); };   // exact: below 2^39
       expected.push_back(part(0) | part(1) << 10 | part(2) << 20 | axis << 30);
       entries.push_back(static_cast<std::uint16_t>(entry));
     };
     const auto for_triangles = [&](auto&& take) {
-      for (std::uint32_t e = lists.begin[voxel]; e < lists.begin[voxel + 1]; ++e)
-        take(e, exact::Corners{geometry.mockup.corner(lists.ids[e], 0), geometry.mockup.corner(lists.ids[e], 1), geometry.mockup.corner(lists.ids[e], 2)});
+      for (std::uint32_t e = lists.list_begin[voxel]; e < lists.list_begin[voxel + 1]; ++e)
+        take(e, exact::Corners{geometry.mockup.corner(lists.list_triangles[e], 0), geometry.mockup.corner(lists.list_triangles[e], 1), geometry.mockup.corner(lists.list_triangles[e], 2)});
     };
     std::map<std::uint32_t, std::vector<std::uint32_t>> corners;   // entries by vertex
     for_triangles([&](std::uint32_t e, const exact::Corners& t) {
-      if (t[0] == glm::clamp(t[0], low, high)) corners[geometry.mockup.triangles[lists.ids[e]][0]].push_back(e - lists.begin[voxel]);
+      if (t[0] == glm::clamp(t[0], low, high)) corners[geometry.mockup.triangles[lists.list_triangles[e]][0]].push_back(e - lists.list_begin[voxel]);
     });
     const std::size_t first_owner = owners.size();
     for (const auto& [vertex, its] : corners) {
@@ -194,9 +186,9 @@ testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeome
     }
     bool same = true;
     for_triangles([&](std::uint32_t e, const exact::Corners& t) {
-      const std::uint8_t axis = geometry.mockup.sample_axis[lists.ids[e]];
+      const std::uint8_t axis = geometry.mockup.sample_axis[lists.list_triangles[e]];
       exact::for_samples(t, axis, geometry.sample_spacing, low, high, [&](const Int3& point, std::int64_t, std::int64_t) {
-        put(point, e - lists.begin[voxel], axis);
+        put(point, e - lists.list_begin[voxel], axis);
         same = same && number < samples.count() && samples.sample(grid, axis, number) == point;
         ++number;
       });
@@ -213,20 +205,20 @@ testing::AssertionResult points_are_right(VulkanDevice& device, const SceneGeome
 }
 
 /// Whether every listed triangle's box, as far as it lies in its voxel, is rounded down to 256ths of the voxel.
-testing::AssertionResult boxes_are_right(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene) {
-  const PartitionBuffers& p = scene.mockup.partition;
+testing::AssertionResult boxes_are_right(const SceneGeometry& geometry, const native::Scene& scene) {
+  const PartitionView lists = scene.mockup;
+  const gpu::GridConstants& grid_of_voxels = lists.grid;
   const std::vector<std::uint8_t>& boxes = scene.search->boxes;
-  const VoxelLists lists(device, p);
-  if (boxes.size() != 6 * lists.ids.size() + SearchTables::kBoxesAtOnce) return testing::AssertionFailure() << boxes.size() << " bytes of boxes";
-  for (std::size_t voxel = 0; voxel < lists.places.size(); ++voxel) {
-    const Int3 low = lists.low(voxel);
-    const std::size_t count = lists.begin[voxel + 1] - lists.begin[voxel];
+  if (boxes.size() != 6 * lists.list_triangles.size() + SearchTables::kBoxesAtOnce) return testing::AssertionFailure() << boxes.size() << " bytes of boxes";
+  for (std::size_t voxel = 0; voxel < lists.boundary_place.size(); ++voxel) {
+    const Int3 low = grid_of_voxels.origin + grid_of_voxels.size * lists.boundary_voxel(static_cast<std::uint32_t>(voxel));
+    const std::size_t count = lists.list_begin[voxel + 1] - lists.list_begin[voxel];
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < 6; ++k) {
         const int axis = static_cast<int>(k % 3);
-        const auto corner = [&](int c) { return geometry.mockup.corner(lists.ids[lists.begin[voxel] + i], c)[axis]; };
+        const auto corner = [&](int c) { return geometry.mockup.corner(lists.list_triangles[lists.list_begin[voxel] + i], c)[axis]; };
         const std::int32_t end = k < 3 ? std::min({corner(0), corner(1), corner(2)}) : std::max({corner(0), corner(1), corner(2)});
-        const double part = 256.0 * std::clamp(end - low[axis], 0, p.grid.size - 1) / p.grid.size, found = boxes[6 * lists.begin[voxel] + k * count + i];
+        const double part = 256.0 * std::clamp(end - low[axis], 0, grid_of_voxels.size - 1) / grid_of_voxels.size, found = boxes[6 * lists.list_begin[voxel] + k * count + i];
         if (found > part + 1e-9 || found < part - 1 - 1e-9) return testing::AssertionFailure() << "voxel " << voxel << ", entry " << i << ", end " << k << ": " << found << ", " << part;
       }
   }
@@ -267,7 +259,7 @@ std::vector<std::array<std::int32_t, 6>> parts_of(const SceneGeometry& geometry)
   return out;
 }
 
-TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShadersAndRightTablesForTheSearch) {
+TEST(Preparation, ListsTheSameSamplesInBothEnginesAndRightTablesForTheSearch) {
   struct Mockup {
     const char* name;
     Mesh mesh;
@@ -284,77 +276,58 @@ TEST(Preparation, ListsTheSameSamplesOnTheHostAsInShadersAndRightTablesForTheSea
     if (mockup.spacing_m > 0) settings.sample_spacing_m = mockup.spacing_m;
     const auto geometry = build_geometry(mockup.mesh, contacts->tool, settings);
     ASSERT_TRUE(geometry) << geometry.error().sentence;
-    std::shared_ptr<const HostSamples> by[2];
-    for (const HostShare share : {HostShare::kNear, HostShare::kContacts}) {
-      GpuOptions options;
-      options.host_share = share;
-      auto device = VulkanDevice::create(options);
-      ASSERT_TRUE(device);
-      const auto prepared = prepare_scene(**device, *geometry, Plan{}, {});
-      ASSERT_TRUE(prepared) << prepared.error().sentence;
-      by[share == HostShare::kContacts ? 1 : 0] = prepared->samples;
-      EXPECT_TRUE(points_are_right(**device, *geometry, *prepared));
-      EXPECT_TRUE(boxes_are_right(**device, *geometry, *prepared));
-      auto parts = prepared->search->parts;
-      std::sort(parts.begin(), parts.end());
-      EXPECT_EQ(parts, parts_of(*geometry));
-      if (std::string_view(mockup.name).starts_with("soup")) {
-        EXPECT_GT(parts.size(), 100u);
-      }
-      const auto tables = SearchTables::make(**device, *geometry, prepared->mockup.partition, [] { return false; });
-      ASSERT_TRUE(tables);
-      EXPECT_FALSE(*tables) << "cancelled";
-      const auto host = HostPreparation::make(**device, geometry->mockup, prepared->mockup.partition);
-      ASSERT_TRUE(host);
-      const auto listing = [&](std::uint64_t most_bytes, bool go_on) {
-        EntrySamples out;
-        return host->list_samples(geometry->sample_spacing, most_bytes, [&](double) { return go_on; }, out);
-      };
-      EXPECT_EQ(listing(std::uint64_t{1} << 30, true), HostPreparation::Outcome::kDone);
-      EXPECT_EQ(listing(4000, true), HostPreparation::Outcome::kTooMany);
-      EXPECT_EQ(listing(std::uint64_t{1} << 30, false), HostPreparation::Outcome::kCancelled);
+    auto device = VulkanDevice::create({});
+    ASSERT_TRUE(device);
+    const auto prepared = prepare_scene(**device, *geometry, Plan{}, {});
+    ASSERT_TRUE(prepared) << prepared.error().sentence;
+    const auto native = native::prepare_scene(*geometry, Plan{}, {});
+    ASSERT_TRUE(native) << native.error().sentence;
+    expect_equal_tables(**device, *prepared, *native);
+    ASSERT_TRUE(native->samples);
+    EXPECT_GT(native->samples->count(), 10'000u);
+    EXPECT_EQ(native->samples->wide, mockup.wide);
+    EXPECT_TRUE(points_are_right(*geometry, *native));
+    EXPECT_TRUE(boxes_are_right(*geometry, *native));
+    auto parts = native->search->parts;
+    std::sort(parts.begin(), parts.end());
+    EXPECT_EQ(parts, parts_of(*geometry));
+    if (std::string_view(mockup.name).starts_with("soup")) {
+      EXPECT_GT(parts.size(), 100u);
     }
-    ASSERT_TRUE(by[0] && by[1]);
-    EXPECT_GT(by[0]->count(), 10'000u);
-    EXPECT_EQ(by[0]->wide, mockup.wide);
-    EXPECT_EQ(by[1]->wide, mockup.wide);
-    EXPECT_TRUE(*by[1] == *by[0]);
+    EXPECT_FALSE(SearchTables::make(*geometry, native->mockup, [] { return false; })) << "cancelled";
+    const auto listing = [&](std::uint64_t most_bytes, bool go_on) {
+      EntrySamples out;
+      return native::list_samples(geometry->mockup, native->mockup, geometry->sample_spacing, most_bytes, [&](double) { return go_on; }, out);
+    };
+    EXPECT_EQ(listing(std::uint64_t{1} << 30, true), Listing::kDone);
+    EXPECT_EQ(listing(4000, true), Listing::kTooMany);
+    EXPECT_EQ(listing(std::uint64_t{1} << 30, false), Listing::kCancelled);
   }
 }
 
 TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
-  auto device = VulkanDevice::create({});
-  ASSERT_TRUE(device);
   LatticeMesh mesh;
   mesh.vertices = {{1, 1, 1}, {90, 1, 1}, {1, 90, 1}};
   mesh.triangles = {{0, 1, 2}};
   mesh.sample_axis = {2};
   for (const std::uint32_t entries : {HostSamples::kLongestList, HostSamples::kLongestList + 1}) {
-    PartitionBuffers lists;   // one voxel of one brick; the triangle again and again
+    Partition lists;   // one voxel of one brick; the triangle again and again
     lists.grid.origin = Int3(0);
     lists.grid.size = 100;
     lists.grid.bricks = Int3(1);
     lists.grid.mixed_bricks = lists.grid.boundary_voxels = 1;
     lists.grid.list_entries = entries;
-    const auto fill = [&](VulkanBuffer& buffer, const std::vector<std::uint32_t>& content) {
-      auto made = VulkanBuffer::create(**device, "a list of the test", 4 * content.size(), BufferKind::kDevice);
-      ASSERT_TRUE(made);
-      buffer = std::move(*made);
-      ASSERT_TRUE(upload(**device, buffer, content.data(), 4 * content.size()));
-    };
-    fill(lists.list_begin, {0, entries});
-    fill(lists.list_triangles, std::vector<std::uint32_t>(entries));
-    fill(lists.boundary_place, {0});
-    fill(lists.mixed_brick, {0});
-    const auto host = HostPreparation::make(**device, mesh, lists);
-    ASSERT_TRUE(host);
+    lists.list_begin = {0, entries};
+    lists.list_triangles.resize(entries);
+    lists.boundary_place = {0};
+    lists.mixed_brick = {0};
     EntrySamples by_entry;
     const auto go_on = [](double) { return true; };
-    ASSERT_EQ(host->list_samples(40, std::uint64_t{1} << 30, go_on, by_entry), HostPreparation::Outcome::kDone);
+    ASSERT_EQ(native::list_samples(mesh, lists, 40, std::uint64_t{1} << 30, go_on, by_entry), Listing::kDone);
     HostSamples samples;
-    const auto outcome = host->list_points(40, go_on, std::move(by_entry), samples);
-    EXPECT_EQ(outcome, entries == HostSamples::kLongestList ? HostPreparation::Outcome::kDone : HostPreparation::Outcome::kTooMany);
-    if (outcome != HostPreparation::Outcome::kDone) continue;
+    const Listing outcome = list_points(mesh, lists, 40, go_on, std::move(by_entry), samples);
+    EXPECT_EQ(outcome, entries == HostSamples::kLongestList ? Listing::kDone : Listing::kTooMany);
+    if (outcome != Listing::kDone) continue;
     EXPECT_EQ(samples.entries.front(), 0);
     EXPECT_EQ(samples.entries.back(), HostSamples::kLongestList - 1);
     EXPECT_EQ(samples.owners.size(), HostSamples::kLongestList);   // of one corner

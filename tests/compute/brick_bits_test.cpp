@@ -1,4 +1,4 @@
-#include "compute/brick_bits.h"
+#include "compute/search/brick_bits.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "compute/occupied_cubes.h"
+#include "compute/search/occupied_cubes.h"
 
 namespace palpate {
 namespace {

@@ -1,6 +1,6 @@
 #include <random>
 
-#include "compute/prepare_steps.h"
+#include "compute/gpu/prepare/steps.h"
 #include "shaders/code.h"
 #include "shaders/shared/scene.h"
 #include "tests/compute/brick_floods.h"

@@ -1,4 +1,4 @@
-#include "compute/depth_search.h"
+#include "compute/native/force/depth_search.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "compute/frame_decode.h"
+#include "compute/gpu/frame/decode.h"
 #include "model/contacts.h"
 #include "shaders/shared/frame.h"
 #include "tests/driver/allocation_count.h"

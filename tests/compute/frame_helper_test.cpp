@@ -1,4 +1,4 @@
-#include "compute/frame_helper.h"
+#include "compute/search/frame_helper.h"
 
 #include <gtest/gtest.h>
 

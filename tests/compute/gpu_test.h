@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "compute/command_recorder.h"
-#include "compute/vulkan_buffer.h"
-#include "compute/vulkan_device.h"
-#include "compute/vulkan_pipeline.h"
+#include "compute/vulkan/command_recorder.h"
+#include "compute/vulkan/buffer.h"
+#include "compute/vulkan/device.h"
+#include "compute/vulkan/pipeline.h"
 
 namespace palpate {
 
@@ -16,7 +16,7 @@ namespace palpate {
 class GpuTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    GpuOptions options;
+    DeviceOptions options;
     options.validation = true;
     auto made = VulkanDevice::create(options);
     ASSERT_TRUE(made) << made.error().sentence;

@@ -1,4 +1,4 @@
-#include "compute/pair_filter.h"
+#include "compute/native/narrow_phase/pair_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "compute/listed_boxes.h"
-#include "compute/search_tables.h"
-#include "compute/turned_boxes.h"
+#include "compute/search/listed_boxes.h"
+#include "compute/scene/search_tables.h"
+#include "compute/search/turned_boxes.h"
 #include "tests/compute/geometry_cases.h"
 
 namespace palpate {
@@ -197,26 +197,6 @@ TEST(ListedBoxes, AreThoseThatMeetTheTriangleBoxAndItsPlane) {
   }
   for (std::size_t kind = 0; kind < 3; ++kind) EXPECT_GT(count[kind], 3'000u) << kind;
   EXPECT_LT(100 * count[3], count[2]) << "nearly all are judged";
-}
-
-/// The quotient comes from doubles where it lies clearly between whole numbers, else from integers.
-TEST(RayHeight, IsTheFloorOfTheQuotient) {
-  constexpr std::int32_t wide = 1 << 27;
-  const Corners t{Int3(-wide, -wide, 0), Int3(wide, -wide, 0), Int3(0, wide, 0)};
-  LatticePoints points(3);
-  std::vector<std::pair<std::int32_t, std::int32_t>> cases;   // distance, speed
-  for (const std::int32_t speed : {1 << 28, (1 << 28) + 1, (1 << 29) - 1, 3 << 27})
-    for (const std::int32_t distance : {1, 2, 3, (1 << 28) - 1, 1 << 28, (1 << 28) + 1, 3 << 20}) cases.emplace_back(distance, speed);
-  for (int i = 0; i < 10'000; ++i) cases.emplace_back(1 + std::abs(points.within((1 << 28) - 1)), (1 << 28) + std::abs(points.within((1 << 28) - 1)));
-  int whole = 0;
-  for (const auto& [distance, speed] : cases) {
-    const std::int64_t scaled = std::int64_t{distance} << 30;
-    whole += scaled % speed == 0 ? 1 : 0;
-    const exact::Crossing crossing = exact::ray_crossing(Int3(1, 1, -distance), Int3(0, 0, speed), t);
-    ASSERT_EQ(crossing.sign, 1);
-    ASSERT_EQ(crossing.height, static_cast<std::uint32_t>(scaled / speed)) << distance << " / " << speed;
-  }
-  EXPECT_GE(whole, 7);
 }
 
 }  // namespace

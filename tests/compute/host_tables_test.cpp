@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include "compute/cell_memo.h"
-#include "compute/compilers.h"
-#include "compute/id_marks.h"
+#include "compute/native/narrow_phase/cell_memo.h"
+#include "compute/vulkan/compilers.h"
+#include "compute/native/narrow_phase/id_marks.h"
 
 namespace palpate {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <random>
 
-#include "compute/prepare_partition.h"
+#include "compute/gpu/prepare/partition.h"
 #include "tests/compute/gpu_test.h"
 
 namespace palpate {

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "compute/prepared_scene.h"
-#include "cpu_ref/cpu_backend.h"
+#include "compute/native/prepare/scene.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "cpu_ref/ref_backend.h"
 #include "tests/compute/gpu_test.h"
+#include "tests/compute/partition_equality.h"
 #include "tests/compute/module_run.h"
 #include "tests/equivalence/lattice_shapes.h"
 
@@ -77,25 +79,24 @@ class Mazes : public GpuTest {
     const Triangles tool = seed % 3 == 0 ? Maze(random, voxel).triangles() : equivalence::box_of(Int3(-voxel), Int3(voxel));
     const auto geometry = equivalence::lattice_scene(mockup.triangles(), tool, voxel, voxel / 2);
     ASSERT_TRUE(geometry) << geometry.error().sentence;
-    auto cpu = make_cpu_backend();
+    auto cpu = make_ref_backend();
     ASSERT_TRUE(cpu->prepare(*geometry, Plan{}, {}));
-    HostSamples samples;
-    for (const HostShare share : {HostShare::kContacts, HostShare::kNear}) {
-      device().host_share = share;
-      const auto scene = prepare_scene(device(), *geometry, Plan{}, {});
-      ASSERT_TRUE(scene) << scene.error().sentence;
-      for (const bool of_tool : {false, true}) {
-        const auto got = read_partition(device(), (of_tool ? scene->tool : scene->mockup).partition);
-        const auto want = cpu->partition(of_tool);
-        ASSERT_TRUE(got && want);
-        ASSERT_TRUE(got->classes == want->classes) << (of_tool ? "tool" : "mock-up");
-        ASSERT_TRUE(got->list_begin == want->list_begin && got->list_triangles == want->list_triangles) << (of_tool ? "tool" : "mock-up");
-        internal_ += static_cast<std::uint64_t>(std::count(want->classes.begin(), want->classes.end(), VoxelClass::kInternal));
-      }
-      const HostSamples its = scene->samples ? *scene->samples : HostSamples{};
-      if (share == HostShare::kContacts) samples = its;
-      ASSERT_TRUE(its == samples);   // whoever finds them
+    const auto scene = prepare_scene(device(), *geometry, Plan{}, {});
+    ASSERT_TRUE(scene) << scene.error().sentence;
+    const auto native = native::prepare_scene(*geometry, Plan{}, {});
+    ASSERT_TRUE(native) << native.error().sentence;
+    for (const bool of_tool : {false, true}) {
+      const char* body = of_tool ? "tool" : "mock-up";
+      const auto on_device = read_partition(device(), (of_tool ? scene->tool : scene->mockup).partition);
+      const auto want = cpu->partition(of_tool);
+      ASSERT_TRUE(on_device && want);
+      expect_equal(*on_device, of_tool ? native->tool : native->mockup, body);
+      const VoxelPartition got = dense(*on_device);
+      ASSERT_TRUE(got.classes == want->classes) << body;
+      ASSERT_TRUE(got.list_begin == want->list_begin && got.list_triangles == want->list_triangles) << body;
+      internal_ += static_cast<std::uint64_t>(std::count(want->classes.begin(), want->classes.end(), VoxelClass::kInternal));
     }
+    expect_equal_tables(device(), *scene, *native);
   }
   std::uint64_t internal_ = 0;   ///< voxels of V_int so far
 };

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "compute/command_recorder.h"
-#include "compute/vulkan_buffer.h"
-#include "compute/vulkan_device.h"
-#include "compute/vulkan_pipeline.h"
+#include "compute/vulkan/command_recorder.h"
+#include "compute/vulkan/buffer.h"
+#include "compute/vulkan/device.h"
+#include "compute/vulkan/pipeline.h"
 
 namespace palpate {
 

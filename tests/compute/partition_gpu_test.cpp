@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
-#include <random>
 
-#include "compute/gpu_backend.h"
-#include "compute/nearest_external.h"
-#include "compute/prepared_scene.h"
-#include "cpu_ref/cpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/native/native_backend.h"
+#include "compute/native/prepare/scene.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 #include "tests/compute/gpu_test.h"
+#include "tests/compute/partition_equality.h"
 
 namespace palpate {
 namespace {
 
-/// Both back ends prepare a mock-up and a tool. The GPU's partitions of both must be the reference's, bit for bit; each
+/// All engines prepare a mock-up and a tool. The partitions of both must be the same, bit for bit; each
 /// test then adds what is known without a reference.
 class Partition : public GpuTest {
  protected:
@@ -27,13 +27,15 @@ class Partition : public GpuTest {
     geometry_ = std::move(*geometry);
     auto scene = prepare_scene(device(), geometry_, Plan{}, {});
     ASSERT_TRUE(scene) << scene.error().sentence;
-    auto cpu = make_cpu_backend();
-    auto cpu_done = cpu->prepare(geometry_, Plan{}, {});
-    ASSERT_TRUE(cpu_done) << cpu_done.error().sentence;
-    compare(*scene, *cpu, false);
-    compare(*scene, *cpu, true);
+    auto native = native::prepare_scene(geometry_, Plan{}, {});
+    ASSERT_TRUE(native) << native.error().sentence;
+    auto ref = make_ref_backend();
+    auto ref_done = ref->prepare(geometry_, Plan{}, {});
+    ASSERT_TRUE(ref_done) << ref_done.error().sentence;
+    compare(*scene, *native, *ref, false);
+    compare(*scene, *native, *ref, true);
+    expect_equal_tables(device(), *scene, *native);
     EXPECT_EQ(scene->mockup.partition.has_internal, count(VoxelClass::kInternal) > 0);
-    scene_.emplace(std::move(*scene));
   }
 
   std::uint64_t count(VoxelClass c) const {
@@ -51,63 +53,24 @@ class Partition : public GpuTest {
     return partition_.classes[number];
   }
 
-  /// What the host finds nearest of all V_ext voxels is what a look at each of them says.
-  void expect_nearest_external(const std::vector<Int3>& points) const {
-    const PartitionBuffers& buffers = scene_->mockup.partition;
-    const VoxelGrid& g = partition_.grid;
-    HostCopy<std::uint32_t> slots;
-    HostCopy<gpu::Brick> bricks;
-    ASSERT_TRUE(slots.read(device(), buffers.brick_slot, partition_.classes.size() / 512));
-    ASSERT_TRUE(bricks.read(device(), buffers.bricks, buffers.grid.mixed_bricks));
-    for (const Int3& p : points) {
-      std::int64_t least = INT64_MAX;
-      Int3 want(0);
-      std::size_t number = 0;
-      for (Int3 v(0); v.z < g.voxels().z; ++v.z)
-        for (v.y = 0; v.y < g.voxels().y; ++v.y)
-          for (v.x = 0; v.x < g.voxels().x; ++v.x, ++number) {
-            if (partition_.classes[number] != VoxelClass::kExternal) continue;
-            const Int3 way = g.origin + v * g.size + g.size / 2 - p, twice = 2 * g.origin + (2 * v + 1) * g.size - 2 * p;
-            const std::int64_t distance = std::int64_t{twice.x} * twice.x + std::int64_t{twice.y} * twice.y + std::int64_t{twice.z} * twice.z;
-            if (distance >= least) continue;
-            least = distance;
-            want = way;
-          }
-      EXPECT_EQ(way_to_nearest_external(buffers.grid, slots, bricks, p), want) << p.x << ' ' << p.y << ' ' << p.z;
-    }
-  }
-  /// Points in the grid and up to half its size beyond, every other one on faces, edges or corners of voxels or in their middle.
-  std::vector<Int3> points_round_the_grid(std::size_t count) const {
-    const VoxelGrid& g = partition_.grid;
-    std::mt19937 random(7);
-    std::vector<Int3> points(count);
-    for (std::size_t i = 0; i < count; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const int size = g.voxels()[k] * g.size;
-        int& at = points[i][k];
-        at = g.origin[k] + std::uniform_int_distribution<int>(i % 4 == 0 ? -size / 2 : 0, i % 4 == 0 ? size + size / 2 : size)(random);
-        if (i % 2 == 0) at -= (at - g.origin[k]) % (i % 3 == 0 ? g.size : std::max(1, g.size / 2));
-      }
-    return points;
-  }
-
   SceneGeometry geometry_;
-  std::optional<PreparedScene> scene_;
   VoxelPartition partition_;        ///< the mock-up's
   VoxelPartition tool_partition_;
 
  private:
-  void compare(const PreparedScene& scene, const CollisionBackend& cpu, bool tool) {
+  void compare(const PreparedScene& scene, const native::Scene& native, const CollisionBackend& ref, bool tool) {
     const char* body = tool ? "tool" : "mock-up";
-    auto got = read_partition(device(), (tool ? scene.tool : scene.mockup).partition);
-    ASSERT_TRUE(got) << got.error().sentence;
-    auto want = cpu.partition(tool);
+    const auto on_device = read_partition(device(), (tool ? scene.tool : scene.mockup).partition);
+    ASSERT_TRUE(on_device) << on_device.error().sentence;
+    expect_equal(*on_device, tool ? native.tool : native.mockup, body);
+    auto got = dense(*on_device);
+    auto want = ref.partition(tool);
     ASSERT_TRUE(want) << want.error().sentence;
-    EXPECT_TRUE(got->classes == want->classes) << body;
-    EXPECT_TRUE(got->boundary_voxels == want->boundary_voxels) << body;
-    EXPECT_TRUE(got->list_begin == want->list_begin) << body;
-    EXPECT_TRUE(got->list_triangles == want->list_triangles) << body;
-    (tool ? tool_partition_ : partition_) = std::move(*got);
+    EXPECT_TRUE(got.classes == want->classes) << body;
+    EXPECT_TRUE(got.boundary_voxels == want->boundary_voxels) << body;
+    EXPECT_TRUE(got.list_begin == want->list_begin) << body;
+    EXPECT_TRUE(got.list_triangles == want->list_triangles) << body;
+    (tool ? tool_partition_ : partition_) = std::move(got);
   }
 };
 
@@ -139,20 +102,15 @@ TEST_F(Partition, OfNestedShellsCountsWindingsNotParity) {
   EXPECT_EQ(at(Vec3(0.153, 0.003, 0.003)), VoxelClass::kInternal);
 }
 
-TEST_F(Partition, TellsTheNearestExternalVoxelOfAnyPoint) {
-  // Bricks of every kind: in the middle of the ball some that are V_int as a whole, in the hollow of the second V_ext ones far from the border.
-  prepare(solids::sphere(0.2, 24, 12), 0.0045);
-  expect_nearest_external(points_round_the_grid(60));
-  Mesh mesh = solids::box(Vec3(-0.125), Vec3(0.125));
+TEST_F(Partition, OfAHollowHasExternalVoxelsFarFromTheBorder) {
+  Mesh both;
+  solids::append(both, solids::box(Vec3(-0.125), Vec3(0.125)), "wall");
   Mesh hollow = solids::box(Vec3(-0.0625, -0.0625, -0.03125), Vec3(0.0625));
   for (auto& t : hollow.triangles) std::swap(t[0], t[1]);
-  Mesh both;
-  solids::append(both, mesh, "wall");
   solids::append(both, hollow, "hollow, facing inwards");
   prepare(both, 1.0 / 256);
   EXPECT_EQ(at(Vec3(0)), VoxelClass::kExternal);
-  expect_nearest_external(points_round_the_grid(60));
-  expect_nearest_external({Int3(0), Int3(1, 0, 0), (geometry_.mockup.box_min + geometry_.mockup.box_max) >> 1});
+  EXPECT_EQ(at(Vec3(-0.09)), VoxelClass::kInternal);
 }
 
 TEST_F(Partition, OfOverlappingBoxesIsInsideInTheOverlapToo) {
@@ -250,26 +208,37 @@ TEST_F(Partition, OfAToolIsGrownByThreeSteps) {
   EXPECT_GT(std::count(tool_partition_.classes.begin(), tool_partition_.classes.end(), VoxelClass::kInternal), 0);
 }
 
-TEST(Preparation, CanBeCancelled) {
+/// Both engines.
+std::vector<std::unique_ptr<CollisionBackend>> engines() {
+  std::vector<std::unique_ptr<CollisionBackend>> out;
   auto gpu = make_gpu_backend({});
-  ASSERT_TRUE(gpu) << gpu.error().sentence;
+  EXPECT_TRUE(gpu) << gpu.error().sentence;
+  if (gpu) out.push_back(std::move(*gpu));
+  out.push_back(make_native_backend());
+  return out;
+}
+
+TEST(Preparation, CanBeCancelled) {
   auto geometry = build_geometry(solids::sphere(0.2), solids::box(Vec3(-0.01), Vec3(0.01)), {});
   ASSERT_TRUE(geometry);
-  auto done = (*gpu)->prepare(*geometry, Plan{}, [](const char*, double progress) { return progress < 0.3; });
-  ASSERT_FALSE(done);
-  EXPECT_EQ(done.error().sentence, "preparation was cancelled");
+  for (const auto& engine : engines())
+    for (const double at : {0.0, 0.35, 0.7, 1.0}) {
+      auto done = engine->prepare(*geometry, Plan{}, [at](const char*, double progress) { return progress < at; });
+      ASSERT_FALSE(done) << engine->name() << " at " << at;
+      EXPECT_EQ(done.error().sentence, "preparation was cancelled") << engine->name();
+    }
 }
 
 TEST(Preparation, RefusesAGridThatDoesNotFit) {
-  auto gpu = make_gpu_backend({});
-  ASSERT_TRUE(gpu) << gpu.error().sentence;
   GeometrySettings settings;
   settings.voxel_size_m = 2e-5;   // 50,000 voxels along the wire
   auto geometry = build_geometry(solids::box(Vec3(-0.5, 0, 0), Vec3(0.5, 1e-5, 1e-5)), solids::box(Vec3(-1e-4), Vec3(1e-4)), settings);
   ASSERT_TRUE(geometry) << geometry.error().sentence;
-  auto done = (*gpu)->prepare(*geometry, Plan{}, {});
-  ASSERT_FALSE(done);
-  EXPECT_NE(done.error().sentence.find("choose a larger voxel"), std::string::npos) << done.error().sentence;
+  for (const auto& engine : engines()) {
+    auto done = engine->prepare(*geometry, Plan{}, {});
+    ASSERT_FALSE(done) << engine->name();
+    EXPECT_NE(done.error().sentence.find("choose a larger voxel"), std::string::npos) << done.error().sentence;
+  }
 }
 
 TEST(Devices, AreListedWithAReasonEach) {

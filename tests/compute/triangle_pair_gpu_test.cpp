@@ -1,4 +1,4 @@
-#include "compute/host_exact.h"
+#include "compute/scene/exact.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
 #include "tests/compute/probe_cases.h"

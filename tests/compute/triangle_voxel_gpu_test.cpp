@@ -1,4 +1,4 @@
-#include "compute/host_exact.h"
+#include "compute/scene/exact.h"
 #include "cpu_ref/triangle_cube.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"

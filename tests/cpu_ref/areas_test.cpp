@@ -1,7 +1,7 @@
 // Areas and zones on meshes small enough to be read.
 #include <gtest/gtest.h>
 
-#include "cpu_ref/cpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "tests/cpu_ref/lattice_scene.h"
 
 namespace palpate::cpu_ref {
@@ -12,7 +12,7 @@ using Ids = std::vector<std::uint32_t>;
 Contacts ask(const SceneGeometry& scene, Profile profile, const Int3& at = Int3(0)) {
   Plan plan;
   plan.profile = profile;
-  const auto backend = make_cpu_backend();
+  const auto backend = make_ref_backend();
   if (const auto prepared = backend->prepare(scene, plan, {}); !prepared) throw std::runtime_error(prepared.error().sentence);
   Contacts contacts;
   if (const auto answered = backend->query(moved_by(at), nullptr, contacts); !answered) throw std::runtime_error(answered.error().sentence);
@@ -121,7 +121,7 @@ TEST(Sets, ATriangleThatCollapsesOnTheLatticeIsInNothing) {
 TEST(Sets, BeyondTheLatticeIsFree) {
   const auto scene = scene_of(lattice_plate(Int3(-40, -40, 0), Int3(40, 40, 0), 1), stamp(10), 16, 4);
   Plan plan;
-  const auto backend = make_cpu_backend();
+  const auto backend = make_ref_backend();
   ASSERT_TRUE(backend->prepare(scene, plan, {}));
   LatticePose pose = moved_by(Int3(0));
   Contacts contacts;
@@ -135,7 +135,7 @@ TEST(Sets, BeyondTheLatticeIsFree) {
 
 TEST(Backend, AnUnpreparedOneSaysSo) {
   Contacts contacts;
-  const auto answered = make_cpu_backend()->query(moved_by(Int3(0)), nullptr, contacts);
+  const auto answered = make_ref_backend()->query(moved_by(Int3(0)), nullptr, contacts);
   ASSERT_FALSE(answered);
   EXPECT_EQ(answered.error().code, ErrorCode::kInternal);
 }

@@ -43,15 +43,15 @@ def compare(scene, profile):
     folder = Folder()
     poses = poses_of(scene, folder)
     folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n' + ''.join(','.join(map(repr, p)) + '\n' for p in poses))
-    answers = {b: lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--backend', b, '--profile', profile)) for b in ('gpu', 'cpu')}
+    answers = {b: lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--backend', b, '--profile', profile)) for b in ('gpu', 'cpu', 'ref')}
     contacts = areas = 0
-    for i, (gpu, cpu) in enumerate(zip(answers['gpu'], answers['cpu'], strict=True)):
-        gpu.pop('time_us'), cpu.pop('time_us')
-        for key in cpu:
-            expect(gpu[key] == cpu[key], f'{scene.name}, {profile}: {key} differs, palpate query {scene} --pose "{" ".join(map(repr, poses[i]))}"')
-        contacts += cpu['contact']
-        areas += len(cpu['areas'])
-    expect(len(answers['cpu']) == POSES and contacts >= POSES // 4, f'only {contacts} of {len(answers["cpu"])} poses touch')
+    for i, (ref, *others) in enumerate(zip(answers['ref'], answers['gpu'], answers['cpu'], strict=True)):
+        for other in others:
+            for key in ref.keys() - {'time_us', 'engine'}:
+                expect(other[key] == ref[key], f'{scene.name}, {profile}: {key} of {other["engine"]} differs, palpate query {scene} --pose "{" ".join(map(repr, poses[i]))}"')
+        contacts += ref['contact']
+        areas += len(ref['areas'])
+    expect(len(answers['ref']) == POSES and contacts >= POSES // 4, f'only {contacts} of {len(answers["ref"])} poses touch')
     print(f'        {scene.name}, {profile}: {POSES} poses equal in every bit, {contacts} in contact, {areas} areas')
 
 

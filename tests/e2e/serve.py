@@ -321,7 +321,7 @@ def test_metrics_health_and_log_tell_what_happened():
             expect(re.fullmatch(r'# (HELP|TYPE) (palpate|process)_\w+ .+|(palpate|process)_\w+(\{[^}]*\})? [-+0-9.e]+', line), line)
         expect(server.metric('palpate_poses_total') == 10 and server.metric('palpate_scenes_ready') == 1, text)
         expect(server.metric('palpate_query_seconds_count') == 10 and server.metric('process_resident_memory_bytes') > 1e6, text)
-        for wanted in ('tick_lateness_seconds_bucket', 'result_age_seconds_bucket', 'session_frame_seconds_bucket', 'stage_seconds_total{stage="pairs"}', 'scene_queue', 'batches', 'scene_memory_bytes',
+        for wanted in ('tick_lateness_seconds_bucket', 'result_age_seconds_bucket', 'session_frame_seconds_bucket', 'stage_seconds_total{engine="cpu",stage="sets"}', 'scene_queue', 'batches', 'scene_memory_bytes',
                        'backend_errors_total', 'requests_total{route="v1/scenes/*/query",status="200"}', 'session_missed_ticks_total'):
             expect(f'palpate_{wanted}' in text, f'{wanted} is missing in {text}')
         for line in server.log_text().splitlines():

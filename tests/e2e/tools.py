@@ -70,22 +70,30 @@ def test_without_a_vulkan_device_the_cpu_answers_and_says_so():
     query = ('query', folder.save(), '--pose', '0 0 0.018 0 0 0 1')
     expect_refused(palpate(*query, '--backend', 'gpu', **NO_DRIVER), 4, 'no usable Vulkan device')
     outcome = palpate(*query, **NO_DRIVER)
-    expect(outcome.code == 0 and outcome.err.count('CPU reference answers') == 1, outcome)
+    expect(outcome.code == 0 and outcome.err.count('the engine cpu answers') == 1, outcome)
+    expect(lines_of(outcome)[0]['engine'] == 'cpu', outcome)
+    in_paper = palpate(*query, '--profile', 'paper', **NO_DRIVER)
+    expect(in_paper.code == 0 and in_paper.err.count('the engine ref answers') == 1 and lines_of(in_paper)[0]['engine'] == 'ref', in_paper)
     with_driver = palpate(*query)
     for a, b in zip(lines_of(outcome), lines_of(with_driver), strict=True):
         expect({**a, 'time_us': 0} == {**b, 'time_us': 0}, 'the same answer')
     expect('Vulkan driver' in palpate('devices', **NO_DRIVER).out, 'devices says why')
 
 
-def test_who_decides_small_contacts_changes_no_answer():
+def test_every_engine_gives_the_same_answer_and_its_name():
     folder = Folder()
-    query = ['query', folder.save(), '--backend', 'gpu', '--pose', '0 0 0.019 0 0 0 1']
-    answers = [palpate(*query, PALPATE_HOST_SHARE=share) for share in ('near', 'contacts')]
-    first = lines_of(answers[0])[0]
-    expect(first['contact'], first)
-    for answer in answers:
-        expect({**lines_of(answer)[0], 'time_us': 0} == {**first, 'time_us': 0}, 'the same answer')
-    expect_refused(palpate(*query[:2], *query[4:], PALPATE_HOST_SHARE='all'), 3, 'PALPATE_HOST_SHARE', 'near and contacts')
+    query = ['query', folder.save(), '--pose', '0 0 0.019 0 0 0 1']
+    first = None
+    for engine in ('gpu', 'cpu', 'ref'):
+        (line,) = lines_of(palpate(*query, '--backend', engine))
+        expect(line['contact'] and line['engine'] == engine, line)
+        first = first or line
+        expect({**line, 'time_us': 0, 'engine': 0} == {**first, 'time_us': 0, 'engine': 0}, 'the same answer')
+    by_default = palpate(*query, '--backend', 'auto')
+    expect({**lines_of(by_default)[0], 'time_us': 0, 'engine': 0} == {**first, 'time_us': 0, 'engine': 0}, 'the same answer')
+    expect(lines_of(palpate(*query, '--profile', 'paper'))[0]['engine'] == 'gpu', 'shaders answer in paper wherever they can')
+    in_paper = palpate(*query, '--backend', 'cpu', '--profile', 'paper')
+    expect(lines_of(in_paper)[0]['engine'] == 'ref' and in_paper.err.count('the engine ref answers instead') == 1, in_paper)
 
 
 def test_plan_gives_a_reason_for_each_of_the_thirteen_stages():

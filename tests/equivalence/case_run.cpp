@@ -70,7 +70,7 @@ class Runner {
     Plan plan;
     plan.profile = case_.profile;
     plan.est = case_.profile == Profile::kRefined;
-    for (const auto& backend : backends_) {
+    for (CollisionBackend* backend : backends_) {
       const auto prepared = backend->prepare(scene.geometry, plan, [](const char*, double) { return true; });
       if (prepared) continue;
       // A value refused is a limit of the back end; anything else is a fault.
@@ -88,7 +88,7 @@ class Runner {
     for (const bool tool : {false, true}) {
       if (tool && case_.profile != Profile::kRefined) continue;
       std::optional<VoxelPartition> first;
-      for (const auto& backend : backends_) {
+      for (CollisionBackend* backend : backends_) {
         auto partition = backend->partition(tool);
         if (!partition) {
           differs(backend->name() + " has no partition: " + partition.error().sentence);

@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +12,8 @@
 
 namespace palpate::equivalence {
 
-/// Who answers. The first one's answers are hashed; with two, every answer of the second is compared to the first one's.
-using Backends = std::vector<std::unique_ptr<CollisionBackend>>;
+/// Who answers. The first one's answers are hashed; every answer of the others is compared to the first one's.
+using Backends = std::vector<CollisionBackend*>;
 
 struct RunSettings {
   std::uint64_t seed = 1;

@@ -1,4 +1,4 @@
-// One program for tests, timing and listing: the same poses asked of the device, of the reference, or of both.
+// One program for tests, timing and listing: the same poses asked of an engine, or of all three.
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -8,8 +8,9 @@
 #include <iostream>
 #include <map>
 
-#include "compute/gpu_backend.h"
-#include "cpu_ref/cpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/native/native_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "tests/equivalence/case_run.h"
 #include "tests/equivalence/hashes_file.h"
 
@@ -20,8 +21,8 @@ constexpr int kAllEqual = 0, kSomeDiffer = 1, kBadUsage = 2, kSomeNotSupported =
 
 struct Options {
   std::vector<std::string> names, families;
-  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false, floats = false, guards = false, device_sets = false, own_memory = false;
-  std::string backend = "both", device, check, write, reason;
+  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false, floats = false, guards = false, own_memory = false;
+  std::string backend = "all", device, check, write, reason;
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> poses, pose;
   std::uint64_t campaign = 0;
@@ -31,6 +32,7 @@ struct Options {
 
 std::vector<Case> chosen(const Options& options) {
   std::vector<Case> cases = all_cases();
+  if (options.backend == "cpu") std::erase_if(cases, [](const Case& c) { return c.profile != Profile::kRefined; });   // all that it knows
   const auto among = [](const std::vector<std::string>& list, const std::string& word) {
     return list.empty() || std::find(list.begin(), list.end(), word) != list.end();
   };
@@ -45,21 +47,32 @@ void list(const std::vector<Case>& cases) {
                 c.degenerate ? ", degenerate" : "", c.about.c_str());
 }
 
-Result<Backends> make_backends(const Options& options) {
-  Backends backends;
-  if (options.backend != "cpu") {
+using Engines = std::vector<std::unique_ptr<CollisionBackend>>;
+
+Result<Engines> make_engines(const Options& options) {
+  Engines backends;
+  const auto wanted = [&](const char* name) { return options.backend == "all" || options.backend == name; };
+  if (wanted("gpu")) {
     GpuOptions gpu;
     gpu.device = options.device;
     gpu.validation = options.validation;
     gpu.guard_buffers = options.guards;
-    if (options.device_sets) gpu.host_share = HostShare::kNear;
     gpu.own_memory = options.own_memory;
     auto made = make_gpu_backend(gpu);
     if (!made) return made.error();
     backends.push_back(std::move(*made));
   }
-  if (options.backend != "gpu") backends.push_back(make_cpu_backend());
+  if (wanted("cpu")) backends.push_back(make_native_backend());
+  if (wanted("ref")) backends.push_back(make_ref_backend());
   return backends;
+}
+
+/// Those that a case can be asked: the native engine knows `refined` alone.
+Backends answering(const Engines& engines, const Case& c) {
+  Backends out;
+  for (const auto& engine : engines)
+    if (engine->name() != "cpu" || c.profile == Profile::kRefined) out.push_back(engine.get());
+  return out;
 }
 
 void print_times(CaseRun& run) {
@@ -109,13 +122,13 @@ void print(const Case& c, CaseRun& run, const Options& options, std::uint64_t se
   if (options.times) print_times(run);
 }
 
-/// How to see a finding again, with both back ends if the device was asked.
+/// How to see a finding again.
 void print_repeat(const Case& c, const CaseRun& run, const Options& options, std::uint64_t seed) {
   const std::string text = run.findings.empty() ? "" : run.findings.front();
   const auto at = text.find("pose ");
   const std::string pose = at == std::string::npos ? "" : " --pose " + std::to_string(std::stoull(text.substr(at + 5)));
-  const std::string flags = std::string(options.guards ? " --guards" : "") + (options.device_sets ? " --device-sets" : "") + (options.own_memory ? " --own-memory" : "") + (options.validation ? " --validation" : "") +
-                            (options.twice || options.campaign > 0 ? " --twice" : "") + (options.backend == "cpu" ? " --backend cpu" : "");
+  const std::string flags = std::string(options.guards ? " --guards" : "") + (options.own_memory ? " --own-memory" : "") + (options.validation ? " --validation" : "") +
+                            (options.twice || options.campaign > 0 ? " --twice" : "") + (options.backend == "cpu" || options.backend == "ref" ? " --backend " + options.backend : "");
   std::printf("    repeat: equivalence --case %s --seed %llu%s%s\n", c.name.c_str(), Count{seed}, pose.c_str(), flags.c_str());
 }
 
@@ -148,7 +161,7 @@ int exit_code(const Totals& totals) {
 }
 
 /// Runs the cases once each, and checks or writes hashes.
-int run_cases(const std::vector<Case>& cases, const Backends& backends, const Options& options) {
+int run_cases(const std::vector<Case>& cases, const Engines& engines, const Options& options) {
   HashesFile file;
   if (const std::string& name = options.check.empty() ? options.write : options.check; !name.empty()) {
     auto read = read_hashes(name);
@@ -167,6 +180,7 @@ int run_cases(const std::vector<Case>& cases, const Backends& backends, const Op
   if (options.stop) settings.most_differences = 1;
   Totals totals;
   for (const Case& c : cases) {
+    const Backends backends = answering(engines, c);
     CaseRun run = run_case(c, backends, settings);
     const StoredHashes hashes = stored(run.hashes, static_cast<int>(run.poses));
     if (!options.check.empty() && run.outcome == Outcome::kEqual) {
@@ -188,7 +202,7 @@ int run_cases(const std::vector<Case>& cases, const Backends& backends, const Op
   print_rules(totals);
   if (!options.write.empty() && exit_code(totals) == kAllEqual) {
     file.reason = options.reason;
-    if (options.names.empty() && options.families.empty() && !options.killer)   // cases that are no more go
+    if (options.names.empty() && options.families.empty() && !options.killer && options.backend != "cpu")   // cases that are no more go
       std::erase_if(file.cases, [&](const auto& entry) { return std::none_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == entry.first; }); });
     if (const auto written = write_hashes(options.write, file); !written) {
       std::cerr << written.error().sentence << "\n";
@@ -199,7 +213,7 @@ int run_cases(const std::vector<Case>& cases, const Backends& backends, const Op
 }
 
 /// Many poses, shared among the cases by their cost; a new scene, where it depends on the seed, every so many poses.
-int run_campaign(const std::vector<Case>& cases, const Backends& backends, const Options& options) {
+int run_campaign(const std::vector<Case>& cases, const Engines& engines, const Options& options) {
   double shares = 0;
   for (const Case& c : cases) shares += c.share;
   Totals totals;
@@ -212,7 +226,7 @@ int run_campaign(const std::vector<Case>& cases, const Backends& backends, const
       settings.poses = std::min(c.scene_poses, wanted - done);
       settings.twice = true;
       settings.floats = options.floats;
-      CaseRun run = run_case(c, backends, settings);
+      CaseRun run = run_case(c, answering(engines, c), settings);
       if (run.outcome != Outcome::kEqual) {
         print(c, run, options, seed);
         print_repeat(c, run, options, seed);
@@ -231,12 +245,12 @@ int run_campaign(const std::vector<Case>& cases, const Backends& backends, const
 
 int run(int argc, char** argv) {
   Options o;
-  CLI::App app("Compares back ends bit by bit, and each of them with stored hashes and with what is known beforehand.", "equivalence");
+  CLI::App app("Compares the engines bit by bit, and each of them with stored hashes and with what is known beforehand.", "equivalence");
   app.add_option("--case", o.names, "these cases alone");
   app.add_option("--family", o.families, "these families alone: solids, chapter, touch, topology, rules, fits");
   app.add_flag("--killer", o.killer, "the few cases that together reach every rule, in seconds");
   app.add_flag("--list", o.list, "list the chosen cases and stop");
-  app.add_option("--backend", o.backend, "who answers: gpu, cpu, or both, compared")->check(CLI::IsMember({"gpu", "cpu", "both"}));
+  app.add_option("--backend", o.backend, "who answers: gpu, cpu, ref, or all, compared")->check(CLI::IsMember({"gpu", "cpu", "ref", "all"}));
   app.add_option("--device", o.device, "part of the Vulkan device's name");
   app.add_option("--seed", o.seed, "seed of scenes and poses")->capture_default_str();
   app.add_option("--poses", o.poses, "poses a case");
@@ -249,7 +263,6 @@ int run(int argc, char** argv) {
   app.add_flag("--floats", o.floats, "count what single precision would have judged otherwise");
   app.add_flag("--times", o.times, "print the median time of every stage");
   app.add_flag("--validation", o.validation, "with Vulkan's validation layer and its synchronisation checks");
-  app.add_flag("--device-sets", o.device_sets, "the device decides all, where it is the host's own processor, too");
   app.add_flag("--own-memory", o.own_memory, "the host's own processor, or an integrated GPU, is taken for a GPU with memory of its own");
   app.add_flag("--guards", o.guards, "with guard bytes round every buffer of the device, checked after every scene and pose");
   app.add_option("--campaign", o.campaign, "this many poses over all cases, with changing seeds, everything asked twice");
@@ -268,13 +281,13 @@ int run(int argc, char** argv) {
     std::cerr << "hashes are those of seed 1 and each case's own number of poses: --check and --write go without --seed, --poses, --pose and --campaign\n";
     return kBadUsage;
   }
-  auto backends = make_backends(o);
-  if (!backends) {
-    std::cerr << "not supported: " << backends.error().sentence << "\n";
+  auto engines = make_engines(o);
+  if (!engines) {
+    std::cerr << "not supported: " << engines.error().sentence << "\n";
     return kSomeNotSupported;
   }
-  for (const auto& backend : *backends) std::printf("%s: %s\n", backend->name().c_str(), backend->device().c_str());
-  return o.campaign > 0 ? run_campaign(cases, *backends, o) : run_cases(cases, *backends, o);
+  for (const auto& backend : *engines) std::printf("%s: %s\n", backend->name().c_str(), backend->device().c_str());
+  return o.campaign > 0 ? run_campaign(cases, *engines, o) : run_cases(cases, *engines, o);
 }
 
 }  // namespace

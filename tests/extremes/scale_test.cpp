@@ -4,8 +4,9 @@
 
 #include <cmath>
 
-#include "compute/gpu_backend.h"
-#include "cpu_ref/cpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/native/native_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 #include "model/pose.h"
@@ -20,7 +21,7 @@ using testing::IsEmpty;
 
 constexpr double kStiffness = 2000;
 
-/// A scene and what both back ends answer.
+/// A scene and what all engines answer.
 struct Asked {
   SceneGeometry geometry;
   Contacts contacts;
@@ -35,15 +36,16 @@ std::unique_ptr<Asked> ask(const Mesh& mockup, const Mesh& tool, const Vec3& pos
   options.validation = true;
   auto gpu = make_gpu_backend(options);
   if (!gpu) throw std::runtime_error(gpu.error().sentence);
-  const auto cpu = make_cpu_backend();
+  const auto native = make_native_backend(), ref = make_ref_backend();
   const LatticePose pose = *to_lattice(Pose{position, Quat(1, 0, 0, 0)}, out->geometry);
-  Contacts reference;
-  for (CollisionBackend* backend : {gpu->get(), cpu.get()}) {
+  Contacts reference, by_native;
+  for (CollisionBackend* backend : {gpu->get(), native.get(), ref.get()}) {
     if (auto prepared = backend->prepare(out->geometry, {}, {}); !prepared) throw std::runtime_error(prepared.error().sentence);
-    if (auto answered = backend->query(pose, nullptr, backend == cpu.get() ? reference : out->contacts); !answered)
+    if (auto answered = backend->query(pose, nullptr, backend == ref.get() ? reference : backend == native.get() ? by_native : out->contacts); !answered)
       throw std::runtime_error(answered.error().sentence);
   }
-  EXPECT_EQ(first_difference(out->contacts, reference), "") << "(gpu, cpu)";
+  EXPECT_EQ(first_difference(out->contacts, reference), "") << "(gpu, ref)";
+  EXPECT_EQ(first_difference(by_native, reference), "") << "(cpu, ref)";
   respond(reference, pose, out->geometry, Profile::kRefined, kStiffness, out->response);
   return out;
 }

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "compute/frame_capacity.h"
+#include "compute/gpu/frame/capacity.h"
 #include "tests/faults/fault_scene.h"
 
 namespace palpate {
@@ -18,7 +18,6 @@ std::unique_ptr<CollisionBackend> gpu(const std::map<std::string, std::uint32_t>
   GpuOptions options;
   options.validation = true;
   options.guard_buffers = true;            // a write behind a list that is full is an error
-  options.host_share = HostShare::kNear;   // the lists are the device's
   options.first_capacity = first_capacity;
   auto made = make_gpu_backend(options);
   if (!made) throw std::runtime_error(made.error().sentence);
@@ -141,7 +140,7 @@ TEST(Areas, BeyondTheMostThereCanBeAreTruncatedAndRefusedWithTheLimit) {
   EXPECT_FALSE(scene->expected.truncated) << "the field has no areas to run out of";
   Plan paper;
   paper.profile = Profile::kPaper;
-  const auto reference = make_cpu_backend(), backend = gpu({});
+  const auto reference = make_ref_backend(), backend = gpu({});
   Contacts expected, out;
   for (const auto& [one, answer] : {std::pair{reference.get(), &expected}, std::pair{backend.get(), &out}}) {
     ASSERT_TRUE(one->prepare(scene->geometry, paper, {}));

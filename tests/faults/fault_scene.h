@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "compute/gpu_backend.h"
-#include "cpu_ref/cpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
 #include "model/pose.h"
@@ -35,7 +35,7 @@ inline std::unique_ptr<FaultScene> make_fault_scene(std::string name, const Mesh
   if (!geometry) throw std::runtime_error(geometry.error().sentence);
   std::unique_ptr<FaultScene> scene(new FaultScene{std::move(name), std::move(*geometry), {}, {}});
   scene->pose = at(*scene, position);
-  const auto reference = make_cpu_backend();
+  const auto reference = make_ref_backend();
   if (auto prepared = prepare(*reference, *scene); !prepared) throw std::runtime_error(prepared.error().sentence);
   if (auto answered = reference->query(scene->pose, nullptr, scene->expected); !answered) throw std::runtime_error(answered.error().sentence);
   return scene;

@@ -17,7 +17,6 @@ class DeviceFaults : public testing::Test {
     GpuOptions options;
     options.validation = true;
     options.fault = fault;
-    options.host_share = HostShare::kNear;   // contacts are the device's
     options.first_capacity = {{"pairs", 1}};
     auto made = make_gpu_backend(options);
     ASSERT_TRUE(made) << made.error().sentence;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "compute/native/native_backend.h"
 #include "driver/simulated_device.h"
 #include "service/session.h"
 #include "service/steady_backend.h"
@@ -58,7 +59,6 @@ class LosingBackend final : public CollisionBackend {
   LosingBackend(int healthy, CountingDevice& device) : healthy_(healthy), device_(device) {
     GpuOptions options;
     options.fault = fault_;
-    options.host_share = HostShare::kNear;   // contacts are the device's
     auto made = make_gpu_backend(options);
     if (!made) throw std::runtime_error(made.error().sentence);
     gpu_ = std::move(*made);
@@ -117,10 +117,10 @@ TEST_P(LostInMidRun, WithoutASpareTheRunEndsWithZeroForceAndTheSummarySaysWhy) {
   EXPECT_TRUE(device.closed_at_zero);
 }
 
-TEST_P(LostInMidRun, WithASpareTheReferenceGoesOnAndTheSummarySaysSo) {
+TEST_P(LostInMidRun, WithASpareTheNativeEngineGoesOnAndTheSummarySaysSo) {
   const LoadedScene scene = pressed();
   CountingDevice device(scene);
-  SteadyBackend backend(std::make_unique<LosingBackend>(30, device), make_cpu_backend);
+  SteadyBackend backend(std::make_unique<LosingBackend>(30, device), [] { return make_native_backend(); });
   ASSERT_TRUE(backend.prepare(scene.geometry, {}, {}));
   device.enough = 2 * (kWatchdogTicks + kFadeTicks);   // more than was on its way when the device was lost
   const auto summary = run_session(scene, backend, device, {.pace = GetParam(), .duration_s = 120, .stop = &device.stop}, nullptr);
@@ -128,7 +128,7 @@ TEST_P(LostInMidRun, WithASpareTheReferenceGoesOnAndTheSummarySaysSo) {
   EXPECT_FALSE(summary->failure);
   EXPECT_EQ(summary->backend, "cpu");
   EXPECT_THAT(summary->notes, Contains(HasSubstr("the device was lost")));
-  EXPECT_THAT(summary->notes, Contains(HasSubstr("the cpu back end answers instead")));
+  EXPECT_THAT(summary->notes, Contains(HasSubstr("the engine cpu answers instead")));
   EXPECT_TRUE(summary->stopped) << "force is back";
   EXPECT_TRUE(device.closed_at_zero);
 }
@@ -144,7 +144,6 @@ TEST(TooSmallInMidRun, GrowsAndGivesTheSameForcesAsEnoughRoom) {
   } roomy, grown;
   for (const bool small : {false, true}) {
     GpuOptions options;
-    options.host_share = HostShare::kNear;
     if (small) options.first_capacity = {{"pairs", 3}, {"samples", 3}};
     auto gpu = make_gpu_backend(options);
     ASSERT_TRUE(gpu) << gpu.error().sentence;

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <stdexcept>
 
-#include "compute/gpu_backend.h"
+#include "compute/native/native_backend.h"
 #include "service/bench/force_judge.h"
 
 namespace palpate {
@@ -37,11 +37,10 @@ class Forces : public testing::TestWithParam<ForceCaseMaker> {};
 
 TEST_P(Forces, AreAsThePartsSay) {
   if (!all() && !is_quick(GetParam().name)) GTEST_SKIP() << "of the full set";
-  auto backend = make_gpu_backend({});
-  ASSERT_TRUE(backend) << backend.error().sentence;
+  const auto backend = make_native_backend();
   const ForceCase subject = GetParam().make();
   for (const double voxels : all() ? std::vector{1.0, 0.5, 2.0} : std::vector{1.0}) {
-    const Result<ForceFigures> figures = judge_force(subject, **backend, Profile::kRefined, voxels);
+    const Result<ForceFigures> figures = judge_force(subject, *backend, Profile::kRefined, voxels);
     ASSERT_TRUE(figures) << figures.error().sentence;
     EXPECT_GT(figures->touching, 0u);
     for (const std::string& sentence : figures->broken)
@@ -62,13 +61,12 @@ INSTANTIATE_TEST_SUITE_P(Cases, Forces, testing::ValuesIn(force_cases()), test_n
 
 TEST(ForceJudge, SeesAStepAndALossThatAreThere) {
   // A tool pushed through a thin plate lets go in a step: the judge must see it once the case no longer says so.
-  auto backend = make_gpu_backend({});
-  ASSERT_TRUE(backend) << backend.error().sentence;
+  const auto backend = make_native_backend();
   for (const ForceCaseMaker& maker : force_cases()) {
     if (maker.name != "plate of 0.4 mm pierced") continue;
     ForceCase subject = maker.make();
     subject.slips = false;
-    const Result<ForceFigures> figures = judge_force(subject, **backend, Profile::kRefined);
+    const Result<ForceFigures> figures = judge_force(subject, *backend, Profile::kRefined);
     ASSERT_TRUE(figures) << figures.error().sentence;
     EXPECT_GT(figures->largest_step, kMostStep);
     EXPECT_FALSE(figures->broken.empty());

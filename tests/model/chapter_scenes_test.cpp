@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cpu_ref/cpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "model/generate/turn.h"
 #include "model/path_file.h"
 #include "model/response.h"
@@ -61,7 +61,7 @@ class ChapterScene {
 
  private:
   LoadedScene loaded_;
-  std::unique_ptr<CollisionBackend> backend_ = make_cpu_backend();
+  std::unique_ptr<CollisionBackend> backend_ = make_ref_backend();
 };
 
 struct Counts {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "compute/vulkan_device.h"
+#include "compute/vulkan/device.h"
 #include "tests/compute/module_run.h"
 
 namespace palpate::mutation {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "compute/frame_capacity.h"
+#include "compute/gpu/frame/capacity.h"
 
 namespace palpate::mutation {
 namespace {
@@ -71,7 +71,6 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
   const auto found = kept_.find(&geometry);
   const bool by_mutant = prepares_ && !aside_;
   if (by_mutant || found == kept_.end()) {
-    device_->host_share = HostShare::kNear;   // all of preparation by the device's modules
     auto scene = prepare_scene(*device_, geometry, plan, progress);
     if (!scene) return scene.error();
     if (by_mutant) {
@@ -84,12 +83,11 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
         if (!of.brick_slot) continue;   // `paper` has none of the tool
         auto partition = read_partition(*device_, of);
         if (!partition) return partition.error();
-        (tool ? made.tool : made.mockup) = std::move(*partition);
+        (tool ? made.tool : made.mockup) = dense(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
       for (const bool without : {true, false}) {   // so that the pipelines of all ways are there to be swapped
         kept_of_->scene.samples = without ? nullptr : kept_of_->samples;
-        device_->host_share = HostShare::kNear;
         if (auto other = make_frame(geometry); !other) return other.error();
       }
     }
@@ -97,7 +95,6 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
     kept_of_ = &found->second;
   }
   if (!fresh_) kept_of_->scene.samples = without_samples_ ? nullptr : kept_of_->samples;
-  device_->host_share = host_share_;
   auto frame = make_frame(geometry);
   if (!frame) return frame.error();
   frame_ = std::move(*frame);
@@ -110,7 +107,11 @@ Result<void> MutableDevice::query(const LatticePose& pose, const Ignored* ignore
 }
 
 Result<VoxelPartition> MutableDevice::partition(bool tool) const {
-  if (fresh_) return read_partition(*device_, tool ? fresh_->tool.partition : fresh_->mockup.partition);
+  if (fresh_) {
+    const auto read = read_partition(*device_, tool ? fresh_->tool.partition : fresh_->mockup.partition);
+    if (!read) return read.error();
+    return dense(*read);
+  }
   return tool ? kept_of_->tool : kept_of_->mockup;
 }
 

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "compute/frame.h"
-#include "compute/gpu_backend.h"
-#include "compute/prepared_scene.h"
-#include "compute/vulkan_device.h"
-#include "compute/vulkan_pipeline.h"
+#include "compute/gpu/frame/frame.h"
+#include "compute/gpu/gpu_backend.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/vulkan/device.h"
+#include "compute/vulkan/pipeline.h"
 #include "model/collision_backend.h"
 
 namespace palpate::mutation {
@@ -34,9 +34,6 @@ class MutableDevice final : public CollisionBackend {
   /// From the next prepare() on every pipeline of the module `original`, SPIR-V, is one of `mutant`. `prepares`: preparation runs it, so
   /// that nothing kept will do. Error: the driver refuses it.
   Result<void> swap(const std::string& original, const std::string& mutant, bool prepares);
-  /// From the next prepare() on, how much of small contacts the host works out (GpuOptions::host_share). At first the least: the device's own
-  /// steps answer all contacts.
-  void host_share(HostShare share) { host_share_ = share; }
   /// From the next prepare() on, whether frames work the mock-up's samples out, as where there is no room for their list.
   void without_samples(bool without) { without_samples_ = without; }
   /// From the next prepare() on, items that these lists hold (GpuOptions::first_capacity); empty: enough.
@@ -72,7 +69,6 @@ class MutableDevice final : public CollisionBackend {
   std::unique_ptr<Frame> frame_;
   std::vector<std::pair<Words, Words>> mutants_;   // modules before and after
   bool prepares_ = false, aside_ = false;          // a mutant does; all are set aside
-  HostShare host_share_ = HostShare::kNear;
   bool without_samples_ = false;
   std::map<std::string, std::uint32_t> first_capacity_;
   std::vector<std::pair<Key, std::shared_ptr<PendingPipeline>>> swapped_;   // what stood there

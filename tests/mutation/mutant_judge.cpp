@@ -25,7 +25,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "cpu_ref/cpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "tests/mutation/limits.h"
 #include "tests/mutation/module_probes.h"
 #include "tests/mutation/mutable_device.h"
@@ -296,7 +296,7 @@ void judge_shaders(const std::string& root, bool killers, bool probes_alone, con
 }
 
 void judge_reference(bool killers, const Words& without) {
-  const auto backend = make_cpu_backend();
+  const auto backend = make_ref_backend();
   Oracle oracle(*backend, killers, without, [](bool) {});
   const double begin = cpu_seconds(RUSAGE_SELF);
   oracle.answer_all();

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "compute/command_recorder.h"
-#include "compute/vulkan_buffer.h"
-#include "compute/vulkan_pipeline.h"
+#include "compute/vulkan/command_recorder.h"
+#include "compute/vulkan/buffer.h"
+#include "compute/vulkan/pipeline.h"
 #include "tests/compute/probe_cases.h"
 
 namespace palpate::mutation {

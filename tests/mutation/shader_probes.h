@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compute/vulkan_device.h"
+#include "compute/vulkan/device.h"
 
 namespace palpate::mutation {
 

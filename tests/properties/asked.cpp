@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "compute/gpu_backend.h"
-#include "cpu_ref/cpu_backend.h"
+#include "compute/gpu/gpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "model/geometry_build.h"
 #include "model/patches.h"
 #include "model/triangle.h"
@@ -21,7 +21,7 @@ namespace {
 CollisionBackend& backend() {
   static const std::unique_ptr<CollisionBackend> made = [] {
     const char* name = std::getenv("PALPATE_BACKEND");
-    if (name == nullptr || std::string_view(name) != "gpu") return make_cpu_backend();
+    if (name == nullptr || std::string_view(name) != "gpu") return make_ref_backend();
     GpuOptions options;
     options.validation = true;
     auto gpu = make_gpu_backend(options);

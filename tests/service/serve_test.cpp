@@ -90,7 +90,9 @@ class Serve : public testing::Test {
                                              R"("tool":{"generate":{"name":"contacts","body":"tool","triangles":1000}},"device":{"driver":"remembering"}})";
     port_ = free_port();
     parts_.make_gpu = [](bool) -> Result<std::unique_ptr<CollisionBackend>> { return Error{ErrorCode::kNoDevice, "none here"}; };
-    parts_.make_cpu = [] { return std::make_unique<CountingBackend>(asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]); };
+    parts_.has_gpu = [] { return false; };
+    parts_.make_ref = [] { return std::make_unique<CountingBackend>(asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]); };
+    parts_.make_cpu = [](bool) { return std::make_unique<CountingBackend>(asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]); };
     parts_.make_device = [](const std::string&, const Scene&, const Vec3&, const std::string&) -> Result<std::unique_ptr<HapticDevice>> {
       return std::unique_ptr<HapticDevice>(std::make_unique<RememberingDevice>(sent_));
     };

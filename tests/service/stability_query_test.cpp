@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "cpu_ref/cpu_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "driver/simulated_device.h"
 #include "service/bench/stability_bodies.h"
 #include "service/bench/stability_contacts.h"
@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-Result<std::unique_ptr<CollisionBackend>> reference() { return make_cpu_backend(); }
+Result<std::unique_ptr<CollisionBackend>> reference() { return make_ref_backend(); }
 
 class StabilityQuery : public testing::TestWithParam<int> {
  protected:

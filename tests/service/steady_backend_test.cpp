@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace palpate {
 namespace {
 
@@ -45,6 +47,63 @@ TEST(SteadyBackend, ANewSceneIsNewToTheSpareToo) {
     EXPECT_FALSE(out.truncated);
     EXPECT_EQ(out.pairs, static_cast<std::uint64_t>(scene));
   }
+}
+
+/// Answers scenes of one profile alone, as the native engine does.
+class Choosy final : public CollisionBackend {
+ public:
+  Choosy(const char* name, Profile profile) : name_(name), profile_(profile) {}
+  Result<void> prepare(const SceneGeometry&, const Plan& plan, const Progress&) override {
+    return plan.profile == profile_ ? Result<void>{} : bad_value("another profile");
+  }
+  Result<void> query(const LatticePose&, const Ignored*, Contacts& out) override {
+    out = {};
+    out.engine = name_;
+    return {};
+  }
+  Result<VoxelPartition> partition(bool) const override { return VoxelPartition{}; }
+  bool has_internal_voxels() const override { return false; }
+  std::string name() const override { return name_; }
+  std::string device() const override { return name_; }
+  std::uint64_t memory_bytes() const override { return 0; }
+
+ private:
+  const char* name_;
+  Profile profile_;
+};
+
+TEST(SteadyBackend, ASceneThatTheFirstDoesNotTakeIsTheSparesAndTheNextIsTheFirstsAgain) {
+  SteadyBackend backend(std::make_unique<Choosy>("first", Profile::kRefined), [] { return std::make_unique<Choosy>("spare", Profile::kPaper); });
+  const SceneGeometry geometry;
+  Contacts out;
+  std::vector<Contacts> batch(3);
+  const std::vector<LatticePose> poses(3);
+  for (const Profile profile : {Profile::kRefined, Profile::kPaper, Profile::kRefined, Profile::kPaper}) {
+    const std::string who = profile == Profile::kRefined ? "first" : "spare";
+    Plan plan;
+    plan.profile = profile;
+    ASSERT_TRUE(backend.prepare(geometry, plan, {}));
+    EXPECT_EQ(backend.name(), who);
+    ASSERT_TRUE(backend.finish_preparing());
+    ASSERT_TRUE(backend.query({}, nullptr, out));
+    EXPECT_EQ(out.engine, who);
+    ASSERT_TRUE(backend.query_batch(poses, batch));
+    for (const Contacts& contacts : batch) EXPECT_EQ(contacts.engine, who);
+  }
+}
+
+TEST(SteadyBackend, TellsWhatASpareWithASpareOfItsOwnHasToTell) {
+  SteadyBackend backend(std::make_unique<Choosy>("first", Profile::kRefined), [] {
+    return std::make_unique<SteadyBackend>(std::make_unique<Choosy>("second", Profile::kRefined), [] { return std::make_unique<Choosy>("third", Profile::kPaper); });
+  });
+  const SceneGeometry geometry;
+  Plan plan;
+  plan.profile = Profile::kPaper;
+  ASSERT_TRUE(backend.prepare(geometry, plan, {}));
+  EXPECT_EQ(backend.name(), "third");
+  const auto notes = backend.take_notes();
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) { return note.find("prepared on second") != std::string::npos; }));
+  EXPECT_TRUE(backend.take_notes().empty());
 }
 
 TEST(SteadyBackend, AFirstThatIsNeverReadyIsReplacedBeforeALoopBegins) {

@@ -1,5 +1,5 @@
 // A device of one's own on palpate's control loop: implement HapticDevice, hand it to run_session().
-#include <cpu_ref/cpu_backend.h>
+#include <cpu_ref/ref_backend.h>
 #include <model/generate.h>
 #include <service/session.h>
 
@@ -39,7 +39,7 @@ int main() {
   auto geometry = build_geometry(made->mockup, made->tool, {});
   if (!geometry) return failed(geometry.error());
   const LoadedScene scene{.scene = {}, .geometry = std::move(*geometry)};
-  const auto backend = make_cpu_backend();
+  const auto backend = make_ref_backend();
   if (auto ready = backend->prepare(scene.geometry, {}, {}); !ready) return failed(ready.error());
   MyDevice device(made->path);
   const auto summary = run_session(scene, *backend, device, {.pace = Pace::kRealtime, .duration_s = 2.5}, nullptr);

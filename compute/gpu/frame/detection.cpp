@@ -1,0 +1,185 @@
+#include "compute/gpu/frame/detection.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "compute/gpu/frame/plan.h"
+#include "compute/search/tool_order.h"
+#include "shaders/code.h"
+
+namespace palpate {
+
+using namespace gpu;   // names of shaders/shared/frame.h
+
+std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan) {
+  std::unique_ptr<FrameDetection> out(new FrameDetection);
+  out->plan_ = plan;
+  out->order_ = order_in_space(geometry.tool);
+  out->refined_ = scene.constants.refined != 0;
+  out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
+  out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
+  out->listed_ = scene.samples && scene.samples->listed();
+  return out;
+}
+
+Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
+                                          const FrameCapacity& capacity, FrameBuffers& buffers) const {
+  const BodyConstants& mockup = scene.constants.mockup;
+  const BodyConstants& tool = scene.constants.tool;
+  const std::uint64_t voxels = mockup.grid.boundary_voxels, statics = capacity.lists[kListContactStatics];
+  const std::uint64_t clusters = (tool.triangles + kClusterSize - 1) / kClusterSize;
+
+  struct List {
+    std::uint32_t list;
+    std::int32_t binding;
+    std::size_t item_bytes;
+    BufferKind kind = BufferKind::kDevice;
+  };
+  const List lists[] = {
+      {kListTouchCandidates, kBindTouchCandidates, sizeof(TouchCandidate), BufferKind::kUpload},
+      {kListTouchedVoxels, kBindTouchedVoxels, sizeof(FrameVoxel)},
+      {kListStaticChunks, kBindStaticChunks, sizeof(StaticChunk)},
+      {kListPairCandidates, kBindPairCandidates, sizeof(PairCandidate), BufferKind::kUpload},
+      {kListPairs, kBindPairs, sizeof(ContactPair)},
+      {kListContactStatics, kBindContactStatics, sizeof(std::uint32_t)},
+      {kListContactMobiles, kBindContactMobiles, sizeof(std::uint32_t)},
+      {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk), BufferKind::kUpload},
+      {kListInsideSamples, kBindInsideSamples, sizeof(FrameSample), BufferKind::kUpload},
+      {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample), BufferKind::kUpload},
+      {kListSamples, kBindSamples, sizeof(FrameSample)},
+      {kListMembers, kBindResultMembers, sizeof(AreaMember), BufferKind::kReadback},
+  };
+  for (const List& l : lists)
+    if (auto r = buffers.make(device, l.binding, list_name(l.list), capacity.lists[l.list] * std::uint64_t{l.item_bytes}, l.kind); !r) return r;
+
+  struct Plain {
+    std::int32_t binding;
+    const char* what;
+    std::uint64_t bytes;
+    BufferKind kind = BufferKind::kDevice;
+  };
+  const Plain plain[] = {
+      {kBindFrameInput, "frame input", sizeof(FrameInput), BufferKind::kUpload},
+      {kBindFrameLists, "frame lists", sizeof(FrameList) * kListCount},
+      {kBindFrameState, "frame state", sizeof(FrameState)},
+      {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
+      {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
+      {kBindFinePlaces, "lists of the tool's fine voxels", closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
+      {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
+      {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * clusters * (kClusterSize / kRunSize)},
+      {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
+      {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
+      {kBindResult, "frame result", sizeof(FrameResult), BufferKind::kReadback},
+      {kBindResultStatics, "results of the mock-up's triangles", sizeof(StaticResult) * statics, BufferKind::kReadback},
+      {kBindResultMobiles, "results of the tool's triangles", sizeof(MobileResult) * std::uint64_t{capacity.lists[kListContactMobiles]}, BufferKind::kReadback},
+  };
+  for (const Plain& p : plain)
+    if (auto r = buffers.make(device, p.binding, p.what, p.bytes, p.kind); !r) return r;
+
+  if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r) return r;
+  if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}); !r)
+    return r;
+
+  if (auto r = buffers.make_table(device, kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}); !r) return r;
+  if (auto r = upload_records(device, geometry.tool, buffers[kBindToolRecords]); !r) return r;
+  return closed_ ? upload_places(device, scene, buffers[kBindFinePlaces]) : Result<void>{};
+}
+
+Result<void> FrameDetection::upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const {
+  std::vector<std::uint32_t> place(order_.size());
+  for (std::uint32_t i = 0; i < order_.size(); ++i) place[order_[i]] = i;
+  std::vector<std::uint32_t> entries(scene.constants.fine.list_entries);
+  const VulkanBuffer& ids = (scene.fine.brick_slot ? scene.fine : scene.tool.partition).list_triangles;
+  if (auto r = download(device, ids, 0, entries.data(), entries.size() * sizeof entries[0]); !r) return r;
+  for (std::uint32_t& entry : entries) entry = place[entry];
+  return upload(device, to, entries.data(), entries.size() * sizeof entries[0]);
+}
+
+Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const {
+  std::vector<ToolRecord> records;
+  records.reserve(order_.size());
+  for (const std::uint32_t id : order_)
+    records.push_back({tool.corner(id, 0), id, tool.corner(id, 1), tool.flags[id], tool.corner(id, 2), 0});
+  return upload(device, to, records.data(), records.size() * sizeof records[0]);
+}
+
+Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
+  const std::vector<SpecConstant> plan = plan_constants(plan_);
+  const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}};
+  struct Made {
+    FrameShader* shader;
+    const ShaderCode* code;
+    bool wanted = true;
+    std::uint32_t push_bytes = 0;
+    std::span<const SpecConstant> constants = {};
+  };
+  const Made all[] = {
+      {&list_close_, &spirv::list_close, true, 4},
+      {&frame_begin_, &spirv::frame_begin},
+      {&tool_clusters_place_, &spirv::tool_clusters, !refined_},
+      {&voxel_touch_, &spirv::voxel_touch},
+      {&static_list_, &spirv::static_list},
+      {&pair_test_, &spirv::pair_test},
+      {&sample_take_, &spirv::sample_take, inside_ && listed_},
+      {&sample_walk_, &spirv::sample_walk, inside_, 0, of_tool},
+      {&sample_scan_, &spirv::sample_scan, inside_ && !listed_},
+      {&set_statics_, &spirv::set_statics},
+      {&set_mobiles_, &spirv::set_mobiles},
+      {&set_decide_, &spirv::set_decide},
+      {&frame_end_, &spirv::frame_end},
+      {&frame_reset_, &spirv::frame_reset},
+  };
+  for (const Made& m : all) {
+    if (!m.wanted) continue;
+    std::vector<SpecConstant> constants(m.constants.begin(), m.constants.end());
+    constants.insert(constants.end(), plan.begin(), plan.end());
+    auto shader = make_frame_shader(device, *m.code, m.push_bytes, constants);
+    if (!shader) return shader.error();
+    *m.shader = std::move(*shader);
+  }
+  return {};
+}
+
+void FrameDetection::record(FrameRecorder& recorder) const {
+  recorder.stage("transform");
+  recorder.run(frame_begin_, 1);
+  recorder.barrier();
+  if (!refined_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
+
+  // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the tool's partition knows.
+  recorder.stage(plan_.imt ? "imt" : "bmt");   // one dispatch decides both
+  recorder.run_items(voxel_touch_, kListTouchCandidates);
+  recorder.stage("pairs");
+  recorder.run_items(pair_test_, kListPairCandidates);
+  if (inside_) {
+    recorder.stage("est");
+    if (listed_) recorder.run_items(sample_take_, kListInsideSamples);
+    else recorder.run_items(sample_scan_, kListSampleChunks);
+  }
+
+  // What is listed in touched voxels; samples that the tool's partition leaves open.
+  recorder.stage("bst");
+  recorder.close({kListTouchedVoxels, kListStaticChunks, kListOpenSamples});
+  recorder.run_items(static_list_, kListStaticChunks);
+  if (inside_) {
+    recorder.stage("open");
+    recorder.run_items(sample_walk_, kListOpenSamples);
+  }
+
+  recorder.stage("sets");
+  recorder.close({kListPairs, kListContactStatics, kListContactMobiles, kListSamples});
+  recorder.run_items(set_statics_, kListContactStatics);
+  recorder.run_items(set_mobiles_, kListContactMobiles);
+  recorder.barrier();
+  recorder.run(set_decide_, 1);
+  recorder.barrier();
+  recorder.run_dispatch(frame_reset_, kDispatchResetFree);
+}
+
+void FrameDetection::record_end(FrameRecorder& recorder) const {
+  recorder.stage("reset");
+  recorder.run(frame_end_, 1);
+  recorder.run_dispatch(frame_reset_, kDispatchReset);
+}
+
+}  // namespace palpate

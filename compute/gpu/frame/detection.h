@@ -1,0 +1,52 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "compute/gpu/frame/capacity.h"
+#include "compute/gpu/frame/recorder.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/vulkan/device.h"
+#include "model/plan.h"
+#include "model/result.h"
+#include "model/scene_geometry.h"
+
+namespace palpate {
+
+/// The first half of a frame: from the pose to the contact sets, pairs and counting samples (docs/EXACTNESS.md sections 3, 4),
+/// and the frame's last step, which empties what it filled. Makes its own buffers and pipelines.
+class FrameDetection {
+ public:
+  static std::unique_ptr<FrameDetection> make(const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan);
+
+  /// Asks for the pipelines, which are then made beside what follows. Before record().
+  Result<void> make_shaders(VulkanDevice& device);
+  /// Makes the buffers of the lists and tables into `buffers`; those that are large enough already stay. Before the first record(), and
+  /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
+  Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const FrameCapacity& capacity,
+                            FrameBuffers& buffers) const;
+
+  /// From the pose to frame_state and the response's group counts.
+  void record(FrameRecorder& recorder) const;
+  /// After the response: counts to the host, tables back to 0.
+  void record_end(FrameRecorder& recorder) const;
+  /// Ids of the tool's triangles in the order of clusters and runs.
+  const std::vector<std::uint32_t>& order() const { return order_; }
+  const FrameShader& list_close() const { return list_close_; }
+
+ private:
+  FrameDetection() = default;
+  Result<void> upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const;
+  Result<void> upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const;
+
+  Plan plan_;
+  bool refined_ = false;
+  bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
+  bool closed_ = false;   ///< the tool's surface, in `refined`: open samples ask for the winding
+  bool listed_ = false;   ///< samples were listed by preparation
+  std::vector<std::uint32_t> order_;
+  FrameShader list_close_, frame_begin_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_,
+      sample_walk_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,177 @@
+#include "compute/gpu/frame/field.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "compute/gpu/frame/plan.h"
+#include "shaders/code.h"
+
+namespace palpate {
+
+using namespace gpu;   // names of shaders/shared/frame_field.h
+
+namespace {
+
+constexpr std::uint32_t kCarriersId = 8;   // of the specialisation constant CARRIERS
+
+WideSum wide(std::int64_t low, std::int64_t high) { return {low, high}; }
+
+FieldBin bin_of(const FieldBinWork& from) {
+  FieldBin out;
+  out.samples = static_cast<std::uint32_t>(from.samples);
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.push[k] = wide(from.push_low[k], from.push_high[k]);
+    out.turn[k] = wide(from.turn_low[k], from.turn_high[k]);
+    out.give_at[k] = from.give_at[k];
+  }
+  out.give = from.give;
+  std::copy(std::begin(from.give_spread), std::end(from.give_spread), out.give_spread.begin());
+  return out;
+}
+
+CarrierSums carrier_of(std::uint32_t id, const CarrierWork& from) {
+  CarrierSums out;
+  out.id = id;
+  out.samples = static_cast<std::uint32_t>(from.samples);
+  out.max_depth = static_cast<std::uint32_t>(from.max_depth);
+  out.weight_sum = from.weight_sum;
+  out.depth_sum = from.depth_sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.push[k] = wide(from.push_low[k], from.push_high[k]);
+    out.moment[k] = wide(from.moment_low[k], from.moment_high[k]);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan) {
+  FrameField out;
+  out.geometry_ = &geometry;
+  out.plan_ = plan;
+  const BodyConstants &mockup = scene.constants.mockup, &tool = scene.constants.tool;
+  out.inside_ = tool.closed != 0 || tool.has_internal != 0;
+  const std::uint32_t inside = out.inside_ ? 1 : 0;
+  struct ShaderPlan {
+    FrameShader& shader;
+    const ShaderCode& code;
+    std::vector<SpecConstant> constants = {};
+    bool kept = true;
+  };
+  for (const ShaderPlan& made_for : std::initializer_list<ShaderPlan>{
+           {out.begin_, spirv::field_begin},
+           {out.statics_, spirv::field_statics, {{0, inside}}},
+           {out.mobiles_, spirv::field_mobiles},
+           {out.points_, spirv::field_points},
+           {out.from_mockup_, spirv::field_from_mockup, {{0, tool.closed}, {1, 0u}}, out.inside_},
+           {out.from_extras_, spirv::field_from_mockup, {{0, tool.closed}, {1, 1u}}, out.inside_ && scene.constants.mockup_extras != 0},
+           {out.from_tool_, spirv::field_from_tool, {{0, mockup.closed}, {1, inside}}},
+           {out.result_, spirv::field_result},
+           {out.carriers_result_, spirv::carriers_result, {}, plan.telemetry},
+           {out.ignored_end_, spirv::ignored_end},
+       }) {
+    if (!made_for.kept) continue;
+    std::vector<SpecConstant> constants = plan_constants(plan);
+    if (!plan.telemetry) constants.push_back({kCarriersId, 0u});
+    constants.insert(constants.end(), made_for.constants.begin(), made_for.constants.end());
+    auto made = make_frame_shader(device, made_for.code, 0, constants);
+    if (!made) return made.error();
+    made_for.shader = std::move(*made);
+  }
+  return out;
+}
+
+Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity& capacity, FrameBuffers& buffers) {
+  struct BufferPlan {
+    std::int32_t binding;
+    const char* what;
+    std::uint64_t bytes;
+    BufferKind kind = BufferKind::kDevice;
+  };
+  const auto& lists = capacity.lists;
+  const std::uint64_t carriers = (plan_.telemetry ? lists[kListContactStatics] : 1) * std::uint64_t{sizeof(CarrierWork)};
+  const std::uint64_t patches = (geometry_->mockup.patch_count + 31) / 32 * std::uint64_t{4};
+  for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
+           {kBindFieldWork, "pressure field", sizeof(FieldWork)},
+           {kBindCarrierWork, "what contact triangles carry", carriers},
+           {kBindFieldTiles, "tiles of tool samples", lists[kListFieldTiles] * std::uint64_t{sizeof(FieldTile)}},
+           {kBindMockupPoints, "extra samples", lists[kListMockupPoints] * std::uint64_t{sizeof(FieldPoint)}},
+           {kBindToolPoints, "samples of the tool", lists[kListToolPoints] * std::uint64_t{sizeof(FieldPoint)}},
+           {kBindIgnored, "ignored patches", patches, BufferKind::kUpload},
+           {kBindResultIgnored, "ignored patches that are touched", lists[kListIgnored] * std::uint64_t{4}, BufferKind::kReadback},
+           {kBindResultField, "result of the pressure field", sizeof(FieldWork), BufferKind::kReadback},
+           {kBindResultCarriers, "result of what contact triangles carry", carriers, BufferKind::kReadback},
+       }) {
+    const bool there = buffers.bytes(plan.binding) >= std::max<std::uint64_t>(plan.bytes, 4);
+    if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, plan.kind); !made) return made.error();
+    if (plan.binding == kBindIgnored && !there) {
+      std::memset(buffers[kBindIgnored].mapped(), 0, buffers[kBindIgnored].bytes());
+      ignored_.clear();
+    }
+  }
+  if (buffers.bytes(kBindFineExit) == 0)   // of a tool that is not closed nobody reads it
+    if (auto made = buffers.make(device, kBindFineExit, "unused", 4); !made) return made.error();
+  return buffers.make_table(device, kBindIgnoredState, "states of ignored patches", patches);
+}
+
+void FrameField::record(FrameRecorder& recorder) const {
+  recorder.stage("samples");
+  recorder.run(begin_, (kFieldWords + kGroupSize - 1) / kGroupSize);
+  recorder.run_items(statics_, kListContactStatics);
+  recorder.run_items(mobiles_, kListContactMobiles);
+  recorder.close({kListFieldTiles, kListMockupPoints});
+  recorder.run_groups(points_, kListFieldTiles);
+  recorder.close({kListToolPoints});
+  recorder.stage("field");
+  if (inside_) recorder.run_items(from_mockup_, kListSamples);
+  if (inside_ && !from_extras_.bindings.empty()) recorder.run_items(from_extras_, kListMockupPoints);
+  recorder.run_items(from_tool_, kListToolPoints);
+  recorder.close({kListIgnored});
+  recorder.run(result_, (kFieldWords + kGroupSize - 1) / kGroupSize);
+  if (plan_.telemetry) recorder.run_items(carriers_result_, kListContactStatics);
+  recorder.run_items(ignored_end_, kListIgnored);
+}
+
+bool FrameField::ignore(const Ignored* ignored, const FrameBuffers& buffers) {
+  static const std::vector<std::uint32_t> none;
+  const std::vector<std::uint32_t>& wanted = ignored != nullptr ? ignored->patches : none;
+  if (wanted == ignored_) return !wanted.empty();
+  auto* bits = buffers[kBindIgnored].as<std::uint32_t>();
+  const std::uint32_t patches = geometry_->mockup.patch_count;
+  for (const std::uint32_t patch : ignored_)
+    if (patch < patches) bits[patch / 32] = 0;
+  for (const std::uint32_t patch : wanted)
+    if (patch < patches) bits[patch / 32] |= 1u << patch % 32;
+  ignored_ = wanted;
+  return !wanted.empty();
+}
+
+void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, Contacts& out) {
+  const auto& work = *buffers[kBindResultField].as<const FieldWork>();
+  FieldSums& field = out.field;
+  bool pushes = false;
+  for (std::size_t i = 0; i < kFieldBins; ++i) {
+    field.bins[i] = bin_of(work.bins[i]);
+    pushes |= field.bins[i].samples != 0;
+  }
+  field.max_depth = static_cast<std::uint32_t>(work.deepest_static >> 32);
+  field.deepest_static = field.max_depth != 0 ? ~static_cast<std::uint32_t>(work.deepest_static) : 0;
+  field.deepest_mobile = field.max_depth != 0 ? ~static_cast<std::uint32_t>(work.deepest_mobile) : 0;
+  if (work.sheet != 0) out.flags |= kFlagSheet;
+  if (!pushes) out.flags |= kFlagNoDirection;
+
+  const auto* touched = buffers[kBindResultIgnored].as<const std::uint32_t>();
+  out.ignored_touched.assign(touched, touched + result.ignored_count);
+  std::sort(out.ignored_touched.begin(), out.ignored_touched.end());
+
+  if (!out.lists) return;
+  const auto* statics = buffers[kBindResultStatics].as<const StaticResult>();
+  const auto* carriers = buffers[kBindResultCarriers].as<const CarrierWork>();
+  for (std::uint32_t slot = 0; slot < result.static_count; ++slot)
+    if ((statics[slot].state & (kStaticHit | kStaticSampled)) != 0) out.carriers.push_back(carrier_of(statics[slot].id, carriers[slot]));
+  std::sort(out.carriers.begin(), out.carriers.end(), [](const CarrierSums& a, const CarrierSums& b) { return a.id < b.id; });
+}
+
+static_assert(kFieldBins == kFieldBinCount);
+
+}  // namespace palpate

@@ -1,0 +1,353 @@
+#include "compute/gpu/frame/frame.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "compute/search/broad_phase.h"
+#include "compute/vulkan/command_recorder.h"
+#include "compute/gpu/frame/capacity.h"
+#include "compute/gpu/frame/decode.h"
+#include "compute/gpu/frame/detection.h"
+#include "compute/gpu/frame/field.h"
+#include "compute/gpu/frame/plan.h"
+#include "compute/gpu/frame/recorder.h"
+#include "compute/gpu/frame/response.h"
+#include "compute/search/posed_tool.h"
+#include "compute/search/run_tree.h"
+#include "compute/gpu/frame/stage_memory.h"
+#include "compute/gpu/scene_copies.h"
+#include "model/contact_areas.h"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double us_since(Clock::time_point from) { return std::chrono::duration<double, std::micro>(Clock::now() - from).count(); }
+
+/// An answer cut short by a capacity: no force.
+Result<void> truncate(Contacts& out, const char* capacity) {
+  out.truncated = true;
+  out.truncated_capacity = capacity;
+  return {};
+}
+
+bool turned(const LatticePose& pose) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
+  return false;
+}
+
+class RecordedFrame final : public Frame {
+ public:
+  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan)
+      : device_(device), geometry_(geometry), scene_(scene), plan_(frame_plan(plan, scene.mockup.partition.has_internal)), posed_(geometry.tool) {}
+
+  Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
+  Result<void> finish() override;
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
+  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
+  Result<void> enlarge() override;
+  std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
+  std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
+
+ private:
+  /// Room for a list that the host fills.
+  template <class T>
+  std::span<T> mapped(std::int32_t binding, std::uint32_t list) const {
+    return {buffers_[binding].as<T>(), capacity_.lists[list]};
+  }
+  void name_scene();
+  Result<void> make_pipelines();
+  Result<void> make_buffers();
+  Result<void> set_capacities();
+  Result<void> record();
+  Result<void> record_again() { return finished_ ? record() : Result<void>{}; }
+  template <class Body>
+  Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
+  Result<void> run(CommandRecorder& commands, Contacts& out);
+  void read(Contacts& out);
+  void write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays);
+
+  VulkanDevice& device_;
+  const SceneGeometry& geometry_;
+  const PreparedScene& scene_;
+  const Plan plan_;
+  PosedTool posed_;
+  SceneCopies copies_;
+  std::optional<RunTree> runs_;
+  std::optional<BroadPhase> broad_phase_;
+  FrameCapacity capacity_;
+  FrameBuffers buffers_;
+  std::unique_ptr<FrameDetection> detection_;
+  std::optional<FrameResponse> response_;       ///< `paper`
+  std::optional<FrameField> field_;             ///< `refined`
+  FrameDecoder decoder_;
+  /// From the pose to the sets; then, with contact, the response. Null after a failed record().
+  std::unique_ptr<CommandRecorder> detect_, respond_;
+  double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
+  std::vector<const ComputePipeline*> pipelines_;
+  std::vector<CommandRecorder::StageTime> times_;
+  bool finished_ = false;           ///< pipelines are there and commands recorded
+  bool tables_clear_ = false;
+  std::uint64_t pairs_ = 0;         ///< that the last query counted
+  std::uint32_t near_full_ = gpu::kNone;   ///< the list for which the last query found more than there is room for on the host
+  std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
+};
+
+void RecordedFrame::name_scene() {
+  using namespace gpu;
+  const BodyBuffers &m = scene_.mockup, &t = scene_.tool;
+  const PartitionBuffers& fine = scene_.fine.brick_slot ? scene_.fine : t.partition;
+  const std::pair<std::int32_t, const VulkanBuffer*> all[] = {
+      {kBindScene, &scene_.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
+      {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.field_weight},
+      {kBindNeighbourBegin, &m.neighbour_begin}, {kBindNeighbours, &m.neighbours}, {kBindMockupPatches, &m.patch},
+      {kBindMockupExtras, &m.extras}, {kBindMockupLevels, &m.levels}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
+      {kBindMockupListBegin, &m.partition.list_begin}, {kBindMockupListTriangles, &m.partition.list_triangles},
+      {kBindMockupBoundaryPlace, &m.partition.boundary_place}, {kBindMockupMixedBrick, &m.partition.mixed_brick},
+      {kBindToolVertices, &t.vertices}, {kBindToolTriangles, &t.triangles}, {kBindToolInfo, &t.triangle_info},
+      {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.field_weight}, {kBindToolExtras, &t.extras}, {kBindToolLevels, &t.levels},
+      {kBindFineBrickSlot, &fine.brick_slot}, {kBindFineBricks, &fine.bricks},
+      {kBindFineListBegin, &fine.list_begin}, {kBindFineListTriangles, &fine.list_triangles}, {kBindFineExit, &scene_.fine_exit}};
+  for (const auto& [binding, buffer] : all)
+    if (*buffer) buffers_.name(binding, *buffer);   // `paper` has no partition of the tool
+}
+
+Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& first_capacity) {
+  name_scene();
+  const gpu::SceneConstants& constants = scene_.constants;
+  const bool refined = constants.refined != 0;
+  if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
+
+  detection_ = FrameDetection::make(geometry_, scene_, plan_);
+  // Pipelines are compiled beside what the host builds.
+  if (auto r = make_pipelines(); !r) return r;
+  runs_.emplace(geometry_.tool, detection_->order());
+  if (auto r = copies_.read(device_, scene_); !r) return r;
+  broad_phase_.emplace(BroadPhase::make(geometry_, copies_.tables(), *runs_));
+  std::optional<std::uint64_t> samples;
+  if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
+  capacity_ = FrameCapacity::first({.scene = constants, .samples = samples}, first_capacity);
+  if (auto r = make_buffers(); !r) return r;
+  return finish();
+}
+
+/// Asks for them: they are made by other threads.
+Result<void> RecordedFrame::make_pipelines() {
+  if (auto r = detection_->make_shaders(device_); !r) return r;
+  if (scene_.constants.refined != 0) {
+    auto field = FrameField::create(device_, geometry_, scene_, plan_);
+    if (!field) return field.error();
+    field_.emplace(std::move(*field));
+    return {};
+  }
+  auto response = FrameResponse::create(device_, plan_);
+  if (!response) return response.error();
+  response_.emplace(std::move(*response));
+  return {};
+}
+
+Result<void> RecordedFrame::finish() {
+  if (finished_) return {};
+  if (auto r = record(); !r) return r;
+  if (auto r = warm_up(device_, pipelines_); !r) return r;   // no frame of a loop should wait for a compiler
+  finished_ = true;
+  return {};
+}
+
+Result<void> RecordedFrame::make_buffers() {
+  if (auto r = detection_->make_buffers(device_, geometry_, scene_, capacity_, buffers_); !r) return r;
+  if (response_)
+    if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
+  if (field_)
+    if (auto r = field_->make_buffers(device_, capacity_, buffers_); !r) return r;
+  return set_capacities();
+}
+
+Result<void> RecordedFrame::set_capacities() {
+  std::array<gpu::FrameList, gpu::kListCount> lists{};
+  for (std::size_t i = 0; i < lists.size(); ++i) lists[i].capacity = capacity_.lists[i];
+  return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
+}
+
+Result<void> RecordedFrame::enlarge() {
+  // What was asked for, list by list; the result has not been touched since the frame that overflowed.
+  std::array<gpu::FrameList, gpu::kListCount> lists{};
+  if (auto r = download(device_, buffers_[gpu::kBindFrameLists], 0, lists.data(), sizeof lists); !r) return r;
+  std::array<std::uint32_t, gpu::kListCount> asked{};
+  for (std::size_t i = 0; i < lists.size(); ++i) asked[i] = lists[i].asked;
+  gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
+  if (near_full_ != gpu::kNone) {   // before the frame began
+    state = {};
+    state.overflow = 1u << near_full_;
+  }
+  const FrameCapacity before = capacity_;
+  if (!capacity_.grow(state, asked)) return bad_value(fixed_limit(state));
+  tables_clear_ = false;
+  if (auto made = make_buffers(); !made) {
+    // Buffers that have grown already do no harm: the lists' capacities are what counts.
+    capacity_ = before;
+    if (auto r = set_capacities(); !r) return r;
+    if (auto r = record_again(); !r) return r;
+    return made;
+  }
+  return record_again();
+}
+
+/// A command buffer with what `body(FrameRecorder&)` records.
+template <class Body>
+Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
+  constexpr std::uint32_t kStages = 32;   // most calls of stage()
+  times_.reserve(kStages);
+  auto commands = CommandRecorder::create(device_, kStages);
+  if (!commands) return commands.error();
+  auto out = std::make_unique<CommandRecorder>(std::move(*commands));
+  out->begin();
+  FrameRecorder recorder(*out, buffers_, detection_->list_close());
+  body(recorder);
+  pipelines_.insert(pipelines_.end(), recorder.used().begin(), recorder.used().end());
+  if (auto r = out->end(); !r) return r.error();
+  return out;
+}
+
+Result<void> RecordedFrame::record() {
+  detect_.reset();
+  respond_.reset();
+  pipelines_.clear();
+  auto detect = recorded([&](FrameRecorder& recorder) { detection_->record(recorder); });
+  if (!detect) return detect.error();
+  auto respond = recorded([&](FrameRecorder& recorder) {
+    if (response_) response_->record(recorder);
+    if (field_) field_->record(recorder);
+    recorder.barrier();
+    detection_->record_end(recorder);
+  });
+  if (!respond) return respond.error();
+  detect_ = std::move(*detect);
+  respond_ = std::move(*respond);
+  return {};
+}
+
+void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays) {
+  gpu::FrameInput input{};
+  input.touch_candidates = near.touch.count;
+  input.pair_candidates = near.pairs.count;
+  input.sample_chunks = near.samples.count;
+  input.inside_samples = near.inside.count;
+  input.open_samples = near.open.count;
+  input.rays = rays ? 1 : 0;
+  for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
+  input.translation = pose.translation;
+  if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
+  std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
+}
+
+Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
+  const auto start = Clock::now();
+  out.times.clear();
+  decoder_.clear(out);
+  out.engine = "gpu";
+  pairs_ = 0;
+  out.contact_points = plan_.contact_point;
+  out.lists = plan_.telemetry;
+  if (!plan_.transform_rotates && !pose.beyond_lattice && turned(pose))
+    return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
+  if (!pose.beyond_lattice) out.flags = frame_flags_;
+  near_full_ = gpu::kNone;
+  NearLists near;
+  bool rays = false;
+  if (!pose.beyond_lattice) {
+    posed_.begin(pose);
+    near.touch.room = mapped<gpu::TouchCandidate>(gpu::kBindTouchCandidates, gpu::kListTouchCandidates);
+    near.pairs.room = mapped<gpu::PairCandidate>(gpu::kBindPairCandidates, gpu::kListPairCandidates);
+    near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
+    near.inside.room = mapped<gpu::FrameSample>(gpu::kBindInsideSamples, gpu::kListInsideSamples);
+    near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
+    rays = broad_phase_->find(posed_, nullptr, near);
+  }
+  out.times.push_back({"cull", us_since(start), pose.beyond_lattice ? 0 : broad_phase_->looks()});
+  near_full_ = near.full;
+  if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
+  if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
+  if (auto r = finish(); !r) return r;
+  if (!tables_clear_)
+    if (auto r = buffers_.clear_tables(device_); !r) return r;
+  tables_clear_ = false;   // until the frame has run to its end
+  const auto writing = Clock::now();
+  write_input(pose, ignored, near, rays);
+  out.times.push_back({"upload", us_since(writing)});
+
+  if (!detect_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
+  waited_us_ = staged_us_ = 0;
+  if (auto r = run(*detect_, out); !r) return r;
+  if (buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state.contact != 0) {
+    if (auto r = run(*respond_, out); !r) return r;
+  }
+  out.times.push_back({"submit", std::max(0.0, waited_us_ - staged_us_)});   // what waiting cost beyond the stages themselves
+  const auto finished = Clock::now();
+  read(out);
+  out.times.push_back({"readback", us_since(finished)});
+  if (field_ && out.contact && out.lists && !out.truncated) {
+    const auto gathering = Clock::now();
+    gather_areas(geometry_, pose, out);
+    out.times.push_back({"areas", us_since(gathering)});
+  }
+  return {};
+}
+
+/// Submits, waits, and notes the stages' times.
+Result<void> RecordedFrame::run(CommandRecorder& commands, Contacts& out) {
+  const auto submitted = Clock::now();
+  if (auto r = commands.submit(); !r) return r;
+  if (auto r = commands.wait(); !r) return r;
+  waited_us_ += us_since(submitted);
+  if (auto r = commands.times(times_); !r) return r;
+  for (const auto& stage : times_) {
+    out.times.push_back({stage.name, stage.us});
+    staged_us_ += stage.us;
+  }
+  return {};
+}
+
+/// What the device left in mapped memory.
+void RecordedFrame::read(Contacts& out) {
+  const auto* result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
+  decoder_.decode({.result = result,
+          .statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(),
+          .mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>(),
+          .members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>(),
+          .areas = scene_.constants.refined == 0},
+         out);
+  pairs_ = out.pairs;
+  out.flags |= frame_flags_;
+  if (field_ && out.contact && !out.truncated) field_->decode(buffers_, *result, out);
+  tables_clear_ = !out.truncated;
+}
+
+Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pairs() const {
+  std::vector<gpu::ContactPair> found(pairs_);
+  if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(), found.size() * sizeof(gpu::ContactPair)); !r) return r.error();
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+  for (const gpu::ContactPair& pair : found) out.emplace_back(pair.static_id, pair.mobile);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Frame>> Frame::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
+                                             const std::map<std::string, std::uint32_t>& first_capacity, const Plan& plan) {
+  auto out = std::make_unique<RecordedFrame>(device, geometry, scene, plan);
+  if (auto r = out->make(first_capacity); !r) return r.error();
+  return std::unique_ptr<Frame>(std::move(out));
+}
+
+}  // namespace palpate

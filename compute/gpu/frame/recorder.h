@@ -1,0 +1,118 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "compute/vulkan/command_recorder.h"
+#include "compute/vulkan/buffer.h"
+#include "compute/vulkan/device.h"
+#include "compute/vulkan/pipeline.h"
+#include "model/result.h"
+#include "shaders/shared/frame.h"
+
+namespace palpate {
+
+/// The buffers of a frame by the binding numbers of shaders/shared/frame.h and frame_response.h.
+class FrameBuffers {
+ public:
+  FrameBuffers() = default;
+  FrameBuffers(const FrameBuffers&) = delete;
+  FrameBuffers& operator=(const FrameBuffers&) = delete;
+
+  /// Names a buffer that somebody else owns and that outlives this.
+  void name(std::int32_t binding, const VulkanBuffer& buffer) { named_[at(binding)] = &buffer; }
+  /// Makes a buffer and owns it, unless it already has one there that is large enough. `what` is for sentences ("pairs"). Contents are
+  /// undefined. After an error the buffer before, if any, is still there.
+  Result<void> make(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes,
+                    BufferKind kind = BufferKind::kDevice);
+  /// Makes a table: a buffer that is all 0 between frames. The frame empties the entries that it filled; after an overflow
+  /// clear_tables() does.
+  Result<void> make_table(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes);
+  /// Fills all tables with 0 and waits.
+  Result<void> clear_tables(VulkanDevice& device) const;
+  /// The buffer behind a binding; there must be one.
+  const VulkanBuffer& operator[](std::int32_t binding) const;
+  /// Bytes behind a binding, 0 if there is none.
+  std::uint64_t bytes(std::int32_t binding) const;
+  /// Bytes of the buffers that this owns.
+  std::uint64_t owned_bytes() const;
+
+  static constexpr std::int32_t kBindings = 128;   ///< binding numbers are below
+
+ private:
+  static std::size_t at(std::int32_t binding) { return static_cast<std::size_t>(binding); }
+  std::array<VulkanBuffer, std::size_t{kBindings}> owned_;
+  std::array<const VulkanBuffer*, std::size_t{kBindings}> named_{};
+  std::vector<std::int32_t> tables_;
+};
+
+/// A shader of the frame. Its module names buffers by frame-wide numbers; the pipeline has them packed from 0.
+struct FrameShader {
+  ComputePipeline pipeline;
+  std::vector<std::int32_t> bindings;   ///< frame-wide number behind the pipeline's binding 0, 1, …
+  std::vector<std::int32_t> measured;   ///< of these, whose length the shader asks
+};
+
+/// Builds the pipeline of a module that declares its buffers in set 0 by frame-wide numbers.
+Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& code, std::uint32_t push_bytes = 0,
+                                      std::span<const SpecConstant> constants = {});
+
+/// Records dispatches of a frame. No order between calls unless barrier() or close() stands between them.
+class FrameRecorder {
+ public:
+  /// All arguments outlive this. `list_close` is the pipeline of shaders/frame/list_close.comp.
+  FrameRecorder(CommandRecorder& recorder, const FrameBuffers& buffers, const FrameShader& list_close)
+      : recorder_(recorder), buffers_(buffers), list_close_(list_close) {}
+
+  /// x workgroups, spread over two axes where one is too short.
+  void run(const FrameShader& shader, std::uint32_t groups) { run(shader, groups, NoPush{}); }
+  template <class Push>
+  void run(const FrameShader& shader, std::uint32_t groups, const Push& push) {
+    const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
+    recorder_.dispatch_raw(shader.pipeline, bound(shader), &push, push_bytes<Push>(), std::min(groups, gpu::kMaxGroupsX), rows, 1);
+  }
+  /// One invocation, or one workgroup, for each item of a closed list.
+  void run_items(const FrameShader& shader, std::uint32_t list) { run_items(shader, list, NoPush{}); }
+  void run_groups(const FrameShader& shader, std::uint32_t list) { run_groups(shader, list, NoPush{}); }
+  template <class Push>
+  void run_items(const FrameShader& shader, std::uint32_t list, const Push& push) {
+    indirect(shader, gpu::kBindFrameLists, list * sizeof(gpu::FrameList) + offsetof(gpu::FrameList, items), &push, push_bytes<Push>());
+  }
+  template <class Push>
+  void run_groups(const FrameShader& shader, std::uint32_t list, const Push& push) {
+    indirect(shader, gpu::kBindFrameLists, list * sizeof(gpu::FrameList) + offsetof(gpu::FrameList, groups), &push, push_bytes<Push>());
+  }
+  /// As many workgroups as kDispatch… `which` says.
+  void run_dispatch(const FrameShader& shader, std::uint32_t which) { run_dispatch(shader, which, NoPush{}); }
+  template <class Push>
+  void run_dispatch(const FrameShader& shader, std::uint32_t which, const Push& push) {
+    indirect(shader, gpu::kBindDispatches, which * sizeof(gpu::DispatchArguments), &push, push_bytes<Push>());
+  }
+  /// Barrier, closes these lists (they may be read from now on), barrier.
+  void close(std::initializer_list<std::uint32_t> lists);
+  void barrier() { recorder_.barrier(); }
+  /// See CommandRecorder::stage.
+  void stage(const char* name) { recorder_.stage(name); }
+  /// Every pipeline that was recorded, once.
+  const std::vector<const ComputePipeline*>& used() const { return used_; }
+
+ private:
+  template <class Push>
+  static constexpr std::uint32_t push_bytes() {
+    return std::is_same_v<Push, NoPush> ? 0 : static_cast<std::uint32_t>(sizeof(Push));
+  }
+  std::span<const BufferView> bound(const FrameShader& shader);
+  void indirect(const FrameShader& shader, std::int32_t binding, std::uint64_t offset, const void* push, std::uint32_t push_bytes);
+
+  CommandRecorder& recorder_;
+  const FrameBuffers& buffers_;
+  const FrameShader& list_close_;
+  std::vector<BufferView> views_;
+  std::vector<const ComputePipeline*> used_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,166 @@
+#include "compute/gpu/prepare/prepared_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compute/gpu/prepare/partition.h"
+#include "compute/gpu/prepare/samples.h"
+#include "compute/gpu/prepare/steps.h"
+#include "compute/gpu/scene_copies.h"
+#include "compute/scene/scene_constants.h"
+#include "compute/scene/search_tables.h"
+#include "shaders/shared/frame_field.h"
+
+namespace palpate {
+namespace {
+
+/// A mesh's extra samples as shaders read them.
+std::vector<gpu::ExtraSample> extras_of(const LatticeMesh& mesh) {
+  std::vector<gpu::ExtraSample> out;
+  out.reserve(mesh.extra_samples.size());
+  for (const ExtraSample& extra : mesh.extra_samples) {
+    gpu::ExtraSample& sample = out.emplace_back(gpu::ExtraSample{extra.triangle, extra.point, {extra.weight_q30}});
+    std::ranges::copy(extra.coarse_q30, sample.weights + 1);
+  }
+  return out;
+}
+
+/// A mesh's sample levels as shaders read them.
+std::vector<std::uint32_t> levels_of(const LatticeMesh& mesh) {
+  static_assert(kSampleLevels == gpu::kMostSampleLevel);
+  std::vector<std::uint32_t> out = mesh.levels_of;
+  for (const SideLevels& side : mesh.side_levels) {
+    out.push_back(side.coarsest);
+    out.insert(out.end(), side.factor_q30.begin(), side.factor_q30.end());
+  }
+  return out;
+}
+
+/// Puts a mesh on the device as it is.
+BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool mockup, bool refined) {
+  static const std::vector<std::uint32_t> none{0};
+  BodyBuffers out;
+  out.vertices = steps.filled("vertices", mesh.vertices);
+  out.triangles = steps.filled("triangles", mesh.triangles);
+  std::vector<std::uint32_t> info(mesh.triangles.size());
+  for (std::size_t i = 0; i < info.size(); ++i)
+    info[i] = mesh.flags[i] | static_cast<std::uint32_t>(mesh.sample_axis[i]) << gpu::kInfoAxisShift;
+  if (refined)
+    for (const ExtraSample& extra : mesh.extra_samples) info[extra.triangle] |= gpu::kInfoHasExtra;
+  out.triangle_info = steps.filled("flags of triangles", info);
+  out.unit_normal = steps.filled("normals", mesh.unit_normal_q30);
+  out.field_weight = steps.filled("weights of samples", refined ? mesh.field_weight_q30 : none);
+  out.patch = steps.filled("patches", mockup && refined ? mesh.patch : none);
+  out.extras = steps.filled("extra samples", refined ? extras_of(mesh) : std::vector<gpu::ExtraSample>());
+  out.levels = steps.filled("levels of samples", refined ? levels_of(mesh) : none);
+  out.neighbour_begin = steps.filled("neighbours", mockup ? mesh.neighbour_begin : none);
+  out.neighbours = steps.filled("neighbours", mockup ? mesh.neighbours : none);
+  return out;
+}
+
+void upload_bodies(PrepareSteps& steps, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out) {
+  const bool refined = plan.profile == Profile::kRefined;
+  out.mockup = upload_body(steps, geometry.mockup, true, refined);
+  out.tool = upload_body(steps, geometry.tool, false, refined);
+}
+
+/// Buffers of a partition that is not made: each can be bound.
+void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
+  for (VulkanBuffer* buffer :
+       {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) {
+    *buffer = steps.buffer("unused", 1);
+    if (steps.ok()) steps.fill(*buffer, 0);
+  }
+}
+
+void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
+  steps.progress("search", 0.95);
+  if (!steps.ok()) return;
+  PartitionCopy lists;
+  if (auto r = lists.read(steps.device(), out.mockup.partition); !r) return steps.fail(r.error());
+  out.search = SearchTables::make(geometry, lists.view(), [&] {
+    steps.progress("search", 0.95);
+    return steps.ok();
+  });
+}
+
+}  // namespace
+
+std::uint64_t PreparedScene::memory_bytes() const {
+  std::uint64_t sum = 0;
+  for_each_buffer(*this, [&](const VulkanBuffer& buffer) { sum += buffer.bytes(); });
+  return sum + (samples ? samples->bytes() : 0);
+}
+
+Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out) {
+  const Progress nobody;
+  PrepareSteps steps(device, nobody);
+  upload_bodies(steps, geometry, plan, out);
+  if (!steps.ok()) return steps.error();
+  return {};
+}
+
+Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene) {
+  PreparedScene out;
+  out.constants = scene.constants;
+  out.samples = scene.samples;
+  out.search = scene.search;
+  std::vector<const PartitionBuffers*> partitions;
+  for_each_partition(scene, [&](const PartitionBuffers& p) { partitions.push_back(&p); });
+  std::size_t i = 0;
+  for_each_partition(out, [&](PartitionBuffers& p) {
+    const PartitionBuffers& from = *partitions[i++];
+    p.grid = from.grid;
+    p.has_internal = from.has_internal;
+  });
+  std::vector<const VulkanBuffer*> buffers;
+  for_each_buffer(scene, [&](const VulkanBuffer& buffer) { buffers.push_back(&buffer); });
+  i = 0;
+  std::optional<Error> failed;
+  for_each_buffer(out, [&](VulkanBuffer& buffer) {
+    const VulkanBuffer& from = *buffers[i++];
+    if (failed || !from) return;
+    auto made = VulkanBuffer::alias(device, from);
+    if (made)
+      buffer = std::move(*made);
+    else
+      failed = made.error();
+  });
+  if (failed) return *failed;
+  return out;
+}
+
+Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
+                                    const Progress& progress) {
+  const bool refined = plan.profile == Profile::kRefined;
+  PrepareSteps steps(device, progress);
+  PreparedScene out;
+  upload_bodies(steps, geometry, plan, out);
+
+  const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
+  classify(steps, geometry.mockup, pairs, out.mockup);
+  make_search_tables(steps, geometry, out);
+  if (refined) {
+    const VoxelPairs tool_pairs =
+        build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);
+    classify(steps, geometry.tool, tool_pairs, out.tool);
+    steps.progress("samples", 0.95);
+    refine_tool(steps, geometry, out);
+    if (geometry.tool.closed || out.tool.partition.has_internal) list_samples(steps, geometry, pairs, out);
+  } else {
+    make_empty(steps, out.tool.partition);
+  }
+
+  const auto grid_of = [](const PartitionBuffers& p) { return PreparedGrid{p.grid, p.has_internal}; };
+  out.constants = scene_constants(geometry, plan, grid_of(out.mockup.partition), grid_of(out.tool.partition), out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid);
+  out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
+  steps.progress("prepared", 1);
+  if (!steps.ok()) return steps.error();
+  return out;
+}
+
+}  // namespace palpate

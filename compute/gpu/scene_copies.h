@@ -1,0 +1,64 @@
+#pragma once
+#include "compute/gpu/host_copy.h"
+#include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/scene_tables.h"
+
+namespace palpate {
+
+/// A partition of the device's for the host to read. The buffers outlive this and are not written meanwhile.
+class PartitionCopy {
+ public:
+  /// Allocates where the buffers are not mapped.
+  Result<void> read(VulkanDevice& device, const PartitionBuffers& from) {
+    grid_ = from.grid;
+    if (auto r = brick_slot_.read(device, from.brick_slot, brick_count(grid_.bricks)); !r) return r;
+    if (auto r = mixed_brick_.read(device, from.mixed_brick, grid_.mixed_bricks); !r) return r;
+    if (auto r = bricks_.read(device, from.bricks, grid_.mixed_bricks); !r) return r;
+    if (auto r = boundary_place_.read(device, from.boundary_place, grid_.boundary_voxels); !r) return r;
+    if (auto r = list_begin_.read(device, from.list_begin, std::size_t{grid_.boundary_voxels} + 1); !r) return r;
+    return list_triangles_.read(device, from.list_triangles, grid_.list_entries);
+  }
+  PartitionView view() const {
+    PartitionView out;
+    out.grid = grid_;
+    out.brick_slot = brick_slot_.all();
+    out.mixed_brick = mixed_brick_.all();
+    out.bricks = bricks_.all();
+    out.boundary_place = boundary_place_.all();
+    out.list_begin = list_begin_.all();
+    out.list_triangles = list_triangles_.all();
+    return out;
+  }
+
+ private:
+  gpu::GridConstants grid_{};
+  HostCopy<std::uint32_t> brick_slot_, mixed_brick_, boundary_place_, list_begin_, list_triangles_;
+  HostCopy<gpu::Brick> bricks_;
+};
+
+/// What the search reads of a scene that lies on the device. The scene outlives this.
+class SceneCopies {
+ public:
+  Result<void> read(VulkanDevice& device, const PreparedScene& scene) {
+    tables_.constants = scene.constants;
+    tables_.samples = scene.samples;
+    tables_.search = scene.search;
+    if (auto r = mockup_.read(device, scene.mockup.partition); !r) return r;
+    tables_.mockup = mockup_.view();
+    if (scene.constants.refined == 0) return {};
+    if (auto r = fine_.read(device, scene.fine.brick_slot ? scene.fine : scene.tool.partition); !r) return r;
+    tables_.fine = fine_.view();
+    if (!scene.tool_near) return {};
+    if (auto r = near_.read(device, scene.tool_near, scene.tool_near.bytes() / 4); !r) return r;
+    tables_.tool_near = near_.all();
+    return {};
+  }
+  const SceneTables& tables() const { return tables_; }
+
+ private:
+  PartitionCopy mockup_, fine_;
+  HostCopy<std::uint32_t> near_;
+  SceneTables tables_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,124 @@
+#include "compute/native/frame.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "compute/search/tool_order.h"
+#include "model/contact_areas.h"
+
+namespace palpate::native {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kUsualItems = 1u << 14;   // of a list to begin with (chosen: a deep contact of 100,000 by 2,000 triangles takes half of it)
+
+bool turned(const LatticePose& pose) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
+  return false;
+}
+
+/// Free of contact, but for the times.
+void clear(Contacts& out) {
+  out.contact = out.truncated = false;
+  out.truncated_capacity = "";
+  out.pairs = 0;
+  for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt, &out.ignored_touched}) ids->clear();
+  out.areas.clear();
+  out.flags = 0;
+  out.field = {};
+  out.carriers.clear();
+}
+
+}  // namespace
+
+Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan)
+    : geometry_(geometry),
+      plan_(plan),
+      order_(order_in_space(geometry.tool)),
+      runs_(geometry.tool, order_),
+      posed_(geometry.tool),
+      broad_phase_(BroadPhase::make(geometry, scene, runs_)),
+      contact_(HostContact::make(geometry, scene, order_)),
+      flags_(scene.constants.tool.closed == 0 && scene.constants.tool.has_internal == 0 ? kFlagToolOpen : 0u),
+      touch_(kUsualItems),
+      near_pairs_(kUsualItems),
+      chunks_(kUsualItems),
+      inside_(kUsualItems),
+      open_(kUsualItems) {}
+
+/// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on its processors, and a loop's are chosen well.
+FrameHelper* Frame::helper() {
+  if (!sharing_) return nullptr;
+  if (!helper_tried_ && (helper_ = FrameHelper::make())) broad_phase_.share();
+  helper_tried_ = true;
+  return helper_.get();
+}
+
+bool Frame::enlarge(std::uint32_t list) {
+  const auto twice = [](auto& room) { room.resize(2 * room.size()); };
+  switch (list) {
+    case gpu::kListTouchCandidates: twice(touch_); return true;
+    case gpu::kListPairCandidates: twice(near_pairs_); return true;
+    case gpu::kListSampleChunks: twice(chunks_); return true;
+    case gpu::kListInsideSamples: twice(inside_); return true;
+    case gpu::kListOpenSamples: twice(open_); return true;
+    default: return false;
+  }
+}
+
+/// What is near, with more room where there is too little. Whether anything is.
+bool Frame::find(NearLists& near) {
+  do {
+    near = NearLists{.touch = {touch_}, .pairs = {near_pairs_}, .samples = {chunks_}, .inside = {inside_}, .open = {open_}};
+    broad_phase_.find(posed_, helper(), near);
+  } while (near.full != gpu::kNone && enlarge(near.full));
+  return near.touch.count + near.samples.count + near.inside.count + near.open.count != 0;   // every pair lies in a voxel that may be touched
+}
+
+Result<void> Frame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
+  auto last = Clock::now();
+  const auto stage = [&](const char* name, std::uint64_t looks) {
+    const auto now = Clock::now();
+    out.times.push_back({name, std::chrono::duration<double, std::micro>(now - last).count(), looks});
+    last = now;
+  };
+  out.times.clear();
+  clear(out);
+  out.engine = "cpu";
+  solved_ = false;
+  out.contact_points = plan_.contact_point;
+  out.lists = plan_.telemetry;
+  if (pose.beyond_lattice) {
+    stage("cull", 0);
+    return {};
+  }
+  if (!plan_.transform_rotates && turned(pose)) return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
+  out.flags = flags_;
+  posed_.begin(pose);
+  NearLists near;
+  const bool found = find(near);
+  stage("cull", broad_phase_.looks());
+  if (!found) return {};
+  contact_->solve(posed_, ignored, near, helper(), out, stage);
+  solved_ = true;
+  if (out.contact && out.lists) {
+    gather_areas(geometry_, pose, out);
+    stage("areas", out.cst.size() + out.est.size());
+  }
+  return {};
+}
+
+std::span<const gpu::ContactPair> Frame::pairs() const {
+  if (!solved_) return {};
+  return contact_->pairs();
+}
+
+std::uint64_t Frame::memory_bytes() const {
+  return sizeof touch_[0] * std::uint64_t{touch_.size()} + sizeof near_pairs_[0] * std::uint64_t{near_pairs_.size()} + sizeof chunks_[0] * std::uint64_t{chunks_.size()} +
+         sizeof inside_[0] * (std::uint64_t{inside_.size()} + open_.size());
+}
+
+}  // namespace palpate::native

@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compute/native/narrow_phase/contact.h"
+#include "compute/scene/scene_tables.h"
+#include "compute/search/broad_phase.h"
+#include "compute/search/frame_helper.h"
+#include "compute/search/near_lists.h"
+#include "compute/search/posed_tool.h"
+#include "compute/search/run_tree.h"
+#include "model/contacts.h"
+#include "model/plan.h"
+#include "model/scene_geometry.h"
+
+namespace palpate::native {
+
+/// Answers one pose at a time on a prepared scene, in `refined`. One thread and, where share() says so, its helper. query() allocates only when more is near
+/// than ever before.
+class Frame {
+ public:
+  /// Geometry, and what `scene` names, outlive this. Allocates.
+  Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan);
+  Frame(const Frame&) = delete;
+  Frame& operator=(const Frame&) = delete;
+
+  /// As CollisionBackend::query. Error: the plan leaves out what the pose needs.
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out);
+  /// From the next query on.
+  void replan(const Plan& plan) { plan_ = plan; }
+  /// Whether parts of a query may run on a second thread of the frame's own; false to begin with.
+  void share(bool wanted) { sharing_ = wanted; }
+  /// Pairs that intersect at the last query's pose.
+  std::span<const gpu::ContactPair> pairs() const;
+  std::uint64_t memory_bytes() const;
+
+ private:
+  FrameHelper* helper();
+  bool find(NearLists& near);
+  bool enlarge(std::uint32_t list);
+
+  const SceneGeometry& geometry_;
+  Plan plan_;
+  std::vector<std::uint32_t> order_;   ///< ids of the tool's triangles by place
+  RunTree runs_;
+  PosedTool posed_;
+  BroadPhase broad_phase_;
+  std::unique_ptr<HostContact> contact_;
+  std::unique_ptr<FrameHelper> helper_;   ///< null: not asked for yet (helper_tried_), or there is none
+  bool sharing_ = false, helper_tried_ = false;
+  bool solved_ = false;                   ///< the last query came to the contact
+  std::uint32_t flags_ = 0;               ///< of every frame within the lattice
+  // Room for what the search finds.
+  std::vector<gpu::TouchCandidate> touch_;
+  std::vector<gpu::PairCandidate> near_pairs_;
+  std::vector<gpu::SampleChunk> chunks_;
+  std::vector<gpu::FrameSample> inside_, open_;
+};
+
+}  // namespace palpate::native

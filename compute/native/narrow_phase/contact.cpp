@@ -1,0 +1,39 @@
+#include "compute/native/narrow_phase/contact.h"
+
+namespace palpate {
+
+using namespace gpu;   // names of shaders/shared/frame.h
+
+std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order) {
+  std::unique_ptr<HostContact> out(new HostContact);
+  out->mockup_ = HostPartition(scene.mockup);
+  out->tool_ = HostPartition(scene.tool);
+  out->tool_boxes_ = SearchTables::boxes_of(geometry.tool, scene.tool);
+  out->tool_triangles_ = TriangleTree::make(geometry.tool, [] { return true; });
+  out->search_ = scene.search;
+  out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
+  out->sets_ = HostSets::make(geometry, scene, order, out->in_tool_);
+  out->statics_.resize(geometry.mockup.triangles.size());
+  const BodyConstants& tool = scene.constants.tool;
+  out->field_ = HostField::make(geometry, scene.search->triangles, InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes), out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);
+  return out;
+}
+
+void HostContact::decide(PosedTool& tool, const NearLists& near, FrameHelper* helper, Contacts& out) {
+  sets_.decide(tool, near, statics_, helper, found_);
+  out.contact = found_.state.contact != 0;
+  out.pairs = found_.pairs.size();
+  if (!out.lists) return;
+  for (const StaticResult& s : found_.statics) {
+    if ((s.state & kStaticHit) != 0) {
+      out.cst.push_back(s.id);
+      continue;
+    }
+    if ((s.state & kStaticListed) != 0) out.bst.push_back(s.id);
+    if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
+  }
+  for (const MobileResult& m : found_.mobiles)
+    ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
+}
+
+}  // namespace palpate

@@ -1,0 +1,166 @@
+#include "compute/native/native_backend.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <new>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "compute/native/frame.h"
+#include "compute/native/prepare/cache.h"
+#include "compute/native/prepare/scene.h"
+#include "compute/scene/estimate.h"
+#include "compute/scene/pose_threads.h"
+#include "model/address_space.h"
+
+namespace palpate {
+namespace {
+
+using native::Frame;
+
+constexpr std::size_t kWorthHelpers = 128;   // poses of all batches so far from which on threads are set up for them (chosen)
+
+/// "Intel(R) Xeon(R) Platinum 8481C, 2 threads"
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  std::string name = "processor";
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name") && line.find(": ") != std::string::npos) {
+      name = line.substr(line.find(": ") + 2);
+      break;
+    }
+  return name + ", " + std::to_string(std::max(1u, std::thread::hardware_concurrency())) + " threads";
+}
+
+/// Bytes that this process may come to hold.
+std::uint64_t memory_limit() {
+  const auto whole = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  const auto left = address_space_left();
+  return left ? std::min(whole, *left) : whole;
+}
+
+class NativeBackend final : public CollisionBackend {
+ public:
+  explicit NativeBackend(std::shared_ptr<DiskCache> cache) : cache_(std::move(cache)) {}
+
+  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
+    drop_frames();
+    scene_.reset();
+    if (plan.profile != Profile::kRefined) return bad_value("the cpu engine answers the profile refined alone; gpu and ref answer paper, too");
+    if (const std::uint64_t bytes = estimate_preparation(geometry, plan), most = memory_limit(); bytes > most)
+      return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles takes up to " + std::to_string(bytes >> 20) + " MiB, more than the " +
+                       std::to_string(most >> 20) + " MiB of memory that this process may have");
+    try {
+      if (auto found = scene_for(geometry, plan, progress); !found) return found;
+      geometry_ = &geometry;
+      plan_ = plan;
+      frame_.emplace(geometry, scene_->tables(), plan);
+      frame_->share(true);
+      return {};
+    } catch (const std::bad_alloc&) {
+      frame_.reset();
+      scene_.reset();
+      return Error{ErrorCode::kInternal, "there was no memory left for preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles"};
+    }
+  }
+
+  Result<void> replan(const Plan& plan) override {
+    if (!frame_ || plan.profile != Profile::kRefined) return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
+    plan_ = plan;
+    frame_->replan(plan);
+    for (const auto& helper : helpers_) helper->replan(plan);
+    return {};
+  }
+
+  std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override { return estimate_preparation(geometry, plan); }
+
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
+    return frame_->query(pose, ignored, out);
+  }
+
+  Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override {
+    if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
+    batched_ += poses.size();
+    if (!threads_ && batched_ >= kWorthHelpers) make_helpers();
+    if (!threads_ || poses.size() < 2) return CollisionBackend::query_batch(poses, out);
+    frame_->share(false);   // the other processors have poses of their own
+    auto answered = threads_->answer([&](const LatticePose& pose, Contacts& contacts) { return frame_->query(pose, nullptr, contacts); }, poses, out);
+    frame_->share(true);
+    return answered;
+  }
+
+  Result<VoxelPartition> partition(bool tool) const override {
+    if (!scene_) return Error{ErrorCode::kInternal, "partition before prepare"};
+    return dense(tool ? scene_->tool : scene_->mockup);
+  }
+
+  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override {
+    if (!frame_) return Error{ErrorCode::kInternal, "pairs before prepare"};
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+    for (const gpu::ContactPair& pair : frame_->pairs()) out.emplace_back(pair.static_id, pair.mobile);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  bool has_internal_voxels() const override { return scene_ && scene_->mockup.has_internal; }
+  std::string name() const override { return "cpu"; }
+  std::string device() const override { return device_; }
+  std::uint64_t memory_bytes() const override {
+    std::uint64_t sum = (scene_ ? scene_->bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0);
+    for (const auto& helper : helpers_) sum += helper->memory_bytes();
+    return sum;
+  }
+
+ private:
+  /// Fills scene_, from the cache if it is there.
+  Result<void> scene_for(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    const ContentKey key = cache_ ? native::scene_key(geometry) : ContentKey{};
+    if (cache_) scene_ = native::find_scene(*cache_, key);
+    if (scene_) return {};
+    auto scene = native::prepare_scene(geometry, plan, progress);
+    if (!scene) return scene.error();
+    scene_.emplace(std::move(*scene));
+    if (cache_) native::keep_scene(*cache_, key, *scene_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    return {};
+  }
+  void drop_frames() {
+    threads_.reset();
+    helpers_.clear();
+    frame_.reset();
+    batched_ = 0;
+  }
+  /// A frame and a thread for every other processor.
+  void make_helpers() {
+    const unsigned cores = std::thread::hardware_concurrency();
+    std::vector<PoseThreads::Answer> answers;
+    for (unsigned i = 1; i < cores; ++i) {
+      Frame& frame = *helpers_.emplace_back(std::make_unique<Frame>(*geometry_, scene_->tables(), plan_));
+      answers.push_back([&frame](const LatticePose& pose, Contacts& contacts) { return frame.query(pose, nullptr, contacts); });
+    }
+    threads_.emplace(std::move(answers));
+  }
+
+  const std::shared_ptr<DiskCache> cache_;    ///< may be null
+  const std::string device_ = processor_name();
+  const SceneGeometry* geometry_ = nullptr;   ///< of scene_
+  Plan plan_;                                 ///< of frame_
+  std::optional<native::Scene> scene_;
+  std::optional<Frame> frame_;
+  std::vector<std::unique_ptr<Frame>> helpers_;
+  std::optional<PoseThreads> threads_;        ///< of these
+  std::size_t batched_ = 0;                   ///< poses of all batches
+};
+
+}  // namespace
+
+std::unique_ptr<CollisionBackend> make_native_backend(std::shared_ptr<DiskCache> cache) { return std::make_unique<NativeBackend>(std::move(cache)); }
+
+}  // namespace palpate

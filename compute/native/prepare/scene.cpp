@@ -1,0 +1,89 @@
+#include "compute/native/prepare/scene.h"
+
+#include <utility>
+
+#include "compute/native/prepare/partition_build.h"
+#include "compute/native/prepare/sample_lists.h"
+#include "compute/scene/scene_constants.h"
+#include "compute/scene/search_tables.h"
+#include "compute/scene/tool_solid.h"
+#include "model/geometry_build.h"
+
+namespace palpate::native {
+namespace {
+
+constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;   // chosen
+
+/// The mock-up's samples; null where they are too many. False: cancelled.
+bool make_samples(const SceneGeometry& geometry, const Progress& progress, Scene& out) {
+  const auto told = [&](double from, double part) {
+    return [&progress, from, part](double done) { return !progress || progress("samples", from + part * done); };
+  };
+  EntrySamples by_entry;
+  auto samples = std::make_shared<HostSamples>();
+  Listing listing = list_samples(geometry.mockup, out.mockup, geometry.sample_spacing, kMostSampleBytes, told(0.6, 0.25), by_entry);
+  if (listing == Listing::kDone) listing = list_points(geometry.mockup, out.mockup, geometry.sample_spacing, told(0.85, 0.15), std::move(by_entry), *samples);
+  if (listing == Listing::kDone) out.samples = std::move(samples);
+  return listing != Listing::kCancelled;
+}
+
+}  // namespace
+
+SceneTables Scene::tables() const {
+  SceneTables out;
+  out.constants = constants;
+  out.mockup = mockup;
+  out.tool = tool;
+  out.fine = finest();
+  out.fine_exit = fine_exit;
+  out.tool_near = tool_near;
+  out.samples = samples;
+  out.search = search;
+  return out;
+}
+
+std::uint64_t Scene::bytes() const {
+  return mockup.bytes() + tool.bytes() + fine.bytes() + 4 * (std::uint64_t{fine_exit.size()} + tool_near.size()) + (samples ? samples->bytes() : 0) +
+         (search ? search->bytes() : 0);
+}
+
+Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+  Scene out;
+  const char* what = "voxel lists";
+  double done = 0;
+  const GoOn go_on = [&] { return !progress || progress(what, done); };
+  const auto at = [&](const char* stage, double share) {
+    what = stage;
+    done = share;
+    return go_on();
+  };
+
+  auto mockup = make_partition(geometry.mockup, geometry.mockup_grid, 0, "mock-up", go_on);
+  if (!mockup) return mockup.error();
+  out.mockup = std::move(*mockup);
+
+  if (!at("tool", 0.3)) return cancelled();
+  const auto of_tool = [&](const VoxelGrid& grid) { return make_partition(geometry.tool, grid, gpu::kToolVoxelGrowth, "tool", go_on); };
+  auto tool = of_tool(geometry.tool_grid);
+  if (!tool) return tool.error();
+  out.tool = std::move(*tool);
+  if (const std::int32_t size = fine_voxel_size(geometry, out.tool.grid); size != 0) {
+    auto fine = of_tool(make_grid(geometry.tool.box_min, geometry.tool.box_max, size));
+    if (!fine) return fine.error();
+    out.fine = std::move(*fine);
+  }
+  out.tool_near = near_tool(out.finest(), out.tool.grid.size);
+  if (geometry.tool.closed) out.fine_exit = ways_out(out.finest());
+
+  if (!at("search", 0.4)) return cancelled();
+  out.search = SearchTables::make(geometry, out.mockup, go_on);
+  if (!out.search) return cancelled();
+  if (geometry.tool.closed || out.tool.has_internal)
+    if (!make_samples(geometry, progress, out)) return cancelled();
+
+  out.constants = scene_constants(geometry, plan, {out.mockup.grid, out.mockup.has_internal}, {out.tool.grid, out.tool.has_internal}, out.finest().grid);
+  if (!at("prepared", 1)) return cancelled();
+  return out;
+}
+
+}  // namespace palpate::native

@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "compute/scene/scene_tables.h"
+#include "model/collision_backend.h"
+#include "model/plan.h"
+
+namespace palpate::native {
+
+/// All that frames read of a scene, in `refined`. Frames of any number of threads share it.
+struct Scene {
+  gpu::SceneConstants constants{};
+  Partition mockup, tool;
+  Partition fine;                               ///< of a closed tool in finer voxels; may be empty: the tool's own serves
+  std::vector<std::uint32_t> fine_exit, tool_near;   ///< as SceneTables has them
+  std::shared_ptr<const HostSamples> samples;   ///< may be null: frames work them out
+  std::shared_ptr<const SearchTables> search;   ///< never null
+
+  const Partition& finest() const { return fine.brick_slot.empty() ? tool : fine; }
+  /// Valid as long as this neither moves nor changes.
+  SceneTables tables() const;
+  std::uint64_t bytes() const;
+};
+
+/// Makes all of it, on all cores. Errors: a grid that is too large (kBadValue), cancelled.
+Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, const Progress& progress);
+
+}  // namespace palpate::native

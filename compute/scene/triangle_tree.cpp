@@ -1,0 +1,106 @@
+#include "compute/scene/triangle_tree.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <span>
+
+#include "compute/scene/shares.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kEight = TriangleTree::kEight;
+constexpr std::size_t kWorthSharing = std::size_t{1} << 15;   // triangles (chosen: milliseconds)
+
+struct Centre {
+  Int3 sum;   ///< of the corners, within 3 · 2^28
+  std::uint32_t id;
+};
+
+struct Part {
+  std::size_t begin, size;
+};
+
+/// Halves of a part, of which the first fills children of its node: cut across the longest side of the box of all centres.
+std::array<Part, 2> halves(std::span<Centre> all, const Part& part) {
+  std::size_t child = kEight;
+  while (child * kEight < part.size) child *= kEight;
+  const std::size_t children = (part.size + child - 1) / child, first = child * (children / 2);
+  const std::span<Centre> centres = all.subspan(part.begin, part.size);
+  Int3 low = centres[0].sum, high = low;
+  for (const Centre& c : centres) {
+    low = glm::min(low, c.sum);
+    high = glm::max(high, c.sum);
+  }
+  const Int3 side = high / 2 - low / 2;
+  const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+  std::nth_element(centres.begin(), centres.begin() + static_cast<std::ptrdiff_t>(first), centres.end(), [&](const Centre& a, const Centre& b) {
+    return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.id < b.id;
+  });
+  return {{{part.begin, first}, {part.begin + first, part.size - first}}};
+}
+
+void sort_part(std::span<Centre> all, const Part& part) {
+  if (part.size <= kEight) return;
+  for (const Part& half : halves(all, part)) sort_part(all, half);
+}
+
+void set(TriangleTree::Boxes& boxes, std::size_t i, const Int3& low, const Int3& high) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    boxes.low[k][i] = low[static_cast<int>(k)];
+    boxes.high[k][i] = high[static_cast<int>(k)];
+  }
+}
+
+constexpr std::int32_t kNowhere = std::int32_t{1} << 30;   // beyond the lattice
+
+}  // namespace
+
+TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<bool()>& go_on) {
+  std::vector<Centre> centres;
+  centres.reserve(mesh.triangles.size());
+  for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id)
+    if ((mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0) centres.push_back({mesh.corner(id, 0) + mesh.corner(id, 1) + mesh.corner(id, 2), id});
+
+  std::vector<Part> large{{0, centres.size()}}, shares;
+  while (!large.empty()) {
+    const Part part = large.back();
+    large.pop_back();
+    if (!go_on()) return {};
+    if (part.size <= kWorthSharing)
+      shares.push_back(part);
+    else
+      for (const Part& half : halves(centres, part)) large.push_back(half);
+  }
+  if (!in_shares(static_cast<std::uint32_t>(shares.size()), [&](std::uint32_t share) { sort_part(centres, shares[share]); }, [&](std::uint32_t) { return go_on(); })) return {};
+
+  TriangleTree out;
+  out.order.reserve(centres.size());
+  for (const Centre& c : centres) out.order.push_back(c.id);
+  std::vector<std::array<Int3, 2>> below;
+  for (std::size_t first = 0; first < centres.size(); first += kEight) {
+    std::array<Int3, 2>& box = below.emplace_back(std::array{Int3(kNowhere), Int3(-kNowhere)});
+    for (std::size_t place = first; place < std::min(first + kEight, centres.size()); ++place)
+      for (int corner = 0; corner < 3; ++corner) {
+        const Int3 p = mesh.corner(out.order[place], corner);
+        box = {glm::min(box[0], p), glm::max(box[1], p)};
+      }
+  }
+  while (!below.empty()) {
+    out.level_begin.push_back(static_cast<std::uint32_t>(out.boxes.size()));
+    std::vector<std::array<Int3, 2>> above;
+    for (std::size_t node = 0; node < below.size(); ++node) {
+      if (node % kEight == 0) {
+        out.boxes.emplace_back();
+        above.push_back({Int3(kNowhere), Int3(-kNowhere)});
+      }
+      set(out.boxes.back(), node % kEight, below[node][0], below[node][1]);
+      above.back() = {glm::min(above.back()[0], below[node][0]), glm::max(above.back()[1], below[node][1])};
+    }
+    if (above.size() <= 1) break;
+    below = std::move(above);
+  }
+  return out;
+}
+
+}  // namespace palpate

@@ -1,0 +1,113 @@
+// What the native engine promises beside its bits, which tests/equivalence holds against the other engines'.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <utility>
+
+#include "compute/native/native_backend.h"
+#include "cpu_ref/ref_backend.h"
+#include "model/generate.h"
+#include "model/generate/solids.h"
+#include "model/geometry_build.h"
+#include "tests/driver/allocation_count.h"
+#include "tests/equivalence/contacts_difference.h"
+
+namespace palpate {
+namespace {
+
+SceneGeometry built(const Mesh& mockup, const Mesh& tool) {
+  auto geometry = build_geometry(mockup, tool, {});
+  EXPECT_TRUE(geometry) << geometry.error().sentence;
+  return std::move(*geometry);
+}
+
+LatticePose at(const SceneGeometry& geometry, const Vec3& position, const Quat& rotation = Quat(1, 0, 0, 0)) { return *to_lattice(Pose{position, rotation}, geometry); }
+
+/// Two boards, a face of each of 7,200 triangles towards the other.
+SceneGeometry pressed_boards() {
+  return built(solids::box(Vec3(-0.06, -0.06, -0.01), Vec3(0.06, 0.06, 0), Int3(60, 60, 5)), solids::box(Vec3(-0.06, -0.06, 0), Vec3(0.06, 0.06, 0.01), Int3(60, 60, 5)));
+}
+
+TEST(Native, MakesRoomForAContactLargerThanAllBeforeWithinTheQuery) {
+  const SceneGeometry geometry = pressed_boards();
+  const auto native = make_native_backend(), ref = make_ref_backend();
+  ASSERT_TRUE(native->prepare(geometry, Plan{}, {}));
+  ASSERT_TRUE(ref->prepare(geometry, Plan{}, {}));
+  const LatticePose pose = at(geometry, Vec3(0.0003, 0.0002, 0));   // faces in one plane: every triangle meets several
+  Contacts found, expected;
+  ASSERT_TRUE(native->query(pose, nullptr, found));
+  ASSERT_TRUE(ref->query(pose, nullptr, expected));
+  EXPECT_FALSE(found.truncated);
+  EXPECT_GT(found.pairs, std::uint64_t{1} << 14) << "no more than a list has room for to begin with";
+  EXPECT_EQ(first_difference(found, expected), "");
+}
+
+TEST(Native, AllocatesNothingInAFrameOnceItHasSeenOneLikeIt) {
+  const SceneGeometry geometry = pressed_boards();
+  const auto native = make_native_backend();
+  Plan plan;
+  plan.telemetry = false;   // as for a loop that nobody watches
+  ASSERT_TRUE(native->prepare(geometry, plan, {}));
+  Contacts out;
+  const auto ask = [&](int i) { return static_cast<bool>(native->query(at(geometry, Vec3(0.0001 * i, 0.0002, -0.0005 - 0.0001 * (i % 5))), nullptr, out)); };
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(ask(i));
+  const std::size_t before = allocations_of_this_thread();
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(ask(i));
+  EXPECT_EQ(allocations_of_this_thread(), before);
+  EXPECT_TRUE(out.contact);
+}
+
+std::uint64_t status(const std::string& key) {   // of /proc/self/status, bytes
+  std::ifstream in("/proc/self/status");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with(key)) return std::stoull(line.substr(key.size() + 1)) << 10;
+  return 0;
+}
+
+TEST(Native, TakesNoMoreMemoryThanForetoldAndKeepsAtMostAHundredBytesATriangle) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer takes memory of its own";
+#endif
+  std::uint64_t kept[2]{}, of[2]{};
+  for (const std::uint64_t triangles : {100'000u, 400'000u}) {
+    const auto scene = generate_scene("disassembly", triangles, 2000);
+    ASSERT_TRUE(scene);
+    const SceneGeometry geometry = built(scene->mockup, scene->tool);
+    const auto native = make_native_backend();
+    const std::uint64_t foretold = native->preparation_bytes(geometry, Plan{});
+    std::ofstream("/proc/self/clear_refs") << 5;   // the peak is of what follows
+    const std::uint64_t before = status("VmRSS:");
+    ASSERT_TRUE(native->prepare(geometry, Plan{}, {}));
+    const std::uint64_t taken = status("VmHWM:") - before;
+    EXPECT_LE(taken, foretold);
+    EXPECT_LE(native->memory_bytes(), foretold);
+    kept[0] = std::exchange(kept[1], native->memory_bytes());
+    of[0] = std::exchange(of[1], geometry.mockup.triangles.size());
+    std::printf("%llu triangles: %.1f MiB taken, %.1f foretold, %.1f kept\n", static_cast<unsigned long long>(triangles), static_cast<double>(taken) / 1048576,
+                static_cast<double>(foretold) / 1048576, static_cast<double>(native->memory_bytes()) / 1048576);
+  }
+  EXPECT_LE(kept[1] - kept[0], 100 * (of[1] - of[0]));   // what the tool takes is the same for both
+}
+
+TEST(Native, RefusesWhatItDoesNotAnswer) {
+  const SceneGeometry geometry = built(solids::box(Vec3(-0.1), Vec3(0.1)), solids::sphere(0.01));
+  const auto native = make_native_backend();
+  Plan paper;
+  paper.profile = Profile::kPaper;
+  const auto refused = native->prepare(geometry, paper, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kBadValue);
+  Contacts out;
+  const LatticePose pose = at(geometry, Vec3(0, 0, 0.105));
+  EXPECT_FALSE(native->query(pose, nullptr, out));
+  ASSERT_TRUE(native->prepare(geometry, Plan{}, {}));
+  EXPECT_FALSE(native->replan(paper));
+  EXPECT_TRUE(native->query(pose, nullptr, out));
+  EXPECT_TRUE(out.contact);
+}
+
+}  // namespace
+}  // namespace palpate
