@@ -42,6 +42,8 @@ struct ResponseSettings {
   std::optional<double> sample_spacing_m;    ///< empty: auto
   std::uint32_t contact_samples = kContactSamples;   ///< SceneGeometry::contact_samples
   std::optional<double> voxel_size_m;        ///< empty: auto
+  std::optional<double> tessellation_m;      ///< Tessellation::deflection_m; empty: auto, what a sample's spacing asks for
+  double tessellation_angle_deg = 15;        ///< Tessellation::angle_deg
 };
 
 enum class ForceLaw : std::uint8_t { kPrinted, kCorrected };

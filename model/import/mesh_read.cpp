@@ -10,10 +10,10 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <unordered_map>
 
 #include "model/file_view.h"
 #include "model/import/import_checks.h"
+#include "model/import/part_names.h"
 #include "model/import/polygon_split.h"
 #include "model/lattice_build.h"
 #include "model/one_line.h"
@@ -69,19 +69,7 @@ struct Transform {
 std::string given_name(const aiNode& node) {
   std::string name(node.mName.data, node.mName.length);
   if (name.size() > 1 && name.front() == '<' && name.back() == '>') name.clear();
-  std::replace_if(name.begin(), name.end(), [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '_');
-  return name;
-}
-
-/// A node's name for a path: never empty, without the slash that joins paths, told apart from its siblings'.
-std::string path_name(const aiNode& node, const std::string& otherwise, std::unordered_map<std::string, int>& siblings) {
-  std::string name = given_name(node);
-  if (name.empty()) name = otherwise;
-  std::string unique = name;
-  for (int& n = siblings[name]; ++n > 1 && siblings.count(unique = fmt::format("{}#{}", name, n)) != 0;) {
-  }
-  if (unique != name) siblings[unique] = 1;
-  return unique;
+  return clean_name(std::move(name));
 }
 
 class Flattener {
@@ -92,21 +80,22 @@ class Flattener {
   Result<Mesh> run(std::vector<std::string>& notes) {
     // Depth first with a stack of our own, children in order: pushed back to front.
     std::vector<Visit> stack{{scene_.mRootNode, turn_, ""}};
-    std::unordered_map<std::string, int> root_names;
-    stack.back().path = path_name(*scene_.mRootNode, std::filesystem::path(file_).stem().string(), root_names);
+    stack.back().path = given_name(*scene_.mRootNode);
+    if (stack.back().path.empty()) stack.back().path = clean_name(std::filesystem::path(file_).stem().string());
     while (!stack.empty()) {
       const Visit visit = std::move(stack.back());
       stack.pop_back();
       const Transform here = visit.above * Transform::of(visit.node->mTransformation);
       if (std::string wrong = add_node(*visit.node, here, visit.path); !wrong.empty())
         return bad_value(fmt::format("'{}' {}", file_, wrong));
-      std::unordered_map<std::string, int> siblings;
+      SiblingNames siblings;
       const std::size_t first = stack.size();
       for (unsigned i = 0; i < visit.node->mNumChildren; ++i) {
         const aiNode* child = visit.node->mChildren[i];
         // A file without names, such as an STL, is one part, named like the file.
         const bool nameless = visit.node->mNumChildren == 1 && given_name(*visit.node).empty() && given_name(*child).empty();
-        stack.push_back({child, here, nameless ? visit.path : visit.path + "/" + path_name(*child, "node", siblings)});
+        const std::string name = given_name(*child);
+        stack.push_back({child, here, nameless ? visit.path : visit.path + "/" + siblings.unique(name.empty() ? "node" : name)});
       }
       std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
     }
@@ -265,7 +254,7 @@ std::string words_of(std::string text) {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation&) {
   report = {path, {}};
   const std::string extension = extension_of(path);
   std::string in_memory;                 // what is read in the file's place, if anything

@@ -72,19 +72,29 @@ CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
       ->type_name("gpu|cpu");
 }
 
+/// CLI::Range would let nan pass.
+std::function<void(const double&)> number_within(const char* name, double least, double most, double& out) {
+  return [=, &out](const double& value) {
+    if (!(value >= least && value <= most)) throw CLI::ValidationError(name, fmt::format("{} is not from {} to {}", value, least, most));
+    out = value;
+  };
+}
+
 void add_import_limits(CLI::App& app, ImportLimits& limits) {
   app.add_option_function<std::uint64_t>("--import-memory", [&limits](const std::uint64_t& mib) { limits.memory_bytes = mib << 20; },
                                          "most memory for reading a mesh file; default 2048 MiB and 20 times the file's size")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description(""))
       ->type_name("MIB");
-  app.add_option_function<double>("--import-seconds",
-                                  [&limits](const double& seconds) {   // CLI::Range would let nan pass
-                                    if (!(seconds >= 1 && seconds <= 1e6))
-                                      throw CLI::ValidationError("--import-seconds", fmt::format("{} is not from 1 to 1000000", seconds));
-                                    limits.seconds = seconds;
-                                  },
-                                  "most processor time for reading a mesh file; default 20 s and 1 s a MiB")
+  app.add_option_function<double>("--import-seconds", number_within("--import-seconds", 1, 1e6, limits.seconds), "most processor time for reading a mesh file; default 20 s and 1 s a MiB")
       ->type_name("S");
+}
+
+void add_tessellation(CLI::App& app, Tessellation& tessellation) {
+  app.add_option_function<double>("--tessellation", number_within("--tessellation", 1e-9, 100, tessellation.deflection_m),
+                                  "the farthest that triangles lie from the surfaces of a STEP, IGES or BREP file; default 1/384 of its longest side")
+      ->type_name("M");
+  app.add_option_function<double>("--tessellation-angle", number_within("--tessellation-angle", 1, 90, tessellation.angle_deg), "most between neighbouring triangles of one surface; default 15")
+      ->type_name("DEG");
 }
 
 void add_scene(CLI::App& app, SceneOptions& options) {
@@ -200,15 +210,16 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   plan_app->footer("Leaving a stage out never changes an answer; `--plan full` of run and query keeps them all, to compare.");
   plan_app->callback([&] { outcome = plan_command(plan, plan_json, parts); });
 
-  std::vector<std::string> meshes;
-  bool info_json = false;
+  InfoOptions info;
   CLI::App* info_app = app.add_subcommand("info", "tell what is in mesh files and what import made of them; of a scene, how its tool starts");
-  info_app->add_option("files", meshes, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, …; or a scene, .json")->required()->type_name("MESH|SCENE");
-  info_app->add_flag("--json", info_json, "one JSON object");
-  ImportLimits info_limits;
-  add_import_limits(*info_app, info_limits);
-  info_app->footer("A part's path is what `part` and `without` of a scene file name. Sizes are in the file's own unit.");
-  info_app->callback([&] { outcome = info_command(meshes, info_json, info_limits, parts); });
+  info_app->add_option("files", info.files, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, STEP, IGES, BREP, …; or a scene, .json")->required()->type_name("MESH|SCENE");
+  info_app->add_flag("--tree", info.tree, "parts as the hierarchy that the file has");
+  info_app->add_flag("--json", info.json, "one JSON object");
+  add_import_limits(*info_app, info.import);
+  add_tessellation(*info_app, info.tessellation);
+  info_app->footer("A part's path, its last name where that is unique, its other name, or its number, \"#3\", is what `part` and `without` of a scene file name.\n"
+                   "Sizes are in the file's own unit; STEP and IGES state theirs and come in metres.");
+  info_app->callback([&] { outcome = info_command(info, parts); });
 
   GenerateOptions generate;
   CLI::App* generate_app = app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");

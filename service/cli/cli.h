@@ -74,12 +74,18 @@ struct GenerateOptions {
   std::string out;
 };
 
+struct InfoOptions {
+  std::vector<std::string> files;     ///< meshes, and scenes (.json)
+  bool json = false, tree = false;
+  ImportLimits import = {};           ///< of each mesh file
+  Tessellation tessellation = {};     ///< of CAD files
+};
+
 // Each command prints its result on standard output, all else on standard error, and returns the reason if it failed.
 Result<void> run_command(const RunOptions& options, const Parts& parts);
 Result<void> query_command(const QueryOptions& options, const Parts& parts);
 Result<void> plan_command(const SceneOptions& options, bool json, const Parts& parts);
-/// `files`: meshes, and scenes (.json).
-Result<void> info_command(const std::vector<std::string>& files, bool json, const ImportLimits& limits, const Parts& parts);
+Result<void> info_command(const InfoOptions& options, const Parts& parts);
 Result<void> generate_command(const GenerateOptions& options);
 Result<void> devices_command(const Parts& parts);
 
