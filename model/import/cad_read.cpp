@@ -1,5 +1,6 @@
 // read_mesh() of CAD files, STEP, IGES and BREP, for the program palpate-import-cad: OpenCASCADE reads and triangulates them.
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
@@ -23,7 +24,7 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopTools_MapOfShape.hxx>
+#include <TopTools_DataMapOfShapeShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
@@ -267,16 +268,16 @@ class Triangulator {
     IMeshTools_Parameters parameters;
     parameters.Angle = tessellation.angle_deg * std::numbers::pi / 180;
     parameters.AngleInterior = parameters.Angle;
-    TopTools_MapOfShape done;
+    TopTools_DataMapOfShapeShape done;   // instances share their triangles, too
     for (const Body& body : bodies) {
-      // Instances share their triangles, too.
-      if (const TopoDS_Shape own = body.shape.Located(TopLoc_Location()); done.Add(own)) {
+      const TopoDS_Shape own = body.shape.Located(TopLoc_Location());
+      if (!done.IsBound(own)) {
         parameters.Deflection = std::min(*deflection, longest_side(own) / kFewestDeflections) / unit_m_;
         parameters.DeflectionInterior = parameters.Deflection;
         parameters.MinSize = parameters.Deflection / 10;   // edges shorter than that are not divided for the angle's sake
-        BRepMesh_IncrementalMesh(own, parameters);
+        done.Bind(own, with_triangles(own, parameters));
       }
-      if (std::string wrong = add(body); !wrong.empty()) return bad_value(fmt::format("'{}' {}", file_, wrong));
+      if (std::string wrong = add({body.path, body.also, done.Find(own).Moved(body.shape.Location())}); !wrong.empty()) return bad_value(fmt::format("'{}' {}", file_, wrong));
     }
     if (mesh_.triangles.empty()) return bad_value(fmt::format("'{}' has no faces of which triangles can be made", file_));
     if (flat_) report.notes.push_back(fmt::format("{} faces gave no triangles, the first is face {} of '{}'", flat_, first_flat_, flat_path_));
@@ -285,6 +286,30 @@ class Triangulator {
   }
 
  private:
+  static std::size_t faces_without_triangles(const TopoDS_Shape& shape) {
+    std::size_t count = 0;
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      TopLoc_Location location;
+      const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
+      if (triangulation.IsNull() || triangulation->NbTriangles() == 0) ++count;
+    }
+    return count;
+  }
+
+  /// The shape, or one of the same form that the library can make triangles of: it fails on some cones, and not where they are spline surfaces.
+  static TopoDS_Shape with_triangles(const TopoDS_Shape& shape, const IMeshTools_Parameters& parameters) {
+    BRepMesh_IncrementalMesh(shape, parameters);
+    const std::size_t without = faces_without_triangles(shape);
+    if (without == 0) return shape;
+    try {
+      const TopoDS_Shape splines = BRepBuilderAPI_NurbsConvert(shape, true).Shape();
+      BRepMesh_IncrementalMesh(splines, parameters);
+      return faces_without_triangles(splines) < without ? splines : shape;
+    } catch (const Standard_Failure&) {
+      return shape;
+    }
+  }
+
   /// Metres.
   double longest_side(const Bnd_Box& box) const {
     double low[3], high[3];
