@@ -65,9 +65,9 @@ struct Transform {
   }
 };
 
-/// The name that a file gives a node; empty where the importer had to invent one ("<STL_BINARY>", "<OFFRoot>", …).
-std::string given_name(const aiNode& node) {
-  std::string name(node.mName.data, node.mName.length);
+/// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>", "<OFFRoot>", …).
+std::string given_name(const aiString& text) {
+  std::string name(text.data, text.length);
   if (name.size() > 1 && name.front() == '<' && name.back() == '>') name.clear();
   return clean_name(std::move(name));
 }
@@ -80,7 +80,7 @@ class Flattener {
   Result<Mesh> run(std::vector<std::string>& notes) {
     // Depth first with a stack of our own, children in order: pushed back to front.
     std::vector<Visit> stack{{scene_.mRootNode, turn_, ""}};
-    stack.back().path = given_name(*scene_.mRootNode);
+    stack.back().path = given_name(scene_.mRootNode->mName);
     if (stack.back().path.empty()) stack.back().path = clean_name(std::filesystem::path(file_).stem().string());
     while (!stack.empty()) {
       const Visit visit = std::move(stack.back());
@@ -93,8 +93,8 @@ class Flattener {
       for (unsigned i = 0; i < visit.node->mNumChildren; ++i) {
         const aiNode* child = visit.node->mChildren[i];
         // A file without names, such as an STL, is one part, named like the file.
-        const bool nameless = visit.node->mNumChildren == 1 && given_name(*visit.node).empty() && given_name(*child).empty();
-        const std::string name = given_name(*child);
+        const bool nameless = visit.node->mNumChildren == 1 && given_name(visit.node->mName).empty() && given_name(child->mName).empty();
+        const std::string name = given_name(child->mName);
         stack.push_back({child, here, nameless ? visit.path : visit.path + "/" + siblings.unique(name.empty() ? "node" : name)});
       }
       std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
@@ -123,12 +123,22 @@ class Flattener {
       if (std::string wrong = add_mesh(*scene_.mMeshes[node.mMeshes[i]], transform, path); !wrong.empty()) return wrong;
     }
     if (mesh_.triangles.size() == first) return {};
-    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first)});
+    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first), other_name(node)});
     if (transform.mirrors()) {
       ++mirrored_;
       for (std::size_t t = first; t < mesh_.triangles.size(); ++t) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
     }
     return {};
+  }
+
+  /// The name of a node's mesh, where that is not the node's own.
+  std::string other_name(const aiNode& node) const {
+    const aiString& mesh = scene_.mMeshes[node.mMeshes[0]]->mName;
+    std::string name = given_name(mesh);
+    // The library numbers the meshes that it makes of one mesh with several primitives.
+    if (node.mNumMeshes > 1 && name.ends_with("-0")) name.resize(name.size() - 2);
+    if (name == given_name(node.mName) || name.starts_with("meshes[")) name.clear();   // "meshes[2]": the library's own, of a mesh without a name
+    return name;
   }
 
   std::string add_mesh(const aiMesh& mesh, const Transform& transform, const std::string& path) {

@@ -53,6 +53,7 @@ Examples:
 
 constexpr const char* kQueryFooter = R"(Prints one JSON object a pose: pose, contact, pairs, cst bst cmt bmt imt est (triangle ids), areas (id, zones, static, mobile, normal,
 depth m, point m, force N, torque N·m, flags), force, torque (about the tool's centre of mass), flags, truncated, time_us.
+With --names also parts: the paths of the mock-up's and of the tool's parts that touch, as palpate info has them.
 A file of poses is CSV with the header x,y,z,qx,qy,qz,qw. A pose far away is free of contact; only one that is not finite or
 not a unit rotation is an error (exit code 3).
 
@@ -198,6 +199,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   query_app->add_option("--batch", query.batch, "answer N poses together, on all cores; time_us is then a pose's share")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
+  query_app->add_flag("--names", query.names, "parts: which named parts touch");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
   query_app->footer(kQueryFooter);
   query_app->callback([&] { outcome = query_command(query, parts); });

@@ -65,6 +65,7 @@ struct QueryOptions {
   std::optional<std::string> pose;    ///< "x y z qx qy qz qw"
   std::optional<std::string> poses;   ///< CSV file
   std::optional<std::uint64_t> batch;
+  bool names = false;                 ///< the parts that touch, by their paths
   std::string export_directory;       ///< empty: none
 };
 

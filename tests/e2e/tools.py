@@ -36,6 +36,30 @@ def test_info_for_people_says_the_same():
     expect(outcome.code == 0 and 'block.stl' in outcome.out and 'ball.stl' in outcome.out and '12' in outcome.out, outcome)
 
 
+ENGINE = [{'name': 'engine', 'children': [1, 2]}, {'name': 'block', 'mesh': 0}, {'name': 'lid', 'children': [3, 4], 'translation': [0, 0, 3]},
+          {'name': 'bolt', 'mesh': 0, 'translation': [2, 0, 0]}, {'name': 'bolt', 'mesh': 0, 'translation': [-2, 0, 0]}]
+
+
+def test_info_prints_the_hierarchy():
+    folder = Folder()
+    folder.write('engine.gltf', gltf(ENGINE, box((1, 1, 1))))
+    outcome = palpate('info', folder / 'engine.gltf', '--tree')
+    expect(outcome.code == 0, outcome)
+    table = [line.split() for line in outcome.out.splitlines()]
+    rows = table[[row[:1] == ['#'] for row in table].index(True) + 1:]
+    expect([row[:2] for row in rows] == [['engine', '36'], ['#1', 'block'], ['lid', '24'], ['#2', 'bolt'], ['#3', 'bolt#2']], rows)
+    expect(all(row[-1] == 'outward' for row in rows if row[0][0] == '#'), rows)
+    outcome = palpate('info', folder / 'engine.gltf', '--tree', '--json')
+    ((engine,),) = [mesh['tree'] for mesh in json.loads(outcome.out)['meshes']]
+    block, lid = engine['below']
+    expect((engine['name'], engine['triangles'], engine['closed'], 'number' in engine) == ('engine', 36, True, False), engine)
+    expect((block['name'], block['number'], block['also'], block['size']) == ('block', 1, 'solid', [1, 1, 1]), block)
+    expect(lid['size'] == [5, 1, 1] and [bolt['name'] for bolt in lid['below']] == ['bolt', 'bolt#2'], lid)
+    (flat,) = info(folder / 'engine.gltf')
+    expect([(part['number'], part['path']) for part in flat['parts']] == [(1, 'engine/block'), (2, 'engine/lid/bolt'), (3, 'engine/lid/bolt#2')], flat)
+    expect(all(abs(part['volume'] - 1) < 1e-9 for part in flat['parts']) and 'tree' not in flat, flat)
+
+
 def test_generate_makes_scenes_that_load():
     folder = Folder()
     for name in ('contacts', 'disassembly'):

@@ -276,6 +276,24 @@ TEST_F(MeshImport, GltfHierarchyAndInstancesAreFlattenedDepthFirst) {
   EXPECT_THAT(without_parts(mesh, {"engine"}, "a.gltf").error().sentence, HasSubstr("nothing is left"));
 }
 
+TEST_F(MeshImport, GltfMeshNamesAddressPartsToo) {
+  std::string buffer;
+  for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(buffer, f);
+  write("t.bin", buffer);
+  std::string text = gltf(R"([{"name":"engine","children":[1,2,3]},{"name":"node_1","mesh":0},{"name":"node_2","mesh":1},{"mesh":2}])");
+  const std::string one = R"({"primitives":[{"attributes":{"POSITION":0}}]})", triangle = R"({"attributes":{"POSITION":0}})";
+  text.replace(text.find(one), one.size(), R"({"name":"Piston_123-844","primitives":[)" + triangle + R"(]},{"name":"node_1","primitives":[)" + triangle + "," + triangle + R"(]},)" + one);
+  const Mesh mesh = read(write("meshes.gltf", text));
+  ASSERT_EQ(mesh.parts.size(), 3u);
+  EXPECT_EQ(mesh.parts[0].also, "Piston_123-844");
+  EXPECT_EQ(mesh.parts[1].also, "node_1") << "two primitives are one part, and its mesh's name has no number";
+  EXPECT_EQ(mesh.parts[2].also, "") << "an invented name is none";
+  EXPECT_EQ(take_part(mesh, "Piston_123-844", "meshes.gltf")->parts[0].path, "engine/node_1");
+  EXPECT_EQ(take_part(mesh, "node_1", "meshes.gltf")->parts[0].path, "engine/node_1") << "a node's own name goes before a mesh's";
+  EXPECT_EQ(take_part(mesh, "#2", "meshes.gltf")->parts[0].path, "engine/node_2");
+  EXPECT_THAT(take_part(mesh, "Piston_123-845", "meshes.gltf").error().sentence, testing::AllOf(HasSubstr("did you mean 'Piston_123-844'"), HasSubstr("`palpate info --tree 'meshes.gltf'` lists them")));
+}
+
 TEST_F(MeshImport, AbsurdGltfIsRefused) {
   write("t.bin", std::string(36, '\0'));
   EXPECT_THAT(refused(write("cycle.gltf", gltf(R"([{"children":[1]},{"children":[0]}])"))), HasSubstr("contains itself"));
