@@ -107,7 +107,7 @@ bool is_cad_file(const std::string& path) {
   return is_one_of(ending_of(path), std::array{".step", ".stp", ".iges", ".igs", ".brep", ".brp"});
 }
 
-bool states_unit(const std::string& path) { return is_one_of(ending_of(path), std::array{".step", ".stp", ".iges", ".igs"}); }
+bool states_unit(const std::string& path) { return is_one_of(ending_of(path), std::array{".step", ".stp", ".iges", ".igs", ".3mf"}); }
 
 ImportLimits import_limits(const std::string& path, const ImportLimits& asked) {
   struct stat status {};

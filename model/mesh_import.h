@@ -44,7 +44,7 @@ bool is_cad_file(const std::string& path);
 bool states_unit(const std::string& path);
 
 /// Reads any format assimp knows (STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, …), and STEP, IGES and BREP where the build has OpenCASCADE, flattened
-/// depth-first with node transforms applied and coordinates multiplied by `scale` (metres per file unit; of STEP and IGES, which come in metres, a mere factor).
+/// depth-first with node transforms applied and coordinates multiplied by `scale` (metres per file unit; of STEP, IGES and 3MF, which come in metres, a mere factor).
 ///
 /// Mesh files are strangers' and the libraries that read them are large, so a process of its own does it (the programs palpate-import and
 /// palpate-import-cad): whatever happens there is an error here, and nothing stays running. It is asked often whether to `go_on`; false ends it.

@@ -15,6 +15,7 @@
 #include "model/import/import_checks.h"
 #include "model/import/part_names.h"
 #include "model/import/polygon_split.h"
+#include "model/import/threemf_read.h"
 #include "model/lattice_build.h"
 #include "model/one_line.h"
 #include "model/weld.h"
@@ -279,6 +280,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     if (extension == ".gltf" || extension == ".glb") faces = faces_of_gltf(bytes);
   }
   try {
+    if (extension == ".3mf") return read_3mf(path, scale, report);
     // No post-processing: joining vertices, triangulating or sorting by type would renumber or reorder faces.
     Assimp::Importer importer;
     if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));   // the importer's own from here on
