@@ -55,7 +55,10 @@ std::vector<std::uint32_t> list_parts(const Mesh& mesh, const LatticeMesh& built
   for (std::uint32_t t = 0; t < part_of.size(); ++t) {
     MeshReport::Part& part = report.parts[part_of[t]];
     ++part.triangles;
-    if (built.collapsed(t)) continue;
+    if (built.collapsed(t)) {
+      ++part.collapsed;
+      continue;
+    }
     for (int k = 0; k < 3; ++k) {
       const Vec3 corner = lattice.origin_m + lattice.step_m * Vec3(built.corner(t, k));
       std::uint8_t& has = has_box[part_of[t]];
@@ -106,9 +109,10 @@ void describe_surface(MeshReport& report, const LatticeMesh& mesh) {
   if (report.collapsed) report.notes.push_back(fmt::format("{} triangles have no area on the lattice and take no part", report.collapsed));
   if (report.duplicate) report.notes.push_back(fmt::format("{} triangles repeat another's three corners", report.duplicate));
   if (report.nonmanifold_edges) report.notes.push_back(fmt::format("{} edges carry more than two triangles", report.nonmanifold_edges));
-  if (!mesh.closed)
-    report.notes.push_back(fmt::format("the surface is open: {} edges carry one triangle, the largest gap is {:.3g} m across",
-                                       report.open_edges, report.largest_gap_m));
+  if (mesh.closed && report.open_edges)
+    report.notes.push_back(fmt::format("{} edges carry one triangle and are met by shorter ones of their neighbours (T-junctions): the surface has no gap there", report.open_edges));
+  if (!mesh.closed && !report.open_edges)
+    report.notes.push_back("the surface is not closed though no edge carries one triangle alone: edges with more than two triangles don't cancel");
 }
 
 Result<Vec3> centre_of_mass(const std::optional<Vec3>& asked, const LatticeMesh& tool, const SurfaceMeasure& measure,

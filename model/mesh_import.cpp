@@ -109,13 +109,15 @@ bool is_cad_file(const std::string& path) {
 
 bool states_unit(const std::string& path) { return is_one_of(ending_of(path), std::array{".step", ".stp", ".iges", ".igs", ".3mf"}); }
 
+bool comes_in_metres(const std::string& path) { return states_unit(path) || is_one_of(ending_of(path), std::array{".dae", ".gltf", ".glb"}); }
+
 ImportLimits import_limits(const std::string& path, const ImportLimits& asked) {
   struct stat status {};
   const auto bytes = ::stat(path.c_str(), &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
-  const bool packed = fs::path(path).extension() == ".3mf";
+  const bool packed = ending_of(path) == ".3mf", cad = is_cad_file(path);
   ImportLimits limits = asked;
-  if (limits.memory_bytes == 0) limits.memory_bytes = (std::uint64_t{2} << 30) + (packed ? 200 : 20) * bytes;
-  if (!(limits.seconds > 0)) limits.seconds = 20 + static_cast<double>(bytes >> 20);
+  if (limits.memory_bytes == 0) limits.memory_bytes = (std::uint64_t{2} << 30) + (packed ? 200 : cad ? 100 : 20) * bytes;
+  if (!(limits.seconds > 0)) limits.seconds = (cad ? 60 : 20) + (cad ? 10 : 1) * static_cast<double>(bytes >> 20);
   return limits;
 }
 

@@ -22,8 +22,8 @@ struct ImportLimits {
   double seconds = 0;               ///< of processor time; four times as much by the clock
 };
 
-/// `asked`, with the usual limits in place of zeros: 2 GiB and 20 bytes for each byte of the file (200 of a 3MF, which is packed), 20 s
-/// and 1 s for each MiB. Measured: docs/IMPORT.md.
+/// `asked`, with the usual limits in place of zeros: 2 GiB and 20 bytes for each byte of the file (200 of a 3MF, which is packed, 100 of a CAD file), 20 s
+/// and 1 s for each MiB (60 s and 10 s for a CAD file, whose triangles are made). Measured: docs/IMPORT.md.
 ImportLimits import_limits(const std::string& path, const ImportLimits& asked);
 
 /// How the curved surfaces of a CAD file (STEP, IGES, BREP) become triangles; mesh files don't ask.
@@ -40,8 +40,11 @@ inline constexpr double kDeflectionsPerSide = 4 * 4 * 24;
 /// Whether a file is for the program palpate-import-cad, by its ending: STEP, IGES, BREP.
 bool is_cad_file(const std::string& path);
 
-/// Whether a file's coordinates come in metres, for it states its unit.
+/// Whether a file's coordinates come in metres, for it states its unit: STEP, IGES, 3MF.
 bool states_unit(const std::string& path);
+
+/// Whether they come in metres, because the file states its unit or its format has one (COLLADA, glTF), which exporters don't always keep to.
+bool comes_in_metres(const std::string& path);
 
 /// Reads any format assimp knows (STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, …), and STEP, IGES and BREP where the build has OpenCASCADE, flattened
 /// depth-first with node transforms applied and coordinates multiplied by `scale` (metres per file unit; of STEP, IGES and 3MF, which come in metres, a mere factor).

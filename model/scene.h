@@ -18,6 +18,7 @@ namespace palpate {
 struct MeshSource {
   std::string file;                          ///< absolute after loading; empty when generated
   double scale = 1;                          ///< metres per file unit
+  bool scale_stated = false;                 ///< the scene says `units` or `scale`
   std::string part;                          ///< node taken out; empty: all
   std::vector<std::string> without;          ///< nodes left out
   std::string generate;                      ///< generator name, e.g. "disassembly/mockup"

@@ -99,6 +99,7 @@ void read_source(const SceneObject& body, const char* usual_body, MeshSource& so
   constexpr double kMetres[] = {1, 1e-3, 1e-2, 0.0254};
   if (const auto unit = body.choice("units", units)) source.scale = kMetres[*unit];
   body.number("scale", {0, 1e6, " m per unit of the file", true}, source.scale);
+  source.scale_stated = body.has("units") || body.has("scale");
   body.text("part", source.part);
   body.texts("without", source.without);
 }

@@ -130,6 +130,21 @@ double stated_deflection(const ResponseSettings& response) {
   return response.voxel_size_m ? *response.voxel_size_m / kSamplesPerVoxel / kDeflectionsPerSample : 0;
 }
 
+/// Parts of which nothing is left on the lattice.
+void warn_of_vanished(const char* what, const MeshReport& report, double step_m, std::vector<std::string>& warnings) {
+  std::size_t count = 0;
+  const MeshReport::Part* first = nullptr;
+  for (const MeshReport::Part& part : report.parts) {
+    if (part.collapsed < part.triangles) continue;
+    if (++count == 1) first = &part;
+  }
+  if (count == 0) return;
+  char size[32];
+  std::snprintf(size, sizeof size, "%.3g", step_m);
+  warnings.push_back(std::to_string(count) + (count == 1 ? " part of the " : " parts of the ") + what + (count == 1 ? " has" : " have") + " no area on the lattice, whose step is " + size +
+                     " m, and can't be touched: '" + first->path + "'" + (count > 1 ? " and others" : ""));
+}
+
 bool tell(const Progress& progress, const char* what, double done) { return !progress || progress(what, done); }
 
 }  // namespace
@@ -186,6 +201,8 @@ Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const Impo
     loaded.geometry = std::move(*geometry);
   }
   if (!tell(progress, "geometry", 1)) return cancelled;
+  warn_of_vanished("mock-up", loaded.geometry.mockup_report, loaded.geometry.lattice.step_m, scene.warnings);
+  warn_of_vanished("tool", loaded.geometry.tool_report, loaded.geometry.lattice.step_m, scene.warnings);
   if (!loaded.geometry.tool.closed && !scene.tool.centre_of_mass_m)
     scene.warnings.push_back("the tool " + source_name(scene.tool.source) + " is open (" + std::to_string(loaded.geometry.tool_report.open_edges) +
                              " open edges); its centre of mass is taken for the centroid of its area");

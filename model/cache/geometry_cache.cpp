@@ -49,6 +49,7 @@ void archive_report(Archive& a, Report& report) {
   a.each(report.parts, [](Archive& part_archive, auto& part) {
     part_archive(part.path);
     part_archive(part.triangles);
+    part_archive(part.collapsed);
     part_archive(part.closed);
     part_archive(part.sheet);
     part_archive(part.turned);

@@ -86,8 +86,13 @@ void add_import_limits(CLI::App& app, ImportLimits& limits) {
                                          "most memory for reading a mesh file; default 2048 MiB and 20 times the file's size")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description(""))
       ->type_name("MIB");
-  app.add_option_function<double>("--import-seconds", number_within("--import-seconds", 1, 1e6, limits.seconds), "most processor time for reading a mesh file; default 20 s and 1 s a MiB")
+  app.add_option_function<double>("--import-seconds", number_within("--import-seconds", 1, 1e6, limits.seconds), "most processor time for reading a mesh file; default 20 s and 1 s a MiB, 60 s and 10 s a MiB for STEP, IGES, BREP")
       ->type_name("S");
+}
+
+void add_units(CLI::App& app, std::optional<double>& unit_m, const char* help) {
+  static const std::map<std::string, double> kUnits{{"m", 1}, {"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}};
+  app.add_option_function<std::string>("--units", [&unit_m](const std::string& word) { unit_m = kUnits.at(word); }, help)->check(one_of({"m", "mm", "cm", "in"}))->type_name("m|mm|cm|in");
 }
 
 void add_tessellation(CLI::App& app, Tessellation& tessellation) {
@@ -101,6 +106,7 @@ void add_tessellation(CLI::App& app, Tessellation& tessellation) {
 void add_scene(CLI::App& app, SceneOptions& options) {
   app.add_option("scene", options.scene, "scene file (JSON)")->required()->type_name("SCENE");
   add_import_limits(app, options.import);
+  add_units(app, options.unit_m, "unit of mesh files for which neither they nor the scene state one; without it metres");
 }
 
 /// `--profile` and `--plan`, which read words and leave enumerators.
@@ -217,10 +223,11 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   info_app->add_option("files", info.files, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, STEP, IGES, BREP, …; or a scene, .json")->required()->type_name("MESH|SCENE");
   info_app->add_flag("--tree", info.tree, "parts as the hierarchy that the file has");
   info_app->add_flag("--json", info.json, "one JSON object");
+  add_units(*info_app, info.unit_m, "unit of the files, which then are told in metres; not for STEP, IGES and 3MF, which state theirs");
   add_import_limits(*info_app, info.import);
   add_tessellation(*info_app, info.tessellation);
   info_app->footer("A part's path, its last name where that is unique, its other name, or its number, \"#3\", is what `part` and `without` of a scene file name.\n"
-                   "Sizes are in the file's own unit; STEP and IGES state theirs and come in metres.");
+                   "Sizes are in metres where the file states its unit (STEP, IGES, 3MF), its format has one (COLLADA, glTF) or --units says it, else in the file's own.");
   info_app->callback([&] { outcome = info_command(info, parts); });
 
   GenerateOptions generate;

@@ -48,6 +48,7 @@ struct SceneOptions {
   bool full_plan = false;
   bool second_backend = false;        ///< for going over to another plan in mid-run
   ImportLimits import = {};           ///< of each mesh file
+  std::optional<double> unit_m = {};  ///< of mesh files whose unit neither they nor the scene state; empty: 1
 };
 
 struct RunOptions {
@@ -78,6 +79,7 @@ struct GenerateOptions {
 struct InfoOptions {
   std::vector<std::string> files;     ///< meshes, and scenes (.json)
   bool json = false, tree = false;
+  std::optional<double> unit_m = {};  ///< of a file's coordinates; empty: sizes are in file units
   ImportLimits import = {};           ///< of each mesh file
   Tessellation tessellation = {};     ///< of CAD files
 };

@@ -22,7 +22,8 @@ struct MeshInfo {
   MeshReport body;
   std::vector<std::string> also;    ///< other names of the parts; empty: none
   std::vector<double> volumes;      ///< of the parts, file units³, where they are closed
-  bool metres = false;              ///< the file states its unit
+  bool metres = false;              ///< sizes are in metres
+  std::string unit;                 ///< what was taken for the unit, where that is a guess
   bool closed = false;
   double step = 0;       ///< of the lattice on which it was looked at, file units
   Vec3 min{0}, max{0};   ///< of the vertices that triangles use, file units
@@ -39,12 +40,30 @@ double volume_of(const Mesh& mesh, const MeshPart& part) {
   return six / 6;
 }
 
+/// "2.5 m", "191 mm".
+std::string length_text(double m) {
+  if (m >= 1000) return fmt::format("{:.3g} km", m / 1000);
+  if (m >= 1) return fmt::format("{:.3g} m", m);
+  return m >= 1e-3 ? fmt::format("{:.3g} mm", m * 1000) : fmt::format("{:.3g} µm", m * 1e6);
+}
+
+/// What a file's length is in metres and what in millimetres, where its unit is not certain.
+std::string unit_guess(const std::string& path, const Vec3& size) {
+  constexpr double kLargestUsual = 100;   // m, as for scenes
+  if (states_unit(path)) return {};
+  const double longest = std::max({size.x, size.y, size.z});
+  const std::string millimetres = fmt::format("{}, if in millimetres (--units mm)", length_text(longest / 1000));
+  if (!comes_in_metres(path)) return fmt::format("none is stated: {} long, if in metres; {}", length_text(longest), millimetres);
+  return longest > kLargestUsual ? fmt::format("metres by its format: {} long; {}", length_text(longest), millimetres) : std::string();
+}
+
 /// Import as it stands in the file (scale 1: one file unit is taken for a metre), then what a mock-up would go through.
 Result<MeshInfo> inspect(const std::string& path, const InfoOptions& options) {
   MeshInfo info;
-  const Result<Mesh> mesh = import_mesh(path, 1.0, info.import, options.import, {}, options.tessellation);
+  if (options.unit_m && states_unit(path)) return bad_value(fmt::format("'{}' states its unit and comes in metres; --units is for files that don't", path));
+  const Result<Mesh> mesh = import_mesh(path, options.unit_m.value_or(1), info.import, options.import, {}, options.tessellation);
   if (!mesh) return mesh.error();
-  info.metres = states_unit(path);
+  info.metres = options.unit_m || comes_in_metres(path);
   for (const MeshPart& part : mesh->parts) {
     info.also.push_back(part.also);
     info.volumes.push_back(std::abs(volume_of(*mesh, part)));
@@ -57,6 +76,7 @@ Result<MeshInfo> inspect(const std::string& path, const InfoOptions& options) {
       info.max = first ? point : glm::max(info.max, point);
       first = false;
     }
+  if (!options.unit_m) info.unit = unit_guess(path, info.max - info.min);
   const Result<Lattice> lattice = choose_lattice(*mesh, *mesh);
   if (!lattice) return lattice.error();
   info.step = lattice->step_m;
@@ -95,6 +115,7 @@ nlohmann::ordered_json to_json(const MeshInfo& info) {
     for (const std::string& note : *list) notes.push_back(note);
   return {{"file", info.import.file},
           {"unit", info.metres ? "m" : "file"},
+          {"unit_guess", info.unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.unit)},
           {"triangles", info.body.triangles},
           {"vertices", info.body.vertices},
           {"size", to_json(info.max - info.min)},
@@ -127,8 +148,9 @@ void print_table(const MeshInfo& info) {
   fmt::print("{}\n", info.import.file);
   line("triangles", fmt::format("{} ({} vertices)", count_text(body.triangles), count_text(body.vertices)));
   line("size", fmt::format("{} ({})", size_text(info.max - info.min), info.metres ? "m" : "file units"));
+  if (!info.unit.empty()) line("unit", info.unit);
   line("bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", info.min.x, info.min.y, info.min.z, info.max.x, info.max.y, info.max.z));
-  line("closed", info.closed ? "yes" : fmt::format("no: {} open edges, the largest gap {:.4g} wide", count_text(body.open_edges), body.largest_gap_m));
+  line("closed", info.closed ? "yes" : body.open_edges == 0 ? "no" : fmt::format("no: {} open edges, the largest gap {:.4g} wide", count_text(body.open_edges), body.largest_gap_m));
   if (body.nonmanifold_edges > 0) line("edges", fmt::format("{} have more than two triangles", count_text(body.nonmanifold_edges)));
   line("degenerate", count_text(body.collapsed));
   line("duplicate", count_text(body.duplicate));

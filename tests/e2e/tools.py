@@ -36,6 +36,42 @@ def test_info_for_people_says_the_same():
     expect(outcome.code == 0 and 'block.stl' in outcome.out and 'ball.stl' in outcome.out and '12' in outcome.out, outcome)
 
 
+def test_units_are_a_guess_that_is_told_and_a_choice_that_is_made():
+    folder = Folder()
+    folder.write('saw.stl', stl(box((191, 40, 2))))
+    (saw,) = info(folder / 'saw.stl')
+    expect(saw['unit'] == 'file' and '191 m long, if in metres' in saw['unit_guess'] and '191 mm, if in millimetres (--units mm)' in saw['unit_guess'], saw)
+    expect(abs(saw['size'][0] - 191) < 1e-4, 'nothing is applied silently')
+    outcome = palpate('info', folder / 'saw.stl', '--units', 'mm', '--json')
+    (saw,) = json.loads(outcome.out)['meshes']
+    expect(saw['unit'] == 'm' and saw['unit_guess'] is None and abs(saw['size'][0] - 0.191) < 1e-6, saw)
+    folder.write('engine.gltf', gltf(ENGINE, box((500, 1, 1))))
+    (engine,) = info(folder / 'engine.gltf')
+    expect(engine['unit'] == 'm' and 'metres by its format: 504 m long' in engine['unit_guess'], engine)
+    expect_refused(palpate('info', folder / 'saw.stl', '--units', 'ell'), 3, '--units')
+
+
+def test_units_of_a_scene_that_states_none():
+    folder = Folder()
+    folder.write('block.stl', stl(box((200, 200, 40), (0, 0, -20))))
+    folder.write('ball.stl', stl(sphere(20)))
+    stated, free = folder.save(), folder.save('free.json', static=[{'mesh': 'block.stl'}], tool={'mesh': 'ball.stl'})
+    pose = ('--pose', '0 0 0.019 0 0 0 1')
+    (line,) = lines_of(palpate('query', free, *pose, '--units', 'mm'))
+    expect(line['contact'] and 0 < line['force'][2] < 2.5, line['force'])
+    (line,) = lines_of(palpate('query', stated, *pose, '--units', 'mm'))
+    expect(line['force'] == lines_of(palpate('query', stated, *pose))[0]['force'], 'what the scene states stands')
+
+
+def test_closed_beside_edges_of_one_triangle_says_why():
+    folder = Folder()
+    cube = [t for t in box((1, 1, 1)) if not all(p[2] == 0.5 for p in t)]
+    a, b, c, d, m = (-0.5, -0.5, 0.5), (0.5, -0.5, 0.5), (0.5, 0.5, 0.5), (-0.5, 0.5, 0.5), (0, -0.5, 0.5)   # the lid's edge a b has a point more than the wall's
+    folder.write('junction.stl', stl(cube + [(m, b, c), (m, c, d), (m, d, a)]))
+    (junction,) = info(folder / 'junction.stl')
+    expect(junction['closed'] and junction['open_edges'] == 3 and any('T-junctions' in note for note in junction['notes']), junction)
+
+
 ENGINE = [{'name': 'engine', 'children': [1, 2]}, {'name': 'block', 'mesh': 0}, {'name': 'lid', 'children': [3, 4], 'translation': [0, 0, 3]},
           {'name': 'bolt', 'mesh': 0, 'translation': [2, 0, 0]}, {'name': 'bolt', 'mesh': 0, 'translation': [-2, 0, 0]}]
 
