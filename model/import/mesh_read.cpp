@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "model/file_view.h"
 #include "model/import/import_checks.h"
@@ -66,10 +67,11 @@ struct Transform {
   }
 };
 
-/// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>", "<OFFRoot>", …).
+/// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>", "<OFFRoot>", "nodes[3]", …).
 std::string given_name(const aiString& text) {
   std::string name(text.data, text.length);
-  if (name.size() > 1 && name.front() == '<' && name.back() == '>') name.clear();
+  const bool invented = (name.starts_with("nodes[") || name.starts_with("meshes[")) && name.ends_with(']');
+  if (invented || (name.size() > 1 && name.front() == '<' && name.back() == '>')) name.clear();
   return clean_name(std::move(name));
 }
 
@@ -95,7 +97,7 @@ class Flattener {
         const aiNode* child = visit.node->mChildren[i];
         // A file without names, such as an STL, is one part, named like the file.
         const bool nameless = visit.node->mNumChildren == 1 && given_name(visit.node->mName).empty() && given_name(child->mName).empty();
-        const std::string name = given_name(child->mName);
+        const std::string name = node_name(*child);
         stack.push_back({child, here, nameless ? visit.path : visit.path + "/" + siblings.unique(name.empty() ? "node" : name)});
       }
       std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
@@ -132,14 +134,25 @@ class Flattener {
     return {};
   }
 
-  /// The name of a node's mesh, where that is not the node's own.
-  std::string other_name(const aiNode& node) const {
-    const aiString& mesh = scene_.mMeshes[node.mMeshes[0]]->mName;
-    std::string name = given_name(mesh);
+  /// The name of a node's mesh; empty: none.
+  std::string mesh_name(const aiNode& node) const {
+    if (node.mNumMeshes == 0 || node.mMeshes[0] >= scene_.mNumMeshes) return {};
+    std::string name = given_name(scene_.mMeshes[node.mMeshes[0]]->mName);
     // The library numbers the meshes that it makes of one mesh with several primitives.
     if (node.mNumMeshes > 1 && name.ends_with("-0")) name.resize(name.size() - 2);
-    if (name == given_name(node.mName) || name.starts_with("meshes[")) name.clear();   // "meshes[2]": the library's own, of a mesh without a name
     return name;
+  }
+
+  /// A node's own name, else its mesh's.
+  std::string node_name(const aiNode& node) const {
+    const std::string name = given_name(node.mName);
+    return name.empty() ? mesh_name(node) : name;
+  }
+
+  /// The name of a node's mesh, where that is not the node's.
+  std::string other_name(const aiNode& node) const {
+    const std::string name = mesh_name(node);
+    return name == node_name(node) ? std::string() : name;
   }
 
   std::string add_mesh(const aiMesh& mesh, const Transform& transform, const std::string& path) {
@@ -269,7 +282,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   report = {path, {}};
   const std::string extension = extension_of(path);
   std::string in_memory;                 // what is read in the file's place, if anything
-  std::vector<std::uint64_t> faces;      // that a glTF's meshes must have
+  std::map<std::string, std::uint64_t> faces;   // that a glTF's meshes must have
   {
     const Result<FileView> file = FileView::open(path);
     if (!file) return file.error();
@@ -289,9 +302,12 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0) : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(), 0, extension.c_str() + 1);
     if (!scene || !scene->mRootNode) return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
     if (extension == ".dae") note_unit(*scene, report);
-    for (std::size_t m = 0; m < std::min<std::size_t>(faces.size(), scene->mNumMeshes); ++m)   // the library leaves out what it can't make sense of
-      if (scene->mMeshes[m]->mNumFaces < faces[m])
-        return bad_value(fmt::format("'{}' has {} triangles in primitive {} of which {} can be read: the others name vertices that don't exist", path, faces[m], m, scene->mMeshes[m]->mNumFaces));
+    // The library leaves out what it can't make sense of.
+    std::map<std::string, std::uint64_t> read;
+    for (unsigned m = 0; m < scene->mNumMeshes && !faces.empty(); ++m) read[std::string(scene->mMeshes[m]->mName.data, scene->mMeshes[m]->mName.length)] += scene->mMeshes[m]->mNumFaces;
+    for (const auto& [name, count] : read)
+      if (const auto wanted = faces.find(name); wanted != faces.end() && count < wanted->second)
+        return bad_value(fmt::format("'{}' has {} triangles in mesh '{}' of which {} can be read: the others name vertices that don't exist", path, wanted->second, one_line(name), count));
     return Flattener(*scene, scale, path, undo_turn(extension)).run(report.notes);
   } catch (const std::exception& error) {
     return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(error.what())));

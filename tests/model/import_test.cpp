@@ -280,14 +280,16 @@ TEST_F(MeshImport, GltfMeshNamesAddressPartsToo) {
   std::string buffer;
   for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(buffer, f);
   write("t.bin", buffer);
-  std::string text = gltf(R"([{"name":"engine","children":[1,2,3]},{"name":"node_1","mesh":0},{"name":"node_2","mesh":1},{"mesh":2}])");
+  std::string text = gltf(R"([{"name":"engine","children":[1,2,3,4]},{"name":"node_1","mesh":0},{"name":"node_2","mesh":1},{"mesh":2},{"mesh":3}])");
   const std::string one = R"({"primitives":[{"attributes":{"POSITION":0}}]})", triangle = R"({"attributes":{"POSITION":0}})";
-  text.replace(text.find(one), one.size(), R"({"name":"Piston_123-844","primitives":[)" + triangle + R"(]},{"name":"node_1","primitives":[)" + triangle + "," + triangle + R"(]},)" + one);
+  text.replace(text.find(one), one.size(), R"({"name":"Piston_123-844","primitives":[)" + triangle + R"(]},{"name":"node_1","primitives":[)" + triangle + "," + triangle + R"(]},)" + one + R"(,{"name":"Rod","primitives":[)" + triangle + "]}");
   const Mesh mesh = read(write("meshes.gltf", text));
-  ASSERT_EQ(mesh.parts.size(), 3u);
+  ASSERT_EQ(mesh.parts.size(), 4u);
   EXPECT_EQ(mesh.parts[0].also, "Piston_123-844");
   EXPECT_EQ(mesh.parts[1].also, "node_1") << "two primitives are one part, and its mesh's name has no number";
   EXPECT_EQ(mesh.parts[2].also, "") << "an invented name is none";
+  EXPECT_EQ(mesh.parts[2].path, "engine/node");
+  EXPECT_EQ(mesh.parts[3].path, "engine/Rod") << "a node without a name has its mesh's";
   EXPECT_EQ(take_part(mesh, "Piston_123-844", "meshes.gltf")->parts[0].path, "engine/node_1");
   EXPECT_EQ(take_part(mesh, "node_1", "meshes.gltf")->parts[0].path, "engine/node_1") << "a node's own name goes before a mesh's";
   EXPECT_EQ(take_part(mesh, "#2", "meshes.gltf")->parts[0].path, "engine/node_2");
@@ -334,7 +336,23 @@ TEST_F(MeshImport, AGltfFaceOfAVertexThatDoesNotExistIsRefused) {
       "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],"buffers":[{"byteLength":60,"uri":"i.bin"}]})");
   };
   EXPECT_EQ(read(with(3)).triangles.size(), 2u);
-  EXPECT_THAT(refused(with(9)), HasSubstr("2 triangles in primitive 0 of which 1 can be read"));
+  EXPECT_THAT(refused(with(9)), HasSubstr("2 triangles in mesh 'meshes[0]' of which 1 can be read"));
+}
+
+// The library lists meshes in the order in which nodes name them, not in the file's.
+TEST_F(MeshImport, GltfMeshesMayBeNamedInAnyOrder) {
+  std::string buffer;
+  for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) put(buffer, f);
+  for (const int i : {0, 1, 2, 0, 1, 3}) put(buffer, static_cast<std::uint16_t>(i));
+  write("i.bin", buffer);
+  const Mesh mesh = read(write("order.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[{"name":"a","mesh":1},{"name":"b","mesh":0}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]},{"primitives":[{"attributes":{"POSITION":0},"indices":2}]},{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"},
+        {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],
+      "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],"buffers":[{"byteLength":60,"uri":"i.bin"}]})"));
+  ASSERT_EQ(mesh.parts.size(), 2u);
+  EXPECT_EQ(mesh.parts[0].triangle_count, 1u);
+  EXPECT_EQ(mesh.parts[1].triangle_count, 2u);
 }
 
 /// A triangle (0 0 0) (1 0 0) (0 2 3) as COLLADA has it.
