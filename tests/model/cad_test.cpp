@@ -90,7 +90,7 @@ std::vector<std::string> paths(const Mesh& mesh) {
   return out;
 }
 
-/// A bored block, 100 × 60 × 40 mm, its corner at the origin, and a lid with two bolts, 5 mm above it: engine { block, lid { plate, bolt, bolt } }.
+/// A bored block, 100 × 60 × 40 mm, its corner at the origin, and a lid with two bolts, turned by 180° and 5 mm above it: engine { block, lid { plate, bolt, bolt } }.
 /// Shapes are in millimetres.
 class Engine {
  public:
@@ -107,7 +107,7 @@ class Engine {
     called(shapes->AddComponent(lid, bolt, at(10, 10, 10)), "left bolt");
     called(shapes->AddComponent(lid, bolt, at(90, 10, 10)), "right bolt");
     called(shapes->AddComponent(engine, block, at(0, 0, 0)), "block:1");
-    called(shapes->AddComponent(engine, lid, at(0, 0, 45)), "lid:1");
+    called(shapes->AddComponent(engine, lid, half_turn_and(100, 60, 45)), "lid:1");
     shapes->UpdateAssemblies();
   }
 
@@ -135,6 +135,13 @@ class Engine {
     gp_Trsf place;
     place.SetTranslation(gp_Vec(x, y, z));
     return place;
+  }
+
+  /// About z, then to (x, y, z).
+  static TopLoc_Location half_turn_and(double x, double y, double z) {
+    gp_Trsf turn;
+    turn.SetRotation(gp::OZ(), M_PI);
+    return at(x, y, z) * TopLoc_Location(turn);
   }
 
   Handle(TDocStd_Document) document_;
@@ -199,7 +206,8 @@ TEST_P(CadAssembly, ComesInWithItsTreeItsNamesItsUnitAndItsVolumes) {
   const Box3 bolt = box_of(mesh, mesh.parts[3]);
   EXPECT_NEAR(bolt.low.z, 0.055, 1e-9);
   EXPECT_NEAR(bolt.high.z, 0.075, 1e-9);
-  EXPECT_NEAR(0.5 * (bolt.low.x + bolt.high.x), 0.09, 1e-5);
+  EXPECT_NEAR(0.5 * (bolt.low.x + bolt.high.x), 0.01, 1e-5);
+  EXPECT_NEAR(0.5 * (bolt.low.y + bolt.high.y), 0.05, 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemas, CadAssembly,
