@@ -1,10 +1,12 @@
 // STEP, IGES and BREP: files that OpenCASCADE's own writers make, read back by palpate-import-cad.
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
@@ -16,6 +18,7 @@
 #include <STEPCAFControl_Writer.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopoDS_Compound.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <fmt/format.h>
@@ -288,6 +291,27 @@ TEST_F(Cad, FacesOfAnIgesFileAreSewnToABody) {
     EXPECT_NEAR(oriented_volume(mesh), wanted, kVolume * wanted) << solids;
     EXPECT_THAT(report_.notes, Contains(HasSubstr("unit of length is inch")));
   }
+}
+
+TEST_F(Cad, AProductOfSeveralBodiesHasAPartForEach) {
+  TopoDS_Compound all;
+  const BRep_Builder builder;
+  builder.MakeCompound(all);
+  builder.Add(all, BRepPrimAPI_MakeBox(1, 2, 3).Shape());
+  builder.Add(all, BRepPrimAPI_MakeBox(gp_Pnt(5, 0, 0), 2, 2, 2).Shape());
+  builder.Add(all, BRepPrimAPI_MakeBox(gp_Pnt(9, 0, 0), 2, 2, 2).Shell());
+  const std::string path = folder_.path("three.brep");
+  ASSERT_TRUE(BRepTools::Write(all, path.c_str()));
+  const Mesh mesh = read(path);
+  ASSERT_THAT(paths(mesh), ElementsAre("three/solid", "three/solid#2", "three/shell"));
+  EXPECT_NEAR(volume(mesh, mesh.parts[0]), 6, 1e-9);
+  EXPECT_NEAR(box_of(mesh, mesh.parts[2]).low.x, 9, 1e-9);
+}
+
+TEST_F(Cad, AFileOfCurvesHasNoTriangles) {
+  const std::string path = folder_.path("edge.brep");
+  ASSERT_TRUE(BRepTools::Write(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Shape(), path.c_str()));
+  EXPECT_THAT(refused(path), HasSubstr("has no faces"));
 }
 
 TEST_F(Cad, DamagedFilesAreRefusedWithASentence) {
