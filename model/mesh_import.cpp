@@ -114,9 +114,9 @@ bool comes_in_metres(const std::string& path) { return states_unit(path) || is_o
 ImportLimits import_limits(const std::string& path, const ImportLimits& asked) {
   struct stat status {};
   const auto bytes = ::stat(path.c_str(), &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
-  const bool packed = ending_of(path) == ".3mf", cad = is_cad_file(path);
+  const bool cad = is_cad_file(path);
   ImportLimits limits = asked;
-  if (limits.memory_bytes == 0) limits.memory_bytes = (std::uint64_t{2} << 30) + (packed ? 200 : cad ? 100 : 20) * bytes;
+  if (limits.memory_bytes == 0) limits.memory_bytes = (std::uint64_t{2} << 30) + (cad ? 100 : 20) * bytes;
   if (!(limits.seconds > 0)) limits.seconds = (cad ? 60 : 20) + (cad ? 10 : 1) * static_cast<double>(bytes >> 20);
   return limits;
 }

@@ -22,7 +22,7 @@ struct ImportLimits {
   double seconds = 0;               ///< of processor time; four times as much by the clock
 };
 
-/// `asked`, with the usual limits in place of zeros: 2 GiB and 20 bytes for each byte of the file (200 of a 3MF, which is packed, 100 of a CAD file), 20 s
+/// `asked`, with the usual limits in place of zeros: 2 GiB and 20 bytes for each byte of the file (100 of a CAD file), 20 s
 /// and 1 s for each MiB (60 s and 10 s for a CAD file, whose triangles are made). Measured: docs/IMPORT.md.
 ImportLimits import_limits(const std::string& path, const ImportLimits& asked);
 
