@@ -85,9 +85,10 @@ void describe_shells(const Orientation& orientation, const std::vector<std::uint
   for (std::size_t p = 0; p < judged.size(); ++p) report.parts[p].sheet = judged[p] > 0 && sheets[p] == judged[p];
 
   std::size_t turned = 0, turned_triangles = 0, sheet = 0, sheet_triangles = 0, one_sided = 0, one_sided_triangles = 0;
-  std::size_t disagreeing = 0;
+  std::size_t disagreeing = 0, loose = 0;
   for (const Shell& shell : orientation.shells) {
-    if (shell.turned) ++turned, turned_triangles += shell.triangles;
+    if (shell.turned && shell.triangles == 1) ++loose;
+    else if (shell.turned) ++turned, turned_triangles += shell.triangles;
     if (shell.sheet) ++sheet, sheet_triangles += shell.triangles;
     if (!shell.orientable) ++one_sided, one_sided_triangles += shell.triangles;
     disagreeing += shell.disagreeing;
@@ -97,6 +98,7 @@ void describe_shells(const Orientation& orientation, const std::vector<std::uint
   if (turned)
     report.notes.push_back(fmt::format("{} of {} edge-connected parts were inside out and have been turned round ({} triangles)", turned,
                                        all, turned_triangles));
+  if (loose) report.notes.push_back(fmt::format("{} triangles share no edge with just one other and were turned with their backs to the inside", loose));
   if (sheet)
     report.notes.push_back(fmt::format("{} of {} edge-connected parts have no inside and count as sheets ({} triangles)", sheet, all,
                                        sheet_triangles));
