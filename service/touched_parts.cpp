@@ -11,7 +11,8 @@ TouchedParts::Body::Body(const MeshReport& of) : report(&of) {
 
 void TouchedParts::Body::mark(const std::vector<std::uint32_t>& triangles, std::vector<bool>& touched) const {
   for (const std::uint32_t triangle : triangles)
-    if (const auto part = std::upper_bound(ends.begin(), ends.end(), triangle); part != ends.end()) touched[static_cast<std::size_t>(part - ends.begin())] = true;
+    if (const auto part = std::upper_bound(ends.begin(), ends.end(), triangle); part != ends.end())
+      touched[static_cast<std::size_t>(part - ends.begin())] = true;
 }
 
 std::vector<std::string> TouchedParts::Body::names(const std::vector<bool>& touched) const {
@@ -21,7 +22,8 @@ std::vector<std::string> TouchedParts::Body::names(const std::vector<bool>& touc
   return out;
 }
 
-TouchedParts::TouchedParts(const SceneGeometry& geometry) : static_(geometry.mockup_report), mobile_(geometry.tool_report) {}
+TouchedParts::TouchedParts(const SceneGeometry& geometry)
+    : static_(geometry.mockup_report), mobile_(geometry.tool_report) {}
 
 std::vector<std::string> TouchedParts::statics(const Contacts& contacts) const {
   std::vector<bool> touched(static_.ends.size());

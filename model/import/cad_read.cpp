@@ -1,4 +1,6 @@
-// read_mesh() of CAD files, STEP, IGES and BREP, for the program palpate-import-cad: OpenCASCADE reads and triangulates them.
+// read_mesh() of CAD files, STEP, IGES and BREP, for the program palpate-import-cad: OpenCASCADE reads and
+// triangulates them.
+#include <fmt/format.h>
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
@@ -34,7 +36,6 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
@@ -56,9 +57,11 @@ namespace palpate {
 namespace {
 
 constexpr double kMetresPerMillimetre = 1e-3;
-constexpr double kSewingMm = 0.01;   ///< IGES faces whose edges are nearer belong together (chosen: what exporters round to)
+constexpr double kSewingMm =
+    0.01;  ///< IGES faces whose edges are nearer belong together (chosen: what exporters round to)
 
-constexpr double kFewestDeflections = 8;   ///< no body is made of triangles more coarsely than this part of its longest side, whatever is asked for (chosen)
+constexpr double kFewestDeflections = 8;  ///< no body is made of triangles more coarsely than this part of
+                                          ///< its longest side, whatever is asked for (chosen)
 
 enum class Format { kStep, kIges, kBrep };
 
@@ -78,7 +81,8 @@ std::string text_of(const TCollection_ExtendedString& text) {
 /// "MILLIMETRE" as "millimetre".
 std::string unit_name(const char* text) {
   std::string out = clean_name(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
   return out;
 }
 
@@ -93,7 +97,8 @@ class Bodies {
   /// `name_of`: the name that the file gives a solid within a shape; may be empty.
   explicit Bodies(std::function<std::string(const TopoDS_Shape&)> name_of) : name_of_(std::move(name_of)) {}
 
-  void add(const TDF_Label& label, const TopLoc_Location& above, const std::string& folder, SiblingNames& siblings) {
+  void add(const TDF_Label& label, const TopLoc_Location& above, const std::string& folder,
+           SiblingNames& siblings) {
     TDF_Label product = label;
     TopLoc_Location here = above;
     std::string instance;
@@ -105,7 +110,9 @@ class Bodies {
     std::string name = label_name(product);
     if (name.empty()) name = instance.empty() ? "part" : instance;
     const std::string path = folder + siblings.unique(name);
-    if (!XCAFDoc_ShapeTool::IsAssembly(product)) return add(XCAFDoc_ShapeTool::GetShape(product).Moved(here), path, instance == name ? std::string() : instance);
+    if (!XCAFDoc_ShapeTool::IsAssembly(product))
+      return add(XCAFDoc_ShapeTool::GetShape(product).Moved(here), path,
+                 instance == name ? std::string() : instance);
     TDF_LabelSequence children;
     XCAFDoc_ShapeTool::GetComponents(product, children);
     SiblingNames names;
@@ -116,8 +123,10 @@ class Bodies {
   void add(const TopoDS_Shape& shape, const std::string& path, const std::string& also) {
     std::vector<TopoDS_Shape> solids, shells, faces;
     for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) solids.push_back(it.Current());
-    for (TopExp_Explorer it(shape, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next()) shells.push_back(it.Current());
-    for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) faces.push_back(it.Current());
+    for (TopExp_Explorer it(shape, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next())
+      shells.push_back(it.Current());
+    for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next())
+      faces.push_back(it.Current());
     if (solids.size() + shells.size() + (faces.empty() ? 0 : 1) == 1) {
       bodies_.push_back({path, also, shape});
       return;
@@ -126,7 +135,12 @@ class Bodies {
     for (const auto* list : {&solids, &shells})
       for (const TopoDS_Shape& body : *list) {
         const std::string name = name_of_(body);
-        bodies_.push_back({path + "/" + names.unique(!name.empty() ? name : list == &solids ? "solid" : "shell"), {}, body});
+        bodies_.push_back({path + "/" +
+                               names.unique(!name.empty()     ? name
+                                            : list == &solids ? "solid"
+                                                              : "shell"),
+                           {},
+                           body});
       }
     if (!faces.empty()) bodies_.push_back({path + "/" + names.unique("faces"), {}, together(faces)});
   }
@@ -147,7 +161,8 @@ class Bodies {
 };
 
 /// All bodies of a document that a reader has filled.
-std::vector<Body> bodies_of(const Handle(TDocStd_Document)& document, std::function<std::string(const TopoDS_Shape&)> name_of) {
+std::vector<Body> bodies_of(const Handle(TDocStd_Document) & document,
+                            std::function<std::string(const TopoDS_Shape&)> name_of) {
   TDF_LabelSequence roots;
   XCAFDoc_DocumentTool::ShapeTool(document->Main())->GetFreeShapes(roots);
   Bodies bodies(std::move(name_of));
@@ -163,7 +178,7 @@ Handle(TDocStd_Document) new_document() {
 }
 
 /// Faces that the file has and the library could not make.
-std::size_t lost_faces(const Handle(XSControl_WorkSession)& session) {
+std::size_t lost_faces(const Handle(XSControl_WorkSession) & session) {
   const Handle(Transfer_TransientProcess) process = session->TransferReader()->TransientProcess();
   const Handle(Interface_InterfaceModel) model = session->Model();
   std::size_t lost = 0;
@@ -181,24 +196,31 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
   reader.SetNameMode(true);
   reader.SetColorMode(false), reader.SetLayerMode(false), reader.SetPropsMode(false);
   reader.SetGDTMode(false), reader.SetMatMode(false), reader.SetViewMode(false), reader.SetSHUOMode(false);
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) return bad_value(fmt::format("'{}' can't be read: it breaks the rules of STEP files (ISO 10303-21)", path));
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
+    return bad_value(
+        fmt::format("'{}' can't be read: it breaks the rules of STEP files (ISO 10303-21)", path));
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
   Handle(TDocStd_Document) document = new_document();
   if (!reader.Transfer(document)) return bad_value(fmt::format("'{}' has no shape that can be read", path));
   std::string unit;
-  for (const TCollection_AsciiString& length : lengths) unit += (unit.empty() ? "" : ", ") + unit_name(length.ToCString());
-  report.notes.push_back(unit.empty() ? "it states no unit of length, millimetres were taken; coordinates are in metres" : fmt::format("its unit of length is {}; coordinates are in metres", unit));
+  for (const TCollection_AsciiString& length : lengths)
+    unit += (unit.empty() ? "" : ", ") + unit_name(length.ToCString());
+  report.notes.push_back(
+      unit.empty() ? "it states no unit of length, millimetres were taken; coordinates are in metres"
+                   : fmt::format("its unit of length is {}; coordinates are in metres", unit));
   const Handle(XSControl_WorkSession) session = reader.Reader().WS();
-  if (const std::size_t lost = lost_faces(session)) report.notes.push_back(fmt::format("{} faces could not be read and are left out", lost));
+  if (const std::size_t lost = lost_faces(session))
+    report.notes.push_back(fmt::format("{} faces could not be read and are left out", lost));
   return bodies_of(document, [transfer = session->TransferReader()](const TopoDS_Shape& shape) {
-    const auto item = Handle(StepRepr_RepresentationItem)::DownCast(transfer->EntityFromShapeResult(shape, 1));
+    const auto item =
+        Handle(StepRepr_RepresentationItem)::DownCast(transfer->EntityFromShapeResult(shape, 1));
     return item.IsNull() || item->Name().IsNull() ? std::string() : clean_name(item->Name()->ToCString());
   });
 }
 
-/// IGES has faces one by one, and some the wrong way round: those whose edges meet are joined, so that a body is closed again. Which side is out is found
-/// out for all formats in the same way (model/orientation.h).
+/// IGES has faces one by one, and some the wrong way round: those whose edges meet are joined, so that a body
+/// is closed again. Which side is out is found out for all formats in the same way (model/orientation.h).
 std::vector<Body> sew(std::vector<Body> bodies, const std::string& name) {
   BRepBuilderAPI_Sewing sewing(kSewingMm);
   std::vector<Body> out;
@@ -222,19 +244,24 @@ Result<std::vector<Body>> read_iges(const std::string& path, const std::string& 
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
   reader.SetColorMode(false), reader.SetLayerMode(false);
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) return bad_value(fmt::format("'{}' can't be read: it breaks the rules of IGES files", path));
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
+    return bad_value(fmt::format("'{}' can't be read: it breaks the rules of IGES files", path));
   const Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
   Handle(TDocStd_Document) document = new_document();
   if (!reader.Transfer(document)) return bad_value(fmt::format("'{}' has no shape that can be read", path));
-  const Handle(TCollection_HAsciiString) unit = model.IsNull() ? Handle(TCollection_HAsciiString)() : model->GlobalSection().UnitName();
-  report.notes.push_back(unit.IsNull() ? "it states no unit of length, millimetres were taken; coordinates are in metres"
-                                       : fmt::format("its unit of length is {}; coordinates are in metres", unit_name(unit->ToCString())));
+  const Handle(TCollection_HAsciiString) unit =
+      model.IsNull() ? Handle(TCollection_HAsciiString)() : model->GlobalSection().UnitName();
+  report.notes.push_back(
+      unit.IsNull()
+          ? "it states no unit of length, millimetres were taken; coordinates are in metres"
+          : fmt::format("its unit of length is {}; coordinates are in metres", unit_name(unit->ToCString())));
   return sew(bodies_of(document, [](const TopoDS_Shape&) { return std::string(); }), name);
 }
 
 Result<std::vector<Body>> read_brep(const std::string& path, const std::string& name) {
   TopoDS_Shape shape;
-  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull()) return bad_value(fmt::format("'{}' can't be read: it breaks the rules of BREP files", path));
+  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull())
+    return bad_value(fmt::format("'{}' can't be read: it breaks the rules of BREP files", path));
   Bodies bodies([](const TopoDS_Shape&) { return std::string(); });
   bodies.add(shape, name, {});
   return bodies.take();
@@ -243,16 +270,22 @@ Result<std::vector<Body>> read_brep(const std::string& path, const std::string& 
 /// What the library would not notice: a file that ends too early.
 std::string distrust(Format format, std::string_view bytes) {
   if (format == Format::kStep) {
-    if (bytes.substr(0, 4096).find("ISO-10303-21") == std::string_view::npos) return "is no STEP file: ISO-10303-21 does not stand at its beginning";
-    if (bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 4096)).find("END-ISO-10303-21") == std::string_view::npos) return "is cut short: END-ISO-10303-21 does not stand at its end";
+    if (bytes.substr(0, 4096).find("ISO-10303-21") == std::string_view::npos)
+      return "is no STEP file: ISO-10303-21 does not stand at its beginning";
+    if (bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 4096)).find("END-ISO-10303-21") ==
+        std::string_view::npos)
+      return "is cut short: END-ISO-10303-21 does not stand at its end";
   }
   if (format == Format::kIges) {
-    constexpr std::size_t kSection = 72;   // the letter of a line's section
-    if (bytes.size() <= kSection || bytes[kSection] != 'S') return "is no IGES file of text lines: its first line has no S in column 73";
+    constexpr std::size_t kSection = 72;  // the letter of a line's section
+    if (bytes.size() <= kSection || bytes[kSection] != 'S')
+      return "is no IGES file of text lines: its first line has no S in column 73";
     const std::size_t last = bytes.find_last_not_of("\r\n \t"), begin = bytes.rfind('\n', last);
-    if (begin == std::string_view::npos || last - begin <= kSection || bytes[begin + 1 + kSection] != 'T') return "is cut short: its last line has no T in column 73";
+    if (begin == std::string_view::npos || last - begin <= kSection || bytes[begin + 1 + kSection] != 'T')
+      return "is cut short: its last line has no T in column 73";
   }
-  if (format == Format::kBrep && bytes.substr(0, 4096).find("CASCADE Topology") == std::string_view::npos) return "is no BREP file: 'CASCADE Topology' does not stand at its beginning";
+  if (format == Format::kBrep && bytes.substr(0, 4096).find("CASCADE Topology") == std::string_view::npos)
+    return "is no BREP file: 'CASCADE Topology' does not stand at its beginning";
   return {};
 }
 
@@ -268,20 +301,28 @@ class Triangulator {
     IMeshTools_Parameters parameters;
     parameters.Angle = tessellation.angle_deg * std::numbers::pi / 180;
     parameters.AngleInterior = parameters.Angle;
-    TopTools_DataMapOfShapeShape done;   // instances share their triangles, too
+    TopTools_DataMapOfShapeShape done;  // instances share their triangles, too
     for (const Body& body : bodies) {
       const TopoDS_Shape own = body.shape.Located(TopLoc_Location());
       if (!done.IsBound(own)) {
         parameters.Deflection = std::min(*deflection, longest_side(own) / kFewestDeflections) / unit_m_;
         parameters.DeflectionInterior = parameters.Deflection;
-        parameters.MinSize = parameters.Deflection / 10;   // edges shorter than that are not divided for the angle's sake
+        parameters.MinSize =
+            parameters.Deflection / 10;  // edges shorter than that are not divided for the angle's sake
         done.Bind(own, with_triangles(own, parameters));
       }
-      if (std::string wrong = add({body.path, body.also, done.Find(own).Moved(body.shape.Location())}); !wrong.empty()) return bad_value(fmt::format("'{}' {}", file_, wrong));
+      if (std::string wrong = add({body.path, body.also, done.Find(own).Moved(body.shape.Location())});
+          !wrong.empty())
+        return bad_value(fmt::format("'{}' {}", file_, wrong));
     }
-    if (mesh_.triangles.empty()) return bad_value(fmt::format("'{}' has no faces of which triangles can be made", file_));
-    if (flat_) report.notes.push_back(fmt::format("{} faces gave no triangles, the first is face {} of '{}'", flat_, first_flat_, flat_path_));
-    report.notes.push_back(fmt::format("{} faces became triangles, about {:.4g} m from them at most, {:.4g}° between neighbours", faces_, *deflection, tessellation.angle_deg));
+    if (mesh_.triangles.empty())
+      return bad_value(fmt::format("'{}' has no faces of which triangles can be made", file_));
+    if (flat_)
+      report.notes.push_back(fmt::format("{} faces gave no triangles, the first is face {} of '{}'", flat_,
+                                         first_flat_, flat_path_));
+    report.notes.push_back(
+        fmt::format("{} faces became triangles, about {:.4g} m from them at most, {:.4g}° between neighbours",
+                    faces_, *deflection, tessellation.angle_deg));
     return std::move(mesh_);
   }
 
@@ -290,13 +331,15 @@ class Triangulator {
     std::size_t count = 0;
     for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
       TopLoc_Location location;
-      const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
+      const Handle(Poly_Triangulation) triangulation =
+          BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
       if (triangulation.IsNull() || triangulation->NbTriangles() == 0) ++count;
     }
     return count;
   }
 
-  /// The shape, or one of the same form that the library can make triangles of: it fails on some cones, and not where they are spline surfaces.
+  /// The shape, or one of the same form that the library can make triangles of: it fails on some cones, and
+  /// not where they are spline surfaces.
   static TopoDS_Shape with_triangles(const TopoDS_Shape& shape, const IMeshTools_Parameters& parameters) {
     BRepMesh_IncrementalMesh(shape, parameters);
     const std::size_t without = faces_without_triangles(shape);
@@ -338,7 +381,8 @@ class Triangulator {
       if (node.empty() || is_below(body.path, node)) BRepBndLib::Add(body.shape, box, false);
     if (box.IsVoid()) return bad_value(fmt::format("'{}' has no faces, only curves or points", file_));
     const double longest = longest_side(box);
-    if (!(longest > 0) || !std::isfinite(longest)) return bad_value(fmt::format("'{}' is {} m long; it can't be made of triangles", file_, longest));
+    if (!(longest > 0) || !std::isfinite(longest))
+      return bad_value(fmt::format("'{}' is {} m long; it can't be made of triangles", file_, longest));
     return longest / kDeflectionsPerSide;
   }
 
@@ -354,29 +398,41 @@ class Triangulator {
         if (++flat_ == 1) first_flat_ = number, flat_path_ = body.path;
         continue;
       }
-      if (std::string wrong = add(*triangulation, location.Transformation(), face.Orientation() == TopAbs_REVERSED, body.path); !wrong.empty()) return wrong;
+      if (std::string wrong = add(*triangulation, location.Transformation(),
+                                  face.Orientation() == TopAbs_REVERSED, body.path);
+          !wrong.empty())
+        return wrong;
     }
     if (mesh_.triangles.size() > first)
-      mesh_.parts.push_back({body.path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first), body.also});
+      mesh_.parts.push_back({body.path, static_cast<std::uint32_t>(first),
+                             static_cast<std::uint32_t>(mesh_.triangles.size() - first), body.also});
     return {};
   }
 
-  std::string add(const Poly_Triangulation& triangulation, const gp_Trsf& transform, bool reversed, const std::string& path) {
-    const std::size_t base = mesh_.vertices.size(), nodes = static_cast<std::size_t>(triangulation.NbNodes()), count = static_cast<std::size_t>(triangulation.NbTriangles());
-    if (mesh_.triangles.size() + count > kMaxTriangles || base + nodes > 3 * kMaxTriangles) return fmt::format("becomes more than {} triangles; a larger tessellation makes fewer", kMaxTriangles);
+  std::string add(const Poly_Triangulation& triangulation, const gp_Trsf& transform, bool reversed,
+                  const std::string& path) {
+    const std::size_t base = mesh_.vertices.size(), nodes = static_cast<std::size_t>(triangulation.NbNodes()),
+                      count = static_cast<std::size_t>(triangulation.NbTriangles());
+    if (mesh_.triangles.size() + count > kMaxTriangles || base + nodes > 3 * kMaxTriangles)
+      return fmt::format("becomes more than {} triangles; a larger tessellation makes fewer", kMaxTriangles);
     for (int i = 1; i <= triangulation.NbNodes(); ++i) {
       const gp_Pnt point = triangulation.Node(i).Transformed(transform);
       const Vec3 metres = unit_m_ * Vec3(point.X(), point.Y(), point.Z());
       for (int k = 0; k < 3; ++k)
-        if (!(std::abs(metres[k]) <= kLargestCoordinate)) return fmt::format("has coordinate {} m in '{}', which is not a number within ±{} m", metres[k], path, kLargestCoordinate);
+        if (!(std::abs(metres[k]) <= kLargestCoordinate))
+          return fmt::format("has coordinate {} m in '{}', which is not a number within ±{} m", metres[k],
+                             path, kLargestCoordinate);
       mesh_.vertices.push_back(metres);
     }
-    const bool turned = reversed != (transform.VectorialPart().Determinant() < 0);   // a mirror turns faces round
+    const bool turned =
+        reversed != (transform.VectorialPart().Determinant() < 0);  // a mirror turns faces round
     for (int i = 1; i <= triangulation.NbTriangles(); ++i) {
       int a = 0, b = 0, c = 0;
       triangulation.Triangle(i).Get(a, b, c);
       if (turned) std::swap(b, c);
-      const auto vertex = [&](int node) { return static_cast<std::uint32_t>(base + static_cast<std::size_t>(node) - 1); };
+      const auto vertex = [&](int node) {
+        return static_cast<std::uint32_t>(base + static_cast<std::size_t>(node) - 1);
+      };
       mesh_.triangles.push_back({vertex(a), vertex(b), vertex(c)});
     }
     return {};
@@ -391,31 +447,41 @@ class Triangulator {
 
 Format format_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
   if (ending == ".igs" || ending == ".iges") return Format::kIges;
   return ending == ".brep" || ending == ".brp" ? Format::kBrep : Format::kStep;
 }
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation& tessellation) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder,
+                       const Tessellation& tessellation) {
   report = {path, {}};
   const Format format = format_of(path);
   {
     const Result<FileView> file = FileView::open(path);
     if (!file) return file.error();
     const std::string_view bytes = file->bytes();
-    if (const std::string wrong = distrust(format, bytes); !wrong.empty()) return bad_value(fmt::format("'{}' {}", path, wrong));
-    if (!folder.empty() && bytes.find("DOCUMENT_FILE") != std::string_view::npos) return bad_value(fmt::format("'{}' names other files (DOCUMENT_FILE); export it as one file", path));
+    if (const std::string wrong = distrust(format, bytes); !wrong.empty())
+      return bad_value(fmt::format("'{}' {}", path, wrong));
+    if (!folder.empty() && bytes.find("DOCUMENT_FILE") != std::string_view::npos)
+      return bad_value(fmt::format("'{}' names other files (DOCUMENT_FILE); export it as one file", path));
   }
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   try {
     const std::string name = clean_name(std::filesystem::path(path).stem().string());
-    Result<std::vector<Body>> bodies = format == Format::kStep ? read_step(path, report) : format == Format::kIges ? read_iges(path, name, report) : read_brep(path, name);
+    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report)
+                                       : format == Format::kIges ? read_iges(path, name, report)
+                                                                 : read_brep(path, name);
     if (!bodies) return bodies.error();
-    return Triangulator(path, scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre)).run(*bodies, tessellation, report);
+    return Triangulator(path, scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre))
+        .run(*bodies, tessellation, report);
   } catch (const Standard_Failure& failure) {
-    return bad_value(fmt::format("'{}' can't be read: {}", path, one_line(failure.GetMessageString() && *failure.GetMessageString() ? failure.GetMessageString() : failure.DynamicType()->Name())));
+    return bad_value(fmt::format(
+        "'{}' can't be read: {}", path,
+        one_line(failure.GetMessageString() && *failure.GetMessageString() ? failure.GetMessageString()
+                                                                           : failure.DynamicType()->Name())));
   } catch (const std::exception& error) {
     return bad_value(fmt::format("'{}' can't be read: {}", path, one_line(error.what())));
   }

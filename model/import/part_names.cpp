@@ -7,7 +7,9 @@
 namespace palpate {
 
 std::string clean_name(std::string name) {
-  std::replace_if(name.begin(), name.end(), [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '_');
+  std::replace_if(
+      name.begin(), name.end(),
+      [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '_');
   return name;
 }
 
