@@ -13,6 +13,9 @@
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_InterfaceModel.hxx>
+#include <Interface_ReportEntity.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
@@ -177,6 +180,34 @@ Handle(TDocStd_Document) new_document() {
   return document;
 }
 
+/// What a file's text breaks of the rules, syntax and references to what does not exist: the rest of a
+/// sentence that begins with the file's name. The library would drop what is concerned without a word, or
+/// crash over it.
+std::string broken_text(const Handle(Interface_InterfaceModel) & model) {
+  const Handle(Interface_Check) check = model->GlobalCheck(true);
+  if (check.IsNull() || !check->HasFailed()) return {};
+  return fmt::format("breaks the rules of STEP files in {} {}, first: {}", check->NbFails(),
+                     check->NbFails() == 1 ? "place" : "places", one_line(clean_name(check->CFail(1))));
+}
+
+/// Points, curves, surfaces and faces of which the library has read something wrong. It goes on with the
+/// others, and may crash over them: so this goes to standard error, too, of which the last line is told when
+/// that happens.
+void note_broken_shapes(const Handle(Interface_InterfaceModel) & model, ImportReport& report) {
+  std::size_t broken = 0;
+  std::string first;
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const std::string_view type = model->Value(i)->DynamicType()->Name();
+    if (!model->IsReportEntity(i) || !(type.starts_with("StepGeom_") || type.starts_with("StepShape_")))
+      continue;
+    const Handle(Interface_Check) check = model->ReportEntity(i)->Check();
+    if (check->HasFailed() && ++broken == 1) first = one_line(clean_name(check->CFail(1)));
+  }
+  if (broken == 0) return;
+  report.notes.push_back(fmt::format("{} entities of its shapes break the rules, first: {}", broken, first));
+  fmt::print(stderr, "{}\n", report.notes.back());
+}
+
 /// Faces that the file has and the library could not make.
 std::size_t lost_faces(const Handle(XSControl_WorkSession) & session) {
   const Handle(Transfer_TransientProcess) process = session->TransferReader()->TransientProcess();
@@ -199,6 +230,10 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     return bad_value(
         fmt::format("'{}' can't be read: it breaks the rules of STEP files (ISO 10303-21)", path));
+  const Handle(Interface_InterfaceModel) model = reader.Reader().WS()->Model();
+  if (const std::string wrong = broken_text(model); !wrong.empty())
+    return bad_value(fmt::format("'{}' {}", path, wrong));
+  note_broken_shapes(model, report);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
   Handle(TDocStd_Document) document = new_document();

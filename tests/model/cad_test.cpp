@@ -40,7 +40,8 @@
 #include "model/scene_file.h"
 #include "tests/model/temporary_folder.h"
 
-// For builds with the address sanitizer: OpenCASCADE's writers, which this test calls in its own process, leave memory behind.
+// For builds with the address sanitizer: OpenCASCADE's writers, which this test calls in its own process,
+// leave memory behind.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libTK"; }
 
@@ -346,6 +347,14 @@ TEST_F(Cad, DamagedFilesAreRefusedWithASentence) {
   const std::string text = whole.str();
   EXPECT_THAT(refused(folder_.write("short.step", text.substr(0, text.size() / 2))),
               HasSubstr("is cut short"));
+  std::string broken = text;
+  broken.replace(broken.find("CARTESIAN_POINT"), 15, "CARTESIAN_POINT(");  // a bracket too many
+  EXPECT_THAT(refused(folder_.write("syntax.step", broken)),
+              AllOf(HasSubstr("breaks the rules of STEP files"), HasSubstr("Line")));
+  broken = text;
+  broken.replace(broken.find("VERTEX_POINT('',#") + 17, 1, "99999");
+  EXPECT_THAT(refused(folder_.write("reference.step", broken)),
+              AllOf(HasSubstr("breaks the rules of STEP files"), HasSubstr("Unresolved Reference")));
   EXPECT_THAT(refused(folder_.write("empty.stp", "")), HasSubstr("empty"));
   EXPECT_THAT(refused(folder_.write("other.step", "solid\nendsolid\n")), HasSubstr("is no STEP file"));
   EXPECT_THAT(refused(folder_.write("other.iges", "nothing")), HasSubstr("is no IGES file"));
