@@ -242,6 +242,16 @@ TEST_F(MeshImport, PlyAndOff) {
   EXPECT_THAT(refused(write("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 7\n")), HasSubstr("vertex index 7"));
 }
 
+// What Blender 2.47 writes. Other lines that PLY does not know are refused, for the library takes some of them for elements.
+TEST_F(MeshImport, APlyMayTellItsMakerWithoutSayingComment) {
+  const auto with = [&](const char* line) {
+    return write("maker.ply", std::string("ply\nformat ascii 1.0\n") + line + "\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                              "element face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  };
+  EXPECT_EQ(read(with("Created by Blender3D 247 - www.blender.org, source file:")).triangles.size(), 1u);
+  EXPECT_THAT(refused(with("Elements by nobody")), HasSubstr("begins with 'Elements', which PLY does not know"));
+}
+
 /// A triangle (0,0,0) (1,0,0) (0,1,0) in a buffer beside the file; `nodes` is the array's JSON.
 std::string gltf(const std::string& nodes, const std::string& scene = "[0]", const std::string& count = "3") {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + scene + R"(}],"nodes":)" + nodes +
