@@ -55,7 +55,10 @@ std::vector<std::uint32_t> list_parts(const Mesh& mesh, const LatticeMesh& built
   for (std::uint32_t t = 0; t < part_of.size(); ++t) {
     MeshReport::Part& part = report.parts[part_of[t]];
     ++part.triangles;
-    if (built.collapsed(t)) continue;
+    if (built.collapsed(t)) {
+      ++part.collapsed;
+      continue;
+    }
     for (int k = 0; k < 3; ++k) {
       const Vec3 corner = lattice.origin_m + lattice.step_m * Vec3(built.corner(t, k));
       std::uint8_t& has = has_box[part_of[t]];
@@ -82,9 +85,10 @@ void describe_shells(const Orientation& orientation, const std::vector<std::uint
   for (std::size_t p = 0; p < judged.size(); ++p) report.parts[p].sheet = judged[p] > 0 && sheets[p] == judged[p];
 
   std::size_t turned = 0, turned_triangles = 0, sheet = 0, sheet_triangles = 0, one_sided = 0, one_sided_triangles = 0;
-  std::size_t disagreeing = 0;
+  std::size_t disagreeing = 0, loose = 0;
   for (const Shell& shell : orientation.shells) {
-    if (shell.turned) ++turned, turned_triangles += shell.triangles;
+    if (shell.turned && shell.triangles == 1) ++loose;
+    else if (shell.turned) ++turned, turned_triangles += shell.triangles;
     if (shell.sheet) ++sheet, sheet_triangles += shell.triangles;
     if (!shell.orientable) ++one_sided, one_sided_triangles += shell.triangles;
     disagreeing += shell.disagreeing;
@@ -94,6 +98,7 @@ void describe_shells(const Orientation& orientation, const std::vector<std::uint
   if (turned)
     report.notes.push_back(fmt::format("{} of {} edge-connected parts were inside out and have been turned round ({} triangles)", turned,
                                        all, turned_triangles));
+  if (loose) report.notes.push_back(fmt::format("{} triangles share no edge with just one other and were turned with their backs to the inside", loose));
   if (sheet)
     report.notes.push_back(fmt::format("{} of {} edge-connected parts have no inside and count as sheets ({} triangles)", sheet, all,
                                        sheet_triangles));
@@ -106,9 +111,10 @@ void describe_surface(MeshReport& report, const LatticeMesh& mesh) {
   if (report.collapsed) report.notes.push_back(fmt::format("{} triangles have no area on the lattice and take no part", report.collapsed));
   if (report.duplicate) report.notes.push_back(fmt::format("{} triangles repeat another's three corners", report.duplicate));
   if (report.nonmanifold_edges) report.notes.push_back(fmt::format("{} edges carry more than two triangles", report.nonmanifold_edges));
-  if (!mesh.closed)
-    report.notes.push_back(fmt::format("the surface is open: {} edges carry one triangle, the largest gap is {:.3g} m across",
-                                       report.open_edges, report.largest_gap_m));
+  if (mesh.closed && report.open_edges)
+    report.notes.push_back(fmt::format("{} edges carry one triangle and are met by shorter ones of their neighbours (T-junctions): the surface has no gap there", report.open_edges));
+  if (!mesh.closed && !report.open_edges)
+    report.notes.push_back("the surface is not closed though no edge carries one triangle alone: edges with more than two triangles don't cancel");
 }
 
 Result<Vec3> centre_of_mass(const std::optional<Vec3>& asked, const LatticeMesh& tool, const SurfaceMeasure& measure,

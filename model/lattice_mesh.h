@@ -71,6 +71,7 @@ struct MeshReport {
   struct Part {
     std::string path;
     std::uint32_t triangles = 0;
+    std::uint32_t collapsed = 0;        ///< of them, without an area on the lattice
     bool closed = false;
     bool sheet = false;
     bool turned = false;

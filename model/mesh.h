@@ -13,6 +13,7 @@ struct MeshPart {
   std::string path;               ///< node names from the root, joined by '/'
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
+  std::string also = {};          ///< another name that the file has for it (glTF: its mesh; CAD: this place in the assembly); empty: none
 };
 
 /// Triangles as imported or generated: metres, in the frame of the file (node transforms applied).

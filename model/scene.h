@@ -18,6 +18,7 @@ namespace palpate {
 struct MeshSource {
   std::string file;                          ///< absolute after loading; empty when generated
   double scale = 1;                          ///< metres per file unit
+  bool scale_stated = false;                 ///< the scene says `units` or `scale`
   std::string part;                          ///< node taken out; empty: all
   std::vector<std::string> without;          ///< nodes left out
   std::string generate;                      ///< generator name, e.g. "disassembly/mockup"
@@ -42,6 +43,8 @@ struct ResponseSettings {
   std::optional<double> sample_spacing_m;    ///< empty: auto
   std::uint32_t contact_samples = kContactSamples;   ///< SceneGeometry::contact_samples
   std::optional<double> voxel_size_m;        ///< empty: auto
+  std::optional<double> tessellation_m;      ///< Tessellation::deflection_m; empty: auto, what a sample's spacing asks for
+  double tessellation_angle_deg = 15;        ///< Tessellation::angle_deg
 };
 
 enum class ForceLaw : std::uint8_t { kPrinted, kCorrected };

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "model/generate.h"
+#include "model/mesh_import.h"
 #include "model/one_line.h"
 #include "model/path_file.h"
 #include "model/scene_json.h"
@@ -20,7 +21,7 @@ const std::map<std::string, std::vector<std::string>>& scene_keys() {
       {"static", {"mesh", "generate", "units", "scale", "part", "without", "position", "rotation"}},
       {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
-      {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size", "contact_samples"}},
+      {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size", "contact_samples", "tessellation", "tessellation_angle_deg"}},
       {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms", "change_n_per_s", "slew_ms", "passivity",
                    "coupling_n_per_m", "coupling_nm_per_rad"}},
       {"device",
@@ -92,11 +93,13 @@ void read_source(const SceneObject& body, const char* usual_body, MeshSource& so
   } else {
     body.text("mesh", source.file);
     source.file = beside(body.file(), source.file);
+    if (body.has("units") && states_unit(source.file)) body.fail("units", "stands beside a file that states its unit and comes in metres; leave it out (\"scale\" makes it larger or smaller)");
   }
   const std::vector<std::string> units{"m", "mm", "cm", "in"};
   constexpr double kMetres[] = {1, 1e-3, 1e-2, 0.0254};
   if (const auto unit = body.choice("units", units)) source.scale = kMetres[*unit];
   body.number("scale", {0, 1e6, " m per unit of the file", true}, source.scale);
+  source.scale_stated = body.has("units") || body.has("scale");
   body.text("part", source.part);
   body.texts("without", source.without);
 }
@@ -142,6 +145,8 @@ void read_response(const SceneObject& scene_json, ResponseSettings& response) {
   body.number("smooth_angle_deg", {0, 90, " degrees"}, response.smooth_angle_deg);
   read_length(body, "sample_spacing", response.sample_spacing_m);
   read_length(body, "voxel_size", response.voxel_size_m);
+  read_length(body, "tessellation", response.tessellation_m);
+  body.number("tessellation_angle_deg", {1, 90, " degrees"}, response.tessellation_angle_deg);
   int samples = static_cast<int>(response.contact_samples);
   body.whole("contact_samples", 0, 1 << 20, samples);
   response.contact_samples = static_cast<std::uint32_t>(samples);

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "model/cache/geometry_cache.h"
 #include "model/generate.h"
@@ -34,11 +36,44 @@ Result<Mesh> generate(const MeshSource& source) {
   return tool ? std::move(scene->tool) : std::move(scene->mockup);
 }
 
-Result<Mesh> mesh_of(const MeshSource& source, const std::string& folder, const ImportLimits& limits, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
-  ImportReport report;
-  Result<Mesh> mesh = source.file.empty() ? generate(source) : import_mesh_below(folder, source.file, source.scale, report, limits, go_on);
+/// Reads the files of a scene, each once: what several bodies take from one file is kept until the last has had it.
+class Files {
+ public:
+  Files(const Scene& scene, const std::string& folder, const ImportLimits& limits) : folder_(folder), limits_(limits) {
+    ++uses_[key(scene.tool.source)];
+    for (const StaticBody& body : scene.statics) ++uses_[key(body.source)];
+  }
+
+  Result<Mesh> read(const MeshSource& source, const Tessellation& tessellation, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
+    int& uses = uses_[key(source)];
+    const auto kept = kept_.find(key(source));
+    if (kept != kept_.end()) {
+      if (--uses > 0) return kept->second;
+      Mesh last = std::move(kept->second);
+      kept_.erase(kept);
+      return last;
+    }
+    ImportReport report;
+    Result<Mesh> mesh = import_mesh_below(folder_, source.file, source.scale, report, limits_, go_on, tessellation);
+    if (!mesh) return mesh;
+    for (const std::string& note : report.notes) warnings.push_back(source.file + ": " + note);
+    if (--uses > 0) kept_[key(source)] = *mesh;
+    return mesh;
+  }
+
+ private:
+  using Key = std::pair<std::string, double>;
+  static Key key(const MeshSource& source) { return {source.file, source.scale}; }
+
+  const std::string& folder_;
+  const ImportLimits& limits_;
+  std::map<Key, int> uses_;      ///< still to come
+  std::map<Key, Mesh> kept_;
+};
+
+Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
+  Result<Mesh> mesh = source.file.empty() ? generate(source) : files.read(source, tessellation, go_on, warnings);
   if (!mesh) return mesh;
-  for (const std::string& note : report.notes) warnings.push_back(source.file + ": " + note);
   if (!source.part.empty()) mesh = take_part(*mesh, source.part, source_name(source));
   if (mesh && !source.without.empty()) mesh = without_parts(*mesh, source.without, source_name(source));
   if (mesh && mesh->triangles.empty()) return bad_value(source_name(source) + " has no triangle left after \"part\" and \"without\"");
@@ -53,7 +88,7 @@ void place(const Mesh& body, const Pose& placement, const std::string& prefix, M
   for (const auto& [a, b, c] : body.triangles) mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
   for (const MeshPart& part : body.parts) {
     const std::string path = prefix.empty() ? part.path : part.path.empty() ? prefix : prefix + "/" + part.path;
-    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count});
+    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count, part.also});
   }
 }
 
@@ -87,6 +122,29 @@ void warn_of_spacing(Scene& scene, const SceneGeometry& geometry) {
   scene.warnings.emplace_back(text);
 }
 
+/// What the scene says of samples and voxels asks for this much; 0: it says nothing.
+double stated_deflection(const ResponseSettings& response) {
+  constexpr double kDeflectionsPerSample = 4, kSamplesPerVoxel = 4;
+  if (response.tessellation_m) return *response.tessellation_m;
+  if (response.sample_spacing_m) return *response.sample_spacing_m / kDeflectionsPerSample;
+  return response.voxel_size_m ? *response.voxel_size_m / kSamplesPerVoxel / kDeflectionsPerSample : 0;
+}
+
+/// Parts of which nothing is left on the lattice.
+void warn_of_vanished(const char* what, const MeshReport& report, double step_m, std::vector<std::string>& warnings) {
+  std::size_t count = 0;
+  const MeshReport::Part* first = nullptr;
+  for (const MeshReport::Part& part : report.parts) {
+    if (part.collapsed < part.triangles) continue;
+    if (++count == 1) first = &part;
+  }
+  if (count == 0) return;
+  char size[32];
+  std::snprintf(size, sizeof size, "%.3g", step_m);
+  warnings.push_back(std::to_string(count) + (count == 1 ? " part of the " : " parts of the ") + what + (count == 1 ? " has" : " have") + " no area on the lattice, whose step is " + size +
+                     " m, and can't be touched: '" + first->path + "'" + (count > 1 ? " and others" : ""));
+}
+
 bool tell(const Progress& progress, const char* what, double done) { return !progress || progress(what, done); }
 
 }  // namespace
@@ -95,19 +153,23 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
   const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
   SceneMeshes meshes;
   const double bodies = static_cast<double>(scene.statics.size()) + 1;
+  Files files(scene, folder, limits);
+  // The tool comes first: where nothing else says how finely the mock-up's curved surfaces are made of triangles, the tool's size does.
+  const auto tool_go_on = [&] { return tell(progress, "import", 0); };
+  if (!tool_go_on()) return cancelled;
+  Tessellation tessellation{stated_deflection(scene.response), scene.response.tessellation_angle_deg, scene.tool.source.part};
+  auto tool = mesh_of(scene.tool.source, files, tessellation, tool_go_on, scene.warnings);
+  if (!tool) return tool.error();
+  meshes.tool = std::move(*tool);
+  if (tessellation.deflection_m == 0) tessellation.deflection_m = extent(meshes.tool) / kDeflectionsPerSide;
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
-    const auto go_on = [&] { return tell(progress, "import", static_cast<double>(i) / bodies); };
+    const auto go_on = [&] { return tell(progress, "import", static_cast<double>(i + 1) / bodies); };
     if (!go_on()) return cancelled;
     const StaticBody& body = scene.statics[i];
-    const auto mesh = mesh_of(body.source, folder, limits, go_on, scene.warnings);
+    const auto mesh = mesh_of(body.source, files, tessellation, go_on, scene.warnings);
     if (!mesh) return mesh.error();
     place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", meshes.mockup);
   }
-  const auto go_on = [&] { return tell(progress, "import", (bodies - 1) / bodies); };
-  if (!go_on()) return cancelled;
-  auto tool = mesh_of(scene.tool.source, folder, limits, go_on, scene.warnings);
-  if (!tool) return tool.error();
-  meshes.tool = std::move(*tool);
   warn_of_size("mock-up", meshes.mockup, scene.warnings);
   warn_of_size("tool", meshes.tool, scene.warnings);
   return meshes;
@@ -139,6 +201,8 @@ Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const Impo
     loaded.geometry = std::move(*geometry);
   }
   if (!tell(progress, "geometry", 1)) return cancelled;
+  warn_of_vanished("mock-up", loaded.geometry.mockup_report, loaded.geometry.lattice.step_m, scene.warnings);
+  warn_of_vanished("tool", loaded.geometry.tool_report, loaded.geometry.lattice.step_m, scene.warnings);
   if (!loaded.geometry.tool.closed && !scene.tool.centre_of_mass_m)
     scene.warnings.push_back("the tool " + source_name(scene.tool.source) + " is open (" + std::to_string(loaded.geometry.tool_report.open_edges) +
                              " open edges); its centre of mass is taken for the centroid of its area");

@@ -44,6 +44,12 @@ std::string broken_limit(const VoxelSubject& body, const char* what, std::int32_
   return {};
 }
 
+/// Whether every back end takes a body's grid.
+bool short_enough(const VoxelSubject& body, std::int32_t v) {
+  const Int3 count = make_grid(body.box_min, body.box_max, v).bricks;
+  return std::max({count.x, count.y, count.z}) <= kMaxAutoBricksAlong;
+}
+
 std::int32_t largest_side(const VoxelSubject& body) {
   const Int3 size = body.box_max - body.box_min;
   return std::max({size.x, size.y, size.z});
@@ -77,7 +83,7 @@ Result<std::int32_t> choose_voxel_size(const VoxelSubject& mockup, const VoxelSu
   double least = HUGE_VAL;
   const auto consider = [&](std::int32_t v) {
     const double work = cost(mockup.measure, tool.measure, v);
-    if (!fits(v) || (best != 0 && work >= least)) return;
+    if (!fits(v) || !short_enough(mockup, v) || !short_enough(tool, v) || (best != 0 && work >= least)) return;
     best = v;
     least = work;
   };

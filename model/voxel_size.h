@@ -12,6 +12,7 @@ inline constexpr std::int32_t kSmallestVoxel = 8;              ///< steps (EXACT
 inline constexpr double kMaxBoundaryVoxels = 8e6;              ///< estimated, of either body (chosen: memory)
 inline constexpr double kMaxVoxelEntries = 128e6;              ///< estimated entries of the voxels' triangle lists (chosen: memory)
 inline constexpr double kMaxBricks = 16.0 * 1024 * 1024 - 2;   ///< of either grid: 8 bytes a brick and two entries more fit 128 MiB, the storage buffer every Vulkan device offers
+inline constexpr std::int32_t kMaxAutoBricksAlong = 3500;      ///< of a grid along an axis, which every back end takes (shaders/shared/prepare.h: kMostBricksAlong)
 inline constexpr std::int32_t kSamplesPerVoxelSide = 4;        ///< default sample spacing: voxel / 4 (METHOD section 4)
 inline constexpr std::int32_t kMaxSamplesPerVoxelSide = 63;      ///< a voxel is reached into by at most 64 of its cells
 

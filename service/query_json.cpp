@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <span>
 
 namespace palpate {
@@ -75,6 +76,12 @@ class Writer {
     key(name);
     ids(list);
   }
+  /// A file's own words.
+  void strings(std::string_view name, const std::vector<std::string>& list) {
+    key(name);
+    separate();
+    out_ += nlohmann::json(list).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
   void flags(std::uint32_t bits) {
     key("flags");
     open('[');
@@ -142,6 +149,13 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
     json.ids("bmt", contacts.bmt);
     json.ids("imt", contacts.imt);
     json.ids("est", contacts.est);
+  }
+  if (line.parts) {
+    json.key("parts");
+    json.open('{');
+    json.strings("static", line.parts->statics(contacts));
+    json.strings("tool", line.parts->mobiles(contacts));
+    json.close('}');
   }
   json.key("areas");
   json.open('[');

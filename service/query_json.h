@@ -5,6 +5,7 @@
 
 #include "model/contacts.h"
 #include "model/response.h"
+#include "service/touched_parts.h"
 
 namespace palpate {
 
@@ -15,6 +16,7 @@ struct QueryLine {
   std::optional<std::uint64_t> batch;   ///< `--batch N`: times are the pose's share
   std::optional<std::int64_t> tick;     ///< frames.jsonl: the tick whose pose was judged
   bool sets = true;                     ///< false: without the lists of ids
+  const TouchedParts* parts = nullptr;  ///< `parts`: the paths of the parts that touch, {"static": […], "tool": […]}; null: without
   bool heights = false;                 ///< areas tell their samples, too: `rays` that gave a height, `max_depth`, the largest, in m
 };
 

@@ -84,6 +84,7 @@ struct SessionSummary {
   std::uint64_t saturated_ticks = 0;         ///< ticks where a device limit shortened force or torque
   std::uint64_t plan_changes = 0;            ///< in mid-run
   std::uint64_t dropped_ticks = 0, dropped_frames = 0;   ///< not recorded because the recording thread fell behind
+  std::vector<std::string> static_parts, tool_parts;   ///< paths of the parts that touched, ascending; filled in by who watches the frames
   bool stopped = false;                      ///< ended by `stop`, before its duration
   std::optional<Error> failure;              ///< why the run ended before its time: back end, device fault, exception, recording; with zero force
   std::vector<std::string> notes;            ///< one sentence each: no real-time priority, watchdog, truncation, the back end's, …

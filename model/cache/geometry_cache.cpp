@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "model/cache/archive.h"
+#include "model/file_view.h"
 
 namespace palpate {
 namespace {
@@ -48,6 +49,7 @@ void archive_report(Archive& a, Report& report) {
   a.each(report.parts, [](Archive& part_archive, auto& part) {
     part_archive(part.path);
     part_archive(part.triangles);
+    part_archive(part.collapsed);
     part_archive(part.closed);
     part_archive(part.sheet);
     part_archive(part.turned);
@@ -110,6 +112,12 @@ bool glb_stands_alone(const std::string& path) {
   return std::fread(text.data(), 1, json, in.get()) == json && text.find("\"uri\"") == std::string::npos;
 }
 
+/// Whether a STEP file may name other files.
+bool step_stands_alone(const std::string& path) {
+  const Result<FileView> file = FileView::open(path);
+  return file && file->bytes().find("DOCUMENT_FILE") == std::string_view::npos;
+}
+
 }  // namespace
 
 bool stands_alone(const std::string& path) {
@@ -117,7 +125,8 @@ bool stands_alone(const std::string& path) {
   if (dot == std::string::npos) return false;
   std::string ending = path.substr(dot + 1);
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == "stl" || ending == "ply" || ending == "off" || ending == "3mf" || (ending == "glb" && glb_stands_alone(path));
+  return ending == "stl" || ending == "ply" || ending == "off" || ending == "3mf" || ending == "iges" || ending == "igs" || ending == "brep" || ending == "brp" ||
+         ((ending == "step" || ending == "stp") && step_stands_alone(path)) || (ending == "glb" && glb_stands_alone(path));
 }
 
 namespace {
@@ -184,6 +193,8 @@ std::optional<ContentKey> geometry_key(const Scene& scene) {
   add_optional(key, scene.tool.centre_of_mass_m);
   add_optional(key, scene.response.voxel_size_m);
   add_optional(key, scene.response.sample_spacing_m);
+  add_optional(key, scene.response.tessellation_m);
+  key.value(scene.response.tessellation_angle_deg);
   key.value(scene.response.smooth_angle_deg);
   key.value(scene.response.contact_samples);
   return key.finish();

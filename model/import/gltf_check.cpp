@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "model/import/import_checks.h"
@@ -170,24 +171,55 @@ std::string find_json(std::string_view bytes, std::string_view& json) {
   return {};
 }
 
+/// The meshes that nodes of the scene name, each once.
+std::set<std::uint64_t> meshes_of_scene(const Json& root) {
+  std::set<std::uint64_t> meshes, seen;
+  const Json &scenes = list(root, "scenes"), &nodes = list(root, "nodes");
+  const std::uint64_t scene = number(root, "scene", 0);
+  if (scene >= scenes.size()) return meshes;
+  std::vector<const Json*> open{&list(scenes[scene], "nodes")};
+  while (!open.empty()) {
+    const Json& some = *open.back();
+    open.pop_back();
+    for (const Json& entry : some) {
+      const std::uint64_t node = entry.is_number_unsigned() ? entry.get<std::uint64_t>() : UINT64_MAX;
+      if (node >= nodes.size() || !seen.insert(node).second) continue;
+      if (const std::uint64_t mesh = number(nodes[node], "mesh", UINT64_MAX); mesh != UINT64_MAX) meshes.insert(mesh);
+      open.push_back(&list(nodes[node], "children"));
+    }
+  }
+  return meshes;
+}
+
 }  // namespace
 
-std::vector<std::uint64_t> faces_of_gltf(std::string_view bytes) {
-  std::vector<std::uint64_t> out;
+std::map<std::string, std::uint64_t> faces_of_gltf(std::string_view bytes) {
+  std::map<std::string, std::uint64_t> out;
   std::string_view text;
   if (!find_json(bytes, text).empty()) return out;
   const Json root = Json::parse(text, nullptr, false);
   if (!root.is_object()) return out;
-  const Json& accessors = list(root, "accessors");
-  for (const Json& mesh : list(root, "meshes"))
-    for (const Json& primitive : list(mesh, "primitives")) {
-      out.push_back(0);
+  std::set<std::string> unknown;
+  const Json &accessors = list(root, "accessors"), &meshes = list(root, "meshes");
+  for (const std::uint64_t m : meshes_of_scene(root)) {
+    if (m >= meshes.size() || !meshes[m].is_object()) continue;
+    const auto given = meshes[m].find("name");
+    const std::string name = given != meshes[m].end() && given->is_string() && !given->get_ref<const std::string&>().empty() ? given->get<std::string>() : fmt::format("meshes[{}]", m);
+    const Json& primitives = list(meshes[m], "primitives");
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      const Json& primitive = primitives[p];
+      const std::string made = primitives.size() > 1 ? fmt::format("{}-{}", name, p) : name;
       constexpr std::uint64_t kTriangles = 4;
-      if (!primitive.is_object() || number(primitive, "mode", kTriangles) != kTriangles || primitive.contains("extensions")) continue;
+      if (!primitive.is_object() || number(primitive, "mode", kTriangles) != kTriangles || primitive.contains("extensions")) {
+        unknown.insert(made);
+        continue;
+      }
       const Json& attributes = primitive.contains("attributes") ? primitive["attributes"] : primitive;
       const std::uint64_t corners = number(primitive, "indices", attributes.is_object() ? number(attributes, "POSITION", UINT64_MAX) : UINT64_MAX);
-      if (corners < accessors.size()) out.back() = number(accessors[corners], "count", 0) / 3;
+      if (corners < accessors.size()) out[made] += number(accessors[corners], "count", 0) / 3;
     }
+  }
+  for (const std::string& name : unknown) out.erase(name);
   return out;
 }
 

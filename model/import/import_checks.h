@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +19,8 @@ std::string distrust_gltf(std::string_view bytes, const std::string& path);   //
 std::string distrust_dae(std::string_view bytes);
 std::string distrust_obj(std::string_view bytes);
 
-/// How many triangles each primitive of a glTF must have, in order; 0 where that can't be told. For a file that distrust_gltf() has nothing against.
-std::vector<std::uint64_t> faces_of_gltf(std::string_view bytes);
+/// How many triangles the meshes must have that the importer makes of a glTF, by the name that it gives them: of those that the scene's nodes name, all
+/// of one name together. Names of which that can't be told are missing. For a file that distrust_gltf() has nothing against.
+std::map<std::string, std::uint64_t> faces_of_gltf(std::string_view bytes);
 
 }  // namespace palpate

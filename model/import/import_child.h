@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// How palpate-import is called: FILE SCALE MEMORY_BYTES SECONDS, the parcel on this descriptor, standard error a pipe.
+/// How palpate-import and palpate-import-cad are called: FILE SCALE MEMORY_BYTES SECONDS FOLDER ASKER DEFLECTION_M ANGLE_DEG PART, the parcel on this descriptor, standard error a pipe.
 inline constexpr int kParcelDescriptor = 3;
 /// The exit code by which palpate-import says that an allocation failed.
 inline constexpr int kOutOfMemoryExit = 12;
@@ -22,6 +22,6 @@ struct ChildEnd {
 /// in the file `parcel`. Starts it by posix_spawn: other threads (a Vulkan driver's) may exist. No descriptor is inherited but its own four.
 /// `folder`: see model/confined_import.h. Error kInternal: it can't be started.
 Result<ChildEnd> run_import_child(const std::string& program, const std::string& path, double scale, const ImportLimits& limits, int parcel,
-                                  const std::function<bool()>& go_on, const std::string& folder = {});
+                                  const std::function<bool()>& go_on, const std::string& folder = {}, const Tessellation& tessellation = {});
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// palpate-import: reads one mesh file, in a process of its own, and hands the mesh back as a parcel. import_mesh() starts it; nobody else does.
+// palpate-import and palpate-import-cad: read one mesh file, in a process of its own, and hand the mesh back as a parcel. import_mesh() starts them; nobody else does.
 // Exit codes: 0 the parcel is complete, be it a mesh or why there is none; 1 there is none, or its asker has gone; 12 an allocation failed; 2 called by hand.
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -48,9 +48,9 @@ void limit_myself(rlim_t memory_bytes, rlim_t seconds, pid_t asker) {
   }
 }
 
-Result<Mesh> read(const char* path, double scale, const char* folder, ImportReport& report) {
+Result<Mesh> read(const char* path, double scale, const char* folder, const Tessellation& tessellation, ImportReport& report) {
   try {
-    return read_mesh(path, scale, report, folder);
+    return read_mesh(path, scale, report, folder, tessellation);
   } catch (...) {   // even what is no std::exception
     return bad_value(std::string("'") + path + "' can't be read: the import failed for an unknown reason");
   }
@@ -61,12 +61,13 @@ Result<Mesh> read(const char* path, double scale, const char* folder, ImportRepo
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  if (argc != 7) {
-    std::fputs("palpate-import is a part of palpate, which starts it to read a mesh file; use `palpate info FILE`\n", stderr);
+  if (argc != 10) {
+    std::fputs("this is a part of palpate, which starts it to read a mesh file; use `palpate info FILE`\n", stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
   limit_myself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10), std::atoi(argv[6]));
   ImportReport report;
-  const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), argv[5], report), report);
+  const Tessellation tessellation{std::strtod(argv[7], nullptr), std::strtod(argv[8], nullptr), argv[9]};
+  const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), argv[5], tessellation, report), report);
   std::_Exit(written ? 0 : 1);   // taking it all apart first would cost as much as a tenth of the reading
 }

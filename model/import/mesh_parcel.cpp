@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<char, 8> kMagic{'p', 'a', 'l', 'p', 'm', 's', 'h', '1'};
+constexpr std::array<char, 8> kMagic{'p', 'a', 'l', 'p', 'm', 's', 'h', '2'};
 constexpr std::uint64_t kMostText = 1u << 28, kMostNotes = 1000;
 
 struct Header {
@@ -25,9 +25,9 @@ struct Header {
   std::uint64_t error = 0, vertices = 0, triangles = 0, parts = 0, notes = 0, text = 0;
 };
 struct PartEntry {
-  std::uint32_t first = 0, count = 0, path_bytes = 0;
+  std::uint32_t first = 0, count = 0, path_bytes = 0, also_bytes = 0;
 };
-static_assert(sizeof(Header) == 56 && sizeof(PartEntry) == 12 && sizeof(Vec3) == 24);
+static_assert(sizeof(Header) == 56 && sizeof(PartEntry) == 16 && sizeof(Vec3) == 24);
 
 /// Moves all bytes at an offset that goes on; pread and pwrite may stop half-way.
 template <class Call, class Byte>
@@ -113,8 +113,8 @@ bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& repo
     text = one_line(result.error().sentence);
   }
   for (const MeshPart& part : mesh.parts) {
-    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size())});
-    text += part.path;
+    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size()), static_cast<std::uint32_t>(part.also.size())});
+    text += part.path + part.also;
   }
   if (result)
     for (const std::string& note : report.notes) {
@@ -145,8 +145,8 @@ Result<Mesh> read_parcel(int file, ImportReport& report) {
     return Error{static_cast<ErrorCode>(header->error), std::string(text)};
   }
   for (const PartEntry& entry : parts) {
-    MeshPart& part = mesh.parts.emplace_back(MeshPart{{}, entry.first, entry.count});
-    if (!take_text(text, entry.path_bytes, part.path)) return unsound("a part has no sound path");
+    MeshPart& part = mesh.parts.emplace_back(MeshPart{{}, entry.first, entry.count, {}});
+    if (!take_text(text, entry.path_bytes, part.path) || !take_text(text, entry.also_bytes, part.also)) return unsound("a part has no sound path");
   }
   for (const std::uint32_t size : notes)
     if (!take_text(text, size, report.notes.emplace_back())) return unsound("a note is not one line");

@@ -11,9 +11,9 @@ namespace palpate {
 ///   header    magic, error code (0: a mesh), counts of vertices, triangles, parts, notes, bytes of text
 ///   vertices  3 doubles each
 ///   triangles 3 uint32 each
-///   parts     3 uint32 each: first triangle, count, bytes of its path
+///   parts     4 uint32 each: first triangle, count, bytes of its path and of its other name
 ///   notes     1 uint32 each: bytes
-///   text      the paths, then the notes; or the error's sentence
+///   text      the parts' paths and other names, then the notes; or the error's sentence
 ///
 /// The header is written last, so that a parcel that was not finished has none.
 

@@ -10,11 +10,13 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <unordered_map>
+#include <map>
 
 #include "model/file_view.h"
 #include "model/import/import_checks.h"
+#include "model/import/part_names.h"
 #include "model/import/polygon_split.h"
+#include "model/import/threemf_read.h"
 #include "model/lattice_build.h"
 #include "model/one_line.h"
 #include "model/weld.h"
@@ -65,23 +67,12 @@ struct Transform {
   }
 };
 
-/// The name that a file gives a node; empty where the importer had to invent one ("<STL_BINARY>", "<OFFRoot>", …).
-std::string given_name(const aiNode& node) {
-  std::string name(node.mName.data, node.mName.length);
-  if (name.size() > 1 && name.front() == '<' && name.back() == '>') name.clear();
-  std::replace_if(name.begin(), name.end(), [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '_');
-  return name;
-}
-
-/// A node's name for a path: never empty, without the slash that joins paths, told apart from its siblings'.
-std::string path_name(const aiNode& node, const std::string& otherwise, std::unordered_map<std::string, int>& siblings) {
-  std::string name = given_name(node);
-  if (name.empty()) name = otherwise;
-  std::string unique = name;
-  for (int& n = siblings[name]; ++n > 1 && siblings.count(unique = fmt::format("{}#{}", name, n)) != 0;) {
-  }
-  if (unique != name) siblings[unique] = 1;
-  return unique;
+/// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>", "<OFFRoot>", "nodes[3]", …).
+std::string given_name(const aiString& text) {
+  std::string name(text.data, text.length);
+  const bool invented = (name.starts_with("nodes[") || name.starts_with("meshes[")) && name.ends_with(']');
+  if (invented || (name.size() > 1 && name.front() == '<' && name.back() == '>')) name.clear();
+  return clean_name(std::move(name));
 }
 
 class Flattener {
@@ -92,21 +83,22 @@ class Flattener {
   Result<Mesh> run(std::vector<std::string>& notes) {
     // Depth first with a stack of our own, children in order: pushed back to front.
     std::vector<Visit> stack{{scene_.mRootNode, turn_, ""}};
-    std::unordered_map<std::string, int> root_names;
-    stack.back().path = path_name(*scene_.mRootNode, std::filesystem::path(file_).stem().string(), root_names);
+    stack.back().path = given_name(scene_.mRootNode->mName);
+    if (stack.back().path.empty()) stack.back().path = clean_name(std::filesystem::path(file_).stem().string());
     while (!stack.empty()) {
       const Visit visit = std::move(stack.back());
       stack.pop_back();
       const Transform here = visit.above * Transform::of(visit.node->mTransformation);
       if (std::string wrong = add_node(*visit.node, here, visit.path); !wrong.empty())
         return bad_value(fmt::format("'{}' {}", file_, wrong));
-      std::unordered_map<std::string, int> siblings;
+      SiblingNames siblings;
       const std::size_t first = stack.size();
       for (unsigned i = 0; i < visit.node->mNumChildren; ++i) {
         const aiNode* child = visit.node->mChildren[i];
         // A file without names, such as an STL, is one part, named like the file.
-        const bool nameless = visit.node->mNumChildren == 1 && given_name(*visit.node).empty() && given_name(*child).empty();
-        stack.push_back({child, here, nameless ? visit.path : visit.path + "/" + path_name(*child, "node", siblings)});
+        const bool nameless = visit.node->mNumChildren == 1 && given_name(visit.node->mName).empty() && given_name(child->mName).empty();
+        const std::string name = node_name(*child);
+        stack.push_back({child, here, nameless ? visit.path : visit.path + "/" + siblings.unique(name.empty() ? "node" : name)});
       }
       std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
     }
@@ -134,12 +126,33 @@ class Flattener {
       if (std::string wrong = add_mesh(*scene_.mMeshes[node.mMeshes[i]], transform, path); !wrong.empty()) return wrong;
     }
     if (mesh_.triangles.size() == first) return {};
-    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first)});
+    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first), other_name(node)});
     if (transform.mirrors()) {
       ++mirrored_;
       for (std::size_t t = first; t < mesh_.triangles.size(); ++t) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
     }
     return {};
+  }
+
+  /// The name of a node's mesh; empty: none.
+  std::string mesh_name(const aiNode& node) const {
+    if (node.mNumMeshes == 0 || node.mMeshes[0] >= scene_.mNumMeshes) return {};
+    std::string name = given_name(scene_.mMeshes[node.mMeshes[0]]->mName);
+    // The library numbers the meshes that it makes of one mesh with several primitives.
+    if (node.mNumMeshes > 1 && name.ends_with("-0")) name.resize(name.size() - 2);
+    return name;
+  }
+
+  /// A node's own name, else its mesh's.
+  std::string node_name(const aiNode& node) const {
+    const std::string name = given_name(node.mName);
+    return name.empty() ? mesh_name(node) : name;
+  }
+
+  /// The name of a node's mesh, where that is not the node's.
+  std::string other_name(const aiNode& node) const {
+    const std::string name = mesh_name(node);
+    return name == node_name(node) ? std::string() : name;
   }
 
   std::string add_mesh(const aiMesh& mesh, const Transform& transform, const std::string& path) {
@@ -265,11 +278,11 @@ std::string words_of(std::string text) {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation&) {
   report = {path, {}};
   const std::string extension = extension_of(path);
   std::string in_memory;                 // what is read in the file's place, if anything
-  std::vector<std::uint64_t> faces;      // that a glTF's meshes must have
+  std::map<std::string, std::uint64_t> faces;   // that a glTF's meshes must have
   {
     const Result<FileView> file = FileView::open(path);
     if (!file) return file.error();
@@ -280,6 +293,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     if (extension == ".gltf" || extension == ".glb") faces = faces_of_gltf(bytes);
   }
   try {
+    if (extension == ".3mf") return read_3mf(path, scale, report);
     // No post-processing: joining vertices, triangulating or sorting by type would renumber or reorder faces.
     Assimp::Importer importer;
     if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));   // the importer's own from here on
@@ -288,9 +302,12 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0) : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(), 0, extension.c_str() + 1);
     if (!scene || !scene->mRootNode) return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
     if (extension == ".dae") note_unit(*scene, report);
-    for (std::size_t m = 0; m < std::min<std::size_t>(faces.size(), scene->mNumMeshes); ++m)   // the library leaves out what it can't make sense of
-      if (scene->mMeshes[m]->mNumFaces < faces[m])
-        return bad_value(fmt::format("'{}' has {} triangles in primitive {} of which {} can be read: the others name vertices that don't exist", path, faces[m], m, scene->mMeshes[m]->mNumFaces));
+    // The library leaves out what it can't make sense of.
+    std::map<std::string, std::uint64_t> read;
+    for (unsigned m = 0; m < scene->mNumMeshes && !faces.empty(); ++m) read[std::string(scene->mMeshes[m]->mName.data, scene->mMeshes[m]->mName.length)] += scene->mMeshes[m]->mNumFaces;
+    for (const auto& [name, count] : read)
+      if (const auto wanted = faces.find(name); wanted != faces.end() && count < wanted->second)
+        return bad_value(fmt::format("'{}' has {} triangles in mesh '{}' of which {} can be read: the others name vertices that don't exist", path, wanted->second, one_line(name), count));
     return Flattener(*scene, scale, path, undo_turn(extension)).run(report.notes);
   } catch (const std::exception& error) {
     return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(error.what())));

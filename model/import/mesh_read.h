@@ -5,8 +5,9 @@
 
 namespace palpate {
 
-/// import_mesh (model/mesh_import.h) within this process: what palpate-import does with a file. A file can make the library behind it
-/// crash, hang or take all memory, so nothing but palpate-import and the fuzz targets calls this. `folder`: see model/confined_import.h.
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder = {});
+/// import_mesh (model/mesh_import.h) within this process: what palpate-import and palpate-import-cad do with a file. A file can make the library behind it
+/// crash, hang or take all memory, so nothing but those programs and the fuzz targets calls this. `folder`: see model/confined_import.h.
+/// palpate-import and palpate-import-cad each have their own.
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder = {}, const Tessellation& tessellation = {});
 
 }  // namespace palpate

@@ -76,7 +76,7 @@ std::string read_header(std::string_view bytes, Header& header) {
     } else if (word == "end_header") {
       header.length = at;
       return {};
-    } else if (!word.empty() && word != "comment" && word != "obj_info") {
+    } else if (!word.empty() && word != "comment" && word != "obj_info" && word != "Created") {   // "Created by Blender3D 247", without "comment"
       return fmt::format("has a header line that begins with '{}', which PLY does not know", word.substr(0, 40));
     }
   }

@@ -12,10 +12,16 @@ endforeach()
 
 install(TARGETS ${palpate_libraries} EXPORT palpateTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
-# The program that reads mesh files for the library and the program; each finds it there.
-target_link_options(palpate-import PRIVATE -Wl,--disable-new-dtags)
-set_target_properties(palpate-import PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate")
-install(TARGETS palpate-import RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpate COMPONENT library)
+# The programs that read files for the library and the program; each finds them there.
+set(palpate_importers palpate-import)
+if(TARGET palpate-import-cad)
+  list(APPEND palpate_importers palpate-import-cad)
+endif()
+foreach(importer ${palpate_importers})
+  target_link_options(${importer} PRIVATE -Wl,--disable-new-dtags)
+endforeach()
+set_target_properties(${palpate_importers} PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate")
+install(TARGETS ${palpate_importers} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpate COMPONENT library)
 set(PALPATE_IMPORT_PATH "${CMAKE_INSTALL_LIBEXECDIR}/palpate/palpate-import")
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
 
@@ -39,7 +45,7 @@ if(TARGET palpate)
   target_link_options(palpate PRIVATE -Wl,--disable-new-dtags)
   set_target_properties(palpate PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/palpate")
   install(TARGETS palpate RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bundle)
-  install(TARGETS palpate-import RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION libexec/palpate COMPONENT bundle)
+  install(TARGETS ${palpate_importers} RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION libexec/palpate COMPONENT bundle)
   # The C library and the loader belong to the machine; everything else travels, the Vulkan loader too (drivers do not).
   install(RUNTIME_DEPENDENCY_SET palpate_runtime COMPONENT bundle DESTINATION lib/palpate
     PRE_EXCLUDE_REGEXES "^ld-linux" "^libc\\.so" "^libm\\.so" "^libpthread" "^libdl\\.so" "^librt\\.so"

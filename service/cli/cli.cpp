@@ -53,6 +53,7 @@ Examples:
 
 constexpr const char* kQueryFooter = R"(Prints one JSON object a pose: pose, contact, pairs, cst bst cmt bmt imt est (triangle ids), areas (id, zones, static, mobile, normal,
 depth m, point m, force N, torque N·m, flags), force, torque (about the tool's centre of mass), flags, truncated, time_us.
+With --names also parts: the paths of the mock-up's and of the tool's parts that touch, as palpate info has them.
 A file of poses is CSV with the header x,y,z,qx,qy,qz,qw. A pose far away is free of contact; only one that is not finite or
 not a unit rotation is an error (exit code 3).
 
@@ -73,24 +74,40 @@ CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
       ->type_name("auto|gpu|cpu|ref");
 }
 
+/// CLI::Range would let nan pass.
+std::function<void(const double&)> number_within(const char* name, double least, double most, double& out) {
+  return [=, &out](const double& value) {
+    if (!(value >= least && value <= most)) throw CLI::ValidationError(name, fmt::format("{} is not from {} to {}", value, least, most));
+    out = value;
+  };
+}
+
 void add_import_limits(CLI::App& app, ImportLimits& limits) {
   app.add_option_function<std::uint64_t>("--import-memory", [&limits](const std::uint64_t& mib) { limits.memory_bytes = mib << 20; },
                                          "most memory for reading a mesh file; default 2048 MiB and 20 times the file's size")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description(""))
       ->type_name("MIB");
-  app.add_option_function<double>("--import-seconds",
-                                  [&limits](const double& seconds) {   // CLI::Range would let nan pass
-                                    if (!(seconds >= 1 && seconds <= 1e6))
-                                      throw CLI::ValidationError("--import-seconds", fmt::format("{} is not from 1 to 1000000", seconds));
-                                    limits.seconds = seconds;
-                                  },
-                                  "most processor time for reading a mesh file; default 20 s and 1 s a MiB")
+  app.add_option_function<double>("--import-seconds", number_within("--import-seconds", 1, 1e6, limits.seconds), "most processor time for reading a mesh file; default 20 s and 1 s a MiB, 60 s and 10 s a MiB for STEP, IGES, BREP")
       ->type_name("S");
+}
+
+void add_units(CLI::App& app, std::optional<double>& unit_m, const char* help) {
+  static const std::map<std::string, double> kUnits{{"m", 1}, {"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}};
+  app.add_option_function<std::string>("--units", [&unit_m](const std::string& word) { unit_m = kUnits.at(word); }, help)->check(one_of({"m", "mm", "cm", "in"}))->type_name("m|mm|cm|in");
+}
+
+void add_tessellation(CLI::App& app, Tessellation& tessellation) {
+  app.add_option_function<double>("--tessellation", number_within("--tessellation", 1e-9, 100, tessellation.deflection_m),
+                                  "the farthest that triangles lie from the surfaces of a STEP, IGES or BREP file; default 1/384 of its longest side")
+      ->type_name("M");
+  app.add_option_function<double>("--tessellation-angle", number_within("--tessellation-angle", 1, 90, tessellation.angle_deg), "most between neighbouring triangles of one surface; default 15")
+      ->type_name("DEG");
 }
 
 void add_scene(CLI::App& app, SceneOptions& options) {
   app.add_option("scene", options.scene, "scene file (JSON)")->required()->type_name("SCENE");
   add_import_limits(app, options.import);
+  add_units(app, options.unit_m, "unit of mesh files for which neither they nor the scene state one; without it metres");
 }
 
 /// `--profile` and `--plan`, which read words and leave enumerators.
@@ -189,6 +206,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   query_app->add_option("--batch", query.batch, "answer N poses together, on all cores; time_us is then a pose's share")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
+  query_app->add_flag("--names", query.names, "parts: which named parts touch");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
   query_app->footer(kQueryFooter);
   query_app->callback([&] { outcome = query_command(query, parts); });
@@ -201,15 +219,17 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   plan_app->footer("Leaving a stage out never changes an answer; `--plan full` of run and query keeps them all, to compare.");
   plan_app->callback([&] { outcome = plan_command(plan, plan_json, parts); });
 
-  std::vector<std::string> meshes;
-  bool info_json = false;
+  InfoOptions info;
   CLI::App* info_app = app.add_subcommand("info", "tell what is in mesh files and what import made of them; of a scene, how its tool starts");
-  info_app->add_option("files", meshes, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, …; or a scene, .json")->required()->type_name("MESH|SCENE");
-  info_app->add_flag("--json", info_json, "one JSON object");
-  ImportLimits info_limits;
-  add_import_limits(*info_app, info_limits);
-  info_app->footer("A part's path is what `part` and `without` of a scene file name. Sizes are in the file's own unit.");
-  info_app->callback([&] { outcome = info_command(meshes, info_json, info_limits, parts); });
+  info_app->add_option("files", info.files, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, STEP, IGES, BREP, …; or a scene, .json")->required()->type_name("MESH|SCENE");
+  info_app->add_flag("--tree", info.tree, "parts as the hierarchy that the file has");
+  info_app->add_flag("--json", info.json, "one JSON object");
+  add_units(*info_app, info.unit_m, "unit of the files, which then are told in metres; not for STEP, IGES and 3MF, which state theirs");
+  add_import_limits(*info_app, info.import);
+  add_tessellation(*info_app, info.tessellation);
+  info_app->footer("A part's path, its last name where that is unique, its other name, or its number, \"#3\", is what `part` and `without` of a scene file name.\n"
+                   "Sizes are in metres where the file states its unit (STEP, IGES, 3MF), its format has one (COLLADA, glTF) or --units says it, else in the file's own.");
+  info_app->callback([&] { outcome = info_command(info, parts); });
 
   GenerateOptions generate;
   CLI::App* generate_app = app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");

@@ -51,6 +51,7 @@ struct SceneOptions {
   bool full_plan = false;
   bool second_backend = false;        ///< for going over to another plan in mid-run
   ImportLimits import = {};           ///< of each mesh file
+  std::optional<double> unit_m = {};  ///< of mesh files whose unit neither they nor the scene state; empty: 1
 };
 
 struct RunOptions {
@@ -68,6 +69,7 @@ struct QueryOptions {
   std::optional<std::string> pose;    ///< "x y z qx qy qz qw"
   std::optional<std::string> poses;   ///< CSV file
   std::optional<std::uint64_t> batch;
+  bool names = false;                 ///< the parts that touch, by their paths
   std::string export_directory;       ///< empty: none
 };
 
@@ -77,12 +79,19 @@ struct GenerateOptions {
   std::string out;
 };
 
+struct InfoOptions {
+  std::vector<std::string> files;     ///< meshes, and scenes (.json)
+  bool json = false, tree = false;
+  std::optional<double> unit_m = {};  ///< of a file's coordinates; empty: sizes are in file units
+  ImportLimits import = {};           ///< of each mesh file
+  Tessellation tessellation = {};     ///< of CAD files
+};
+
 // Each command prints its result on standard output, all else on standard error, and returns the reason if it failed.
 Result<void> run_command(const RunOptions& options, const Parts& parts);
 Result<void> query_command(const QueryOptions& options, const Parts& parts);
 Result<void> plan_command(const SceneOptions& options, bool json, const Parts& parts);
-/// `files`: meshes, and scenes (.json).
-Result<void> info_command(const std::vector<std::string>& files, bool json, const ImportLimits& limits, const Parts& parts);
+Result<void> info_command(const InfoOptions& options, const Parts& parts);
 Result<void> generate_command(const GenerateOptions& options);
 Result<void> devices_command(const Parts& parts);
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "model/geometry_build.h"
@@ -18,16 +20,54 @@ namespace {
 struct MeshInfo {
   ImportReport import;
   MeshReport body;
+  std::vector<std::string> also;    ///< other names of the parts; empty: none
+  std::vector<double> volumes;      ///< of the parts, file units³, where they are closed
+  bool metres = false;              ///< sizes are in metres
+  std::string unit;                 ///< what was taken for the unit, where that is a guess
   bool closed = false;
   double step = 0;       ///< of the lattice on which it was looked at, file units
   Vec3 min{0}, max{0};   ///< of the vertices that triangles use, file units
 };
 
+/// Signed volume between a part's triangles and the origin, about which a closed part doesn't care.
+double volume_of(const Mesh& mesh, const MeshPart& part) {
+  double six = 0;
+  const Vec3 origin = mesh.vertices[mesh.triangles[part.first_triangle][0]];
+  for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    six += glm::dot(mesh.vertices[a] - origin, glm::cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin));
+  }
+  return six / 6;
+}
+
+/// "2.5 m", "191 mm".
+std::string length_text(double m) {
+  if (m >= 1000) return fmt::format("{:.3g} km", m / 1000);
+  if (m >= 1) return fmt::format("{:.3g} m", m);
+  return m >= 1e-3 ? fmt::format("{:.3g} mm", m * 1000) : fmt::format("{:.3g} µm", m * 1e6);
+}
+
+/// What a file's length is in metres and what in millimetres, where its unit is not certain.
+std::string unit_guess(const std::string& path, const Vec3& size) {
+  constexpr double kLargestUsual = 100;   // m, as for scenes
+  if (states_unit(path)) return {};
+  const double longest = std::max({size.x, size.y, size.z});
+  const std::string millimetres = fmt::format("{}, if in millimetres (--units mm)", length_text(longest / 1000));
+  if (!comes_in_metres(path)) return fmt::format("none is stated: {} long, if in metres; {}", length_text(longest), millimetres);
+  return longest > kLargestUsual ? fmt::format("metres by its format: {} long; {}", length_text(longest), millimetres) : std::string();
+}
+
 /// Import as it stands in the file (scale 1: one file unit is taken for a metre), then what a mock-up would go through.
-Result<MeshInfo> inspect(const std::string& path, const ImportLimits& limits) {
+Result<MeshInfo> inspect(const std::string& path, const InfoOptions& options) {
   MeshInfo info;
-  const Result<Mesh> mesh = import_mesh(path, 1.0, info.import, limits);
+  if (options.unit_m && states_unit(path)) return bad_value(fmt::format("'{}' states its unit and comes in metres; --units is for files that don't", path));
+  const Result<Mesh> mesh = import_mesh(path, options.unit_m.value_or(1), info.import, options.import, {}, options.tessellation);
   if (!mesh) return mesh.error();
+  info.metres = options.unit_m || comes_in_metres(path);
+  for (const MeshPart& part : mesh->parts) {
+    info.also.push_back(part.also);
+    info.volumes.push_back(std::abs(volume_of(*mesh, part)));
+  }
   bool first = true;
   for (const auto& triangle : mesh->triangles)
     for (const std::uint32_t vertex : triangle) {
@@ -36,6 +76,7 @@ Result<MeshInfo> inspect(const std::string& path, const ImportLimits& limits) {
       info.max = first ? point : glm::max(info.max, point);
       first = false;
     }
+  if (!options.unit_m) info.unit = unit_guess(path, info.max - info.min);
   const Result<Lattice> lattice = choose_lattice(*mesh, *mesh);
   if (!lattice) return lattice.error();
   info.step = lattice->step_m;
@@ -57,17 +98,24 @@ nlohmann::ordered_json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 nlohmann::ordered_json to_json(const MeshInfo& info) {
   nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-  for (const MeshReport::Part& part : info.body.parts)
-    parts.push_back({{"path", part.path},
+  for (std::size_t i = 0; i < info.body.parts.size(); ++i) {
+    const MeshReport::Part& part = info.body.parts[i];
+    parts.push_back({{"number", i + 1},
+                     {"path", part.path},
+                     {"also", info.also[i].empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.also[i])},
                      {"triangles", part.triangles},
                      {"size", to_json(part.box_max_m - part.box_min_m)},
                      {"bounds", {{"min", to_json(part.box_min_m)}, {"max", to_json(part.box_max_m)}}},
                      {"closed", part.closed},
+                     {"volume", part.closed ? nlohmann::ordered_json(info.volumes[i]) : nlohmann::ordered_json()},
                      {"orientation", orientation(part)}});
+  }
   nlohmann::ordered_json notes = nlohmann::ordered_json::array();
   for (const auto* list : {&info.import.notes, &info.body.notes})
     for (const std::string& note : *list) notes.push_back(note);
   return {{"file", info.import.file},
+          {"unit", info.metres ? "m" : "file"},
+          {"unit_guess", info.unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.unit)},
           {"triangles", info.body.triangles},
           {"vertices", info.body.vertices},
           {"size", to_json(info.max - info.min)},
@@ -99,23 +147,107 @@ void print_table(const MeshInfo& info) {
   const auto line = [](const char* name, const std::string& value) { fmt::print("  {:<12} {}\n", name, value); };
   fmt::print("{}\n", info.import.file);
   line("triangles", fmt::format("{} ({} vertices)", count_text(body.triangles), count_text(body.vertices)));
-  line("size", fmt::format("{} (file units)", size_text(info.max - info.min)));
+  line("size", fmt::format("{} ({})", size_text(info.max - info.min), info.metres ? "m" : "file units"));
+  if (!info.unit.empty()) line("unit", info.unit);
   line("bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", info.min.x, info.min.y, info.min.z, info.max.x, info.max.y, info.max.z));
-  line("closed", info.closed ? "yes" : fmt::format("no: {} open edges, the largest gap {:.4g} wide", count_text(body.open_edges), body.largest_gap_m));
+  line("closed", info.closed ? "yes" : body.open_edges == 0 ? "no" : fmt::format("no: {} open edges, the largest gap {:.4g} wide", count_text(body.open_edges), body.largest_gap_m));
   if (body.nonmanifold_edges > 0) line("edges", fmt::format("{} have more than two triangles", count_text(body.nonmanifold_edges)));
   line("degenerate", count_text(body.collapsed));
   line("duplicate", count_text(body.duplicate));
   for (const auto* list : {&info.import.notes, &body.notes})
     for (const std::string& note : *list) line("note", note);
-  std::size_t path_width = 4, size_width = 4;
-  for (const MeshReport::Part& part : body.parts) {
-    path_width = std::max(path_width, width(part.path));
-    size_width = std::max(size_width, width(size_text(part.box_max_m - part.box_min_m)));
+}
+
+/// A line of the table of parts: a part, or a node that has only others below it.
+struct PartLine {
+  std::string number, name, also;
+  std::size_t depth = 0;
+  std::uint32_t triangles = 0;
+  Vec3 size{0};
+  std::string closed, orientation;
+};
+
+std::string named(const PartLine& line) { return line.also.empty() ? line.name : fmt::format("{} ({})", line.name, line.also); }
+
+PartLine line_of(const MeshInfo& info, std::size_t i, const std::string& name) {
+  const MeshReport::Part& part = info.body.parts[i];
+  return {fmt::format("#{}", i + 1), name, info.also[i], 0, part.triangles, part.box_max_m - part.box_min_m, part.closed ? "yes" : "no", orientation(part)};
+}
+
+std::vector<PartLine> listed_parts(const MeshInfo& info) {
+  std::vector<PartLine> lines;
+  for (std::size_t i = 0; i < info.body.parts.size(); ++i) lines.push_back(line_of(info, i, info.body.parts[i].path));
+  return lines;
+}
+
+/// The hierarchy: a node of the file a line, what is below it further in.
+std::vector<PartLine> tree_of(const MeshInfo& info) {
+  struct Open {
+    std::string path;
+    std::size_t line;
+    Vec3 min{INFINITY}, max{-INFINITY};
+    bool closed = true;
+  };
+  std::vector<PartLine> lines;
+  std::vector<Open> open;   // from the root to the last part's node
+  const auto close = [&] {
+    const Open last = std::move(open.back());
+    open.pop_back();
+    PartLine& line = lines[last.line];
+    line.size = last.max - last.min;
+    line.closed = last.closed ? "yes" : "no";
+    if (open.empty()) return;
+    Open& above = open.back();
+    lines[above.line].triangles += line.triangles;
+    above.min = glm::min(above.min, last.min), above.max = glm::max(above.max, last.max);
+    above.closed = above.closed && last.closed;
+  };
+  for (std::size_t i = 0; i < info.body.parts.size(); ++i) {
+    const MeshReport::Part& part = info.body.parts[i];
+    while (!open.empty() && !is_below(part.path, open.back().path)) close();
+    while (open.empty() || open.back().path != part.path) {
+      const std::size_t begin = open.empty() ? 0 : open.back().path.size() + 1;
+      const std::string path = part.path.substr(0, part.path.find('/', begin));
+      lines.push_back({.number = {}, .name = path.substr(begin), .also = {}, .depth = open.size(), .closed = {}, .orientation = {}});
+      open.push_back({path, lines.size() - 1});
+    }
+    Open& node = open.back();
+    PartLine& line = lines[node.line];
+    const PartLine own = line_of(info, i, line.name);
+    line.number = own.number, line.also = own.also, line.orientation = own.orientation;
+    line.triangles += own.triangles;
+    node.min = glm::min(node.min, part.box_min_m), node.max = glm::max(node.max, part.box_max_m);
+    node.closed = node.closed && part.closed;
   }
-  fmt::print("  {}  {:>10}  {}  {:<6}  {}\n", pad("part", path_width), "triangles", pad("size", size_width), "closed", "orientation");
-  for (const MeshReport::Part& part : body.parts)
-    fmt::print("  {}  {:>10}  {}  {:<6}  {}\n", pad(part.path, path_width), count_text(part.triangles),
-               pad(size_text(part.box_max_m - part.box_min_m), size_width), part.closed ? "yes" : "no", orientation(part));
+  while (!open.empty()) close();
+  return lines;
+}
+
+/// The lines from `at` on that are `depth` deep, each with those below it.
+nlohmann::ordered_json to_json(const std::vector<PartLine>& lines, std::size_t& at, std::size_t depth) {
+  nlohmann::ordered_json nodes = nlohmann::ordered_json::array();
+  while (at < lines.size() && lines[at].depth == depth) {
+    const PartLine& line = lines[at++];
+    nlohmann::ordered_json node{{"name", line.name}, {"triangles", line.triangles}, {"size", to_json(line.size)}, {"closed", line.closed == "yes"}};
+    if (!line.also.empty()) node["also"] = line.also;
+    if (!line.number.empty()) node["number"] = std::stoul(line.number.substr(1));
+    if (nlohmann::ordered_json below = to_json(lines, at, depth + 1); !below.empty()) node["below"] = std::move(below);
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
+}
+
+void print_parts(const std::vector<PartLine>& lines) {
+  std::size_t number_width = 1, name_width = 4, size_width = 4;
+  for (const PartLine& line : lines) {
+    number_width = std::max(number_width, line.number.size());
+    name_width = std::max(name_width, 2 * line.depth + width(named(line)));
+    size_width = std::max(size_width, width(size_text(line.size)));
+  }
+  fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad("#", number_width), pad("part", name_width), "triangles", pad("size", size_width), "closed", "orientation");
+  for (const PartLine& line : lines)
+    fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad(line.number, number_width), pad(std::string(2 * line.depth, ' ') + named(line), name_width), count_text(line.triangles),
+               pad(size_text(line.size), size_width), line.closed, line.orientation);
 }
 
 struct SceneInfo {
@@ -146,25 +278,28 @@ Result<SceneInfo> inspect_scene(const std::string& path, const ImportLimits& lim
 
 }  // namespace
 
-Result<void> info_command(const std::vector<std::string>& files, bool json, const ImportLimits& limits, const Parts& parts) {
+Result<void> info_command(const InfoOptions& options, const Parts& parts) {
   // Everything is read before anything is printed, so a bad file leaves standard output empty. Scenes first: a back end is made before an import starts threads.
   std::vector<SceneInfo> scenes;
-  for (const std::string& path : files) {
+  for (const std::string& path : options.files) {
     if (!is_scene(path)) continue;
-    Result<SceneInfo> scene = inspect_scene(path, limits, parts);
+    Result<SceneInfo> scene = inspect_scene(path, options.import, parts);
     if (!scene) return scene.error();
     scenes.push_back(std::move(*scene));
   }
   std::vector<MeshInfo> infos;
-  for (const std::string& path : files) {
+  for (const std::string& path : options.files) {
     if (is_scene(path)) continue;
-    Result<MeshInfo> info = inspect(path, limits);
+    Result<MeshInfo> info = inspect(path, options);
     if (!info) return info.error();
     infos.push_back(std::move(*info));
   }
-  if (json) {
+  if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const MeshInfo& info : infos) list.push_back(to_json(info));
+    for (const MeshInfo& info : infos) {
+      list.push_back(to_json(info));
+      if (std::size_t first = 0; options.tree) list.back()["tree"] = to_json(tree_of(info), first, 0);
+    }
     nlohmann::ordered_json out{{"meshes", list}};
     for (const SceneInfo& scene : scenes) out["scenes"].push_back({{"file", scene.file}, {"start", scene.talk.start}, {"bodies", scene.talk.bodies}});
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
@@ -173,6 +308,7 @@ Result<void> info_command(const std::vector<std::string>& files, bool json, cons
   for (std::size_t i = 0; i < infos.size(); ++i) {
     if (i > 0) fmt::print("\n");
     print_table(infos[i]);
+    print_parts(options.tree ? tree_of(infos[i]) : listed_parts(infos[i]));
   }
   for (const SceneInfo& scene : scenes) {
     if (&scene != &scenes.front() || !infos.empty()) fmt::print("\n");

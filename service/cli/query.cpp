@@ -78,11 +78,12 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     if (answer.contacts.contact) break;
   }
 
+  const TouchedParts named(scene.loaded.geometry);
   std::string text;
   std::size_t truncated = 0, unsettled = 0, directionless = 0;
   const char* capacity = "";
   const auto print = [&](std::size_t pose, double total_us, const Contacts& contacts, const ContactResponse& response) {
-    append_query_line({pose, total_us, options.batch, std::nullopt}, contacts, response, text);
+    append_query_line({.pose = pose, .total_us = total_us, .batch = options.batch, .tick = std::nullopt, .parts = options.names ? &named : nullptr}, contacts, response, text);
     if (response.flags & kFlagUnsettled) ++unsettled;
     if (response.flags & kFlagNoDirection) ++directionless;
     if (!contacts.truncated) return;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string_view>
 
 #include "service/cli/cli.h"
@@ -14,6 +15,7 @@
 #include "service/report/run_summary.h"
 #include "service/scene_talk.h"
 #include "service/session.h"
+#include "service/touched_parts.h"
 
 namespace palpate {
 namespace {
@@ -23,8 +25,12 @@ namespace fs = std::filesystem;
 /// What a run shows and keeps: files, the report's curves, the live line.
 class RunWatch : public RunObserver {
  public:
-  RunWatch(Recorder& recorder, ReportSeries& series, Console& console, const Scene& scene)
-      : recorder_(recorder), series_(series), console_(console), scene_(scene) {}
+  RunWatch(Recorder& recorder, ReportSeries& series, Console& console, const LoadedScene& loaded)
+      : recorder_(recorder), series_(series), console_(console), scene_(loaded.scene), parts_(loaded.geometry) {}
+
+  /// Paths of the parts that have touched so far, ascending.
+  const std::set<std::string>& statics() const { return statics_; }
+  const std::set<std::string>& mobiles() const { return mobiles_; }
 
   Result<void> on_tick(const TickRecord& tick) override {
     if (auto done = recorder_.on_tick(tick); !done) return done;
@@ -42,6 +48,10 @@ class RunWatch : public RunObserver {
   Result<void> on_frame(const FrameRecord& frame) override {
     areas_ = frame.contacts.areas.size();
     frame_us_ = frame.total_us;
+    if (frame.contacts.contact) {
+      for (std::string& path : parts_.statics(frame.contacts)) statics_.insert(std::move(path));
+      for (std::string& path : parts_.mobiles(frame.contacts)) mobiles_.insert(std::move(path));
+    }
     if (auto done = recorder_.on_frame(frame); !done) return done;
     return series_.on_frame(frame);
   }
@@ -59,6 +69,8 @@ class RunWatch : public RunObserver {
   ReportSeries& series_;
   Console& console_;
   const Scene& scene_;
+  TouchedParts parts_;
+  std::set<std::string> statics_, mobiles_;
   std::size_t areas_ = 0;
   double frame_us_ = 0;
   std::string_view guidance_;   // text that outlives the run
@@ -169,12 +181,14 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
     session.changes = *switches;
   }
   ReportSeries series;
-  RunWatch watch(**recorder, series, console, loaded.scene);
-  const Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
+  RunWatch watch(**recorder, series, console, loaded);
+  Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
   console.finish();
   const Result<void> recorded = (*recorder)->finish();
   if (!summary) return summary.error();
   if (!recorded) return recorded;
+  summary->static_parts.assign(watch.statics().begin(), watch.statics().end());
+  summary->tool_parts.assign(watch.mobiles().begin(), watch.mobiles().end());
 
   const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s};
   if (auto done = write_text(*directory / "summary.json", summary_json(*summary)); !done) return done;

@@ -87,6 +87,13 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   auto prepared = std::make_unique<HostedScene>();
   Result<Scene> scene = read_scene(options.scene, options.profile);
   if (!scene) return scene.error();
+  if (options.unit_m) {
+    const auto take_unit = [&](MeshSource& source) {
+      if (!source.file.empty() && !source.scale_stated && !states_unit(source.file)) source.scale = *options.unit_m;
+    };
+    for (StaticBody& body : scene->statics) take_unit(body.source);
+    take_unit(scene->tool.source);
+  }
 
   // The back end comes before the meshes: their import may start threads.
   const std::optional<Profile> profile = options.second_backend ? std::nullopt : std::optional(scene->response.profile);

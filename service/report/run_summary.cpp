@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <nlohmann/json.hpp>
@@ -48,6 +49,7 @@ std::string summary_json(const SessionSummary& summary) {
     const Quat& q = summary.no_direction_pose.rotation;
     json["no_direction_first"] = {{"tick", summary.no_direction_tick}, {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}}};
   }
+  if (!summary.static_parts.empty()) json["parts"] = {{"static", summary.static_parts}, {"tool", summary.tool_parts}};
   if (!summary.notes.empty()) json["notes"] = summary.notes;
   if (summary.failure) json["failure"] = summary.failure->sentence;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -84,6 +86,11 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
   std::string stages;
   for (const int stage : summary.stages_reached) stages += (stages.empty() ? "" : stage_names.empty() ? ", " : "; ") + stage_text(stage, stage_names);
   if (!stages.empty()) line("stages", stages);
+  constexpr std::size_t kToldParts = 5;   // chosen
+  std::string touched;
+  for (std::size_t i = 0; i < std::min(kToldParts, summary.static_parts.size()); ++i) touched += (touched.empty() ? "" : ", ") + summary.static_parts[i];
+  if (summary.static_parts.size() > kToldParts) touched += fmt::format(" and {} more parts", summary.static_parts.size() - kToldParts);
+  if (!touched.empty()) line("touched", touched);
   line("areas", fmt::format("{} at once at most", summary.areas_max));
   line("force", fmt::format("{:.3g} N at most", summary.force_max_N));
   line("torque", fmt::format("{:.3g} N·m at most", summary.torque_max_Nm));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "service/cli/answer.h"
@@ -202,6 +203,7 @@ void BatchQueue::answer_slice(Batch& batch) {
   const BatchRequest& request = batch.request;
   HostedScene& scene = **request.scene;
   try {
+    const auto parts = request.names ? std::optional<TouchedParts>(std::in_place, scene.loaded.geometry) : std::nullopt;
     for (std::size_t i = 0; i < kSlicePoses && batch.next < request.poses.size(); ++i, ++batch.next) {
       if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
       Result<void> answered;
@@ -227,7 +229,7 @@ void BatchQueue::answer_slice(Batch& batch) {
       if (request.binary)
         append_wrench(batch.answer, batch.made);
       else
-        append_query_line({.pose = batch.next, .total_us = batch.answer.total_us, .batch = std::nullopt, .tick = std::nullopt, .sets = request.sets},
+        append_query_line({.pose = batch.next, .total_us = batch.answer.total_us, .batch = std::nullopt, .tick = std::nullopt, .sets = request.sets, .parts = request.names ? &*parts : nullptr},
                           batch.answer.contacts, batch.answer.response, batch.made);
     }
   } catch (const std::exception& error) {

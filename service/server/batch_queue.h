@@ -23,6 +23,7 @@ struct BatchRequest {
   SceneUse scene;
   std::vector<Pose> poses;
   bool sets = true;
+  bool names = false;   ///< the parts that touch, by their paths
   bool binary = false;   ///< 64 bytes a pose instead of JSON lines
 };
 

@@ -9,6 +9,8 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
   const auto ask = [&store, &batches, &limits](const HttpRequest& request, const Reply& reply) {
     const std::string sets = request.query_or("sets", "1");
     if (sets != "0" && sets != "1") return reply(bad_request("sets is '" + shown_text(sets) + "', allowed is 0 or 1", "sets"));
+    const std::string names = request.query_or("names", "0");
+    if (names != "0" && names != "1") return reply(bad_request("names is '" + shown_text(names) + "', allowed is 0 or 1", "names"));
     auto scene = store.use(request.segments[2], false);
     if (const auto* problem = std::get_if<Problem>(&scene)) return reply(*problem);
     auto poses = read_pose_body(request.content_type, request.body, limits);
@@ -16,6 +18,7 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
     batches.add({.scene = std::get<SceneUse>(scene),
                  .poses = std::move(std::get<std::vector<Pose>>(poses)),
                  .sets = sets == "1",
+                 .names = names == "1",
                  .binary = request.accept.find("application/vnd.palpate.wrenches") != std::string::npos},
                 reply);
   };

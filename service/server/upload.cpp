@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 
+#include "model/mesh_import.h"
 #include "model/scene_json.h"
 #include "service/server/json_input.h"
 #include "service/server/multipart.h"
@@ -159,12 +160,15 @@ class Upload final : public BodySink {
     return std::nullopt;
   }
 
-  std::string field(const std::string& name, const std::string& otherwise) const {
-    const auto found = fields_.find(name);
-    return found == fields_.end() ? otherwise : found->second;
-  }
-
   std::string shown_name() const { return fields_.contains("scene") ? "upload" : tool_.substr(5) + " on " + statics_.front().substr(statics_.front().find('_') + 1); }
+
+  /// A body of a file. `units` alone is for files that state none.
+  ordered_json body(const std::string& name, const char* own_units) const {
+    ordered_json out{{"mesh", name}};
+    const char* units = fields_.contains(own_units) ? own_units : states_unit(name) ? "" : "units";
+    if (fields_.contains(units)) out["units"] = fields_.at(units);
+    return out;
+  }
 
   /// The scene as sent, or one made of the parts `static` and `tool`.
   std::variant<std::string, Problem> scene_text() const {
@@ -174,8 +178,8 @@ class Upload final : public BodySink {
     }
     if (tool_.empty() || statics_.empty()) return bad_request(std::string("the part '") + (tool_.empty() ? "tool" : "static") + "' is missing, and so is 'scene'", tool_.empty() ? "tool" : "static");
     ordered_json scene;
-    for (const std::string& name : statics_) scene["static"].push_back({{"mesh", name}, {"units", field("static_units", field("units", "m"))}});
-    scene["tool"] = {{"mesh", tool_}, {"units", field("tool_units", field("units", "m"))}};
+    for (const std::string& name : statics_) scene["static"].push_back(body(name, "static_units"));
+    scene["tool"] = body(tool_, "tool_units");
     if (fields_.contains("profile")) scene["response"]["profile"] = fields_.at("profile");
     if (fields_.contains("stiffness")) {
       const std::string& text = fields_.at("stiffness");

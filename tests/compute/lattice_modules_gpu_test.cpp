@@ -157,15 +157,16 @@ TEST_F(LatticeModules, SamplesOfAVoxelAreTheReferences) {
       const cpu_ref::Triangle triangle = soup[t];
       const int k = static_cast<int>(run.buffers[2][t] >> gpu::kInfoAxisShift & 3), u = (k + 1) % 3, v = (k + 2) % 3;
       const Int3 low = low_of(push, run.buffers[5], run.buffers[6], run.buffers[3][i]), last = low + (push.size - 1);
-      const auto from = [&](int axis) { return -cpu_ref::floor_divide(-std::int64_t{low[axis]}, std::int64_t{push.spacing}) * push.spacing; };
+      const auto cell = [&](std::int32_t place) { return cpu_ref::floor_divide(std::int64_t{place}, std::int64_t{push.spacing}); };
       std::uint32_t count = 0;
-      for (std::int64_t g_v = from(v); g_v <= last[v]; g_v += push.spacing)
-        for (std::int64_t g_u = from(u); g_u <= last[u]; g_u += push.spacing) {
-          if (!cpu_ref::projection_holds(triangle, k, g_u, g_v)) continue;
+      for (std::int64_t j = cell(low[v]); j <= cell(last[v]); ++j)
+        for (std::int64_t i_u = cell(low[u]); i_u <= cell(last[u]); ++i_u) {
+          const auto [g_u, g_v] = cpu_ref::sample_of({i_u, j}, push.spacing);
+          if (g_u < low[u] || g_u > last[u] || g_v < low[v] || g_v > last[v] || !cpu_ref::projection_holds(triangle, k, g_u, g_v)) continue;
           const std::int32_t height = cpu_ref::raised(triangle, k, g_u, g_v)[k] - low[k];
           if (height < 0 || height >= push.size) continue;
           if (run.constants[0] != 0) {
-            const auto place = static_cast<std::uint32_t>((g_u - from(u)) / push.spacing + (g_v - from(v)) / push.spacing * 64);
+            const auto place = static_cast<std::uint32_t>(i_u - cell(low[u]) + (j - cell(low[v])) * 64);
             const std::size_t at = run.buffers[7][i] - push.base + count;
             if (push.wide != 0) {
               want[8][2 * at] = static_cast<std::uint32_t>(height);

@@ -88,6 +88,19 @@ def stl(triangles):
     return b'made by a test'.ljust(80) + struct.pack('<I', len(triangles)) + body
 
 
+def gltf(nodes, triangles):
+    """One mesh of `triangles`, named 'solid', for all nodes (dictionaries) that say "mesh": 0; the first node is the root."""
+    import base64
+    points = [point for triangle in triangles for point in triangle]
+    data = b''.join(struct.pack('<3f', *point) for point in points)
+    return json.dumps({'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0]}], 'nodes': nodes,
+                       'meshes': [{'name': 'solid', 'primitives': [{'attributes': {'POSITION': 0}}]}],
+                       'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': len(points), 'type': 'VEC3',
+                                      'min': [min(p[k] for p in points) for k in range(3)], 'max': [max(p[k] for p in points) for k in range(3)]}],
+                       'bufferViews': [{'buffer': 0, 'byteLength': len(data)}],
+                       'buffers': [{'byteLength': len(data), 'uri': 'data:application/octet-stream;base64,' + base64.b64encode(data).decode()}]})
+
+
 class Folder:
     """A scene's folder: a block of 200 × 200 × 40 mm below z = 0 as mock-up, a sphere of 20 mm as tool, unless told otherwise."""
 

@@ -97,6 +97,17 @@ def test_an_importer_that_is_missing_is_named():
     expect_refused(Outcome(done.returncode, done.stdout.decode(), done.stderr.decode()), 1, 'palpate-import', 'missing')
 
 
+def test_a_build_without_a_reader_of_cad_files_says_what_is_missing():
+    folder = pathlib.Path(tempfile.mkdtemp(prefix='alone-', dir=BINARIES))
+    atexit.register(shutil.rmtree, folder)
+    os.link(PROGRAM, folder / 'palpate')
+    os.link(BINARIES / 'palpate-import', folder / 'palpate-import')
+    for name in ('a.step', 'a.STP', 'a.iges', 'a.brep'):
+        (folder / name).write_text('whatever')
+        done = subprocess.run([folder / 'palpate', 'info', folder / name], capture_output=True, timeout=TIMEOUT_S)
+        expect_refused(Outcome(done.returncode, done.stdout.decode(), done.stderr.decode()), 3, name, 'palpate-import-cad', 'OpenCASCADE', 'libocct-data-exchange-dev')
+
+
 def test_killing_palpate_ends_its_importer():
     folder = Folder()
     mesh = folder.write('sleep.stl', 'sleep')

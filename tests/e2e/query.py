@@ -117,6 +117,18 @@ def test_profile_paper_has_no_est():
     expect(line['est'] == [] and line['contact'], line)
 
 
+def test_names_tell_which_parts_touch():
+    folder = Folder()
+    folder.write('engine.gltf', gltf([{'name': 'engine', 'children': [1, 2]}, {'name': 'left', 'mesh': 0, 'translation': [-1, 0, 0]}, {'name': 'right', 'mesh': 0, 'translation': [1, 0, 0]}],
+                                     box((0.5, 0.5, 0.04), (0, 0, -0.02))))
+    scene = folder.save(static=[{'mesh': 'engine.gltf'}])
+    folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n1,0,0.019,0,0,0,1\n-1,0,0.019,0,0,0,1\n0,0,0.019,0,0,0,1\n')
+    right, left, free = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--names'))
+    expect(right['parts'] == {'static': ['engine/right'], 'tool': ['ball']}, right['parts'])
+    expect(left['parts'] == {'static': ['engine/left'], 'tool': ['ball']}, left['parts'])
+    expect(free['parts'] == {'static': [], 'tool': []}, free['parts'])
+
+
 def generated(folder):
     outcome = palpate('generate', 'contacts', '--triangles', '2000', '--tool-triangles', '1000', '--out', folder / 'contacts')
     expect(outcome.code == 0, outcome)

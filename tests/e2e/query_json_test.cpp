@@ -50,6 +50,32 @@ TEST(QueryLine, TellsWhatIsFeltAndWhereTheToolIsMeanwhile) {
   EXPECT_NE(out.find(R"("force":[0,0,2],"torque":[0.5,0,0],"flags":[],"tool":[1,2,3,0,0,0,1],"evaluations":5,"truncated":false)"), std::string::npos) << out;
 }
 
+TEST(QueryLine, TellsWhichNamedPartsTouch) {
+  SceneGeometry geometry;
+  const auto part = [](const char* path, std::uint32_t triangles) {
+    MeshReport::Part out;
+    out.path = path;
+    out.triangles = triangles;
+    return out;
+  };
+  geometry.mockup_report.parts = {part("engine/block", 10), part("engine/lid \"1\"", 5), part("engine/bolt", 5)};
+  geometry.tool_report.parts = {part("hand", 3), part("finger", 3)};
+  const TouchedParts parts(geometry);
+  Contacts contacts;
+  contacts.cst = {9, 10, 11};                  // the block's last and the lid's first
+  contacts.cmt = {3};
+  std::string out;
+  append_query_line({.batch = std::nullopt, .tick = std::nullopt, .parts = &parts}, contacts, ContactResponse{}, out);
+  EXPECT_NE(out.find(R"("parts":{"static":["engine/block","engine/lid \"1\""],"tool":["finger"]},"areas":)"), std::string::npos) << out;
+  contacts = {};
+  contacts.areas.resize(1);
+  contacts.areas[0].static_ids = {19};         // enclosed: in no pair, but in an area
+  contacts.areas[0].mobile_ids = {0};
+  out.clear();
+  append_query_line({.batch = std::nullopt, .tick = std::nullopt, .parts = &parts}, contacts, ContactResponse{}, out);
+  EXPECT_NE(out.find(R"("parts":{"static":["engine/bolt"],"tool":["hand"]})"), std::string::npos) << out;
+}
+
 TEST(QueryLine, ABatchIsNamed) {
   std::string out;
   append_query_line({0, 1, 64, std::nullopt}, Contacts{}, ContactResponse{}, out);

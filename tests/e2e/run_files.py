@@ -35,7 +35,9 @@ def expect_contract(out):
     trace = (out / 'trace.csv').read_text().splitlines()
     expect(trace[0].startswith(TRACE), trace[0])
     summary = json.loads((out / 'summary.json').read_text())
-    expect([key for key in summary if key not in ('notes', 'no_direction_first')] == SUMMARY, list(summary))
+    expect([key for key in summary if key not in ('notes', 'no_direction_first', 'parts')] == SUMMARY, list(summary))
+    touched = [frame for frame in map(json.loads, (out / 'frames.jsonl').read_text().splitlines()) if frame['cst']]
+    expect(bool(touched) == ('parts' in summary) and (not touched or all(summary['parts'][body] for body in ('static', 'tool'))), summary.get('parts'))
     expect(list(summary['lateness_us']) == ['p50', 'p99', 'p999', 'max'], summary['lateness_us'])
     expect(list(summary['result_age_ticks']) == list(summary['frame_us']) == ['p50', 'p99', 'max'], summary)
     expect(list(summary['real_time']) == ['kept_up', 'result_age_ticks', 'watchdog_ticks', 'sentence'], summary['real_time'])

@@ -151,6 +151,23 @@ def test_what_a_mesh_draws_on_is_part_of_the_id():
         expect(len(set(ids)) == 4 and radii[0] == radii[1] > 1.5 * radii[2] and radii[2] == radii[3], (ids, radii))
 
 
+def test_a_file_that_states_its_unit_is_uploaded_beside_one_that_does_not():
+    if not pathlib.Path(PROGRAM).with_name('palpate-import-cad').exists():
+        return print('skipped: this build has no OpenCASCADE, so it reads no STEP file')
+    _, arguments = rooted()
+    step = (SOURCE / 'tests/fuzz/corpus/cad/cylinder.step').read_bytes()       # 10 mm wide, 20 mm high, on z = 0
+    block = stl(box((200, 200, 40), (0, 0, -20)))
+    with Server(*arguments) as server:
+        name = server.ready(server.upload(tool=('pin.step', step), static=('block.stl', block), units='mm'))
+        (touching,) = [json.loads(line) for line in server.ask('POST', f'/v1/scenes/{name}/query?names=1', {'poses': [[0, 0, -0.001, 0, 0, 0, 1]]}).body.splitlines()]
+        expect(touching['contact'] and len(touching['parts']['static']) == len(touching['parts']['tool']) == 1, touching)
+        (free,) = [json.loads(line) for line in server.ask('POST', f'/v1/scenes/{name}/query', {'poses': [[0, 0, 0.001, 0, 0, 0, 1]]}).body.splitlines()]
+        expect(not free['contact'] and 'parts' not in free, free)
+        answer = server.upload(tool=('pin.step', step), static=('block.stl', block), tool_units='mm')
+        failed = server.ask('GET', f"/v1/scenes/{answer.json()['id']}?wait=30").json()
+        expect(failed['state'] == 'failed' and 'states its unit' in failed['error']['detail'], failed)
+
+
 def test_a_scene_file_is_uploaded_with_what_it_names():
     folder = Folder()
     folder.write('path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.03,0,0,0,1,1\n1,0,0,0.018,0,0,0,1,1\n')

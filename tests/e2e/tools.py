@@ -36,6 +36,66 @@ def test_info_for_people_says_the_same():
     expect(outcome.code == 0 and 'block.stl' in outcome.out and 'ball.stl' in outcome.out and '12' in outcome.out, outcome)
 
 
+def test_units_are_a_guess_that_is_told_and_a_choice_that_is_made():
+    folder = Folder()
+    folder.write('saw.stl', stl(box((191, 40, 2))))
+    (saw,) = info(folder / 'saw.stl')
+    expect(saw['unit'] == 'file' and '191 m long, if in metres' in saw['unit_guess'] and '191 mm, if in millimetres (--units mm)' in saw['unit_guess'], saw)
+    expect(abs(saw['size'][0] - 191) < 1e-4, 'nothing is applied silently')
+    outcome = palpate('info', folder / 'saw.stl', '--units', 'mm', '--json')
+    (saw,) = json.loads(outcome.out)['meshes']
+    expect(saw['unit'] == 'm' and saw['unit_guess'] is None and abs(saw['size'][0] - 0.191) < 1e-6, saw)
+    folder.write('engine.gltf', gltf(ENGINE, box((500, 1, 1))))
+    (engine,) = info(folder / 'engine.gltf')
+    expect(engine['unit'] == 'm' and 'metres by its format: 504 m long' in engine['unit_guess'], engine)
+    expect_refused(palpate('info', folder / 'saw.stl', '--units', 'ell'), 3, '--units')
+
+
+def test_units_of_a_scene_that_states_none():
+    folder = Folder()
+    folder.write('block.stl', stl(box((200, 200, 40), (0, 0, -20))))
+    folder.write('ball.stl', stl(sphere(20)))
+    stated, free = folder.save(), folder.save('free.json', static=[{'mesh': 'block.stl'}], tool={'mesh': 'ball.stl'})
+    pose = ('--pose', '0 0 0.019 0 0 0 1')
+    (line,) = lines_of(palpate('query', free, *pose, '--units', 'mm'))
+    expect(line['contact'] and 0 < line['force'][2] < 2.5, line['force'])
+    (line,) = lines_of(palpate('query', stated, *pose, '--units', 'mm'))
+    expect(line['force'] == lines_of(palpate('query', stated, *pose))[0]['force'], 'what the scene states stands')
+
+
+def test_closed_beside_edges_of_one_triangle_says_why():
+    folder = Folder()
+    cube = [t for t in box((1, 1, 1)) if not all(p[2] == 0.5 for p in t)]
+    a, b, c, d, m = (-0.5, -0.5, 0.5), (0.5, -0.5, 0.5), (0.5, 0.5, 0.5), (-0.5, 0.5, 0.5), (0, -0.5, 0.5)   # the lid's edge a b has a point more than the wall's
+    folder.write('junction.stl', stl(cube + [(m, b, c), (m, c, d), (m, d, a)]))
+    (junction,) = info(folder / 'junction.stl')
+    expect(junction['closed'] and junction['open_edges'] == 3 and any('T-junctions' in note for note in junction['notes']), junction)
+
+
+ENGINE = [{'name': 'engine', 'children': [1, 2]}, {'name': 'block', 'mesh': 0}, {'name': 'lid', 'children': [3, 4], 'translation': [0, 0, 3]},
+          {'name': 'bolt', 'mesh': 0, 'translation': [2, 0, 0]}, {'name': 'bolt', 'mesh': 0, 'translation': [-2, 0, 0]}]
+
+
+def test_info_prints_the_hierarchy():
+    folder = Folder()
+    folder.write('engine.gltf', gltf(ENGINE, box((1, 1, 1))))
+    outcome = palpate('info', folder / 'engine.gltf', '--tree')
+    expect(outcome.code == 0, outcome)
+    table = [line.split() for line in outcome.out.splitlines()]
+    rows = table[[row[:1] == ['#'] for row in table].index(True) + 1:]
+    expect([row[:2] for row in rows] == [['engine', '36'], ['#1', 'block'], ['lid', '24'], ['#2', 'bolt'], ['#3', 'bolt#2']], rows)
+    expect(all(row[-1] == 'outward' for row in rows if row[0][0] == '#'), rows)
+    outcome = palpate('info', folder / 'engine.gltf', '--tree', '--json')
+    ((engine,),) = [mesh['tree'] for mesh in json.loads(outcome.out)['meshes']]
+    block, lid = engine['below']
+    expect((engine['name'], engine['triangles'], engine['closed'], 'number' in engine) == ('engine', 36, True, False), engine)
+    expect((block['name'], block['number'], block['also'], block['size']) == ('block', 1, 'solid', [1, 1, 1]), block)
+    expect(lid['size'] == [5, 1, 1] and [bolt['name'] for bolt in lid['below']] == ['bolt', 'bolt#2'], lid)
+    (flat,) = info(folder / 'engine.gltf')
+    expect([(part['number'], part['path']) for part in flat['parts']] == [(1, 'engine/block'), (2, 'engine/lid/bolt'), (3, 'engine/lid/bolt#2')], flat)
+    expect(all(abs(part['volume'] - 1) < 1e-9 for part in flat['parts']) and 'tree' not in flat, flat)
+
+
 def test_generate_makes_scenes_that_load():
     folder = Folder()
     for name in ('contacts', 'disassembly'):

@@ -48,7 +48,7 @@ namespace {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/, const Tessellation&) {
   std::string word;
   std::ifstream(path) >> word;
   if (word == "crash") std::raise(SIGSEGV);

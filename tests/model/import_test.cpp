@@ -242,6 +242,16 @@ TEST_F(MeshImport, PlyAndOff) {
   EXPECT_THAT(refused(write("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 7\n")), HasSubstr("vertex index 7"));
 }
 
+// What Blender 2.47 writes. Other lines that PLY does not know are refused, for the library takes some of them for elements.
+TEST_F(MeshImport, APlyMayTellItsMakerWithoutSayingComment) {
+  const auto with = [&](const char* line) {
+    return write("maker.ply", std::string("ply\nformat ascii 1.0\n") + line + "\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                              "element face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  };
+  EXPECT_EQ(read(with("Created by Blender3D 247 - www.blender.org, source file:")).triangles.size(), 1u);
+  EXPECT_THAT(refused(with("Elements by nobody")), HasSubstr("begins with 'Elements', which PLY does not know"));
+}
+
 /// A triangle (0,0,0) (1,0,0) (0,1,0) in a buffer beside the file; `nodes` is the array's JSON.
 std::string gltf(const std::string& nodes, const std::string& scene = "[0]", const std::string& count = "3") {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + scene + R"(}],"nodes":)" + nodes +
@@ -274,6 +284,26 @@ TEST_F(MeshImport, GltfHierarchyAndInstancesAreFlattenedDepthFirst) {
   EXPECT_THAT(take_part(mesh, "bolt", "a.gltf").error().sentence, HasSubstr("2 nodes named 'bolt'"));
   EXPECT_THAT(take_part(mesh, "rihgt", "a.gltf").error().sentence, HasSubstr("did you mean 'right'"));
   EXPECT_THAT(without_parts(mesh, {"engine"}, "a.gltf").error().sentence, HasSubstr("nothing is left"));
+}
+
+TEST_F(MeshImport, GltfMeshNamesAddressPartsToo) {
+  std::string buffer;
+  for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(buffer, f);
+  write("t.bin", buffer);
+  std::string text = gltf(R"([{"name":"engine","children":[1,2,3,4]},{"name":"node_1","mesh":0},{"name":"node_2","mesh":1},{"mesh":2},{"mesh":3}])");
+  const std::string one = R"({"primitives":[{"attributes":{"POSITION":0}}]})", triangle = R"({"attributes":{"POSITION":0}})";
+  text.replace(text.find(one), one.size(), R"({"name":"Piston_123-844","primitives":[)" + triangle + R"(]},{"name":"node_1","primitives":[)" + triangle + "," + triangle + R"(]},)" + one + R"(,{"name":"Rod","primitives":[)" + triangle + "]}");
+  const Mesh mesh = read(write("meshes.gltf", text));
+  ASSERT_EQ(mesh.parts.size(), 4u);
+  EXPECT_EQ(mesh.parts[0].also, "Piston_123-844");
+  EXPECT_EQ(mesh.parts[1].also, "node_1") << "two primitives are one part, and its mesh's name has no number";
+  EXPECT_EQ(mesh.parts[2].also, "") << "an invented name is none";
+  EXPECT_EQ(mesh.parts[2].path, "engine/node");
+  EXPECT_EQ(mesh.parts[3].path, "engine/Rod") << "a node without a name has its mesh's";
+  EXPECT_EQ(take_part(mesh, "Piston_123-844", "meshes.gltf")->parts[0].path, "engine/node_1");
+  EXPECT_EQ(take_part(mesh, "node_1", "meshes.gltf")->parts[0].path, "engine/node_1") << "a node's own name goes before a mesh's";
+  EXPECT_EQ(take_part(mesh, "#2", "meshes.gltf")->parts[0].path, "engine/node_2");
+  EXPECT_THAT(take_part(mesh, "Piston_123-845", "meshes.gltf").error().sentence, testing::AllOf(HasSubstr("did you mean 'Piston_123-844'"), HasSubstr("`palpate info --tree 'meshes.gltf'` lists them")));
 }
 
 TEST_F(MeshImport, AbsurdGltfIsRefused) {
@@ -316,7 +346,23 @@ TEST_F(MeshImport, AGltfFaceOfAVertexThatDoesNotExistIsRefused) {
       "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],"buffers":[{"byteLength":60,"uri":"i.bin"}]})");
   };
   EXPECT_EQ(read(with(3)).triangles.size(), 2u);
-  EXPECT_THAT(refused(with(9)), HasSubstr("2 triangles in primitive 0 of which 1 can be read"));
+  EXPECT_THAT(refused(with(9)), HasSubstr("2 triangles in mesh 'meshes[0]' of which 1 can be read"));
+}
+
+// The library lists meshes in the order in which nodes name them, not in the file's.
+TEST_F(MeshImport, GltfMeshesMayBeNamedInAnyOrder) {
+  std::string buffer;
+  for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) put(buffer, f);
+  for (const int i : {0, 1, 2, 0, 1, 3}) put(buffer, static_cast<std::uint16_t>(i));
+  write("i.bin", buffer);
+  const Mesh mesh = read(write("order.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[{"name":"a","mesh":1},{"name":"b","mesh":0}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]},{"primitives":[{"attributes":{"POSITION":0},"indices":2}]},{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"},
+        {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],
+      "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],"buffers":[{"byteLength":60,"uri":"i.bin"}]})"));
+  ASSERT_EQ(mesh.parts.size(), 2u);
+  EXPECT_EQ(mesh.parts[0].triangle_count, 1u);
+  EXPECT_EQ(mesh.parts[1].triangle_count, 2u);
 }
 
 /// A triangle (0 0 0) (1 0 0) (0 2 3) as COLLADA has it.

@@ -5,6 +5,7 @@
 
 #include "model/generate/solids.h"
 #include "model/geometry_build.h"
+#include "model/voxel_size.h"
 
 namespace palpate {
 namespace {
@@ -144,6 +145,20 @@ TEST(VoxelSize, SettingsBeyondTheLimitsAreRefused) {
   EXPECT_THAT(refused(1e-4, {}), HasSubstr("the limit is"));
   EXPECT_THAT(refused(0.01, 1e-5), HasSubstr("sample_spacing is 1e-05 m"));
   EXPECT_THAT(refused(0.01, std::nan("")), HasSubstr("sample_spacing is nan m"));
+}
+
+// Two bodies 100 m apart and a tool of 16 cm: the least of the cost was a voxel of which 70,160 lay along an axis.
+TEST(VoxelSize, AutoIsUsableByEveryBackEnd) {
+  Mesh mockup = solids::box(Vec3(0), Vec3(0.1));
+  const Mesh far = solids::box(Vec3(100, 0, 0), Vec3(100.1, 0.1, 0.1)), tool = solids::sphere(0.08, 40, 20);
+  const auto vertices = static_cast<std::uint32_t>(mockup.vertices.size());
+  for (const auto& [a, b, c] : far.triangles) mockup.triangles.push_back({a + vertices, b + vertices, c + vertices});
+  mockup.vertices.insert(mockup.vertices.end(), far.vertices.begin(), far.vertices.end());
+  mockup.parts = {{"both", 0, static_cast<std::uint32_t>(mockup.triangles.size())}};
+  const auto built = build_geometry(mockup, tool, {});
+  ASSERT_TRUE(built) << built.error().sentence;
+  EXPECT_LE(built->mockup_grid.bricks.x, kMaxAutoBricksAlong);
+  EXPECT_GE(built->mockup_grid.bricks.x, kMaxAutoBricksAlong / 2);   // no larger than need be
 }
 
 TEST(VoxelSize, ALargeVoxelStillFitsTheLattice) {

@@ -134,7 +134,6 @@ TEST(Orientation, BoxMissingAFaceIsStillASolid) {
     EXPECT_FALSE(built.mesh.closed);
     EXPECT_EQ(built.report.open_edges, 4u);
     EXPECT_NEAR(built.report.largest_gap_m, std::sqrt(2.0), 1e-6);
-    EXPECT_THAT(built.report.notes, Contains(HasSubstr("open")));
   }
 }
 
@@ -207,6 +206,9 @@ TEST(Orientation, ATJunctionThatClosesPointForPointIsClosed) {
     EXPECT_EQ(built.report.largest_gap_m > 0, off > 0);
     EXPECT_EQ(built.report.open_edges, 3u);
     EXPECT_EQ(count(built.mesh, kTriangleTurned), 0u);
+    if (off == 0) {
+      EXPECT_THAT(built.report.notes, Contains(HasSubstr("3 edges carry one triangle and are met by shorter ones of their neighbours (T-junctions)")));
+    }
   }
 }
 

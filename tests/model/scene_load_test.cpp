@@ -97,6 +97,12 @@ TEST_F(SceneLoad, WrongPartsAreRefusedWithFileAndNearestName) {
   EXPECT_THAT(refusal(R"({"mesh": "two.obj"})", R"("mesh": "missing.obj")"), HasSubstr("missing.obj"));
 }
 
+TEST_F(SceneLoad, APartThatVanishesOnTheLatticeIsWarnedOf) {
+  const auto loaded = load(R"({"mesh": "two.obj"}, {"mesh": "tool.obj", "scale": 1e-12})", R"("mesh": "tool.obj")");
+  ASSERT_TRUE(loaded) << loaded.error().sentence;
+  EXPECT_THAT(loaded->scene.warnings, ElementsAre(testing::AllOf(HasSubstr("1 part of the mock-up has no area on the lattice"), HasSubstr("'tool/tool.obj/tool'"))));
+}
+
 TEST_F(SceneLoad, UnusualSizesAndOpenToolsAreWarnedOf) {
   const auto large = load(R"({"mesh": "two.obj", "scale": 1000})", R"("mesh": "tool.obj")");
   ASSERT_TRUE(large) << large.error().sentence;

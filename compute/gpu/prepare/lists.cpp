@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compute/gpu/prepare/partition.h"
+#include "model/voxel_size.h"
 #include "shaders/code.h"
 #include "shaders/shared/prepare.h"
 
@@ -45,6 +46,8 @@ class ListBuilder {
   std::string name_;
   BodyBuffers& body_;
 };
+
+static_assert(gpu::kMostBricksAlong >= kMaxAutoBricksAlong, "an `auto` voxel must be usable here");
 
 void ListBuilder::check_grid() {
   const Int3 b = grid_.bricks;
