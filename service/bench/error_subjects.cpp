@@ -55,6 +55,18 @@ ContactTruth plane_truth(const Mesh& tool, const Pose& pose) {
   return truth;
 }
 
+/// Of `refined`: a cube of `side` on its corner in a plane. The nearest of its three faces is √3 h times the least of a place's barycentric coordinates away, a ninth on average; the
+/// cube's own push by the volume S h / 3 below the section S (both halved: each body says it once). All of it acts through the cube's middle.
+ContactTruth corner_field(double side, const Pose& pose) {
+  const double h = side / 2 * std::sqrt(3.0) - pose.position.z, section = 1.5 * std::sqrt(3.0) * h * h, reference_area = side * side / 64;
+  ContactTruth truth;
+  truth.normal = Vec3(0, 0, 1);
+  truth.depth = std::sqrt(3.0) / 9 * h;
+  truth.point = Vec3(pose.position.x, pose.position.y, 0);
+  truth.wrench.force = kStiffness / (2 * reference_area) * section * (truth.depth + h / 3) * truth.normal;
+  return truth;
+}
+
 /// Places with nothing in common with any grid of samples.
 Vec3 place(std::size_t i) { return Vec3(3.171 * static_cast<double>(i % 7) - 7.3, 2.339 * static_cast<double>(i % 5) - 5.1, 0) * kMm; }
 
@@ -154,6 +166,7 @@ std::vector<ErrorSubject> closed_form_subjects(int cells) {
                                     glm::angleAxis(0.61, Vec3(0, 0, 1)) * glm::angleAxis(std::atan(std::sqrt(2.0)), glm::normalize(Vec3(1, -1, 0))),
                                     half * std::sqrt(3.0), [](double h) { return h / 3; }, "a cube of 20 mm on its corner"},
                                    cells));
+  subjects.back().field_truth = [half](const Pose& pose) { return corner_field(2 * half, pose); };
   subjects.push_back(lens_subject());
   return subjects;
 }

@@ -71,7 +71,7 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
       }
       if (round == 0) {
         out.answers[i] = summary_of(response);
-        for (const ContactArea& area : contacts.areas) out.samples += area.rays;
+        for (const ContactArea& area : contacts.areas) out.samples += setting.profile == Profile::kPaper ? area.rays : area.field.samples;
       }
       if (i % 16 == 0 && !progress("poses", static_cast<double>(i) / static_cast<double>(subject.poses.size())))
         return Error{ErrorCode::kInternal, "interrupted"};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -58,15 +59,10 @@ Body<Real> moved(Body<Real> body, const Pose& pose) {
   return body;
 }
 
-/// Crossings of the ray from `from` along `way` with a body: the winding there, and the nearest way out.
+/// How often the ray from `from` along `way` leaves a body more often than it enters it.
 template <class Real>
-struct Ray {
-  int winding = 0;
-  Real exit{-1};
-};
-template <class Real>
-Ray<Real> cast_ray(const Body<Real>& body, const V<Real>& from, const V<Real>& way) {
-  Ray<Real> out;
+int winding(const Body<Real>& body, const V<Real>& from, const V<Real>& way) {
+  int out = 0;
   for (const auto& t : body.triangles) {   // Möller and Trumbore
     const V<Real> e1 = operator_minus(t[1], t[0]), e2 = operator_minus(t[2], t[0]), h = cross(way, e2);
     const Real a = dot(e1, h);
@@ -78,33 +74,46 @@ Ray<Real> cast_ray(const Body<Real>& body, const V<Real>& from, const V<Real>& w
     const V<Real> q = cross(s, e1);
     const Real v = f * dot(way, q);
     if (v < Real(0) || u + v >= Real(1)) continue;
-    const Real distance = f * dot(e2, q);
-    if (distance < Real(0)) continue;
-    out.winding += a > Real(0) ? -1 : 1;
-    if (a < Real(0) && (out.exit < Real(0) || distance < out.exit)) out.exit = distance;
+    if (f * dot(e2, q) < Real(0)) continue;
+    out += a > Real(0) ? -1 : 1;
   }
   return out;
 }
 
-}  // namespace
-
+/// Distance of a point to a triangle: to its plane where it stands over it, else to the nearest edge.
 template <class Real>
-PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool_mesh, const Pose& pose, double spacing_m, double stiffness_n_per_m) {
-  const Body<Real> statics = body_of<Real>(mockup), tool = moved(body_of<Real>(tool_mesh), pose);
-  const auto spacing = static_cast<Real>(spacing_m);
-  struct Sample {
-    V<Real> point;
-    Real weight;
-  };
-  std::vector<Sample> inside;
-  V<Real> sum{Real(0), Real(0), Real(0)};
-  V<Real> low = tool.triangles.front()[0], high = low;
-  for (const auto& t : tool.triangles)
+Real distance(const std::array<V<Real>, 3>& t, const V<Real>& p) {
+  const V<Real> n = cross(operator_minus(t[1], t[0]), operator_minus(t[2], t[0]));
+  const Real size = std::sqrt(dot(n, n));
+  if (!(size > Real(0))) return HUGE_VALF;
+  bool over = true;
+  Real least(HUGE_VALF);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V<Real> edge = operator_minus(t[(k + 1) % 3], t[k]), from = operator_minus(p, t[k]);
+    if (dot(cross(edge, from), n) < Real(0)) over = false;
+    const Real along = std::clamp(dot(edge, from) / dot(edge, edge), Real(0), Real(1));
+    const V<Real> off{from[0] - along * edge[0], from[1] - along * edge[1], from[2] - along * edge[2]};
+    least = std::min(least, std::sqrt(dot(off, off)));
+  }
+  return over ? std::fabs(dot(n, operator_minus(p, t[0]))) / size : least;
+}
+
+/// Σ w φ n over the samples of `of` that lie inside `in`, and Σ w φ, Σ w.
+template <class Real>
+struct Sums {
+  V<Real> push{Real(0), Real(0), Real(0)};
+  Real depth{0}, weight{0};
+};
+template <class Real>
+Sums<Real> sum_samples(const Body<Real>& of, const Body<Real>& in, Real spacing) {
+  Sums<Real> out;
+  V<Real> low = in.triangles.front()[0], high = low;
+  for (const auto& t : in.triangles)
     for (const auto& v : t)
-      for (std::size_t k = 0; k < 3; ++k) low[k] = v[k] < low[k] ? v[k] : low[k], high[k] = v[k] > high[k] ? v[k] : high[k];
+      for (std::size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], v[k]), high[k] = std::max(high[k], v[k]);
   // A direction that no face of a simple body has, for the question of inside.
   const V<Real> askew{Real(0.36823), Real(0.48113), Real(0.79559)};
-  for (const auto& t : statics.triangles) {
+  for (const auto& t : of.triangles) {
     const V<Real> n = cross(operator_minus(t[1], t[0]), operator_minus(t[2], t[0]));
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
@@ -123,42 +132,43 @@ PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool_mesh, const Pose
     if (!(u1 - u0 < Real(4096)) || !(v1 - v0 < Real(4096))) continue;
     const auto side = [&](const V<Real>& a, const V<Real>& b, Real u, Real v) { return (b[iu] - a[iu]) * (v - a[iv]) - (b[iv] - a[iv]) * (u - a[iu]); };
     const int nu = static_cast<int>(u1 - u0), nv = static_cast<int>(v1 - v0);
+    const Real facing = n[axis] > Real(0) ? Real(1) : Real(-1);
     for (int j = 0; j <= nv; ++j)
       for (int i = 0; i <= nu; ++i) {
         const Real u = (u0 + static_cast<Real>(i)) * spacing, v = (v0 + static_cast<Real>(j)) * spacing;
-        const Real facing = n[axis] > Real(0) ? Real(1) : Real(-1);
         if (side(t[0], t[1], u, v) * facing < Real(0) || side(t[1], t[2], u, v) * facing <= Real(0) || side(t[2], t[0], u, v) * facing < Real(0)) continue;
         V<Real> p;
         p[iu] = u, p[iv] = v;
         p[axis] = t[0][axis] - (n[iu] * (u - t[0][iu]) + n[iv] * (v - t[0][iv])) / n[axis];
-        if (cast_ray(tool, p, askew).winding == 0) continue;
-        const Real weight = size / std::fabs(n[axis]);
-        inside.push_back({p, weight});
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * n[k] / size;
+        if (winding(in, p, askew) == 0) continue;
+        Real depth(HUGE_VALF);
+        for (const auto& other : in.triangles) depth = std::min(depth, distance(other, p));
+        const Real weight = spacing * spacing * (size / std::fabs(n[axis]));
+        out.depth += weight * depth;
+        out.weight += weight;
+        for (std::size_t k = 0; k < 3; ++k) out.push[k] += weight * depth * (n[k] / size);
       }
   }
-  PlainAnswer out;
-  const Real length = std::sqrt(dot(sum, sum));
-  if (inside.empty() || !(length > Real(0))) return out;
-  const V<Real> normal{sum[0] / length, sum[1] / length, sum[2] / length}, down{-normal[0], -normal[1], -normal[2]};
-  Real total(0), weights(0);
-  for (const Sample& sample : inside) {
-    const Real height = cast_ray(tool, sample.point, down).exit;
-    if (height < Real(0)) continue;
-    total += sample.weight * height;
-    weights += sample.weight;
-    ++out.samples;
-  }
-  if (!(weights > Real(0))) return out;
-  out.contact = true;
-  out.normal = Vec3(static_cast<double>(normal[0]), static_cast<double>(normal[1]), static_cast<double>(normal[2]));
-  const Real depth = total / weights, k = static_cast<Real>(stiffness_n_per_m);
-  out.depth = static_cast<double>(depth);
-  for (int i = 0; i < 3; ++i) out.force[i] = static_cast<double>(k * depth * normal[static_cast<std::size_t>(i)]);
   return out;
 }
 
-template PlainAnswer plain_response<float>(const Mesh&, const Mesh&, const Pose&, double, double);
-template PlainAnswer plain_response<double>(const Mesh&, const Mesh&, const Pose&, double, double);
+}  // namespace
+
+template <class Real>
+PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool_mesh, const Pose& pose, double spacing_m, double stiffness_n_per_m, double reference_area_m2) {
+  const Body<Real> statics = body_of<Real>(mockup), tool = moved(body_of<Real>(tool_mesh), pose);
+  const auto spacing = static_cast<Real>(spacing_m), area = static_cast<Real>(reference_area_m2), stiffness = static_cast<Real>(stiffness_n_per_m);
+  const Sums<Real> own = sum_samples(statics, tool, spacing), others = sum_samples(tool, statics, Real(2) * spacing);
+  PlainAnswer out;
+  if (!(own.weight > Real(0)) && !(others.weight > Real(0))) return out;
+  out.contact = true;
+  if (own.weight > Real(0)) out.depth = static_cast<double>(own.depth / own.weight);
+  for (std::size_t k = 0; k < 3; ++k)   // a tool's face pushes the other way
+    out.force[static_cast<int>(k)] = static_cast<double>(stiffness * ((own.push[k] - others.push[k]) / area / Real(2)));
+  return out;
+}
+
+template PlainAnswer plain_response<float>(const Mesh&, const Mesh&, const Pose&, double, double, double);
+template PlainAnswer plain_response<double>(const Mesh&, const Mesh&, const Pose&, double, double, double);
 
 }  // namespace palpate

@@ -1,7 +1,4 @@
 #pragma once
-#include <cstddef>
-#include <vector>
-
 #include "model/mesh.h"
 #include "model/pose.h"
 
@@ -10,20 +7,18 @@ namespace palpate {
 /// What the plain method says of one contact.
 struct PlainAnswer {
   bool contact = false;
-  Vec3 normal{0};
-  double depth = 0;        ///< m
+  double depth = 0;        ///< m: of the mock-up's samples inside the tool, their mean by weight
   Vec3 force{0};           ///< N
-  std::size_t samples = 0; ///< that gave a height
 };
 
-/// The refined method in floating point throughout, as one would write it first: the tool's vertices transformed, samples on a square grid over each static
-/// triangle, inside or not by the winding along a ray, n_c the mean of the counting samples' normals, heights along −n_c, F = K d n_c. One area;
-/// no lattice, no exact predicate, no tolerance. For comparison alone (`bench numerics`): brute force over all triangles.
+/// The pressure field of `refined` in floating point throughout, as one would write it first: the tool's vertices transformed, samples on a square grid over each triangle
+/// (the tool's twice as far apart), inside the other body or not by the winding along a ray, its depth the distance to the nearest triangle, F = K / (2 A_ref) Σ w φ n.
+/// No lattice, no exact predicate, no tolerance. For comparison alone (`bench numerics`): brute force over all triangles.
 template <class Real>
-PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool, const Pose& pose, double spacing_m, double stiffness_n_per_m);
+PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool, const Pose& pose, double spacing_m, double stiffness_n_per_m, double reference_area_m2);
 
-extern template PlainAnswer plain_response<float>(const Mesh&, const Mesh&, const Pose&, double, double);
-extern template PlainAnswer plain_response<double>(const Mesh&, const Mesh&, const Pose&, double, double);
+extern template PlainAnswer plain_response<float>(const Mesh&, const Mesh&, const Pose&, double, double, double);
+extern template PlainAnswer plain_response<double>(const Mesh&, const Mesh&, const Pose&, double, double, double);
 
 /// A wall at `wall` m along x, and a tool at `x` whose result is of `x_then`: max(0, K d − K Δx), d the depth then. The force law's arithmetic on one plane.
 template <class Real>

@@ -38,7 +38,7 @@
   tile(number(summary.torque_max_Nm) + ' N·m', 'largest torque sent');
   if (data.notes.length) {
     byId('notes').hidden = false;
-    byId('notes').textContent = data.notes.join(' ');
+    for (const note of data.notes) byId('notes').appendChild(document.createElement('p')).textContent = note + (/[.!?]$/.test(note) ? '' : '.');
   }
 
   const row = (table, cells, tag = 'td') => {
@@ -184,6 +184,7 @@
       data: { datasets: lines([{ label: 'ticks', colour: 'accent', points: [[bins[0][0], 0.5], ...steps], width: 1.2, fill: 'start' }]) },
       options: {
         animation: false, parsing: false, normalized: true, responsive: true, maintainAspectRatio: false,
+        layout: { padding: { top: 18 } },   // below the caption
         plugins: { legend: { display: false }, tooltip: { enabled: false } },
         scales: {
           x: { type: log ? 'logarithmic' : 'linear', ticks: { maxRotation: 0, callback: (v) => !log || /^1/.test(String(v).replace(/^0\.0*/, '')) ? number(v) : '' } },
