@@ -88,7 +88,7 @@ void place(const Mesh& body, const Pose& placement, const std::string& prefix, M
   for (const auto& [a, b, c] : body.triangles) mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
   for (const MeshPart& part : body.parts) {
     const std::string path = prefix.empty() ? part.path : part.path.empty() ? prefix : prefix + "/" + part.path;
-    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count, part.also});
+    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count, part.also, part.colour});
   }
 }
 

@@ -20,6 +20,7 @@
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
 #include <Poly_Triangulation.hxx>
+#include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <StepRepr_RepresentationItem.hxx>
@@ -29,12 +30,14 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_DataMapOfShapeInteger.hxx>
 #include <TopTools_DataMapOfShapeShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
 #include <Transfer_Binder.hxx>
 #include <Transfer_TransientProcess.hxx>
+#include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
@@ -45,7 +48,9 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -68,10 +73,13 @@ constexpr double kFewestDeflections = 8;  ///< no body is made of triangles more
 
 enum class Format { kStep, kIges, kBrep };
 
+using Colour = std::optional<std::uint32_t>;  ///< 0xrrggbb, sRGB
+
 /// A body of the file where it stands in the assembly.
 struct Body {
   std::string path, also;
   TopoDS_Shape shape;
+  Colour colour;
 };
 
 std::string text_of(const TCollection_ExtendedString& text) {
@@ -94,36 +102,102 @@ std::string label_name(const TDF_Label& label) {
   return label.FindAttribute(TDataStd_Name::GetID(), name) ? text_of(name->Get()) : std::string();
 }
 
+/// What the file colours: products, instances, and solids, shells and faces within a product.
+class Colours {
+ public:
+  Colours() = default;
+  explicit Colours(const Handle(TDocStd_Document) & document)
+      : tool_(XCAFDoc_DocumentTool::ColorTool(document->Main())) {}
+
+  /// Of a product or an instance.
+  Colour of(const TDF_Label& label) const {
+    Quantity_Color colour;
+    if (!tool_->GetColor(label, XCAFDoc_ColorSurf, colour) &&
+        !tool_->GetColor(label, XCAFDoc_ColorGen, colour))
+      return {};
+    double rgb[3];
+    colour.Values(rgb[0], rgb[1], rgb[2], Quantity_TOC_sRGB);
+    std::uint32_t out = 0;
+    for (const double part : rgb)
+      out = out << 8 | static_cast<std::uint32_t>(std::lround(255 * std::clamp(part, 0.0, 1.0)));
+    return out;
+  }
+
+  /// Learns what is coloured within a product.
+  void learn(const TDF_Label& product) {
+    TDF_LabelSequence within;
+    XCAFDoc_ShapeTool::GetSubShapes(product, within);
+    for (const TDF_Label& label : within) learn(XCAFDoc_ShapeTool::GetShape(label), of(label));
+  }
+  void learn(const TopoDS_Shape& shape, const Colour& colour) {
+    if (colour && !shape.IsNull()) known_.Bind(shape.Located(TopLoc_Location()), static_cast<int>(*colour));
+  }
+
+  /// Of a body within a product that has no colour itself: of its solids, else of its shells, else of most of
+  /// its faces that have one.
+  Colour of(const TopoDS_Shape& body) const {
+    if (known_.IsEmpty()) return {};
+    for (const TopAbs_ShapeEnum kind : {TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE}) {
+      std::map<int, std::size_t> counts;
+      for (TopExp_Explorer it(body, kind); it.More(); it.Next())
+        if (const int* colour = known_.Seek(it.Current().Located(TopLoc_Location()))) ++counts[*colour];
+      if (!counts.empty())
+        return static_cast<std::uint32_t>(
+            std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+              return a.second < b.second;
+            })->first);
+    }
+    return {};
+  }
+
+ private:
+  Handle(XCAFDoc_ColorTool) tool_;
+  TopTools_DataMapOfShapeInteger known_;  ///< shapes where their product has them, without their locations
+};
+
 /// Lists the bodies of shapes and assemblies, depth first.
 class Bodies {
  public:
   /// `name_of`: the name that the file gives a solid within a shape; may be empty.
-  explicit Bodies(std::function<std::string(const TopoDS_Shape&)> name_of) : name_of_(std::move(name_of)) {}
+  Bodies(std::function<std::string(const TopoDS_Shape&)> name_of, Colours& colours)
+      : name_of_(std::move(name_of)), colours_(colours) {}
 
+  /// `inherited`: the colour of the nearest assembly above that has one.
   void add(const TDF_Label& label, const TopLoc_Location& above, const std::string& folder,
-           SiblingNames& siblings) {
+           SiblingNames& siblings, const Colour& inherited) {
     TDF_Label product = label;
     TopLoc_Location here = above;
     std::string instance;
+    Colour colour = colours_.of(label);
     if (XCAFDoc_ShapeTool::IsReference(label)) {
       XCAFDoc_ShapeTool::GetReferredShape(label, product);
       here = above * XCAFDoc_ShapeTool::GetLocation(label);
       instance = label_name(label);
+      if (!colour) colour = colours_.of(product);
     }
     std::string name = label_name(product);
     if (name.empty()) name = instance.empty() ? "part" : instance;
     const std::string path = folder + siblings.unique(name);
-    if (!XCAFDoc_ShapeTool::IsAssembly(product))
+    if (!XCAFDoc_ShapeTool::IsAssembly(product)) {
+      colours_.learn(product);
       return add(XCAFDoc_ShapeTool::GetShape(product).Moved(here), path,
-                 instance == name ? std::string() : instance);
+                 instance == name ? std::string() : instance, colour, inherited);
+    }
     TDF_LabelSequence children;
     XCAFDoc_ShapeTool::GetComponents(product, children);
     SiblingNames names;
-    for (const TDF_Label& child : children) add(child, here, path + "/", names);
+    for (const TDF_Label& child : children) add(child, here, path + "/", names, colour ? colour : inherited);
   }
 
-  /// A shape with several solids is so many bodies below `path`.
-  void add(const TopoDS_Shape& shape, const std::string& path, const std::string& also) {
+  /// A shape with several solids is so many bodies below `path`. `colour` is the whole shape's, `inherited`
+  /// goes where nothing within has one.
+  void add(const TopoDS_Shape& shape, const std::string& path, const std::string& also,
+           const Colour& colour = {}, const Colour& inherited = {}) {
+    const auto colour_of = [&](const TopoDS_Shape& body) {
+      if (colour) return colour;
+      const Colour own = colours_.of(body);
+      return own ? own : inherited;
+    };
     std::vector<TopoDS_Shape> solids, shells, faces;
     for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) solids.push_back(it.Current());
     for (TopExp_Explorer it(shape, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next())
@@ -131,7 +205,7 @@ class Bodies {
     for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next())
       faces.push_back(it.Current());
     if (solids.size() + shells.size() + (faces.empty() ? 0 : 1) == 1) {
-      bodies_.push_back({path, also, shape});
+      bodies_.push_back({path, also, shape, colour_of(shape)});
       return;
     }
     SiblingNames names;
@@ -143,9 +217,12 @@ class Bodies {
                                             : list == &solids ? "solid"
                                                               : "shell"),
                            {},
-                           body});
+                           body,
+                           colour_of(body)});
       }
-    if (!faces.empty()) bodies_.push_back({path + "/" + names.unique("faces"), {}, together(faces)});
+    if (faces.empty()) return;
+    const TopoDS_Shape rest = together(faces);
+    bodies_.push_back({path + "/" + names.unique("faces"), {}, rest, colour_of(rest)});
   }
 
   std::vector<Body> take() { return std::move(bodies_); }
@@ -160,17 +237,18 @@ class Bodies {
 
  private:
   std::function<std::string(const TopoDS_Shape&)> name_of_;
+  Colours& colours_;
   std::vector<Body> bodies_;
 };
 
 /// All bodies of a document that a reader has filled.
 std::vector<Body> bodies_of(const Handle(TDocStd_Document) & document,
-                            std::function<std::string(const TopoDS_Shape&)> name_of) {
+                            std::function<std::string(const TopoDS_Shape&)> name_of, Colours& colours) {
   TDF_LabelSequence roots;
   XCAFDoc_DocumentTool::ShapeTool(document->Main())->GetFreeShapes(roots);
-  Bodies bodies(std::move(name_of));
+  Bodies bodies(std::move(name_of), colours);
   SiblingNames names;
-  for (const TDF_Label& root : roots) bodies.add(root, {}, {}, names);
+  for (const TDF_Label& root : roots) bodies.add(root, {}, {}, names, {});
   return bodies.take();
 }
 
@@ -225,7 +303,8 @@ std::size_t lost_faces(const Handle(XSControl_WorkSession) & session) {
 Result<std::vector<Body>> read_step(const std::string& path, ImportReport& report) {
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
-  reader.SetColorMode(false), reader.SetLayerMode(false), reader.SetPropsMode(false);
+  reader.SetColorMode(true);
+  reader.SetLayerMode(false), reader.SetPropsMode(false);
   reader.SetGDTMode(false), reader.SetMatMode(false), reader.SetViewMode(false), reader.SetSHUOMode(false);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     return bad_value(
@@ -247,29 +326,36 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
   const Handle(XSControl_WorkSession) session = reader.Reader().WS();
   if (const std::size_t lost = lost_faces(session))
     report.notes.push_back(fmt::format("{} faces could not be read and are left out", lost));
-  return bodies_of(document, [transfer = session->TransferReader()](const TopoDS_Shape& shape) {
+  const auto name_of = [transfer = session->TransferReader()](const TopoDS_Shape& shape) {
     const auto item =
         Handle(StepRepr_RepresentationItem)::DownCast(transfer->EntityFromShapeResult(shape, 1));
     return item.IsNull() || item->Name().IsNull() ? std::string() : clean_name(item->Name()->ToCString());
-  });
+  };
+  Colours colours(document);
+  return bodies_of(document, name_of, colours);
 }
 
 /// IGES has faces one by one, and some the wrong way round: those whose edges meet are joined, so that a body
 /// is closed again. Which side is out is found out for all formats in the same way (model/orientation.h).
-std::vector<Body> sew(std::vector<Body> bodies, const std::string& name) {
+std::vector<Body> sew(std::vector<Body> bodies, const std::string& name, const Colours& colours) {
   BRepBuilderAPI_Sewing sewing(kSewingMm);
-  std::vector<Body> out;
-  bool loose = false;
+  std::vector<Body> out, loose;
   for (Body& body : bodies)
     if (TopExp_Explorer(body.shape, TopAbs_SOLID).More()) {
       out.push_back(std::move(body));
     } else {
       sewing.Add(body.shape);
-      loose = true;
+      loose.push_back(std::move(body));
     }
-  if (!loose) return out;
+  if (loose.empty()) return out;
   sewing.Perform();
-  Bodies sewn([](const TopoDS_Shape&) { return std::string(); });
+  Colours kept;
+  for (const Body& body : loose)
+    for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next()) {
+      const Colour own = colours.of(it.Current());
+      kept.learn(sewing.ModifiedSubShape(it.Current()), own ? own : body.colour);
+    }
+  Bodies sewn([](const TopoDS_Shape&) { return std::string(); }, kept);
   sewn.add(sewing.SewedShape(), name, {});
   for (Body& body : sewn.take()) out.push_back(std::move(body));
   return out;
@@ -278,7 +364,7 @@ std::vector<Body> sew(std::vector<Body> bodies, const std::string& name) {
 Result<std::vector<Body>> read_iges(const std::string& path, const std::string& name, ImportReport& report) {
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
-  reader.SetColorMode(false), reader.SetLayerMode(false);
+  reader.SetColorMode(true), reader.SetLayerMode(false);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of IGES files", path));
   const Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
@@ -290,14 +376,18 @@ Result<std::vector<Body>> read_iges(const std::string& path, const std::string& 
       unit.IsNull()
           ? "it states no unit of length, millimetres were taken; coordinates are in metres"
           : fmt::format("its unit of length is {}; coordinates are in metres", unit_name(unit->ToCString())));
-  return sew(bodies_of(document, [](const TopoDS_Shape&) { return std::string(); }), name);
+  Colours colours(document);
+  return sew(bodies_of(
+                 document, [](const TopoDS_Shape&) { return std::string(); }, colours),
+             name, colours);
 }
 
 Result<std::vector<Body>> read_brep(const std::string& path, const std::string& name) {
   TopoDS_Shape shape;
   if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull())
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of BREP files", path));
-  Bodies bodies([](const TopoDS_Shape&) { return std::string(); });
+  Colours none;
+  Bodies bodies([](const TopoDS_Shape&) { return std::string(); }, none);
   bodies.add(shape, name, {});
   return bodies.take();
 }
@@ -346,7 +436,8 @@ class Triangulator {
             parameters.Deflection / 10;  // edges shorter than that are not divided for the angle's sake
         done.Bind(own, with_triangles(own, parameters));
       }
-      if (std::string wrong = add({body.path, body.also, done.Find(own).Moved(body.shape.Location())});
+      if (std::string wrong =
+              add({body.path, body.also, done.Find(own).Moved(body.shape.Location()), body.colour});
           !wrong.empty())
         return bad_value(fmt::format("'{}' {}", file_, wrong));
     }
@@ -440,7 +531,8 @@ class Triangulator {
     }
     if (mesh_.triangles.size() > first)
       mesh_.parts.push_back({body.path, static_cast<std::uint32_t>(first),
-                             static_cast<std::uint32_t>(mesh_.triangles.size() - first), body.also});
+                             static_cast<std::uint32_t>(mesh_.triangles.size() - first), body.also,
+                             body.colour});
     return {};
   }
 

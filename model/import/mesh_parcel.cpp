@@ -17,17 +17,18 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<char, 8> kMagic{'p', 'a', 'l', 'p', 'm', 's', 'h', '2'};
+constexpr std::array<char, 8> kMagic{'p', 'a', 'l', 'p', 'm', 's', 'h', '3'};
 constexpr std::uint64_t kMostText = 1u << 28, kMostNotes = 1000;
+constexpr std::uint32_t kNoColour = 1u << 24;
 
 struct Header {
   std::array<char, 8> magic = kMagic;
   std::uint64_t error = 0, vertices = 0, triangles = 0, parts = 0, notes = 0, text = 0;
 };
 struct PartEntry {
-  std::uint32_t first = 0, count = 0, path_bytes = 0, also_bytes = 0;
+  std::uint32_t first = 0, count = 0, path_bytes = 0, also_bytes = 0, colour = kNoColour;
 };
-static_assert(sizeof(Header) == 56 && sizeof(PartEntry) == 16 && sizeof(Vec3) == 24);
+static_assert(sizeof(Header) == 56 && sizeof(PartEntry) == 20 && sizeof(Vec3) == 24);
 
 /// Moves all bytes at an offset that goes on; pread and pwrite may stop half-way.
 template <class Call, class Byte>
@@ -113,7 +114,8 @@ bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& repo
     text = one_line(result.error().sentence);
   }
   for (const MeshPart& part : mesh.parts) {
-    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size()), static_cast<std::uint32_t>(part.also.size())});
+    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size()), static_cast<std::uint32_t>(part.also.size()),
+                     part.colour.value_or(kNoColour)});
     text += part.path + part.also;
   }
   if (result)
@@ -147,6 +149,8 @@ Result<Mesh> read_parcel(int file, ImportReport& report) {
   for (const PartEntry& entry : parts) {
     MeshPart& part = mesh.parts.emplace_back(MeshPart{{}, entry.first, entry.count, {}});
     if (!take_text(text, entry.path_bytes, part.path) || !take_text(text, entry.also_bytes, part.also)) return unsound("a part has no sound path");
+    if (entry.colour > kNoColour) return unsound("a part has no sound colour");
+    if (entry.colour != kNoColour) part.colour = entry.colour;
   }
   for (const std::uint32_t size : notes)
     if (!take_text(text, size, report.notes.emplace_back())) return unsound("a note is not one line");

@@ -17,11 +17,14 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
+#include <Quantity_Color.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
+#include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
@@ -30,6 +33,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "cpu_ref/ref_backend.h"
@@ -50,6 +54,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -99,6 +104,12 @@ std::vector<std::string> paths(const Mesh& mesh) {
   return out;
 }
 
+std::vector<std::optional<std::uint32_t>> colours(const Mesh& mesh) {
+  std::vector<std::optional<std::uint32_t>> out;
+  for (const MeshPart& part : mesh.parts) out.push_back(part.colour);
+  return out;
+}
+
 /// A bored block, 100 × 60 × 40 mm, its corner at the origin, and a lid with two bolts, turned by 180° and 5
 /// mm above it: engine { block, lid { plate, bolt, bolt } }. Shapes are in millimetres.
 class Engine {
@@ -118,11 +129,26 @@ class Engine {
     const TDF_Label lid = called(shapes->NewShape(), "lid"), engine = called(shapes->NewShape(), "engine");
     called(shapes->AddComponent(lid, plate, at(0, 0, 0)), "plate:1");
     called(shapes->AddComponent(lid, bolt, at(10, 10, 10)), "left bolt");
-    called(shapes->AddComponent(lid, bolt, at(90, 10, 10)), "right bolt");
+    const TDF_Label right = called(shapes->AddComponent(lid, bolt, at(90, 10, 10)), "right bolt");
     called(shapes->AddComponent(engine, block, at(0, 0, 0)), "block:1");
     called(shapes->AddComponent(engine, lid, half_turn_and(100, 60, 45)), "lid:1");
     shapes->UpdateAssemblies();
+    block_label_ = block, plate_label_ = plate, bolt_label_ = bolt, right_ = right;
   }
+
+  /// The block green, the plate brown but for one face, which is white, bolts grey, and the right one blue.
+  void paint() {
+    const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
+    const Handle(XCAFDoc_ColorTool) colours = XCAFDoc_DocumentTool::ColorTool(document_->Main());
+    colours->SetColor(block_label_, rgb(kGreen), XCAFDoc_ColorSurf);
+    colours->SetColor(bolt_label_, rgb(kGrey), XCAFDoc_ColorGen);
+    colours->SetColor(right_, rgb(kBlue), XCAFDoc_ColorSurf);
+    std::uint32_t face_colour = kWhite;  // the first face's
+    for (TopExp_Explorer it(plate_, TopAbs_FACE); it.More(); it.Next(), face_colour = kBrown)
+      colours->SetColor(shapes->AddSubShape(plate_label_, it.Current()), rgb(face_colour), XCAFDoc_ColorSurf);
+  }
+  static constexpr std::uint32_t kGreen = 0x20a040, kBrown = 0x804010, kWhite = 0xffffff, kGrey = 0x808080,
+                                 kBlue = 0x0010f0;
 
   /// `schema`: what Interface_Static calls it; `unit`: MM, INCH, M.
   void write(const std::string& path, const char* schema, const char* unit) {
@@ -131,6 +157,7 @@ class Engine {
     Interface_Static::SetCVal("write.step.unit", unit);
     STEPCAFControl_Writer writer;
     writer.SetNameMode(true);
+    writer.SetColorMode(true);
     ASSERT_TRUE(writer.Transfer(document_, STEPControl_AsIs));
     ASSERT_EQ(writer.Write(path.c_str()), IFSelect_RetDone);
   }
@@ -140,6 +167,9 @@ class Engine {
   const TopoDS_Shape& bolt() const { return bolt_; }
 
  private:
+  static Quantity_Color rgb(std::uint32_t colour) {
+    return {(colour >> 16) / 255.0, (colour >> 8 & 0xff) / 255.0, (colour & 0xff) / 255.0, Quantity_TOC_sRGB};
+  }
   static TDF_Label called(const TDF_Label& label, const char* name) {
     TDataStd_Name::Set(label, name);
     return label;
@@ -159,6 +189,7 @@ class Engine {
 
   Handle(TDocStd_Document) document_;
   TopoDS_Shape block_, plate_, bolt_;
+  TDF_Label block_label_, plate_label_, bolt_label_, right_;
 };
 
 class Cad : public testing::Test {
@@ -235,6 +266,25 @@ INSTANTIATE_TEST_SUITE_P(Schemas, CadAssembly,
                          [](const auto& file) {
                            return fmt::format("{}_{}", file.param.schema, file.param.unit);
                          });
+
+TEST_F(Cad, PartsHaveTheirColours) {
+  Engine engine;
+  engine.paint();
+  const std::string path = folder_.path("engine.step");
+  for (const char* schema : {"AP214IS", "AP242DIS"}) {
+    engine.write(path, schema, "MM");
+    const Mesh mesh = read(path);
+    EXPECT_THAT(colours(mesh), ElementsAre(Engine::kGreen, Engine::kBrown, Engine::kGrey, Engine::kBlue))
+        << schema;
+    const auto part = take_part(mesh, "right bolt", path);
+    ASSERT_TRUE(part) << part.error().sentence;
+    EXPECT_THAT(colours(*part), ElementsAre(Engine::kBlue));
+  }
+}
+
+TEST_F(Cad, APartWithoutAColourHasNone) {
+  EXPECT_THAT(colours(read(engine("engine.step"))), Each(std::nullopt));
+}
 
 TEST_F(Cad, APartIsAddressedByNamePathInstanceAndNumber) {
   const Mesh mesh = read(engine("engine.step"));
