@@ -19,6 +19,7 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
+#include <Message_ProgressIndicator.hxx>
 #include <Poly_Triangulation.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
@@ -72,6 +73,29 @@ constexpr double kFewestDeflections = 8;  ///< no body is made of triangles more
                                           ///< its longest side, whatever is asked for (chosen)
 
 enum class Format { kStep, kIges, kBrep };
+
+/// Hands on what the library tells of how far a stage is.
+class StageProgress : public Message_ProgressIndicator {
+ public:
+  StageProgress(const TellHowFar& tell, ImportStage stage) : tell_(tell), stage_(stage) {}
+
+ private:
+  void Show(const Message_ProgressScope& /*scope*/, const Standard_Boolean /*force*/) override {
+    constexpr double kWorthTelling = 1e-3;
+    if (!tell_ || GetPosition() < told_ + kWorthTelling) return;
+    told_ = GetPosition();
+    tell_({stage_, told_});
+  }
+
+  const TellHowFar& tell_;
+  ImportStage stage_;
+  double told_ = 0;
+};
+
+/// As the library's functions take it.
+Message_ProgressRange progress_of(const Handle(Message_ProgressIndicator) & progress) {
+  return Message_ProgressIndicator::Start(progress);
+}
 
 using Colour = std::optional<std::uint32_t>;  ///< 0xrrggbb, sRGB
 
@@ -300,7 +324,7 @@ std::size_t lost_faces(const Handle(XSControl_WorkSession) & session) {
   return lost;
 }
 
-Result<std::vector<Body>> read_step(const std::string& path, ImportReport& report) {
+Result<std::vector<Body>> read_step(const std::string& path, ImportReport& report, const TellHowFar& tell) {
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
   reader.SetColorMode(true);
@@ -316,7 +340,9 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
   Handle(TDocStd_Document) document = new_document();
-  if (!reader.Transfer(document)) return bad_value(fmt::format("'{}' has no shape that can be read", path));
+  const Handle(StageProgress) progress = new StageProgress(tell, ImportStage::kShapes);
+  if (!reader.Transfer(document, progress_of(progress)))
+    return bad_value(fmt::format("'{}' has no shape that can be read", path));
   std::string unit;
   for (const TCollection_AsciiString& length : lengths)
     unit += (unit.empty() ? "" : ", ") + unit_name(length.ToCString());
@@ -361,7 +387,8 @@ std::vector<Body> sew(std::vector<Body> bodies, const std::string& name, const C
   return out;
 }
 
-Result<std::vector<Body>> read_iges(const std::string& path, const std::string& name, ImportReport& report) {
+Result<std::vector<Body>> read_iges(const std::string& path, const std::string& name, ImportReport& report,
+                                    const TellHowFar& tell) {
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
   reader.SetColorMode(true), reader.SetLayerMode(false);
@@ -369,7 +396,9 @@ Result<std::vector<Body>> read_iges(const std::string& path, const std::string& 
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of IGES files", path));
   const Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
   Handle(TDocStd_Document) document = new_document();
-  if (!reader.Transfer(document)) return bad_value(fmt::format("'{}' has no shape that can be read", path));
+  const Handle(StageProgress) progress = new StageProgress(tell, ImportStage::kShapes);
+  if (!reader.Transfer(document, progress_of(progress)))
+    return bad_value(fmt::format("'{}' has no shape that can be read", path));
   const Handle(TCollection_HAsciiString) unit =
       model.IsNull() ? Handle(TCollection_HAsciiString)() : model->GlobalSection().UnitName();
   report.notes.push_back(
@@ -382,9 +411,11 @@ Result<std::vector<Body>> read_iges(const std::string& path, const std::string& 
              name, colours);
 }
 
-Result<std::vector<Body>> read_brep(const std::string& path, const std::string& name) {
+Result<std::vector<Body>> read_brep(const std::string& path, const std::string& name,
+                                    const TellHowFar& tell) {
   TopoDS_Shape shape;
-  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull())
+  const Handle(StageProgress) progress = new StageProgress(tell, ImportStage::kRead);
+  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder(), progress_of(progress)) || shape.IsNull())
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of BREP files", path));
   Colours none;
   Bodies bodies([](const TopoDS_Shape&) { return std::string(); }, none);
@@ -420,14 +451,18 @@ class Triangulator {
   /// `unit_m`: metres per unit of the shapes.
   Triangulator(const std::string& file, double unit_m) : file_(file), unit_m_(unit_m) {}
 
-  Result<Mesh> run(const std::vector<Body>& bodies, const Tessellation& tessellation, ImportReport& report) {
+  Result<Mesh> run(const std::vector<Body>& bodies, const Tessellation& tessellation, ImportReport& report,
+                   const TellHowFar& tell) {
     const Result<double> deflection = deflection_for(bodies, tessellation);
     if (!deflection) return deflection.error();
     IMeshTools_Parameters parameters;
     parameters.Angle = tessellation.angle_deg * std::numbers::pi / 180;
     parameters.AngleInterior = parameters.Angle;
     TopTools_DataMapOfShapeShape done;  // instances share their triangles, too
+    std::size_t number = 0;
     for (const Body& body : bodies) {
+      if (tell)
+        tell({ImportStage::kTriangles, static_cast<double>(number++) / static_cast<double>(bodies.size())});
       const TopoDS_Shape own = body.shape.Located(TopLoc_Location());
       if (!done.IsBound(own)) {
         parameters.Deflection = std::min(*deflection, longest_side(own) / kFewestDeflections) / unit_m_;
@@ -583,7 +618,7 @@ Format format_of(const std::string& path) {
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder,
-                       const Tessellation& tessellation) {
+                       const Tessellation& tessellation, const TellHowFar& tell) {
   report = {path, {}};
   const Format format = format_of(path);
   {
@@ -598,12 +633,12 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   try {
     const std::string name = clean_name(std::filesystem::path(path).stem().string());
-    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report)
-                                       : format == Format::kIges ? read_iges(path, name, report)
-                                                                 : read_brep(path, name);
+    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report, tell)
+                                       : format == Format::kIges ? read_iges(path, name, report, tell)
+                                                                 : read_brep(path, name, tell);
     if (!bodies) return bodies.error();
     return Triangulator(path, scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre))
-        .run(*bodies, tessellation, report);
+        .run(*bodies, tessellation, report, tell);
   } catch (const Standard_Failure& failure) {
     return bad_value(fmt::format(
         "'{}' can't be read: {}", path,

@@ -28,6 +28,13 @@ struct Header {
 struct PartEntry {
   std::uint32_t first = 0, count = 0, path_bytes = 0, also_bytes = 0, colour = kNoColour;
 };
+constexpr double kMillionths = 1e6;
+struct StepEntry {
+  std::array<char, 3> mark{'f', 'a', 'r'};
+  std::uint8_t stage = 0;
+  std::uint32_t millionths = 0;
+};
+static_assert(sizeof(StepEntry) == 8 && sizeof(StepEntry) <= sizeof(Header));
 static_assert(sizeof(Header) == 56 && sizeof(PartEntry) == 20 && sizeof(Vec3) == 24);
 
 /// Moves all bytes at an offset that goes on; pread and pwrite may stop half-way.
@@ -102,6 +109,21 @@ const char* wrong_with(const Mesh& mesh) {
 }
 
 }  // namespace
+
+void tell_how_far(int file, const HowFar& far) {
+  StepEntry entry;
+  entry.stage = static_cast<std::uint8_t>(far.stage);
+  entry.millionths = static_cast<std::uint32_t>(kMillionths * std::clamp(far.done, 0.0, 1.0));
+  off_t start = 0;
+  move_all(::pwrite, file, std::as_bytes(std::span(&entry, 1)), start);
+}
+
+HowFar how_far(int file) {
+  StepEntry entry;
+  off_t start = 0;
+  if (!move_all(::pread, file, std::as_writable_bytes(std::span(&entry, 1)), start) || entry.mark != StepEntry{}.mark) return {};
+  return {static_cast<ImportStage>(std::min<std::size_t>(entry.stage, kImportStages - 1)), std::min(entry.millionths / kMillionths, 1.0)};
+}
 
 bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& report) {
   Header header;

@@ -11,6 +11,7 @@
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
+#include <IGESCAFControl_Writer.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
@@ -282,8 +283,39 @@ TEST_F(Cad, PartsHaveTheirColours) {
   }
 }
 
+TEST_F(Cad, FacesThatAreSewnKeepTheirColour) {
+  Handle(TDocStd_Document) document = new TDocStd_Document("MDTV-XCAF");
+  XCAFDoc_DocumentTool::Set(document->Main(), false);
+  const TDF_Label box =
+      XCAFDoc_DocumentTool::ShapeTool(document->Main())->AddShape(BRepPrimAPI_MakeBox(10, 20, 30).Shape());
+  XCAFDoc_DocumentTool::ColorTool(document->Main())
+      ->SetColor(box, Quantity_Color(1, 0, 0, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+  IGESControl_Controller::Init();
+  Interface_Static::SetIVal("write.iges.brep.mode", 0);  // faces
+  IGESCAFControl_Writer writer;
+  writer.SetColorMode(true);
+  ASSERT_TRUE(writer.Transfer(document));
+  const std::string path = folder_.path("box.igs");
+  ASSERT_TRUE(writer.Write(path.c_str()));
+  EXPECT_THAT(colours(read(path)), ElementsAre(0xff0000u));
+}
+
 TEST_F(Cad, APartWithoutAColourHasNone) {
   EXPECT_THAT(colours(read(engine("engine.step"))), Each(std::nullopt));
+}
+
+TEST_F(Cad, HowFarItIsIsToldAndItCanBeCancelledBetween) {
+  const std::string path = folder_.path("ball.brep");
+  ASSERT_TRUE(BRepTools::Write(BRepPrimAPI_MakeSphere(1).Shape(), path.c_str()));
+  const Tessellation slow{.deflection_m = 1, .angle_deg = 0.2, .part = {}};  // seconds
+  const auto mesh = import_mesh(
+      path, 1, report_, {},
+      [](std::string_view what, double done) {
+        return what != "import, triangles" || done < 2.0 / 3;  // that is where it begins
+      },
+      slow);
+  ASSERT_FALSE(mesh) << mesh->triangles.size();
+  EXPECT_THAT(mesh.error().sentence, HasSubstr("was cancelled"));
 }
 
 TEST_F(Cad, APartIsAddressedByNamePathInstanceAndNumber) {
