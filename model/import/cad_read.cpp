@@ -235,7 +235,7 @@ class Bodies {
     SiblingNames names;
     for (const auto* list : {&solids, &shells})
       for (const TopoDS_Shape& body : *list) {
-        const std::string name = name_of_(body);
+        const std::string name = name_of_(body.Located(TopLoc_Location()));
         bodies_.push_back({path + "/" +
                                names.unique(!name.empty()     ? name
                                             : list == &solids ? "solid"

@@ -415,6 +415,39 @@ TEST_F(Cad, AProductOfSeveralBodiesHasAPartForEach) {
   EXPECT_NEAR(box_of(mesh, mesh.parts[2]).low.x, 9, 1e-9);
 }
 
+TEST_F(Cad, SolidsOfAProductHaveTheirNamesWhereverItStands) {
+  Handle(TDocStd_Document) document = new TDocStd_Document("MDTV-XCAF");
+  XCAFDoc_DocumentTool::Set(document->Main(), false);
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  TopoDS_Compound both;
+  const BRep_Builder builder;
+  builder.MakeCompound(both);
+  builder.Add(both, BRepPrimAPI_MakeBox(1, 2, 3).Shape());
+  builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(5, 0, 0), 2, 2, 2).Shape());
+  const TDF_Label pair = shapes->AddShape(both, false), all = shapes->NewShape();
+  TDataStd_Name::Set(pair, "pair");
+  TDataStd_Name::Set(all, "all");
+  gp_Trsf away;
+  away.SetTranslation(gp_Vec(100, 0, 0));
+  shapes->AddComponent(all, pair, away);
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  writer.SetNameMode(true);
+  ASSERT_TRUE(writer.Transfer(document, STEPControl_AsIs));
+  const std::string path = folder_.path("pair.step");
+  ASSERT_EQ(writer.Write(path.c_str()), IFSelect_RetDone);
+  std::stringstream whole;
+  whole << std::ifstream(path, std::ios::binary).rdbuf();
+  std::string text = whole.str();
+  constexpr std::string_view kNoName = "MANIFOLD_SOLID_BREP(''";
+  for (const char* name : {"left", "right"}) {
+    const std::size_t at = text.find(kNoName);
+    ASSERT_NE(at, std::string::npos);
+    text.insert(at + kNoName.size() - 1, name);
+  }
+  EXPECT_THAT(paths(read(folder_.write("named.step", text))), ElementsAre("all/pair/left", "all/pair/right"));
+}
+
 TEST_F(Cad, AFileOfCurvesHasNoTriangles) {
   const std::string path = folder_.path("edge.brep");
   ASSERT_TRUE(
