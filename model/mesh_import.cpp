@@ -122,12 +122,12 @@ ImportLimits import_limits(const std::string& path, const ImportLimits& asked) {
 }
 
 Result<Mesh> import_mesh(const std::string& path, double scale, ImportReport& report, const ImportLimits& asked,
-                         const std::function<bool()>& go_on, const Tessellation& tessellation) {
-  return import_mesh_below({}, path, scale, report, asked, go_on, tessellation);
+                         const ImportProgress& progress, const Tessellation& tessellation) {
+  return import_mesh_below({}, path, scale, report, asked, progress, tessellation);
 }
 
 Result<Mesh> import_mesh_below(const std::string& folder, const std::string& path, double scale, ImportReport& report, const ImportLimits& asked,
-                               const std::function<bool()>& go_on, const Tessellation& tessellation) {
+                               const ImportProgress& progress, const Tessellation& tessellation) {
   report = {path, {}};
   if (!std::isfinite(scale) || !(scale > 0))
     return bad_value(fmt::format("the scale of '{}' is {}, it must be a number above 0", path, scale));
@@ -136,7 +136,7 @@ Result<Mesh> import_mesh_below(const std::string& folder, const std::string& pat
   const MemoryFile parcel;
   if (parcel.descriptor() < 0) return Error{ErrorCode::kInternal, fmt::format("no memory file for the import of '{}': {}", path, std::strerror(errno))};
   const ImportLimits limits = import_limits(path, asked);
-  const Result<ChildEnd> end = run_import_child(*program, path, scale, limits, parcel.descriptor(), go_on, folder, tessellation);
+  const Result<ChildEnd> end = run_import_child(*program, path, scale, limits, parcel.descriptor(), progress, folder, tessellation);
   if (!end) return end.error();
   if (end->how != ChildEnd::kDone) return refusal(one_line(path), *end, limits);
   Result<Mesh> mesh = read_parcel(parcel.descriptor(), report);

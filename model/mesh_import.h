@@ -26,6 +26,9 @@ struct ImportLimits {
 /// and 1 s for each MiB (60 s and 10 s for a CAD file, whose triangles are made). Measured: docs/IMPORT.md.
 ImportLimits import_limits(const std::string& path, const ImportLimits& asked);
 
+/// Asked often while a file is read: what is done now, and how much of the import has been, in [0, 1] and never less than before. False ends it.
+using ImportProgress = std::function<bool(const char* what, double done)>;
+
 /// How the curved surfaces of a CAD file (STEP, IGES, BREP) become triangles; mesh files don't ask.
 struct Tessellation {
   double deflection_m = 0;   ///< the farthest that a triangle may lie from its surface, after `scale`; 0: a kDeflectionsPerSide-th of the longest side of `part`
@@ -50,11 +53,11 @@ bool comes_in_metres(const std::string& path);
 /// depth-first with node transforms applied and coordinates multiplied by `scale` (metres per file unit; of STEP, IGES and 3MF, which come in metres, a mere factor).
 ///
 /// Mesh files are strangers' and the libraries that read them are large, so a process of its own does it (the programs palpate-import and
-/// palpate-import-cad): whatever happens there is an error here, and nothing stays running. It is asked often whether to `go_on`; false ends it.
+/// palpate-import-cad): whatever happens there is an error here, and nothing stays running. `progress` may end it.
 /// Errors (kBadValue): missing file, unreadable, no triangle, a coordinate that is not finite, truncated; the importer crashed, or
-/// wanted more memory or time than its limits; a CAD file, and palpate-import-cad is missing. kInternal: palpate-import is missing or can't be started; ended by `go_on`.
+/// wanted more memory or time than its limits; a CAD file, and palpate-import-cad is missing. kInternal: palpate-import is missing or can't be started; ended by `progress`.
 Result<Mesh> import_mesh(const std::string& path, double scale, ImportReport& report, const ImportLimits& limits = {},
-                         const std::function<bool()>& go_on = {}, const Tessellation& tessellation = {});
+                         const ImportProgress& progress = {}, const Tessellation& tessellation = {});
 
 /// The path of the node that `name` names: a full path, the last name of one path alone, the other name (MeshPart::also) of one part alone, or a part's
 /// number as `info` prints it, "#3". Error kBadValue: none or several; the sentence has the nearest names, and `file`.

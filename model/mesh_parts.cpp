@@ -29,7 +29,7 @@ Mesh subset(const Mesh& mesh, Keep keep) {
   Mesh out;
   for (const MeshPart& part : mesh.parts) {
     if (!keep(part)) continue;
-    out.parts.push_back({part.path, static_cast<std::uint32_t>(out.triangles.size()), part.triangle_count, part.also});
+    out.parts.push_back({part.path, static_cast<std::uint32_t>(out.triangles.size()), part.triangle_count, part.also, part.colour});
     for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
       std::array<std::uint32_t, 3> triangle = mesh.triangles[t];
       for (std::uint32_t& v : triangle) {

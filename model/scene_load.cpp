@@ -44,7 +44,7 @@ class Files {
     for (const StaticBody& body : scene.statics) ++uses_[key(body.source)];
   }
 
-  Result<Mesh> read(const MeshSource& source, const Tessellation& tessellation, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
+  Result<Mesh> read(const MeshSource& source, const Tessellation& tessellation, const ImportProgress& progress, std::vector<std::string>& warnings) {
     int& uses = uses_[key(source)];
     const auto kept = kept_.find(key(source));
     if (kept != kept_.end()) {
@@ -54,7 +54,7 @@ class Files {
       return last;
     }
     ImportReport report;
-    Result<Mesh> mesh = import_mesh_below(folder_, source.file, source.scale, report, limits_, go_on, tessellation);
+    Result<Mesh> mesh = import_mesh_below(folder_, source.file, source.scale, report, limits_, progress, tessellation);
     if (!mesh) return mesh;
     for (const std::string& note : report.notes) warnings.push_back(source.file + ": " + note);
     if (--uses > 0) kept_[key(source)] = *mesh;
@@ -71,8 +71,8 @@ class Files {
   std::map<Key, Mesh> kept_;
 };
 
-Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation, const std::function<bool()>& go_on, std::vector<std::string>& warnings) {
-  Result<Mesh> mesh = source.file.empty() ? generate(source) : files.read(source, tessellation, go_on, warnings);
+Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation, const ImportProgress& progress, std::vector<std::string>& warnings) {
+  Result<Mesh> mesh = source.file.empty() ? generate(source) : files.read(source, tessellation, progress, warnings);
   if (!mesh) return mesh;
   if (!source.part.empty()) mesh = take_part(*mesh, source.part, source_name(source));
   if (mesh && !source.without.empty()) mesh = without_parts(*mesh, source.without, source_name(source));
@@ -88,7 +88,7 @@ void place(const Mesh& body, const Pose& placement, const std::string& prefix, M
   for (const auto& [a, b, c] : body.triangles) mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
   for (const MeshPart& part : body.parts) {
     const std::string path = prefix.empty() ? part.path : part.path.empty() ? prefix : prefix + "/" + part.path;
-    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count, part.also});
+    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count, part.also, part.colour});
   }
 }
 
@@ -155,18 +155,20 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
   const double bodies = static_cast<double>(scene.statics.size()) + 1;
   Files files(scene, folder, limits);
   // The tool comes first: where nothing else says how finely the mock-up's curved surfaces are made of triangles, the tool's size does.
-  const auto tool_go_on = [&] { return tell(progress, "import", 0); };
-  if (!tool_go_on()) return cancelled;
+  const auto of_body = [&](std::size_t body) {
+    return [&progress, body, bodies](const char* what, double done) { return tell(progress, what, (static_cast<double>(body) + done) / bodies); };
+  };
+  if (!tell(progress, "import", 0)) return cancelled;
   Tessellation tessellation{stated_deflection(scene.response), scene.response.tessellation_angle_deg, scene.tool.source.part};
-  auto tool = mesh_of(scene.tool.source, files, tessellation, tool_go_on, scene.warnings);
+  auto tool = mesh_of(scene.tool.source, files, tessellation, of_body(0), scene.warnings);
   if (!tool) return tool.error();
   meshes.tool = std::move(*tool);
   if (tessellation.deflection_m == 0) tessellation.deflection_m = extent(meshes.tool) / kDeflectionsPerSide;
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
-    const auto go_on = [&] { return tell(progress, "import", static_cast<double>(i + 1) / bodies); };
-    if (!go_on()) return cancelled;
+    const auto body_progress = of_body(i + 1);
+    if (!body_progress("import", 0)) return cancelled;
     const StaticBody& body = scene.statics[i];
-    const auto mesh = mesh_of(body.source, files, tessellation, go_on, scene.warnings);
+    const auto mesh = mesh_of(body.source, files, tessellation, body_progress, scene.warnings);
     if (!mesh) return mesh.error();
     place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", meshes.mockup);
   }

@@ -19,7 +19,9 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
+#include <Message_ProgressIndicator.hxx>
 #include <Poly_Triangulation.hxx>
+#include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <StepRepr_RepresentationItem.hxx>
@@ -29,12 +31,14 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_DataMapOfShapeInteger.hxx>
 #include <TopTools_DataMapOfShapeShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
 #include <Transfer_Binder.hxx>
 #include <Transfer_TransientProcess.hxx>
+#include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
@@ -45,7 +49,9 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -68,10 +74,36 @@ constexpr double kFewestDeflections = 8;  ///< no body is made of triangles more
 
 enum class Format { kStep, kIges, kBrep };
 
+/// Hands on what the library tells of how far a stage is.
+class StageProgress : public Message_ProgressIndicator {
+ public:
+  StageProgress(const TellHowFar& tell, ImportStage stage) : tell_(tell), stage_(stage) {}
+
+ private:
+  void Show(const Message_ProgressScope& /*scope*/, const Standard_Boolean /*force*/) override {
+    constexpr double kWorthTelling = 1e-3;
+    if (!tell_ || GetPosition() < told_ + kWorthTelling) return;
+    told_ = GetPosition();
+    tell_({stage_, told_});
+  }
+
+  const TellHowFar& tell_;
+  ImportStage stage_;
+  double told_ = 0;
+};
+
+/// As the library's functions take it.
+Message_ProgressRange progress_of(const Handle(Message_ProgressIndicator) & progress) {
+  return Message_ProgressIndicator::Start(progress);
+}
+
+using Colour = std::optional<std::uint32_t>;  ///< 0xrrggbb, sRGB
+
 /// A body of the file where it stands in the assembly.
 struct Body {
   std::string path, also;
   TopoDS_Shape shape;
+  Colour colour;
 };
 
 std::string text_of(const TCollection_ExtendedString& text) {
@@ -94,36 +126,102 @@ std::string label_name(const TDF_Label& label) {
   return label.FindAttribute(TDataStd_Name::GetID(), name) ? text_of(name->Get()) : std::string();
 }
 
+/// What the file colours: products, instances, and solids, shells and faces within a product.
+class Colours {
+ public:
+  Colours() = default;
+  explicit Colours(const Handle(TDocStd_Document) & document)
+      : tool_(XCAFDoc_DocumentTool::ColorTool(document->Main())) {}
+
+  /// Of a product or an instance.
+  Colour of(const TDF_Label& label) const {
+    Quantity_Color colour;
+    if (!tool_->GetColor(label, XCAFDoc_ColorSurf, colour) &&
+        !tool_->GetColor(label, XCAFDoc_ColorGen, colour))
+      return {};
+    double rgb[3];
+    colour.Values(rgb[0], rgb[1], rgb[2], Quantity_TOC_sRGB);
+    std::uint32_t out = 0;
+    for (const double part : rgb)
+      out = out << 8 | static_cast<std::uint32_t>(std::lround(255 * std::clamp(part, 0.0, 1.0)));
+    return out;
+  }
+
+  /// Learns what is coloured within a product.
+  void learn(const TDF_Label& product) {
+    TDF_LabelSequence within;
+    XCAFDoc_ShapeTool::GetSubShapes(product, within);
+    for (const TDF_Label& label : within) learn(XCAFDoc_ShapeTool::GetShape(label), of(label));
+  }
+  void learn(const TopoDS_Shape& shape, const Colour& colour) {
+    if (colour && !shape.IsNull()) known_.Bind(shape.Located(TopLoc_Location()), static_cast<int>(*colour));
+  }
+
+  /// Of a body within a product that has no colour itself: of its solids, else of its shells, else of most of
+  /// its faces that have one.
+  Colour of(const TopoDS_Shape& body) const {
+    if (known_.IsEmpty()) return {};
+    for (const TopAbs_ShapeEnum kind : {TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE}) {
+      std::map<int, std::size_t> counts;
+      for (TopExp_Explorer it(body, kind); it.More(); it.Next())
+        if (const int* colour = known_.Seek(it.Current().Located(TopLoc_Location()))) ++counts[*colour];
+      if (!counts.empty())
+        return static_cast<std::uint32_t>(
+            std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+              return a.second < b.second;
+            })->first);
+    }
+    return {};
+  }
+
+ private:
+  Handle(XCAFDoc_ColorTool) tool_;
+  TopTools_DataMapOfShapeInteger known_;  ///< shapes where their product has them, without their locations
+};
+
 /// Lists the bodies of shapes and assemblies, depth first.
 class Bodies {
  public:
   /// `name_of`: the name that the file gives a solid within a shape; may be empty.
-  explicit Bodies(std::function<std::string(const TopoDS_Shape&)> name_of) : name_of_(std::move(name_of)) {}
+  Bodies(std::function<std::string(const TopoDS_Shape&)> name_of, Colours& colours)
+      : name_of_(std::move(name_of)), colours_(colours) {}
 
+  /// `inherited`: the colour of the nearest assembly above that has one.
   void add(const TDF_Label& label, const TopLoc_Location& above, const std::string& folder,
-           SiblingNames& siblings) {
+           SiblingNames& siblings, const Colour& inherited) {
     TDF_Label product = label;
     TopLoc_Location here = above;
     std::string instance;
+    Colour colour = colours_.of(label);
     if (XCAFDoc_ShapeTool::IsReference(label)) {
       XCAFDoc_ShapeTool::GetReferredShape(label, product);
       here = above * XCAFDoc_ShapeTool::GetLocation(label);
       instance = label_name(label);
+      if (!colour) colour = colours_.of(product);
     }
     std::string name = label_name(product);
     if (name.empty()) name = instance.empty() ? "part" : instance;
     const std::string path = folder + siblings.unique(name);
-    if (!XCAFDoc_ShapeTool::IsAssembly(product))
+    if (!XCAFDoc_ShapeTool::IsAssembly(product)) {
+      colours_.learn(product);
       return add(XCAFDoc_ShapeTool::GetShape(product).Moved(here), path,
-                 instance == name ? std::string() : instance);
+                 instance == name ? std::string() : instance, colour, inherited);
+    }
     TDF_LabelSequence children;
     XCAFDoc_ShapeTool::GetComponents(product, children);
     SiblingNames names;
-    for (const TDF_Label& child : children) add(child, here, path + "/", names);
+    for (const TDF_Label& child : children) add(child, here, path + "/", names, colour ? colour : inherited);
   }
 
-  /// A shape with several solids is so many bodies below `path`.
-  void add(const TopoDS_Shape& shape, const std::string& path, const std::string& also) {
+  /// A shape with several solids is so many bodies below `path`. `colour` is the whole shape's, `inherited`
+  /// goes where nothing within has one.
+  void add(const TopoDS_Shape& shape, const std::string& path, const std::string& also,
+           const Colour& colour = {}, const Colour& inherited = {}) {
+    const auto colour_of = [&](const TopoDS_Shape& body) {
+      if (colour) return colour;
+      const Colour own = colours_.of(body);
+      return own ? own : inherited;
+    };
     std::vector<TopoDS_Shape> solids, shells, faces;
     for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) solids.push_back(it.Current());
     for (TopExp_Explorer it(shape, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next())
@@ -131,21 +229,24 @@ class Bodies {
     for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next())
       faces.push_back(it.Current());
     if (solids.size() + shells.size() + (faces.empty() ? 0 : 1) == 1) {
-      bodies_.push_back({path, also, shape});
+      bodies_.push_back({path, also, shape, colour_of(shape)});
       return;
     }
     SiblingNames names;
     for (const auto* list : {&solids, &shells})
       for (const TopoDS_Shape& body : *list) {
-        const std::string name = name_of_(body);
+        const std::string name = name_of_(body.Located(TopLoc_Location()));
         bodies_.push_back({path + "/" +
                                names.unique(!name.empty()     ? name
                                             : list == &solids ? "solid"
                                                               : "shell"),
                            {},
-                           body});
+                           body,
+                           colour_of(body)});
       }
-    if (!faces.empty()) bodies_.push_back({path + "/" + names.unique("faces"), {}, together(faces)});
+    if (faces.empty()) return;
+    const TopoDS_Shape rest = together(faces);
+    bodies_.push_back({path + "/" + names.unique("faces"), {}, rest, colour_of(rest)});
   }
 
   std::vector<Body> take() { return std::move(bodies_); }
@@ -160,17 +261,18 @@ class Bodies {
 
  private:
   std::function<std::string(const TopoDS_Shape&)> name_of_;
+  Colours& colours_;
   std::vector<Body> bodies_;
 };
 
 /// All bodies of a document that a reader has filled.
 std::vector<Body> bodies_of(const Handle(TDocStd_Document) & document,
-                            std::function<std::string(const TopoDS_Shape&)> name_of) {
+                            std::function<std::string(const TopoDS_Shape&)> name_of, Colours& colours) {
   TDF_LabelSequence roots;
   XCAFDoc_DocumentTool::ShapeTool(document->Main())->GetFreeShapes(roots);
-  Bodies bodies(std::move(name_of));
+  Bodies bodies(std::move(name_of), colours);
   SiblingNames names;
-  for (const TDF_Label& root : roots) bodies.add(root, {}, {}, names);
+  for (const TDF_Label& root : roots) bodies.add(root, {}, {}, names, {});
   return bodies.take();
 }
 
@@ -222,10 +324,11 @@ std::size_t lost_faces(const Handle(XSControl_WorkSession) & session) {
   return lost;
 }
 
-Result<std::vector<Body>> read_step(const std::string& path, ImportReport& report) {
+Result<std::vector<Body>> read_step(const std::string& path, ImportReport& report, const TellHowFar& tell) {
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
-  reader.SetColorMode(false), reader.SetLayerMode(false), reader.SetPropsMode(false);
+  reader.SetColorMode(true);
+  reader.SetLayerMode(false), reader.SetPropsMode(false);
   reader.SetGDTMode(false), reader.SetMatMode(false), reader.SetViewMode(false), reader.SetSHUOMode(false);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     return bad_value(
@@ -237,7 +340,9 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
   Handle(TDocStd_Document) document = new_document();
-  if (!reader.Transfer(document)) return bad_value(fmt::format("'{}' has no shape that can be read", path));
+  const Handle(StageProgress) progress = new StageProgress(tell, ImportStage::kShapes);
+  if (!reader.Transfer(document, progress_of(progress)))
+    return bad_value(fmt::format("'{}' has no shape that can be read", path));
   std::string unit;
   for (const TCollection_AsciiString& length : lengths)
     unit += (unit.empty() ? "" : ", ") + unit_name(length.ToCString());
@@ -247,57 +352,73 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
   const Handle(XSControl_WorkSession) session = reader.Reader().WS();
   if (const std::size_t lost = lost_faces(session))
     report.notes.push_back(fmt::format("{} faces could not be read and are left out", lost));
-  return bodies_of(document, [transfer = session->TransferReader()](const TopoDS_Shape& shape) {
+  const auto name_of = [transfer = session->TransferReader()](const TopoDS_Shape& shape) {
     const auto item =
         Handle(StepRepr_RepresentationItem)::DownCast(transfer->EntityFromShapeResult(shape, 1));
     return item.IsNull() || item->Name().IsNull() ? std::string() : clean_name(item->Name()->ToCString());
-  });
+  };
+  Colours colours(document);
+  return bodies_of(document, name_of, colours);
 }
 
 /// IGES has faces one by one, and some the wrong way round: those whose edges meet are joined, so that a body
 /// is closed again. Which side is out is found out for all formats in the same way (model/orientation.h).
-std::vector<Body> sew(std::vector<Body> bodies, const std::string& name) {
+std::vector<Body> sew(std::vector<Body> bodies, const std::string& name, const Colours& colours) {
   BRepBuilderAPI_Sewing sewing(kSewingMm);
-  std::vector<Body> out;
-  bool loose = false;
+  std::vector<Body> out, loose;
   for (Body& body : bodies)
     if (TopExp_Explorer(body.shape, TopAbs_SOLID).More()) {
       out.push_back(std::move(body));
     } else {
       sewing.Add(body.shape);
-      loose = true;
+      loose.push_back(std::move(body));
     }
-  if (!loose) return out;
+  if (loose.empty()) return out;
   sewing.Perform();
-  Bodies sewn([](const TopoDS_Shape&) { return std::string(); });
+  Colours kept;
+  for (const Body& body : loose)
+    for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next()) {
+      const Colour own = colours.of(it.Current());
+      kept.learn(sewing.ModifiedSubShape(it.Current()), own ? own : body.colour);
+    }
+  Bodies sewn([](const TopoDS_Shape&) { return std::string(); }, kept);
   sewn.add(sewing.SewedShape(), name, {});
   for (Body& body : sewn.take()) out.push_back(std::move(body));
   return out;
 }
 
-Result<std::vector<Body>> read_iges(const std::string& path, const std::string& name, ImportReport& report) {
+Result<std::vector<Body>> read_iges(const std::string& path, const std::string& name, ImportReport& report,
+                                    const TellHowFar& tell) {
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
-  reader.SetColorMode(false), reader.SetLayerMode(false);
+  reader.SetColorMode(true), reader.SetLayerMode(false);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of IGES files", path));
   const Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
   Handle(TDocStd_Document) document = new_document();
-  if (!reader.Transfer(document)) return bad_value(fmt::format("'{}' has no shape that can be read", path));
+  const Handle(StageProgress) progress = new StageProgress(tell, ImportStage::kShapes);
+  if (!reader.Transfer(document, progress_of(progress)))
+    return bad_value(fmt::format("'{}' has no shape that can be read", path));
   const Handle(TCollection_HAsciiString) unit =
       model.IsNull() ? Handle(TCollection_HAsciiString)() : model->GlobalSection().UnitName();
   report.notes.push_back(
       unit.IsNull()
           ? "it states no unit of length, millimetres were taken; coordinates are in metres"
           : fmt::format("its unit of length is {}; coordinates are in metres", unit_name(unit->ToCString())));
-  return sew(bodies_of(document, [](const TopoDS_Shape&) { return std::string(); }), name);
+  Colours colours(document);
+  return sew(bodies_of(
+                 document, [](const TopoDS_Shape&) { return std::string(); }, colours),
+             name, colours);
 }
 
-Result<std::vector<Body>> read_brep(const std::string& path, const std::string& name) {
+Result<std::vector<Body>> read_brep(const std::string& path, const std::string& name,
+                                    const TellHowFar& tell) {
   TopoDS_Shape shape;
-  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull())
+  const Handle(StageProgress) progress = new StageProgress(tell, ImportStage::kRead);
+  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder(), progress_of(progress)) || shape.IsNull())
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of BREP files", path));
-  Bodies bodies([](const TopoDS_Shape&) { return std::string(); });
+  Colours none;
+  Bodies bodies([](const TopoDS_Shape&) { return std::string(); }, none);
   bodies.add(shape, name, {});
   return bodies.take();
 }
@@ -330,14 +451,18 @@ class Triangulator {
   /// `unit_m`: metres per unit of the shapes.
   Triangulator(const std::string& file, double unit_m) : file_(file), unit_m_(unit_m) {}
 
-  Result<Mesh> run(const std::vector<Body>& bodies, const Tessellation& tessellation, ImportReport& report) {
+  Result<Mesh> run(const std::vector<Body>& bodies, const Tessellation& tessellation, ImportReport& report,
+                   const TellHowFar& tell) {
     const Result<double> deflection = deflection_for(bodies, tessellation);
     if (!deflection) return deflection.error();
     IMeshTools_Parameters parameters;
     parameters.Angle = tessellation.angle_deg * std::numbers::pi / 180;
     parameters.AngleInterior = parameters.Angle;
     TopTools_DataMapOfShapeShape done;  // instances share their triangles, too
+    std::size_t number = 0;
     for (const Body& body : bodies) {
+      if (tell)
+        tell({ImportStage::kTriangles, static_cast<double>(number++) / static_cast<double>(bodies.size())});
       const TopoDS_Shape own = body.shape.Located(TopLoc_Location());
       if (!done.IsBound(own)) {
         parameters.Deflection = std::min(*deflection, longest_side(own) / kFewestDeflections) / unit_m_;
@@ -346,7 +471,8 @@ class Triangulator {
             parameters.Deflection / 10;  // edges shorter than that are not divided for the angle's sake
         done.Bind(own, with_triangles(own, parameters));
       }
-      if (std::string wrong = add({body.path, body.also, done.Find(own).Moved(body.shape.Location())});
+      if (std::string wrong =
+              add({body.path, body.also, done.Find(own).Moved(body.shape.Location()), body.colour});
           !wrong.empty())
         return bad_value(fmt::format("'{}' {}", file_, wrong));
     }
@@ -440,7 +566,8 @@ class Triangulator {
     }
     if (mesh_.triangles.size() > first)
       mesh_.parts.push_back({body.path, static_cast<std::uint32_t>(first),
-                             static_cast<std::uint32_t>(mesh_.triangles.size() - first), body.also});
+                             static_cast<std::uint32_t>(mesh_.triangles.size() - first), body.also,
+                             body.colour});
     return {};
   }
 
@@ -491,7 +618,7 @@ Format format_of(const std::string& path) {
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder,
-                       const Tessellation& tessellation) {
+                       const Tessellation& tessellation, const TellHowFar& tell) {
   report = {path, {}};
   const Format format = format_of(path);
   {
@@ -506,12 +633,12 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   try {
     const std::string name = clean_name(std::filesystem::path(path).stem().string());
-    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report)
-                                       : format == Format::kIges ? read_iges(path, name, report)
-                                                                 : read_brep(path, name);
+    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report, tell)
+                                       : format == Format::kIges ? read_iges(path, name, report, tell)
+                                                                 : read_brep(path, name, tell);
     if (!bodies) return bodies.error();
     return Triangulator(path, scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre))
-        .run(*bodies, tessellation, report);
+        .run(*bodies, tessellation, report, tell);
   } catch (const Standard_Failure& failure) {
     return bad_value(fmt::format(
         "'{}' can't be read: {}", path,

@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "model/import/mesh_parcel.h"
 #include "model/one_line.h"
 
 extern char** environ;
@@ -25,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kOwn = 10;                 ///< descriptors of ours lie from here on, clear of those that the child gets
-constexpr int kLookMs = 20;              ///< between looks at the clock and at `go_on`
+constexpr int kLookMs = 20;              ///< between looks at the clock and at how far it is
 constexpr std::size_t kMostWords = 4096;
 
 /// A pipe whose ends close by themselves.
@@ -80,6 +81,16 @@ Result<pid_t> start(const std::string& program, std::array<std::string, 10> argu
   return child;
 }
 
+/// Each stage is a third of the way: which one takes longest depends on the file.
+double share_done(const HowFar& far) {
+  return (static_cast<double>(far.stage) + far.done) / static_cast<double>(kImportStages);
+}
+
+const char* what_is_done(ImportStage stage) {
+  constexpr std::array<const char*, kImportStages> kNames{"import", "import, shapes", "import, triangles"};
+  return kNames[static_cast<std::size_t>(stage)];
+}
+
 /// Keeps the end of what the child says. False at its end.
 bool listen(int pipe, std::string& words) {
   std::array<char, 4096> some{};
@@ -108,7 +119,7 @@ ChildEnd end_of(int status) {
 }  // namespace
 
 Result<ChildEnd> run_import_child(const std::string& program, const std::string& path, double scale, const ImportLimits& limits, int parcel,
-                                  const std::function<bool()>& go_on, const std::string& folder, const Tessellation& tessellation) {
+                                  const ImportProgress& progress, const std::string& folder, const Tessellation& tessellation) {
   Pipe errors;
   if (errors.end[1] < 0) return Error{ErrorCode::kInternal, fmt::format("no pipe for the importer: {}", std::strerror(errno))};
   ::fcntl(errors.end[0], F_SETFL, O_NONBLOCK);
@@ -121,13 +132,15 @@ Result<ChildEnd> run_import_child(const std::string& program, const std::string&
 
   std::string words;
   ChildEnd end;
+  HowFar far;
   for (bool talking = true;;) {
     pollfd ready{talking ? errors.end[0] : -1, POLLIN, 0};
     if (::poll(&ready, 1, talking ? kLookMs : 1) > 0) talking = listen(errors.end[0], words);
     siginfo_t gone{};
     if (::waitid(P_PID, static_cast<id_t>(*child), &gone, WEXITED | WNOHANG | WNOWAIT) != 0 || gone.si_pid == *child) break;
     if (Clock::now() > deadline) end.how = ChildEnd::kOutOfTime;
-    else if (go_on && !go_on()) end.how = ChildEnd::kStopped;
+    if (const HowFar now = how_far(parcel); share_done(now) > share_done(far)) far = now;
+    if (end.how == ChildEnd::kDone && progress && !progress(what_is_done(far.stage), share_done(far))) end.how = ChildEnd::kStopped;
     if (end.how != ChildEnd::kDone) break;
   }
   // First the whole group, what the child may have started included, then the child's own end: so long its number is not another's.

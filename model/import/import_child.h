@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <string>
 
 #include "model/mesh_import.h"
@@ -18,10 +17,10 @@ struct ChildEnd {
   std::string last_words;    ///< the last line on its standard error; printable
 };
 
-/// Runs `program` on a file until it ends, its limits do, or `go_on` says no; it and what it started are gone afterwards. Its parcel is then
-/// in the file `parcel`. Starts it by posix_spawn: other threads (a Vulkan driver's) may exist. No descriptor is inherited but its own four.
+/// Runs `program` on a file until it ends, its limits do, or `progress` says no; it and what it started are gone afterwards. Its parcel is then
+/// in the file `parcel`, and how far it is before (model/import/mesh_parcel.h). Starts it by posix_spawn: other threads (a Vulkan driver's) may exist. No descriptor is inherited but its own four.
 /// `folder`: see model/confined_import.h. Error kInternal: it can't be started.
 Result<ChildEnd> run_import_child(const std::string& program, const std::string& path, double scale, const ImportLimits& limits, int parcel,
-                                  const std::function<bool()>& go_on, const std::string& folder = {}, const Tessellation& tessellation = {});
+                                  const ImportProgress& progress, const std::string& folder = {}, const Tessellation& tessellation = {});
 
 }  // namespace palpate

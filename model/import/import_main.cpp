@@ -50,7 +50,7 @@ void limit_myself(rlim_t memory_bytes, rlim_t seconds, pid_t asker) {
 
 Result<Mesh> read(const char* path, double scale, const char* folder, const Tessellation& tessellation, ImportReport& report) {
   try {
-    return read_mesh(path, scale, report, folder, tessellation);
+    return read_mesh(path, scale, report, folder, tessellation, [](const HowFar& far) { tell_how_far(kParcelDescriptor, far); });
   } catch (...) {   // even what is no std::exception
     return bad_value(std::string("'") + path + "' can't be read: the import failed for an unknown reason");
   }

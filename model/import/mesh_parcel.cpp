@@ -17,17 +17,25 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<char, 8> kMagic{'p', 'a', 'l', 'p', 'm', 's', 'h', '2'};
+constexpr std::array<char, 8> kMagic{'p', 'a', 'l', 'p', 'm', 's', 'h', '3'};
 constexpr std::uint64_t kMostText = 1u << 28, kMostNotes = 1000;
+constexpr std::uint32_t kNoColour = 1u << 24;
 
 struct Header {
   std::array<char, 8> magic = kMagic;
   std::uint64_t error = 0, vertices = 0, triangles = 0, parts = 0, notes = 0, text = 0;
 };
 struct PartEntry {
-  std::uint32_t first = 0, count = 0, path_bytes = 0, also_bytes = 0;
+  std::uint32_t first = 0, count = 0, path_bytes = 0, also_bytes = 0, colour = kNoColour;
 };
-static_assert(sizeof(Header) == 56 && sizeof(PartEntry) == 16 && sizeof(Vec3) == 24);
+constexpr double kMillionths = 1e6;
+struct StepEntry {
+  std::array<char, 3> mark{'f', 'a', 'r'};
+  std::uint8_t stage = 0;
+  std::uint32_t millionths = 0;
+};
+static_assert(sizeof(StepEntry) == 8 && sizeof(StepEntry) <= sizeof(Header));
+static_assert(sizeof(Header) == 56 && sizeof(PartEntry) == 20 && sizeof(Vec3) == 24);
 
 /// Moves all bytes at an offset that goes on; pread and pwrite may stop half-way.
 template <class Call, class Byte>
@@ -102,6 +110,21 @@ const char* wrong_with(const Mesh& mesh) {
 
 }  // namespace
 
+void tell_how_far(int file, const HowFar& far) {
+  StepEntry entry;
+  entry.stage = static_cast<std::uint8_t>(far.stage);
+  entry.millionths = static_cast<std::uint32_t>(kMillionths * std::clamp(far.done, 0.0, 1.0));
+  off_t start = 0;
+  move_all(::pwrite, file, std::as_bytes(std::span(&entry, 1)), start);
+}
+
+HowFar how_far(int file) {
+  StepEntry entry;
+  off_t start = 0;
+  if (!move_all(::pread, file, std::as_writable_bytes(std::span(&entry, 1)), start) || entry.mark != StepEntry{}.mark) return {};
+  return {static_cast<ImportStage>(std::min<std::size_t>(entry.stage, kImportStages - 1)), std::min(entry.millionths / kMillionths, 1.0)};
+}
+
 bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& report) {
   Header header;
   std::string text;
@@ -113,7 +136,8 @@ bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& repo
     text = one_line(result.error().sentence);
   }
   for (const MeshPart& part : mesh.parts) {
-    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size()), static_cast<std::uint32_t>(part.also.size())});
+    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size()), static_cast<std::uint32_t>(part.also.size()),
+                     part.colour.value_or(kNoColour)});
     text += part.path + part.also;
   }
   if (result)
@@ -147,6 +171,8 @@ Result<Mesh> read_parcel(int file, ImportReport& report) {
   for (const PartEntry& entry : parts) {
     MeshPart& part = mesh.parts.emplace_back(MeshPart{{}, entry.first, entry.count, {}});
     if (!take_text(text, entry.path_bytes, part.path) || !take_text(text, entry.also_bytes, part.also)) return unsound("a part has no sound path");
+    if (entry.colour > kNoColour) return unsound("a part has no sound colour");
+    if (entry.colour != kNoColour) part.colour = entry.colour;
   }
   for (const std::uint32_t size : notes)
     if (!take_text(text, size, report.notes.emplace_back())) return unsound("a note is not one line");

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "model/mesh_import.h"
@@ -11,11 +13,26 @@ namespace palpate {
 ///   header    magic, error code (0: a mesh), counts of vertices, triangles, parts, notes, bytes of text
 ///   vertices  3 doubles each
 ///   triangles 3 uint32 each
-///   parts     4 uint32 each: first triangle, count, bytes of its path and of its other name
+///   parts     5 uint32 each: first triangle, count, bytes of its path and of its other name, colour (0x1000000: none)
 ///   notes     1 uint32 each: bytes
 ///   text      the parts' paths and other names, then the notes; or the error's sentence
 ///
-/// The header is written last, so that a parcel that was not finished has none.
+/// The header is written last, so that a parcel that was not finished has none. Until then its place says how far the importer is.
+
+/// What an importer does, one after the other; a mesh file is only read.
+enum class ImportStage : std::uint8_t { kRead, kShapes, kTriangles };
+inline constexpr std::size_t kImportStages = 3;
+
+struct HowFar {
+  ImportStage stage = ImportStage::kRead;
+  double done = 0;   ///< of the stage, in [0, 1]
+};
+
+/// The importer's side: 8 bytes in place of the header.
+void tell_how_far(int file, const HowFar& far);
+
+/// What it has told last; whatever stands there, it is a stage and in [0, 1]. The beginning where it has told nothing.
+HowFar how_far(int file);
 
 /// Largest parcel in bytes that a sound importer makes.
 inline constexpr unsigned long long kLargestParcel = 4ull << 30;

@@ -21,6 +21,7 @@ struct MeshInfo {
   ImportReport import;
   MeshReport body;
   std::vector<std::string> also;    ///< other names of the parts; empty: none
+  std::vector<std::string> colours; ///< "#rrggbb"; empty: none
   std::vector<double> volumes;      ///< of the parts, file units³, where they are closed
   bool metres = false;              ///< sizes are in metres
   std::string unit;                 ///< what was taken for the unit, where that is a guess
@@ -66,6 +67,7 @@ Result<MeshInfo> inspect(const std::string& path, const InfoOptions& options) {
   info.metres = options.unit_m || comes_in_metres(path);
   for (const MeshPart& part : mesh->parts) {
     info.also.push_back(part.also);
+    info.colours.push_back(part.colour ? fmt::format("#{:06x}", *part.colour) : std::string());
     info.volumes.push_back(std::abs(volume_of(*mesh, part)));
   }
   bool first = true;
@@ -103,6 +105,7 @@ nlohmann::ordered_json to_json(const MeshInfo& info) {
     parts.push_back({{"number", i + 1},
                      {"path", part.path},
                      {"also", info.also[i].empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.also[i])},
+                     {"colour", info.colours[i].empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.colours[i])},
                      {"triangles", part.triangles},
                      {"size", to_json(part.box_max_m - part.box_min_m)},
                      {"bounds", {{"min", to_json(part.box_min_m)}, {"max", to_json(part.box_max_m)}}},
@@ -164,14 +167,14 @@ struct PartLine {
   std::size_t depth = 0;
   std::uint32_t triangles = 0;
   Vec3 size{0};
-  std::string closed, orientation;
+  std::string closed, orientation, colour;
 };
 
 std::string named(const PartLine& line) { return line.also.empty() ? line.name : fmt::format("{} ({})", line.name, line.also); }
 
 PartLine line_of(const MeshInfo& info, std::size_t i, const std::string& name) {
   const MeshReport::Part& part = info.body.parts[i];
-  return {fmt::format("#{}", i + 1), name, info.also[i], 0, part.triangles, part.box_max_m - part.box_min_m, part.closed ? "yes" : "no", orientation(part)};
+  return {fmt::format("#{}", i + 1), name, info.also[i], 0, part.triangles, part.box_max_m - part.box_min_m, part.closed ? "yes" : "no", orientation(part), info.colours[i]};
 }
 
 std::vector<PartLine> listed_parts(const MeshInfo& info) {
@@ -208,13 +211,13 @@ std::vector<PartLine> tree_of(const MeshInfo& info) {
     while (open.empty() || open.back().path != part.path) {
       const std::size_t begin = open.empty() ? 0 : open.back().path.size() + 1;
       const std::string path = part.path.substr(0, part.path.find('/', begin));
-      lines.push_back({.number = {}, .name = path.substr(begin), .also = {}, .depth = open.size(), .closed = {}, .orientation = {}});
+      lines.push_back({.number = {}, .name = path.substr(begin), .also = {}, .depth = open.size(), .closed = {}, .orientation = {}, .colour = {}});
       open.push_back({path, lines.size() - 1});
     }
     Open& node = open.back();
     PartLine& line = lines[node.line];
     const PartLine own = line_of(info, i, line.name);
-    line.number = own.number, line.also = own.also, line.orientation = own.orientation;
+    line.number = own.number, line.also = own.also, line.orientation = own.orientation, line.colour = own.colour;
     line.triangles += own.triangles;
     node.min = glm::min(node.min, part.box_min_m), node.max = glm::max(node.max, part.box_max_m);
     node.closed = node.closed && part.closed;
@@ -230,6 +233,7 @@ nlohmann::ordered_json to_json(const std::vector<PartLine>& lines, std::size_t& 
     const PartLine& line = lines[at++];
     nlohmann::ordered_json node{{"name", line.name}, {"triangles", line.triangles}, {"size", to_json(line.size)}, {"closed", line.closed == "yes"}};
     if (!line.also.empty()) node["also"] = line.also;
+    if (!line.colour.empty()) node["colour"] = line.colour;
     if (!line.number.empty()) node["number"] = std::stoul(line.number.substr(1));
     if (nlohmann::ordered_json below = to_json(lines, at, depth + 1); !below.empty()) node["below"] = std::move(below);
     nodes.push_back(std::move(node));
@@ -244,10 +248,11 @@ void print_parts(const std::vector<PartLine>& lines) {
     name_width = std::max(name_width, 2 * line.depth + width(named(line)));
     size_width = std::max(size_width, width(size_text(line.size)));
   }
-  fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad("#", number_width), pad("part", name_width), "triangles", pad("size", size_width), "closed", "orientation");
+  const bool colours = std::any_of(lines.begin(), lines.end(), [](const PartLine& line) { return !line.colour.empty(); });
+  fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad("#", number_width), pad("part", name_width), "triangles", pad("size", size_width), "closed", colours ? "orientation     colour" : "orientation");
   for (const PartLine& line : lines)
     fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad(line.number, number_width), pad(std::string(2 * line.depth, ' ') + named(line), name_width), count_text(line.triangles),
-               pad(size_text(line.size), size_width), line.closed, line.orientation);
+               pad(size_text(line.size), size_width), line.closed, line.colour.empty() ? line.orientation : pad(line.orientation, 14) + "  " + line.colour);
 }
 
 struct SceneInfo {

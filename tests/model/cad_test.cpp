@@ -11,17 +11,21 @@
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
+#include <IGESCAFControl_Writer.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
+#include <Quantity_Color.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
+#include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
@@ -30,6 +34,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "cpu_ref/ref_backend.h"
@@ -50,6 +55,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -99,6 +105,12 @@ std::vector<std::string> paths(const Mesh& mesh) {
   return out;
 }
 
+std::vector<std::optional<std::uint32_t>> colours(const Mesh& mesh) {
+  std::vector<std::optional<std::uint32_t>> out;
+  for (const MeshPart& part : mesh.parts) out.push_back(part.colour);
+  return out;
+}
+
 /// A bored block, 100 × 60 × 40 mm, its corner at the origin, and a lid with two bolts, turned by 180° and 5
 /// mm above it: engine { block, lid { plate, bolt, bolt } }. Shapes are in millimetres.
 class Engine {
@@ -118,11 +130,26 @@ class Engine {
     const TDF_Label lid = called(shapes->NewShape(), "lid"), engine = called(shapes->NewShape(), "engine");
     called(shapes->AddComponent(lid, plate, at(0, 0, 0)), "plate:1");
     called(shapes->AddComponent(lid, bolt, at(10, 10, 10)), "left bolt");
-    called(shapes->AddComponent(lid, bolt, at(90, 10, 10)), "right bolt");
+    const TDF_Label right = called(shapes->AddComponent(lid, bolt, at(90, 10, 10)), "right bolt");
     called(shapes->AddComponent(engine, block, at(0, 0, 0)), "block:1");
     called(shapes->AddComponent(engine, lid, half_turn_and(100, 60, 45)), "lid:1");
     shapes->UpdateAssemblies();
+    block_label_ = block, plate_label_ = plate, bolt_label_ = bolt, right_ = right;
   }
+
+  /// The block green, the plate brown but for one face, which is white, bolts grey, and the right one blue.
+  void paint() {
+    const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
+    const Handle(XCAFDoc_ColorTool) colours = XCAFDoc_DocumentTool::ColorTool(document_->Main());
+    colours->SetColor(block_label_, rgb(kGreen), XCAFDoc_ColorSurf);
+    colours->SetColor(bolt_label_, rgb(kGrey), XCAFDoc_ColorGen);
+    colours->SetColor(right_, rgb(kBlue), XCAFDoc_ColorSurf);
+    std::uint32_t face_colour = kWhite;  // the first face's
+    for (TopExp_Explorer it(plate_, TopAbs_FACE); it.More(); it.Next(), face_colour = kBrown)
+      colours->SetColor(shapes->AddSubShape(plate_label_, it.Current()), rgb(face_colour), XCAFDoc_ColorSurf);
+  }
+  static constexpr std::uint32_t kGreen = 0x20a040, kBrown = 0x804010, kWhite = 0xffffff, kGrey = 0x808080,
+                                 kBlue = 0x0010f0;
 
   /// `schema`: what Interface_Static calls it; `unit`: MM, INCH, M.
   void write(const std::string& path, const char* schema, const char* unit) {
@@ -131,6 +158,7 @@ class Engine {
     Interface_Static::SetCVal("write.step.unit", unit);
     STEPCAFControl_Writer writer;
     writer.SetNameMode(true);
+    writer.SetColorMode(true);
     ASSERT_TRUE(writer.Transfer(document_, STEPControl_AsIs));
     ASSERT_EQ(writer.Write(path.c_str()), IFSelect_RetDone);
   }
@@ -140,6 +168,9 @@ class Engine {
   const TopoDS_Shape& bolt() const { return bolt_; }
 
  private:
+  static Quantity_Color rgb(std::uint32_t colour) {
+    return {(colour >> 16) / 255.0, (colour >> 8 & 0xff) / 255.0, (colour & 0xff) / 255.0, Quantity_TOC_sRGB};
+  }
   static TDF_Label called(const TDF_Label& label, const char* name) {
     TDataStd_Name::Set(label, name);
     return label;
@@ -159,6 +190,7 @@ class Engine {
 
   Handle(TDocStd_Document) document_;
   TopoDS_Shape block_, plate_, bolt_;
+  TDF_Label block_label_, plate_label_, bolt_label_, right_;
 };
 
 class Cad : public testing::Test {
@@ -235,6 +267,56 @@ INSTANTIATE_TEST_SUITE_P(Schemas, CadAssembly,
                          [](const auto& file) {
                            return fmt::format("{}_{}", file.param.schema, file.param.unit);
                          });
+
+TEST_F(Cad, PartsHaveTheirColours) {
+  Engine engine;
+  engine.paint();
+  const std::string path = folder_.path("engine.step");
+  for (const char* schema : {"AP214IS", "AP242DIS"}) {
+    engine.write(path, schema, "MM");
+    const Mesh mesh = read(path);
+    EXPECT_THAT(colours(mesh), ElementsAre(Engine::kGreen, Engine::kBrown, Engine::kGrey, Engine::kBlue))
+        << schema;
+    const auto part = take_part(mesh, "right bolt", path);
+    ASSERT_TRUE(part) << part.error().sentence;
+    EXPECT_THAT(colours(*part), ElementsAre(Engine::kBlue));
+  }
+}
+
+TEST_F(Cad, FacesThatAreSewnKeepTheirColour) {
+  Handle(TDocStd_Document) document = new TDocStd_Document("MDTV-XCAF");
+  XCAFDoc_DocumentTool::Set(document->Main(), false);
+  const TDF_Label box =
+      XCAFDoc_DocumentTool::ShapeTool(document->Main())->AddShape(BRepPrimAPI_MakeBox(10, 20, 30).Shape());
+  XCAFDoc_DocumentTool::ColorTool(document->Main())
+      ->SetColor(box, Quantity_Color(1, 0, 0, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+  IGESControl_Controller::Init();
+  Interface_Static::SetIVal("write.iges.brep.mode", 0);  // faces
+  IGESCAFControl_Writer writer;
+  writer.SetColorMode(true);
+  ASSERT_TRUE(writer.Transfer(document));
+  const std::string path = folder_.path("box.igs");
+  ASSERT_TRUE(writer.Write(path.c_str()));
+  EXPECT_THAT(colours(read(path)), ElementsAre(0xff0000u));
+}
+
+TEST_F(Cad, APartWithoutAColourHasNone) {
+  EXPECT_THAT(colours(read(engine("engine.step"))), Each(std::nullopt));
+}
+
+TEST_F(Cad, HowFarItIsIsToldAndItCanBeCancelledBetween) {
+  const std::string path = folder_.path("ball.brep");
+  ASSERT_TRUE(BRepTools::Write(BRepPrimAPI_MakeSphere(1).Shape(), path.c_str()));
+  const Tessellation slow{.deflection_m = 1, .angle_deg = 0.2, .part = {}};  // seconds
+  const auto mesh = import_mesh(
+      path, 1, report_, {},
+      [](std::string_view what, double done) {
+        return what != "import, triangles" || done < 2.0 / 3;  // that is where it begins
+      },
+      slow);
+  ASSERT_FALSE(mesh) << mesh->triangles.size();
+  EXPECT_THAT(mesh.error().sentence, HasSubstr("was cancelled"));
+}
 
 TEST_F(Cad, APartIsAddressedByNamePathInstanceAndNumber) {
   const Mesh mesh = read(engine("engine.step"));
@@ -331,6 +413,39 @@ TEST_F(Cad, AProductOfSeveralBodiesHasAPartForEach) {
   ASSERT_THAT(paths(mesh), ElementsAre("three/solid", "three/solid#2", "three/shell"));
   EXPECT_NEAR(volume(mesh, mesh.parts[0]), 6, 1e-9);
   EXPECT_NEAR(box_of(mesh, mesh.parts[2]).low.x, 9, 1e-9);
+}
+
+TEST_F(Cad, SolidsOfAProductHaveTheirNamesWhereverItStands) {
+  Handle(TDocStd_Document) document = new TDocStd_Document("MDTV-XCAF");
+  XCAFDoc_DocumentTool::Set(document->Main(), false);
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  TopoDS_Compound both;
+  const BRep_Builder builder;
+  builder.MakeCompound(both);
+  builder.Add(both, BRepPrimAPI_MakeBox(1, 2, 3).Shape());
+  builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(5, 0, 0), 2, 2, 2).Shape());
+  const TDF_Label pair = shapes->AddShape(both, false), all = shapes->NewShape();
+  TDataStd_Name::Set(pair, "pair");
+  TDataStd_Name::Set(all, "all");
+  gp_Trsf away;
+  away.SetTranslation(gp_Vec(100, 0, 0));
+  shapes->AddComponent(all, pair, away);
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  writer.SetNameMode(true);
+  ASSERT_TRUE(writer.Transfer(document, STEPControl_AsIs));
+  const std::string path = folder_.path("pair.step");
+  ASSERT_EQ(writer.Write(path.c_str()), IFSelect_RetDone);
+  std::stringstream whole;
+  whole << std::ifstream(path, std::ios::binary).rdbuf();
+  std::string text = whole.str();
+  constexpr std::string_view kNoName = "MANIFOLD_SOLID_BREP(''";
+  for (const char* name : {"left", "right"}) {
+    const std::size_t at = text.find(kNoName);
+    ASSERT_NE(at, std::string::npos);
+    text.insert(at + kNoName.size() - 1, name);
+  }
+  EXPECT_THAT(paths(read(folder_.write("named.step", text))), ElementsAre("all/pair/left", "all/pair/right"));
 }
 
 TEST_F(Cad, AFileOfCurvesHasNoTriangles) {

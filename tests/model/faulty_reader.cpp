@@ -37,6 +37,16 @@ namespace {
   std::abort();   // not SIGSEGV, which a sanitizer turns into an exit code
 }
 
+/// Each step for a time that who asks can't miss; back once, which counts for nothing.
+[[noreturn]] void take_steps(const TellHowFar& tell) {
+  constexpr HowFar kSteps[] = {{ImportStage::kRead, 0.9}, {ImportStage::kShapes, 0.2}, {ImportStage::kRead, 0.5}, {ImportStage::kTriangles, 0.5}};
+  for (const HowFar& step : kSteps) {
+    tell(step);
+    ::usleep(400'000);
+  }
+  for (;;) ::pause();
+}
+
 [[noreturn]] void tell_descriptors() {
   std::fputs("open:", stderr);
   struct stat status {};
@@ -48,7 +58,7 @@ namespace {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/, const Tessellation&) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/, const Tessellation&, const TellHowFar& tell) {
   std::string word;
   std::ifstream(path) >> word;
   if (word == "crash") std::raise(SIGSEGV);
@@ -64,6 +74,12 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   if (word == "garbage") {
     const std::string noise(1000, 'x');
     std::_Exit(::pwrite(kParcelDescriptor, noise.data(), noise.size(), 0) > 0 ? 0 : 1);
+  }
+  if (word == "steps") take_steps(tell);
+  if (word == "nonsteps") {
+    const char nonsense[] = "far\xff\xff\xff\xff\xff";   // stage 255, 4295 times done
+    if (::pwrite(kParcelDescriptor, nonsense, 8, 0) == 8)
+      for (;;) ::pause();
   }
   if (word == "bad") return bad_value("'" + path + "' is bad");
   report.notes.emplace_back("a note");

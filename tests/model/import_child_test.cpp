@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <thread>
+#include <vector>
 
 #include "model/import/import_child.h"
 #include "model/import/mesh_parcel.h"
@@ -28,9 +29,9 @@ class ImportChild : public testing::Test {
   ImportChild() : parcel_(::memfd_create("parcel", MFD_CLOEXEC)) {}
   ~ImportChild() override { ::close(parcel_); }
 
-  ChildEnd run(const std::string& word, const ImportLimits& limits = kLimits, const std::function<bool()>& go_on = {}) {
+  ChildEnd run(const std::string& word, const ImportLimits& limits = kLimits, const ImportProgress& progress = {}) {
     file_ = folder_.write("mesh.stl", word);
-    const auto end = run_import_child(PALPATE_IMPORT_FAULTY, file_, 0.25, limits, parcel_, go_on);
+    const auto end = run_import_child(PALPATE_IMPORT_FAULTY, file_, 0.25, limits, parcel_, progress);
     EXPECT_TRUE(end) << end.error().sentence;
     EXPECT_EQ(wait_for(0), 0) << word << " left a process running";
     return end ? *end : ChildEnd{};
@@ -122,7 +123,34 @@ TEST_F(ImportChild, WhatIsThrownIsARefusal) {
 
 TEST_F(ImportChild, ItIsEndedWhenNobodyWantsItAnyMore) {
   int asked = 0;
-  EXPECT_EQ(run("sleep", kLimits, [&] { return ++asked < 3; }).how, ChildEnd::kStopped);
+  EXPECT_EQ(run("sleep", kLimits, [&](const char*, double) { return ++asked < 3; }).how, ChildEnd::kStopped);
+}
+
+TEST_F(ImportChild, HowFarItIsGetsThrough) {
+  std::vector<std::string> whats;
+  double last = 0;
+  const ChildEnd end = run("steps", kLimits, [&](const char* what, double done) {
+    EXPECT_GE(done, last);
+    last = done;
+    if (whats.empty() || whats.back() != what) whats.emplace_back(what);
+    return done < 0.8;   // it stays at half of its last stage
+  });
+  EXPECT_EQ(end.how, ChildEnd::kStopped);
+  EXPECT_NEAR(last, (2 + 0.5) / 3, 1e-5);
+  EXPECT_THAT(whats, testing::ElementsAre("import", "import, shapes", "import, triangles"));
+}
+
+TEST_F(ImportChild, NonsenseAboutHowFarItIsDoesNoHarm) {
+  double last = -1;
+  std::string what;
+  const ChildEnd end = run("nonsteps", kLimits, [&](const char* now, double done) {
+    EXPECT_TRUE(done >= 0 && done <= 1) << done;
+    last = done, what = now;
+    return done < 1;
+  });
+  EXPECT_EQ(end.how, ChildEnd::kStopped);
+  EXPECT_EQ(last, 1);
+  EXPECT_EQ(what, "import, triangles");
 }
 
 TEST_F(ImportChild, ItWorksWhereSignalsOfChildrenAreIgnored) {
