@@ -182,8 +182,8 @@ std::pair<double, double> in_strips(std::int32_t width, std::int32_t length, boo
   return out;
 }
 
-// A strip of a fifth of a cell, 40 cells long, should hold 8 samples at level 0. On a grid it would hold 40 or none. Of the golden ratio any n numbers in a row
-// leave no gap above 1.2/n·2 and none below 0.38/n: 8 samples are 5 to 11 (derived from the three gaps). Coarser levels take turns less evenly: at least some, at most three times as many.
+// A strip of a fifth of a cell, 40 cells long, should hold 8 samples at level 0, where a square grid has 40 or none. Of n multiples of the golden ratio in a row an interval's share is off
+// by less than 3 (its discrepancy: 1 + log n / log of the ratio, over 3, rounded up): 5 to 11. Coarser levels choose among few places in a block, and are asked for some and no more than three times their share (chosen).
 TEST(SampleGrid, AStripAlongAnAxisHoldsItsShareOfSamplesAtEveryLevel) {
   constexpr std::int32_t kCell = 1000;
   for (const bool along_u : {false, true})
