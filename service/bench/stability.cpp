@@ -316,10 +316,10 @@ Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& fac
     torque.labels.push_back(what.name);
     facts.more.emplace_back(
         "jumps, " + what.name,
-        fmt::format("largest step a tick {:.2f} N and {:.3f} N·m (chapter {:.2f} and {:.3f}), rms jerk {:.3f} N and {:.4f} N·m a tick² ({:.3f} and {:.4f}), "
+        fmt::format("largest step a tick {:.3f} N and {:.3f} mN·m (chapter {:.3f} and {:.3f}), rms jerk {:.3f} N and {:.3f} mN·m a tick² ({:.3f} and {:.3f}), "
                     "least push {:.2f} N ({:.2f}), results step by up to {:.1f} N ({:.1f})",
-                    found[1].force_step_n, found[1].torque_step_nm, found[0].force_step_n, found[0].torque_step_nm, found[1].force_jerk,
-                    found[1].torque_jerk, found[0].force_jerk, found[0].torque_jerk, found[1].least_push_n, found[0].least_push_n,
+                    found[1].force_step_n, 1e3 * found[1].torque_step_nm, found[0].force_step_n, 1e3 * found[0].torque_step_nm, found[1].force_jerk,
+                    1e3 * found[1].torque_jerk, found[0].force_jerk, 1e3 * found[0].torque_jerk, found[1].least_push_n, found[0].least_push_n,
                     found[1].response_step_n, found[0].response_step_n));
   }
   return {};
