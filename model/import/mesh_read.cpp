@@ -299,6 +299,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));   // the importer's own from here on
     if (!importer.IsExtensionSupported(extension)) return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);   // else a file of cameras and lamps alone has triangles, which the library makes up
     const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0) : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(), 0, extension.c_str() + 1);
     if (!scene || !scene->mRootNode) return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
     if (extension == ".dae") note_unit(*scene, report);

@@ -404,7 +404,30 @@ TEST_F(MeshImport, NoFormatIsTurned) {
 
 // The library took what lay behind the array in memory for coordinates.
 TEST_F(MeshImport, AColladaArrayShorterThanItsAccessorIsRefused) {
-  EXPECT_THAT(refused(write("a.dae", collada("", 8))), HasSubstr("accessor of 3 times 3 numbers from number 0 on, beyond its array 'f' of 8"));
+  EXPECT_THAT(refused(write("a.dae", collada("", 8))), HasSubstr("accessor of 3 times 3 numbers, 3 apart, from number 0 on, beyond its array 'f' of 8"));
+}
+
+// Of a longer array the library takes as many numbers as its `count` says.
+TEST_F(MeshImport, AColladaArrayThatSaysLessThanItHasIsRefused) {
+  const auto with = [](const std::string& what, const std::string& instead) {
+    std::string text = collada("");
+    return text.replace(text.find(what), what.size(), instead);
+  };
+  EXPECT_EQ(read(write("a.dae", with("count=\"9\"", "count = '9'"))).triangles.size(), 1u);
+  EXPECT_THAT(refused(write("b.dae", with("count=\"9\"", "count=\"3\""))), HasSubstr("beyond its array 'f' of 3"));
+  EXPECT_THAT(refused(write("c.dae", with("count=\"9\"", "count = '3'"))), HasSubstr("beyond its array 'f' of 3"));
+  EXPECT_THAT(refused(write("d.dae", with(" count=\"9\"", ""))), HasSubstr("beyond its array 'f' of 0"));
+  EXPECT_THAT(refused(write("e.dae", with("count=\"3\" stride", "count=\"0x9\" stride"))), HasSubstr("has '0x9' for a count, stride or offset"));
+  EXPECT_THAT(refused(write("f.dae", with("stride=\"3\"", "stride=\"4\""))), HasSubstr("accessor of 3 times 4 numbers, 4 apart, from number 0 on, beyond its array 'f' of 9"));
+  // Four names reach a number further than the last item's three.
+  EXPECT_THAT(refused(write("g.dae", with("<param name=\"X\"", "<param name=\"W\" type=\"float\"/><param name=\"X\""))), HasSubstr("accessor of 3 times 4 numbers, 3 apart, from number 0 on"));
+}
+
+// The library made a skeleton's bones of cameras.
+TEST_F(MeshImport, AFileOfCamerasHasNoTriangles) {
+  EXPECT_THAT(refused(write("cameras.dae", R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><library_visual_scenes><visual_scene id="vs">
+    <node id="a"><translate>1 0 0</translate><node id="b"><translate>0 1 0</translate></node></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#vs"/></scene></COLLADA>)")),
+              HasSubstr("has no triangles"));
 }
 
 TEST_F(MeshImport, ABinaryPlyMayBeginWithAnyByte) {
@@ -450,6 +473,10 @@ TEST_F(MeshImport, ObjIndicesAndEncodingsAreChecked) {
   std::string wide("\xFF\xFE", 2);
   for (const char c : vertices + "f 1 2 3\n") wide += {c, '\0'};
   EXPECT_THAT(refused(write("g.obj", wide)), HasSubstr("is UTF-16 text"));
+  wide.clear();
+  for (const char c : collada("")) wide += {'\0', c};
+  EXPECT_THAT(refused(write("h.dae", wide)), HasSubstr("is UTF-16 text"));
+  EXPECT_THAT(refused(write("i.dae", "\xFE\xFF" + wide)), HasSubstr("is UTF-16 text"));
 }
 
 TEST_F(MeshImport, AColladaNodeThatContainsItselfIsRefused) {
