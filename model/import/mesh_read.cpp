@@ -278,7 +278,7 @@ std::string words_of(std::string text) {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation&, const TellHowFar&) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation&, const TellHowFar&, bool /*colours*/) {
   report = {path, {}};
   const std::string extension = extension_of(path);
   std::string in_memory;                 // what is read in the file's place, if anything
