@@ -306,6 +306,24 @@ TEST_F(MeshImport, GltfMeshNamesAddressPartsToo) {
   EXPECT_THAT(take_part(mesh, "Piston_123-845", "meshes.gltf").error().sentence, testing::AllOf(HasSubstr("did you mean 'Piston_123-844'"), HasSubstr("`palpate info --tree 'meshes.gltf'` lists them")));
 }
 
+// 255 · (1.055 · 0.2^(1/2.4) − 0.055) = 123.55: 0x7c.
+TEST_F(MeshImport, GltfMaterialsColourParts) {
+  std::string buffer;
+  for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(buffer, f);
+  write("t.bin", buffer);
+  std::string text = gltf(R"([{"name":"all","children":[1,2,3,4]},{"name":"red","mesh":0},{"name":"most","mesh":1},{"name":"none","mesh":2},{"name":"textured","mesh":3}])");
+  const auto primitive = [](const std::string& material) { return R"({"attributes":{"POSITION":0})" + material + "}"; };
+  const std::string one = R"({"primitives":[{"attributes":{"POSITION":0}}]})", red = R"(,"material":0)", grey = R"(,"material":1)";
+  text.replace(text.find(one), one.size(), R"({"primitives":[)" + primitive(red) + R"(]},{"primitives":[)" + primitive(red) + "," + primitive(grey) + "," + primitive(grey) + R"(]},)" + one +
+                                               R"(,{"primitives":[)" + primitive(R"(,"material":2)") + "]}");
+  text.insert(text.rfind('}'), R"(,"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},{"pbrMetallicRoughness":{"baseColorFactor":[0.214,0.214,0.214,1]}},
+      {"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[{"uri":"none.png"}])");
+  const Mesh mesh = read(write("a.gltf", text));
+  std::vector<std::optional<std::uint32_t>> colours;
+  for (const MeshPart& part : mesh.parts) colours.push_back(part.colour);
+  EXPECT_THAT(colours, ElementsAre(0xff0000u, 0x7f7f7fu, std::nullopt, std::nullopt));
+}
+
 TEST_F(MeshImport, AbsurdGltfIsRefused) {
   write("t.bin", std::string(36, '\0'));
   EXPECT_THAT(refused(write("cycle.gltf", gltf(R"([{"children":[1]},{"children":[0]}])"))), HasSubstr("contains itself"));
