@@ -89,7 +89,8 @@ std::string distrust_off(std::string_view bytes) {
     if (line.empty()) return fmt::format("is cut short: it promises {} faces and has {}", faces, f);
     std::uint64_t corners = 0, index = 0;
     if (!take_number(line, corners)) return fmt::format("has no corner count in face {}", f);
-    constexpr std::uint64_t kMostCorners = 9;   // the library leaves larger ones out
+    constexpr std::uint64_t kMostCorners = 9;   // the library leaves larger ones out, and empty ones, and then counts the others wrong
+    if (corners == 0) return fmt::format("has 0 corners in face {}; OFF files with such faces can't be read", f);
     if (corners > kMostCorners) return fmt::format("has {} corners in face {}; OFF faces of more than {} can't be read", corners, f, kMostCorners);
     for (std::uint64_t k = 0; k < corners; ++k) {
       if (!take_number(line, index)) return fmt::format("is cut short in face {}: {} of {} corners", f, k, corners);

@@ -239,6 +239,8 @@ TEST_F(MeshImport, PlyAndOff) {
   EXPECT_THAT(refused(write("index.ply", header + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 9\n")), HasSubstr("vertex index 9"));
   EXPECT_THAT(refused(write("many.off", "OFF\n353535235358 6 0\n0 0 0\n")), HasSubstr("promises 353535235358 vertices"));
   EXPECT_THAT(refused(write("short.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n")), HasSubstr("promises 2 faces and has 1"));
+  // The importer wrote beyond the room that it took for the others (found by fuzzing).
+  EXPECT_THAT(refused(write("empty_face.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n0\n3 0 1 2\n")), HasSubstr("has 0 corners in face 0"));
   EXPECT_THAT(refused(write("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 7\n")), HasSubstr("vertex index 7"));
 }
 
