@@ -4,7 +4,7 @@ import subprocess
 
 from harness import *
 
-FIELDS = ['pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'tool', 'evaluations', 'truncated', 'engine', 'time_us']
+FIELDS = ['number', 'pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'tool', 'evaluations', 'truncated', 'engine', 'time_us']
 AREA_FIELDS = ['id', 'zones', 'static', 'mobile', 'normal', 'depth', 'point', 'force', 'torque', 'flags']
 SETS = ['cst', 'bst', 'cmt', 'bmt', 'imt', 'est']
 HEADER = 'x,y,z,qx,qy,qz,qw\n'
