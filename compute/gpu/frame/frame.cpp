@@ -45,6 +45,12 @@ bool turned(const LatticePose& pose) {
   return false;
 }
 
+/// As groups_for() of shaders/lib/frame.glsl.
+gpu::DispatchArguments groups_for(std::uint32_t groups) {
+  return {std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX, 1};
+}
+gpu::DispatchArguments items_for(std::uint32_t items) { return groups_for((items + gpu::kGroupSize - 1) / gpu::kGroupSize); }
+
 class RecordedFrame final : public Frame {
  public:
   RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan)
@@ -69,6 +75,7 @@ class RecordedFrame final : public Frame {
   Result<void> make_pipelines();
   Result<void> make_buffers();
   Result<void> set_capacities();
+  Result<void> clear();
   Result<void> record();
   Result<void> record_again() { return finished_ ? record() : Result<void>{}; }
   template <class Body>
@@ -92,8 +99,7 @@ class RecordedFrame final : public Frame {
   std::optional<FrameResponse> response_;       ///< `paper`
   std::optional<FrameField> field_;             ///< `refined`
   FrameDecoder decoder_;
-  /// From the pose to the sets; then, with contact, the response. Null after a failed record().
-  std::unique_ptr<CommandRecorder> detect_, respond_;
+  std::unique_ptr<CommandRecorder> commands_;   ///< from the pose to the result. Null after a failed record()
   double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
   DeviceWork work_;
   std::vector<const ComputePipeline*> pipelines_;
@@ -181,6 +187,12 @@ Result<void> RecordedFrame::set_capacities() {
   return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
 }
 
+/// All that is 0 between frames.
+Result<void> RecordedFrame::clear() {
+  if (auto r = set_capacities(); !r) return r;
+  return buffers_.clear_tables(device_);
+}
+
 Result<void> RecordedFrame::enlarge() {
   // What was asked for, list by list; the result has not been touched since the frame that overflowed.
   std::array<gpu::FrameList, gpu::kListCount> lists{};
@@ -222,20 +234,20 @@ Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
 }
 
 Result<void> RecordedFrame::record() {
-  detect_.reset();
-  respond_.reset();
+  commands_.reset();
   pipelines_.clear();
-  auto detect = recorded([&](FrameRecorder& recorder) { detection_->record(recorder); });
-  if (!detect) return detect.error();
-  auto respond = recorded([&](FrameRecorder& recorder) {
-    if (response_) response_->record(recorder);
-    if (field_) field_->record(recorder);
+  auto commands = recorded([&](FrameRecorder& recorder) {
+    detection_->record(recorder);
+    recorder.barrier();
+    if (field_) return field_->record(recorder);
+    detection_->record_names(recorder);
+    recorder.barrier();
+    response_->record(recorder);
     recorder.barrier();
     detection_->record_end(recorder);
   });
-  if (!respond) return respond.error();
-  detect_ = std::move(*detect);
-  respond_ = std::move(*respond);
+  if (!commands) return commands.error();
+  commands_ = std::move(*commands);
   return {};
 }
 
@@ -246,7 +258,13 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   input.sample_chunks = near.samples.count;
   input.inside_samples = near.inside.count;
   input.open_samples = near.open.count;
-  input.rays = rays ? 1 : 0;
+  const bool listed = near.samples.count == 0;
+  input.touch = items_for(std::max(near.touch.count, 1u));   // a stage has a last workgroup
+  input.pairs = items_for(near.pairs.count);
+  input.found = items_for(listed ? near.inside.count : 0);
+  input.chunks = items_for(near.samples.count);
+  for (const gpu::DispatchArguments& groups : {input.touch, input.pairs, input.found, input.chunks}) input.groups += groups.x * groups.y;
+  if (response_ && rays) input.clusters = groups_for((scene_.constants.tool.triangles + gpu::kClusterSize - 1) / gpu::kClusterSize);
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
@@ -292,17 +310,14 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
-    if (auto r = buffers_.clear_tables(device_); !r) return r;
+    if (auto r = clear(); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
   const auto writing = Clock::now();
   write_input(pose, ignored, near, rays);
   out.times.push_back({"upload", us_since(writing)});
 
-  if (!detect_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
-  if (auto r = run(*detect_, out); !r) return r;
-  if (buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state.contact != 0) {
-    if (auto r = run(*respond_, out); !r) return r;
-  }
+  if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
+  if (auto r = run(*commands_, out); !r) return r;
   out.times.push_back({"submit", std::max(0.0, waited_us_ - staged_us_)});   // what waiting cost beyond the stages themselves
   const auto finished = Clock::now();
   read(out);
