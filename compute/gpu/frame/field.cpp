@@ -99,7 +99,8 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
     const bool there = buffers.bytes(plan.binding) >= std::max<std::uint64_t>(plan.bytes, 4);
     if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, plan.kind); !made) return made.error();
     if (plan.binding == kBindIgnored && !there) {
-      std::memset(buffers[kBindIgnored].mapped(), 0, buffers[kBindIgnored].bytes());
+      ignored_bits_.assign(buffers[kBindIgnored].bytes() / 4, 0);
+      buffers[kBindIgnored].write(0, ignored_bits_.data(), buffers[kBindIgnored].bytes());
       ignored_.clear();
     }
   }
@@ -128,18 +129,20 @@ bool FrameField::ignore(const Ignored* ignored, const FrameBuffers& buffers) {
   static const std::vector<std::uint32_t> none;
   const std::vector<std::uint32_t>& wanted = ignored != nullptr ? ignored->patches : none;
   if (wanted == ignored_) return !wanted.empty();
-  auto* bits = buffers[kBindIgnored].as<std::uint32_t>();
   const std::uint32_t patches = geometry_->mockup.patch_count;
-  for (const std::uint32_t patch : ignored_)
-    if (patch < patches) bits[patch / 32] = 0;
-  for (const std::uint32_t patch : wanted)
-    if (patch < patches) bits[patch / 32] |= 1u << patch % 32;
+  for (const bool on : {false, true})
+    for (const std::uint32_t patch : on ? wanted : ignored_) {
+      if (patch >= patches) continue;
+      std::uint32_t& word = ignored_bits_[patch / 32];
+      word = on ? word | 1u << patch % 32 : 0;   // no other patch of the word stays ignored but by `wanted`
+      buffers[kBindIgnored].write(patch / 32 * sizeof word, &word, sizeof word);
+    }
   ignored_ = wanted;
   return !wanted.empty();
 }
 
 void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, Contacts& out) {
-  const auto& work = *buffers[kBindResultField].as<const FieldWork>();
+  const auto& work = *buffers[kBindResultField].as<FieldWork>();
   FieldSums& field = out.field;
   bool pushes = false;
   for (std::size_t i = 0; i < kFieldBins; ++i) {
@@ -152,13 +155,13 @@ void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, 
   if (work.sheet != 0) out.flags |= kFlagSheet;
   if (!pushes) out.flags |= kFlagNoDirection;
 
-  const auto* touched = buffers[kBindResultIgnored].as<const std::uint32_t>();
+  const auto* touched = buffers[kBindResultIgnored].as<std::uint32_t>();
   out.ignored_touched.assign(touched, touched + result.ignored_count);
   std::sort(out.ignored_touched.begin(), out.ignored_touched.end());
 
   if (!out.lists) return;
-  const auto* statics = buffers[kBindResultStatics].as<const StaticResult>();
-  const auto* carriers = buffers[kBindResultCarriers].as<const CarrierWork>();
+  const auto* statics = buffers[kBindResultStatics].as<StaticResult>();
+  const auto* carriers = buffers[kBindResultCarriers].as<CarrierWork>();
   for (std::uint32_t slot = 0; slot < result.static_count; ++slot)
     if ((statics[slot].state & (kStaticHit | kStaticSampled)) != 0) out.carriers.push_back(carrier_of(statics[slot].id, carriers[slot]));
   std::sort(out.carriers.begin(), out.carriers.end(), [](const CarrierSums& a, const CarrierSums& b) { return a.id < b.id; });

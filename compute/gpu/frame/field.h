@@ -39,7 +39,8 @@ class FrameField {
   Plan plan_;
   FrameShader members_, points_, from_mockup_, from_tool_, result_;
   bool inside_ = true;                     ///< the tool has one
-  std::vector<std::uint32_t> ignored_;     ///< what the bits say
+  std::vector<std::uint32_t> ignored_;        ///< what the bits say
+  std::vector<std::uint32_t> ignored_bits_;   ///< as the device has them
 };
 
 }  // namespace palpate

@@ -66,10 +66,12 @@ class RecordedFrame final : public Frame {
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
  private:
-  /// Room for a list that the host fills.
+  void make_room();
+  /// Hands what the host has listed to the device.
   template <class T>
-  std::span<T> mapped(std::int32_t binding, std::uint32_t list) const {
-    return {buffers_[binding].as<T>(), capacity_.lists[list]};
+  void give(std::int32_t binding, const HostList<T>& list) {
+    buffers_[binding].write(0, list.room.data(), list.count * sizeof(T));
+    work_.bytes_up += list.count * sizeof(T);
   }
   void name_scene();
   Result<void> make_pipelines();
@@ -102,6 +104,10 @@ class RecordedFrame final : public Frame {
   std::unique_ptr<CommandRecorder> commands_;   ///< from the pose to the result. Null after a failed record()
   double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
   DeviceWork work_;
+  std::vector<gpu::TouchCandidate> touch_;
+  std::vector<gpu::PairCandidate> near_pairs_;
+  std::vector<gpu::SampleChunk> chunks_;
+  std::vector<gpu::FrameSample> inside_, open_;
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool finished_ = false;           ///< pipelines are there and commands recorded
@@ -178,7 +184,17 @@ Result<void> RecordedFrame::make_buffers() {
     if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
   if (field_)
     if (auto r = field_->make_buffers(device_, capacity_, buffers_); !r) return r;
+  make_room();
   return set_capacities();
+}
+
+/// Room on the host for what the search finds: it is written to the device in one go, for memory that is written is no memory to work in.
+void RecordedFrame::make_room() {
+  touch_.resize(capacity_.lists[gpu::kListTouchCandidates]);
+  near_pairs_.resize(capacity_.lists[gpu::kListPairCandidates]);
+  chunks_.resize(capacity_.lists[gpu::kListSampleChunks]);
+  inside_.resize(capacity_.lists[gpu::kListInsideSamples]);
+  open_.resize(capacity_.lists[gpu::kListOpenSamples]);
 }
 
 Result<void> RecordedFrame::set_capacities() {
@@ -210,6 +226,7 @@ Result<void> RecordedFrame::enlarge() {
   if (auto made = make_buffers(); !made) {
     // Buffers that have grown already do no harm: the lists' capacities are what counts.
     capacity_ = before;
+    make_room();
     if (auto r = set_capacities(); !r) return r;
     if (auto r = record_again(); !r) return r;
     return made;
@@ -268,9 +285,13 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
-  std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
-  work_.bytes_up += sizeof input + near.touch.count * sizeof(gpu::TouchCandidate) + near.pairs.count * sizeof(gpu::PairCandidate) +
-                    near.samples.count * sizeof(gpu::SampleChunk) + (near.inside.count + near.open.count) * sizeof(gpu::FrameSample);
+  buffers_[gpu::kBindFrameInput].write(0, &input, sizeof input);
+  work_.bytes_up += sizeof input;
+  give(gpu::kBindTouchCandidates, near.touch);
+  give(gpu::kBindPairCandidates, near.pairs);
+  give(gpu::kBindSampleChunks, near.samples);
+  give(gpu::kBindInsideSamples, near.inside);
+  give(gpu::kBindOpenSamples, near.open);
 }
 
 Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
@@ -297,11 +318,11 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
   bool rays = false;
   if (!pose.beyond_lattice) {
     posed_.begin(pose);
-    near.touch.room = mapped<gpu::TouchCandidate>(gpu::kBindTouchCandidates, gpu::kListTouchCandidates);
-    near.pairs.room = mapped<gpu::PairCandidate>(gpu::kBindPairCandidates, gpu::kListPairCandidates);
-    near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
-    near.inside.room = mapped<gpu::FrameSample>(gpu::kBindInsideSamples, gpu::kListInsideSamples);
-    near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
+    near.touch.room = touch_;
+    near.pairs.room = near_pairs_;
+    near.samples.room = chunks_;
+    near.inside.room = inside_;
+    near.open.room = open_;
     rays = broad_phase_->find(posed_, nullptr, near);
   }
   out.times.push_back({"cull", us_since(start), pose.beyond_lattice ? 0 : broad_phase_->looks()});
