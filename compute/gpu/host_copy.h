@@ -20,7 +20,7 @@ class HostCopy {
   Result<void> read(VulkanDevice& device, const VulkanBuffer& buffer, std::size_t count) {
     copy_.reset();
     count_ = count;
-    data_ = buffer.as<const T>();
+    data_ = buffer.as<T>();
     if (data_ != nullptr || count == 0) return {};
     auto& known = device.host_copies[buffer.handle()];
     const std::size_t words = (count * sizeof(T) + 7) / 8;

@@ -1,6 +1,7 @@
 #include "compute/vulkan/buffer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -39,6 +40,7 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
 
   VulkanBuffer out;
   out.device_ = &device;
+  out.kind_ = kind;
   out.bytes_ = bytes;
   const bool shares = device.shares_memory();
   VkExternalMemoryBufferCreateInfo external{};
@@ -120,6 +122,7 @@ VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
   std::swap(device_, other.device_);
   std::swap(buffer_, other.buffer_);
   std::swap(memory_, other.memory_);
+  std::swap(kind_, other.kind_);
   std::swap(bytes_, other.bytes_);
   std::swap(counted_, other.counted_);
   std::swap(pages_, other.pages_);
@@ -128,15 +131,19 @@ VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
   return *this;
 }
 
+bool VulkanBuffer::write(std::uint64_t at, const void* data, std::uint64_t bytes) const {
+  assert(at + bytes <= bytes_ && "the host writes beyond a buffer");
+  if (mapped_ == nullptr) return false;
+  if (bytes != 0) std::memcpy(static_cast<char*>(mapped_) + at, data, bytes);
+  return true;
+}
+
 Result<void> upload(VulkanDevice& device, const VulkanBuffer& to, const void* data, std::uint64_t bytes) {
   if (bytes == 0) return {};
-  if (to.mapped() != nullptr) {
-    std::memcpy(to.mapped(), data, bytes);
-    return {};
-  }
+  if (to.write(0, data, bytes)) return {};
   auto staging = VulkanBuffer::create(device, "staging", bytes, BufferKind::kUpload);
   if (!staging) return staging.error();
-  std::memcpy(staging->mapped(), data, bytes);
+  staging->write(0, data, bytes);
   auto recorder = CommandRecorder::create(device);
   if (!recorder) return recorder.error();
   recorder->begin();
@@ -146,8 +153,8 @@ Result<void> upload(VulkanDevice& device, const VulkanBuffer& to, const void* da
 
 Result<void> download(VulkanDevice& device, const VulkanBuffer& buffer, std::uint64_t from, void* data, std::uint64_t bytes) {
   if (bytes == 0) return {};
-  if (buffer.mapped() != nullptr) {
-    std::memcpy(data, buffer.as<const char>() + from, bytes);
+  if (const char* there = buffer.as<char>()) {
+    std::memcpy(data, there + from, bytes);
     return {};
   }
   auto staging = VulkanBuffer::create(device, "staging", bytes, BufferKind::kReadback);
@@ -157,7 +164,7 @@ Result<void> download(VulkanDevice& device, const VulkanBuffer& buffer, std::uin
   recorder->begin();
   recorder->copy(buffer, from, *staging, 0, bytes);
   if (auto r = recorder->submit_and_wait(); !r) return r;
-  std::memcpy(data, staging->mapped(), bytes);
+  std::memcpy(data, staging->as<char>(), bytes);
   return {};
 }
 

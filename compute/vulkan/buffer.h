@@ -14,8 +14,8 @@ namespace palpate {
 /// Where a buffer lives. On unified devices (lavapipe) all three are the same mapped memory.
 enum class BufferKind {
   kDevice,     ///< fast for shaders; mapped only on unified devices
-  kUpload,     ///< written by the host through mapped(), read by shaders
-  kReadback,   ///< written by shaders or copies, read by the host through mapped()
+  kUpload,     ///< written by the host with write(), read by shaders; the host can't read it: on a GPU that takes a microsecond a word
+  kReadback,   ///< written by shaders or copies, read by the host with as()
 };
 
 /// A storage buffer (also indirect arguments, copy source and target) with memory of its own. Movable; may be empty.
@@ -38,12 +38,13 @@ class VulkanBuffer {
   VkBuffer handle() const { return buffer_; }
   std::uint64_t bytes() const { return bytes_; }
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
-  /// Host address, or null for a kDevice buffer of a discrete GPU.
-  void* mapped() const { return mapped_; }
+  /// What the host may read in place; null for a kUpload buffer, and for a kDevice buffer of a discrete GPU.
   template <class T>
-  T* as() const {
-    return static_cast<T*>(mapped_);
+  const T* as() const {
+    return kind_ == BufferKind::kUpload ? nullptr : static_cast<const T*>(mapped_);
   }
+  /// Writes in place, from byte `at` on. False: this is a kDevice buffer of a discrete GPU (upload() knows how).
+  bool write(std::uint64_t at, const void* data, std::uint64_t bytes) const;
 
  private:
   static Result<VulkanBuffer> make(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind, const VulkanBuffer* of);
@@ -51,6 +52,7 @@ class VulkanBuffer {
   VulkanDevice* device_ = nullptr;
   VkBuffer buffer_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  BufferKind kind_ = BufferKind::kDevice;
   std::uint64_t bytes_ = 0;
   std::uint64_t counted_ = 0;            ///< bytes in VulkanDevice::allocated; none for an alias
   void* mapped_ = nullptr;

@@ -60,7 +60,7 @@ bool BufferGuard::read(std::uint64_t from, std::vector<std::uint8_t>& bytes) {
   recorder->begin();
   recorder->copy(whole_, from, staging->handle(), 0, bytes.size());
   if (!recorder->submit_and_wait()) return false;
-  std::memcpy(bytes.data(), staging->mapped(), bytes.size());
+  std::memcpy(bytes.data(), staging->as<char>(), bytes.size());
   return true;
 }
 

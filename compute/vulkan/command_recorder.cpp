@@ -112,7 +112,7 @@ void CommandRecorder::dispatch_raw(const ComputePipeline& pipeline, std::span<co
   if (bind(pipeline, buffers, push, push_bytes)) vkCmdDispatch(commands_, x, y, z);
 }
 
-void CommandRecorder::barrier() {
+void CommandRecorder::barrier(VkPipelineStageFlags2 more_stages, VkAccessFlags2 more_access) {
   ++barriers_;
   VkMemoryBarrier2 memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
@@ -120,9 +120,9 @@ void CommandRecorder::barrier() {
                         VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
   memory.srcAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
   memory.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
-                        VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_HOST_BIT;
+                        VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | more_stages;
   memory.dstAccessMask = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
-                         VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_HOST_READ_BIT;
+                         VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | more_access;
   VkDependencyInfo dependency{};
   dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   dependency.memoryBarrierCount = 1;
@@ -151,7 +151,7 @@ Result<void> CommandRecorder::end() {
   if (!recording_) return {};
   if (!stages_.empty())
     vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
-  barrier();   // the host may read what shaders and copies wrote
+  barrier(VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);   // of what shaders and copies wrote
   recording_ = false;
   if (const VkResult r = vkEndCommandBuffer(commands_); r != VK_SUCCESS) return vulkan_error("vkEndCommandBuffer", r);
   if (refused_) return *refused_;

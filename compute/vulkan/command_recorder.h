@@ -75,8 +75,8 @@ class CommandRecorder {
   void dispatch_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
                     std::uint32_t push_bytes, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
-  /// Everything recorded so far is complete and visible to all that follows: shaders, indirect arguments, copies, host.
-  void barrier();
+  /// Everything recorded so far is complete and visible to all that follows: shaders, indirect arguments, copies. end() does the same for the host.
+  void barrier() { barrier(0, 0); }
   /// Sets every 32-bit word of [offset, offset + bytes) to `word`; bytes a multiple of 4.
   void fill(const VulkanBuffer& buffer, std::uint32_t word) { fill(buffer.handle(), word, 0, buffer.bytes()); }
   void fill(VkBuffer buffer, std::uint32_t word, std::uint64_t offset, std::uint64_t bytes);
@@ -109,6 +109,7 @@ class CommandRecorder {
 
  private:
   CommandRecorder() = default;
+  void barrier(VkPipelineStageFlags2 more_stages, VkAccessFlags2 more_access);
   template <class Push>
   static constexpr std::uint32_t push_size() {
     return std::is_same_v<Push, NoPush> ? 0 : static_cast<std::uint32_t>(sizeof(Push));

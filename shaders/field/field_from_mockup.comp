@@ -1,16 +1,15 @@
 #version 460
-// One invocation: a sample of the mock-up: one that counts, or (EXTRA) an extra one, which is asked first whether it lies inside the tool. Adds how the tool's depth there pushes.
+// One invocation: a sample of the mock-up that counts; behind the last one's workgroup an extra one, which is asked first whether it lies inside the tool. Adds how the
+// tool's depth there pushes.
 // Reads samples or mockup_points, both bodies, the tool's fine partition. Writes field_work, carrier_work, ignored patches.
-// Before: field_begin, field_statics; the lists are closed.
+// Before: field_members; the lists are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#include "shaders/shared/frame_field.h"
+#define STAGE 3   // kStagePlaced
+#include "shaders/lib/stage_end.glsl"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the tool
-layout(constant_id = 1) const bool EXTRA = false;
 
-CONSTANT(kBindScene, SceneConstants, scene);
-CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindSamples, FrameSample, frame_samples);
 READ(kBindMockupPoints, FieldPoint, mockup_points);
 READ(kBindMockupInfo, uint32_t, mockup_info);
@@ -36,8 +35,6 @@ EDIT(kBindCarrierWork, int64_t, carrier_work);
 READ(kBindIgnored, uint32_t, ignored);
 EDIT(kBindIgnoredState, uint32_t, ignored_state);
 EDIT(kBindResultIgnored, uint32_t, result_ignored);
-EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #define BODY_GRID scene.fine
 #include "shaders/lib/body_depth.glsl"
@@ -56,10 +53,10 @@ bool inside_tool(ivec3 point, ivec3 at) {
 }
 
 // False: nothing pushes.
-bool push_of(uint32_t item, out Push push) {
+bool push_of(bool extra, uint32_t item, out Push push) {
   ivec3 point;
   uint32_t id, weight;
-  if (EXTRA) {
+  if (extra) {
     const FieldPoint work = mockup_points[item];
     point = work.point;
     id = work.triangle;
@@ -73,7 +70,7 @@ bool push_of(uint32_t item, out Push push) {
     weight = uint32_t(mockup_weight(id, mockup_weights[id], ij) >> 6);
   }
   const ivec3 at = tool_from_world(point);
-  if (weight == 0u || (EXTRA && !inside_tool(point, at))) return false;
+  if (weight == 0u || (extra && !inside_tool(point, at))) return false;
   const Depth depth = body_depth(at);
   if (depth.triangle == kNone || is_ignored(id)) return false;
   push.at = point;
@@ -89,8 +86,11 @@ bool push_of(uint32_t item, out Push push) {
 }
 
 void main() {
-  const uint32_t item = flat_invocation();
+  const uint32_t samples = frame_lists[kListSamples].count, rounded = (samples + kGroupSize - 1u) / kGroupSize * kGroupSize;
+  const uint32_t i = flat_invocation();
+  const bool extra = i >= rounded;
   Push push;
-  const bool pushes = item < frame_lists[EXTRA ? kListMockupPoints : kListSamples].count && push_of(item, push);
+  const bool pushes = (extra ? i - rounded < frame_lists[kListMockupPoints].count : i < samples) && push_of(extra, extra ? i - rounded : i, push);
   add_pushes(pushes, push);
+  end_stage();
 }

@@ -1,16 +1,15 @@
 #version 460
 // One invocation: a sample of a triangle of C_m in a V_bnd or V_int voxel of the mock-up, or an extra one. Where it lies inside, adds how the mock-up's depth there pushes.
 // Reads tool_points, both bodies, the mock-up's partition. Writes field_work, ignored patches.
-// Before: field_begin, field_points; the list is closed.
+// Before: field_points; the list is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#include "shaders/shared/frame_field.h"
+#define STAGE 4   // kStagePushed
+#include "shaders/lib/stage_end.glsl"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the mock-up
 layout(constant_id = 1) const bool INSIDE = true;   // the tool has an inside
 
-CONSTANT(kBindScene, SceneConstants, scene);
-CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindToolPoints, FieldPoint, tool_points);
 READ(kBindToolInfo, uint32_t, tool_info);
 READ(kBindToolNormals, ivec3, tool_normals);
@@ -31,8 +30,6 @@ EDIT(kBindCarrierWork, int64_t, carrier_work);
 READ(kBindIgnored, uint32_t, ignored);
 EDIT(kBindIgnoredState, uint32_t, ignored_state);
 EDIT(kBindResultIgnored, uint32_t, result_ignored);
-EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #define BODY_GRID scene.mockup.grid
 #include "shaders/lib/pose.glsl"
@@ -73,4 +70,5 @@ void main() {
   Push push;
   const bool pushes = item < frame_lists[kListToolPoints].count && push_of(item, push);
   add_pushes(pushes, push);
+  end_stage();
 }

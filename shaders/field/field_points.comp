@@ -2,15 +2,14 @@
 // One workgroup: a tile of a tool triangle's sample grid; one invocation: a cell. Lists the samples that weigh something, and lie in a V_bnd or V_int voxel of the
 // mock-up, or with their triangle's first corner where it touches nothing.
 // Reads field_tiles, the tool in its own frame, the mock-up's partition. Writes tool_points.
-// Before: field_mobiles; its list is closed.
+// Before: field_members; its list is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#include "shaders/shared/frame_field.h"
+#define STAGE 3   // kStagePlaced
+#include "shaders/lib/stage_end.glsl"
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
 
-CONSTANT(kBindScene, SceneConstants, scene);
-CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindFieldTiles, FieldTile, field_tiles);
 READ(kBindToolVertices, ivec3, tool_vertices);
 READ(kBindToolTriangles, uvec3, tool_triangles);
@@ -21,8 +20,6 @@ READ(kBindMobileState, uint32_t, mobile_state);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
 READ(kBindMockupBricks, Brick, mockup_bricks);
 EDIT(kBindToolPoints, FieldPoint, tool_points);
-EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/pose.glsl"
@@ -34,7 +31,7 @@ EDIT_ONE(kBindFrameState, FrameState, frame_state);
 #include "shaders/lib/sample_levels.glsl"
 SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
-void main() {
+void place() {
   if (flat_group() >= frame_lists[kListFieldTiles].count) return;
   const FieldTile tile = field_tiles[flat_group()];
   const uvec3 corners = tool_triangles[tile.mobile];
@@ -51,4 +48,9 @@ void main() {
   if (mockup_class_of(mockup_voxel_of(hit ? p : world_from_tool(a))) == kVoxelExternal) return;
   const uint32_t at = take_room(kListToolPoints, 1u);
   if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(p, tile.mobile, weight);
+}
+
+void main() {
+  place();
+  end_stage();
 }

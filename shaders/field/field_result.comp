@@ -1,14 +1,35 @@
 #version 460
-// One invocation: a word of the field. Hands it to the host.
-// Reads field_work. Writes result_field.
+// One invocation: a word of the field, a slot of C_s, an ignored patch, an entry of each list. Hands them to the host, and empties what is 0 between frames.
+// Reads field_work, carrier_work, frame_lists, frame_state. Writes the results.
 // Before: all pushes are added.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#include "shaders/shared/frame_field.h"
+#define STAGE 5   // kStageResult
+#include "shaders/lib/stage_end.glsl"
+#include "shaders/lib/frame_reset.glsl"
 
-READ(kBindFieldWork, int64_t, field_work);
+layout(constant_id = 8) const bool CARRIERS = true;   // as in lib/field_sums.glsl
+
+EDIT(kBindFieldWork, int64_t, field_work);
+READ(kBindCarrierWork, int64_t, carrier_work);
+READ(kBindResultIgnored, uint32_t, result_ignored);
+EDIT(kBindIgnoredState, uint32_t, ignored_state);
 EDIT(kBindResultField, int64_t, result_field);
+EDIT(kBindResultCarriers, int64_t, result_carriers);
 
 void main() {
-  if (flat_invocation() < kFieldWords) result_field[flat_invocation()] = field_work[flat_invocation()];
+  const uint32_t i = flat_invocation();
+  if (i == 0u) write_head();
+  if (frame_state.contact != 0u) {
+    if (i < kFieldWords) {
+      result_field[i] = field_work[i];
+      field_work[i] = 0l;
+    }
+    if (CARRIERS && i < frame_lists[kListContactStatics].count && (static_state[contact_statics[i]] & (kStaticHit | kStaticSampled)) != 0u)
+      for (uint32_t word = kCarrierWords * i; word < kCarrierWords * (i + 1u); ++word) result_carriers[word] = carrier_work[word];
+    const uint32_t all = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kGroupSize;
+    for (uint32_t patch_at = i; patch_at < frame_lists[kListIgnored].count; patch_at += all) ignored_state[result_ignored[patch_at] >> 5] = 0u;
+  }
+  reset_entry(i);
+  end_stage();
 }

@@ -2,9 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 // Whether two triangles intersect, exactly. An invocation a PairCandidate. Reads both bodies; appends pairs, marks CST and CMT.
 #include "shaders/lib/frame.glsl"
+#define STAGE 0   // kStageNear
+#include "shaders/lib/stage_end.glsl"
 #include "shaders/lib/triangle_pair.glsl"
 
-CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindToolRecords, uint64_t, tool_records);
@@ -15,16 +16,14 @@ EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
 EDIT(kBindPairs, ContactPair, pairs);
-EDIT(kBindFrameLists, FrameList, frame_lists);
 
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/mobile_mark.glsl"
 #include "shaders/lib/static_mark.glsl"
 
-void main() {
-  const uint32_t item = flat_invocation();
-  if (item >= frame_lists[kListPairCandidates].count) return;
+void decide(uint32_t item) {
+  if (item >= frame_input.pair_candidates) return;
   const uint64_t work = pair_candidates[item];   // PairCandidate
   const uint32_t id = uint32_t(work);
   const RecordCorners r = record_at(uint32_t(work >> 32));
@@ -36,4 +35,9 @@ void main() {
   mark_mobile(r.id, kMobileHit);
   const uint32_t at = atomicAdd(frame_lists[kListPairs].count, 1u);
   if (at < frame_lists[kListPairs].capacity) pairs[at] = ContactPair(id, r.id);
+}
+
+void main() {
+  decide(flat_invocation());
+  end_stage();
 }

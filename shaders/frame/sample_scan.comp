@@ -4,11 +4,11 @@
 // V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. A triangle's first corner is asked as well,
 // in the voxel that holds it. Only where samples are not listed.
 #include "shaders/lib/frame.glsl"
+#define STAGE 0   // kStageNear
+#include "shaders/lib/stage_end.glsl"
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
 
-CONSTANT(kBindScene, SceneConstants, scene);
-CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupInfo, uint32_t, mockup_info);
@@ -21,7 +21,6 @@ EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
 EDIT(kBindOpenSamples, FrameSample, open_samples);
 EDIT(kBindSamples, FrameSample, samples);
-EDIT(kBindFrameLists, FrameList, frame_lists);
 
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
@@ -53,9 +52,8 @@ void probe(ivec3 corner, uint32_t id) {
   if (at < frame_lists[kListOpenSamples].capacity) open_samples[at] = FrameSample(corner, id | kCornerProbe);
 }
 
-void main() {
-  const uint32_t item = flat_invocation();
-  if (item >= frame_lists[kListSampleChunks].count) return;
+void decide(uint32_t item) {
+  if (item >= frame_input.sample_chunks) return;
   const SampleChunk work = sample_chunks[item];
   const int32_t spacing = scene.sample_spacing;
   const ivec3 low = scene.mockup.grid.origin + scene.mockup.grid.size * work.voxel;
@@ -82,4 +80,9 @@ void main() {
       }
     }
   }
+}
+
+void main() {
+  decide(flat_invocation());
+  end_stage();
 }

@@ -3,23 +3,28 @@
 // Samples that the tool's fine partition has inside (found by the host, compute/search/near_samples.h). An invocation a sample; appends samples
 // and marks kStaticSampled. A first corner (kCornerProbe) tells EST and does not count.
 #include "shaders/lib/frame.glsl"
+#define STAGE 0   // kStageNear
+#include "shaders/lib/stage_end.glsl"
 
 READ(kBindInsideSamples, u64vec2, inside_samples);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
 EDIT(kBindSamples, u64vec2, samples);
-EDIT(kBindFrameLists, FrameList, frame_lists);
 
 #include "shaders/lib/static_mark.glsl"
 
-void main() {
-  const uint32_t item = flat_invocation();
-  if (item >= frame_lists[kListInsideSamples].count) return;
+void decide(uint32_t item) {
+  if (item >= frame_input.inside_samples) return;
   const u64vec2 work = inside_samples[item];   // FrameSample
   const uint32_t id = uint32_t(work.y >> 32);
   mark_static(id & ~kCornerProbe, kStaticSampled);
   if ((id & kCornerProbe) != 0u) return;
   const uint32_t at = atomicAdd(frame_lists[kListSamples].count, 1u);
   if (at < frame_lists[kListSamples].capacity) samples[at] = work;
+}
+
+void main() {
+  decide(flat_invocation());
+  end_stage();
 }

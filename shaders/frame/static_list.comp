@@ -2,19 +2,24 @@
 #extension GL_GOOGLE_include_directive : require
 // Marks what touched V_bnd voxels list: BST, unless CST. An invocation a StaticChunk. Reads the voxels' lists; marks kStaticListed.
 #include "shaders/lib/frame.glsl"
+#define STAGE 1   // kStageListed
+#include "shaders/lib/stage_end.glsl"
 
 READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
 READ(kBindStaticChunks, uvec2, static_chunks);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
-EDIT(kBindFrameLists, FrameList, frame_lists);
 
 #include "shaders/lib/static_mark.glsl"
 
-void main() {
-  const uint32_t item = flat_invocation();
+void decide(uint32_t item) {
   if (item >= frame_lists[kListStaticChunks].count) return;
   const uvec2 work = static_chunks[item];   // StaticChunk
   for (uint32_t i = work.x; i < work.y; ++i) mark_static(mockup_list_triangles[i], kStaticListed);
+}
+
+void main() {
+  decide(flat_invocation());
+  end_stage();
 }

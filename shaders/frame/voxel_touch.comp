@@ -3,10 +3,10 @@
 // Whether a triangle touches a voxel, or a brick that is all V_int, exactly. An invocation a TouchCandidate. Reads tool_records; sets
 // kMobileInternal or kMobileBoundary; a touched V_bnd voxel enters touched_voxels once, and its list goes to static_chunks.
 #include "shaders/lib/frame.glsl"
+#define STAGE 0   // kStageNear
+#include "shaders/lib/stage_end.glsl"
 #include "shaders/lib/triangle_voxel.glsl"
 
-CONSTANT(kBindScene, SceneConstants, scene);
-CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindMockupListBegin, uint32_t, mockup_list_begin);
 READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindTouchCandidates, u64vec2, touch_candidates);
@@ -15,17 +15,14 @@ EDIT(kBindContactMobiles, uint32_t, contact_mobiles);
 EDIT(kBindVoxelState, uint32_t, voxel_state);
 EDIT(kBindTouchedVoxels, uvec4, touched_voxels);
 EDIT(kBindStaticChunks, uvec2, static_chunks);
-EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
 
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/mobile_mark.glsl"
 
-void main() {
-  const uint32_t item = flat_invocation();
-  if (item >= frame_lists[kListTouchCandidates].count) return;
+void decide(uint32_t item) {
+  if (item >= frame_input.touch_candidates) return;
   const u64vec2 work = touch_candidates[item];   // TouchCandidate
   const uint32_t place = uint32_t(work.x), boundary = uint32_t(work.x >> 32), xy = uint32_t(work.y), z = uint32_t(work.y >> 32);
   const RecordCorners r = record_at(place);
@@ -51,4 +48,9 @@ void main() {
   const uint32_t first = take_room(kListStaticChunks, chunks);
   for (uint32_t i = 0u; i < chunks && first + i < frame_lists[kListStaticChunks].capacity; ++i)
     static_chunks[first + i] = uvec2(begin + i * chunk, min(begin + (i + 1u) * chunk, end));
+}
+
+void main() {
+  decide(flat_invocation());
+  end_stage();
 }

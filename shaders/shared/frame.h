@@ -6,8 +6,11 @@
 //
 // *Lists.* Everything of unknown length is a list: a buffer of items and a FrameList (count, capacity, group counts).
 //   append:  uint i = atomicAdd(frame_lists[kListPairs].count, 1u); if (i < frame_lists[kListPairs].capacity) pairs[i] = …;
-//   close:   one invocation of list_close.comp per list, after the dispatch that appends and before anyone reads: it clamps
-//            `count` to `capacity`, notes an overflow, and works out both indirect group counts. Readers: `if (i >= count) return`.
+//   close:   after the stage that appends and before anyone reads: clamps `count` to `capacity`, notes an overflow, and works out both
+//            indirect group counts. Readers: `if (i >= count) return`.
+//
+// *Stages.* Dispatches of a stage run beside each other; a barrier follows. The last workgroup of a stage to end closes its lists and sets the next
+// stage's group counts (lib/stage_end.glsl), so no dispatch does that alone. Nobody waits for anybody.
 // Orders inside lists differ from run to run; nothing that leaves the frame may depend on them.
 //
 // *Groups.* Workgroups are kGroupSize wide and dispatches at most kMaxGroupsX × n: the flat group number is
@@ -61,7 +64,13 @@ PALPATE_CONSTANT int32_t kBindFinePlaces = 31;         // uint32_t: kBindFineLis
 PALPATE_CONSTANT int32_t kBindFrameInput = 32;                   // FrameInput, one; mapped, written by the host
 PALPATE_CONSTANT int32_t kBindFrameLists = 33;                   // FrameList[kListCount]
 PALPATE_CONSTANT int32_t kBindFrameState = 34;                   // FrameState, one
-PALPATE_CONSTANT int32_t kBindDispatches = 35;                   // DispatchArguments[kDispatchCount]: the response's, set by frame_sets.comp
+PALPATE_CONSTANT int32_t kBindDispatches = 35;                   // DispatchArguments[kDispatchCount]: of `paper`'s response
+PALPATE_CONSTANT int32_t kBindListedGroups = 39;                 // DispatchArguments: kGroupsStatics, kGroupsOpen
+PALPATE_CONSTANT int32_t kBindMembersGroups = 46;                // one: an invocation a slot of C_s and a member of C_m
+PALPATE_CONSTANT int32_t kBindPlacedGroups = 56;                 // kGroupsTiles, kGroupsMockupPush
+PALPATE_CONSTANT int32_t kBindPushedGroups = 57;                 // one: an invocation a sample of the tool
+PALPATE_CONSTANT int32_t kBindResultGroups = 62;                 // one: an invocation an entry of whatever the host gets, and of whatever is emptied
+PALPATE_CONSTANT int32_t kBindStages = 36;                       // StageProgress[kStageCount]; done is 0 between frames
 PALPATE_CONSTANT int32_t kBindClusterBoxes = 37;                 // LatticeBox[clusters]: of the transformed triangles of a cluster, closed
 PALPATE_CONSTANT int32_t kBindMobileState = 38;                  // uint32_t[tool triangles]: kMobile… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindToolRecords = 40;                  // ToolRecord[tool triangles], in the order of clusters
@@ -122,14 +131,30 @@ struct FrameList {
   DispatchArguments groups;       // groups for one workgroup an item; set at closing
 };
 
+// A frame's stages, in order.
+PALPATE_CONSTANT uint32_t kStageNear = 0;                        // what the host found near is decided
+PALPATE_CONSTANT uint32_t kStageListed = 1;                      // lists of touched voxels, open samples
+PALPATE_CONSTANT uint32_t kStageMembers = 2;                     // sets are named; refined: what of C_s and C_m may push is listed
+PALPATE_CONSTANT uint32_t kStagePlaced = 3;                      // refined: samples of the tool; pushes of the mock-up's
+PALPATE_CONSTANT uint32_t kStagePushed = 4;                      // refined: pushes of the tool's samples
+PALPATE_CONSTANT uint32_t kStageResult = 5;                      // results; what is 0 between frames
+PALPATE_CONSTANT uint32_t kStageCount = 6;
+
+PALPATE_CONSTANT uint32_t kGroupsStatics = 0;                    // an invocation a StaticChunk
+PALPATE_CONSTANT uint32_t kGroupsOpen = 1;                       // an invocation an open sample
+PALPATE_CONSTANT uint32_t kGroupsTiles = 0;                      // a workgroup a tile
+PALPATE_CONSTANT uint32_t kGroupsMockupPush = 1;                 // an invocation a sample, then an invocation an extra sample
+
+struct StageProgress {
+  uint32_t groups;                // of all its dispatches
+  uint32_t done;                  // invocations in subgroups that have ended
+};
+
 // Group counts; 0 in a frame that does not need them. `One` is a single workgroup.
 PALPATE_CONSTANT uint32_t kDispatchContactOne = 0;               // contact
 PALPATE_CONSTANT uint32_t kDispatchContactStatics = 1;           // contact: an invocation a slot of C_s
 PALPATE_CONSTANT uint32_t kDispatchContactMobiles = 2;           // contact: an invocation a member of C_m
 PALPATE_CONSTANT uint32_t kDispatchTouchedVoxels = 7;            // contact: an invocation a touched V_bnd voxel
-PALPATE_CONSTANT uint32_t kDispatchClusters = 5;                 // the bodies may meet (`paper`): a workgroup a cluster of the tool
-PALPATE_CONSTANT uint32_t kDispatchReset = 14;                   // contact: an invocation an entry of whatever is emptied at the frame's end
-PALPATE_CONSTANT uint32_t kDispatchResetFree = 12;               // no contact: the same
 PALPATE_CONSTANT uint32_t kDispatchResponseFirst = 16;           // 16…31: of the response's own making
 PALPATE_CONSTANT uint32_t kDispatchCount = 32;
 
@@ -143,8 +168,10 @@ struct FrameInput {
   uint32_t sample_chunks;
   uint32_t inside_samples;
   uint32_t open_samples;
-  uint32_t rays;                  // 1: the bodies may meet: `paper` may need the tool as a whole
   uint32_t ignores;               // 1: some patch is ignored (refined)
+  uint32_t groups;                // of kStageNear
+  DispatchArguments touch, pairs, found, chunks;   // its dispatches: an invocation a touch candidate, a pair, an inside sample, a chunk
+  DispatchArguments clusters;     // the bodies may meet (`paper`): a workgroup a cluster of the tool; none otherwise
 };
 
 // ---- what it keeps -------------------------------------------------------------------------------------------------------
@@ -152,7 +179,8 @@ struct FrameInput {
 struct FrameState {
   uint32_t overflow;              // bit per list
   uint32_t overflow_other;        // kOverflow… bits
-  uint32_t contact;               // 1: CST, IMT or EST is not empty
+  uint32_t contact;               // 1: CST, IMT or EST is not empty, and nothing overflowed before they were known
+  uint32_t meets;                 // 1: something was marked that is in CST, IMT or EST
   uint32_t cst, bst, est, cmt, bmt, imt; // sizes of the sets
 };
 // Samples are rounded by less than a step, transformed corners too. Bodies that keep this distance have no sample on the wrong side
@@ -280,7 +308,7 @@ struct AreaMember {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 76);
+PALPATE_ASSERT_SIZE(FrameInput, 136);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(TouchCandidate, 16);
 PALPATE_ASSERT_SIZE(AreaResult, 64);

@@ -18,7 +18,7 @@ PALPATE_CONSTANT int32_t kBindMobileAreas = 75;       // uint32_t[tool triangles
                                                       // the areas whose spheres hold it have it
 PALPATE_CONSTANT int32_t kBindParents = 82;           // uint32_t[2 · C_s], without zones [C_s]: union-find, lib/union_find.glsl
 
-PALPATE_CONSTANT uint32_t kDispatchMembers = 22u;     // some area needs mobile normals: an invocation a member
+PALPATE_CONSTANT uint32_t kDispatchAreaMembers = 22u; // some area needs mobile normals: an invocation a member
 
 // ---- structs -------------------------------------------------------------------------------------------------------------
 

@@ -164,13 +164,24 @@ TEST_F(VulkanCore, AShaderThatWritesOneEntryBehindAGuardedBufferIsFound) {
 TEST_F(VulkanCore, AHostThatWritesBeforeAGuardedBufferIsFoundWhenItDies) {
   const Guarded guarded(device());
   {
-    auto made = VulkanBuffer::create(device(), "upload", 64, BufferKind::kUpload);
+    auto made = VulkanBuffer::create(device(), "answers", 64, BufferKind::kReadback);
     ASSERT_TRUE(made) << made.error().sentence;
-    made->as<char>()[-4] = 0;
+    const_cast<char*>(made->as<char>())[-4] = 0;   // the only way to write it: by mistake
   }
   const auto checked = device().check_guards();
   ASSERT_FALSE(checked);
-  EXPECT_EQ(checked.error().sentence, "a buffer's guard is broken: upload (64 bytes): something wrote 4 bytes before its start");
+  EXPECT_EQ(checked.error().sentence, "a buffer's guard is broken: answers (64 bytes): something wrote 4 bytes before its start");
+}
+
+TEST_F(VulkanCore, WhatTheHostGivesADeviceItCanNotReadInPlace) {
+  auto given = VulkanBuffer::create(device(), "given", 64, BufferKind::kUpload);
+  ASSERT_TRUE(given) << given.error().sentence;
+  EXPECT_EQ(given->as<char>(), nullptr);
+  const std::uint32_t word = 0xCAFEu;
+  EXPECT_TRUE(given->write(8, &word, sizeof word));
+  std::uint32_t read = 0;
+  ASSERT_TRUE(download(device(), *given, 8, &read, sizeof read));   // by a copy of the device's
+  EXPECT_EQ(read, word);
 }
 
 TEST_F(VulkanCore, MemoryIsCountedWhileABufferLives) {

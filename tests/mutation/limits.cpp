@@ -21,8 +21,8 @@ const std::vector<Limit>& limits() {
       {"shaders/frame/sample_scan.comp", "", 0, {}, {"sheet_tool", "ball_on_block"}, "samples", true},
       {"shaders/frame/sample_scan.comp", "", 0, {}, {"ball_on_block"}, "samples near the tool's surface", true},
       {"shaders/frame/sample_scan.comp", "", 0, {}, {"between_the_samples"}, "samples near the tool's surface", true},
-      {"shaders/field/field_mobiles.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_over_bead"}},
-      {"shaders/field/field_statics.comp", "", 0, {}, {"needle"}, "extra samples"},
+      {"shaders/field/field_members.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_over_bead"}},
+      {"shaders/field/field_members.comp", "", 0, {}, {"needle"}, "extra samples"},
       {"shaders/field/field_points.comp", "", 0, {}, {"ball_on_block"}, "samples of the tool"},
       {"shaders/lib/ignored.glsl", "", 0, {}, {"two_sheets_ignoring"}, "ignored patches"},
       {"shaders/frame/sample_walk.comp", "", 0, {}, {"ball_on_block", "open_ball"}, "samples"}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 
 #include "compute/gpu/frame/plan.h"
 #include "compute/search/tool_order.h"
@@ -61,8 +62,12 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   const Plain plain[] = {
       {kBindFrameInput, "frame input", sizeof(FrameInput), BufferKind::kUpload},
       {kBindFrameLists, "frame lists", sizeof(FrameList) * kListCount},
-      {kBindFrameState, "frame state", sizeof(FrameState)},
       {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
+      {kBindListedGroups, "group counts", 2 * sizeof(DispatchArguments)},
+      {kBindMembersGroups, "group counts", sizeof(DispatchArguments)},
+      {kBindPlacedGroups, "group counts", 2 * sizeof(DispatchArguments)},
+      {kBindPushedGroups, "group counts", sizeof(DispatchArguments)},
+      {kBindResultGroups, "group counts", sizeof(DispatchArguments)},
       {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
       {kBindFinePlaces, "lists of the tool's fine voxels", closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
@@ -76,6 +81,8 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   for (const Plain& p : plain)
     if (auto r = buffers.make(device, p.binding, p.what, p.bytes, p.kind); !r) return r;
 
+  if (auto r = buffers.make_table(device, kBindFrameState, "frame state", sizeof(FrameState)); !r) return r;
+  if (auto r = buffers.make_table(device, kBindStages, "stages of a frame", sizeof(StageProgress) * kStageCount); !r) return r;
   if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r) return r;
   if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}); !r)
     return r;
@@ -114,8 +121,7 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
     std::span<const SpecConstant> constants = {};
   };
   const Made all[] = {
-      {&list_close_, &spirv::list_close, true, 4},
-      {&frame_begin_, &spirv::frame_begin},
+      {&list_close_, &spirv::list_close, !refined_, 4},
       {&tool_clusters_place_, &spirv::tool_clusters, !refined_},
       {&voxel_touch_, &spirv::voxel_touch},
       {&static_list_, &spirv::static_list},
@@ -123,11 +129,8 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
       {&sample_take_, &spirv::sample_take, inside_ && listed_},
       {&sample_walk_, &spirv::sample_walk, inside_, 0, of_tool},
       {&sample_scan_, &spirv::sample_scan, inside_ && !listed_},
-      {&set_statics_, &spirv::set_statics},
-      {&set_mobiles_, &spirv::set_mobiles},
-      {&set_decide_, &spirv::set_decide},
-      {&frame_end_, &spirv::frame_end},
-      {&frame_reset_, &spirv::frame_reset},
+      {&set_name_, &spirv::set_name, !refined_},
+      {&frame_result_, &spirv::frame_result, !refined_},
   };
   for (const Made& m : all) {
     if (!m.wanted) continue;
@@ -141,45 +144,39 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
 }
 
 void FrameDetection::record(FrameRecorder& recorder) const {
-  recorder.stage("transform");
-  recorder.run(frame_begin_, 1);
-  recorder.barrier();
-  if (!refined_) recorder.run_dispatch(tool_clusters_place_, kDispatchClusters);
-
+  if (!refined_) {
+    recorder.stage("transform");
+    recorder.run_input(tool_clusters_place_, offsetof(FrameInput, clusters));
+  }
   // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the tool's partition knows.
   recorder.stage(plan_.imt ? "imt" : "bmt");   // one dispatch decides both
-  recorder.run_items(voxel_touch_, kListTouchCandidates);
+  recorder.run_input(voxel_touch_, offsetof(FrameInput, touch));
   recorder.stage("pairs");
-  recorder.run_items(pair_test_, kListPairCandidates);
+  recorder.run_input(pair_test_, offsetof(FrameInput, pairs));
   if (inside_) {
     recorder.stage("est");
-    if (listed_) recorder.run_items(sample_take_, kListInsideSamples);
-    else recorder.run_items(sample_scan_, kListSampleChunks);
+    if (listed_) recorder.run_input(sample_take_, offsetof(FrameInput, found));
+    else recorder.run_input(sample_scan_, offsetof(FrameInput, chunks));
   }
+  recorder.barrier();
 
   // What is listed in touched voxels; samples that the tool's partition leaves open.
   recorder.stage("bst");
-  recorder.close({kListTouchedVoxels, kListStaticChunks, kListOpenSamples});
-  recorder.run_items(static_list_, kListStaticChunks);
+  recorder.run_stage(static_list_, kBindListedGroups, kGroupsStatics);
   if (inside_) {
     recorder.stage("open");
-    recorder.run_items(sample_walk_, kListOpenSamples);
+    recorder.run_stage(sample_walk_, kBindListedGroups, kGroupsOpen);
   }
+}
 
+void FrameDetection::record_names(FrameRecorder& recorder) const {
   recorder.stage("sets");
-  recorder.close({kListPairs, kListContactStatics, kListContactMobiles, kListSamples});
-  recorder.run_items(set_statics_, kListContactStatics);
-  recorder.run_items(set_mobiles_, kListContactMobiles);
-  recorder.barrier();
-  recorder.run(set_decide_, 1);
-  recorder.barrier();
-  recorder.run_dispatch(frame_reset_, kDispatchResetFree);
+  recorder.run_stage(set_name_, kBindMembersGroups);
 }
 
 void FrameDetection::record_end(FrameRecorder& recorder) const {
   recorder.stage("reset");
-  recorder.run(frame_end_, 1);
-  recorder.run_dispatch(frame_reset_, kDispatchReset);
+  recorder.run_stage(frame_result_, kBindResultGroups);
 }
 
 }  // namespace palpate

@@ -26,9 +26,11 @@ class FrameDetection {
   Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const FrameCapacity& capacity,
                             FrameBuffers& buffers) const;
 
-  /// From the pose to frame_state and the response's group counts.
+  /// From the pose to the lists of C_s, C_m, samples, and frame_state; ends with a barrier due.
   void record(FrameRecorder& recorder) const;
-  /// After the response: counts to the host, tables back to 0.
+  /// `paper`: names the sets; ends with a barrier due.
+  void record_names(FrameRecorder& recorder) const;
+  /// `paper`, after the response: counts to the host, tables back to 0.
   void record_end(FrameRecorder& recorder) const;
   /// Ids of the tool's triangles in the order of clusters and runs.
   const std::vector<std::uint32_t>& order() const { return order_; }
@@ -45,8 +47,7 @@ class FrameDetection {
   bool closed_ = false;   ///< the tool's surface, in `refined`: open samples ask for the winding
   bool listed_ = false;   ///< samples were listed by preparation
   std::vector<std::uint32_t> order_;
-  FrameShader list_close_, frame_begin_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_,
-      sample_walk_, set_statics_, set_mobiles_, set_decide_, frame_end_, frame_reset_;
+  FrameShader list_close_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_, sample_walk_, set_name_, frame_result_;
 };
 
 }  // namespace palpate

@@ -59,16 +59,11 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
     bool kept = true;
   };
   for (const ShaderPlan& made_for : std::initializer_list<ShaderPlan>{
-           {out.begin_, spirv::field_begin},
-           {out.statics_, spirv::field_statics, {{0, inside}}},
-           {out.mobiles_, spirv::field_mobiles},
+           {out.members_, spirv::field_members, {{0, inside}}},
            {out.points_, spirv::field_points},
-           {out.from_mockup_, spirv::field_from_mockup, {{0, tool.closed}, {1, 0u}}, out.inside_},
-           {out.from_extras_, spirv::field_from_mockup, {{0, tool.closed}, {1, 1u}}, out.inside_ && scene.constants.mockup_extras != 0},
+           {out.from_mockup_, spirv::field_from_mockup, {{0, tool.closed}}, out.inside_},
            {out.from_tool_, spirv::field_from_tool, {{0, mockup.closed}, {1, inside}}},
            {out.result_, spirv::field_result},
-           {out.carriers_result_, spirv::carriers_result, {}, plan.telemetry},
-           {out.ignored_end_, spirv::ignored_end},
        }) {
     if (!made_for.kept) continue;
     std::vector<SpecConstant> constants = plan_constants(plan);
@@ -92,7 +87,6 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
   const std::uint64_t carriers = (plan_.telemetry ? lists[kListContactStatics] : 1) * std::uint64_t{sizeof(CarrierWork)};
   const std::uint64_t patches = (geometry_->mockup.patch_count + 31) / 32 * std::uint64_t{4};
   for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
-           {kBindFieldWork, "pressure field", sizeof(FieldWork)},
            {kBindCarrierWork, "what contact triangles carry", carriers},
            {kBindFieldTiles, "tiles of tool samples", lists[kListFieldTiles] * std::uint64_t{sizeof(FieldTile)}},
            {kBindMockupPoints, "extra samples", lists[kListMockupPoints] * std::uint64_t{sizeof(FieldPoint)}},
@@ -105,49 +99,50 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
     const bool there = buffers.bytes(plan.binding) >= std::max<std::uint64_t>(plan.bytes, 4);
     if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, plan.kind); !made) return made.error();
     if (plan.binding == kBindIgnored && !there) {
-      std::memset(buffers[kBindIgnored].mapped(), 0, buffers[kBindIgnored].bytes());
+      ignored_bits_.assign(buffers[kBindIgnored].bytes() / 4, 0);
+      buffers[kBindIgnored].write(0, ignored_bits_.data(), buffers[kBindIgnored].bytes());
       ignored_.clear();
     }
   }
   if (buffers.bytes(kBindFineExit) == 0)   // of a tool that is not closed nobody reads it
     if (auto made = buffers.make(device, kBindFineExit, "unused", 4); !made) return made.error();
+  if (auto made = buffers.make_table(device, kBindFieldWork, "pressure field", sizeof(FieldWork)); !made) return made.error();
   return buffers.make_table(device, kBindIgnoredState, "states of ignored patches", patches);
 }
 
 void FrameField::record(FrameRecorder& recorder) const {
+  recorder.stage("sets");
+  recorder.run_stage(members_, kBindMembersGroups);
+  recorder.barrier();
   recorder.stage("samples");
-  recorder.run(begin_, (kFieldWords + kGroupSize - 1) / kGroupSize);
-  recorder.run_items(statics_, kListContactStatics);
-  recorder.run_items(mobiles_, kListContactMobiles);
-  recorder.close({kListFieldTiles, kListMockupPoints});
-  recorder.run_groups(points_, kListFieldTiles);
-  recorder.close({kListToolPoints});
+  recorder.run_stage(points_, kBindPlacedGroups, kGroupsTiles);
   recorder.stage("field");
-  if (inside_) recorder.run_items(from_mockup_, kListSamples);
-  if (inside_ && !from_extras_.bindings.empty()) recorder.run_items(from_extras_, kListMockupPoints);
-  recorder.run_items(from_tool_, kListToolPoints);
-  recorder.close({kListIgnored});
-  recorder.run(result_, (kFieldWords + kGroupSize - 1) / kGroupSize);
-  if (plan_.telemetry) recorder.run_items(carriers_result_, kListContactStatics);
-  recorder.run_items(ignored_end_, kListIgnored);
+  if (inside_) recorder.run_stage(from_mockup_, kBindPlacedGroups, kGroupsMockupPush);
+  recorder.barrier();
+  recorder.run_stage(from_tool_, kBindPushedGroups);
+  recorder.barrier();
+  recorder.stage("reset");
+  recorder.run_stage(result_, kBindResultGroups);
 }
 
 bool FrameField::ignore(const Ignored* ignored, const FrameBuffers& buffers) {
   static const std::vector<std::uint32_t> none;
   const std::vector<std::uint32_t>& wanted = ignored != nullptr ? ignored->patches : none;
   if (wanted == ignored_) return !wanted.empty();
-  auto* bits = buffers[kBindIgnored].as<std::uint32_t>();
   const std::uint32_t patches = geometry_->mockup.patch_count;
-  for (const std::uint32_t patch : ignored_)
-    if (patch < patches) bits[patch / 32] = 0;
-  for (const std::uint32_t patch : wanted)
-    if (patch < patches) bits[patch / 32] |= 1u << patch % 32;
+  for (const bool on : {false, true})
+    for (const std::uint32_t patch : on ? wanted : ignored_) {
+      if (patch >= patches) continue;
+      std::uint32_t& word = ignored_bits_[patch / 32];
+      word = on ? word | 1u << patch % 32 : 0;   // no other patch of the word stays ignored but by `wanted`
+      buffers[kBindIgnored].write(patch / 32 * sizeof word, &word, sizeof word);
+    }
   ignored_ = wanted;
   return !wanted.empty();
 }
 
 void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, Contacts& out) {
-  const auto& work = *buffers[kBindResultField].as<const FieldWork>();
+  const auto& work = *buffers[kBindResultField].as<FieldWork>();
   FieldSums& field = out.field;
   bool pushes = false;
   for (std::size_t i = 0; i < kFieldBins; ++i) {
@@ -160,13 +155,13 @@ void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, 
   if (work.sheet != 0) out.flags |= kFlagSheet;
   if (!pushes) out.flags |= kFlagNoDirection;
 
-  const auto* touched = buffers[kBindResultIgnored].as<const std::uint32_t>();
+  const auto* touched = buffers[kBindResultIgnored].as<std::uint32_t>();
   out.ignored_touched.assign(touched, touched + result.ignored_count);
   std::sort(out.ignored_touched.begin(), out.ignored_touched.end());
 
   if (!out.lists) return;
-  const auto* statics = buffers[kBindResultStatics].as<const StaticResult>();
-  const auto* carriers = buffers[kBindResultCarriers].as<const CarrierWork>();
+  const auto* statics = buffers[kBindResultStatics].as<StaticResult>();
+  const auto* carriers = buffers[kBindResultCarriers].as<CarrierWork>();
   for (std::uint32_t slot = 0; slot < result.static_count; ++slot)
     if ((statics[slot].state & (kStaticHit | kStaticSampled)) != 0) out.carriers.push_back(carrier_of(statics[slot].id, carriers[slot]));
   std::sort(out.carriers.begin(), out.carriers.end(), [](const CarrierSums& a, const CarrierSums& b) { return a.id < b.id; });

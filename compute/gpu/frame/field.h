@@ -25,7 +25,7 @@ class FrameField {
   /// capacity has grown. Error: one buffer is beyond a limit, or out of memory.
   Result<void> make_buffers(VulkanDevice& device, const FrameCapacity& capacity, FrameBuffers& buffers);
 
-  /// Records every dispatch. Goes after set_decide.comp, and ends with a barrier due.
+  /// Records every dispatch, from the lists that detection has left to the results and the tables as they were.
   void record(FrameRecorder& recorder) const;
 
   /// Puts down for the next frame what is ignored; null: nothing. Writes only what has changed. True: some patch is.
@@ -37,9 +37,10 @@ class FrameField {
  private:
   const SceneGeometry* geometry_ = nullptr;
   Plan plan_;
-  FrameShader begin_, statics_, mobiles_, points_, from_mockup_, from_extras_, from_tool_, result_, carriers_result_, ignored_end_;
+  FrameShader members_, points_, from_mockup_, from_tool_, result_;
   bool inside_ = true;                     ///< the tool has one
-  std::vector<std::uint32_t> ignored_;     ///< what the bits say
+  std::vector<std::uint32_t> ignored_;        ///< what the bits say
+  std::vector<std::uint32_t> ignored_bits_;   ///< as the device has them
 };
 
 }  // namespace palpate

@@ -45,6 +45,12 @@ bool turned(const LatticePose& pose) {
   return false;
 }
 
+/// As groups_for() of shaders/lib/frame.glsl.
+gpu::DispatchArguments groups_for(std::uint32_t groups) {
+  return {std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX, 1};
+}
+gpu::DispatchArguments items_for(std::uint32_t items) { return groups_for((items + gpu::kGroupSize - 1) / gpu::kGroupSize); }
+
 class RecordedFrame final : public Frame {
  public:
   RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan)
@@ -60,15 +66,18 @@ class RecordedFrame final : public Frame {
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
  private:
-  /// Room for a list that the host fills.
+  void make_room();
+  /// Hands what the host has listed to the device.
   template <class T>
-  std::span<T> mapped(std::int32_t binding, std::uint32_t list) const {
-    return {buffers_[binding].as<T>(), capacity_.lists[list]};
+  void give(std::int32_t binding, const HostList<T>& list) {
+    buffers_[binding].write(0, list.room.data(), list.count * sizeof(T));
+    work_.bytes_up += list.count * sizeof(T);
   }
   void name_scene();
   Result<void> make_pipelines();
   Result<void> make_buffers();
   Result<void> set_capacities();
+  Result<void> clear();
   Result<void> record();
   Result<void> record_again() { return finished_ ? record() : Result<void>{}; }
   template <class Body>
@@ -92,10 +101,13 @@ class RecordedFrame final : public Frame {
   std::optional<FrameResponse> response_;       ///< `paper`
   std::optional<FrameField> field_;             ///< `refined`
   FrameDecoder decoder_;
-  /// From the pose to the sets; then, with contact, the response. Null after a failed record().
-  std::unique_ptr<CommandRecorder> detect_, respond_;
+  std::unique_ptr<CommandRecorder> commands_;   ///< from the pose to the result. Null after a failed record()
   double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
   DeviceWork work_;
+  std::vector<gpu::TouchCandidate> touch_;
+  std::vector<gpu::PairCandidate> near_pairs_;
+  std::vector<gpu::SampleChunk> chunks_;
+  std::vector<gpu::FrameSample> inside_, open_;
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool finished_ = false;           ///< pipelines are there and commands recorded
@@ -172,13 +184,29 @@ Result<void> RecordedFrame::make_buffers() {
     if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
   if (field_)
     if (auto r = field_->make_buffers(device_, capacity_, buffers_); !r) return r;
+  make_room();
   return set_capacities();
+}
+
+/// Room on the host for what the search finds: it is written to the device in one go, for memory that is written is no memory to work in.
+void RecordedFrame::make_room() {
+  touch_.resize(capacity_.lists[gpu::kListTouchCandidates]);
+  near_pairs_.resize(capacity_.lists[gpu::kListPairCandidates]);
+  chunks_.resize(capacity_.lists[gpu::kListSampleChunks]);
+  inside_.resize(capacity_.lists[gpu::kListInsideSamples]);
+  open_.resize(capacity_.lists[gpu::kListOpenSamples]);
 }
 
 Result<void> RecordedFrame::set_capacities() {
   std::array<gpu::FrameList, gpu::kListCount> lists{};
   for (std::size_t i = 0; i < lists.size(); ++i) lists[i].capacity = capacity_.lists[i];
   return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
+}
+
+/// All that is 0 between frames.
+Result<void> RecordedFrame::clear() {
+  if (auto r = set_capacities(); !r) return r;
+  return buffers_.clear_tables(device_);
 }
 
 Result<void> RecordedFrame::enlarge() {
@@ -198,6 +226,7 @@ Result<void> RecordedFrame::enlarge() {
   if (auto made = make_buffers(); !made) {
     // Buffers that have grown already do no harm: the lists' capacities are what counts.
     capacity_ = before;
+    make_room();
     if (auto r = set_capacities(); !r) return r;
     if (auto r = record_again(); !r) return r;
     return made;
@@ -222,20 +251,20 @@ Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
 }
 
 Result<void> RecordedFrame::record() {
-  detect_.reset();
-  respond_.reset();
+  commands_.reset();
   pipelines_.clear();
-  auto detect = recorded([&](FrameRecorder& recorder) { detection_->record(recorder); });
-  if (!detect) return detect.error();
-  auto respond = recorded([&](FrameRecorder& recorder) {
-    if (response_) response_->record(recorder);
-    if (field_) field_->record(recorder);
+  auto commands = recorded([&](FrameRecorder& recorder) {
+    detection_->record(recorder);
+    recorder.barrier();
+    if (field_) return field_->record(recorder);
+    detection_->record_names(recorder);
+    recorder.barrier();
+    response_->record(recorder);
     recorder.barrier();
     detection_->record_end(recorder);
   });
-  if (!respond) return respond.error();
-  detect_ = std::move(*detect);
-  respond_ = std::move(*respond);
+  if (!commands) return commands.error();
+  commands_ = std::move(*commands);
   return {};
 }
 
@@ -246,13 +275,23 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   input.sample_chunks = near.samples.count;
   input.inside_samples = near.inside.count;
   input.open_samples = near.open.count;
-  input.rays = rays ? 1 : 0;
+  const bool listed = near.samples.count == 0;
+  input.touch = items_for(std::max(near.touch.count, 1u));   // a stage has a last workgroup
+  input.pairs = items_for(near.pairs.count);
+  input.found = items_for(listed ? near.inside.count : 0);
+  input.chunks = items_for(near.samples.count);
+  for (const gpu::DispatchArguments& groups : {input.touch, input.pairs, input.found, input.chunks}) input.groups += groups.x * groups.y;
+  if (response_ && rays) input.clusters = groups_for((scene_.constants.tool.triangles + gpu::kClusterSize - 1) / gpu::kClusterSize);
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
-  std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
-  work_.bytes_up += sizeof input + near.touch.count * sizeof(gpu::TouchCandidate) + near.pairs.count * sizeof(gpu::PairCandidate) +
-                    near.samples.count * sizeof(gpu::SampleChunk) + (near.inside.count + near.open.count) * sizeof(gpu::FrameSample);
+  buffers_[gpu::kBindFrameInput].write(0, &input, sizeof input);
+  work_.bytes_up += sizeof input;
+  give(gpu::kBindTouchCandidates, near.touch);
+  give(gpu::kBindPairCandidates, near.pairs);
+  give(gpu::kBindSampleChunks, near.samples);
+  give(gpu::kBindInsideSamples, near.inside);
+  give(gpu::kBindOpenSamples, near.open);
 }
 
 Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
@@ -279,11 +318,11 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
   bool rays = false;
   if (!pose.beyond_lattice) {
     posed_.begin(pose);
-    near.touch.room = mapped<gpu::TouchCandidate>(gpu::kBindTouchCandidates, gpu::kListTouchCandidates);
-    near.pairs.room = mapped<gpu::PairCandidate>(gpu::kBindPairCandidates, gpu::kListPairCandidates);
-    near.samples.room = mapped<gpu::SampleChunk>(gpu::kBindSampleChunks, gpu::kListSampleChunks);
-    near.inside.room = mapped<gpu::FrameSample>(gpu::kBindInsideSamples, gpu::kListInsideSamples);
-    near.open.room = mapped<gpu::FrameSample>(gpu::kBindOpenSamples, gpu::kListOpenSamples);
+    near.touch.room = touch_;
+    near.pairs.room = near_pairs_;
+    near.samples.room = chunks_;
+    near.inside.room = inside_;
+    near.open.room = open_;
     rays = broad_phase_->find(posed_, nullptr, near);
   }
   out.times.push_back({"cull", us_since(start), pose.beyond_lattice ? 0 : broad_phase_->looks()});
@@ -292,17 +331,14 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
   if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
-    if (auto r = buffers_.clear_tables(device_); !r) return r;
+    if (auto r = clear(); !r) return r;
   tables_clear_ = false;   // until the frame has run to its end
   const auto writing = Clock::now();
   write_input(pose, ignored, near, rays);
   out.times.push_back({"upload", us_since(writing)});
 
-  if (!detect_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
-  if (auto r = run(*detect_, out); !r) return r;
-  if (buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state.contact != 0) {
-    if (auto r = run(*respond_, out); !r) return r;
-  }
+  if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
+  if (auto r = run(*commands_, out); !r) return r;
   out.times.push_back({"submit", std::max(0.0, waited_us_ - staged_us_)});   // what waiting cost beyond the stages themselves
   const auto finished = Clock::now();
   read(out);

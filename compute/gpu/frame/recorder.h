@@ -75,22 +75,17 @@ class FrameRecorder {
     const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
     recorder_.dispatch_raw(shader.pipeline, bound(shader), &push, push_bytes<Push>(), std::min(groups, gpu::kMaxGroupsX), rows, 1);
   }
-  /// One invocation, or one workgroup, for each item of a closed list.
-  void run_items(const FrameShader& shader, std::uint32_t list) { run_items(shader, list, NoPush{}); }
-  void run_groups(const FrameShader& shader, std::uint32_t list) { run_groups(shader, list, NoPush{}); }
-  template <class Push>
-  void run_items(const FrameShader& shader, std::uint32_t list, const Push& push) {
-    indirect(shader, gpu::kBindFrameLists, list * sizeof(gpu::FrameList) + offsetof(gpu::FrameList, items), &push, push_bytes<Push>());
-  }
-  template <class Push>
-  void run_groups(const FrameShader& shader, std::uint32_t list, const Push& push) {
-    indirect(shader, gpu::kBindFrameLists, list * sizeof(gpu::FrameList) + offsetof(gpu::FrameList, groups), &push, push_bytes<Push>());
-  }
   /// As many workgroups as kDispatch… `which` says.
   void run_dispatch(const FrameShader& shader, std::uint32_t which) { run_dispatch(shader, which, NoPush{}); }
   template <class Push>
   void run_dispatch(const FrameShader& shader, std::uint32_t which, const Push& push) {
     indirect(shader, gpu::kBindDispatches, which * sizeof(gpu::DispatchArguments), &push, push_bytes<Push>());
+  }
+  /// As many workgroups as the DispatchArguments at `offset` of FrameInput say.
+  void run_input(const FrameShader& shader, std::size_t offset) { indirect(shader, gpu::kBindFrameInput, offset, nullptr, 0); }
+  /// As entry `which` of a stage's group counts says.
+  void run_stage(const FrameShader& shader, std::int32_t groups, std::uint32_t which = 0) {
+    indirect(shader, groups, which * sizeof(gpu::DispatchArguments), nullptr, 0);
   }
   /// Barrier, closes these lists (they may be read from now on), barrier.
   void close(std::initializer_list<std::uint32_t> lists);

@@ -84,7 +84,7 @@ void FrameResponse::record_areas(FrameRecorder& recorder) const {
 
 void FrameResponse::record(FrameRecorder& recorder) const {
   record_areas(recorder);
-  recorder.run_dispatch(mobile_normals_, kDispatchMembers);
+  recorder.run_dispatch(mobile_normals_, kDispatchAreaMembers);
   if (plan_.contact_point) recorder.run_dispatch(points_sum_, kDispatchTouchedVoxels);
   recorder.barrier();
   recorder.run_dispatch(areas_direct_, kDispatchContactOne);

@@ -19,7 +19,8 @@ struct BufferUse {
 
 /// Small buffers of the frame as a whole (input, lists, state) stand with transform, which every frame begins with.
 const BufferUse kUses[] = {
-    {"transform", {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists, kBindFrameState,
+    {"transform", {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists, kBindFrameState, kBindStages, kBindListedGroups,
+                   kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups, kBindResultGroups,
                    kBindDispatches, kBindToolRecords, kBindToolCorners, kBindClusterBoxes, kBindRunBoxes}},
     {"cull", {kBindMockupBrickSlot, kBindMockupBricks, kBindMockupMixedBrick}},
     {"pairs", {kBindMockupVertices, kBindMockupTriangles, kBindMockupInfo, kBindMockupListBegin, kBindMockupListTriangles,

@@ -76,12 +76,12 @@ void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key
   for_each_made_buffer(scene, [&](const VulkanBuffer& buffer) {
     writer(buffer.bytes());
     if (buffer.bytes() == 0) return;
-    if (!buffer.mapped()) {
+    if (buffer.as<char>() == nullptr) {
       auto& copy = copies.emplace_back(buffer.bytes());
       whole = whole && download(device, buffer, 0, copy.data(), copy.size());
       writer.borrow({copy.data(), copy.size()});
     } else {
-      writer.borrow({buffer.as<const char>(), buffer.bytes()});
+      writer.borrow({buffer.as<char>(), buffer.bytes()});
     }
   });
   static const HostSamples kNone;

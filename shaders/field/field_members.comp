@@ -1,0 +1,95 @@
+#version 460
+// One invocation: a slot of C_s and a member of C_m. Names their sets; in contact, empties what the slot carries, and lists extra samples that weigh something and
+// the tiles of the member's sample grid.
+// Reads C_s and C_m, both bodies' extra samples, the tool's triangles in its own frame. Writes the sets' results, carrier_work, mockup_points, tool_points, field_tiles.
+// Before: the lists of samples, C_s and C_m are closed.
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/frame.glsl"
+#define STAGE 2   // kStageMembers
+#include "shaders/lib/stage_end.glsl"
+#include "shaders/lib/set_name.glsl"
+
+layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
+layout(constant_id = 8) const bool CARRIERS = true;   // as in lib/field_sums.glsl
+
+READ(kBindMockupInfo, uint32_t, mockup_info);
+READ(kBindMockupExtras, ExtraSample, mockup_extras);
+READ(kBindToolVertices, ivec3, tool_vertices);
+READ(kBindToolTriangles, uvec3, tool_triangles);
+READ(kBindToolInfo, uint32_t, tool_info);
+READ(kBindToolWeights, uint32_t, tool_weights);
+READ(kBindToolExtras, ExtraSample, tool_extras);
+EDIT(kBindCarrierWork, int64_t, carrier_work);
+EDIT(kBindMockupPoints, FieldPoint, mockup_points);
+EDIT(kBindToolPoints, FieldPoint, tool_points);
+EDIT(kBindFieldTiles, FieldTile, field_tiles);
+
+#include "shaders/lib/pose.glsl"
+#include "shaders/lib/extra_samples.glsl"
+#include "shaders/lib/sample_levels.glsl"
+EXTRA_SAMPLES(mockup, mockup_extras)
+EXTRA_SAMPLES(tool, tool_extras)
+
+void list_static_extras(uint32_t id) {
+  const uint32_t first = first_mockup_extra(id, scene.mockup_extras), count = mockup_extras_from(first, id, scene.mockup_extras);
+  for (uint32_t i = 0u; i < count; ++i) {
+    const uint32_t weight = uint32_t(extra_weight(mockup_extras[first + i].weights) >> 6);
+    if (weight == 0u) continue;
+    const uint32_t at = take_room(kListMockupPoints, 1u);
+    if (at < frame_lists[kListMockupPoints].capacity) mockup_points[at] = FieldPoint(mockup_extras[first + i].point, id, weight);
+  }
+}
+
+void list_mobile_extras(uint32_t mobile) {
+  const uint32_t first = first_tool_extra(mobile, scene.tool_extras), count = tool_extras_from(first, mobile, scene.tool_extras);
+  for (uint32_t i = 0u; i < count; ++i) {
+    const uint32_t weight = uint32_t(extra_weight(tool_extras[first + i].weights) >> 4);
+    if (weight == 0u) continue;
+    const uint32_t at = take_room(kListToolPoints, 1u);
+    if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(world_from_tool(tool_extras[first + i].point), mobile, weight);
+  }
+}
+
+// Of the cells that reach into the triangle's box; they are decided one by one later.
+void list_tiles(uint32_t mobile, uint32_t info) {
+  const uvec3 corners = tool_triangles[mobile];
+  const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
+  const uint32_t axis = info >> kInfoAxisShift & 3u, u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
+  const ivec3 low = min(min(a, b), c), high = max(max(a, b), c);
+  const int32_t s = scene.tool_sample_spacing;
+  const int32_t u_first = floor_div(low[u], s), v_first = floor_div(low[v], s);
+  const uint32_t across = uint32_t(floor_div(high[u], s) - u_first) / uint32_t(kFieldTile) + 1u;
+  const uint32_t down = uint32_t(floor_div(high[v], s) - v_first) / uint32_t(kFieldTile) + 1u;
+  if (uint64_t(across) * uint64_t(down) >= uint64_t(kLoopBudget)) {
+    atomicOr(frame_state.overflow_other, kOverflowLoop);
+    return;
+  }
+  const uint32_t first = take_room(kListFieldTiles, across * down);
+  const uint32_t capacity = frame_lists[kListFieldTiles].capacity;
+  for (uint32_t t = 0u; t < across * down && first + t < capacity && !spent(1u); ++t)
+    field_tiles[first + t] = FieldTile(mobile, u_first + kFieldTile * int32_t(t % across), v_first + kFieldTile * int32_t(t / across));
+}
+
+void take_static(uint32_t slot) {
+  name_static(slot);
+  if (frame_state.contact == 0u) return;
+  if (CARRIERS)
+    for (uint32_t i = 0u; i < kCarrierWords; ++i) carrier_work[kCarrierWords * slot + i] = 0l;
+  const uint32_t id = contact_statics[slot];
+  if (INSIDE && (mockup_info[id] & kInfoHasExtra) != 0u) list_static_extras(id);
+}
+
+void take_mobile(uint32_t place) {
+  name_mobile(place);
+  if (frame_state.contact == 0u) return;
+  const uint32_t mobile = contact_mobiles[place], info = tool_info[mobile];
+  if ((info & kInfoHasExtra) != 0u) list_mobile_extras(mobile);
+  if (tool_weights[mobile] != 0u) list_tiles(mobile, info);
+}
+
+void main() {
+  const uint32_t i = flat_invocation();
+  if (i < frame_lists[kListContactStatics].count) take_static(i);
+  if (i < frame_lists[kListContactMobiles].count) take_mobile(i);
+  end_stage();
+}

@@ -1,0 +1,34 @@
+// Names the sets that a slot of C_s, and a member of C_m, are in; counts into frame_state, starts their results. The including shader has lib/stage_end.glsl.
+#ifndef PALPATE_LIB_SET_NAME
+#define PALPATE_LIB_SET_NAME
+#include "shaders/lib/plan.glsl"
+
+READ(kBindContactStatics, uint32_t, contact_statics);
+READ(kBindStaticState, uint32_t, static_state);
+READ(kBindContactMobiles, uint32_t, contact_mobiles);
+READ(kBindMobileState, uint32_t, mobile_state);
+EDIT(kBindResultStatics, StaticResult, result_statics);
+EDIT(kBindResultMobiles, MobileResult, result_mobiles);
+
+void name_static(uint32_t slot) {
+  const uint32_t id = contact_statics[slot], state = static_state[id];
+  result_statics[slot] = StaticResult(id, state, kNone, kNone);
+  if ((state & kStaticHit) != 0u) {
+    atomicAdd(frame_state.cst, 1u);
+    return;
+  }
+  if ((state & kStaticListed) != 0u) atomicAdd(frame_state.bst, 1u);
+  if ((state & kStaticSampled) != 0u) atomicAdd(frame_state.est, 1u);
+}
+
+void name_mobile(uint32_t place) {
+  const uint32_t mobile = contact_mobiles[place], state = mobile_state[mobile];
+  result_mobiles[place] = MobileResult(mobile, state);
+  if ((state & kMobileHit) != 0u)
+    atomicAdd(frame_state.cmt, 1u);
+  else if (INTERNAL && (state & kMobileInternal) != 0u)
+    atomicAdd(frame_state.imt, 1u);
+  else
+    atomicAdd(frame_state.bmt, 1u);
+}
+#endif
