@@ -11,11 +11,11 @@ BACKENDS = ('gpu', 'cpu')
 
 
 def answer(scene, pose, backend=None):
-    """The line of one query without its times, and what was said on standard error."""
+    """The line of one query without its times and who answered, and what was said on standard error."""
     outcome = palpate('query', scene, '--pose', pose, *(('--backend', backend) if backend else ()))
     lines = lines_of(outcome)
     expect(len(lines) == 1, outcome)
-    return {**lines[0], 'time_us': 0}, outcome.err
+    return {**lines[0], 'time_us': 0, 'engine': ''}, outcome.err
 
 
 def answer_on_both(scene, pose):
@@ -46,7 +46,7 @@ def test_a_million_triangles_in_one_voxel_are_answered():
     expect(default == cpu, 'without --backend the answer is right, whoever gives it')
     outcome = palpate('query', scene, '--pose', pose, '--backend', 'gpu')
     if outcome.code == 0:   # the device may lack room, or what else there is a limit to; it says so
-        gpu = {**lines_of(outcome)[0], 'time_us': 0}
+        gpu = {**lines_of(outcome)[0], 'time_us': 0, 'engine': ''}
         expect(gpu == cpu or (gpu['truncated'] and 'the most' in outcome.err), outcome)
     else:
         expect_refused(outcome, 3, 'share a voxel, at most')
