@@ -19,8 +19,10 @@ def answer(scene, pose, backend=None):
 
 
 def answer_on_both(scene, pose):
-    gpu, cpu = (answer(scene, pose, backend)[0] for backend in BACKENDS)
-    expect(gpu == cpu, f'gpu and cpu differ\n{str(gpu)[:2000]}\n{str(cpu)[:2000]}')
+    (gpu, said), (cpu, _) = (answer(scene, pose, backend) for backend in BACKENDS)
+    # A device may lack room, or steps of one invocation; it says so, and pushes with nothing.
+    refused = gpu['truncated'] and gpu['force'] == [0, 0, 0] and 'the most' in said
+    expect(refused or gpu == cpu, f'gpu and cpu differ\n{str(gpu)[:2000]}\n{str(cpu)[:2000]}')
     expect(not cpu['truncated'], cpu)
     return cpu
 
