@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <exception>
+#include <optional>
+#include <thread>
 
 #include "cpu_ref/areas.h"
 #include "cpu_ref/direction.h"
@@ -10,6 +12,7 @@
 #include "cpu_ref/heights.h"
 #include "cpu_ref/sets.h"
 #include "model/contact_areas.h"
+#include "model/pose_threads.h"
 
 namespace palpate {
 namespace {
@@ -35,45 +38,15 @@ class StageClock {
 /// Tools grow their boundary by this many steps, for the rounding of transformed vertices (METHOD section 2).
 constexpr std::int32_t kToolGrow = 3;
 
-class RefBackend final : public CollisionBackend {
+/// Answers one pose at a time on a prepared scene. Others may do the same beside it.
+class Asked final : public PoseQuery {
  public:
-  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
-    try {
-      auto scene = std::make_unique<Prepared>();
-      scene->geometry = &geometry;
-      scene->profile = plan.profile;
-      plan_ = plan;
-      auto mockup = make_partition(geometry.mockup, geometry.mockup_grid, 0, progress);
-      if (!mockup) return mockup.error();
-      scene->mockup = std::move(*mockup);
-      if (scene->refined()) {
-        auto tool = make_partition(geometry.tool, geometry.tool_grid, kToolGrow, progress);
-        if (!tool) return tool.error();
-        scene->tool = std::move(*tool);
-        scene->tool_has_inside = geometry.tool.closed || scene->tool.has_internal;
-      }
-      std::vector<Box> boxes;
-      for (std::uint32_t s = 0; s < geometry.mockup.triangles.size(); ++s)
-        boxes.push_back(geometry.mockup.collapsed(s) ? Box() : triangle_of(geometry.mockup, s).box());
-      scene->mockup_tree.build(std::move(boxes));
-      if (scene->refined()) {
-        boxes.clear();
-        for (std::uint32_t m = 0; m < geometry.tool.triangles.size(); ++m)
-          boxes.push_back(geometry.tool.collapsed(m) ? Box() : triangle_of(geometry.tool, m).box());
-        scene->tool_rest_tree.build(std::move(boxes));
-      }
-      scene_ = std::move(scene);
-      return {};
-    } catch (const std::exception& failure) {   // out of memory, or Embree
-      return Error{ErrorCode::kInternal, std::string("The CPU reference could not prepare the scene: ") + failure.what()};
-    }
-  }
+  Asked(const Prepared& scene, const Plan& plan) : scene_(scene), plan_(plan) {}
 
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     out = Contacts();
     out.engine = "ref";
     pairs_.clear();
-    if (!scene_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
     try {
       if (!pose.beyond_lattice) answer(pose, ignored, out);
       leave_out(out);
@@ -84,32 +57,13 @@ class RefBackend final : public CollisionBackend {
     }
   }
 
-  Result<void> replan(const Plan& plan) override {
-    if (!scene_ || plan.profile != scene_->profile) return Error{ErrorCode::kInternal, "The CPU reference has not been prepared for this profile."};
-    plan_ = plan;
-    return {};
-  }
-
-  Result<VoxelPartition> partition(bool tool) const override {
-    if (!scene_ || (tool && !scene_->refined())) return Error{ErrorCode::kInternal, "There is no such partition."};
-    return tool ? scene_->tool.dense() : scene_->mockup.dense();
-  }
-
-  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override { return pairs_; }
-
-  bool has_internal_voxels() const override { return scene_ && scene_->mockup.has_internal; }
-  std::string name() const override { return "ref"; }
-  std::string device() const override { return "CPU reference"; }
-  std::uint64_t memory_bytes() const override {
-    return scene_ ? scene_->mockup.memory_bytes() + scene_->tool.memory_bytes() + scene_->mockup_tree.memory_bytes() +
-                        tool_tree_.memory_bytes()
-                  : 0;
-  }
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs() const { return pairs_; }
+  std::uint64_t memory_bytes() const { return tool_tree_.memory_bytes(); }
 
  private:
   void answer(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
     StageClock clock(out);
-    Frame frame{*scene_, pose, ignored, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    Frame frame{scene_, pose, ignored, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     tool_tree_.build(transform_tool(frame));
     clock.done("transform");
     find_pairs(frame, out);
@@ -119,12 +73,12 @@ class RefBackend final : public CollisionBackend {
     clock.done("voxels");
     find_samples(frame, out);
     clock.done("est");
-    if (scene_->tool_open()) out.flags |= kFlagToolOpen;
+    if (scene_.tool_open()) out.flags |= kFlagToolOpen;
     if (!out.contact) return;
-    if (scene_->refined()) {
+    if (scene_.refined()) {
       sum_field(frame, out);
       clock.done("field");
-      if (plan_.telemetry) gather_areas(*scene_->geometry, pose, out);
+      if (plan_.telemetry) gather_areas(*scene_.geometry, pose, out);
       clock.done("areas");
       return;
     }
@@ -164,10 +118,109 @@ class RefBackend final : public CollisionBackend {
     }
   }
 
+  const Prepared& scene_;
+  const Plan& plan_;
+  BoxTree tool_tree_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;   ///< of the last query
+};
+
+class RefBackend final : public CollisionBackend {
+ public:
+  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
+    try {
+      auto scene = std::make_unique<Prepared>();
+      scene->geometry = &geometry;
+      scene->profile = plan.profile;
+      plan_ = plan;
+      auto mockup = make_partition(geometry.mockup, geometry.mockup_grid, 0, progress);
+      if (!mockup) return mockup.error();
+      scene->mockup = std::move(*mockup);
+      if (scene->refined()) {
+        auto tool = make_partition(geometry.tool, geometry.tool_grid, kToolGrow, progress);
+        if (!tool) return tool.error();
+        scene->tool = std::move(*tool);
+        scene->tool_has_inside = geometry.tool.closed || scene->tool.has_internal;
+      }
+      std::vector<Box> boxes;
+      for (std::uint32_t s = 0; s < geometry.mockup.triangles.size(); ++s)
+        boxes.push_back(geometry.mockup.collapsed(s) ? Box() : triangle_of(geometry.mockup, s).box());
+      scene->mockup_tree.build(std::move(boxes));
+      if (scene->refined()) {
+        boxes.clear();
+        for (std::uint32_t m = 0; m < geometry.tool.triangles.size(); ++m)
+          boxes.push_back(geometry.tool.collapsed(m) ? Box() : triangle_of(geometry.tool, m).box());
+        scene->tool_rest_tree.build(std::move(boxes));
+      }
+      drop_askers();
+      scene_ = std::move(scene);
+      asked_.emplace(*scene_, plan_);
+      return {};
+    } catch (const std::exception& failure) {   // out of memory, or Embree
+      return Error{ErrorCode::kInternal, std::string("The CPU reference could not prepare the scene: ") + failure.what()};
+    }
+  }
+
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    out = Contacts();
+    out.engine = "ref";
+    if (!asked_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
+    return asked_->query(pose, ignored, out);
+  }
+
+  Result<void> share(std::size_t count, const PoseWork& work) override {
+    if (!asked_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
+    shared_ += count;
+    if (!threads_ && shared_ >= kWorthThreads) make_helpers();
+    if (!threads_ || count < 2) return CollisionBackend::share(count, work);
+    return threads_->share(*asked_, count, work);
+  }
+
+  Result<void> replan(const Plan& plan) override {
+    if (!scene_ || plan.profile != scene_->profile) return Error{ErrorCode::kInternal, "The CPU reference has not been prepared for this profile."};
+    plan_ = plan;
+    return {};
+  }
+
+  Result<VoxelPartition> partition(bool tool) const override {
+    if (!scene_ || (tool && !scene_->refined())) return Error{ErrorCode::kInternal, "There is no such partition."};
+    return tool ? scene_->tool.dense() : scene_->mockup.dense();
+  }
+
+  Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override {
+    if (!asked_) return Error{ErrorCode::kInternal, "The CPU reference was asked for pairs before it was prepared."};
+    return asked_->pairs();
+  }
+
+  bool has_internal_voxels() const override { return scene_ && scene_->mockup.has_internal; }
+  std::string name() const override { return "ref"; }
+  std::string device() const override { return "CPU reference"; }
+  std::uint64_t memory_bytes() const override {
+    if (!scene_) return 0;
+    std::uint64_t sum = scene_->mockup.memory_bytes() + scene_->tool.memory_bytes() + scene_->mockup_tree.memory_bytes() + asked_->memory_bytes();
+    for (const auto& helper : helpers_) sum += helper->memory_bytes();
+    return sum;
+  }
+
+ private:
+  void drop_askers() {
+    threads_.reset();
+    helpers_.clear();
+    asked_.reset();
+    shared_ = 0;
+  }
+  /// Somebody to ask, and a thread, for every other processor.
+  void make_helpers() {
+    std::vector<PoseQuery*> asked;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) asked.push_back(helpers_.emplace_back(std::make_unique<Asked>(*scene_, plan_)).get());
+    threads_.emplace(std::move(asked));
+  }
+
   Plan plan_;
   std::unique_ptr<Prepared> scene_;
-  BoxTree tool_tree_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;   ///< of the last query, for pairs()
+  std::optional<Asked> asked_;   ///< by query()
+  std::vector<std::unique_ptr<Asked>> helpers_;
+  std::optional<PoseThreads> threads_;   ///< of these
+  std::size_t shared_ = 0;               ///< pieces of all work so far
 };
 
 }  // namespace

@@ -24,11 +24,42 @@ struct StageMemory {
   std::uint64_t bytes = 0;
 };
 
+/// What queries asked of a device, added up; all 0 where there is none. Bytes are those that a frame itself writes and reads, not what is allocated.
+struct DeviceWork {
+  std::uint64_t submissions = 0;   ///< each waited for
+  std::uint64_t dispatches = 0;    ///< of no workgroup, too
+  std::uint64_t barriers = 0;      ///< each drains the device
+  std::uint64_t bytes_up = 0, bytes_down = 0;
+  double host_us = 0;              ///< of the host beside submitting and waiting
+
+  DeviceWork& operator+=(const DeviceWork& more) {
+    submissions += more.submissions;
+    dispatches += more.dispatches;
+    barriers += more.barriers;
+    bytes_up += more.bytes_up;
+    bytes_down += more.bytes_down;
+    host_us += more.host_us;
+    return *this;
+  }
+  bool operator==(const DeviceWork&) const = default;
+};
+
+/// Answers poses one after the other: an engine, or what a thread has of one to itself.
+class PoseQuery {
+ public:
+  virtual ~PoseQuery() = default;
+  /// Answers one pose. `ignored`: contacts that are left out, `refined` only; may be null. Writes `out` whole, reusing its memory.
+  /// An error means that the back end itself failed (device lost): the caller sends zero force.
+  virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;
+};
+
+/// Piece `i` of some work: asks `asked`, and nobody else, for as many poses as it needs. An error ends the whole.
+using PoseWork = std::function<Result<void>(PoseQuery& asked, std::size_t i)>;
+
 /// Finds contacts. prepare() once, off the loops; query() each frame, by one thread at a time.
 /// Three engines answer every query with identical integers: compute/gpu (Vulkan), compute/native (this processor) and cpu_ref.
-class CollisionBackend {
+class CollisionBackend : public PoseQuery {
  public:
-  virtual ~CollisionBackend() = default;
 
   /// Builds the voxel partition and whatever else a query needs. `geometry` must outlive the back end.
   /// Allocates; takes as long as it takes. A second call replaces the first scene. What only rare queries need may still be made beside when
@@ -50,16 +81,18 @@ class CollisionBackend {
     return 0;
   }
 
-  /// Answers one pose. `ignored`: contacts that are left out, `refined` only; may be null. Writes `out` whole, reusing its memory.
-  /// An error means that the back end itself failed (device lost): the caller sends zero force.
-  virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;
+  /// Does pieces 0 … count − 1 of `work` with whatever can work on them side by side, in any order. `work` is called by several threads at once, each with
+  /// somebody of its own to ask. The first call that is worth it may take time and memory to set helpers up; it may start threads.
+  virtual Result<void> share(std::size_t count, const PoseWork& work) {
+    for (std::size_t i = 0; i < count; ++i)
+      if (auto done = work(*this, i); !done) return done;
+    return {};
+  }
 
   /// Answers many poses with whatever can work on them side by side: out[i] is what query(poses[i], nullptr, out[i]) would make of it but for the
-  /// times. As many `out` as `poses`. The first call that is worth it may take time and memory to set helpers up; it may start threads.
+  /// times. As many `out` as `poses`. Threads and memory as share().
   virtual Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      if (auto answered = query(poses[i], nullptr, out[i]); !answered) return answered;
-    return {};
+    return share(poses.size(), [&](PoseQuery& asked, std::size_t i) { return asked.query(poses[i], nullptr, out[i]); });
   }
 
   /// Makes room for what truncated the last query, so that the same pose can be asked again. Takes time and memory: not for a loop that
@@ -81,6 +114,8 @@ class CollisionBackend {
   virtual std::uint64_t memory_bytes() const = 0; ///< kept for the prepared scene
   /// memory_bytes() by stage; what several stages use counts for the first of them. Empty: this back end doesn't tell them apart.
   virtual std::vector<StageMemory> memory_by_stage() const { return {}; }
+  /// Of all queries since the plan was prepared. Not while a query runs.
+  virtual DeviceWork device_work() const { return {}; }
   /// What a user should know of what has happened since the last call, a sentence each. Not while a query runs.
   virtual std::vector<std::string> take_notes() { return {}; }
 };

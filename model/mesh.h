@@ -15,7 +15,7 @@ struct MeshPart {
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
   std::string also = {};          ///< another name that the file has for it (glTF: its mesh; CAD: this place in the assembly); empty: none
-  std::optional<std::uint32_t> colour = {};   ///< 0xrrggbb, sRGB, where the file states one and its reader tells it (CAD)
+  std::optional<std::uint32_t> colour = {};   ///< 0xrrggbb, sRGB, where the file states one and its reader tells it (CAD, glTF)
 };
 
 /// Triangles as imported or generated: metres, in the frame of the file (node transforms applied).

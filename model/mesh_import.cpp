@@ -133,15 +133,24 @@ Result<Mesh> import_mesh_below(const std::string& folder, const std::string& pat
     return bad_value(fmt::format("the scale of '{}' is {}, it must be a number above 0", path, scale));
   const Result<std::string> program = find_import_program(path);
   if (!program) return program.error();
-  const MemoryFile parcel;
-  if (parcel.descriptor() < 0) return Error{ErrorCode::kInternal, fmt::format("no memory file for the import of '{}': {}", path, std::strerror(errno))};
   const ImportLimits limits = import_limits(path, asked);
-  const Result<ChildEnd> end = run_import_child(*program, path, scale, limits, parcel.descriptor(), progress, folder, tessellation);
-  if (!end) return end.error();
-  if (end->how != ChildEnd::kDone) return refusal(one_line(path), *end, limits);
-  Result<Mesh> mesh = read_parcel(parcel.descriptor(), report);
-  if (!mesh && mesh.error().code == ErrorCode::kInternal) return bad_value(fmt::format("'{}' can't be read: {}", path, mesh.error().sentence));
-  return mesh;
+  const ImportProgress onward = !progress ? progress : [&progress, most = 0.0](const char* what, double done) mutable {
+    return progress(what, most = std::max(most, done));   // a second reading begins anew
+  };
+  // OpenCASCADE may crash over damaged colours, which nothing needs: then the file is read once more without them.
+  for (bool colours = true;; colours = false) {
+    const MemoryFile parcel;
+    if (parcel.descriptor() < 0) return Error{ErrorCode::kInternal, fmt::format("no memory file for the import of '{}': {}", path, std::strerror(errno))};
+    const Result<ChildEnd> end = run_import_child(*program, path, scale, limits, parcel.descriptor(), onward, folder, tessellation, colours);
+    if (!end) return end.error();
+    const bool crashed = end->how == ChildEnd::kCrashed || end->how == ChildEnd::kExited;   // under a sanitizer a crash ends with a code
+    if (crashed && colours && is_cad_file(path)) continue;
+    if (end->how != ChildEnd::kDone) return refusal(one_line(path), *end, limits);
+    Result<Mesh> mesh = read_parcel(parcel.descriptor(), report);
+    if (!mesh && mesh.error().code == ErrorCode::kInternal) return bad_value(fmt::format("'{}' can't be read: {}", path, mesh.error().sentence));
+    if (!colours) report.notes.emplace_back("its colours are damaged and left out");
+    return mesh;
+  }
 }
 
 }  // namespace palpate

@@ -96,7 +96,7 @@ class Anderson {
 LoneQuery::LoneQuery(const SceneGeometry& geometry, double stiffness)
     : geometry_(geometry), stiffness_(stiffness), spring_{stiffness, stiffness * geometry.tool_gyration_m * geometry.tool_gyration_m} {}
 
-Result<void> LoneQuery::evaluate(CollisionBackend& backend, const Ignored* ignored, const LawPose& tool) {
+Result<void> LoneQuery::evaluate(PoseQuery& backend, const Ignored* ignored, const LawPose& tool) {
   const Pose pose{tool.gc - tool.rotation * geometry_.tool_gc_m, tool.rotation};
   const auto lattice = to_lattice(pose, geometry_);
   if (!lattice) return lattice.error();
@@ -122,7 +122,7 @@ Vec6 LoneQuery::pull(const Wrench& push, const Vec6& apart) const {
 /// T: where the tool would be if the field were its planes at `apart`.
 Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const { return spring_balance(spring_, device, apart, PlaneFeel(planes_)); }
 
-Result<void> LoneQuery::feel(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response) {
+Result<void> LoneQuery::feel(PoseQuery& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response) {
   Result<Felt> felt = ask(backend, ignored, pose, response);
   if (!felt) return felt.error();
   if (!response.contact_points) felt->wrench.torque = Vec3(0);
@@ -131,7 +131,7 @@ Result<void> LoneQuery::feel(CollisionBackend& backend, const Ignored* ignored, 
   return {};
 }
 
-Result<Felt> LoneQuery::ask(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose) {
+Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose) {
   Felt out;
   out.tool = pose;
   out.evaluations = 1;

@@ -20,15 +20,15 @@ class LoneQuery {
   LoneQuery(const SceneGeometry& geometry, double stiffness);
 
   /// Puts what would be felt into `response`, which is what respond() said at `pose`: `felt`, and the flag `unsettled`. Error: the back end failed.
-  Result<void> feel(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response);
+  Result<void> feel(PoseQuery& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response);
 
   /// `at_pose`: what respond() says at `pose`. Without contact there, or with K = 0, there is nothing to ask. `ignored` as for CollisionBackend::query. Error: the back end failed.
-  Result<Felt> ask(CollisionBackend& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose);
+  Result<Felt> ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose);
 
   CouplingSettings spring() const { return spring_; }
 
  private:
-  Result<void> evaluate(CollisionBackend& backend, const Ignored* ignored, const LawPose& tool);
+  Result<void> evaluate(PoseQuery& backend, const Ignored* ignored, const LawPose& tool);
   Vec6 pull(const Wrench& push, const Vec6& apart) const;
   Vec6 next(const LawPose& device, const Vec6& apart) const;
 

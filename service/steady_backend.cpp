@@ -77,6 +77,41 @@ Result<void> SteadyBackend::query(const LatticePose& pose, const Ignored* ignore
   return spare_->query(pose, ignored, out);
 }
 
+namespace {
+
+/// Asks somebody, and notes whether an answer was cut short.
+class WatchedQuery final : public PoseQuery {
+ public:
+  explicit WatchedQuery(PoseQuery& asked) : asked_(asked) {}
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    auto answered = asked_.query(pose, ignored, out);
+    truncated |= out.truncated;
+    return answered;
+  }
+  bool truncated = false;
+
+ private:
+  PoseQuery& asked_;
+};
+
+}  // namespace
+
+Result<void> SteadyBackend::share(std::size_t count, const PoseWork& work) {
+  if (!first_ready_) return spare_ready_ ? spare_->share(count, work) : CollisionBackend::share(count, work);   // piece by piece
+  // What goes wrong goes wrong again, and is dealt with, piece by piece.
+  std::vector<char> again(count, 1);   // a byte each, for several threads
+  (void)first_->share(count, [&](PoseQuery& asked, std::size_t i) {
+    WatchedQuery watched(asked);
+    auto done = work(watched, i);
+    again[i] = !done || watched.truncated;
+    return done;
+  });
+  for (std::size_t i = 0; i < count; ++i)
+    if (again[i] != 0)
+      if (auto done = work(*this, i); !done) return done;
+  return {};
+}
+
 Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
   if (!first_ready_) return spare_ready_ ? spare_->query_batch(poses, out) : CollisionBackend::query_batch(poses, out);   // pose by pose
   // Whatever is wrong with the batch shows again, and is dealt with, pose by pose.

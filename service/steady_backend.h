@@ -30,6 +30,7 @@ class SteadyBackend final : public CollisionBackend {
     return first_ ? first_->preparation_bytes(geometry, plan) : 0;
   }
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
+  Result<void> share(std::size_t count, const PoseWork& work) override;
   Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override;
 
   Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }
@@ -39,6 +40,7 @@ class SteadyBackend final : public CollisionBackend {
   std::string device() const override { return now().device(); }
   std::uint64_t memory_bytes() const override;
   std::vector<StageMemory> memory_by_stage() const override { return now().memory_by_stage(); }
+  DeviceWork device_work() const override { return now().device_work(); }
   std::vector<std::string> take_notes() override;
 
  private:

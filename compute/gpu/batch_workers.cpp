@@ -5,13 +5,20 @@
 namespace palpate {
 namespace {
 
-/// Answers a pose, with more room where the frame has too little.
-Result<void> answer_pose(Frame& frame, const LatticePose& pose, Contacts& out) {
-  for (;;) {
-    if (auto answered = frame.query(pose, nullptr, out); !answered || !out.truncated) return answered;
-    if (!frame.enlarge()) return {};   // truncated it stays
+/// Answers poses by a frame, with more room where that has too little.
+class RoomyFrame final : public PoseQuery {
+ public:
+  explicit RoomyFrame(Frame& frame) : frame_(frame) {}
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    for (;;) {
+      if (auto answered = frame_.query(pose, ignored, out); !answered || !out.truncated) return answered;
+      if (!frame_.enlarge()) return {};   // truncated it stays
+    }
   }
-}
+
+ private:
+  Frame& frame_;
+};
 
 }  // namespace
 
@@ -35,9 +42,12 @@ Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& opt
     out->helpers_.push_back(std::move(helper));
   }
   // Threads last: making a device reads the environment.
-  std::vector<PoseThreads::Answer> answers;
-  for (const auto& helper : out->helpers_) answers.push_back([&frame = *helper->frame](const LatticePose& pose, Contacts& contacts) { return answer_pose(frame, pose, contacts); });
-  out->threads_.emplace(std::move(answers));
+  std::vector<PoseQuery*> asked;
+  for (const auto& helper : out->helpers_) {
+    helper->asked = std::make_unique<RoomyFrame>(*helper->frame);
+    asked.push_back(helper->asked.get());
+  }
+  out->threads_.emplace(std::move(asked));
   return out;
 }
 
@@ -56,8 +66,15 @@ std::uint64_t BatchWorkers::memory_bytes() const {
   return sum;
 }
 
-Result<void> BatchWorkers::answer(Frame& own, std::span<const LatticePose> poses, std::span<Contacts> out) {
-  return threads_->answer([&](const LatticePose& pose, Contacts& contacts) { return answer_pose(own, pose, contacts); }, poses, out);
+DeviceWork BatchWorkers::work() const {
+  DeviceWork sum;
+  for (const auto& helper : helpers_) sum += helper->frame->work();
+  return sum;
+}
+
+Result<void> BatchWorkers::share(Frame& own, std::size_t count, const PoseWork& work) {
+  RoomyFrame asked(own);
+  return threads_->share(asked, count, work);
 }
 
 }  // namespace palpate

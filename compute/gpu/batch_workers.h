@@ -8,8 +8,8 @@
 #include "compute/gpu/frame/frame.h"
 #include "compute/gpu/gpu_backend.h"
 #include "compute/gpu/prepare/prepared_scene.h"
-#include "compute/scene/pose_threads.h"
 #include "compute/vulkan/device.h"
+#include "model/pose_threads.h"
 
 namespace palpate {
 
@@ -26,16 +26,19 @@ class BatchWorkers {
   BatchWorkers(const BatchWorkers&) = delete;
   BatchWorkers& operator=(const BatchWorkers&) = delete;
 
-  /// Answers all poses: `own` on this thread, the helpers beside it. After an error, poses that nobody has begun are not answered.
-  Result<void> answer(Frame& own, std::span<const LatticePose> poses, std::span<Contacts> out);
+  /// As PoseThreads::share: `own` on this thread, the helpers beside it. What a frame has too little room for is enlarged and asked again.
+  Result<void> share(Frame& own, std::size_t count, const PoseWork& work);
 
   std::uint64_t memory_bytes() const;
+  /// Of the helpers' frames.
+  DeviceWork work() const;
 
  private:
   struct Helper {
     std::unique_ptr<VulkanDevice> device;   ///< where each has one, with …
     PreparedScene scene;                    ///< … what it has of the scene
     std::unique_ptr<Frame> frame;
+    std::unique_ptr<PoseQuery> asked;       ///< the frame, enlarged where it has to be
   };
   BatchWorkers() = default;
 

@@ -17,7 +17,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kWorthHelpers = 128;   // poses of all batches so far from which on threads are set up for them (chosen)
 constexpr unsigned kMostHelpers = 7;         // each takes a frame's memory (chosen)
 
 /// The device engine: a device, the scene on it, and the frame that answers queries.
@@ -29,7 +28,7 @@ class GpuBackend final : public CollisionBackend {
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
     workers_.reset();
     no_workers_ = false;
-    batched_ = 0;
+    shared_ = 0;
     frame_.reset();
     scene_.reset();
     geometry_ = &geometry;
@@ -60,12 +59,12 @@ class GpuBackend final : public CollisionBackend {
     return device_->check_guards();
   }
 
-  Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override {
+  Result<void> share(std::size_t count, const PoseWork& work) override {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
-    batched_ += poses.size();
-    if (!workers_ && !no_workers_ && batched_ >= kWorthHelpers) set_helpers_up();
-    if (!workers_ || poses.size() < 2) return CollisionBackend::query_batch(poses, out);
-    if (auto answered = workers_->answer(*frame_, poses, out); !answered) return answered;
+    shared_ += count;
+    if (!workers_ && !no_workers_ && shared_ >= kWorthThreads) set_helpers_up();
+    if (!workers_ || count < 2) return CollisionBackend::share(count, work);
+    if (auto done = workers_->share(*frame_, count, work); !done) return done;
     return device_->check_guards();
   }
 
@@ -91,6 +90,11 @@ class GpuBackend final : public CollisionBackend {
   std::string device() const override { return device_->name(); }
   std::uint64_t memory_bytes() const override {
     return (scene_ ? scene_->memory_bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0) + (workers_ ? workers_->memory_bytes() : 0);
+  }
+  DeviceWork device_work() const override {
+    DeviceWork sum = frame_ ? frame_->work() : DeviceWork{};
+    if (workers_) sum += workers_->work();
+    return sum;
   }
   std::vector<StageMemory> memory_by_stage() const override {
     return frame_ ? frame_->memory_by_stage() : std::vector<StageMemory>{};
@@ -156,7 +160,7 @@ class GpuBackend final : public CollisionBackend {
   std::unique_ptr<Frame> frame_;
   std::unique_ptr<BatchWorkers> workers_;
   bool no_workers_ = false;      ///< setting them up was tried
-  std::size_t batched_ = 0;      ///< poses of all batches
+  std::size_t shared_ = 0;       ///< pieces of all work so far
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "compute/search/near_lists.h"
 #include "compute/search/posed_tool.h"
 #include "compute/search/run_tree.h"
+#include "model/collision_backend.h"
 #include "model/contacts.h"
 #include "model/plan.h"
 #include "model/scene_geometry.h"
@@ -20,7 +21,7 @@ namespace palpate::native {
 
 /// Answers one pose at a time on a prepared scene, in `refined`. One thread and, where share() says so, its helper. query() allocates only when more is near
 /// than ever before.
-class Frame {
+class Frame final : public PoseQuery {
  public:
   /// Geometry, and what `scene` names, outlive this. Allocates.
   Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan);
@@ -28,7 +29,7 @@ class Frame {
   Frame& operator=(const Frame&) = delete;
 
   /// As CollisionBackend::query. Error: the plan leaves out what the pose needs.
-  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out);
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   /// From the next query on.
   void replan(const Plan& plan) { plan_ = plan; }
   /// Whether parts of a query may run on a second thread of the frame's own; false to begin with.

@@ -16,15 +16,13 @@
 #include "compute/native/prepare/cache.h"
 #include "compute/native/prepare/scene.h"
 #include "compute/scene/estimate.h"
-#include "compute/scene/pose_threads.h"
 #include "model/address_space.h"
+#include "model/pose_threads.h"
 
 namespace palpate {
 namespace {
 
 using native::Frame;
-
-constexpr std::size_t kWorthHelpers = 128;   // poses of all batches so far from which on threads are set up for them (chosen)
 
 /// "Intel(R) Xeon(R) Platinum 8481C, 2 threads"
 std::string processor_name() {
@@ -85,15 +83,15 @@ class NativeBackend final : public CollisionBackend {
     return frame_->query(pose, ignored, out);
   }
 
-  Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override {
+  Result<void> share(std::size_t count, const PoseWork& work) override {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
-    batched_ += poses.size();
-    if (!threads_ && batched_ >= kWorthHelpers) make_helpers();
-    if (!threads_ || poses.size() < 2) return CollisionBackend::query_batch(poses, out);
+    shared_ += count;
+    if (!threads_ && shared_ >= kWorthThreads) make_helpers();
+    if (!threads_ || count < 2) return CollisionBackend::share(count, work);
     frame_->share(false);   // the other processors have poses of their own
-    auto answered = threads_->answer([&](const LatticePose& pose, Contacts& contacts) { return frame_->query(pose, nullptr, contacts); }, poses, out);
+    auto done = threads_->share(*frame_, count, work);
     frame_->share(true);
-    return answered;
+    return done;
   }
 
   Result<VoxelPartition> partition(bool tool) const override {
@@ -135,17 +133,14 @@ class NativeBackend final : public CollisionBackend {
     threads_.reset();
     helpers_.clear();
     frame_.reset();
-    batched_ = 0;
+    shared_ = 0;
   }
   /// A frame and a thread for every other processor.
   void make_helpers() {
     const unsigned cores = std::thread::hardware_concurrency();
-    std::vector<PoseThreads::Answer> answers;
-    for (unsigned i = 1; i < cores; ++i) {
-      Frame& frame = *helpers_.emplace_back(std::make_unique<Frame>(*geometry_, scene_->tables(), plan_));
-      answers.push_back([&frame](const LatticePose& pose, Contacts& contacts) { return frame.query(pose, nullptr, contacts); });
-    }
-    threads_.emplace(std::move(answers));
+    std::vector<PoseQuery*> asked;
+    for (unsigned i = 1; i < cores; ++i) asked.push_back(helpers_.emplace_back(std::make_unique<Frame>(*geometry_, scene_->tables(), plan_)).get());
+    threads_.emplace(std::move(asked));
   }
 
   const std::shared_ptr<DiskCache> cache_;    ///< may be null
@@ -156,7 +151,7 @@ class NativeBackend final : public CollisionBackend {
   std::optional<Frame> frame_;
   std::vector<std::unique_ptr<Frame>> helpers_;
   std::optional<PoseThreads> threads_;        ///< of these
-  std::size_t batched_ = 0;                   ///< poses of all batches
+  std::size_t shared_ = 0;                    ///< pieces of all work so far
 };
 
 }  // namespace

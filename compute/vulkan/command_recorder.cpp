@@ -62,6 +62,8 @@ CommandRecorder& CommandRecorder::operator=(CommandRecorder&& other) noexcept {
   std::swap(max_groups_, other.max_groups_);
   std::swap(stages_, other.stages_);
   std::swap(refused_, other.refused_);
+  std::swap(dispatches_, other.dispatches_);
+  std::swap(barriers_, other.barriers_);
   std::swap(recording_, other.recording_);
   std::swap(pending_, other.pending_);
   return *this;
@@ -73,6 +75,7 @@ void CommandRecorder::begin() {
   vkBeginCommandBuffer(commands_, &info);   // resets; its only failures are out-of-memory, which end() reports again
   stages_.clear();
   refused_.reset();
+  dispatches_ = barriers_ = 0;
   if (queries_ != VK_NULL_HANDLE) vkCmdResetQueryPool(commands_, queries_, 0, stage_limit_ + 1);
   recording_ = true;
 }
@@ -84,6 +87,7 @@ bool CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const Buff
     if (!refused_) refused_ = made.error();
     return false;
   }
+  ++dispatches_;
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
   std::array<VkDescriptorBufferInfo, kMostBindings> infos{};
   std::array<VkWriteDescriptorSet, kMostBindings> writes{};
@@ -109,6 +113,7 @@ void CommandRecorder::dispatch_raw(const ComputePipeline& pipeline, std::span<co
 }
 
 void CommandRecorder::barrier() {
+  ++barriers_;
   VkMemoryBarrier2 memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
   memory.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |

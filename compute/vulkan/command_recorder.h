@@ -90,6 +90,10 @@ class CommandRecorder {
   /// Ends recording; called by submit_and_wait() if need be.
   Result<void> end();
 
+  /// Recorded since begin(): dispatches of any size, and barriers.
+  std::uint32_t dispatches() const { return dispatches_; }
+  std::uint32_t barriers() const { return barriers_; }
+
   Result<void> submit();
   /// Waits for the last submit; a message of the validation layer since then is an error, too.
   Result<void> wait(std::uint64_t timeout_ns = 60'000'000'000);
@@ -121,6 +125,7 @@ class CommandRecorder {
   std::uint32_t max_groups_ = 1;
   std::vector<const char*> stages_;
   std::optional<Error> refused_;   ///< a pipeline that could not be made, since begin()
+  std::uint32_t dispatches_ = 0, barriers_ = 0;
   bool recording_ = false;
   bool pending_ = false;   ///< submitted, and not known to be finished
 };

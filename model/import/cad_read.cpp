@@ -324,10 +324,11 @@ std::size_t lost_faces(const Handle(XSControl_WorkSession) & session) {
   return lost;
 }
 
-Result<std::vector<Body>> read_step(const std::string& path, ImportReport& report, const TellHowFar& tell) {
+Result<std::vector<Body>> read_step(const std::string& path, ImportReport& report, const TellHowFar& tell,
+                                    bool with_colours) {
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
-  reader.SetColorMode(true);
+  reader.SetColorMode(with_colours);
   reader.SetLayerMode(false), reader.SetPropsMode(false);
   reader.SetGDTMode(false), reader.SetMatMode(false), reader.SetViewMode(false), reader.SetSHUOMode(false);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
@@ -388,10 +389,10 @@ std::vector<Body> sew(std::vector<Body> bodies, const std::string& name, const C
 }
 
 Result<std::vector<Body>> read_iges(const std::string& path, const std::string& name, ImportReport& report,
-                                    const TellHowFar& tell) {
+                                    const TellHowFar& tell, bool with_colours) {
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
-  reader.SetColorMode(true), reader.SetLayerMode(false);
+  reader.SetColorMode(with_colours), reader.SetLayerMode(false);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of IGES files", path));
   const Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
@@ -618,7 +619,7 @@ Format format_of(const std::string& path) {
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder,
-                       const Tessellation& tessellation, const TellHowFar& tell) {
+                       const Tessellation& tessellation, const TellHowFar& tell, bool colours) {
   report = {path, {}};
   const Format format = format_of(path);
   {
@@ -633,8 +634,8 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   try {
     const std::string name = clean_name(std::filesystem::path(path).stem().string());
-    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report, tell)
-                                       : format == Format::kIges ? read_iges(path, name, report, tell)
+    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report, tell, colours)
+                                       : format == Format::kIges ? read_iges(path, name, report, tell, colours)
                                                                  : read_brep(path, name, tell);
     if (!bodies) return bodies.error();
     return Triangulator(path, scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre))

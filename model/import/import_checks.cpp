@@ -41,6 +41,14 @@ bool take_number(std::string_view& line, std::uint64_t& value) {
   return true;
 }
 
+constexpr const char* kUtf16 = "is UTF-16 text; save it as UTF-8 or ASCII";
+
+/// By the mark at its beginning, or by the byte of zeros in every character of ASCII.
+bool is_utf16(std::string_view bytes) {
+  const std::string_view begin = bytes.substr(0, 2);
+  return begin == std::string_view("\xFF\xFE", 2) || begin == std::string_view("\xFE\xFF", 2) || begin == std::string_view("<\0", 2) || begin == std::string_view("\0<", 2);
+}
+
 }  // namespace
 
 std::string distrust_stl(std::string_view bytes) {
@@ -81,7 +89,8 @@ std::string distrust_off(std::string_view bytes) {
     if (line.empty()) return fmt::format("is cut short: it promises {} faces and has {}", faces, f);
     std::uint64_t corners = 0, index = 0;
     if (!take_number(line, corners)) return fmt::format("has no corner count in face {}", f);
-    constexpr std::uint64_t kMostCorners = 9;   // the library leaves larger ones out
+    constexpr std::uint64_t kMostCorners = 9;   // the library leaves larger ones out, and empty ones, and then counts the others wrong
+    if (corners == 0) return fmt::format("has 0 corners in face {}; OFF files with such faces can't be read", f);
     if (corners > kMostCorners) return fmt::format("has {} corners in face {}; OFF faces of more than {} can't be read", corners, f, kMostCorners);
     for (std::uint64_t k = 0; k < corners; ++k) {
       if (!take_number(line, index)) return fmt::format("is cut short in face {}: {} of {} corners", f, k, corners);
@@ -113,8 +122,7 @@ std::string distrust_obj_face(std::string_view line, std::uint64_t before, std::
 }  // namespace
 
 std::string distrust_obj(std::string_view bytes) {
-  for (const std::string_view mark : {std::string_view("\xFF\xFE", 2), std::string_view("\xFE\xFF", 2)})
-    if (bytes.substr(0, 2) == mark) return "is UTF-16 text; save it as UTF-8 or ASCII";
+  if (is_utf16(bytes)) return kUtf16;
   std::string joined;   // where lines go on in the next: a backslash and a line's end are a blank
   if (bytes.find("\\\n") != std::string_view::npos || bytes.find("\\\r\n") != std::string_view::npos) {
     joined = bytes;
@@ -146,17 +154,26 @@ std::string distrust_obj(std::string_view bytes) {
 
 namespace {
 
-/// The value of a tag's attribute, "" if it has none; `name` with the blank before it and the = behind it.
+/// The value of a tag's attribute, "" if it has none. Blanks may stand around its =.
 std::string_view attribute_of(std::string_view tag, std::string_view name) {
-  std::size_t at = tag.find(name);
-  if (at == std::string_view::npos) return {};
-  at += name.size();
-  const char quote = at < tag.size() ? tag[at] : '\0';
-  if (quote != '"' && quote != '\'') return {};
-  return tag.substr(at + 1, tag.find(quote, at + 1) - at - 1);
+  for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+    if (at == 0 || !blank(tag[at - 1])) continue;
+    const std::string_view rest = trimmed(tag.substr(at + name.size()));
+    if (!rest.starts_with('=')) continue;
+    const std::string_view value = trimmed(rest.substr(1));
+    if (value.empty() || (value[0] != '"' && value[0] != '\'')) return {};
+    return value.substr(1, value.find(value[0], 1) - 1);
+  }
+  return {};
 }
 
-/// Every accessor of a COLLADA file against the numbers that its array really holds; where there are fewer the library reads what lies behind them.
+/// Whether a count is written as digits alone; the library would read others, "0x10" among them.
+bool is_count(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Every accessor of a COLLADA file against the numbers that the library takes from its array: as many as the array has, and as it says that it has.
+/// Where an accessor goes further the library reads what lies behind them.
 std::string distrust_dae_arrays(std::string_view bytes) {
   std::map<std::string_view, std::uint64_t> holds;   // by id
   const auto value = [](std::string_view digits, std::uint64_t otherwise) {
@@ -166,26 +183,34 @@ std::string distrust_dae_arrays(std::string_view bytes) {
   for (const bool arrays : {true, false})
     for (std::size_t at = bytes.find('<'); at != std::string_view::npos; at = bytes.find('<', at + 1)) {
       const std::string_view rest = bytes.substr(at), tag = rest.substr(0, rest.find('>'));
-      if (arrays && rest.substr(0, 12) == "<float_array") {
+      const bool array = rest.starts_with("<float_array"), accessor = rest.starts_with("<accessor");
+      if (!array && !accessor) continue;
+      const bool empty = tag.ends_with('/');
+      const std::string_view content = rest.substr(std::min(rest.size(), tag.size() + 1)), count = attribute_of(tag, "count");
+      for (const std::string_view number : {count, attribute_of(tag, "stride"), attribute_of(tag, "offset")})
+        if (!is_count(number)) return fmt::format("has '{}' for a count, stride or offset", number.substr(0, 40));
+      if (arrays && array) {
         std::uint64_t numbers = 0;
-        if (tag.empty() || tag.back() != '/') {
-          const std::string_view content = rest.substr(std::min(rest.size(), tag.size() + 1));
+        if (!empty) {
           bool in_word = false;
           for (const char c : content.substr(0, content.find('<'))) {
             if (!blank(c) && !in_word) ++numbers;
             in_word = !blank(c);
           }
         }
-        holds[attribute_of(tag, " id=")] = numbers;
+        holds[attribute_of(tag, "id")] = std::min(numbers, value(count, 0));
       }
-      if (!arrays && rest.substr(0, 9) == "<accessor") {
-        const std::string_view source = attribute_of(tag, " source=");
-        const auto array = source.empty() ? holds.end() : holds.find(source.substr(1));
-        if (array == holds.end()) continue;
-        const std::uint64_t count = value(attribute_of(tag, " count="), 0), stride = value(attribute_of(tag, " stride="), 1), offset = value(attribute_of(tag, " offset="), 0);
-        if (count == 0) continue;
-        if (offset > array->second || (stride != 0 && count > (array->second - offset) / stride))
-          return fmt::format("has an accessor of {} times {} numbers from number {} on, beyond its array '{}' of {}", count, stride, offset, array->first.substr(0, 40), array->second);
+      if (!arrays && accessor) {
+        const std::string_view source = attribute_of(tag, "source");
+        const auto of = source.empty() ? holds.end() : holds.find(source.substr(1));
+        const std::uint64_t times = value(count, 0);
+        if (of == holds.end() || times == 0) continue;
+        std::uint64_t names = 0;   // each is the place of a number, from where an item begins
+        const std::string_view body = empty ? std::string_view() : content.substr(0, content.find("</accessor"));
+        for (std::size_t name = body.find("<param"); name != std::string_view::npos; name = body.find("<param", name + 1)) ++names;
+        const std::uint64_t stride = value(attribute_of(tag, "stride"), 1), offset = value(attribute_of(tag, "offset"), 0), item = std::max(stride, names);
+        if (offset > of->second || item > of->second - offset || (stride != 0 && times - 1 > (of->second - offset - item) / stride))
+          return fmt::format("has an accessor of {} times {} numbers, {} apart, from number {} on, beyond its array '{}' of {}", times, item, stride, offset, of->first.substr(0, 40), of->second);
       }
     }
   return {};
@@ -194,6 +219,7 @@ std::string distrust_dae_arrays(std::string_view bytes) {
 }  // namespace
 
 std::string distrust_dae(std::string_view bytes) {
+  if (is_utf16(bytes)) return kUtf16;
   if (std::string wrong = distrust_dae_arrays(bytes); !wrong.empty()) return wrong;
   // Which nodes hold which: by nesting, and by <instance_node url="#id"/>. Reads tags alone, and what index lists hold.
   std::map<std::string, std::vector<std::string>, std::less<>> holds;

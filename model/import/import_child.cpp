@@ -59,7 +59,7 @@ struct SpawnSettings {
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 };
 
-Result<pid_t> start(const std::string& program, std::array<std::string, 10> arguments, int parcel, int errors) {
+Result<pid_t> start(const std::string& program, std::array<std::string, 11> arguments, int parcel, int errors) {
   SpawnSettings settings;
   posix_spawn_file_actions_addopen(&settings.files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&settings.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
@@ -73,7 +73,7 @@ Result<pid_t> start(const std::string& program, std::array<std::string, 10> argu
   posix_spawnattr_setsigdefault(&settings.attributes, &all);
   posix_spawnattr_setpgroup(&settings.attributes, 0);
   posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  std::array<char*, 11> argv{};
+  std::array<char*, 12> argv{};
   for (std::size_t i = 0; i < arguments.size(); ++i) argv[i] = arguments[i].data();
   pid_t child = 0;
   if (const int failed = ::posix_spawn(&child, program.c_str(), &settings.files, &settings.attributes, argv.data(), environ); failed != 0)
@@ -119,13 +119,13 @@ ChildEnd end_of(int status) {
 }  // namespace
 
 Result<ChildEnd> run_import_child(const std::string& program, const std::string& path, double scale, const ImportLimits& limits, int parcel,
-                                  const ImportProgress& progress, const std::string& folder, const Tessellation& tessellation) {
+                                  const ImportProgress& progress, const std::string& folder, const Tessellation& tessellation, bool colours) {
   Pipe errors;
   if (errors.end[1] < 0) return Error{ErrorCode::kInternal, fmt::format("no pipe for the importer: {}", std::strerror(errno))};
   ::fcntl(errors.end[0], F_SETFL, O_NONBLOCK);
   const auto deadline = Clock::now() + std::chrono::duration<double>(4 * limits.seconds);
   const Result<pid_t> child = start(program, {program, path, fmt::format("{:a}", scale), std::to_string(limits.memory_bytes), fmt::format("{:.0f}", std::ceil(limits.seconds)), folder,
-                                     std::to_string(::getpid()), fmt::format("{:a}", tessellation.deflection_m), fmt::format("{:a}", tessellation.angle_deg), tessellation.part},
+                                     std::to_string(::getpid()), fmt::format("{:a}", tessellation.deflection_m), fmt::format("{:a}", tessellation.angle_deg), tessellation.part, colours ? "1" : "0"},
                                     parcel, errors.end[1]);
   if (!child) return child.error();
   errors.close(1);   // so that its end is the child's

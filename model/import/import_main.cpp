@@ -48,9 +48,9 @@ void limit_myself(rlim_t memory_bytes, rlim_t seconds, pid_t asker) {
   }
 }
 
-Result<Mesh> read(const char* path, double scale, const char* folder, const Tessellation& tessellation, ImportReport& report) {
+Result<Mesh> read(const char* path, double scale, const char* folder, const Tessellation& tessellation, bool colours, ImportReport& report) {
   try {
-    return read_mesh(path, scale, report, folder, tessellation, [](const HowFar& far) { tell_how_far(kParcelDescriptor, far); });
+    return read_mesh(path, scale, report, folder, tessellation, [](const HowFar& far) { tell_how_far(kParcelDescriptor, far); }, colours);
   } catch (...) {   // even what is no std::exception
     return bad_value(std::string("'") + path + "' can't be read: the import failed for an unknown reason");
   }
@@ -61,13 +61,13 @@ Result<Mesh> read(const char* path, double scale, const char* folder, const Tess
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  if (argc != 10) {
+  if (argc != 11) {
     std::fputs("this is a part of palpate, which starts it to read a mesh file; use `palpate info FILE`\n", stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
   limit_myself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10), std::atoi(argv[6]));
   ImportReport report;
   const Tessellation tessellation{std::strtod(argv[7], nullptr), std::strtod(argv[8], nullptr), argv[9]};
-  const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), argv[5], tessellation, report), report);
+  const bool written = write_parcel(kParcelDescriptor, read(argv[1], std::strtod(argv[2], nullptr), argv[5], tessellation, argv[10] == std::string("1"), report), report);
   std::_Exit(written ? 0 : 1);   // taking it all apart first would cost as much as a tenth of the reading
 }

@@ -3,6 +3,7 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/Importer.hpp>
+#include <assimp/material.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
@@ -11,6 +12,8 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <vector>
 
 #include "model/file_view.h"
 #include "model/import/import_checks.h"
@@ -75,10 +78,31 @@ std::string given_name(const aiString& text) {
   return clean_name(std::move(name));
 }
 
+/// glTF's colours are linear; a part's is sRGB.
+std::uint32_t srgb_of(const aiColor4D& linear) {
+  std::uint32_t out = 0;
+  for (const double part : {std::clamp<double>(linear.r, 0, 1), std::clamp<double>(linear.g, 0, 1), std::clamp<double>(linear.b, 0, 1)})
+    out = out << 8 | static_cast<std::uint32_t>(std::lround(255 * (part <= 0.0031308 ? 12.92 * part : 1.055 * std::pow(part, 1 / 2.4) - 0.055)));   // IEC 61966-2-1
+  return out;
+}
+
+/// The base colour of each material of a glTF file; none where a texture gives it, and for the material that the library adds behind the file's own.
+std::vector<std::optional<std::uint32_t>> colours_of(const aiScene& scene) {
+  std::vector<std::optional<std::uint32_t>> out(scene.mNumMaterials);
+  for (unsigned m = 0; m + 1 < scene.mNumMaterials; ++m) {
+    const aiMaterial& material = *scene.mMaterials[m];
+    aiColor4D base;
+    if (material.GetTextureCount(aiTextureType_BASE_COLOR) == 0 && material.GetTextureCount(aiTextureType_DIFFUSE) == 0 && material.Get(AI_MATKEY_BASE_COLOR, base) == aiReturn_SUCCESS)
+      out[m] = srgb_of(base);
+  }
+  return out;
+}
+
 class Flattener {
  public:
-  /// `turn`: what the file's coordinates are turned by before all else.
-  Flattener(const aiScene& scene, double scale, const std::string& file, const Transform& turn) : scene_(scene), scale_(scale), file_(file), turn_(turn) {}
+  /// `turn`: what the file's coordinates are turned by before all else. `colours`: of the materials; empty: none are read.
+  Flattener(const aiScene& scene, double scale, const std::string& file, const Transform& turn, std::vector<std::optional<std::uint32_t>> colours)
+      : scene_(scene), scale_(scale), file_(file), turn_(turn), colours_(std::move(colours)) {}
 
   Result<Mesh> run(std::vector<std::string>& notes) {
     // Depth first with a stack of our own, children in order: pushed back to front.
@@ -126,12 +150,23 @@ class Flattener {
       if (std::string wrong = add_mesh(*scene_.mMeshes[node.mMeshes[i]], transform, path); !wrong.empty()) return wrong;
     }
     if (mesh_.triangles.size() == first) return {};
-    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first), other_name(node)});
+    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first), other_name(node), colour_of(node)});
     if (transform.mirrors()) {
       ++mirrored_;
       for (std::size_t t = first; t < mesh_.triangles.size(); ++t) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
     }
     return {};
+  }
+
+  /// The colour of most of a node's triangles.
+  std::optional<std::uint32_t> colour_of(const aiNode& node) const {
+    std::map<std::optional<std::uint32_t>, std::uint64_t> triangles;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
+      if (mesh.mMaterialIndex < colours_.size()) triangles[colours_[mesh.mMaterialIndex]] += mesh.mNumFaces;
+    }
+    const auto most = std::max_element(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == triangles.end() ? std::nullopt : most->first;
   }
 
   /// The name of a node's mesh; empty: none.
@@ -202,6 +237,7 @@ class Flattener {
   double scale_;
   const std::string& file_;
   Transform turn_;
+  std::vector<std::optional<std::uint32_t>> colours_;
   Mesh mesh_;
   std::size_t lines_ = 0, points_ = 0, polygons_ = 0, mirrored_ = 0, crossing_ = 0;
   unsigned first_crossing_ = 0;
@@ -278,7 +314,7 @@ std::string words_of(std::string text) {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation&, const TellHowFar&) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation&, const TellHowFar&, bool /*colours*/) {
   report = {path, {}};
   const std::string extension = extension_of(path);
   std::string in_memory;                 // what is read in the file's place, if anything
@@ -299,6 +335,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));   // the importer's own from here on
     if (!importer.IsExtensionSupported(extension)) return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);   // else a file of cameras and lamps alone has triangles, which the library makes up
     const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0) : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(), 0, extension.c_str() + 1);
     if (!scene || !scene->mRootNode) return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
     if (extension == ".dae") note_unit(*scene, report);
@@ -308,7 +345,8 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     for (const auto& [name, count] : read)
       if (const auto wanted = faces.find(name); wanted != faces.end() && count < wanted->second)
         return bad_value(fmt::format("'{}' has {} triangles in mesh '{}' of which {} can be read: the others name vertices that don't exist", path, wanted->second, one_line(name), count));
-    return Flattener(*scene, scale, path, undo_turn(extension)).run(report.notes);
+    const bool gltf = extension == ".gltf" || extension == ".glb";
+    return Flattener(*scene, scale, path, undo_turn(extension), gltf ? colours_of(*scene) : std::vector<std::optional<std::uint32_t>>{}).run(report.notes);
   } catch (const std::exception& error) {
     return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(error.what())));
   }

@@ -12,7 +12,8 @@ using TellHowFar = std::function<void(const HowFar& far)>;
 
 /// import_mesh (model/mesh_import.h) within this process: what palpate-import and palpate-import-cad do with a file. A file can make the library behind it
 /// crash, hang or take all memory, so nothing but those programs and the fuzz targets calls this. `folder`: see model/confined_import.h.
-/// palpate-import and palpate-import-cad each have their own.
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder = {}, const Tessellation& tessellation = {}, const TellHowFar& tell = {});
+/// `colours`: whether to read them, too; a file can be damaged there alone. palpate-import and palpate-import-cad each have their own.
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder = {}, const Tessellation& tessellation = {}, const TellHowFar& tell = {},
+                       bool colours = true);
 
 }  // namespace palpate

@@ -63,7 +63,9 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       ->type_name("auto|gpu|cpu|ref");
   latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing near). Stages are the\n"
                   "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out. The frames are a loop's\n"
-                  "that nobody watches: without lists of triangles, and `refined` without areas.");
+                  "that nobody watches: without lists of triangles, and `refined` without areas.\n"
+                  "Rows of `total` have what a frame asks of a device, the median of each: submissions, dispatches, barriers, bytes that the frame writes for it and\n"
+                  "reads of it, and host_us, the host's time beside submitting and waiting.");
   latency->callback([&] { outcome = bench_latency(options, parts); });
 
   const auto one_backend = [&options](CLI::App& to) {
@@ -72,9 +74,13 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   CLI::App* throughput = bench->add_subcommand("throughput", "poses a second against the size of a batch, beside poses asked singly");
   add_common(*throughput, options);
   add_poses(*throughput, options);
-  one_backend(*throughput);
-  throughput->footer("Batches of 1 to 1,024 poses, in turns with the same poses asked singly. Always the wall's clock: a batch takes all cores.\n"
-                     "share_of_stages: time of a pose in the batch over the sum of a single query's stages.");
+  throughput->add_option("--backend", options.backends, "the engine, or several one after the other, as for run (auto)")
+      ->check(one_of(kEngines))
+      ->expected(1, 3)
+      ->type_name("auto|gpu|cpu|ref");
+  throughput->footer("Batches of 1 to 1,024 poses, in turns with the same poses asked singly. `frames` are a session's, without balance; `answers` a lone query's, with the\n"
+                     "balance of spring and field that `palpate query` finds by asking for more poses. Always the wall's clock: a batch takes all cores. share_of_single: time\n"
+                     "of a pose in the batch over that of one asked singly, by as many threads as its engine gives a frame (cpu: two). Then what a batch asks of a device.");
   throughput->callback([&] { outcome = bench_throughput(options, parts); });
 
   CLI::App* scale = bench->add_subcommand("scale", "a frame's time against the number of triangles: around the same contact, finer, of the tool; or of scenes of your own, refined");

@@ -38,10 +38,11 @@ Result<std::vector<Subject>> measure(const BenchOptions& options, const std::str
     for (std::size_t i = 0; i < poses->size(); ++i) {
       for (std::size_t k = 0; k < subjects.size(); ++k) {
         Subject& subject = subjects[(i + k) % subjects.size()];   // nobody is always the first
+        const DeviceWork before = subject.scene->backend->device_work();
         const Stopwatch watch(options.cpu_clock);
         if (auto done = answer_frame(*subject.scene, (*poses)[i], answer); !done) return done.error();
         const double total_us = watch.us();
-        if (round > 0) subject.times.add(answer.contacts, total_us);
+        if (round > 0) subject.times.add(answer.contacts, total_us, since(before, subject.scene->backend->device_work()));
       }
       const double done = static_cast<double>(round * poses->size() + i) / static_cast<double>((options.rounds + 1) * poses->size());
       if (i % 16 == 0 && !console.progress("poses", done)) return Error{ErrorCode::kInternal, "interrupted"};
@@ -54,8 +55,9 @@ void add_rows(const std::string& scene, const Subject& subject, BenchTable& tabl
   for (std::size_t kind = 0; kind < 4; ++kind)
     for (const std::string& stage : subject.times.stages()) {
       const TimePercentiles p = percentiles(subject.times.times(kind, stage));
-      if (p.count > 0)
-        table.rows.push_back({scene, subject.scene->backend->name(), kFrameKindNames[kind], stage, std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max});
+      if (p.count == 0) continue;
+      auto& row = table.rows.emplace_back(std::vector<BenchCell>{scene, subject.scene->backend->name(), kFrameKindNames[kind], stage, std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max});
+      for (BenchCell& cell : work_cells(stage == "total" ? subject.times.work(kind) : DeviceWork{})) row.push_back(std::move(cell));
     }
 }
 
@@ -66,6 +68,7 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
   Console console;
   BenchFacts facts{.command = "latency", .device = {}, .more = {}};
   BenchTable table{{"scene", "backend", "frames", "stage", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us"}, {}};
+  table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
   BenchChart stages{.title = "Median of each stage, frames in contact", .unit = "µs", .labels = {}, .series = {}, .stacked = true, .x_title = {}};
   BenchChart tails{.title = "Whole frame, all frames", .unit = "µs", .labels = {"p50", "p95", "p99", "max"}, .series = {}, .log_y = true, .x_title = {}};
   const double load = load_average();

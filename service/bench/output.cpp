@@ -176,6 +176,11 @@ Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& opti
   return backend;
 }
 
+std::vector<BenchCell> work_cells(const DeviceWork& work) {
+  if (work == DeviceWork{}) return std::vector<BenchCell>(kWorkColumns.size(), std::string());
+  return {work.submissions, work.dispatches, work.barriers, work.bytes_up, work.bytes_down, work.host_us};
+}
+
 double load_average() {
   double loads[1];
   return getloadavg(loads, 1) == 1 ? loads[0] : -1;

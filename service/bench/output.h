@@ -21,6 +21,10 @@ using BenchCell = std::variant<std::string, double, std::uint64_t>;
 /// Empty where there is none.
 inline BenchCell cell_of(const std::optional<double>& value) { return value ? BenchCell(*value) : BenchCell(std::string()); }
 
+/// The columns of what is asked of a device, and a row's cells there: empty where no device was asked.
+inline const std::vector<std::string> kWorkColumns = {"submissions", "dispatches", "barriers", "bytes_up", "bytes_down", "host_us"};
+std::vector<BenchCell> work_cells(const DeviceWork& work);
+
 struct BenchTable {
   std::vector<std::string> columns;
   std::vector<std::vector<BenchCell>> rows;

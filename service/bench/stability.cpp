@@ -163,6 +163,12 @@ SimulatedMaker simulated(const Parts& parts) {
   };
 }
 
+/// The native engine answers `refined` alone; the reference answers the chapter's profile, too, but takes its time.
+BackendMaker engine_of(const Parts& parts, Profile profile) {
+  if (profile == Profile::kPaper) return parts.make_ref;
+  return [&parts] { return parts.make_cpu(false); };
+}
+
 /// The real collision query in the loop, a whole tool behind the spring that goes with it: results 10 ticks old against none.
 Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& table, Chart& chart) {
   const SimulatedMaker make = simulated(parts);
@@ -170,7 +176,7 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
   chart.series.push_back({"no delay", {}, {}});
   for (const ContactCase& what : pressed_contacts()) {
     console.step("closing the loop over " + what.name);
-    auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_ref);
+    auto prepared = PreparedCase::make(what, Profile::kRefined, engine_of(parts, Profile::kRefined));
     if (!prepared) return prepared.error();
     const auto none = highest_stable_body_query(make, what, **prepared, bare_device(), LawKind::kCorrected, 0);
     if (!none) return none.error();
@@ -223,7 +229,7 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
   }
   for (const ContactCase& what : pressed_contacts()) {
     if (what.name != "flat" && what.name != "four" && what.name != "peg") continue;
-    auto prepared = PreparedCase::make(what, Profile::kRefined, parts.make_ref);
+    auto prepared = PreparedCase::make(what, Profile::kRefined, engine_of(parts, Profile::kRefined));
     if (!prepared) return prepared.error();
     console.step("six degrees of freedom over the query, held by a hand: " + what.name);
     const auto k = highest_stable_body_query(make, what, **prepared, DeviceSettings{}, LawKind::kCorrected, 10);
@@ -263,7 +269,7 @@ Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Con
     for (const bool own : {false, true}) {
       SceneOptions common;
       common.scene = file;
-      common.backend = "ref";
+      common.backend = own ? "cpu" : "ref";
       if (!own) common.profile = Profile::kPaper;
       Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(common, Purpose::kSession, parts, console);
       if (!prepared) return prepared.error();
@@ -295,7 +301,8 @@ Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& fac
     console.step("jumps: " + what.name);
     JumpStatistics found[2];
     for (const bool refined : {false, true}) {
-      auto prepared = PreparedCase::make(what, refined ? Profile::kRefined : Profile::kPaper, parts.make_ref);
+      const Profile profile = refined ? Profile::kRefined : Profile::kPaper;
+      auto prepared = PreparedCase::make(what, profile, engine_of(parts, profile));
       if (!prepared) return prepared.error();
       const ForceLawSettings law{.kind = refined ? LawKind::kCorrected : LawKind::kPrinted, .stiffness_n_per_m = 2000, .transitions = kDelay,
                                  .change_n_per_s = 100};
@@ -309,10 +316,10 @@ Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& fac
     torque.labels.push_back(what.name);
     facts.more.emplace_back(
         "jumps, " + what.name,
-        fmt::format("largest step a tick {:.2f} N and {:.3f} N·m (chapter {:.2f} and {:.3f}), rms jerk {:.3f} N and {:.4f} N·m a tick² ({:.3f} and {:.4f}), "
+        fmt::format("largest step a tick {:.3f} N and {:.3f} mN·m (chapter {:.3f} and {:.3f}), rms jerk {:.3f} N and {:.3f} mN·m a tick² ({:.3f} and {:.3f}), "
                     "least push {:.2f} N ({:.2f}), results step by up to {:.1f} N ({:.1f})",
-                    found[1].force_step_n, found[1].torque_step_nm, found[0].force_step_n, found[0].torque_step_nm, found[1].force_jerk,
-                    found[1].torque_jerk, found[0].force_jerk, found[0].torque_jerk, found[1].least_push_n, found[0].least_push_n,
+                    found[1].force_step_n, 1e3 * found[1].torque_step_nm, found[0].force_step_n, 1e3 * found[0].torque_step_nm, found[1].force_jerk,
+                    1e3 * found[1].torque_jerk, found[0].force_jerk, 1e3 * found[0].torque_jerk, found[1].least_push_n, found[0].least_push_n,
                     found[1].response_step_n, found[0].response_step_n));
   }
   return {};
@@ -334,7 +341,7 @@ void measure_energy(BenchTable&, BenchFacts& facts) {
 
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
   Console console;
-  BenchFacts facts{.command = "stability", .device = "ref on the processor, in virtual time", .more = {}};
+  BenchFacts facts{.command = "stability", .device = "cpu (profile refined) and ref (paper) on the processor, in virtual time", .more = {}};
   BenchTable table{{"law", "stiffness_model", "delay_ticks", "n", "mass_kg", "damping", "hand_damping", "areas", "critical_k", "theory_k"}, {}};
   std::vector<Chart> charts;
   measure_formulas(console, table, charts);

@@ -46,8 +46,9 @@ void TimeTable::put(FrameKind kind, const std::string& stage, double us) {
   times_[static_cast<std::size_t>(kind)][stage].push_back(us);
 }
 
-void TimeTable::add(const Contacts& contacts, double total_us) {
+void TimeTable::add(const Contacts& contacts, double total_us, const DeviceWork& work) {
   const FrameKind kind = frame_kind(contacts);
+  work_[static_cast<std::size_t>(kind)].push_back(work);
   put(kind, "total", total_us);
   // A stage may come several times in a frame; its time is their sum.
   std::vector<std::pair<std::string_view, double>> sums;
@@ -72,6 +73,27 @@ std::vector<double> TimeTable::times(std::size_t kind, const std::string& stage)
     if (found != times_[k].end()) out.insert(out.end(), found->second.begin(), found->second.end());
   }
   return out;
+}
+
+DeviceWork TimeTable::work(std::size_t kind) const {
+  std::vector<DeviceWork> all;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (kind == 3 || kind == k) all.insert(all.end(), work_[k].begin(), work_[k].end());
+  DeviceWork out;
+  if (all.empty()) return out;
+  const auto take = [&](auto member) {
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>((all.size() - 1) / 2);
+    std::nth_element(all.begin(), middle, all.end(), [&](const DeviceWork& a, const DeviceWork& b) { return a.*member < b.*member; });
+    out.*member = (*middle).*member;
+  };
+  for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers, &DeviceWork::bytes_up, &DeviceWork::bytes_down}) take(member);
+  take(&DeviceWork::host_us);
+  return out;
+}
+
+DeviceWork since(const DeviceWork& before, const DeviceWork& after) {
+  return {after.submissions - before.submissions, after.dispatches - before.dispatches, after.barriers - before.barriers,
+          after.bytes_up - before.bytes_up,       after.bytes_down - before.bytes_down, after.host_us - before.host_us};
 }
 
 }  // namespace palpate

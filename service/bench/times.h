@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "model/collision_backend.h"
 #include "model/contacts.h"
 
 namespace palpate {
@@ -32,23 +33,29 @@ enum class FrameKind : std::uint8_t { kContact, kFree, kApart };
 inline constexpr const char* kFrameKindNames[] = {"contact", "free", "apart", "all"};   ///< and all of them together
 FrameKind frame_kind(const Contacts& contacts);
 
+/// What was asked of a device between two looks at CollisionBackend::device_work.
+DeviceWork since(const DeviceWork& before, const DeviceWork& after);
+
 /// Times of one thing under test, by kind of frame and by stage.
 class TimeTable {
  public:
-  /// Adds a frame's total, its stages, and as `host` what is left.
-  void add(const Contacts& contacts, double total_us);
+  /// Adds a frame's total, its stages, as `host` what is left, and what it asked of a device.
+  void add(const Contacts& contacts, double total_us, const DeviceWork& work);
   void add(FrameKind kind, double total_us) { put(kind, "total", total_us); }
 
   /// Stages in the order of their first appearance; `total` is the first.
   const std::vector<std::string>& stages() const { return order_; }
   /// `kind` 3: frames of all kinds.
   std::vector<double> times(std::size_t kind, const std::string& stage) const;
+  /// Its frames' medians, one by one.
+  DeviceWork work(std::size_t kind) const;
 
  private:
   void put(FrameKind kind, const std::string& stage, double us);
 
   std::vector<std::string> order_;
   std::map<std::string, std::vector<double>> times_[3];
+  std::vector<DeviceWork> work_[3];
 };
 
 }  // namespace palpate

@@ -54,13 +54,14 @@ Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, Batch
   out.contacts.resize(poses.size());
   out.responses.resize(poses.size());
   if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
+  // Each pose's balance is found by asking for more poses: side by side, too.
   const ResponseSettings& settings = scene.loaded.scene.response;
-  LoneQuery lone(geometry, settings.stiffness_n_per_m);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  const auto respond_to = [&](PoseQuery& asked, std::size_t i) -> Result<void> {
     respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m, out.responses[i]);
-    if (settings.profile != Profile::kRefined) continue;
-    if (auto felt = lone.feel(*scene.backend, nullptr, poses[i], out.responses[i]); !felt) return felt;
-  }
+    if (settings.profile != Profile::kRefined) return {};
+    return LoneQuery(geometry, settings.stiffness_n_per_m).feel(asked, nullptr, poses[i], out.responses[i]);
+  };
+  if (auto done = scene.backend->share(poses.size(), respond_to); !done) return done;
   out.total_us = us_since(start);
   return {};
 }

@@ -304,6 +304,38 @@ TEST_F(Cad, APartWithoutAColourHasNone) {
   EXPECT_THAT(colours(read(engine("engine.step"))), Each(std::nullopt));
 }
 
+// OpenCASCADE 7.6.3 follows a null pointer there.
+TEST_F(Cad, AFileWithDamagedColoursIsReadWithoutThem) {
+  Engine engine;
+  engine.paint();
+  const std::string path = folder_.path("engine.step");
+  engine.write(path, "AP214IS", "MM");
+  const Mesh sound = read(path);
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream whole;
+  whole << in.rdbuf();
+  std::string text = whole.str();
+  constexpr std::string_view kUsage = "SURFACE_STYLE_USAGE(.BOTH.,";
+  const std::size_t style = text.find(kUsage);
+  ASSERT_NE(style, std::string::npos);
+  const std::size_t reference = style + kUsage.size();
+  text.replace(reference, text.find(')', reference) - reference, "$");
+
+  double most = 0;
+  const auto mesh = import_mesh(folder_.write("damaged.step", text), 1, report_, {},
+                                [&](const char* /*what*/, double done) {
+                                  EXPECT_GE(done, most);
+                                  most = done;
+                                  return true;
+                                });
+  ASSERT_TRUE(mesh) << mesh.error().sentence;
+  EXPECT_THAT(report_.notes, Contains("its colours are damaged and left out"));
+  EXPECT_THAT(colours(*mesh), Each(std::nullopt));
+  EXPECT_EQ(paths(*mesh), paths(sound));
+  EXPECT_EQ(mesh->vertices, sound.vertices);
+  EXPECT_EQ(mesh->triangles, sound.triangles);
+}
+
 TEST_F(Cad, HowFarItIsIsToldAndItCanBeCancelledBetween) {
   const std::string path = folder_.path("ball.brep");
   ASSERT_TRUE(BRepTools::Write(BRepPrimAPI_MakeSphere(1).Shape(), path.c_str()));

@@ -58,7 +58,7 @@ namespace {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/, const Tessellation&, const TellHowFar& tell) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/, const Tessellation&, const TellHowFar& tell, bool /*colours*/) {
   std::string word;
   std::ifstream(path) >> word;
   if (word == "crash") std::raise(SIGSEGV);

@@ -239,6 +239,8 @@ TEST_F(MeshImport, PlyAndOff) {
   EXPECT_THAT(refused(write("index.ply", header + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 9\n")), HasSubstr("vertex index 9"));
   EXPECT_THAT(refused(write("many.off", "OFF\n353535235358 6 0\n0 0 0\n")), HasSubstr("promises 353535235358 vertices"));
   EXPECT_THAT(refused(write("short.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n")), HasSubstr("promises 2 faces and has 1"));
+  // The importer wrote beyond the room that it took for the others (found by fuzzing).
+  EXPECT_THAT(refused(write("empty_face.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n0\n3 0 1 2\n")), HasSubstr("has 0 corners in face 0"));
   EXPECT_THAT(refused(write("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 7\n")), HasSubstr("vertex index 7"));
 }
 
@@ -304,6 +306,24 @@ TEST_F(MeshImport, GltfMeshNamesAddressPartsToo) {
   EXPECT_EQ(take_part(mesh, "node_1", "meshes.gltf")->parts[0].path, "engine/node_1") << "a node's own name goes before a mesh's";
   EXPECT_EQ(take_part(mesh, "#2", "meshes.gltf")->parts[0].path, "engine/node_2");
   EXPECT_THAT(take_part(mesh, "Piston_123-845", "meshes.gltf").error().sentence, testing::AllOf(HasSubstr("did you mean 'Piston_123-844'"), HasSubstr("`palpate info --tree 'meshes.gltf'` lists them")));
+}
+
+// 255 · (1.055 · 0.2^(1/2.4) − 0.055) = 123.55: 0x7c.
+TEST_F(MeshImport, GltfMaterialsColourParts) {
+  std::string buffer;
+  for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(buffer, f);
+  write("t.bin", buffer);
+  std::string text = gltf(R"([{"name":"all","children":[1,2,3,4]},{"name":"red","mesh":0},{"name":"most","mesh":1},{"name":"none","mesh":2},{"name":"textured","mesh":3}])");
+  const auto primitive = [](const std::string& material) { return R"({"attributes":{"POSITION":0})" + material + "}"; };
+  const std::string one = R"({"primitives":[{"attributes":{"POSITION":0}}]})", red = R"(,"material":0)", grey = R"(,"material":1)";
+  text.replace(text.find(one), one.size(), R"({"primitives":[)" + primitive(red) + R"(]},{"primitives":[)" + primitive(red) + "," + primitive(grey) + "," + primitive(grey) + R"(]},)" + one +
+                                               R"(,{"primitives":[)" + primitive(R"(,"material":2)") + "]}");
+  text.insert(text.rfind('}'), R"(,"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},{"pbrMetallicRoughness":{"baseColorFactor":[0.214,0.214,0.214,1]}},
+      {"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[{"uri":"none.png"}])");
+  const Mesh mesh = read(write("a.gltf", text));
+  std::vector<std::optional<std::uint32_t>> colours;
+  for (const MeshPart& part : mesh.parts) colours.push_back(part.colour);
+  EXPECT_THAT(colours, ElementsAre(0xff0000u, 0x7f7f7fu, std::nullopt, std::nullopt));
 }
 
 TEST_F(MeshImport, AbsurdGltfIsRefused) {
@@ -404,7 +424,30 @@ TEST_F(MeshImport, NoFormatIsTurned) {
 
 // The library took what lay behind the array in memory for coordinates.
 TEST_F(MeshImport, AColladaArrayShorterThanItsAccessorIsRefused) {
-  EXPECT_THAT(refused(write("a.dae", collada("", 8))), HasSubstr("accessor of 3 times 3 numbers from number 0 on, beyond its array 'f' of 8"));
+  EXPECT_THAT(refused(write("a.dae", collada("", 8))), HasSubstr("accessor of 3 times 3 numbers, 3 apart, from number 0 on, beyond its array 'f' of 8"));
+}
+
+// Of a longer array the library takes as many numbers as its `count` says.
+TEST_F(MeshImport, AColladaArrayThatSaysLessThanItHasIsRefused) {
+  const auto with = [](const std::string& what, const std::string& instead) {
+    std::string text = collada("");
+    return text.replace(text.find(what), what.size(), instead);
+  };
+  EXPECT_EQ(read(write("a.dae", with("count=\"9\"", "count = '9'"))).triangles.size(), 1u);
+  EXPECT_THAT(refused(write("b.dae", with("count=\"9\"", "count=\"3\""))), HasSubstr("beyond its array 'f' of 3"));
+  EXPECT_THAT(refused(write("c.dae", with("count=\"9\"", "count = '3'"))), HasSubstr("beyond its array 'f' of 3"));
+  EXPECT_THAT(refused(write("d.dae", with(" count=\"9\"", ""))), HasSubstr("beyond its array 'f' of 0"));
+  EXPECT_THAT(refused(write("e.dae", with("count=\"3\" stride", "count=\"0x9\" stride"))), HasSubstr("has '0x9' for a count, stride or offset"));
+  EXPECT_THAT(refused(write("f.dae", with("stride=\"3\"", "stride=\"4\""))), HasSubstr("accessor of 3 times 4 numbers, 4 apart, from number 0 on, beyond its array 'f' of 9"));
+  // Four names reach a number further than the last item's three.
+  EXPECT_THAT(refused(write("g.dae", with("<param name=\"X\"", "<param name=\"W\" type=\"float\"/><param name=\"X\""))), HasSubstr("accessor of 3 times 4 numbers, 3 apart, from number 0 on"));
+}
+
+// The library made a skeleton's bones of cameras.
+TEST_F(MeshImport, AFileOfCamerasHasNoTriangles) {
+  EXPECT_THAT(refused(write("cameras.dae", R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><library_visual_scenes><visual_scene id="vs">
+    <node id="a"><translate>1 0 0</translate><node id="b"><translate>0 1 0</translate></node></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#vs"/></scene></COLLADA>)")),
+              HasSubstr("has no triangles"));
 }
 
 TEST_F(MeshImport, ABinaryPlyMayBeginWithAnyByte) {
@@ -450,6 +493,10 @@ TEST_F(MeshImport, ObjIndicesAndEncodingsAreChecked) {
   std::string wide("\xFF\xFE", 2);
   for (const char c : vertices + "f 1 2 3\n") wide += {c, '\0'};
   EXPECT_THAT(refused(write("g.obj", wide)), HasSubstr("is UTF-16 text"));
+  wide.clear();
+  for (const char c : collada("")) wide += {'\0', c};
+  EXPECT_THAT(refused(write("h.dae", wide)), HasSubstr("is UTF-16 text"));
+  EXPECT_THAT(refused(write("i.dae", "\xFE\xFF" + wide)), HasSubstr("is UTF-16 text"));
 }
 
 TEST_F(MeshImport, AColladaNodeThatContainsItselfIsRefused) {

@@ -55,6 +55,7 @@ class RecordedFrame final : public Frame {
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   Result<void> enlarge() override;
+  DeviceWork work() const override { return work_; }
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
@@ -72,6 +73,7 @@ class RecordedFrame final : public Frame {
   Result<void> record_again() { return finished_ ? record() : Result<void>{}; }
   template <class Body>
   Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
+  Result<void> answer(const LatticePose& pose, const Ignored* ignored, Contacts& out);
   Result<void> run(CommandRecorder& commands, Contacts& out);
   void read(Contacts& out);
   void write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays);
@@ -93,6 +95,7 @@ class RecordedFrame final : public Frame {
   /// From the pose to the sets; then, with contact, the response. Null after a failed record().
   std::unique_ptr<CommandRecorder> detect_, respond_;
   double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
+  DeviceWork work_;
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool finished_ = false;           ///< pipelines are there and commands recorded
@@ -248,9 +251,19 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
   std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
+  work_.bytes_up += sizeof input + near.touch.count * sizeof(gpu::TouchCandidate) + near.pairs.count * sizeof(gpu::PairCandidate) +
+                    near.samples.count * sizeof(gpu::SampleChunk) + (near.inside.count + near.open.count) * sizeof(gpu::FrameSample);
 }
 
 Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
+  const auto start = Clock::now();
+  waited_us_ = staged_us_ = 0;
+  const Result<void> answered = answer(pose, ignored, out);
+  work_.host_us += us_since(start) - waited_us_;
+  return answered;
+}
+
+Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   const auto start = Clock::now();
   out.times.clear();
   decoder_.clear(out);
@@ -286,7 +299,6 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
   out.times.push_back({"upload", us_since(writing)});
 
   if (!detect_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
-  waited_us_ = staged_us_ = 0;
   if (auto r = run(*detect_, out); !r) return r;
   if (buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state.contact != 0) {
     if (auto r = run(*respond_, out); !r) return r;
@@ -308,6 +320,9 @@ Result<void> RecordedFrame::run(CommandRecorder& commands, Contacts& out) {
   const auto submitted = Clock::now();
   if (auto r = commands.submit(); !r) return r;
   if (auto r = commands.wait(); !r) return r;
+  ++work_.submissions;
+  work_.dispatches += commands.dispatches();
+  work_.barriers += commands.barriers();
   waited_us_ += us_since(submitted);
   if (auto r = commands.times(times_); !r) return r;
   for (const auto& stage : times_) {
@@ -329,6 +344,9 @@ void RecordedFrame::read(Contacts& out) {
   pairs_ = out.pairs;
   out.flags |= frame_flags_;
   if (field_ && out.contact && !out.truncated) field_->decode(buffers_, *result, out);
+  work_.bytes_down += offsetof(gpu::FrameResult, areas) + result->area_count * sizeof(gpu::AreaResult) + result->static_count * sizeof(gpu::StaticResult);
+  if (out.lists) work_.bytes_down += result->mobile_count * sizeof(gpu::MobileResult) + result->member_count * sizeof(gpu::AreaMember);
+  if (field_ && out.contact) work_.bytes_down += sizeof(gpu::FieldWork) + (out.lists ? result->static_count * sizeof(gpu::CarrierWork) : 0);
   tables_clear_ = !out.truncated;
 }
 

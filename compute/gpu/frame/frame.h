@@ -30,6 +30,8 @@ class Frame {
   virtual Result<void> enlarge() = 0;
   /// As CollisionBackend::pairs.
   virtual Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const = 0;
+  /// As CollisionBackend::device_work, of this frame alone.
+  virtual DeviceWork work() const = 0;
   /// Bytes of device memory that the frame itself holds.
   virtual std::uint64_t memory_bytes() const = 0;
   /// Device memory of frame and scene together, by stage of `palpate plan`.
