@@ -10,6 +10,7 @@ layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
 layout(constant_id = 8) const bool CARRIERS = true;   // as in lib/field_sums.glsl
 
 CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
 READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindMockupInfo, uint32_t, mockup_info);
 READ(kBindMockupExtras, ExtraSample, extras);

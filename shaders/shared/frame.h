@@ -145,6 +145,7 @@ struct FrameInput {
   uint32_t open_samples;
   uint32_t rays;                  // 1: the bodies may meet: `paper` may need the tool as a whole
   uint32_t ignores;               // 1: some patch is ignored (refined)
+  uint32_t coarser;               // 256ths of a level by which samples are coarser than the contact asks for (refined)
 };
 
 // ---- what it keeps -------------------------------------------------------------------------------------------------------
@@ -280,7 +281,7 @@ struct AreaMember {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 76);
+PALPATE_ASSERT_SIZE(FrameInput, 80);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(TouchCandidate, 16);
 PALPATE_ASSERT_SIZE(AreaResult, 64);

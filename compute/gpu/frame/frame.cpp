@@ -250,6 +250,7 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
+  input.coarser = ignored != nullptr ? ignored->coarser : 0;
   std::memcpy(buffers_[gpu::kBindFrameInput].mapped(), &input, sizeof input);
   work_.bytes_up += sizeof input + near.touch.count * sizeof(gpu::TouchCandidate) + near.pairs.count * sizeof(gpu::PairCandidate) +
                     near.samples.count * sizeof(gpu::SampleChunk) + (near.inside.count + near.open.count) * sizeof(gpu::FrameSample);
