@@ -47,7 +47,9 @@ class Summing {
   Summing(const Frame& frame, Contacts& out) : frame_(frame), out_(out), shift_(lever_shift(frame.scene.geometry->tool_radius)) {
     const std::int64_t wanted = frame.scene.geometry->contact_samples;
     const auto count = static_cast<std::int64_t>(frame.counting.size() + frame.contact_mobile.size() / 16);
-    if (wanted > 0 && count > wanted) grade_ = std::min<std::int64_t>(binary_log_q8(count) - binary_log_q8(wanted), 256 * kSampleLevels);
+    if (wanted > 0 && count > wanted) grade_ = binary_log_q8(count) - binary_log_q8(wanted);
+    if (frame.ignored != nullptr) grade_ += frame.ignored->coarser;
+    grade_ = std::min<std::int64_t>(grade_, 256 * kSampleLevels);
   }
 
   void add_push(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier) {

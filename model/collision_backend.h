@@ -48,7 +48,7 @@ struct DeviceWork {
 class PoseQuery {
  public:
   virtual ~PoseQuery() = default;
-  /// Answers one pose. `ignored`: contacts that are left out, `refined` only; may be null. Writes `out` whole, reusing its memory.
+  /// Answers one pose. `ignored`: what is left out, `refined` only; may be null. Writes `out` whole, reusing its memory.
   /// An error means that the back end itself failed (device lost): the caller sends zero force.
   virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;
 };

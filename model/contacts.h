@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/field.h"
+#include "model/lattice_mesh.h"
 #include "model/vector.h"
 
 namespace palpate {
@@ -37,10 +38,15 @@ struct ContactArea {
   std::uint32_t voxel_count = 0;                    ///< `paper`
 };
 
-/// Contacts that are left out, for parts that overlap where the tool starts: samples whose static triangle, their own or the nearest, is of one of these patches
-/// (LatticeMesh::patch) don't push.
+/// What a frame leaves out (`refined`).
 struct Ignored {
-  std::vector<std::uint32_t> patches;   ///< ascending, each once
+  /// Contacts of parts that overlap where the tool starts: samples whose static triangle, their own or the nearest, is of one of these patches (LatticeMesh::patch) don't push.
+  /// Ascending, each once.
+  std::vector<std::uint32_t> patches;
+  /// Samples, for a frame that has to be quick: so many 256ths of a level more than the contact's size asks for (docs/EXACTNESS.md section 8), at most kCoarsest.
+  std::uint32_t coarser = 0;
+
+  static constexpr std::uint32_t kCoarsest = 256 * kSampleLevels;
 };
 
 /// The exact outcome of one pose: identical on every back end.

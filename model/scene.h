@@ -42,6 +42,7 @@ struct ResponseSettings {
   double smooth_angle_deg = 30;
   std::optional<double> sample_spacing_m;    ///< empty: auto
   std::uint32_t contact_samples = kContactSamples;   ///< SceneGeometry::contact_samples
+  double budget_us = 4000;                   ///< of a frame in real time, above which it is sampled coarser; 0: none
   std::optional<double> voxel_size_m;        ///< empty: auto
   std::optional<double> tessellation_m;      ///< Tessellation::deflection_m; empty: auto, what a sample's spacing asks for
   double tessellation_angle_deg = 15;        ///< Tessellation::angle_deg

@@ -21,7 +21,7 @@ const std::map<std::string, std::vector<std::string>>& scene_keys() {
       {"static", {"mesh", "generate", "units", "scale", "part", "without", "position", "rotation"}},
       {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
-      {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size", "contact_samples", "tessellation", "tessellation_angle_deg"}},
+      {"response", {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size", "contact_samples", "budget_us", "tessellation", "tessellation_angle_deg"}},
       {"control", {"law", "transitions", "virtual_delay_ticks", "watchdog_ms", "fade_in_ms", "change_n_per_s", "slew_ms", "passivity",
                    "coupling_n_per_m", "coupling_nm_per_rad"}},
       {"device",
@@ -147,6 +147,7 @@ void read_response(const SceneObject& scene_json, ResponseSettings& response) {
   read_length(body, "voxel_size", response.voxel_size_m);
   read_length(body, "tessellation", response.tessellation_m);
   body.number("tessellation_angle_deg", {1, 90, " degrees"}, response.tessellation_angle_deg);
+  body.number("budget_us", {0, 1e6, " us"}, response.budget_us);
   int samples = static_cast<int>(response.contact_samples);
   body.whole("contact_samples", 0, 1 << 20, samples);
   response.contact_samples = static_cast<std::uint32_t>(samples);

@@ -5,6 +5,7 @@
 #include <exception>
 #include <numeric>
 #include <string>
+#include <string_view>
 
 namespace palpate {
 namespace {
@@ -24,11 +25,19 @@ void clear(Contacts& contacts) {
   contacts.engine = "";
 }
 
+/// What summing the samples took.
+double field_us(const Contacts& contacts) {
+  double out = 0;
+  for (const Contacts::StageTime& time : contacts.times)
+    if (std::string_view(time.stage) == "field") out += time.us;
+  return out;
+}
+
 }  // namespace
 
 CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques, PlanSwitch* plans,
-                               StartContacts start, double slow_us)
-    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques), slow_us_(slow_us) {
+                               StartContacts start, double slow_us, double budget_us)
+    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques), budget_(budget_us), slow_us_(slow_us) {
   if (start != StartContacts::kIgnoreInitial) return;
   ignored_.patches.resize(geometry.mockup.patch_count);
   std::iota(ignored_.patches.begin(), ignored_.patches.end(), 0u);
@@ -84,8 +93,9 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   const bool refined = profile_ == Profile::kRefined;
   if (slot.lattice_pose.beyond_lattice) {
     clear(slot.contacts);
-  } else if (auto answered = backend_->query(slot.lattice_pose, refined ? ignored() : nullptr, slot.contacts); !answered) {
-    return answered;
+  } else {
+    ignored_.coarser = budget_.coarser();
+    if (auto answered = backend_->query(slot.lattice_pose, refined ? &ignored_ : nullptr, slot.contacts); !answered) return answered;
   }
   if (refined) ignore_what_has_not_opened(slot.contacts);
   respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response);
@@ -106,6 +116,7 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   slot.total_us = static_cast<double>(ns) / 1000;
   frame_ns_.add(ns);
   note_slow(slot);
+  if (refined) budget_.frame(slot.total_us, field_us(slot.contacts));
   if (slot.contacts.truncated) ++truncated_frames_, truncated_capacity_ = slot.contacts.truncated_capacity;
   // Where contacts are left out, nothing pushes because nobody wants it to.
   const bool unknown = (slot.response.flags & kFlagNoDirection) != 0 && slot.contacts.ignored_touched.empty();

@@ -7,6 +7,7 @@
 #include "model/response.h"
 #include "model/scene.h"
 #include "model/scene_geometry.h"
+#include "service/frame_budget.h"
 #include "service/histogram.h"
 #include "service/law_result.h"
 #include "service/plan_switch.h"
@@ -47,8 +48,9 @@ class CollisionFrame {
  public:
   /// All outlive this. `plans`: where other plans come from in mid-run, with back ends of their own; may be null. `torques`: the device has torque axes; without them the plan may have left out
   /// contact points, so torques and levers are not used. `start`: what becomes of contacts that the first frame has. `slow_us`: frames that take longer are counted.
+  /// `budget_us`: frames that take longer are sampled coarser (`refined`); 0: none is.
   CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques,
-                 PlanSwitch* plans = nullptr, StartContacts start = StartContacts::kAsIs, double slow_us = std::numeric_limits<double>::infinity());
+                 PlanSwitch* plans = nullptr, StartContacts start = StartContacts::kAsIs, double slow_us = std::numeric_limits<double>::infinity(), double budget_us = 0);
 
   /// Fills `slot` (its sample is set by the caller) and `result`. An error means that the back end failed, by
   /// status or by exception, or that the pose isn't one: the caller sends zero force.
@@ -62,8 +64,9 @@ class CollisionFrame {
   const char* truncated_capacity() const { return truncated_capacity_; }   ///< of the last truncated frame
   std::uint64_t no_direction_frames() const { return no_direction_frames_; }   ///< with contact and nothing that pushes (kFlagNoDirection)
   const PoseSample& no_direction_first() const { return no_direction_first_; }  ///< of the first of them
-  /// What is left out, as contacts of the start have not opened yet; null: nothing.
+  /// The contacts that are left out, as they are there from the start and have not opened yet; null: none.
   const Ignored* ignored() const { return ignored_.patches.empty() ? nullptr : &ignored_; }
+  const FrameBudget& budget() const { return budget_; }
   std::size_t ignored_at_first() const { return ignored_at_first_; }   ///< patches
   std::uint64_t plan_changes() const { return plan_changes_; }
   std::uint32_t areas_max() const { return areas_max_; }
@@ -85,6 +88,7 @@ class CollisionFrame {
   bool ignored_known_ = true;    ///< false: it is still every patch
   std::size_t ignored_at_first_ = 0;
   Histogram frame_ns_;
+  FrameBudget budget_;
   double slow_us_;
   std::uint64_t slow_frames_ = 0;
   SlowFrame slowest_;

@@ -116,7 +116,7 @@ struct Run {
         options(session_options),
         device(safe),
         frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans, loaded.scene.start_contacts,
-              slow_us(loaded.scene)),
+              slow_us(loaded.scene), session_options.pace == Pace::kRealtime ? loaded.scene.response.budget_us : 0),
         tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m, couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
              loaded.scene.response.profile == Profile::kRefined),
         observer(run_observer),
@@ -325,6 +325,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.no_direction_frames = run.frame.no_direction_frames();
   out.no_direction_tick = run.frame.no_direction_first().tick;
   out.no_direction_pose = run.frame.no_direction_first().pose;
+  out.coarse_frames = run.frame.budget().coarse_frames();
+  out.coarsest_share = std::exp2(-static_cast<double>(run.frame.budget().coarsest()) / 256);
   out.watchdog_ticks = run.device.watchdog_ticks();
   out.saturated_ticks = run.device.saturated_ticks();
   out.realtime = outlook(run, out);
@@ -341,6 +343,9 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
     note(std::to_string(run.frame.slow_frames()) + " of " + std::to_string(out.frames) + " frames took longer than the watchdog's " + number(run.scene.control.watchdog_ms) +
          " ms; the slowest, " + number(std::round(slowest.us / 100) / 10) + " ms at tick " + std::to_string(slowest.sample.tick) + " with the tool at " + position_text(slowest.sample.pose) +
          (*slowest.stage ? std::string(", was ") + number(std::round(slowest.stage_us / 100) / 10) + " ms in stage " + slowest.stage : std::string()));
+  if (out.coarse_frames > 0)
+    note(std::to_string(out.coarse_frames) + " of " + std::to_string(out.frames) + " frames were sampled coarser than their contact asks for, at 1/" +
+         number(std::round(10 / out.coarsest_share) / 10) + " of the samples at the least, to take no longer than response.budget_us, " + number(run.scene.response.budget_us) + " us");
   if (out.no_direction_frames > 0) {
     note(std::to_string(out.no_direction_frames) + (out.no_direction_frames > 1 ? " frames were" : " frame was") +
          " in contact with nothing that says which way, and gave no force of it; the first at tick " + std::to_string(out.no_direction_tick) + ", the tool at " + position_text(out.no_direction_pose));

@@ -77,6 +77,8 @@ struct SessionSummary {
   std::uint64_t no_direction_frames = 0;     ///< in contact, and nothing said which way: no force was made up
   std::int64_t no_direction_tick = 0;        ///< of the first of them
   Pose no_direction_pose;                    ///< and its tool pose
+  std::uint64_t coarse_frames = 0;           ///< sampled coarser than their contact asks for (response.budget_us)
+  double coarsest_share = 1;                 ///< of the samples that it asks for, in the coarsest of them
   std::uint64_t ignored_patches_first = 0;   ///< patches of the mock-up whose contacts at the start were left out
   std::uint64_t ignored_patches_end = 0;     ///< of them, those that had not opened by the end
   std::optional<RealtimeOutlook> realtime;   ///< empty: the run ended before a result was due

@@ -33,6 +33,7 @@ void archive_tables(Archive& a, Tables& tables) {
   a(tables.triangles.order);
   a(tables.triangles.boxes);
   a(tables.triangles.level_begin);
+  a(tables.triangles.turned);
 }
 
 }  // namespace palpate

@@ -22,7 +22,7 @@ struct SearchTables {
   TriangleTree triangles;   ///< of the mock-up
 
   std::uint64_t bytes() const {
-    return boxes.size() + sizeof parts[0] * std::uint64_t{parts.size()} + 4 * std::uint64_t{triangles.order.size()} + sizeof(TriangleTree::Boxes) * std::uint64_t{triangles.boxes.size()};
+    return boxes.size() + sizeof parts[0] * std::uint64_t{parts.size()} + triangles.bytes();
   }
 
   static constexpr std::size_t kBoxesAtOnce = 16;   ///< may be read from any place on

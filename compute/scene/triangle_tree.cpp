@@ -1,9 +1,13 @@
 #include "compute/scene/triangle_tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <span>
 
+#include "compute/scene/exact.h"
 #include "compute/scene/shares.h"
 
 namespace palpate {
@@ -53,6 +57,43 @@ void set(TriangleTree::Boxes& boxes, std::size_t i, const Int3& low, const Int3&
 }
 
 constexpr std::int32_t kNowhere = std::int32_t{1} << 30;   // beyond the lattice
+constexpr std::size_t kGroupsAShare = 256;                 // of eight runs (chosen: a millisecond)
+
+/// The box of a run along the mean of its normals, its longest side as seen along that, and what is at right angles to both.
+void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mesh, std::span<const std::uint32_t> run) {
+  const Int3 origin = mesh.corner(run.front(), 0);
+  Vec3 normal(0), along(0);
+  for (const std::uint32_t id : run) {
+    const exact::Normal n = exact::raw_normal(mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2));
+    normal += Vec3(static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z));
+  }
+  if (glm::dot(normal, normal) == 0) normal = Vec3(0, 0, 1);
+  normal = glm::normalize(normal);
+  for (const std::uint32_t id : run)
+    for (int k = 0; k < 3; ++k) {
+      Vec3 side(mesh.corner(id, k == 2 ? 0 : k + 1) - mesh.corner(id, k));
+      side -= glm::dot(side, normal) * normal;
+      if (glm::dot(side, side) > glm::dot(along, along)) along = side;
+    }
+  if (glm::dot(along, along) < 1) along = glm::cross(normal, std::abs(normal.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
+  along = glm::normalize(along);
+  const Vec3 axes[3] = {normal, along, glm::cross(normal, along)};
+  for (std::size_t a = 0; a < 3; ++a) {
+    boxes.corner[a][i] = origin[static_cast<int>(a)];
+    Vec3 axis;   // as it is rounded
+    for (std::size_t k = 0; k < 3; ++k) axis[static_cast<int>(k)] = boxes.axis[a][k][i] = static_cast<float>(axes[a][static_cast<int>(k)]);
+    double low = 0, high = 0;
+    for (const std::uint32_t id : run)
+      for (int corner = 0; corner < 3; ++corner) {
+        const double at = glm::dot(axis, Vec3(mesh.corner(id, corner) - origin));
+        low = std::min(low, at);
+        high = std::max(high, at);
+      }
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    boxes.low[a][i] = std::nextafter(static_cast<float>(low), -kFar);
+    boxes.high[a][i] = std::nextafter(static_cast<float>(high), kFar);
+  }
+}
 
 }  // namespace
 
@@ -100,6 +141,14 @@ TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<boo
     if (above.size() <= 1) break;
     below = std::move(above);
   }
+
+  const std::size_t runs = (out.order.size() + kEight - 1) / kEight, groups = (runs + kEight - 1) / kEight;
+  out.turned.resize(groups);
+  const auto turn = [&](std::uint32_t share) {
+    for (std::size_t run = share * kGroupsAShare * kEight; run < std::min((share + 1) * kGroupsAShare * kEight, runs); ++run)
+      set(out.turned[run / kEight], run % kEight, mesh, std::span(out.order).subspan(kEight * run, std::min(kEight, out.order.size() - kEight * run)));
+  };
+  if (!in_shares(static_cast<std::uint32_t>((groups + kGroupsAShare - 1) / kGroupsAShare), turn, [&](std::uint32_t) { return go_on(); })) return {};
   return out;
 }
 

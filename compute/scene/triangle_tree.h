@@ -9,7 +9,7 @@
 namespace palpate {
 
 /// A bounding volume hierarchy over the triangles of a body that bound a solid: runs of eight triangles, eight runs, and so on, each with the boxes of
-/// its eight in its body's lattice frame. 8 bytes a triangle.
+/// its eight in its body's lattice frame; runs have boxes that lie along their triangles, too. 18 bytes a triangle.
 struct TriangleTree {
   static constexpr std::size_t kEight = 8;
   /// Lows and highs by axis, steps. The last Boxes of a level may hold fewer than eight; the rest says nothing.
@@ -17,9 +17,19 @@ struct TriangleTree {
     std::array<std::array<std::int32_t, kEight>, 3> low, high;
   };
 
+  /// Boxes of eight runs along axes of their own, of unit length and at right angles but for rounding. By axis, then by component; from the run's first corner on, steps.
+  struct TurnedBoxes {
+    std::array<std::array<std::int32_t, kEight>, 3> corner;
+    std::array<std::array<std::array<float, kEight>, 3>, 3> axis;
+    std::array<std::array<float, kEight>, 3> low, high;   ///< along the axes as they are rounded, rounded outwards
+  };
+
   std::vector<std::uint32_t> order;         ///< triangles by place; run r is what stands from place 8 r on
   std::vector<Boxes> boxes;                 ///< of runs first, then of eight of these, …; the last one is the root
   std::vector<std::uint32_t> level_begin;   ///< of each level in `boxes`
+  std::vector<TurnedBoxes> turned;          ///< of runs, as the first of `boxes`
+
+  std::uint64_t bytes() const { return sizeof order[0] * std::uint64_t{order.size()} + sizeof(Boxes) * std::uint64_t{boxes.size()} + sizeof(TurnedBoxes) * std::uint64_t{turned.size()}; }
 
   /// How many runs there are, for level 0; for others, how many Boxes of the level before.
   std::uint32_t nodes(std::uint32_t level) const {

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "model/path_file.h"
 #include "service/bench/plan_trial.h"
@@ -42,6 +46,69 @@ Result<void> measure_savings(HostedScene& hosted, Console& console) {
   return hosted.backend->replan(hosted.plan.plan);
 }
 
+/// A frame of an engine at a few poses near the scene's start.
+struct EngineTime {
+  std::string engine, device;
+  double frame_us = 0;     ///< median over the poses, of each the least of kRounds
+  std::string missing;     ///< why it could not be measured
+};
+
+std::vector<Pose> poses_near_start(const Scene& scene) {
+  constexpr std::size_t kNear = 8, kSecond = 1000;   // chosen: poses of the path's first second
+  std::vector<Pose> out{scene.start};
+  const std::size_t ticks = std::min(kSecond, scene.device.path.size());
+  for (std::size_t i = 1; i < kNear && ticks > kNear; ++i) out.push_back(path_pose(scene.device.path[i * ticks / kNear], scene.device.guide));
+  return out;
+}
+
+/// Both engines that answer a loop, each prepared for the scene anew. Error: interrupted.
+Result<std::vector<EngineTime>> measure_engines(const HostedScene& hosted, const Parts& parts, Console& console) {
+  const LoadedScene& loaded = hosted.loaded;
+  const PlanQuestion question{&loaded.geometry, poses_near_start(loaded.scene), loaded.scene.response.stiffness_n_per_m};
+  std::vector<EngineTime> out;
+  for (const char* name : {"cpu", "gpu"}) {
+    console.step((std::string("measuring the engine ") + name).c_str());
+    EngineTime& time = out.emplace_back();
+    time.engine = name;
+    if (std::string_view(name) == "cpu" && hosted.plan.plan.profile != Profile::kRefined) {
+      time.missing = "answers the profile refined alone";
+      continue;
+    }
+    bool stopped = false;
+    const Progress progress = [&](const char* what, double done) { return !(stopped = stopped || !console.progress(what, done)); };
+    const Result<void> measured = [&]() -> Result<void> {
+      auto backend = choose_backend(name, hosted.plan.plan.profile, parts, [](const std::string&) {});
+      if (!backend) return backend.error();
+      if (auto prepared = (*backend)->prepare(loaded.geometry, hosted.plan.plan, progress); !prepared) return prepared;
+      if (auto finished = (*backend)->finish_preparing(); !finished) return finished;
+      time.device = (*backend)->device();
+      PlanTrial trial;
+      if (auto done = try_plan(**backend, question, hosted.plan.plan, kRounds, trial); !done) return done;
+      time.frame_us = median_frame_us(trial);
+      return {};
+    }();
+    if (stopped) return Error{ErrorCode::kInternal, "interrupted"};
+    if (!measured) time.missing = measured.error().sentence;
+  }
+  return out;
+}
+
+/// Which of both answers the sooner, or which one is left.
+std::string engines_text(const std::vector<EngineTime>& engines) {
+  std::string out;
+  const EngineTime* quickest = nullptr;
+  const EngineTime* slower = nullptr;
+  for (const EngineTime& e : engines) {
+    out += (out.empty() ? "" : "; ") + e.engine + (e.missing.empty() ? fmt::format(" {:.0f} µs on {}", e.frame_us, e.device) : " not measured: " + e.missing);
+    if (!e.missing.empty()) continue;
+    slower = quickest;
+    quickest = &e;
+    if (slower != nullptr && slower->frame_us < quickest->frame_us) std::swap(slower, quickest);
+  }
+  if (slower != nullptr) out += fmt::format("; {} is the quicker by a factor of {:.3g}", quickest->engine, slower->frame_us / quickest->frame_us);
+  return out;
+}
+
 }  // namespace
 
 Result<void> plan_command(const SceneOptions& options, bool json, const Parts& parts) {
@@ -51,6 +118,8 @@ Result<void> plan_command(const SceneOptions& options, bool json, const Parts& p
   Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options, Purpose::kSession, parts, console);
   if (!prepared) return prepared.error();
   if (auto measured = measure_savings(**prepared, console); !measured) return measured.error();
+  const Result<std::vector<EngineTime>> engines = measure_engines(**prepared, parts, console);
+  if (!engines) return engines.error();
   console.finish();
   const std::vector<PlanStage>& stages = (*prepared)->plan.stages;
 
@@ -59,7 +128,10 @@ Result<void> plan_command(const SceneOptions& options, bool json, const Parts& p
     for (const PlanStage& stage : stages)
       lines.push_back({{"stage", stage.stage}, {"kept", stage.kept}, {"reason", stage.reason}, {"memory_bytes", stage.memory_bytes},
                        {"saved_bytes", stage.saved_bytes}, {"saved_us", stage.saved_us ? nlohmann::ordered_json(*stage.saved_us) : nlohmann::ordered_json()}});
-    fmt::print("{}\n", nlohmann::ordered_json{{"stages", lines}}.dump());
+    nlohmann::ordered_json measured = nlohmann::ordered_json::array();
+    for (const EngineTime& e : *engines)
+      measured.push_back({{"engine", e.engine}, {"device", e.device}, {"frame_us", e.missing.empty() ? nlohmann::ordered_json(e.frame_us) : nlohmann::ordered_json()}, {"missing", e.missing}});
+    fmt::print("{}\n", nlohmann::ordered_json{{"stages", lines}, {"engines", measured}}.dump());
     return {};
   }
   fmt::print("{:<14} {:<9} {:>10} {:>10} {:>10}  {}\n", "stage", "", "memory", "spared", "a frame", "reason");
@@ -69,6 +141,7 @@ Result<void> plan_command(const SceneOptions& options, bool json, const Parts& p
   std::uint64_t sum = 0;
   for (const PlanStage& stage : stages) sum += stage.memory_bytes;
   fmt::print("{:<14} {:<9} {:>10} {:>10} {:>10}  on {}\n", "in all", "", bytes_text(sum), "", "", (*prepared)->backend->device());
+  fmt::print("engines: a frame near the start, {}\n", engines_text(*engines));
   return {};
 }
 

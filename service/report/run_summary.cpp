@@ -43,6 +43,8 @@ std::string summary_json(const SessionSummary& summary) {
   json["lateness_histogram_us"] = histogram(summary.lateness_bins_us);
   json["result_age_histogram_ticks"] = histogram(summary.result_age_bins_ticks);
   if (summary.ignored_patches_first > 0) json["ignored_patches"] = {{"first", summary.ignored_patches_first}, {"end", summary.ignored_patches_end}};
+  json["coarse_frames"] = summary.coarse_frames;
+  if (summary.coarse_frames > 0) json["coarsest_share"] = summary.coarsest_share;
   json["no_direction_frames"] = summary.no_direction_frames;
   if (summary.no_direction_frames > 0) {
     const Vec3& p = summary.no_direction_pose.position;

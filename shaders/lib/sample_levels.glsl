@@ -1,5 +1,5 @@
 // What a sample weighs in the field: in large contacts samples are left out, level by level (docs/EXACTNESS.md sections 4 and 8).
-// The including shader has scene and frame_lists; its lists of samples and of C_m are closed.
+// The including shader has scene, frame_input and frame_lists; its lists of samples and of C_m are closed.
 #ifndef PALPATE_LIB_SAMPLE_LEVELS
 #define PALPATE_LIB_SAMPLE_LEVELS
 #include "shaders/shared/frame_field.h"
@@ -26,7 +26,8 @@ uint32_t log_q8(uint32_t count) {
 // Of this frame, Q8.
 uint32_t frame_level() {
   const uint32_t count = frame_lists[kListSamples].count + frame_lists[kListContactMobiles].count / 16u, wanted = scene.contact_samples;
-  return wanted != 0u && count > wanted ? min(log_q8(count) - log_q8(wanted), 256u * kMostSampleLevel) : 0u;
+  const uint32_t by_size = wanted != 0u && count > wanted ? log_q8(count) - log_q8(wanted) : 0u;
+  return min(by_size + frame_input.coarser, 256u * kMostSampleLevel);
 }
 
 // Q30. `weights`: an extra sample's.

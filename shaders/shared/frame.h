@@ -169,6 +169,7 @@ struct FrameInput {
   uint32_t inside_samples;
   uint32_t open_samples;
   uint32_t ignores;               // 1: some patch is ignored (refined)
+  uint32_t coarser;               // 256ths of a level by which samples are coarser than the contact asks for (refined)
   uint32_t groups;                // of kStageNear
   DispatchArguments touch, pairs, found, chunks;   // its dispatches: an invocation a touch candidate, a pair, an inside sample, a chunk
   DispatchArguments clusters;     // the bodies may meet (`paper`): a workgroup a cluster of the tool; none otherwise
@@ -308,7 +309,7 @@ struct AreaMember {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 136);
+PALPATE_ASSERT_SIZE(FrameInput, 140);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(TouchCandidate, 16);
 PALPATE_ASSERT_SIZE(AreaResult, 64);

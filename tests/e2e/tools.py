@@ -165,6 +165,9 @@ def test_plan_gives_a_reason_for_each_of_the_thirteen_stages():
     for s in stages:
         expect(list(s) == ['stage', 'kept', 'reason', 'memory_bytes', 'saved_bytes', 'saved_us'] and s['reason'] and isinstance(s['kept'], bool), s)
         expect(s['memory_bytes'] >= 0 and (s['kept'] or s['memory_bytes'] == 0), f'a stage left out costs nothing: {s}')
+    engines = json.loads(outcome.out)['engines']
+    expect([e['engine'] for e in engines] == ['cpu', 'gpu'], engines)
+    expect(all((e['frame_us'] is None) == bool(e['missing']) and (e['missing'] or e['frame_us'] > 0 and e['device']) for e in engines) and not engines[0]['missing'], engines)
     kept = {s['stage']: s['kept'] for s in stages}
     expect(kept['imt'], 'a block is solid')
     expect(kept['zones'], 'a block has sharp edges')

@@ -43,6 +43,7 @@ struct Case {
   std::function<Result<TestScene>(std::uint64_t seed)> make;   ///< most scenes do not depend on the seed
   Profile profile = Profile::kRefined;
   bool ignoring = false;           ///< every second patch is ignored; poses come in chains of kChain, each a little further than the one before
+  bool coarser = false;            ///< pose i leaves samples out: by 97 i mod (Ignored::kCoarsest + 1) more than it has to
   bool killer = false;             ///< one of the few that together reach every rule, for those who need an answer in seconds
   bool degenerate = false;         ///< of a family where points, edges and faces coincide or a surface is not a solid's
   int poses = 24;                  ///< how many the stored hashes cover
@@ -54,6 +55,13 @@ struct Case {
 inline Case paper(Case c) {
   c.name += "_paper";
   c.profile = Profile::kPaper;
+  return c;
+}
+
+/// The same with ever coarser samples.
+inline Case coarser(Case c) {
+  c.name += "_coarser";
+  c.coarser = true;
   return c;
 }
 

@@ -113,7 +113,8 @@ class Runner {
     const std::uint64_t first = case_.ignoring ? settings_.first - settings_.first % kChain : settings_.first;
     // Every second patch of the mock-up, where a case leaves contacts out.
     Ignored ignored;
-    for (std::uint32_t patch = 0; patch < geometry.mockup.patch_count; patch += 2) ignored.patches.push_back(patch);
+    if (case_.ignoring)
+      for (std::uint32_t patch = 0; patch < geometry.mockup.patch_count; patch += 2) ignored.patches.push_back(patch);
     LatticePose pose;
     for (std::uint64_t i = first; i < settings_.first + count; ++i) {
       Random random(settings_.seed, i);
@@ -124,7 +125,8 @@ class Runner {
         pose = scene.pose(geometry, random, known);
       counted_ = i >= settings_.first;
       where_ = "pose " + std::to_string(i) + ", " + text_of(pose);
-      if (!ask(geometry, pose, case_.ignoring ? &ignored : nullptr, known)) return;
+      if (case_.coarser) ignored.coarser = static_cast<std::uint32_t>(97 * i % (Ignored::kCoarsest + 1));
+      if (!ask(geometry, pose, case_.ignoring || case_.coarser ? &ignored : nullptr, known)) return;
     }
   }
 

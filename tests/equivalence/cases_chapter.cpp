@@ -25,6 +25,11 @@ Case chapter(const std::string& scene, std::uint64_t triangles, Profile profile,
   return c;
 }
 
+Case with_poses(Case c, int poses) {
+  c.poses = poses;
+  return c;
+}
+
 }  // namespace
 
 std::vector<Case> chapter_cases() {
@@ -33,6 +38,7 @@ std::vector<Case> chapter_cases() {
     cases.push_back(chapter(scene, triangles, Profile::kRefined, false));
     cases.push_back(chapter(scene, triangles, Profile::kPaper, false));
     cases.push_back(chapter(scene, triangles, Profile::kRefined, true));
+    cases.push_back(with_poses(coarser(chapter(scene, triangles, Profile::kRefined, false)), 24));
   }
   return cases;
 }

@@ -285,6 +285,7 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
+  input.coarser = ignored != nullptr ? ignored->coarser : 0;
   buffers_[gpu::kBindFrameInput].write(0, &input, sizeof input);
   work_.bytes_up += sizeof input;
   give(gpu::kBindTouchCandidates, near.touch);

@@ -20,10 +20,16 @@ static Floats smaller(Floats a, Floats b) { return a < b ? a : b; }
 
 // A bit for each lane of eight whose word is not 0 but all bits.
 static unsigned bits_of(const Words* lanes) {
+#ifdef PALPATE_SIGN_BITS
+  Floats signs;
+  std::memcpy(&signs, lanes, sizeof signs);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(signs));
+#else
   std::uint64_t all = 0, pairs[4];
   std::memcpy(pairs, lanes, sizeof pairs);
   for (std::size_t i = 0; i < 4; ++i) all |= pairs[i] & (std::uint64_t{0x2'0000'0001} << 2 * i);
   return static_cast<unsigned>(all | all >> 32) & 0xFF;
+#endif
 }
 
 // Squared distances from a point to eight boxes. Bits: those that are within the limit.
@@ -37,6 +43,24 @@ static unsigned to_boxes(const TriangleTree::Boxes& boxes, const Int3& point, fl
       gap = gap > 0 ? gap : Words{};
       const Floats away = __builtin_convertvector(gap, Floats);
       sum += away * away;
+    }
+    std::memcpy(squared + begin, &sum, sizeof sum);
+    near[begin / kWidth] = sum <= limit;
+  }
+  return bits_of(near);
+}
+
+// The same of boxes along axes of their own, less what rounding may add.
+static unsigned to_turned(const TriangleTree::TurnedBoxes& boxes, const Int3& point, float limit, float* squared) {
+  Words near[kEight / kWidth];
+  for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
+    Floats d[3], sum{};
+    for (std::size_t k = 0; k < 3; ++k) d[k] = __builtin_convertvector(Words{} + point[static_cast<int>(k)] - load(boxes.corner[k].data() + begin), Floats);
+    const Floats room = (size_of(d[0]) + size_of(d[1]) + size_of(d[2])) * kFloatSlack;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Floats at = load(boxes.axis[a][0].data() + begin) * d[0] + load(boxes.axis[a][1].data() + begin) * d[1] + load(boxes.axis[a][2].data() + begin) * d[2];
+      const Floats gap = larger(larger(load(boxes.low[a].data() + begin) - at, at - load(boxes.high[a].data() + begin)) - room, Floats{});
+      sum += gap * gap;
     }
     std::memcpy(squared + begin, &sum, sizeof sum);
     near[begin / kWidth] = sum <= limit;
@@ -74,20 +98,35 @@ static NearTriangles to_triangles(const TriangleRun& run, const Int3& point, flo
   return {bits_of(near), bits_of(above)};
 }
 
-// What of a run may be as near as the best so far, the nearest first.
+// Bits: of eight triangles those that may be no further than `most`.
+static unsigned within(const float* squared, const float* slack, float most) {
+  Words near[kEight / kWidth];
+  for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
+    const Floats reach = most + load(slack + begin);
+    near[begin / kWidth] = load(squared + begin) <= reach * reach * (1 + kSquareSlack);
+  }
+  return bits_of(near);
+}
+
+// What of a run may be as near as the best so far, the nearest first: after it few others still may.
 static void look_into(DepthSearch::Tables& tables, Search& search, std::uint32_t number) {
   ++tables.looks;
   const std::size_t first = kEight * number;
   const unsigned there = 0xFFU >> (kEight - std::min(kEight, tables.tree.order.size() - first));
   alignas(32) float squared[kEight], slack[kEight];
   const NearTriangles found = to_triangles(tables.run(number), search.point, search.most(), squared, slack);
-  for (unsigned near = there & found.near; near != 0;) {
-    int nearest = std::countr_zero(near);
-    for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1)
-      if (squared[std::countr_zero(rest)] < squared[nearest]) nearest = std::countr_zero(rest);
-    near &= ~(1U << nearest);
-    const float reach = search.most() + slack[nearest];
-    if (squared[nearest] <= reach * reach * (1 + kSquareSlack)) tables.look_at(search, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(nearest), (found.above >> nearest & 1) != 0);
+  unsigned near = there & found.near;
+  if (near == 0) return;
+  int i = std::countr_zero(near);
+  for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1)
+    if (squared[std::countr_zero(rest)] < squared[i]) i = std::countr_zero(rest);
+  for (;;) {
+    tables.look_at(search, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(i), (found.above >> i & 1) != 0);
+    near &= ~(1U << i);
+    if (near == 0) return;
+    near &= within(squared, slack, search.most());
+    if (near == 0) return;
+    i = std::countr_zero(near);
   }
 }
 
@@ -114,8 +153,10 @@ static void descend(DepthSearch::Tables& tables, Search& search, std::uint32_t g
     ++tables.looks;
     const std::uint32_t first = static_cast<std::uint32_t>(kEight) * next.node;
     const unsigned there = 0xFFU >> (kEight - std::min<std::size_t>(kEight, tables.tree.nodes(next.level - 1) - first));
+    unsigned near = there & to_boxes(tables.tree.boxes[tables.tree.level_begin[next.level - 1] + next.node], search.point, limit, squared);
+    if (next.level == 1 && near != 0) near &= to_turned(tables.tree.turned[next.node], search.point, limit, squared);
     std::size_t nearest = count;
-    for (unsigned near = there & to_boxes(tables.tree.boxes[tables.tree.level_begin[next.level - 1] + next.node], search.point, limit, squared); near != 0; near &= near - 1) {
+    for (; near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
       open[count] = {next.level - 1, first + i, squared[i]};
       if (squared[i] < open[nearest].squared) nearest = count;

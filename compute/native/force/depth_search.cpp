@@ -193,10 +193,12 @@ constexpr std::size_t kWidth = 4;
 }
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
+#define PALPATE_SIGN_BITS
 namespace second {
 constexpr std::size_t kWidth = 8;
 #include "compute/native/force/depth_lanes.h"
 }
+#undef PALPATE_SIGN_BITS
 PALPATE_SECOND_CODE_END
 #endif
 

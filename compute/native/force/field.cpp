@@ -148,9 +148,9 @@ void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   exact::for_samples(corners, axis, spacing, box.low - Int3(1), box.high + Int3(1), [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
 }
 
-void HostField::choose_level(std::size_t samples, std::size_t mobiles) {
+void HostField::choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser) {
   const std::uint64_t wanted = geometry_->contact_samples, count = samples + mobiles / 16;
-  const std::uint32_t level = wanted != 0 && count > wanted ? std::min(log_q8(count) - log_q8(wanted), 256u * kSampleLevels) : 0;
+  const std::uint32_t level = std::min((wanted != 0 && count > wanted ? log_q8(count) - log_q8(wanted) : 0) + coarser, Ignored::kCoarsest);
   level_ = level >> 8;
   between_ = level & 255;
 }
@@ -303,7 +303,7 @@ std::uint64_t HostField::looks() const {
 }
 
 void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out) {
-  choose_level(found.samples.size(), found.mobiles.size());
+  choose_level(found.samples.size(), found.mobiles.size(), wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
   out.carriers.clear();
   ignored_ = wanted.ignored;
   for (Lane& lane : lanes_) {

@@ -63,7 +63,7 @@ class HostField {
   bool is_ignored(std::uint32_t static_id, Lane& lane) const;
   template <class Take>
   void for_tool_samples(std::uint32_t mobile, Take&& take) const;
-  void choose_level(std::size_t samples, std::size_t mobiles);
+  void choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser);
   std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const;
   std::uint64_t weight_of(const ExtraSample& extra) const;
 

@@ -12,6 +12,7 @@ std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, co
   out->tool_triangles_ = TriangleTree::make(geometry.tool, [] { return true; });
   out->search_ = scene.search;
   out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
+  if (!geometry.tool.closed) out->in_tool_.keep_cells(scene.tool);
   out->sets_ = HostSets::make(geometry, scene, order, out->in_tool_);
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;

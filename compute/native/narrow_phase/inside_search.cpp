@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <optional>
 
 #include "compute/scene/exact.h"
 #include "compute/search/processor.h"
@@ -40,6 +41,15 @@ bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::ui
     const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1, true);
     return out.net + (out.kind == kVoxelInternal ? winding_of(out.voxel) : 0) != 0;
   }
+  if (const std::optional<bool> known = cells_.find(point, voxel, boundary)) return *known;
+  return inside_open(point, voxel, boundary);
+}
+
+void InsideSearch::keep_cells(const PartitionView& partition) {
+  cells_ = InsideCells(*mesh_, partition, boxes_, [this](const Int3& point, const Int3& voxel, std::uint32_t boundary) { return inside_open(point, voxel, boundary); });
+}
+
+bool InsideSearch::inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary) {
   const std::atomic_ref<std::int16_t> known(middle_[boundary]);   // whoever comes first: all find the same
   std::int16_t winding = known.load(std::memory_order_relaxed);
   if (winding == kUnknown) {

@@ -3,13 +3,14 @@
 #include <span>
 #include <vector>
 
+#include "compute/native/narrow_phase/inside_cells.h"
 #include "compute/scene/partition_lookup.h"
 #include "model/lattice_mesh.h"
 
 namespace palpate {
 
 /// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4): by walks along axes to voxels that list nothing,
-/// of a body that is not closed once a voxel. Arguments outlive this. One thread, but of a body that is not closed any number; only the constructor allocates.
+/// of a body that is not closed once a voxel, and where it keeps cells (InsideCells) not even that. Arguments outlive this. One thread, but of a body that is not closed any number; only the constructor allocates.
 class InsideSearch {
  public:
   InsideSearch() = default;
@@ -17,6 +18,8 @@ class InsideSearch {
   InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes);
 
   bool inside(const Int3& point);
+  /// For a body that is not closed and is asked much.
+  void keep_cells(const PartitionView& partition);
 
  private:
   struct Walk {
@@ -25,6 +28,7 @@ class InsideSearch {
     std::uint32_t kind;   ///< of that voxel
   };
   bool inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary);
+  bool inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary);
   Walk walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const;
   int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary, bool sheets) const;
   int crossed_within(const Int3& from, const Int3& to, const Int3& voxel, std::uint32_t boundary) const;
@@ -36,6 +40,7 @@ class InsideSearch {
   const HostPartition* partition_ = nullptr;
   std::span<const std::uint8_t> boxes_;
   double per_part_ = 0;                    ///< parts of a voxel a step
+  InsideCells cells_;
   std::vector<std::uint8_t> way_;          ///< by V_bnd voxel of a closed body: the shortest way out of such voxels, axis · 2 + up + 1; 0: not known yet
   static constexpr std::int16_t kUnknown = INT16_MIN;
   std::vector<std::int16_t> middle_;       ///< by V_bnd voxel of a body that is not closed: how deep in its middle is, in shells
