@@ -18,6 +18,7 @@
 #include "compute/native/prepare/sample_lists.h"
 #include "compute/native/prepare/scene.h"
 #include "compute/gpu/prepare/prepared_scene.h"
+#include "cpu_ref/ref_backend.h"
 #include "compute/scene/search_tables.h"
 #include "model/generate.h"
 #include "model/geometry_build.h"
@@ -25,6 +26,7 @@
 #include "shaders/shared/frame.h"
 #include "tests/compute/partition_equality.h"
 #include "tests/equivalence/contacts_difference.h"
+#include "tests/faults/fault_scene.h"
 
 namespace palpate {
 namespace {
@@ -110,6 +112,87 @@ TEST(NativeBatch, IsTheBitsOfSingleQueries) {
   expect_same(*backend, std::span(scene.poses).subspan(120, 7), 0);
   if (std::thread::hardware_concurrency() > 1) {
     EXPECT_GT(backend->memory_bytes(), bytes) << "no thread has a frame";
+  }
+}
+
+TEST(RefBatch, IsTheBitsOfSingleQueries) {
+  const Subject scene = subject("disassembly", 2000, 140);
+  const auto backend = make_ref_backend();
+  ASSERT_TRUE(backend->prepare(scene.geometry, Plan{}, {}));
+  const std::uint64_t bytes = backend->memory_bytes();
+  expect_same(*backend, scene.poses, scene.poses.size() / 4);
+  if (std::thread::hardware_concurrency() > 1) {
+    EXPECT_GT(backend->memory_bytes(), bytes) << "no thread has somebody to ask";
+  }
+}
+
+// Poses are handed out eight at a time at most, and threads are made at kWorthThreads.
+TEST_P(Batch, OfEverySizeIsTheBitsOfSingleQueries) {
+  const Subject scene = subject("disassembly", 4000, 150);
+  const auto backend = prepared(options_here(), scene);
+  for (const std::size_t size : {1u, 2u, 7u, 8u, 9u, 16u, 17u, 63u, 64u, 65u, 127u, 128u, 129u}) {
+    SCOPED_TRACE(size);
+    expect_same(*backend, std::span(scene.poses).first(size), 0);
+  }
+}
+
+// A pose that is more than a frame may ever take (`paper`: 289 areas) is cut short alone.
+TEST_P(Batch, AnOverflowThatNoRoomMendsHarmsNoOtherPose) {
+  Mesh posts;
+  for (int i = -8; i <= 8; ++i)
+    for (int j = -8; j <= 8; ++j) solids::append(posts, solids::box(Vec3(i, j, 0) * 0.003, Vec3(i, j, 0) * 0.003 + Vec3(0.001, 0.001, 0.003)), "post");
+  const auto scene = make_fault_scene("posts", posts, solids::box(Vec3(-0.04, -0.04, 0), Vec3(0.04, 0.04, 0.004)), Vec3(0, 0, 0.0025));
+  Plan paper;
+  paper.profile = Profile::kPaper;
+  auto made = make_gpu_backend(options_here());
+  ASSERT_TRUE(made);
+  const auto reference = make_ref_backend();
+  ASSERT_TRUE((*made)->prepare(scene->geometry, paper, {}) && reference->prepare(scene->geometry, paper, {}));
+  std::vector<LatticePose> poses;
+  constexpr std::size_t kWhole = 70;
+  for (std::size_t i = 0; i < 200; ++i)
+    poses.push_back(at(*scene, i == kWhole ? Vec3(0, 0, 0.0025) : Vec3(0.055 + 0.00002 * static_cast<double>(i), 0, 0.0025)));   // a corner of the plate on a few posts
+  std::vector<Contacts> batch(poses.size()), expected(poses.size());
+  for (int round = 0; round < 2; ++round) {
+    ASSERT_TRUE((*made)->query_batch(poses, batch));
+    ASSERT_TRUE(reference->query_batch(poses, expected));
+    std::size_t contacts = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(batch[i].truncated, i == kWhole) << i;
+      EXPECT_EQ(first_difference(batch[i], expected[i]), "") << i;
+      contacts += batch[i].contact ? 1u : 0u;
+    }
+    EXPECT_GT(contacts, 100u);
+  }
+}
+
+// Counts are the same on every device: what a frame asks for does not depend on what it finds.
+TEST(DeviceWork, ARefinedFrameIsOneSubmissionOfTenDispatches) {
+  for (const auto& [name, triangles] : {std::pair{"disassembly", 4000}, {"contacts", 8000}}) {
+    const Subject scene = subject(name, static_cast<std::uint64_t>(triangles), 120);
+    const auto backend = prepared({}, scene);
+    Contacts out;
+    std::size_t contacts = 0, apart = 0;
+    for (const LatticePose& pose : scene.poses) {
+      const DeviceWork before = backend->device_work();
+      ASSERT_TRUE(backend->query(pose, nullptr, out));
+      const DeviceWork after = backend->device_work();
+      const std::uint64_t submissions = after.submissions - before.submissions;
+      if (submissions == 0) {
+        EXPECT_FALSE(out.contact);
+        EXPECT_EQ(after.dispatches, before.dispatches);
+        ++apart;
+        continue;
+      }
+      EXPECT_EQ(submissions, 1u);
+      EXPECT_LE(after.dispatches - before.dispatches, 10u);
+      EXPECT_LE(after.barriers - before.barriers, 6u);
+      EXPECT_GT(after.bytes_up, before.bytes_up);
+      EXPECT_GT(after.bytes_down, before.bytes_down);
+      contacts += out.contact ? 1u : 0u;
+    }
+    EXPECT_GT(contacts, 20u) << name;
+    EXPECT_LT(apart, scene.poses.size() / 2) << name;
   }
 }
 

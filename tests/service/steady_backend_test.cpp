@@ -92,6 +92,46 @@ TEST(SteadyBackend, ASceneThatTheFirstDoesNotTakeIsTheSparesAndTheNextIsTheFirst
   }
 }
 
+/// Cuts every third pose short; answers with itself as the engine.
+class CutsShort final : public CollisionBackend {
+ public:
+  Result<void> prepare(const SceneGeometry&, const Plan&, const Progress&) override { return {}; }
+  Result<void> query(const LatticePose& pose, const Ignored*, Contacts& out) override {
+    out = {};
+    out.engine = "cuts short";
+    out.truncated = pose.translation.x % 3 == 0;
+    out.truncated_capacity = out.truncated ? "something" : "";
+    return {};
+  }
+  Result<VoxelPartition> partition(bool) const override { return VoxelPartition{}; }
+  bool has_internal_voxels() const override { return false; }
+  std::string name() const override { return "cuts short"; }
+  std::string device() const override { return name(); }
+  std::uint64_t memory_bytes() const override { return 0; }
+};
+
+TEST(SteadyBackend, SharedWorkThatIsCutShortIsDoneAgainAloneAndNoOther) {
+  SteadyBackend backend(std::make_unique<CutsShort>(), [] { return std::make_unique<Choosy>("spare", Profile::kRefined); });
+  ASSERT_TRUE(backend.prepare(SceneGeometry{}, {}, {}));
+  std::vector<std::string> engines(10);
+  std::vector<int> times(10);
+  ASSERT_TRUE(backend.share(engines.size(), [&](PoseQuery& asked, std::size_t i) -> Result<void> {
+    ++times[i];
+    LatticePose pose{};
+    pose.translation.x = static_cast<std::int32_t>(i);
+    Contacts out;
+    for (int again = 0; again < 2; ++again)   // a piece may ask as often as it likes
+      if (auto done = asked.query(pose, nullptr, out); !done) return done;
+    engines[i] = out.engine;
+    return {};
+  }));
+  for (std::size_t i = 0; i < engines.size(); ++i) {
+    EXPECT_EQ(engines[i], i % 3 == 0 ? "spare" : "cuts short") << i;
+    EXPECT_EQ(times[i], i % 3 == 0 ? 2 : 1) << i;
+  }
+  EXPECT_FALSE(backend.share(3, [](PoseQuery&, std::size_t i) -> Result<void> { return i == 1 ? Result<void>(bad_value("no")) : Result<void>(); }));
+}
+
 TEST(SteadyBackend, TellsWhatASpareWithASpareOfItsOwnHasToTell) {
   SteadyBackend backend(std::make_unique<Choosy>("first", Profile::kRefined), [] {
     return std::make_unique<SteadyBackend>(std::make_unique<Choosy>("second", Profile::kRefined), [] { return std::make_unique<Choosy>("third", Profile::kPaper); });
