@@ -23,16 +23,16 @@ namespace {
 enum class Takes { kNothing, kWords, kFile, kFolder, kText };
 
 struct OptionLine {
-  std::vector<std::string> names;   ///< "-h", "--help"
+  std::vector<std::string> names;  ///< "-h", "--help"
   std::string type, help;
   Takes takes = Takes::kNothing;
   std::vector<std::string> words;
-  bool again = false;               ///< may be given several times, or with several values
+  bool again = false;  ///< may be given several times, or with several values
 };
 
 struct CommandLine {
   const CLI::App* app = nullptr;
-  std::vector<std::string> path;    ///< "bench", "latency"; empty: the program
+  std::vector<std::string> path;  ///< "bench", "latency"; empty: the program
   std::vector<OptionLine> options, positionals;
   std::vector<const CLI::App*> below;
 };
@@ -43,11 +43,15 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 std::vector<std::string> words_of(const std::string& type) {
   std::vector<std::string> out(1);
   for (const char c : type) {
-    if (c == '|') out.emplace_back();
-    else if (std::islower(static_cast<unsigned char>(c)) != 0) out.back() += c;
-    else return {};
+    if (c == '|')
+      out.emplace_back();
+    else if (std::islower(static_cast<unsigned char>(c)) != 0)
+      out.back() += c;
+    else
+      return {};
   }
-  const bool sound = out.size() > 1 && std::none_of(out.begin(), out.end(), [](const std::string& word) { return word.empty(); });
+  const bool sound = out.size() > 1 && std::none_of(out.begin(), out.end(),
+                                                    [](const std::string& word) { return word.empty(); });
   return sound ? out : std::vector<std::string>{};
 }
 
@@ -61,7 +65,7 @@ OptionLine line_of(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return line;
   line.type = option.get_type_name();
   line.words = words_of(line.type);
-  line.takes = !line.words.empty()                                                             ? Takes::kWords
+  line.takes = !line.words.empty()                                                           ? Takes::kWords
                : has(line.type, "FILE") || has(line.type, "SCENE") || has(line.type, "MESH") ? Takes::kFile
                : has(line.type, "DIR")                                                       ? Takes::kFolder
                                                                                              : Takes::kText;
@@ -70,8 +74,10 @@ OptionLine line_of(const CLI::Option& option) {
 
 void list_commands(const CLI::App& app, const std::vector<std::string>& path, std::vector<CommandLine>& out) {
   CommandLine command{.app = &app, .path = path, .options = {}, .positionals = {}, .below = {}};
-  for (const CLI::Option* option : app.get_options()) (option->get_positional() ? command.positionals : command.options).push_back(line_of(*option));
-  for (const CLI::App* below : app.get_subcommands([](const CLI::App*) { return true; })) command.below.push_back(below);
+  for (const CLI::Option* option : app.get_options())
+    (option->get_positional() ? command.positionals : command.options).push_back(line_of(*option));
+  for (const CLI::App* below : app.get_subcommands([](const CLI::App*) { return true; }))
+    command.below.push_back(below);
   out.push_back(command);
   for (const CLI::App* below : command.below) {
     std::vector<std::string> further = path;
@@ -124,15 +130,18 @@ std::string bash_script(const std::vector<CommandLine>& commands) {
       const std::vector<std::string> above(command.path.begin(), command.path.end() - 1);
       paths += fmt::format("      '{} {}') path='{}' ;;\n", joined(above, " "), command.path.back(), path);
     }
-    offers += fmt::format("    '{}') commands='{}' options='{}' ;;\n", path, joined(names_of(command.below), " "), joined(all_names(command.options), " "));
+    offers += fmt::format("    '{}') commands='{}' options='{}' ;;\n", path,
+                          joined(names_of(command.below), " "), joined(all_names(command.options), " "));
     for (const OptionLine& option : command.options) {
       if (option.takes == Takes::kNothing) continue;
       std::vector<std::string> cases;
       for (const std::string& name : option.names) cases.push_back("'" + path + " " + name + "'");
-      const std::string reply = option.takes == Takes::kWords    ? fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$cur\"))", joined(option.words, " "))
-                                : option.takes == Takes::kFile   ? "COMPREPLY=($(compgen -f -- \"$cur\"))"
-                                : option.takes == Takes::kFolder ? "COMPREPLY=($(compgen -d -- \"$cur\"))"
-                                                                 : "COMPREPLY=()";
+      const std::string reply =
+          option.takes == Takes::kWords
+              ? fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$cur\"))", joined(option.words, " "))
+          : option.takes == Takes::kFile   ? "COMPREPLY=($(compgen -f -- \"$cur\"))"
+          : option.takes == Takes::kFolder ? "COMPREPLY=($(compgen -d -- \"$cur\"))"
+                                           : "COMPREPLY=()";
       values += fmt::format("    {}) {}; return ;;\n", joined(cases, "|"), reply);
     }
   }
@@ -141,12 +150,15 @@ std::string bash_script(const std::vector<CommandLine>& commands) {
          "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} path= commands= options= i\n"
          "  local IFS=$' \\t\\n'\n"
          "  for ((i = 1; i < COMP_CWORD; ++i)); do\n"
-         "    case \"$path ${COMP_WORDS[i]}\" in\n" + paths +
+         "    case \"$path ${COMP_WORDS[i]}\" in\n" +
+         paths +
          "    esac\n"
          "  done\n"
-         "  case \"$path\" in\n" + offers +
+         "  case \"$path\" in\n" +
+         offers +
          "  esac\n"
-         "  case \"$path $prev\" in\n" + values +
+         "  case \"$path $prev\" in\n" +
+         values +
          "  esac\n"
          "  if [[ $cur == -* ]]; then COMPREPLY=($(compgen -W \"$options\" -- \"$cur\"))\n"
          "  elif [[ -n $commands ]]; then COMPREPLY=($(compgen -W \"$commands\" -- \"$cur\"))\n"
@@ -186,13 +198,17 @@ std::string zsh_script(const std::vector<CommandLine>& commands) {
         if (option.takes != Takes::kNothing) spec += zsh_value(option);
         out += " \\\n    " + quoted_for_zsh(spec);
       }
-    for (const OptionLine& positional : command.positionals) out += " \\\n    " + quoted_for_zsh((positional.again ? "*" : "") + zsh_value(positional));
+    for (const OptionLine& positional : command.positionals)
+      out += " \\\n    " + quoted_for_zsh((positional.again ? "*" : "") + zsh_value(positional));
     if (command.below.empty()) {
       out += "\n}\n";
       continue;
     }
-    out += " \\\n    '1:command:->command' '*::argument:->argument'\n  case $state in\n  command) local -a all=(";
-    for (const CLI::App* below : command.below) out += "\n    " + quoted_for_zsh(below->get_name() + ":" + escaped(below->get_description(), "\\:"));
+    out +=
+        " \\\n    '1:command:->command' '*::argument:->argument'\n  case $state in\n  command) local -a "
+        "all=(";
+    for (const CLI::App* below : command.below)
+      out += "\n    " + quoted_for_zsh(below->get_name() + ":" + escaped(below->get_description(), "\\:"));
     out += "\n    ); _describe command all ;;\n  argument) case $line[1] in\n";
     for (const CLI::App* below : command.below) {
       std::vector<std::string> path = command.path;
@@ -201,36 +217,49 @@ std::string zsh_script(const std::vector<CommandLine>& commands) {
     }
     out += "    esac ;;\n  esac\n}\n";
   }
-  return out + "\nif [ \"$funcstack[1]\" = _palpate ]; then _palpate \"$@\"; else compdef _palpate palpate; fi\n";
+  return out +
+         "\nif [ \"$funcstack[1]\" = _palpate ]; then _palpate \"$@\"; else compdef _palpate palpate; fi\n";
 }
 
 // ---- fish ----
 
 std::string quoted_for_fish(const std::string& text) { return "'" + escaped(text, "\\'") + "'"; }
 
-/// Where a command's own words may stand: each word of its path, and none of the commands that are called like one of its others.
+/// Where a command's own words may stand: each word of its path, and none of the commands that are called
+/// like one of its others.
 std::string fish_place(const CommandLine& command, const std::vector<CommandLine>& commands) {
   if (command.path.empty()) return "__fish_use_subcommand";
   std::string out;
-  for (const std::string& word : command.path) out += (out.empty() ? "" : "; and ") + ("__fish_seen_subcommand_from " + word);
-  if (!command.below.empty()) out += "; and not __fish_seen_subcommand_from " + joined(names_of(command.below), " ");
+  for (const std::string& word : command.path)
+    out += (out.empty() ? "" : "; and ") + ("__fish_seen_subcommand_from " + word);
+  if (!command.below.empty())
+    out += "; and not __fish_seen_subcommand_from " + joined(names_of(command.below), " ");
   for (const CommandLine& other : commands)
-    if (command.path.size() == 1 && other.path.size() == 2 && other.path.back() == command.path.front()) out += "; and not __fish_seen_subcommand_from " + other.path.front();
+    if (command.path.size() == 1 && other.path.size() == 2 && other.path.back() == command.path.front())
+      out += "; and not __fish_seen_subcommand_from " + other.path.front();
   return out;
 }
 
 std::string fish_script(const std::vector<CommandLine>& commands) {
   std::string out = "# fish completion of palpate; made by `palpate completions fish`\n";
   for (const CommandLine& command : commands) {
-    const std::string start = fmt::format("complete -c palpate -n {}", quoted_for_fish(fish_place(command, commands)));
-    for (const CLI::App* below : command.below) out += fmt::format("{} -f -a {} -d {}\n", start, below->get_name(), quoted_for_fish(below->get_description()));
+    const std::string start =
+        fmt::format("complete -c palpate -n {}", quoted_for_fish(fish_place(command, commands)));
+    for (const CLI::App* below : command.below)
+      out += fmt::format("{} -f -a {} -d {}\n", start, below->get_name(),
+                         quoted_for_fish(below->get_description()));
     for (const OptionLine& option : command.options) {
       out += start;
-      for (const std::string& name : option.names) out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      if (option.takes == Takes::kWords) out += " -x -a " + quoted_for_fish(joined(option.words, " "));
-      else if (option.takes == Takes::kFile) out += " -r -F";
-      else if (option.takes == Takes::kFolder) out += " -x -a '(__fish_complete_directories)'";
-      else if (option.takes == Takes::kText) out += " -x";
+      for (const std::string& name : option.names)
+        out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+      if (option.takes == Takes::kWords)
+        out += " -x -a " + quoted_for_fish(joined(option.words, " "));
+      else if (option.takes == Takes::kFile)
+        out += " -r -F";
+      else if (option.takes == Takes::kFolder)
+        out += " -x -a '(__fish_complete_directories)'";
+      else if (option.takes == Takes::kText)
+        out += " -x";
       out += " -d " + quoted_for_fish(option.help) + "\n";
     }
   }
@@ -245,9 +274,12 @@ std::string roff(const std::string& text, bool hyphens_as_minus = false) {
   bool line_begins = true;
   for (const char c : text) {
     if (line_begins && (c == '.' || c == '\'')) out += "\\&";
-    if (c == '\\') out += "\\e";
-    else if (c == '-' && hyphens_as_minus) out += "\\-";
-    else out += c;
+    if (c == '\\')
+      out += "\\e";
+    else if (c == '-' && hyphens_as_minus)
+      out += "\\-";
+    else
+      out += c;
     line_begins = c == '\n';
   }
   return out;
@@ -268,13 +300,17 @@ std::string roff_options(const std::vector<OptionLine>& options) {
   return out;
 }
 
-std::string page_name(const std::string& command) { return command.empty() ? "palpate" : "palpate-" + command; }
+std::string page_name(const std::string& command) {
+  return command.empty() ? "palpate" : "palpate-" + command;
+}
 
 void add_command(const CommandLine& command, std::string& out) {
   const std::string name = "palpate" + (command.path.empty() ? "" : " " + joined(command.path, " "));
   out += ".B " + roff(name, true) + "\n";
   if (!command.options.empty()) out += "[options]";
-  for (const OptionLine& positional : command.positionals) out += " " + roff(positional.type.empty() ? positional.names.front() : positional.type, true) + (positional.again ? " ..." : "");
+  for (const OptionLine& positional : command.positionals)
+    out += " " + roff(positional.type.empty() ? positional.names.front() : positional.type, true) +
+           (positional.again ? " ..." : "");
   if (!command.below.empty()) out += " COMMAND ...";
   out += "\n";
 }
@@ -283,22 +319,30 @@ void add_command(const CommandLine& command, std::string& out) {
 
 std::string completion_script(const CLI::App& app, const std::string& shell) {
   const std::vector<CommandLine> commands = list_commands(app);
-  return shell == "bash" ? bash_script(commands) : shell == "zsh" ? zsh_script(commands) : fish_script(commands);
+  return shell == "bash"  ? bash_script(commands)
+         : shell == "zsh" ? zsh_script(commands)
+                          : fish_script(commands);
 }
 
 std::string manual_page(const CLI::App& app, const std::string& command, const std::string& version) {
   const std::vector<CommandLine> commands = list_commands(app);
-  const auto found = std::find_if(commands.begin(), commands.end(), [&](const CommandLine& line) { return joined(line.path, " ") == command; });
+  const auto found = std::find_if(commands.begin(), commands.end(),
+                                  [&](const CommandLine& line) { return joined(line.path, " ") == command; });
   if (found == commands.end()) return {};
   std::string title = page_name(command);
-  std::transform(title.begin(), title.end(), title.begin(), [](char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); });
-  const std::string about = command.empty() ? "exact contacts and forces between a tool and a large mock-up" : found->app->get_description();
-  std::string out = fmt::format(".TH {} 1 \"\" \"palpate {}\" \"palpate\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n", roff(title, true), version, roff(page_name(command), true), roff(about));
+  std::transform(title.begin(), title.end(), title.begin(),
+                 [](char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); });
+  const std::string about = command.empty() ? "exact contacts and forces between a tool and a large mock-up"
+                                            : found->app->get_description();
+  std::string out =
+      fmt::format(".TH {} 1 \"\" \"palpate {}\" \"palpate\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n",
+                  roff(title, true), version, roff(page_name(command), true), roff(about));
   add_command(*found, out);
   if (command.empty()) out += ".SH DESCRIPTION\n" + roff(found->app->get_description()) + "\n";
   if (!found->below.empty()) {
     out += ".SH COMMANDS\n";
-    for (const CLI::App* below : found->below) out += ".TP\n.B " + roff(below->get_name(), true) + "\n" + roff(below->get_description()) + "\n";
+    for (const CLI::App* below : found->below)
+      out += ".TP\n.B " + roff(below->get_name(), true) + "\n" + roff(below->get_description()) + "\n";
   }
   if (!found->positionals.empty()) out += ".SH ARGUMENTS\n" + roff_options(found->positionals);
   out += ".SH OPTIONS\n" + roff_options(found->options);
@@ -307,7 +351,8 @@ std::string manual_page(const CLI::App& app, const std::string& command, const s
   if (!command.empty())
     for (const CommandLine& below : commands) {
       if (below.path.size() != 2 || below.path.front() != command) continue;
-      out += ".SH " + roff("palpate " + joined(below.path, " "), true) + "\n" + roff(below.app->get_description()) + "\n.PP\n";
+      out += ".SH " + roff("palpate " + joined(below.path, " "), true) + "\n" +
+             roff(below.app->get_description()) + "\n.PP\n";
       add_command(below, out);
       if (!below.positionals.empty()) out += roff_options(below.positionals);
       out += roff_options(below.options);
@@ -315,10 +360,13 @@ std::string manual_page(const CLI::App& app, const std::string& command, const s
     }
   out += ".SH SEE ALSO\n";
   std::string others;
-  if (!command.empty()) others = ".BR palpate (1)\n";
+  if (!command.empty())
+    others = ".BR palpate (1)\n";
   else
     for (const CommandLine& other : commands)
-      if (other.path.size() == 1) others += (others.empty() ? "" : ",\n") + fmt::format(".BR {} (1)", roff(page_name(other.path.front()), true));
+      if (other.path.size() == 1)
+        others += (others.empty() ? "" : ",\n") +
+                  fmt::format(".BR {} (1)", roff(page_name(other.path.front()), true));
   return out + others + (command.empty() ? "\n" : "");
 }
 
@@ -342,14 +390,20 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
-  const auto nearest = std::min_element(words.begin(), words.end(), [&](const auto& a, const auto& b) { return edit_distance(word, a) < edit_distance(word, b); });
-  constexpr std::size_t kMostChanges = 2;   // chosen: a slip of the finger, or two letters exchanged
+  const auto nearest = std::min_element(words.begin(), words.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(word, a) < edit_distance(word, b);
+  });
+  constexpr std::size_t kMostChanges = 2;  // chosen: a slip of the finger, or two letters exchanged
   return nearest != words.end() && edit_distance(word, *nearest) <= kMostChanges ? *nearest : std::string();
 }
 
-std::string unexpected_words(const CLI::App& command, const std::string& name, const std::vector<std::string>& words) {
-  const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
-  if (option == words.end()) return fmt::format("{} takes no further argument '{}'", name, words.empty() ? std::string() : words.front());
+std::string unexpected_words(const CLI::App& command, const std::string& name,
+                             const std::vector<std::string>& words) {
+  const auto option =
+      std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
+  if (option == words.end())
+    return fmt::format("{} takes no further argument '{}'", name,
+                       words.empty() ? std::string() : words.front());
   const std::string flag = option->substr(0, option->find('='));
   std::vector<std::string> known;
   for (const CLI::Option* one : command.get_options())
@@ -358,7 +412,8 @@ std::string unexpected_words(const CLI::App& command, const std::string& name, c
   // Its beginning alone is near, too: "--dev".
   for (std::size_t i = 0; i < known.size() && guess.empty(); ++i)
     if (flag.size() > 4 && known[i].starts_with(flag)) guess = known[i];
-  return fmt::format("'{}' is no option of {}{}", flag, name, guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess));
+  return fmt::format("'{}' is no option of {}{}", flag, name,
+                     guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess));
 }
 
 }  // namespace palpate

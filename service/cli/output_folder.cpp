@@ -15,9 +15,13 @@ std::string cannot_write_to(const std::string& folder) {
   std::error_code error;
   fs::path place = fs::absolute(folder, error);
   // Up to what is there already.
-  for (; !error && !fs::exists(fs::symlink_status(place, error)) && place.has_relative_path(); place = place.parent_path()) error.clear();
+  for (; !error && !fs::exists(fs::symlink_status(place, error)) && place.has_relative_path();
+       place = place.parent_path())
+    error.clear();
   if (!fs::is_directory(place, error)) return fmt::format("{}: '{}' is no folder", folder, place.string());
-  if (::access(place.c_str(), W_OK | X_OK) != 0) return fmt::format("{}: nothing can be written to '{}' ({})", folder, place.string(), std::strerror(errno));
+  if (::access(place.c_str(), W_OK | X_OK) != 0)
+    return fmt::format("{}: nothing can be written to '{}' ({})", folder, place.string(),
+                       std::strerror(errno));
   return {};
 }
 

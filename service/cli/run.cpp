@@ -59,12 +59,12 @@ class RunWatch : public RunObserver {
   }
 
  private:
-  /// What the person at the device should do: on a terminal it takes the live line's place, elsewhere each new sentence is a line.
+  /// What the person at the device should do: on a terminal it takes the live line's place, elsewhere, and where all else is quiet, each new sentence is a line.
   void guide(const TickRecord& tick) {
     const std::string_view said = tick.guidance;
     if (said == guidance_) return;
     guidance_ = said;
-    if (!console_.terminal()) console_.say(said.empty() ? "the haptic device is ready" : said);
+    if (!console_.terminal() || Console::quiet()) console_.say(said.empty() ? "the haptic device is ready" : said);
   }
 
   Recorder& recorder_;

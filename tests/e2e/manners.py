@@ -43,7 +43,7 @@ def test_a_query_at_a_terminal_is_for_people_and_elsewhere_for_programs():
     scene, pose = pressed(folder)
     code, said = at_terminal('query', scene, '--pose', pose, '--names', both=False)
     expect(code == 0 and '{' not in said, said)
-    for words in ('pairs of triangles, 1 area', 'force', ' N in all', 'mm deep, along', 'mock-up    block', 'tool       ball'):
+    for words in ('pairs of triangles, 1 area', 'force', ' N in all', 'felt by a hand at rest there', 'mm deep, along', 'mock-up    block', 'tool       ball'):
         expect(words in said, f'{words}: {said}')
     expect(max(map(len, said.splitlines())) < 200, said)
     (line,) = lines_of(palpate('query', scene, '--pose', pose))
