@@ -67,6 +67,13 @@ class Writer {
     separate();
     out_ += "null";
   }
+  void pose(std::string_view name, const Pose& pose) {
+    const auto& [p, q] = pose;
+    key(name);
+    open('[');
+    for (const double one : {p.x, p.y, p.z, q.x, q.y, q.z, q.w}) number(one);
+    close(']');
+  }
   void ids(std::span<const std::uint32_t> list) {
     open('[');
     for (const std::uint32_t id : list) integer(id);
@@ -136,8 +143,9 @@ void write_area(Writer& json, const QueryLine& line, const ContactArea& area, co
 void append_query_line(const QueryLine& line, const Contacts& contacts, const ContactResponse& response, std::string& out) {
   Writer json(out);
   json.open('{');
-  json.key("pose");
-  json.integer(line.pose);
+  json.key("number");
+  json.integer(line.number);
+  if (line.pose) json.pose("pose", *line.pose);
   json.key("contact");
   json.boolean(contacts.contact);
   json.key("pairs");
@@ -167,11 +175,7 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   json.vector_or_null("torque", response.told().torque, response.contact_points);
   json.flags(response.flags);
   if (response.felt) {
-    const Pose& tool = response.felt->tool;
-    json.key("tool");
-    json.open('[');
-    for (const double one : {tool.position.x, tool.position.y, tool.position.z, tool.rotation.x, tool.rotation.y, tool.rotation.z, tool.rotation.w}) json.number(one);
-    json.close(']');
+    json.pose("tool", response.felt->tool);
     json.key("evaluations");
     json.integer(response.felt->evaluations);
   }

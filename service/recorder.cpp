@@ -128,7 +128,7 @@ Result<void> Recorder::on_tick(const TickRecord& tick) {
 
 Result<void> Recorder::on_frame(const FrameRecord& frame) {
   files_->line.clear();
-  const QueryLine line{.pose = files_->frames_written++, .total_us = frame.total_us, .batch = {}, .tick = frame.tick, .heights = true};
+  const QueryLine line{.number = files_->frames_written++, .total_us = frame.total_us, .batch = {}, .tick = frame.tick, .heights = true};
   append_query_line(line, frame.contacts, frame.response, files_->line);
   return files_->frames.write(files_->line.data(), files_->line.size());
 }

@@ -50,7 +50,32 @@ if(TARGET palpate)
   install(RUNTIME_DEPENDENCY_SET palpate_runtime COMPONENT bundle DESTINATION lib/palpate
     PRE_EXCLUDE_REGEXES "^ld-linux" "^libc\\.so" "^libm\\.so" "^libpthread" "^libdl\\.so" "^librt\\.so"
     POST_EXCLUDE_REGEXES "/ld-linux" "/libc\\.so" "/libm\\.so")
+  # Manual pages and completions, by the program itself: they are of its own options. A program for another machine can't make them here.
+  if(NOT CMAKE_CROSSCOMPILING)
+    set(manual "${PROJECT_BINARY_DIR}/manual")
+    add_custom_command(OUTPUT "${manual}/made"
+      COMMAND ${CMAKE_COMMAND} -E make_directory "${manual}/completions"
+      COMMAND palpate man --out "${manual}/man1"
+      COMMAND palpate completions bash > "${manual}/completions/palpate"
+      COMMAND palpate completions zsh > "${manual}/completions/_palpate"
+      COMMAND palpate completions fish > "${manual}/completions/palpate.fish"
+      COMMAND ${CMAKE_COMMAND} -E touch "${manual}/made"
+      DEPENDS palpate COMMENT "Writing manual pages and completions" VERBATIM)
+    add_custom_target(palpate_manual ALL DEPENDS "${manual}/made")
+    install(DIRECTORY "${manual}/man1" DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT bundle OPTIONAL)
+    install(FILES "${manual}/completions/palpate" DESTINATION share/bash-completion/completions COMPONENT bundle OPTIONAL)
+    install(FILES "${manual}/completions/_palpate" DESTINATION share/zsh/site-functions COMPONENT bundle OPTIONAL)
+    install(FILES "${manual}/completions/palpate.fish" DESTINATION share/fish/vendor_completions.d COMPONENT bundle OPTIONAL)
+  endif()
   install(DIRECTORY scenes DESTINATION share/palpate COMPONENT bundle)
+  install(CODE "
+    set(LIBRARIES \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/palpate\")
+    set(OUT \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/palpate/licences\")
+    set(ARCHITECTURE \"${CMAKE_LIBRARY_ARCHITECTURE}\")
+    set(PACKAGES libcli11-dev libglm-dev nlohmann-json3-dev libboost1.74-dev libxxhash-dev libjs-chart.js)
+    file(MAKE_DIRECTORY \"\${OUT}\")
+    include(\"${PROJECT_SOURCE_DIR}/scripts/cmake/CollectLicences.cmake\")" COMPONENT bundle)
+  install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md SECURITY.md CITATION.cff driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
   if(TARGET equivalence)
     # For a GPU that nobody here has had: asks it for all stored answers, and how fast it is.
     set_target_properties(equivalence PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate")
@@ -59,7 +84,6 @@ if(TARGET palpate)
     install(FILES tests/equivalence/hashes.json DESTINATION share/palpate COMPONENT bundle)
     install(PROGRAMS scripts/gpu-check DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bundle)
   endif()
-  install(FILES README.md LICENSE CHANGELOG.md driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
   install(FILES service/deploy/palpate.service service/deploy/nginx.conf DESTINATION share/palpate/deploy COMPONENT bundle)
 endif()
 

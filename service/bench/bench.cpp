@@ -5,6 +5,8 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 
+#include "service/cli/output_folder.h"
+
 namespace palpate {
 namespace {
 
@@ -21,9 +23,17 @@ CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMem
 const std::vector<std::string> kEngines = {"auto", "gpu", "cpu", "ref"};
 constexpr const char* kEngineHelp = "the engine, as for run (auto)";
 
+/// Looked at before anything is measured, which takes minutes.
+void add_out(CLI::App& app, BenchOptions& options) {
+  app.add_option("--out", options.out, "directory for results.csv, results.json, report.html")
+      ->required()
+      ->check(CLI::Validator([](const std::string& folder) { return cannot_write_to(folder); }, ""))
+      ->type_name("DIR");
+}
+
 void add_common(CLI::App& app, BenchOptions& options, bool scenes_required = true) {
   app.add_option("scenes", options.scenes, "scene files (JSON)")->required(scenes_required)->type_name("SCENE");
-  app.add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  add_out(app, options);
   app.add_option_function<std::string>(
          "--profile", [&options](const std::string& word) { options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined; },
          "in place of the scenes'")
@@ -124,14 +134,14 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
 
   CLI::App* stability = bench->add_subcommand("stability", "highest stable stiffness of each force law beside theory; steps and energy of the force");
   stability->add_option("scenes", options.scenes, "scene files (JSON) whose sessions are looked at for jumps, too")->type_name("SCENE");
-  stability->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  add_out(*stability, options);
   stability->footer("In virtual time: the shipped law closed over springs, over a bouncing wall, over tools in six degrees of\n"
                     "freedom, and over the real collision query. critical_k is found by\n"
                     "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and torque, and energy given out.");
   stability->callback([&] { outcome = bench_stability(options, parts); });
 
   CLI::App* plan = bench->add_subcommand("plan", "scenes that lack something: the whole plan beside their own, the same bits, time and memory");
-  plan->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  add_out(*plan, options);
   plan->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
   plan->add_option("--rounds", options.rounds, "times that all poses are gone through, the two plans in turns (3)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))
@@ -141,7 +151,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   plan->callback([&] { outcome = bench_plan(options, parts); });
 
   CLI::App* numerics = bench->add_subcommand("numerics", "stiff and extreme cases beside the same method in plain single and double precision: where each breaks");
-  numerics->add_option("--out", options.out, "directory for results.csv, results.json, report.html")->required()->type_name("DIR");
+  add_out(*numerics, options);
   numerics->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
   numerics->footer("Swept: K, scale, offset from the origin, aspect of triangles, depth, sample spacing, gaps, age of results. The error is of the force, relative; for\n"
                    "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; `breaks` in results.json sums up.");

@@ -9,12 +9,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <new>
+#include <string_view>
 
+#include "generated/commit.h"
 #include "model/one_line.h"
 #include "service/bench/bench.h"
 #include "service/cli/console.h"
+#include "service/cli/manual.h"
+#include "service/cli/output_folder.h"
 #include "service/cli/serve.h"
 #include "service/cli/tune.h"
 
@@ -30,14 +36,14 @@ The result goes to standard output, progress and messages to standard error.
 
 Exit codes: 0 done; 2 wrong usage; 3 a bad value in a file or an argument; 4 no usable device; 1 anything else.
 
-A first quarter of an hour:
-  palpate devices                                                  what can compute, what can be felt
-  palpate generate contacts --out try                              a mock-up of 25,000 triangles, a clamp and its path
-  palpate info try/*.stl                                           what was read: parts, size, closed or open
-  palpate query try/scene.json --pose "0 0 0 0 0 0 1"              contact at one pose, as JSON
-  palpate run try/scene.json --pace asap --out first               the simulated hand; then open first/report.html
+A first quarter of an hour, as README.md has it:
+  palpate generate disassembly --triangles 20000 --out engine      stands for a mesh of yours: mock-up, tool, scene
+  palpate info engine/mockup.stl                                   what was read: parts, size, closed or open
+  palpate query engine/scene.json --pose "0 0 0 0 0 0 1"           contact, force and torque at one pose
+  palpate plan engine/scene.json                                   what this scene needs, and why
+  palpate run engine/scene.json --pace asap --out run              the whole task; then open run/report.html
 
-`palpate COMMAND --help` tells more.)";
+`palpate help COMMAND` tells more; `palpate devices` what can compute here and what can be felt.)";
 
 constexpr const char* kRunFooter = R"(DIR then holds trace.csv (a row a tick), frames.jsonl (an answered pose a line), summary.json and report.html
 (one page with the plots, opens anywhere). The summary is printed too.
@@ -51,8 +57,9 @@ Examples:
   palpate run scenes/disassembly.json --pace asap --out a
   palpate run scenes/contacts.json --backend cpu --duration 2)";
 
-constexpr const char* kQueryFooter = R"(Prints one JSON object a pose: pose, contact, pairs, cst bst cmt bmt imt est (triangle ids), areas (id, zones, static, mobile, normal,
-depth m, point m, force N, torque N·m, flags), force, torque (about the tool's centre of mass), flags, truncated, time_us.
+constexpr const char* kQueryFooter = R"(At a terminal it prints what touches, how deep and with which force. Elsewhere, and with --json, it prints one JSON object a pose:
+number (from 0), pose, contact, pairs, cst bst cmt bmt imt est (triangle ids), areas (id, zones, static, mobile, normal, depth m,
+point m, force N, torque N·m, flags), force, torque (about the tool's centre of mass), flags, truncated, time_us.
 With --names also parts: the paths of the mock-up's and of the tool's parts that touch, as palpate info has them.
 A file of poses is CSV with the header x,y,z,qx,qy,qz,qw. A pose far away is free of contact; only one that is not finite or
 not a unit rotation is an error (exit code 3).
@@ -125,30 +132,12 @@ void add_method(CLI::App& app, SceneOptions& options) {
       ->type_name("auto|full");
 }
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
 /// One sentence for a first word that is no command.
 std::string unknown_command(const std::string& word, const std::vector<std::string>& commands) {
-  const auto nearest = std::min_element(commands.begin(), commands.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
-  });
   std::string list;
   for (const std::string& command : commands) list += (list.empty() ? "" : ", ") + command;
-  const std::string guess = edit_distance(word, *nearest) <= 2 ? fmt::format("; did you mean '{}'?", *nearest) : "";
-  return fmt::format("'{}' is no command of this version (there are {}){}", word, list, guess);
+  const std::string nearest = nearest_word(word, commands);
+  return fmt::format("'{}' is no command of this version (there are {}){}", word, list, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
 
 int fail(const Error& error) {
@@ -158,19 +147,61 @@ int fail(const Error& error) {
 
 /// CLI11's exceptions as one sentence: a value that was refused is 3, any other mistake 2.
 int fail_parse(const CLI::ParseError& error, const CLI::App& app) {
+  const CLI::App* command = &app;
+  std::string name = "palpate";
+  for (auto used = command->get_subcommands(); !used.empty(); used = command->get_subcommands()) {
+    command = used.front();
+    name += " " + command->get_name();
+  }
   const bool value = error.get_name() == "ConversionError" || error.get_name() == "ValidationError";
-  std::string sentence = error.what();
+  std::string sentence = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) ? unexpected_words(*command, name, app.remaining(true)) : error.what();
   std::replace(sentence.begin(), sentence.end(), '\n', ' ');
-  const auto used = app.get_subcommands();
-  const std::string command = used.empty() ? std::string("palpate") : "palpate " + used.front()->get_name();
-  return fail({value ? ErrorCode::kBadValue : ErrorCode::kUsage, fmt::format("{} (see {} --help)", sentence, command)});
+  return fail({value ? ErrorCode::kBadValue : ErrorCode::kUsage, fmt::format("{} (see {} --help)", sentence, name)});
+}
+
+/// All on one line, for bug reports.
+std::string version_text() { return "palpate " PALPATE_VERSION ", commit " PALPATE_COMMIT ", engines gpu, cpu, ref"; }
+
+/// `--quiet` for every command.
+void add_quiet(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->add_flag_callback("-q,--quiet", [] { Console::be_quiet(); }, "no progress and no messages but errors, and what the person at the device has to do");
+    add_quiet(*command);
+  }
+}
+
+/// Pages for `man`, a file a command.
+Result<void> write_manual(const CLI::App& app, const std::string& folder) {
+  if (const std::string wrong = cannot_write_to(folder); !wrong.empty()) return bad_value("--out " + wrong);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  std::vector<std::string> commands{""};
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) commands.push_back(command->get_name());
+  for (const std::string& command : commands) {
+    const std::filesystem::path file = std::filesystem::path(folder) / ((command.empty() ? "palpate" : "palpate-" + command) + ".1");
+    std::ofstream out(file, std::ios::binary | std::ios::trunc);
+    out << manual_page(app, command, PALPATE_VERSION);
+    out.flush();
+    if (!out) return bad_value(fmt::format("{}: the file can't be written", file.string()));
+  }
+  return {};
+}
+
+/// `palpate help COMMAND …` is `palpate COMMAND … --help`.
+std::vector<const char*> without_help(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (argc < 2 || std::string_view(argv[1]) != "help") return words;
+  words.erase(words.begin() + 1);
+  words.push_back("--help");
+  return words;
 }
 
 int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   CLI::App app(kAbout, "palpate");
-  app.footer(kFooter);
-  app.set_version_flag("--version", "palpate " PALPATE_VERSION, "tell the version");
+  app.footer(std::string(kFooter) + "\n\n" + kEnvironmentText);
+  app.set_version_flag("-V,--version", version_text(), "tell the version, the commit and the engines");
   app.set_help_flag("-h,--help", "tell how to use it");
+  app.require_subcommand(0, 1);   // a scene may be called like a command
   app.get_formatter()->column_width(38);
 
   Result<void> outcome;
@@ -191,11 +222,12 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   run_app->add_option("--switch", run.switches, "SECONDS:WORD, again and again: then go over to profile paper or refined, or plan full or auto, without a missed tick")
       ->type_name("S:WORD");
   run_app->add_option("--out", run.out, "directory for the files; default a fresh palpate-run-…")->type_name("DIR");
+  run_app->add_flag("--overwrite", run.overwrite, "replace the files of a run that is in --out already");
   run_app->footer(kRunFooter);
   run_app->callback([&] { outcome = run_command(run, parts); });
 
   QueryOptions query;
-  CLI::App* query_app = app.add_subcommand("query", "answer poses: contact sets, areas, force and torque, as JSON lines");
+  CLI::App* query_app = app.add_subcommand("query", "answer poses: contact sets, areas, force and torque, for people or as JSON lines");
   add_scene(*query_app, query.common);
   auto* pose = query_app->add_option("--pose", query.pose, "one pose, world from tool: metres and a unit quaternion")
                    ->type_name("\"x y z qx qy qz qw\"");
@@ -207,6 +239,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
   query_app->add_flag("--names", query.names, "parts: which named parts touch");
+  query_app->add_flag("--json", query.json, "one JSON object a pose at a terminal, too; elsewhere that is so anyway");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
   query_app->footer(kQueryFooter);
   query_app->callback([&] { outcome = query_command(query, parts); });
@@ -256,21 +289,48 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   BenchOptions bench;
   add_bench_command(app, bench, parts, outcome);
 
+  std::string shell, page, manual;
+  CLI::App* completions_app = app.add_subcommand("completions", "print the completion script of a shell");
+  completions_app->add_option("shell", shell, "which one")->required()->check(one_of({"bash", "zsh", "fish"}))->type_name("bash|zsh|fish");
+  completions_app->footer("Examples:\n  source <(palpate completions bash)\n  palpate completions fish > ~/.config/fish/completions/palpate.fish");
+  completions_app->callback([&] { fmt::print("{}", completion_script(app, shell)); });
+
+  CLI::App* man_app = app.add_subcommand("man", "print a manual page, or write them all");
+  auto* page_option = man_app->add_option("command", page, "whose; without it the program's")->type_name("COMMAND");
+  man_app->add_option("--out", manual, "folder for the pages of all commands, palpate.1, palpate-run.1, …")->type_name("DIR")->excludes(page_option);
+  man_app->footer("Example:\n  palpate man run | man -l -");
+  man_app->callback([&] {
+    if (!manual.empty()) {
+      outcome = write_manual(app, manual);
+      return;
+    }
+    const std::string text = manual_page(app, page, PALPATE_VERSION);
+    if (text.empty()) outcome = Error{ErrorCode::kUsage, fmt::format("'{}' is no command of palpate (see palpate --help)", page)};
+    fmt::print("{}", text);
+  });
+  add_quiet(app);
+
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
-  const std::string first = argv[1];
+  const std::vector<const char*> words = without_help(argc, argv);
+  const std::string first = words[1];
   if (!first.starts_with('-') && std::find(commands.begin(), commands.end(), first) == commands.end())
     return fail({ErrorCode::kUsage, unknown_command(first, commands)});
 
   try {
-    app.parse(argc, argv);
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::CallForHelp&) {
-    const auto used = app.get_subcommands();
-    std::fputs((used.empty() ? app.help() : used.front()->help("palpate")).c_str(), stdout);
+    std::string name = "palpate";
+    const CLI::App* command = &app;
+    for (auto used = command->get_subcommands(); !used.empty(); used = command->get_subcommands()) {
+      if (command != &app) name += " " + command->get_name();
+      command = used.front();
+    }
+    std::fputs((command == &app ? app.help() : command->help(name)).c_str(), stdout);
     return 0;
   } catch (const CLI::CallForVersion& version) {
     std::printf("%s\n", version.what());

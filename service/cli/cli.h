@@ -62,6 +62,7 @@ struct RunOptions {
   std::optional<double> duration_s;
   std::vector<std::string> switches;  ///< "SECONDS:WORD", WORD paper, refined, full or auto: what the run goes over to, and when
   std::string out;                    ///< empty: a fresh directory
+  bool overwrite = false;             ///< the files of a run that `out` has already
 };
 
 struct QueryOptions {
@@ -70,6 +71,7 @@ struct QueryOptions {
   std::optional<std::string> poses;   ///< CSV file
   std::optional<std::uint64_t> batch;
   bool names = false;                 ///< the parts that touch, by their paths
+  bool json = false;                  ///< even at a terminal
   std::string export_directory;       ///< empty: none
 };
 

@@ -45,7 +45,9 @@ void put(std::string_view text) {
 }
 
 constexpr int kBarCells = 30;
-constexpr std::chrono::milliseconds kRedraw{50};
+constexpr std::chrono::milliseconds kRedraw{50}, kSignOfLife{10'000};
+
+std::atomic<bool> is_quiet{false};
 
 std::string bar(double done) {
   const int full = std::clamp(static_cast<int>(std::lround(done * kBarCells)), 0, kBarCells);
@@ -67,35 +69,43 @@ const std::atomic<bool>& interrupt_flag() noexcept { return interrupt_seen; }
 Console::Console() {
   const char* term = std::getenv("TERM");
   terminal_ = isatty(STDERR_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
+  if (!terminal_) last_draw_ = std::chrono::steady_clock::now();
 }
+
+void Console::be_quiet() { is_quiet = true; }
+bool Console::quiet() { return is_quiet; }
 
 Console::~Console() { finish(); }
 
 void Console::note(std::string_view sentence) {
+  if (!is_quiet) say(sentence);
+}
+
+void Console::say(std::string_view sentence) {
   finish();
   put(fmt::format("palpate: {}\n", sentence));
 }
 
 void Console::step(std::string_view name) {
   step_ = name;
-  if (!terminal_) put(fmt::format("palpate: {}\n", name));
+  if (!terminal_) note(name);
 }
 
 bool Console::progress(const char* what, double done) {
-  const auto now = std::chrono::steady_clock::now();
-  if (terminal_ && (!drawn_ || done >= 1 || now - last_draw_ >= kRedraw)) {
-    last_draw_ = now;
-    draw(fmt::format("{} {:3.0f} %  {}: {}", bar(done), 100 * std::clamp(done, 0.0, 1.0), step_, what));
+  if (terminal_ ? !drawn_ || done >= 1 || wants_live() : wants_live()) {
+    const double percent = 100 * std::clamp(done, 0.0, 1.0);
+    live(terminal_ ? fmt::format("{} {:3.0f} %  {}: {}", bar(done), percent, step_, what) : fmt::format("{}: {}, {:.0f} %", step_, what, percent));
   }
   return !interrupted();
 }
 
-bool Console::wants_live() const { return terminal_ && std::chrono::steady_clock::now() - last_draw_ >= kRedraw; }
+bool Console::wants_live() const { return !is_quiet && std::chrono::steady_clock::now() - last_draw_ >= (terminal_ ? kRedraw : kSignOfLife); }
 
 void Console::live(std::string_view line) {
-  if (!terminal_) return;
+  if (is_quiet) return;
   last_draw_ = std::chrono::steady_clock::now();
-  draw(line);
+  if (terminal_) draw(line);
+  else note(line.substr(std::min(line.find_first_not_of(' '), line.size())));
 }
 
 void Console::finish() {

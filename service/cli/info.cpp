@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "model/geometry_build.h"
 #include "model/mesh_import.h"
+#include "model/one_line.h"
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
@@ -284,21 +286,27 @@ Result<SceneInfo> inspect_scene(const std::string& path, const ImportLimits& lim
 }  // namespace
 
 Result<void> info_command(const InfoOptions& options, const Parts& parts) {
-  // Everything is read before anything is printed, so a bad file leaves standard output empty. Scenes first: a back end is made before an import starts threads.
+  // Scenes first: a back end is made before an import starts threads. What can be read is told whatever becomes of the others; the last reason is this command's.
+  std::optional<Error> failed;
+  const auto fail = [&failed](const Error& error) {
+    if (failed) std::fprintf(stderr, "palpate: %s\n", one_line(failed->sentence).c_str());
+    failed = error;
+  };
   std::vector<SceneInfo> scenes;
   for (const std::string& path : options.files) {
     if (!is_scene(path)) continue;
     Result<SceneInfo> scene = inspect_scene(path, options.import, parts);
-    if (!scene) return scene.error();
-    scenes.push_back(std::move(*scene));
+    if (scene) scenes.push_back(std::move(*scene));
+    else fail(scene.error());
   }
   std::vector<MeshInfo> infos;
   for (const std::string& path : options.files) {
     if (is_scene(path)) continue;
     Result<MeshInfo> info = inspect(path, options);
-    if (!info) return info.error();
-    infos.push_back(std::move(*info));
+    if (info) infos.push_back(std::move(*info));
+    else fail(info.error());
   }
+  if (infos.empty() && scenes.empty()) return *failed;
   if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const MeshInfo& info : infos) {
@@ -308,7 +316,7 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
     nlohmann::ordered_json out{{"meshes", list}};
     for (const SceneInfo& scene : scenes) out["scenes"].push_back({{"file", scene.file}, {"start", scene.talk.start}, {"bodies", scene.talk.bodies}});
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-    return {};
+    return failed ? Result<void>(*failed) : Result<void>();
   }
   for (std::size_t i = 0; i < infos.size(); ++i) {
     if (i > 0) fmt::print("\n");
@@ -322,7 +330,7 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
     for (const std::string& sentence : scene.talk.start) fmt::print("  {:<12} {}\n", "start", sentence);
     for (const std::string& sentence : scene.talk.bodies) fmt::print("  {:<12} {}\n", "note", sentence);
   }
-  return {};
+  return failed ? Result<void>(*failed) : Result<void>();
 }
 
 }  // namespace palpate

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include "service/cli/console.h"
 #include "service/cli/export_geometry.h"
 #include "service/cli/pose_input.h"
+#include "service/cli/query_text.h"
 #include "service/cli/scene_host.h"
 #include "service/query_json.h"
 #include "service/scene_talk.h"
@@ -82,8 +84,16 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   std::string text;
   std::size_t truncated = 0, unsettled = 0, directionless = 0;
   const char* capacity = "";
-  const auto print = [&](std::size_t pose, double total_us, const Contacts& contacts, const ContactResponse& response) {
-    append_query_line({.pose = pose, .total_us = total_us, .batch = options.batch, .tick = std::nullopt, .parts = options.names ? &named : nullptr}, contacts, response, text);
+  const TouchedParts* const parts_asked = options.names ? &named : nullptr;
+  const bool for_people = !options.json && ::isatty(STDOUT_FILENO) == 1;
+  if (for_people) console.finish();
+  const auto print = [&](std::size_t number, double total_us, const Contacts& contacts, const ContactResponse& response) {
+    if (!for_people)
+      append_query_line({.number = number, .total_us = total_us, .batch = options.batch, .tick = std::nullopt, .parts = parts_asked, .pose = &poses[number]}, contacts, response, text);
+    else if (poses.size() == 1)
+      text += answer_text(poses[number], contacts, response, parts_asked);
+    else
+      text += (number == 0 ? answer_table_head() : std::string()) + answer_table_line(number, contacts, response, parts_asked);
     if (response.flags & kFlagUnsettled) ++unsettled;
     if (response.flags & kFlagNoDirection) ++directionless;
     if (!contacts.truncated) return;

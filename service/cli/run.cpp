@@ -6,9 +6,11 @@
 #include <fstream>
 #include <set>
 #include <string_view>
+#include <vector>
 
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
+#include "service/cli/output_folder.h"
 #include "service/cli/scene_host.h"
 #include "service/recorder.h"
 #include "service/report/report.h"
@@ -62,7 +64,7 @@ class RunWatch : public RunObserver {
     const std::string_view said = tick.guidance;
     if (said == guidance_) return;
     guidance_ = said;
-    if (!console_.terminal()) console_.note(said.empty() ? "the haptic device is ready" : said);
+    if (!console_.terminal()) console_.say(said.empty() ? "the haptic device is ready" : said);
   }
 
   Recorder& recorder_;
@@ -76,18 +78,47 @@ class RunWatch : public RunObserver {
   std::string_view guidance_;   // text that outlives the run
 };
 
+/// What a run leaves in its directory.
+constexpr const char* kRunFiles[] = {"trace.csv", "frames.jsonl", "summary.json", "report.html"};
+
+/// Where a run's files go.
+struct RunFolder {
+  fs::path path;
+  std::vector<fs::path> made;   ///< directories that were not there before, from the outermost on
+
+  /// A run that never began leaves nothing.
+  void take_back() const {
+    std::error_code ignored;
+    for (const char* file : kRunFiles) fs::remove(path / file, ignored);
+    for (auto folder = made.rbegin(); folder != made.rend(); ++folder) fs::remove(*folder, ignored);   // those that are empty
+  }
+};
+
+/// Before anything is read: that files can be written to `wanted`, and that none would be lost.
+Result<void> check_output(const RunOptions& options) {
+  if (options.out.empty()) return {};
+  if (const std::string wrong = cannot_write_to(options.out); !wrong.empty()) return bad_value("--out " + wrong);
+  std::error_code ignored;
+  for (const char* file : kRunFiles)
+    if (!options.overwrite && fs::exists(fs::path(options.out) / file, ignored))
+      return bad_value(fmt::format("--out {}: a run's files are there already ({}); name another folder, or say --overwrite", options.out, file));
+  return {};
+}
+
 /// `wanted`, or a directory palpate-run-SCENE[-N] that did not exist before.
-Result<fs::path> output_directory(const std::string& wanted, const std::string& scene) {
+Result<RunFolder> output_directory(const std::string& wanted, const std::string& scene) {
   std::error_code error;
   if (!wanted.empty()) {
+    RunFolder out{wanted, {}};
+    for (fs::path above = fs::absolute(wanted, error); !error && !above.empty() && !fs::exists(above, error); above = above.parent_path()) out.made.insert(out.made.begin(), above);
     fs::create_directories(wanted, error);
     if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", wanted, error.message()));
-    return fs::path(wanted);
+    return out;
   }
   const std::string base = "palpate-run-" + scene_name(scene);
   for (int n = 1; n < 10000; ++n) {
     const fs::path candidate = n == 1 ? base : fmt::format("{}-{}", base, n);
-    if (fs::create_directory(candidate, error)) return candidate;
+    if (fs::create_directory(candidate, error)) return RunFolder{candidate, {candidate}};
     if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", candidate.string(), error.message()));
   }
   return bad_value(fmt::format("{}-N: there are 10,000 of them already; name one with --out", base));
@@ -127,6 +158,7 @@ Result<std::vector<PlanChange>> read_switches(const RunOptions& options, const L
 }
 
 Result<void> check_options(const RunOptions& options) {
+  if (auto done = check_output(options); !done) return done;
   if (options.duration_s && !(std::isfinite(*options.duration_s) && *options.duration_s > 0))
     return bad_value(fmt::format("--duration {} is not a positive number of seconds", *options.duration_s));
   return {};
@@ -156,9 +188,10 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
 
   const Result<std::vector<PlanChange>> switches = read_switches(options, loaded);
   if (!switches) return switches.error();
-  const Result<fs::path> directory = output_directory(options.out, options.common.scene);
-  if (!directory) return directory.error();
-  Result<std::unique_ptr<Recorder>> recorder = Recorder::create(directory->string());
+  const Result<RunFolder> folder = output_directory(options.out, options.common.scene);
+  if (!folder) return folder.error();
+  const fs::path& directory = folder->path;
+  Result<std::unique_ptr<Recorder>> recorder = Recorder::create(directory.string());
   if (!recorder) return recorder.error();
 
   const Result<SceneTalk> talk = scene_talk(loaded, *(*prepared)->backend);
@@ -185,19 +218,22 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
   console.finish();
   const Result<void> recorded = (*recorder)->finish();
-  if (!summary) return summary.error();
+  if (!summary) {   // it never began: the device can't be opened, say
+    folder->take_back();
+    return summary.error();
+  }
   if (!recorded) return recorded;
   summary->static_parts.assign(watch.statics().begin(), watch.statics().end());
   summary->tool_parts.assign(watch.mobiles().begin(), watch.mobiles().end());
 
   const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s};
-  if (auto done = write_text(*directory / "summary.json", summary_json(*summary)); !done) return done;
-  if (auto done = write_text(*directory / "report.html", report_page(*summary, loaded, facts, series)); !done) return done;
+  if (auto done = write_text(directory / "summary.json", summary_json(*summary)); !done) return done;
+  if (auto done = write_text(directory / "report.html", report_page(*summary, loaded, facts, series)); !done) return done;
   for (const std::string& note : summary->notes) console.note(note);
   if (summary->stopped) console.note("stopped before the end, with zero force and complete files");
   if (summary->failure) return *summary->failure;
-  fmt::print("{}{:<14} {}\n", summary_text(*summary, loaded.scene.stage_names), "files", directory->string());
-  fmt::print("{:<14} {}\n", "report", (*directory / "report.html").string());
+  fmt::print("{}{:<14} {}\n", summary_text(*summary, loaded.scene.stage_names), "files", directory.string());
+  fmt::print("{:<14} {}\n", "report", (directory / "report.html").string());
   return {};
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kFooter = R"(Answers over HTTP and WebSocket until SIGINT or SIGTERM: then forces go to zero first. docs/SERVICE.md has the protocol.
 Only this machine can connect, unless --listen says otherwise; beyond loopback a token and TLS are required (exit code 2).
-The log, a JSON object a line, goes to standard error.
+The log goes to standard error: at a terminal the address and what becomes of scenes and sessions, elsewhere a JSON object for each event and request.
 
 Examples:
   palpate serve --root scenes
@@ -30,6 +30,7 @@ void add_serve_command(CLI::App& app, ServeOptions& options, const Parts& parts,
   serve_app->add_option("--backend", options.backend, "the engine that answers, as for run (auto)")
       ->check(CLI::IsMember({"auto", "gpu", "cpu", "ref"}).description(""))
       ->type_name("auto|gpu|cpu|ref");
+  serve_app->add_option("--log", options.log, "how events are told; default plain at a terminal, else json")->check(CLI::IsMember({"plain", "json"}).description(""))->type_name("plain|json");
   const auto mebibytes = [&](const char* flag, std::uint64_t& bytes, const char* text) {
     serve_app->add_option_function<std::uint64_t>(flag, [&bytes](const std::uint64_t& mib) { bytes = mib << 20; }, text)
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description(""))

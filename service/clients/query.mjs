@@ -22,5 +22,5 @@ const [x, y, z, ...rotation] = scene.start; // metres, unit quaternion x y z w, 
 const poses = [0, 1, 2].map((step) => [x, y, z - 0.01 * step, ...rotation]);
 for (const line of (await ask('POST', `/v1/scenes/${scene.id}/query`, { poses })).trim().split('\n')) {
   const answer = JSON.parse(line);
-  console.log(answer.pose, answer.contact, JSON.stringify(answer.force), 'N', JSON.stringify(answer.torque), 'N·m');
+  console.log(answer.number, answer.contact, JSON.stringify(answer.force), 'N', JSON.stringify(answer.torque), 'N·m');
 }

@@ -25,4 +25,4 @@ start = scene['start']   # x y z qx qy qz qw: metres, unit quaternion, world fro
 poses = [[start[0], start[1], start[2] - 0.01 * step, *start[3:]] for step in range(3)]
 for line in ask('POST', f"/v1/scenes/{scene['id']}/query", {'poses': poses}).splitlines():
     answer = json.loads(line)
-    print(answer['pose'], answer['contact'], answer['force'], 'N', answer['torque'], 'N·m')
+    print(answer['number'], answer['contact'], answer['force'], 'N', answer['torque'], 'N·m')

@@ -229,7 +229,7 @@ void BatchQueue::answer_slice(Batch& batch) {
       if (request.binary)
         append_wrench(batch.answer, batch.made);
       else
-        append_query_line({.pose = batch.next, .total_us = batch.answer.total_us, .batch = std::nullopt, .tick = std::nullopt, .sets = request.sets, .parts = request.names ? &*parts : nullptr},
+        append_query_line({.number = batch.next, .total_us = batch.answer.total_us, .batch = std::nullopt, .tick = std::nullopt, .sets = request.sets, .parts = request.names ? &*parts : nullptr, .pose = &request.poses[batch.next]},
                           batch.answer.contacts, batch.answer.response, batch.made);
     }
   } catch (const std::exception& error) {

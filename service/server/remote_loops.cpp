@@ -319,7 +319,7 @@ void RemoteLoops::answer(Loop& loop) {
     out += "]";
     if (pose->full) {
       out += ",\"frame\":";
-      append_query_line({.pose = pose->seq, .total_us = loop.slot.total_us, .batch = std::nullopt, .tick = loop.slot.sample.tick, .heights = true}, contacts, response, out);
+      append_query_line({.number = pose->seq, .total_us = loop.slot.total_us, .batch = std::nullopt, .tick = loop.slot.sample.tick, .heights = true}, contacts, response, out);
       out.pop_back();   // the line feed
     }
     out += "}";

@@ -117,7 +117,8 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   ::setenv("LP_NUM_THREADS", "0", 0);
 
   // In the order in which they may refer to each other; destroyed from the last to the first.
-  Log log;
+  const bool plain = options.log == "plain" || (options.log.empty() && ::isatty(STDERR_FILENO) == 1);
+  Log log(plain ? Log::Form::kPlain : Log::Form::kJson, Console::quiet());
   Metrics metrics;
   const ServerLimits& limits = options.limits;
   const AccessRules rules = access_rules(*listen, options.hosts, std::move(*token));
@@ -139,7 +140,9 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
 
   if (auto started = listener.start(*listen); !started) return started;
   const std::string shown = (listen->address.find(':') == std::string::npos ? listen->address : "[" + listen->address + "]") + ":" + std::to_string(listener.port());
-  log.info("listening", {{"address", shown}, {"tls", !options.certificate.empty()}, {"token", !rules.token.empty()}, {"root", root.string()}});
+  const std::string url = (options.certificate.empty() ? "http://" : "https://") + shown + "/";
+  log.info("listening", {{"address", shown}, {"tls", !options.certificate.empty()}, {"token", !rules.token.empty()}, {"root", root.string()}, {"url", url}});
+  if (plain && !Console::quiet()) Console().note("the viewer is at " + url + " for a browser; Ctrl-C ends the server");
   while (!interrupted()) ::poll(nullptr, 0, 50);
 
   log.info("stopping", nlohmann::ordered_json::object());

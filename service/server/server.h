@@ -18,6 +18,7 @@ struct ServeOptions {
   std::string token_file, certificate, key;
   std::vector<std::string> hosts;      ///< further names of this server
   std::string backend;                 ///< as SceneOptions::backend
+  std::string log;                     ///< "plain" or "json"; empty: plain at a terminal
   ServerLimits limits;
 };
 

@@ -64,7 +64,7 @@ Result<void> Telemetry::on_frame(const FrameRecord& frame) {
     last_frame_ = now;
     const Contacts& contacts = frame.contacts;
     frame_json_.clear();
-    append_query_line({.pose = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.tick, 0)), .total_us = frame.total_us, .batch = std::nullopt, .tick = frame.tick, .heights = true},
+    append_query_line({.number = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.tick, 0)), .total_us = frame.total_us, .batch = std::nullopt, .tick = frame.tick, .heights = true},
                       contacts, frame.response, frame_json_);
     frame_json_.pop_back();   // the line feed
     frame_pose_ = frame.pose;

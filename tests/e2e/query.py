@@ -4,7 +4,7 @@ import subprocess
 
 from harness import *
 
-FIELDS = ['pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'tool', 'evaluations', 'truncated', 'engine', 'time_us']
+FIELDS = ['number', 'pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'tool', 'evaluations', 'truncated', 'engine', 'time_us']
 AREA_FIELDS = ['id', 'zones', 'static', 'mobile', 'normal', 'depth', 'point', 'force', 'torque', 'flags']
 SETS = ['cst', 'bst', 'cmt', 'bmt', 'imt', 'est']
 HEADER = 'x,y,z,qx,qy,qz,qw\n'
@@ -20,7 +20,7 @@ def test_a_line_has_the_contracts_fields_in_its_order():
     folder = Folder()
     (line,) = lines_of(palpate('query', folder.save(), '--pose', PRESSED))
     expect(list(line) == FIELDS, list(line))
-    expect(line['pose'] == 0 and line['contact'] is True and line['truncated'] is False, line)
+    expect(line['number'] == 0 and len(line['pose']) == 7 and line['contact'] is True and line['truncated'] is False, line)
     (area,) = line['areas']
     expect(list(area) == AREA_FIELDS, list(area))
     expect(list(line['time_us'])[0] == 'total' and line['time_us']['total'] > 0, line['time_us'])
@@ -50,7 +50,7 @@ def test_free_near_and_far():
     lines = lines_of(palpate('query', folder.save(), '--poses', folder / 'poses.csv'))
     expect(len(lines) == 4, len(lines))
     for i, line in enumerate(lines):
-        expect(line['pose'] == i and line['contact'] is False and line['pairs'] == 0, line)
+        expect(line['number'] == i and line['contact'] is False and line['pairs'] == 0, line)
         expect(line['areas'] == [] and line['force'] == [0, 0, 0] and line['torque'] == [0, 0, 0] and line['cst'] == [], line)
 
 
@@ -79,7 +79,7 @@ def test_a_batch_on_all_cores_prints_what_single_queries_do():
     expect(any(line['contact'] for line in alone), 'some touch')
     for a, b in zip(alone, batch, strict=True):
         expect(b.pop('batch') == 200, b)
-        expect(without_time(a) == without_time(b), f"pose {a['pose']} differs")
+        expect(without_time(a) == without_time(b), f"pose {a['number']} differs")
 
 
 def test_an_interrupt_ends_preparation():
@@ -108,7 +108,7 @@ def test_batch_is_named_and_changes_only_times():
     expect(all(line['batch'] == 3 for line in batch), batch[0])
     for a, b in zip(alone, batch, strict=True):
         b.pop('batch')
-        expect(without_time(a) == without_time(b), f"pose {a['pose']} differs")
+        expect(without_time(a) == without_time(b), f"pose {a['number']} differs")
 
 
 def test_profile_paper_has_no_est():
@@ -151,7 +151,7 @@ def test_both_back_ends_and_both_plans_answer_alike_to_the_bit():
         for key, lines in answers.items():
             for reference, line in zip(answers['ref', 'full'], lines, strict=True):
                 for field in reference:
-                    expect(line[field] == reference[field], f"{profile} {key}, pose {line['pose']}, {field}: {line[field]} instead of {reference[field]}")
+                    expect(line[field] == reference[field], f"{profile} {key}, pose {line['number']}, {field}: {line[field]} instead of {reference[field]}")
 
 
 def test_both_back_ends_agree_along_a_generated_scenes_path():
@@ -169,7 +169,7 @@ def test_both_back_ends_agree_along_a_generated_scenes_path():
     expect(any(line['areas'] for line in cpu), 'some pose should have an area')
     for a, b in zip(cpu, gpu, strict=True):
         for field in a:
-            expect(field in ('time_us', 'engine') or a[field] == b[field], f"pose {a['pose']}, {field}: cpu {a[field]}, gpu {b[field]}")
+            expect(field in ('time_us', 'engine') or a[field] == b[field], f"pose {a['number']}, {field}: cpu {a[field]}, gpu {b[field]}")
 
 
 def test_exported_geometry_is_what_was_judged():

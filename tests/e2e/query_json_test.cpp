@@ -33,7 +33,7 @@ TEST(QueryLine, HasTheContractsFieldsInItsOrder) {
   std::string out;
   append_query_line({4, 20, std::nullopt, 12}, contacts, response, out);
   EXPECT_EQ(out,
-            R"({"pose":4,"contact":true,"pairs":3,"cst":[1,2],"bst":[],"cmt":[],"bmt":[],"imt":[9],"est":[],)"
+            R"({"number":4,"contact":true,"pairs":3,"cst":[1,2],"bst":[],"cmt":[],"bmt":[],"imt":[9],"est":[],)"
             R"("areas":[{"id":1,"zones":[[1],[2]],"static":[1,2],"mobile":[9],"normal":[0,0,1],"depth":0.1,"point":[0,0,0],)"
             R"("force":[0,0,0],"torque":[0,0,0],"flags":["cancelled","sheet"]}],)"
             R"("force":[0,0,0.3333333333333333],"torque":[0,0,0],"flags":["cancelled"],"truncated":false,"engine":"gpu",)"

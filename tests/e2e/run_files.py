@@ -11,7 +11,7 @@ SUMMARY = ['real_time', 'static_triangles', 'tool_triangles', 'backend', 'device
 
 
 def run(scene, out, *arguments):
-    outcome = palpate('run', scene, '--pace', 'asap', '--out', out, *arguments)
+    outcome = palpate('run', scene, '--pace', 'asap', '--overwrite', '--out', out, *arguments)
     expect(outcome.code == 0, outcome)
     return outcome
 

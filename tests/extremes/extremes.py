@@ -11,16 +11,18 @@ BACKENDS = ('gpu', 'cpu')
 
 
 def answer(scene, pose, backend=None):
-    """The line of one query without its times, and what was said on standard error."""
+    """The line of one query without its times and who answered, and what was said on standard error."""
     outcome = palpate('query', scene, '--pose', pose, *(('--backend', backend) if backend else ()))
     lines = lines_of(outcome)
     expect(len(lines) == 1, outcome)
-    return {**lines[0], 'time_us': 0}, outcome.err
+    return {**lines[0], 'time_us': 0, 'engine': ''}, outcome.err
 
 
 def answer_on_both(scene, pose):
-    gpu, cpu = (answer(scene, pose, backend)[0] for backend in BACKENDS)
-    expect(gpu == cpu, f'gpu and cpu differ\n{str(gpu)[:2000]}\n{str(cpu)[:2000]}')
+    (gpu, said), (cpu, _) = (answer(scene, pose, backend) for backend in BACKENDS)
+    # A device may lack room, or steps of one invocation; it says so, and pushes with nothing.
+    refused = gpu['truncated'] and gpu['force'] == [0, 0, 0] and 'the most' in said
+    expect(refused or gpu == cpu, f'gpu and cpu differ\n{str(gpu)[:2000]}\n{str(cpu)[:2000]}')
     expect(not cpu['truncated'], cpu)
     return cpu
 
@@ -46,7 +48,7 @@ def test_a_million_triangles_in_one_voxel_are_answered():
     expect(default == cpu, 'without --backend the answer is right, whoever gives it')
     outcome = palpate('query', scene, '--pose', pose, '--backend', 'gpu')
     if outcome.code == 0:   # the device may lack room, or what else there is a limit to; it says so
-        gpu = {**lines_of(outcome)[0], 'time_us': 0}
+        gpu = {**lines_of(outcome)[0], 'time_us': 0, 'engine': ''}
         expect(gpu == cpu or (gpu['truncated'] and 'the most' in outcome.err), outcome)
     else:
         expect_refused(outcome, 3, 'share a voxel, at most')

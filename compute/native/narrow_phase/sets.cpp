@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "compute/search/processor.h"
 
@@ -13,6 +14,9 @@ namespace {
 
 constexpr std::uint32_t kOpenPart = 256;   // open samples that one thread takes at a time: some 50 us (chosen)
 constexpr std::size_t kPairPart = 512;   // likewise of pairs
+/// A moved triangle meets a moved segment only where, in the tool's own frame, they come this near, in steps: the segment's ends are off by 2.4 an axis,
+/// for the way to the tool and back is rounded twice and the matrix once, the corners by half; 5.1 in all (derived).
+constexpr std::int32_t kWalkSlack = 8;
 constexpr std::size_t kAhead = 4;   // voxels whose lists are called for before their turn: they lie far apart (chosen)
 
 }  // namespace
@@ -45,6 +49,8 @@ Int3 HostSets::tool_point(const LatticePose& pose, const Int3& point) const {
 bool HostSets::inside(const LatticePose& pose, const Int3& point) const {
   const Int3 at = tool_point(pose, point);
   if (!geometry_->tool.closed) return in_tool_->inside(at);
+  // A closed body's winding is 0 beyond its box. A voxel much larger than the tool lists points far from it.
+  if (glm::any(glm::lessThan(at, geometry_->tool.box_min - kWalkSlack)) || glm::any(glm::greaterThan(at, geometry_->tool.box_max + kWalkSlack))) return false;
   const std::uint32_t kind = fine_.at(fine_.voxel_of(at)).kind;
   return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(pose, point));
 }
@@ -115,11 +121,18 @@ bool HostSets::walks_out(const LatticePose& pose, const Int3& point) const {
   const int axis = static_cast<int>(exit >> 1), up = static_cast<int>(exit & 1);
   int winding = 0;
   do {
+    Int3 low = at, high = at;
     at[axis] = fine_.grid().origin[axis] + fine_.grid().size * (voxel[axis] + up);
+    low = glm::min(low, at) - kWalkSlack;
+    high = glm::max(high, at) + kWalkSlack;
     const Int3 to = transform(pose, at);
     if (here.boundary != kNoVoxel && from != to)
-      for (const std::uint32_t id : fine_.list(here.boundary))
-        winding += exact::segment_crossing(from, to, {transform(pose, mesh.corner(id, 0)), transform(pose, mesh.corner(id, 1)), transform(pose, mesh.corner(id, 2))});
+      for (const std::uint32_t id : fine_.list(here.boundary)) {
+        const exact::Corners own{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
+        const exact::Box box = exact::box_of(own);
+        if (glm::any(glm::greaterThan(box.low, high)) || glm::any(glm::lessThan(box.high, low))) continue;
+        winding += exact::segment_crossing(from, to, {transform(pose, own[0]), transform(pose, own[1]), transform(pose, own[2])});
+      }
     from = to;
     voxel[axis] += 2 * up - 1;
     here = fine_.at(voxel);
