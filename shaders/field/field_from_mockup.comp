@@ -5,11 +5,14 @@
 // Before: field_members; the lists are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#define STAGE 3   // kStagePlaced
-#include "shaders/lib/stage_end.glsl"
+#include "shaders/shared/frame_field.h"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the tool
 
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindSamples, FrameSample, frame_samples);
 READ(kBindMockupPoints, FieldPoint, mockup_points);
 READ(kBindMockupInfo, uint32_t, mockup_info);
@@ -37,6 +40,8 @@ EDIT(kBindIgnoredState, uint32_t, ignored_state);
 EDIT(kBindResultIgnored, uint32_t, result_ignored);
 
 #define BODY_GRID scene.fine
+#include "shaders/lib/list_room.glsl"
+#include "shaders/lib/group_count.glsl"
 #include "shaders/lib/body_depth.glsl"
 #include "shaders/lib/body_walks.glsl"
 #include "shaders/lib/field_sums.glsl"
@@ -86,11 +91,10 @@ bool push_of(bool extra, uint32_t item, out Push push) {
 }
 
 void main() {
-  const uint32_t samples = frame_lists[kListSamples].count, rounded = (samples + kGroupSize - 1u) / kGroupSize * kGroupSize;
+  const uint32_t samples = in_contact() ? list_count(kListSamples) : 0u, rounded = groups_to(list_count(kListSamples)) * kGroupSize;
   const uint32_t i = flat_invocation();
   const bool extra = i >= rounded;
   Push push;
-  const bool pushes = (extra ? i - rounded < frame_lists[kListMockupPoints].count : i < samples) && push_of(extra, extra ? i - rounded : i, push);
+  const bool pushes = (extra ? i - rounded < list_count(kListMockupPoints) : i < samples) && push_of(extra, extra ? i - rounded : i, push);
   add_pushes(pushes, push);
-  end_stage();
 }

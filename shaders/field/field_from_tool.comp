@@ -4,12 +4,15 @@
 // Before: field_points; the list is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#define STAGE 4   // kStagePushed
-#include "shaders/lib/stage_end.glsl"
+#include "shaders/shared/frame_field.h"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the mock-up
 layout(constant_id = 1) const bool INSIDE = true;   // the tool has an inside
 
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindToolPoints, FieldPoint, tool_points);
 READ(kBindToolInfo, uint32_t, tool_info);
 READ(kBindToolNormals, ivec3, tool_normals);
@@ -32,6 +35,7 @@ EDIT(kBindIgnoredState, uint32_t, ignored_state);
 EDIT(kBindResultIgnored, uint32_t, result_ignored);
 
 #define BODY_GRID scene.mockup.grid
+#include "shaders/lib/list_room.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/body_depth.glsl"
 #include "shaders/lib/body_walks.glsl"
@@ -68,7 +72,6 @@ bool push_of(uint32_t item, out Push push) {
 void main() {
   const uint32_t item = flat_invocation();
   Push push;
-  const bool pushes = item < frame_lists[kListToolPoints].count && push_of(item, push);
+  const bool pushes = item < list_count(kListToolPoints) && push_of(item, push);
   add_pushes(pushes, push);
-  end_stage();
 }

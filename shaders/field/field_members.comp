@@ -5,8 +5,11 @@
 // Before: the lists of samples, C_s and C_m are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#define STAGE 2   // kStageMembers
-#include "shaders/lib/stage_end.glsl"
+#include "shaders/shared/frame_field.h"
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 #include "shaders/lib/set_name.glsl"
 
 layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
@@ -29,6 +32,9 @@ EDIT(kBindFieldTiles, FieldTile, field_tiles);
 #include "shaders/lib/sample_levels.glsl"
 EXTRA_SAMPLES(mockup, mockup_extras)
 EXTRA_SAMPLES(tool, tool_extras)
+#include "shaders/lib/group_count.glsl"
+GROUP_COUNTS(kBindPlacedGroups, placed_groups)
+GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 
 void list_static_extras(uint32_t id) {
   const uint32_t first = first_mockup_extra(id, scene.mockup_extras), count = mockup_extras_from(first, id, scene.mockup_extras);
@@ -36,7 +42,9 @@ void list_static_extras(uint32_t id) {
     const uint32_t weight = uint32_t(extra_weight(mockup_extras[first + i].weights) >> 6);
     if (weight == 0u) continue;
     const uint32_t at = take_room(kListMockupPoints, 1u);
-    if (at < frame_lists[kListMockupPoints].capacity) mockup_points[at] = FieldPoint(mockup_extras[first + i].point, id, weight);
+    if (at >= frame_lists[kListMockupPoints].capacity) continue;
+    mockup_points[at] = FieldPoint(mockup_extras[first + i].point, id, weight);
+    if (begins_group(at, 1u)) grow_placed_groups(kGroupsMockupPush, groups_to(list_count(kListSamples)) + groups_to(at + 1u));   // behind the samples
   }
 }
 
@@ -46,7 +54,9 @@ void list_mobile_extras(uint32_t mobile) {
     const uint32_t weight = uint32_t(extra_weight(tool_extras[first + i].weights) >> 4);
     if (weight == 0u) continue;
     const uint32_t at = take_room(kListToolPoints, 1u);
-    if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(world_from_tool(tool_extras[first + i].point), mobile, weight);
+    if (at >= frame_lists[kListToolPoints].capacity) continue;
+    tool_points[at] = FieldPoint(world_from_tool(tool_extras[first + i].point), mobile, weight);
+    if (begins_group(at, 1u)) grow_pushed_groups(0u, groups_to(at + 1u));
   }
 }
 
@@ -66,13 +76,14 @@ void list_tiles(uint32_t mobile, uint32_t info) {
   }
   const uint32_t first = take_room(kListFieldTiles, across * down);
   const uint32_t capacity = frame_lists[kListFieldTiles].capacity;
+  if (first < capacity) grow_placed_groups(kGroupsTiles, min(first + across * down, capacity));
   for (uint32_t t = 0u; t < across * down && first + t < capacity && !spent(1u); ++t)
     field_tiles[first + t] = FieldTile(mobile, u_first + kFieldTile * int32_t(t % across), v_first + kFieldTile * int32_t(t / across));
 }
 
 void take_static(uint32_t slot) {
   name_static(slot);
-  if (frame_state.contact == 0u) return;
+  if (!in_contact()) return;
   if (CARRIERS)
     for (uint32_t i = 0u; i < kCarrierWords; ++i) carrier_work[kCarrierWords * slot + i] = 0l;
   const uint32_t id = contact_statics[slot];
@@ -81,7 +92,7 @@ void take_static(uint32_t slot) {
 
 void take_mobile(uint32_t place) {
   name_mobile(place);
-  if (frame_state.contact == 0u) return;
+  if (!in_contact()) return;
   const uint32_t mobile = contact_mobiles[place], info = tool_info[mobile];
   if ((info & kInfoHasExtra) != 0u) list_mobile_extras(mobile);
   if (tool_weights[mobile] != 0u) list_tiles(mobile, info);
@@ -89,7 +100,6 @@ void take_mobile(uint32_t place) {
 
 void main() {
   const uint32_t i = flat_invocation();
-  if (i < frame_lists[kListContactStatics].count) take_static(i);
-  if (i < frame_lists[kListContactMobiles].count) take_mobile(i);
-  end_stage();
+  if (i < list_count(kListContactStatics)) take_static(i);
+  if (i < list_count(kListContactMobiles)) take_mobile(i);
 }

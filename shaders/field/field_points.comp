@@ -5,11 +5,14 @@
 // Before: field_members; its list is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#define STAGE 3   // kStagePlaced
-#include "shaders/lib/stage_end.glsl"
+#include "shaders/shared/frame_field.h"
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
 
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindFieldTiles, FieldTile, field_tiles);
 READ(kBindToolVertices, ivec3, tool_vertices);
 READ(kBindToolTriangles, uvec3, tool_triangles);
@@ -22,6 +25,8 @@ READ(kBindMockupBricks, Brick, mockup_bricks);
 EDIT(kBindToolPoints, FieldPoint, tool_points);
 
 #include "shaders/lib/list_room.glsl"
+#include "shaders/lib/group_count.glsl"
+GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #include "shaders/lib/pose.glsl"
 #define PARTITION(name) mockup_##name
 #define PARTITION_GRID scene.mockup.grid
@@ -31,8 +36,8 @@ EDIT(kBindToolPoints, FieldPoint, tool_points);
 #include "shaders/lib/sample_levels.glsl"
 SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
-void place() {
-  if (flat_group() >= frame_lists[kListFieldTiles].count) return;
+void main() {
+  if (flat_group() >= list_count(kListFieldTiles)) return;
   const FieldTile tile = field_tiles[flat_group()];
   const uvec3 corners = tool_triangles[tile.mobile];
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
@@ -47,10 +52,7 @@ void place() {
   const bool hit = (mobile_state[tile.mobile] & kMobileHit) != 0u;
   if (mockup_class_of(mockup_voxel_of(hit ? p : world_from_tool(a))) == kVoxelExternal) return;
   const uint32_t at = take_room(kListToolPoints, 1u);
-  if (at < frame_lists[kListToolPoints].capacity) tool_points[at] = FieldPoint(p, tile.mobile, weight);
-}
-
-void main() {
-  place();
-  end_stage();
+  if (at >= frame_lists[kListToolPoints].capacity) return;
+  tool_points[at] = FieldPoint(p, tile.mobile, weight);
+  if (begins_group(at, 1u)) grow_pushed_groups(0u, groups_to(at + 1u));
 }

@@ -4,8 +4,11 @@
 // Before: all pushes are added.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
-#define STAGE 5   // kStageResult
-#include "shaders/lib/stage_end.glsl"
+#include "shaders/shared/frame_field.h"
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 #include "shaders/lib/frame_reset.glsl"
 
 layout(constant_id = 8) const bool CARRIERS = true;   // as in lib/field_sums.glsl
@@ -19,17 +22,16 @@ EDIT(kBindResultCarriers, int64_t, result_carriers);
 
 void main() {
   const uint32_t i = flat_invocation();
-  if (i == 0u) write_head();
-  if (frame_state.contact != 0u) {
+  write_head(i);
+  if (in_contact()) {
     if (i < kFieldWords) {
       result_field[i] = field_work[i];
       field_work[i] = 0l;
     }
-    if (CARRIERS && i < frame_lists[kListContactStatics].count && (static_state[contact_statics[i]] & (kStaticHit | kStaticSampled)) != 0u)
+    if (CARRIERS && i < list_count(kListContactStatics) && (static_state[contact_statics[i]] & (kStaticHit | kStaticSampled)) != 0u)
       for (uint32_t word = kCarrierWords * i; word < kCarrierWords * (i + 1u); ++word) result_carriers[word] = carrier_work[word];
     const uint32_t all = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kGroupSize;
-    for (uint32_t patch_at = i; patch_at < frame_lists[kListIgnored].count; patch_at += all) ignored_state[result_ignored[patch_at] >> 5] = 0u;
+    for (uint32_t patch_at = i; patch_at < list_count(kListIgnored); patch_at += all) ignored_state[result_ignored[patch_at] >> 5] = 0u;
   }
   reset_entry(i);
-  end_stage();
 }

@@ -3,13 +3,14 @@
 // `paper`: hands the counts to the host and empties tables. Invocation i empties entry i of each list. Reads frame_lists, frame_state; writes the result's head.
 // Before: everything else of the frame.
 #include "shaders/lib/frame.glsl"
-#define STAGE 5   // kStageResult
-#include "shaders/lib/stage_end.glsl"
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 #include "shaders/lib/frame_reset.glsl"
 
 void main() {
   const uint32_t i = flat_invocation();
-  if (i == 0u) write_head();
+  write_head(i);
   reset_entry(i);
-  end_stage();
 }

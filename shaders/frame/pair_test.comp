@@ -2,10 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 // Whether two triangles intersect, exactly. An invocation a PairCandidate. Reads both bodies; appends pairs, marks CST and CMT.
 #include "shaders/lib/frame.glsl"
-#define STAGE 0   // kStageNear
-#include "shaders/lib/stage_end.glsl"
 #include "shaders/lib/triangle_pair.glsl"
 
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindToolRecords, uint64_t, tool_records);
@@ -33,11 +35,8 @@ void decide(uint32_t item) {
     return;
   mark_static(id, kStaticHit);
   mark_mobile(r.id, kMobileHit);
-  const uint32_t at = atomicAdd(frame_lists[kListPairs].count, 1u);
+  const uint32_t at = take_room(kListPairs, 1u);
   if (at < frame_lists[kListPairs].capacity) pairs[at] = ContactPair(id, r.id);
 }
 
-void main() {
-  decide(flat_invocation());
-  end_stage();
-}
+void main() { decide(flat_invocation()); }

@@ -4,11 +4,13 @@
 // V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. A triangle's first corner is asked as well,
 // in the voxel that holds it. Only where samples are not listed.
 #include "shaders/lib/frame.glsl"
-#define STAGE 0   // kStageNear
-#include "shaders/lib/stage_end.glsl"
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
 
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupInfo, uint32_t, mockup_info);
@@ -24,32 +26,38 @@ EDIT(kBindSamples, FrameSample, samples);
 
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
+#include "shaders/lib/sample_room.glsl"
+GROUP_COUNTS(kBindListedGroups, listed_groups)
 #define PARTITION_GRID scene.fine
 #define PARTITION_SLOTS tool_brick_slot
 #define PARTITION_BRICKS tool_bricks
 #define PARTITION(name) tool_##name
 #include "shaders/lib/partition.glsl"
 
+void put_open(FrameSample sample_) {
+  const uint32_t at = take_room(kListOpenSamples, 1u);
+  if (at >= frame_lists[kListOpenSamples].capacity) return;
+  open_samples[at] = sample_;
+  if (begins_group(at, 1u)) grow_listed_groups(kGroupsOpen, groups_to(at + 1u));
+}
+
 void take(ivec3 point, uint32_t id) {
   const uint32_t voxel_class = tool_class_of(tool_voxel_of(tool_from_world(point)));
   if (voxel_class == kVoxelExternal) return;
   if (voxel_class == kVoxelBoundary) {
-    const uint32_t at = atomicAdd(frame_lists[kListOpenSamples].count, 1u);
-    if (at < frame_lists[kListOpenSamples].capacity) open_samples[at] = FrameSample(point, id);
+    put_open(FrameSample(point, id));
     return;
   }
   mark_static(id, kStaticSampled);
-  const uint32_t at = atomicAdd(frame_lists[kListSamples].count, 1u);
-  if (at < frame_lists[kListSamples].capacity) samples[at] = FrameSample(point, id);
+  uint32_t at;
+  if (take_sample(at)) samples[at] = FrameSample(point, id);
 }
 
 // EST by the first corner, for triangles between the samples.
 void probe(ivec3 corner, uint32_t id) {
   const uint32_t voxel_class = tool_class_of(tool_voxel_of(tool_from_world(corner)));
   if (voxel_class == kVoxelInternal) mark_static(id, kStaticSampled);
-  if (voxel_class != kVoxelBoundary) return;
-  const uint32_t at = atomicAdd(frame_lists[kListOpenSamples].count, 1u);
-  if (at < frame_lists[kListOpenSamples].capacity) open_samples[at] = FrameSample(corner, id | kCornerProbe);
+  if (voxel_class == kVoxelBoundary) put_open(FrameSample(corner, id | kCornerProbe));
 }
 
 void decide(uint32_t item) {
@@ -82,7 +90,4 @@ void decide(uint32_t item) {
   }
 }
 
-void main() {
-  decide(flat_invocation());
-  end_stage();
-}
+void main() { decide(flat_invocation()); }

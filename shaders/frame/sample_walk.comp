@@ -3,11 +3,13 @@
 // Whether an open sample lies inside the tool: where it is closed by the winding there, else by walks in its own frame. An invocation a sample.
 // Reads the tool and its fine partition; appends samples, marks kStaticSampled. A first corner (kCornerProbe) tells EST and does not count.
 #include "shaders/lib/frame.glsl"
-#define STAGE 1   // kStageListed
-#include "shaders/lib/stage_end.glsl"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the tool
 
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindToolVertices, ivec3, body_vertices);
 READ(kBindToolTriangles, uvec3, body_triangles);
@@ -26,21 +28,19 @@ EDIT(kBindSamples, ivec4, samples);
 
 #define BODY_GRID scene.fine
 #include "shaders/lib/static_mark.glsl"
+#include "shaders/lib/sample_room.glsl"
 #include "shaders/lib/tool_winding.glsl"
 #include "shaders/lib/body_walks.glsl"
 
 void decide(uint32_t item) {
-  if (item >= frame_lists[kListOpenSamples].count) return;
+  if (item >= frame_input.open_samples + list_count(kListOpenSamples)) return;   // of the host, or of the device
   const ivec4 work = open_samples[item];   // FrameSample
   const ivec3 at = tool_from_world(work.xyz), voxel = body_voxel_of(at);
   if (!(CLOSED ? tool_winding(work.xyz) != 0 : body_walks_inside(at, voxel))) return;
   mark_static(uint32_t(work.w) & ~kCornerProbe, kStaticSampled);
   if ((uint32_t(work.w) & kCornerProbe) != 0u) return;
-  const uint32_t place = atomicAdd(frame_lists[kListSamples].count, 1u);
-  if (place < frame_lists[kListSamples].capacity) samples[place] = work;
+  uint32_t place;
+  if (take_sample(place)) samples[place] = work;
 }
 
-void main() {
-  decide(flat_invocation());
-  end_stage();
-}
+void main() { decide(flat_invocation()); }

@@ -3,10 +3,12 @@
 // Whether a triangle touches a voxel, or a brick that is all V_int, exactly. An invocation a TouchCandidate. Reads tool_records; sets
 // kMobileInternal or kMobileBoundary; a touched V_bnd voxel enters touched_voxels once, and its list goes to static_chunks.
 #include "shaders/lib/frame.glsl"
-#define STAGE 0   // kStageNear
-#include "shaders/lib/stage_end.glsl"
 #include "shaders/lib/triangle_voxel.glsl"
 
+CONSTANT(kBindScene, SceneConstants, scene);
+CONSTANT(kBindFrameInput, FrameInput, frame_input);
+EDIT(kBindFrameLists, FrameList, frame_lists);
+EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindMockupListBegin, uint32_t, mockup_list_begin);
 READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindTouchCandidates, u64vec2, touch_candidates);
@@ -20,6 +22,7 @@ EDIT(kBindStaticChunks, uvec2, static_chunks);
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/mobile_mark.glsl"
+GROUP_COUNTS(kBindListedGroups, listed_groups)
 
 void decide(uint32_t item) {
   if (item >= frame_input.touch_candidates) return;
@@ -35,8 +38,11 @@ void decide(uint32_t item) {
   mark_mobile(r.id, internal ? kMobileInternal : kMobileBoundary);
   if (internal || (atomicOr(voxel_state[boundary], kVoxelTouched) & kVoxelTouched) != 0u) return;
 
-  const uint32_t at = atomicAdd(frame_lists[kListTouchedVoxels].count, 1u);
-  if (at < frame_lists[kListTouchedVoxels].capacity) touched_voxels[at] = uvec4(boundary, voxel);
+  const uint32_t at = take_room(kListTouchedVoxels, 1u);
+  if (at < frame_lists[kListTouchedVoxels].capacity) {
+    touched_voxels[at] = uvec4(boundary, voxel);
+    if (begins_group(at, 1u)) grow_result_groups(0u, groups_to(at + 1u));
+  }
   const uint32_t begin = mockup_list_begin[boundary];
   uint32_t end = mockup_list_begin[boundary + 1u];
   const uint32_t chunk = chunk_of(end - begin, kStaticChunk, kMostStaticChunks);
@@ -45,12 +51,11 @@ void decide(uint32_t item) {
     end = begin;
   }
   const uint32_t chunks = (end - begin + chunk - 1u) / chunk;
-  const uint32_t first = take_room(kListStaticChunks, chunks);
+  if (chunks == 0u) return;
+  const uint32_t first = take_room(kListStaticChunks, chunks), capacity = frame_lists[kListStaticChunks].capacity;
+  if (first < capacity && begins_group(first, chunks)) grow_listed_groups(kGroupsStatics, groups_to(min(first + chunks, capacity)));
   for (uint32_t i = 0u; i < chunks && first + i < frame_lists[kListStaticChunks].capacity; ++i)
     static_chunks[first + i] = uvec2(begin + i * chunk, min(begin + (i + 1u) * chunk, end));
 }
 
-void main() {
-  decide(flat_invocation());
-  end_stage();
-}
+void main() { decide(flat_invocation()); }

@@ -1,7 +1,6 @@
 // What every shader of a frame begins with: extensions, workgroup, how buffers are named, flat indices.
 #ifndef PALPATE_FRAME_GLSL
 #define PALPATE_FRAME_GLSL
-#extension GL_KHR_shader_subgroup_basic : require
 #include "shaders/shared/base.h"
 #include "shaders/shared/scene.h"
 #include "shaders/shared/frame.h"
@@ -12,9 +11,6 @@ layout(local_size_x = kGroupSize) in;
 #define READ(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name[]; }
 #define EDIT(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name[]; }
 #define READ_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name; }
-// The same, where others' writes are read within a dispatch.
-#define SHARED(bind, T, name) layout(set = 0, binding = bind, scalar) coherent buffer name##_block { T name[]; }
-#define SHARED_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) coherent buffer name##_block { T name; }
 // A small T that no shader of the frame writes: a uniform buffer, which llvmpipe reads once for all lanes. By is_uniform() of frame.h.
 #define CONSTANT(bind, T, name) layout(set = 0, binding = bind, scalar) uniform name##_block { T name; }
 #define EDIT_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name; }
@@ -27,6 +23,8 @@ DispatchArguments groups_for(uint32_t n) {
   const uint32_t rows = (n + kMaxGroupsX - 1u) / kMaxGroupsX;
   return DispatchArguments(min(n, kMaxGroupsX), rows, 1u);
 }
+
+DispatchArguments items_for(uint32_t count) { return groups_for((count + kGroupSize - 1u) / kGroupSize); }
 
 // floor(a / b), b > 0.
 int32_t floor_div(int32_t a, int32_t b) {

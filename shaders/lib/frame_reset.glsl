@@ -1,7 +1,8 @@
 // The end of a frame: counts to the host, and the tables that are 0 between frames as they were, entry by entry, so that the cost follows the contact. After an
-// overflow the host clears them whole instead. The including shader has lib/stage_end.glsl.
+// overflow the host clears them whole instead. The including shader has scene, frame_lists and frame_state.
 #ifndef PALPATE_LIB_FRAME_RESET
 #define PALPATE_LIB_FRAME_RESET
+#include "shaders/lib/list_room.glsl"
 
 READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindContactMobiles, uint32_t, contact_mobiles);
@@ -13,18 +14,23 @@ EDIT_ONE(kBindResult, FrameResult, result);
 
 // Entry i of each list.
 void reset_entry(uint32_t i) {
-  if (i < frame_lists[kListContactStatics].count) static_state[contact_statics[i]] = 0u;
-  if (i < frame_lists[kListContactMobiles].count) mobile_state[contact_mobiles[i]] = 0u;
-  if (i < frame_lists[kListTouchedVoxels].count) voxel_state[touched_voxels[i].boundary] = 0u;
+  if (i < list_count(kListContactStatics)) static_state[contact_statics[i]] = 0u;
+  if (i < list_count(kListContactMobiles)) mobile_state[contact_mobiles[i]] = 0u;
+  if (i < list_count(kListTouchedVoxels)) voxel_state[touched_voxels[i].boundary] = 0u;
 }
 
-void write_head() {
+// Invocation i of the first ones.
+void write_head(uint32_t i) {
+  if (i < kListCount) result.asked[i] = frame_lists[i].count;
+  if (i != 0u) return;
+  const bool contact = in_contact();
   result.state = frame_state;
-  result.pair_count = frame_lists[kListPairs].count;
-  result.static_count = frame_lists[kListContactStatics].count;
-  result.mobile_count = frame_lists[kListContactMobiles].count;
-  result.member_count = scene.refined == 0u && frame_state.contact != 0u ? frame_lists[kListMembers].count : 0u;
-  result.ignored_count = scene.refined != 0u ? frame_lists[kListIgnored].count : 0u;
-  if (scene.refined != 0u || frame_state.contact == 0u) result.area_count = 0u;   // else the areas have written it
+  result.state.contact = contact ? 1u : 0u;
+  result.pair_count = list_count(kListPairs);
+  result.static_count = list_count(kListContactStatics);
+  result.mobile_count = list_count(kListContactMobiles);
+  result.member_count = scene.refined == 0u && contact ? list_count(kListMembers) : 0u;
+  result.ignored_count = list_count(kListIgnored);
+  if (scene.refined != 0u || !contact) result.area_count = 0u;   // else the areas have written it
 }
 #endif

@@ -2,12 +2,13 @@
 // The including shader has frame_input, uint32_t mockup_patches[], ignored[], and, writable, ignored_state[], result_ignored[], frame_lists.
 #ifndef PALPATE_LIB_IGNORED
 #define PALPATE_LIB_IGNORED
+#include "shaders/lib/list_room.glsl"
 bool is_ignored(uint32_t static_id) {
   if (frame_input.ignores == 0u) return false;
   const uint32_t patch_id = mockup_patches[static_id], word = patch_id >> 5, bit = 1u << (patch_id & 31u);
   if ((ignored[word] & bit) == 0u) return false;
   if ((atomicOr(ignored_state[word], bit) & bit) == 0u) {
-    const uint32_t at = atomicAdd(frame_lists[kListIgnored].count, 1u);
+    const uint32_t at = take_room(kListIgnored, 1u);
     if (at < frame_lists[kListIgnored].capacity) result_ignored[at] = patch_id;
   }
   return true;

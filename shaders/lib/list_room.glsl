@@ -1,5 +1,4 @@
-// Room for items that come many at a time, or from so many invocations that a count could run round past 2^32 before its list is
-// closed. The including shader has frame_lists and frame_state, both writable.
+// Room for items of a list, how many it has, and whether a frame is in contact. The including shader has frame_lists and frame_state, both writable.
 #ifndef PALPATE_LIST_ROOM_GLSL
 #define PALPATE_LIST_ROOM_GLSL
 // The place of the first of n items. Who crosses the capacity notes the overflow at once.
@@ -8,6 +7,14 @@ uint32_t take_room(uint32_t list, uint32_t n) {
   const uint32_t capacity = frame_lists[list].capacity;
   if (at <= capacity && n > capacity - at) atomicOr(frame_state.overflow, 1u << list);
   return at;
+}
+
+// Of a list that nobody appends to any more.
+uint32_t list_count(uint32_t list) { return min(frame_lists[list].count, frame_lists[list].capacity); }
+
+// When the sets are known.
+bool in_contact() {
+  return frame_state.meets != 0u && (frame_state.overflow & ~kOverflowAfterSets) == 0u && (frame_state.overflow_other & kOverflowLoop) == 0u;
 }
 
 // How many of `count` entries a chunk takes: `usual`, or as many as make `most` chunks.

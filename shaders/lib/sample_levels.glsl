@@ -3,6 +3,7 @@
 #ifndef PALPATE_LIB_SAMPLE_LEVELS
 #define PALPATE_LIB_SAMPLE_LEVELS
 #include "shaders/shared/frame_field.h"
+#include "shaders/lib/list_room.glsl"
 #include "shaders/lib/sample.glsl"
 
 // The last level that the sample of cell ij is of, at most kMostSampleLevel.
@@ -25,7 +26,7 @@ uint32_t log_q8(uint32_t count) {
 
 // Of this frame, Q8.
 uint32_t frame_level() {
-  const uint32_t count = frame_lists[kListSamples].count + frame_lists[kListContactMobiles].count / 16u, wanted = scene.contact_samples;
+  const uint32_t count = list_count(kListSamples) + list_count(kListContactMobiles) / 16u, wanted = scene.contact_samples;
   const uint32_t by_size = wanted != 0u && count > wanted ? log_q8(count) - log_q8(wanted) : 0u;
   return min(by_size + frame_input.coarser, 256u * kMostSampleLevel);
 }

@@ -1,6 +1,7 @@
-// Names the sets that a slot of C_s, and a member of C_m, are in; counts into frame_state, starts their results. The including shader has lib/stage_end.glsl.
+// Names the sets that a slot of C_s, and a member of C_m, are in; counts into frame_state, starts their results. The including shader has frame_lists and frame_state.
 #ifndef PALPATE_LIB_SET_NAME
 #define PALPATE_LIB_SET_NAME
+#include "shaders/lib/list_room.glsl"
 #include "shaders/lib/plan.glsl"
 
 READ(kBindContactStatics, uint32_t, contact_statics);

@@ -16,7 +16,7 @@ EDIT(kBindAreas, AreaWork, areas);
 
 void main() {
   const uint32_t i = flat_invocation();
-  if (i >= frame_lists[kListMembers].count) return;
+  if (i >= min(frame_lists[kListMembers].count, frame_lists[kListMembers].capacity)) return;
   const AreaMember member = members[i];
   if (areas[member.area].zones < 2u) return;
   const ivec3 n = turned(tool_unit_normals[member.mobile]);

@@ -6,11 +6,11 @@
 //
 // *Lists.* Everything of unknown length is a list: a buffer of items and a FrameList (count, capacity, group counts).
 //   append:  uint i = atomicAdd(frame_lists[kListPairs].count, 1u); if (i < frame_lists[kListPairs].capacity) pairs[i] = …;
-//   close:   after the stage that appends and before anyone reads: clamps `count` to `capacity`, notes an overflow, and works out both
-//            indirect group counts. Readers: `if (i >= count) return`.
+// `count` runs beyond `capacity` where there is no room: whoever crosses it notes an overflow (lib/list_room.glsl). Readers ask list_count().
 //
-// *Stages.* Dispatches of a stage run beside each other; a barrier follows. The last workgroup of a stage to end closes its lists and sets the next
-// stage's group counts (lib/stage_end.glsl), so no dispatch does that alone. Nobody waits for anybody.
+// *Stages.* Dispatches of a stage run beside each other; a barrier follows. Whoever appends an item that begins a new workgroup of a later stage raises
+// that stage's group count (lib/group_count.glsl), so no dispatch works sizes out, and what has nothing to do has no workgroups. A stage's group
+// counts lie in buffers of their own, which are read, as the device's commands, while no shader writes them.
 // Orders inside lists differ from run to run; nothing that leaves the frame may depend on them.
 //
 // *Groups.* Workgroups are kGroupSize wide and dispatches at most kMaxGroupsX × n: the flat group number is
@@ -70,7 +70,7 @@ PALPATE_CONSTANT int32_t kBindMembersGroups = 46;                // one: an invo
 PALPATE_CONSTANT int32_t kBindPlacedGroups = 56;                 // kGroupsTiles, kGroupsMockupPush
 PALPATE_CONSTANT int32_t kBindPushedGroups = 57;                 // one: an invocation a sample of the tool
 PALPATE_CONSTANT int32_t kBindResultGroups = 62;                 // one: an invocation an entry of whatever the host gets, and of whatever is emptied
-PALPATE_CONSTANT int32_t kBindStages = 36;                       // StageProgress[kStageCount]; done is 0 between frames
+PALPATE_CONSTANT int32_t kBindListsAnew = 36;                    // FrameLists: what frame_lists and result_groups are between frames
 PALPATE_CONSTANT int32_t kBindClusterBoxes = 37;                 // LatticeBox[clusters]: of the transformed triangles of a cluster, closed
 PALPATE_CONSTANT int32_t kBindMobileState = 38;                  // uint32_t[tool triangles]: kMobile… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindToolRecords = 40;                  // ToolRecord[tool triangles], in the order of clusters
@@ -115,6 +115,7 @@ PALPATE_CONSTANT uint32_t kListResponseFirst = 16;               // 16…31: lis
 PALPATE_CONSTANT uint32_t kListCount = 32;
 
 // An overflow is a bit of FrameState::overflow: 1 << list for a list, and in overflow_other:
+PALPATE_CONSTANT uint32_t kOverflowAfterSets = 0xFFFF2000u;      // lists that fill when the sets are known: kListMembers, kListResponseFirst and above
 PALPATE_CONSTANT uint32_t kOverflowAreas = 1u << 1;              // more than kMaxFrameAreas
 PALPATE_CONSTANT uint32_t kOverflowLoop = 1u << 2;               // an invocation would have run beyond kLoopBudget
 PALPATE_CONSTANT uint32_t kLoopBudget = 30000;                   // loop iterations of one invocation, all its loops together (llvmpipe ends loops silently at 65,535)
@@ -125,30 +126,14 @@ struct DispatchArguments {
 
 struct FrameList {
   uint32_t count;                 // items; while being filled it may run beyond `capacity`
-  uint32_t asked;                 // items that were asked for, set at closing
-  uint32_t capacity;              // items that fit; written once by the host
-  DispatchArguments items;        // groups of kGroupSize invocations for one invocation an item; set at closing
-  DispatchArguments groups;       // groups for one workgroup an item; set at closing
+  uint32_t capacity;              // items that fit; written by the host
 };
 
-// A frame's stages, in order.
-PALPATE_CONSTANT uint32_t kStageNear = 0;                        // what the host found near is decided
-PALPATE_CONSTANT uint32_t kStageListed = 1;                      // lists of touched voxels, open samples
-PALPATE_CONSTANT uint32_t kStageMembers = 2;                     // sets are named; refined: what of C_s and C_m may push is listed
-PALPATE_CONSTANT uint32_t kStagePlaced = 3;                      // refined: samples of the tool; pushes of the mock-up's
-PALPATE_CONSTANT uint32_t kStagePushed = 4;                      // refined: pushes of the tool's samples
-PALPATE_CONSTANT uint32_t kStageResult = 5;                      // results; what is 0 between frames
-PALPATE_CONSTANT uint32_t kStageCount = 6;
-
+// Entries of the stages' group counts.
 PALPATE_CONSTANT uint32_t kGroupsStatics = 0;                    // an invocation a StaticChunk
 PALPATE_CONSTANT uint32_t kGroupsOpen = 1;                       // an invocation an open sample
 PALPATE_CONSTANT uint32_t kGroupsTiles = 0;                      // a workgroup a tile
 PALPATE_CONSTANT uint32_t kGroupsMockupPush = 1;                 // an invocation a sample, then an invocation an extra sample
-
-struct StageProgress {
-  uint32_t groups;                // of all its dispatches
-  uint32_t done;                  // invocations in subgroups that have ended
-};
 
 // Group counts; 0 in a frame that does not need them. `One` is a single workgroup.
 PALPATE_CONSTANT uint32_t kDispatchContactOne = 0;               // contact
@@ -170,17 +155,22 @@ struct FrameInput {
   uint32_t open_samples;
   uint32_t ignores;               // 1: some patch is ignored (refined)
   uint32_t coarser;               // 256ths of a level by which samples are coarser than the contact asks for (refined)
-  uint32_t groups;                // of kStageNear
-  DispatchArguments touch, pairs, found, chunks;   // its dispatches: an invocation a touch candidate, a pair, an inside sample, a chunk
+  DispatchArguments touch, pairs, found, chunks, open;   // an invocation a touch candidate, a pair, an inside sample, a chunk, an open sample that the host listed
   DispatchArguments clusters;     // the bodies may meet (`paper`): a workgroup a cluster of the tool; none otherwise
 };
 
 // ---- what it keeps -------------------------------------------------------------------------------------------------------
 
+// What buffers begin each frame with.
+struct FrameLists {
+  FrameList lists[kListCount];
+  DispatchArguments result;       // as many workgroups as a field without contact triangles takes
+};
+
 struct FrameState {
   uint32_t overflow;              // bit per list
   uint32_t overflow_other;        // kOverflow… bits
-  uint32_t contact;               // 1: CST, IMT or EST is not empty, and nothing overflowed before they were known
+  uint32_t contact;               // 1: CST, IMT or EST is not empty, and nothing overflowed before they were known; set at the end (lib/list_room.glsl: in_contact())
   uint32_t meets;                 // 1: something was marked that is in CST, IMT or EST
   uint32_t cst, bst, est, cmt, bmt, imt; // sizes of the sets
 };
@@ -288,6 +278,7 @@ struct FrameResult {
   uint32_t member_count;          // entries of the members
   uint32_t area_count;            // ≤ kMaxFrameAreas
   uint32_t ignored_count;         // entries of the ignored patches that something touched
+  uint32_t asked[kListCount];     // items that each list was asked to hold
   AreaResult areas[kMaxFrameAreas];
 };
 
@@ -308,12 +299,12 @@ struct AreaMember {
   uint32_t mobile;
 };
 
-PALPATE_ASSERT_SIZE(FrameList, 36);
-PALPATE_ASSERT_SIZE(FrameInput, 140);
+PALPATE_ASSERT_SIZE(FrameList, 8);
+PALPATE_ASSERT_SIZE(FrameInput, 148);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(TouchCandidate, 16);
 PALPATE_ASSERT_SIZE(AreaResult, 64);
-PALPATE_ASSERT_SIZE(FrameResult, 64 + 64 * kMaxFrameAreas);
+PALPATE_ASSERT_SIZE(FrameResult, 64 + 4 * kListCount + 64 * kMaxFrameAreas);
 
 PALPATE_SHARED_END
 #endif

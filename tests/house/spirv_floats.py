@@ -47,10 +47,7 @@ class Module:
         for op, _, operands in instructions:
             if op in ('OpDecorate', 'OpMemberDecorate'):
                 decorated.setdefault(operands[0], set()).update(operands[1:])
-        # glslang gives an invocation's number in its subgroup as few as 16 bits: it is below 128.
-        numbers = {result for result, names in decorated.items() if 'SubgroupLocalInvocationId' in names}
-        numbers |= {result for op, result, operands in instructions if op == 'OpLoad' and operands[1] in numbers}
-        if any('RelaxedPrecision' in names for result, names in decorated.items() if result not in numbers):
+        if any('RelaxedPrecision' in names for names in decorated.values()):
             self.problems.append('RelaxedPrecision')
         # Types that hold a float, and what points to them from where others can read.
         holds_float, widths, type_of = set(), set(), {}

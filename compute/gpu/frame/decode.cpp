@@ -17,8 +17,8 @@ constexpr std::size_t kMostSpareZones = 4096;   // whose memory is kept (chosen)
 
 /// Whether all that overflowed, if anything, comes after the sets: lists of areas, tables of the response.
 bool sets_are_whole(const FrameState& state) {
-  constexpr std::uint32_t kAfterSets = 1u << kListMembers | ~0u << kListResponseFirst;
-  return (state.overflow & ~kAfterSets) == 0 && (state.overflow_other & kOverflowLoop) == 0;
+  static_assert(kOverflowAfterSets == (1u << kListMembers | ~0u << kListResponseFirst));
+  return (state.overflow & ~kOverflowAfterSets) == 0 && (state.overflow_other & kOverflowLoop) == 0;
 }
 
 void append_ids(std::vector<std::uint32_t>& to, std::span<const StaticResult> statics) {

@@ -63,10 +63,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindFrameInput, "frame input", sizeof(FrameInput), BufferKind::kUpload},
       {kBindFrameLists, "frame lists", sizeof(FrameList) * kListCount},
       {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
-      {kBindListedGroups, "group counts", 2 * sizeof(DispatchArguments)},
-      {kBindMembersGroups, "group counts", sizeof(DispatchArguments)},
-      {kBindPlacedGroups, "group counts", 2 * sizeof(DispatchArguments)},
-      {kBindPushedGroups, "group counts", sizeof(DispatchArguments)},
+      {kBindListsAnew, "frame lists", sizeof(FrameLists)},
       {kBindResultGroups, "group counts", sizeof(DispatchArguments)},
       {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
       {kBindFinePlaces, "lists of the tool's fine voxels", closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
@@ -82,7 +79,8 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
     if (auto r = buffers.make(device, p.binding, p.what, p.bytes, p.kind); !r) return r;
 
   if (auto r = buffers.make_table(device, kBindFrameState, "frame state", sizeof(FrameState)); !r) return r;
-  if (auto r = buffers.make_table(device, kBindStages, "stages of a frame", sizeof(StageProgress) * kStageCount); !r) return r;
+  for (const std::int32_t binding : {kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
+    if (auto r = buffers.make_table(device, binding, "group counts", 2 * sizeof(DispatchArguments)); !r) return r;
   if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r) return r;
   if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}); !r)
     return r;
@@ -121,7 +119,6 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
     std::span<const SpecConstant> constants = {};
   };
   const Made all[] = {
-      {&list_close_, &spirv::list_close, !refined_, 4},
       {&tool_clusters_place_, &spirv::tool_clusters, !refined_},
       {&voxel_touch_, &spirv::voxel_touch},
       {&static_list_, &spirv::static_list},
@@ -129,6 +126,7 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
       {&sample_take_, &spirv::sample_take, inside_ && listed_},
       {&sample_walk_, &spirv::sample_walk, inside_, 0, of_tool},
       {&sample_scan_, &spirv::sample_scan, inside_ && !listed_},
+      {&set_decide_, &spirv::set_decide, !refined_},
       {&set_name_, &spirv::set_name, !refined_},
       {&frame_result_, &spirv::frame_result, !refined_},
   };
@@ -165,18 +163,26 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.run_stage(static_list_, kBindListedGroups, kGroupsStatics);
   if (inside_) {
     recorder.stage("open");
-    recorder.run_stage(sample_walk_, kBindListedGroups, kGroupsOpen);
+    if (listed_) recorder.run_input(sample_walk_, offsetof(FrameInput, open));
+    else recorder.run_stage(sample_walk_, kBindListedGroups, kGroupsOpen);
   }
 }
 
 void FrameDetection::record_names(FrameRecorder& recorder) const {
   recorder.stage("sets");
+  recorder.run(set_decide_, 1);
   recorder.run_stage(set_name_, kBindMembersGroups);
 }
 
 void FrameDetection::record_end(FrameRecorder& recorder) const {
   recorder.stage("reset");
   recorder.run_stage(frame_result_, kBindResultGroups);
+}
+
+void FrameDetection::record_anew(FrameRecorder& recorder) {
+  for (const std::int32_t binding : {kBindFrameState, kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups}) recorder.clear(binding);
+  recorder.copy(kBindListsAnew, offsetof(FrameLists, lists), kBindFrameLists, sizeof FrameLists::lists);
+  recorder.copy(kBindListsAnew, offsetof(FrameLists, result), kBindResultGroups, sizeof FrameLists::result);
 }
 
 }  // namespace palpate

@@ -28,13 +28,14 @@ class FrameDetection {
 
   /// From the pose to the lists of C_s, C_m, samples, and frame_state; ends with a barrier due.
   void record(FrameRecorder& recorder) const;
-  /// `paper`: names the sets; ends with a barrier due.
+  /// `paper`: names the sets, and whether there is contact; ends with a barrier due.
   void record_names(FrameRecorder& recorder) const;
   /// `paper`, after the response: counts to the host, tables back to 0.
   void record_end(FrameRecorder& recorder) const;
+  /// Last of all: lists, state and group counts as each frame finds them.
+  static void record_anew(FrameRecorder& recorder);
   /// Ids of the tool's triangles in the order of clusters and runs.
   const std::vector<std::uint32_t>& order() const { return order_; }
-  const FrameShader& list_close() const { return list_close_; }
 
  private:
   FrameDetection() = default;
@@ -47,7 +48,7 @@ class FrameDetection {
   bool closed_ = false;   ///< the tool's surface, in `refined`: open samples ask for the winding
   bool listed_ = false;   ///< samples were listed by preparation
   std::vector<std::uint32_t> order_;
-  FrameShader list_close_, voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_, sample_walk_, set_name_, frame_result_;
+  FrameShader voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_, sample_walk_, set_decide_, set_name_, frame_result_;
 };
 
 }  // namespace palpate

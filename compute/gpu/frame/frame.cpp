@@ -198,9 +198,12 @@ void RecordedFrame::make_room() {
 }
 
 Result<void> RecordedFrame::set_capacities() {
-  std::array<gpu::FrameList, gpu::kListCount> lists{};
-  for (std::size_t i = 0; i < lists.size(); ++i) lists[i].capacity = capacity_.lists[i];
-  return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
+  gpu::FrameLists anew{};
+  for (std::size_t i = 0; i < gpu::kListCount; ++i) anew.lists[i].capacity = capacity_.lists[i];
+  anew.result = items_for(field_ ? gpu::kFieldWords : 1);
+  if (auto r = upload(device_, buffers_[gpu::kBindListsAnew], &anew, sizeof anew); !r) return r;
+  if (auto r = upload(device_, buffers_[gpu::kBindResultGroups], &anew.result, sizeof anew.result); !r) return r;
+  return upload(device_, buffers_[gpu::kBindFrameLists], anew.lists, sizeof anew.lists);
 }
 
 /// All that is 0 between frames.
@@ -211,12 +214,11 @@ Result<void> RecordedFrame::clear() {
 
 Result<void> RecordedFrame::enlarge() {
   // What was asked for, list by list; the result has not been touched since the frame that overflowed.
-  std::array<gpu::FrameList, gpu::kListCount> lists{};
-  if (auto r = download(device_, buffers_[gpu::kBindFrameLists], 0, lists.data(), sizeof lists); !r) return r;
   std::array<std::uint32_t, gpu::kListCount> asked{};
-  for (std::size_t i = 0; i < lists.size(); ++i) asked[i] = lists[i].asked;
+  std::copy_n(buffers_[gpu::kBindResult].as<gpu::FrameResult>()->asked, gpu::kListCount, asked.begin());
   gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
-  if (near_full_ != gpu::kNone) {   // before the frame began
+  if (near_full_ != gpu::kNone) {   // before the frame began: of this one there is no result
+    asked = {};
     state = {};
     state.overflow = 1u << near_full_;
   }
@@ -243,7 +245,7 @@ Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
   if (!commands) return commands.error();
   auto out = std::make_unique<CommandRecorder>(std::move(*commands));
   out->begin();
-  FrameRecorder recorder(*out, buffers_, detection_->list_close());
+  FrameRecorder recorder(*out, buffers_);
   body(recorder);
   pipelines_.insert(pipelines_.end(), recorder.used().begin(), recorder.used().end());
   if (auto r = out->end(); !r) return r.error();
@@ -256,12 +258,17 @@ Result<void> RecordedFrame::record() {
   auto commands = recorded([&](FrameRecorder& recorder) {
     detection_->record(recorder);
     recorder.barrier();
-    if (field_) return field_->record(recorder);
-    detection_->record_names(recorder);
+    if (field_) {
+      field_->record(recorder);
+    } else {
+      detection_->record_names(recorder);
+      recorder.barrier();
+      response_->record(recorder);
+      recorder.barrier();
+      detection_->record_end(recorder);
+    }
     recorder.barrier();
-    response_->record(recorder);
-    recorder.barrier();
-    detection_->record_end(recorder);
+    FrameDetection::record_anew(recorder);
   });
   if (!commands) return commands.error();
   commands_ = std::move(*commands);
@@ -275,12 +282,11 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   input.sample_chunks = near.samples.count;
   input.inside_samples = near.inside.count;
   input.open_samples = near.open.count;
-  const bool listed = near.samples.count == 0;
-  input.touch = items_for(std::max(near.touch.count, 1u));   // a stage has a last workgroup
+  input.touch = items_for(near.touch.count);
   input.pairs = items_for(near.pairs.count);
-  input.found = items_for(listed ? near.inside.count : 0);
+  input.found = items_for(near.inside.count);
   input.chunks = items_for(near.samples.count);
-  for (const gpu::DispatchArguments& groups : {input.touch, input.pairs, input.found, input.chunks}) input.groups += groups.x * groups.y;
+  input.open = items_for(near.open.count);
   if (response_ && rays) input.clusters = groups_for((scene_.constants.tool.triangles + gpu::kClusterSize - 1) / gpu::kClusterSize);
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;

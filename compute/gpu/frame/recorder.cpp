@@ -118,12 +118,4 @@ void FrameRecorder::indirect(const FrameShader& shader, std::int32_t binding, st
   recorder_.dispatch_indirect_raw(shader.pipeline, bound(shader), push, push_bytes, buffers_[binding], offset);
 }
 
-void FrameRecorder::close(std::initializer_list<std::uint32_t> lists) {
-  std::uint32_t bits = 0;
-  for (const std::uint32_t list : lists) bits |= 1u << list;
-  recorder_.barrier();
-  run(list_close_, 1, bits);
-  recorder_.barrier();
-}
-
 }  // namespace palpate

@@ -61,12 +61,11 @@ struct FrameShader {
 Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& code, std::uint32_t push_bytes = 0,
                                       std::span<const SpecConstant> constants = {});
 
-/// Records dispatches of a frame. No order between calls unless barrier() or close() stands between them.
+/// Records dispatches of a frame. No order between calls unless barrier() stands between them.
 class FrameRecorder {
  public:
-  /// All arguments outlive this. `list_close` is the pipeline of shaders/frame/list_close.comp.
-  FrameRecorder(CommandRecorder& recorder, const FrameBuffers& buffers, const FrameShader& list_close)
-      : recorder_(recorder), buffers_(buffers), list_close_(list_close) {}
+  /// All arguments outlive this.
+  FrameRecorder(CommandRecorder& recorder, const FrameBuffers& buffers) : recorder_(recorder), buffers_(buffers) {}
 
   /// x workgroups, spread over two axes where one is too short.
   void run(const FrameShader& shader, std::uint32_t groups) { run(shader, groups, NoPush{}); }
@@ -87,8 +86,9 @@ class FrameRecorder {
   void run_stage(const FrameShader& shader, std::int32_t groups, std::uint32_t which = 0) {
     indirect(shader, groups, which * sizeof(gpu::DispatchArguments), nullptr, 0);
   }
-  /// Barrier, closes these lists (they may be read from now on), barrier.
-  void close(std::initializer_list<std::uint32_t> lists);
+  /// Fills a buffer with 0; copies all of `from`'s bytes from `offset` on that `to` has.
+  void clear(std::int32_t binding) { recorder_.fill(buffers_[binding], 0); }
+  void copy(std::int32_t from, std::uint64_t offset, std::int32_t to, std::uint64_t bytes) { recorder_.copy(buffers_[from], offset, buffers_[to], 0, bytes); }
   void barrier() { recorder_.barrier(); }
   /// See CommandRecorder::stage.
   void stage(const char* name) { recorder_.stage(name); }
@@ -105,7 +105,6 @@ class FrameRecorder {
 
   CommandRecorder& recorder_;
   const FrameBuffers& buffers_;
-  const FrameShader& list_close_;
   std::vector<BufferView> views_;
   std::vector<const ComputePipeline*> used_;
 };

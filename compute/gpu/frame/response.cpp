@@ -76,7 +76,7 @@ void FrameResponse::record_areas(FrameRecorder& recorder) const {
   recorder.run_dispatch(areas_gather_, kDispatchContactStatics);
   recorder.barrier();
   recorder.run_dispatch(areas_associate_, kDispatchContactMobiles);
-  recorder.close({kListMembers});
+  recorder.barrier();
   recorder.stage("directions");
   recorder.run_dispatch(areas_first_, kDispatchContactOne);
   recorder.barrier();

@@ -19,7 +19,7 @@ struct BufferUse {
 
 /// Small buffers of the frame as a whole (input, lists, state) stand with transform, which every frame begins with.
 const BufferUse kUses[] = {
-    {"transform", {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists, kBindFrameState, kBindStages, kBindListedGroups,
+    {"transform", {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists, kBindFrameState, kBindListsAnew, kBindListedGroups,
                    kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups, kBindResultGroups,
                    kBindDispatches, kBindToolRecords, kBindToolCorners, kBindClusterBoxes, kBindRunBoxes}},
     {"cull", {kBindMockupBrickSlot, kBindMockupBricks, kBindMockupMixedBrick}},
