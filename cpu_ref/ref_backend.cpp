@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "cpu_ref/areas.h"
+#include "cpu_ref/clearance.h"
 #include "cpu_ref/direction.h"
 #include "cpu_ref/field.h"
 #include "cpu_ref/frame.h"
@@ -53,6 +54,25 @@ class Asked final : public PoseQuery {
       return {};
     } catch (const std::exception& failure) {
       out = Contacts();
+      return Error{ErrorCode::kInternal, std::string("The CPU reference failed: ") + failure.what()};
+    }
+  }
+
+  Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) {
+    out = {};
+    Contacts contacts;
+    if (auto answered = query(pose, nullptr, contacts); !answered) return answered;
+    if (contacts.contact) {
+      out.kind = Clearance::Kind::kTouching;
+      return {};
+    }
+    if (pose.beyond_lattice && pose.translation == Int3(0)) return {};
+    try {
+      Frame frame{scene_, pose, nullptr, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+      tool_tree_.build(transform_tool(frame));
+      out = smallest_distance(frame, within);
+      return {};
+    } catch (const std::exception& failure) {
       return Error{ErrorCode::kInternal, std::string("The CPU reference failed: ") + failure.what()};
     }
   }
@@ -173,6 +193,11 @@ class RefBackend final : public CollisionBackend {
     if (!threads_ && shared_ >= kWorthThreads) make_helpers();
     if (!threads_ || count < 2) return CollisionBackend::share(count, work);
     return threads_->share(*asked_, count, work);
+  }
+
+  Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override {
+    if (!asked_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
+    return asked_->clearance(pose, within, out);
   }
 
   Result<void> replan(const Plan& plan) override {

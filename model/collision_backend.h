@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/clearance.h"
 #include "model/contacts.h"
 #include "model/lattice.h"
 #include "model/plan.h"
@@ -94,6 +95,20 @@ class CollisionBackend : public PoseQuery {
   virtual Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
     return share(poses.size(), [&](PoseQuery& asked, std::size_t i) { return asked.query(poses[i], nullptr, out[i]); });
   }
+
+  /// Whether the tool touches the mock-up, containment included: bits[i] = 1 where query() of poses[i] would find contact. As many `bits` as `poses`.
+  /// As query_batch() for the rest, and may stop at the first pair that it finds. Error: as there, or a frame was truncated.
+  virtual Result<void> touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits);
+
+  /// The exact distance at a pose. What is further than `within` steps need not be measured: kFurther. Error (kUsage): this engine measures none.
+  virtual Result<void> clearance(const LatticePose&, std::int32_t within, Clearance& out) {
+    (void)within, (void)out;
+    return Error{ErrorCode::kUsage, "the " + name() + " engine measures no distances"};
+  }
+
+  /// For how long, `longest` at most, a tool that moves from the pose by the twist stays free for certain, of contact of the tool's triangles with the
+  /// mock-up's at the true and at every rounded pose. The pose is not in contact. Error: as clearance().
+  virtual Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out);
 
   /// Makes room for what truncated the last query, so that the same pose can be asked again. Takes time and memory: not for a loop that
   /// somebody waits for. Error: there is no more room, or what ran out is not room; the back end goes on answering as before.

@@ -18,7 +18,7 @@ struct Lattice {
 /// ((rotation_q30 · v + 2^29) >> 30) + translation, in 64-bit integers, arithmetic shift.
 struct LatticePose {
   std::int32_t rotation_q30[3][3] = {};   ///< row-major, world from tool, each |entry| ≤ 2^30
-  Int3 translation{0};                    ///< lattice steps; valid unless beyond_lattice
+  Int3 translation{0};                    ///< lattice steps; beyond_lattice: 0 where the tool's vertices would be too far for exact predicates
   bool beyond_lattice = false;            ///< the tool can't reach the mock-up's grid: free, zero wrench
 };
 

@@ -61,7 +61,9 @@ Result<LatticePose> to_lattice(const Pose& pose, const SceneGeometry& geometry) 
   }
   const std::uint64_t radius = static_cast<std::uint64_t>(geometry.tool_radius);
   out.beyond_lattice = squared_distance(geometry.mockup_grid, centre) > radius * radius;
-  if (!out.beyond_lattice) out.translation = Int3(centre);
+  // Beyond, distances may still be asked for, as far as vertices stay where predicates are exact.
+  const auto within = [&](int k) { return centre[k] <= kLatticeReach - geometry.tool_radius && -centre[k] <= kLatticeReach - geometry.tool_radius; };
+  if (!out.beyond_lattice || (within(0) && within(1) && within(2))) out.translation = Int3(centre);
   return out;
 }
 

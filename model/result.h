@@ -12,6 +12,7 @@ enum class ErrorCode {
   kUsage = 2,         ///< a flag that is unknown, missing or contradictory
   kBadValue = 3,      ///< a value in a file or an argument
   kNoDevice = 4,      ///< no usable Vulkan or haptic device
+  kNotClear = 5,      ///< no fault: a path that was asked about is not clear
 };
 
 /// One clear sentence with file, offending value and limit.

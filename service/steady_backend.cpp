@@ -122,6 +122,33 @@ Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std:
   return {};
 }
 
+/// The first back end, or where it can't, the spare.
+template <class Ask>
+Result<void> SteadyBackend::ask_either(Ask ask) {
+  if (first_ready_) {
+    const Result<void> answered = ask(*first_);
+    if (answered || !make_spare_) return answered;
+    if (answered.error().code != ErrorCode::kUsage) first_failed(answered.error());   // kUsage: it never answers that, and goes on with the rest
+  }
+  if (!spare_ready_)
+    if (auto prepared = prepare_spare([](const char*, double) { return true; }); !prepared) return prepared;
+  return ask(*spare_);
+}
+
+// Whatever is wrong with the batch is dealt with frame by frame, as for a batch of whole answers.
+Result<void> SteadyBackend::touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
+  if (first_ready_ && first_->touches(poses, bits)) return {};
+  return CollisionBackend::touches(poses, bits);
+}
+
+Result<void> SteadyBackend::clearance(const LatticePose& pose, std::int32_t within, Clearance& out) {
+  return ask_either([&](CollisionBackend& by) { return by.clearance(pose, within, out); });
+}
+
+Result<void> SteadyBackend::free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out) {
+  return ask_either([&](CollisionBackend& by) { return by.free_time(pose, twist, longest, out); });
+}
+
 void SteadyBackend::first_failed(const Error& error) {
   note("the engine " + first_->name() + " has failed: " + error.sentence);
   first_.reset();

@@ -32,6 +32,10 @@ class SteadyBackend final : public CollisionBackend {
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<void> share(std::size_t count, const PoseWork& work) override;
   Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override;
+  // Of the first back end; what it doesn't answer the spare does.
+  Result<void> touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override;
+  Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override;
+  Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out) override;
 
   Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override { return by_spare_ ? spare_->pairs() : now().pairs(); }
@@ -47,6 +51,8 @@ class SteadyBackend final : public CollisionBackend {
   const CollisionBackend& now() const { return first_ready_ || !spare_ ? *first_ : *spare_; }
   Result<void> ask_first(const LatticePose& pose, const Ignored* ignored, Contacts& out);
   Result<void> prepare_spare(const Progress& progress);
+  template <class Ask>
+  Result<void> ask_either(Ask ask);
   void first_failed(const Error& error);
   void note(std::string sentence);   ///< each sentence once
 

@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <fstream>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
@@ -15,7 +17,9 @@
 #include "compute/native/frame.h"
 #include "compute/native/prepare/cache.h"
 #include "compute/native/prepare/scene.h"
+#include "compute/native/queries/questions.h"
 #include "compute/scene/estimate.h"
+#include "compute/scene/shares.h"
 #include "model/address_space.h"
 #include "model/pose_threads.h"
 
@@ -23,6 +27,7 @@ namespace palpate {
 namespace {
 
 using native::Frame;
+using native::Questions;
 
 /// "Intel(R) Xeon(R) Platinum 8481C, 2 threads"
 std::string processor_name() {
@@ -94,6 +99,47 @@ class NativeBackend final : public CollisionBackend {
     return done;
   }
 
+  Result<void> touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override {
+    if (!frame_) return Error{ErrorCode::kInternal, "touches before prepare"};
+    ask();
+    if (!threads_ && (shared_ += poses.size()) >= kWorthThreads) make_helpers();
+    while (questions_.size() < 1 + helpers_.size()) questions_.push_back(std::make_unique<Questions>(*trees_, *containment_, *helpers_[questions_.size() - 1]));
+    // Poses that follow each other mostly touch alike: each thread has runs of them.
+    constexpr std::size_t kRunOfPoses = 64;
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;
+    Result<void> outcome;
+    const auto serve = [&](Questions& by) {
+      for (std::size_t first = 0; (first = next.fetch_add(kRunOfPoses)) < poses.size();)
+        for (std::size_t i = first; i < std::min(first + kRunOfPoses, poses.size()); ++i) {
+          const Result<bool> answered = by.touches(poses[i]);
+          if (!answered) {
+            const std::lock_guard lock(mutex);
+            outcome = answered.error();
+            next = poses.size();
+            return;
+          }
+          bits[i] = *answered ? 1 : 0;
+        }
+    };
+    frame_->share(false);
+    const auto threads = static_cast<std::uint32_t>(std::clamp<std::size_t>(poses.size() / kRunOfPoses, 1, questions_.size()));
+    in_shares(threads, [&](std::uint32_t share) { serve(*questions_[share]); }, [](std::uint32_t) { return true; });
+    frame_->share(true);
+    return outcome;
+  }
+
+  Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override {
+    if (!frame_) return Error{ErrorCode::kInternal, "clearance before prepare"};
+    return ask().clearance(pose, within, out);
+  }
+
+  Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out) override {
+    if (!frame_) return Error{ErrorCode::kInternal, "free_time before prepare"};
+    out = pose.beyond_lattice ? FreeTime{} : ask().free_time(pose, twist, longest);
+    return {};
+  }
+
   Result<VoxelPartition> partition(bool tool) const override {
     if (!scene_) return Error{ErrorCode::kInternal, "partition before prepare"};
     return dense(tool ? scene_->tool : scene_->mockup);
@@ -129,7 +175,19 @@ class NativeBackend final : public CollisionBackend {
     if (cache_) native::keep_scene(*cache_, key, *scene_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return {};
   }
+  /// Who answers the planner's questions on this thread; what they read is made when the first of them is asked.
+  Questions& ask() {
+    if (!trees_) {
+      trees_.emplace(*geometry_);
+      containment_.emplace(*geometry_, scene_->tables());
+      questions_.push_back(std::make_unique<Questions>(*trees_, *containment_, *frame_));
+    }
+    return *questions_.front();
+  }
   void drop_frames() {
+    questions_.clear();
+    containment_.reset();
+    trees_.reset();
     threads_.reset();
     helpers_.clear();
     frame_.reset();
@@ -152,6 +210,9 @@ class NativeBackend final : public CollisionBackend {
   std::vector<std::unique_ptr<Frame>> helpers_;
   std::optional<PoseThreads> threads_;        ///< of these
   std::size_t shared_ = 0;                    ///< pieces of all work so far
+  std::optional<native::PairTrees> trees_;
+  std::optional<native::Containment> containment_;
+  std::vector<std::unique_ptr<Questions>> questions_;   ///< of this thread and the helpers
 };
 
 }  // namespace

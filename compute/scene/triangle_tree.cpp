@@ -97,11 +97,11 @@ void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mes
 
 }  // namespace
 
-TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<bool()>& go_on) {
+TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<bool()>& go_on, std::uint8_t without) {
   std::vector<Centre> centres;
   centres.reserve(mesh.triangles.size());
   for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id)
-    if ((mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0) centres.push_back({mesh.corner(id, 0) + mesh.corner(id, 1) + mesh.corner(id, 2), id});
+    if ((mesh.flags[id] & without) == 0) centres.push_back({mesh.corner(id, 0) + mesh.corner(id, 1) + mesh.corner(id, 2), id});
 
   std::vector<Part> large{{0, centres.size()}}, shares;
   while (!large.empty()) {

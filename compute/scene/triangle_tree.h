@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// A bounding volume hierarchy over the triangles of a body that bound a solid: runs of eight triangles, eight runs, and so on, each with the boxes of
-/// its eight in its body's lattice frame; runs have boxes that lie along their triangles, too. 18 bytes a triangle.
+/// A bounding volume hierarchy over triangles of a body, to begin with those that bound a solid: runs of eight triangles, eight runs, and so on, each with the boxes
+/// of its eight in its body's lattice frame; runs have boxes that lie along their triangles, too. 18 bytes a triangle.
 struct TriangleTree {
   static constexpr std::size_t kEight = 8;
   /// Lows and highs by axis, steps. The last Boxes of a level may hold fewer than eight; the rest says nothing.
@@ -37,8 +37,8 @@ struct TriangleTree {
     return (level == level_begin.size() ? static_cast<std::uint32_t>(boxes.size()) : level_begin[level]) - level_begin[level - 1];
   }
 
-  /// On all cores; `go_on` is asked now and then on this thread. Cancelled: empty.
-  static TriangleTree make(const LatticeMesh& mesh, const std::function<bool()>& go_on);
+  /// On all cores; `go_on` is asked now and then on this thread. Cancelled: empty. `without`: TriangleFlag bits of what is left out.
+  static TriangleTree make(const LatticeMesh& mesh, const std::function<bool()>& go_on, std::uint8_t without = kTriangleCollapsed | kTriangleSheet);
 };
 
 }  // namespace palpate

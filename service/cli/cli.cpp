@@ -21,6 +21,7 @@
 #include "service/cli/console.h"
 #include "service/cli/manual.h"
 #include "service/cli/output_folder.h"
+#include "service/cli/path.h"
 #include "service/cli/serve.h"
 #include "service/cli/tune.h"
 
@@ -34,7 +35,7 @@ constexpr const char* kAbout =
 constexpr const char* kFooter = R"(Units are SI: metres, newtons, newton metres, seconds. A pose is `x y z qx qy qz qw`, world from tool, with a unit quaternion.
 The result goes to standard output, progress and messages to standard error.
 
-Exit codes: 0 done; 2 wrong usage; 3 a bad value in a file or an argument; 4 no usable device; 1 anything else.
+Exit codes: 0 done; 2 wrong usage; 3 a bad value in a file or an argument; 4 no usable device; 5 a path is not clear; 1 anything else.
 
 A first quarter of an hour, as README.md has it:
   palpate generate disassembly --triangles 20000 --out engine      stands for a mesh of yours: mock-up, tool, scene
@@ -241,8 +242,19 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   query_app->add_flag("--names", query.names, "parts: which named parts touch");
   query_app->add_flag("--json", query.json, "one JSON object a pose at a terminal, too; elsewhere that is so anyway");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
+  auto* any = query_app->add_flag("--any", query.any, "touch or not alone, containment included: pose and touches");
+  auto* clearance = query_app->add_flag("--clearance", query.clearance, "the exact smallest distance alone: clearance m (null: beyond the lattice), static and mobile triangle, their points and parts");
+  query_app->add_option_function<double>("--within", [&query](const double& value) {
+        if (!(value >= 0 && value <= 100)) throw CLI::ValidationError("--within", fmt::format("{} is not from 0 to 100", value));
+        query.within_m = value;
+      }, "near-miss check: --clearance of the poses that are no further than M metres, and no others")->type_name("M");
+  query_app->add_option_function<double>("--tolerance", number_within("--tolerance", 0, 100, query.tolerance_m), "with --any or --clearance: a contact no deeper than M metres does not count")->type_name("M");
+  any->excludes(clearance);
   query_app->footer(kQueryFooter);
   query_app->callback([&] { outcome = query_command(query, parts); });
+
+  PathOptions path;
+  add_path_command(app, path, parts, outcome);
 
   SceneOptions plan;
   bool plan_json = false;

@@ -10,6 +10,7 @@
 #include "model/cache/disk_cache.h"
 #include "model/collision_backend.h"
 #include "model/mesh_import.h"
+#include "model/pose.h"
 #include "model/scene.h"
 #include "service/bench/peer.h"
 
@@ -50,6 +51,7 @@ struct SceneOptions {
   std::optional<Profile> profile;     ///< in place of the scene's
   bool full_plan = false;
   bool second_backend = false;        ///< for going over to another plan in mid-run
+  bool all_samples = false;           ///< `contact_samples` = 0 in place of the scene's
   ImportLimits import = {};           ///< of each mesh file
   std::optional<double> unit_m = {};  ///< of mesh files whose unit neither they nor the scene state; empty: 1
 };
@@ -73,6 +75,10 @@ struct QueryOptions {
   bool names = false;                 ///< the parts that touch, by their paths
   bool json = false;                  ///< even at a terminal
   std::string export_directory;       ///< empty: none
+  bool any = false;                   ///< touch or not, and nothing else
+  bool clearance = false;             ///< the smallest distance, and nothing else
+  std::optional<double> within_m;     ///< the same, of poses nearer than that
+  double tolerance_m = 0;             ///< of `any` and `clearance`: a contact no deeper does not count
 };
 
 struct GenerateOptions {
@@ -91,6 +97,8 @@ struct InfoOptions {
 
 // Each command prints its result on standard output, all else on standard error, and returns the reason if it failed.
 Result<void> run_command(const RunOptions& options, const Parts& parts);
+/// `query` with `any`, `clearance` or `within_m`.
+Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pose>& poses, const Parts& parts);
 Result<void> query_command(const QueryOptions& options, const Parts& parts);
 Result<void> plan_command(const SceneOptions& options, bool json, const Parts& parts);
 Result<void> info_command(const InfoOptions& options, const Parts& parts);

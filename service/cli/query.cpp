@@ -58,6 +58,9 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     poses = std::move(*read);
   }
 
+  if (options.any || options.clearance || options.within_m) return verdicts_command(options, poses, parts);
+  if (options.tolerance_m > 0) return Error{ErrorCode::kUsage, "--tolerance goes with --any, --clearance or --within"};
+
   catch_interrupts();
   Console console;
   Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options.common, Purpose::kQuery, parts, console);

@@ -111,6 +111,7 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import, watch.cached ? parts.cache.get() : nullptr, watch.folder);
   if (!loaded) return loaded.error();
   prepared->loaded = std::move(*loaded);
+  if (options.all_samples) prepared->loaded.geometry.contact_samples = 0;
   prepared->load_s = seconds_since(load_start);
   if (watch.admit)
     if (auto admitted = watch.admit(prepared->loaded); !admitted) return admitted.error();

@@ -198,11 +198,47 @@ void BatchQueue::run() {
   }
 }
 
+/// Touch or not, of as many poses as fit a slice.
+Result<void> BatchQueue::touch_slice(Batch& batch) {
+  const BatchRequest& request = batch.request;
+  HostedScene& scene = **request.scene;
+  std::vector<LatticePose> poses;
+  for (std::size_t i = batch.next; i < std::min(batch.next + kSlicePoses, request.poses.size()); ++i) {
+    const auto pose = to_lattice(request.poses[i], scene.loaded.geometry);
+    if (!pose) return pose.error();
+    poses.push_back(*pose);
+  }
+  std::vector<std::uint8_t> bits(poses.size());
+  {
+    const Aside aside = request.scene->loops() > 0 ? store_.aside(*request.scene) : Aside{};
+    const auto ask = [&](CollisionBackend& backend) { return backend.touches(poses, bits); };
+    if (aside.backend) {
+      if (auto done = ask(*aside.backend); !done) return done;
+    } else {
+      const TurnGuard turn(request.scene->turns(), TurnGuard::Kind::kBatch);
+      if (auto done = ask(*scene.backend); !done) return done;
+    }
+  }
+  for (const std::uint8_t bit : bits) {
+    batch.made += "{\"pose\":" + std::to_string(batch.next++) + (bit != 0 ? ",\"touches\":true}\n" : ",\"touches\":false}\n");
+    ++metrics_.poses;
+  }
+  return {};
+}
+
 void BatchQueue::answer_slice(Batch& batch) {
   const auto start = std::chrono::steady_clock::now();
   const BatchRequest& request = batch.request;
   HostedScene& scene = **request.scene;
   try {
+    if (request.any) {
+      const Result<void> answered = touch_slice(batch);
+      if (answered) return;
+      ++metrics_.backend_errors;
+      batch.failed = true;
+      batch.failure = answered.error().sentence;
+      return;
+    }
     const auto parts = request.names ? std::optional<TouchedParts>(std::in_place, scene.loaded.geometry) : std::nullopt;
     for (std::size_t i = 0; i < kSlicePoses && batch.next < request.poses.size(); ++i, ++batch.next) {
       if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;

@@ -24,6 +24,7 @@ struct BatchRequest {
   std::vector<Pose> poses;
   bool sets = true;
   bool names = false;   ///< the parts that touch, by their paths
+  bool any = false;     ///< touch or not, a line a pose, and nothing else
   bool binary = false;   ///< 64 bytes a pose instead of JSON lines
 };
 
@@ -44,6 +45,7 @@ class BatchQueue {
   class Source;
   void run();
   void answer_slice(Batch& batch);
+  Result<void> touch_slice(Batch& batch);
   void resume(const std::shared_ptr<Batch>& batch);
 
   SceneStore& store_;

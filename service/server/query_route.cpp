@@ -11,6 +11,8 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
     if (sets != "0" && sets != "1") return reply(bad_request("sets is '" + shown_text(sets) + "', allowed is 0 or 1", "sets"));
     const std::string names = request.query_or("names", "0");
     if (names != "0" && names != "1") return reply(bad_request("names is '" + shown_text(names) + "', allowed is 0 or 1", "names"));
+    const std::string any = request.query_or("any", "0");
+    if (any != "0" && any != "1") return reply(bad_request("any is '" + shown_text(any) + "', allowed is 0 or 1", "any"));
     auto scene = store.use(request.segments[2], false);
     if (const auto* problem = std::get_if<Problem>(&scene)) return reply(*problem);
     auto poses = read_pose_body(request.content_type, request.body, limits);
@@ -19,7 +21,8 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
                  .poses = std::move(std::get<std::vector<Pose>>(poses)),
                  .sets = sets == "1",
                  .names = names == "1",
-                 .binary = request.accept.find("application/vnd.palpate.wrenches") != std::string::npos},
+                 .any = any == "1",
+                 .binary = any == "0" && request.accept.find("application/vnd.palpate.wrenches") != std::string::npos},
                 reply);
   };
   router.add({.method = "POST", .pattern = "v1/scenes/*/query", .body_limit = limits.poses_bytes, .handle = [&workers, ask](HttpRequest request, Reply reply) {

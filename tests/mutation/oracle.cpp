@@ -28,6 +28,7 @@ bool go_on(const char*, double) { return true; }
 
 constexpr std::uint64_t kSeed = 1;
 constexpr double kStiffness = 1000;   // N/m
+constexpr std::int32_t kAnyDistance = INT32_MAX - 2;
 
 const char* difference(const LatticeMesh& a, const LatticeMesh& b) {
   if (a.vertices != b.vertices) return "vertices";
@@ -129,6 +130,7 @@ void Oracle::answer(Case& c) {
     must(backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, q.answer));
     if (q.answer.truncated && !c.name.starts_with("too_many_")) throw std::runtime_error(c.name + ": no room in " + q.answer.truncated_capacity);
     respond(q.answer, q.pose, c.geometry, wanted.profile, kStiffness, q.response);
+    if (Clearance near; !q.answer.contact && backend_.clearance(q.pose, kAnyDistance, near)) q.clearance = near;
     c.queries.push_back(std::move(q));
   }
   c.answered = true;
@@ -151,6 +153,10 @@ std::string Oracle::ask(const Case& c) const {
     if (auto r = backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, answer); !r) return r.error().sentence;
     if (const std::string difference = first_difference(answer, q.answer); !difference.empty())
       return "pose " + std::to_string(i) + ": " + difference;
+    if (!q.clearance) continue;
+    Clearance near;
+    if (auto r = backend_.clearance(q.pose, kAnyDistance, near); !r) return r.error().sentence;
+    if (!(near == *q.clearance)) return "pose " + std::to_string(i) + ": clearance";
   }
   return {};
 }

@@ -60,6 +60,7 @@ class Oracle {
     bool ignoring = false;
     Contacts answer;
     ContactResponse response;
+    std::optional<Clearance> clearance;   ///< empty: the back end measures none
   };
   struct Case {
     std::string name;

@@ -24,6 +24,15 @@ class PairFilter {
         if (corner > 0) t_[3 * (corner - 1) + k][lane] = t[corner][axis] - t[0][axis];
       }
   }
+  /// Eight triangles, coordinate k of corner c at [3 c + k], before one.
+  void put(const Coordinates& s, const exact::Corners& t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        for (std::size_t lane = 0; lane < kLanes; ++lane) s_[3 * corner + k][lane] = s[3 * corner + k][lane] - t[0][axis];
+      for (std::size_t corner = 1; corner < 3; ++corner) t_[3 * (corner - 1) + k].fill(t[corner][axis] - t[0][axis]);
+    }
+  }
   /// Of all lanes; what was not put says nothing.
   void judge(std::array<Verdict, kLanes>& out) const;
 

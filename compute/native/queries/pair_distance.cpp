@@ -1,0 +1,52 @@
+#include "compute/native/queries/pair_distance.h"
+
+#include <cstring>
+
+#include "compute/search/processor.h"
+
+namespace palpate::native {
+namespace {
+
+namespace plain {
+constexpr std::size_t kWidth = 2;
+#include "compute/native/queries/pair_lanes.h"
+}
+#if PALPATE_TWO_CODES
+PALPATE_SECOND_CODE_BEGIN
+namespace second {
+constexpr std::size_t kWidth = 4;
+#include "compute/native/queries/pair_lanes.h"
+}
+PALPATE_SECOND_CODE_END
+#endif
+
+}  // namespace
+
+void distances(const PairLanes& lanes, std::array<double, kLanes>& squared) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::judge_lanes(lanes, squared);
+#endif
+  plain::judge_lanes(lanes, squared);
+}
+
+void rooms(const PairLanes& lanes, std::array<double, kLanes>& squared) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::room_lanes(lanes, squared);
+#endif
+  plain::room_lanes(lanes, squared);
+}
+
+void box_gaps(const BoxOf& box, const EightDoubles& boxes, std::array<double, kLanes>& squared) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+#endif
+  plain::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+}
+void box_gaps(const BoxOf& box, const TriangleTree::Boxes& boxes, std::array<double, kLanes>& squared) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+#endif
+  plain::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+}
+
+}  // namespace palpate::native

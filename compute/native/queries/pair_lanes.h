@@ -1,0 +1,181 @@
+// Included by pair_distance.cpp alone, once for each processor's code (compute/search/processor.h); so it guards nothing and includes nothing.
+// kWidth: doubles in a vector of the processor's.
+
+using Doubles = double __attribute__((vector_size(8 * kWidth)));
+using Ints = std::int32_t __attribute__((vector_size(4 * kWidth)));
+using Masks = std::int64_t __attribute__((vector_size(8 * kWidth)));
+
+struct Point {
+  Doubles x, y, z;
+};
+
+static void set(Doubles& out, double v) { out = Doubles{} + v; }
+static void minus(const Point& a, const Point& b, Point& out) { out = {a.x - b.x, a.y - b.y, a.z - b.z}; }
+static void dot(const Point& a, const Point& b, Doubles& out) { out = a.x * b.x + a.y * b.y + a.z * b.z; }
+static void cross(const Point& a, const Point& b, Point& out) {
+  out.x = a.y * b.z - a.z * b.y;
+  out.y = a.z * b.x - a.x * b.z;
+  out.z = a.x * b.y - a.y * b.x;
+}
+static void least(Doubles& best, const Doubles& v) { best = v < best ? v : best; }
+static void clamp01(Doubles& v) {
+  const Doubles zero{}, one = zero + 1.0;
+  v = v > zero ? v : zero;
+  v = v < one ? v : one;
+}
+
+// A corner above a face: `from` is the corner relative to the face's first, normal and inward normals of the face's edges are given.
+static void above(const Point& corner, const Point face[3], const Point& normal, const Doubles& size2, const Point inward[3], Doubles& best) {
+  Point from;
+  Doubles height, side;
+  minus(corner, face[0], from);
+  dot(normal, from, height);
+  Masks within = size2 > Doubles{};
+  for (std::size_t e = 0; e < 3; ++e) {
+    minus(corner, face[e], from);
+    dot(inward[e], from, side);
+    within &= side >= Doubles{};
+  }
+  const Doubles squared = height * height / size2;
+  best = within & (squared < best) ? squared : best;
+}
+
+// The corners relative to the one's first.
+static void corners_of(const PairLanes& in, std::size_t begin, Point a[3], Point b[3]) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    Ints whole[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::memcpy(&whole[k], in.s[3 * c + k].data() + begin, sizeof whole[k]);
+      whole[k] -= in.origin[k];
+    }
+    a[c] = {__builtin_convertvector(whole[0], Doubles), __builtin_convertvector(whole[1], Doubles), __builtin_convertvector(whole[2], Doubles)};
+    set(b[c].x, in.t[c][0]);
+    set(b[c].y, in.t[c][1]);
+    set(b[c].z, in.t[c][2]);
+  }
+}
+
+// Raises `room` to what lies between the two along a direction, however long that is.
+static void widen(const Point a[3], const Point b[3], const Point& way, Doubles& room) {
+  Doubles of_a[3], of_b[3], size;
+  for (std::size_t c = 0; c < 3; ++c) {
+    dot(way, a[c], of_a[c]);
+    dot(way, b[c], of_b[c]);
+  }
+  Doubles low_a = of_a[0], high_a = of_a[0], low_b = of_b[0], high_b = of_b[0];
+  for (std::size_t c = 1; c < 3; ++c) {
+    least(low_a, of_a[c]);
+    least(low_b, of_b[c]);
+    high_a = of_a[c] > high_a ? of_a[c] : high_a;
+    high_b = of_b[c] > high_b ? of_b[c] : high_b;
+  }
+  dot(way, way, size);
+  const Doubles ahead = low_a - high_b, behind = low_b - high_a;
+  Doubles between = ahead > behind ? ahead : behind;
+  const Doubles zero{};
+  between = between > zero ? between : zero;
+  const Doubles squared = between * between / size;
+  room = squared > room ? squared : room;   // of no direction: not a number, and left out
+}
+
+// Squares of what lies between the two along the normals of both.
+static void rooms_from(const PairLanes& in, std::size_t begin, std::array<double, kLanes>& out) {
+  Point a[3], b[3], e, f, normal;
+  corners_of(in, begin, a, b);
+  Doubles room{};
+  minus(b[1], b[0], e);
+  minus(b[2], b[0], f);
+  cross(e, f, normal);
+  widen(a, b, normal, room);
+  minus(a[1], a[0], e);
+  minus(a[2], a[0], f);
+  cross(e, f, normal);
+  widen(a, b, normal, room);
+  std::memcpy(out.data() + begin, &room, sizeof room);
+}
+static void room_lanes(const PairLanes& in, std::array<double, kLanes>& out) {
+  for (std::size_t begin = 0; begin < kLanes; begin += kWidth) rooms_from(in, begin, out);
+}
+
+static void judge_from(const PairLanes& in, std::size_t begin, std::array<double, kLanes>& out) {
+  Point a[3], e[3], b[3], f[3], normal_s, normal_t, inward_s[3], inward_t[3];
+  Doubles ee[3], ff[3], per_e[3], per_f[3], size_s, size_t_;
+  const Doubles zero{}, one = zero + 1.0;
+  corners_of(in, begin, a, b);
+  for (std::size_t c = 0; c < 3; ++c) {
+    minus(a[(c + 1) % 3], a[c], e[c]);
+    minus(b[(c + 1) % 3], b[c], f[c]);
+    dot(e[c], e[c], ee[c]);
+    dot(f[c], f[c], ff[c]);
+    per_e[c] = one / ee[c];
+    per_f[c] = one / ff[c];
+  }
+  cross(e[0], e[1], normal_s);
+  cross(f[0], f[1], normal_t);
+  dot(normal_s, normal_s, size_s);
+  dot(normal_t, normal_t, size_t_);
+  for (std::size_t c = 0; c < 3; ++c) {
+    cross(normal_s, e[c], inward_s[c]);
+    cross(normal_t, f[c], inward_t[c]);
+  }
+  Doubles best;
+  set(best, 1e300);
+  for (std::size_t c = 0; c < 3; ++c) {
+    above(a[c], b, normal_t, size_t_, inward_t, best);
+    above(b[c], a, normal_s, size_s, inward_s, best);
+  }
+  // Every edge with every other, ends included: the best place on one for the place on the other, once more the other way round.
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      Point r, way;
+      Doubles c, d, g;
+      minus(a[i], b[j], r);
+      dot(e[i], r, c);
+      dot(f[j], r, g);
+      dot(e[i], f[j], d);
+      const Doubles under = ee[i] * ff[j] - d * d;
+      Doubles s = (d * g - c * ff[j]) / under;
+      s = under > zero ? s : zero;
+      clamp01(s);
+      Doubles t = (d * s + g) * per_f[j];
+      clamp01(t);
+      s = (d * t - c) * per_e[i];
+      clamp01(s);
+      way.x = r.x + s * e[i].x - t * f[j].x;
+      way.y = r.y + s * e[i].y - t * f[j].y;
+      way.z = r.z + s * e[i].z - t * f[j].z;
+      Doubles squared;
+      dot(way, way, squared);
+      least(best, squared);
+    }
+  std::memcpy(out.data() + begin, &best, sizeof best);
+}
+
+static void judge_lanes(const PairLanes& in, std::array<double, kLanes>& out) {
+  for (std::size_t begin = 0; begin < kLanes; begin += kWidth) judge_from(in, begin, out);
+}
+
+static void load(const double* from, Doubles& out) { std::memcpy(&out, from, sizeof out); }
+static void load(const std::int32_t* from, Doubles& out) {
+  Ints whole;
+  std::memcpy(&whole, from, sizeof whole);
+  out = __builtin_convertvector(whole, Doubles);
+}
+
+// Squared gaps between a box and eight others.
+template <class Number>
+static void gaps_between(const double* low, const double* high, const Number* lows, const Number* highs, double* out) {
+  for (std::size_t begin = 0; begin < kLanes; begin += kWidth) {
+    Doubles sum{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      Doubles l, h, gap{};
+      load(lows + kLanes * k + begin, l);
+      load(highs + kLanes * k + begin, h);
+      const Doubles ahead = l - high[k], behind = low[k] - h;
+      gap = ahead > gap ? ahead : gap;
+      gap = behind > gap ? behind : gap;
+      sum += gap * gap;
+    }
+    std::memcpy(out + begin, &sum, sizeof sum);
+  }
+}

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/cli.h"
+#include "service/cli/console.h"
+#include "service/cli/scene_host.h"
+#include "service/path_check.h"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kAtOnce = 4096;   // poses between two looks at the keyboard (chosen)
+
+Result<void> put(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
+  return Error{ErrorCode::kInternal, "standard output can't be written"};
+}
+
+Json clearance_json(const SceneGeometry& geometry, std::size_t pose, const Clearance& c, bool touches) {
+  const double step = geometry.lattice.step_m;
+  const auto point = [&](const Int3& p) {
+    const Vec3 at = geometry.lattice.origin_m + step * Vec3(p);
+    return Json{at.x, at.y, at.z};
+  };
+  Json out{{"pose", pose}, {"touches", touches}};
+  out["clearance"] = c.kind == Clearance::Kind::kFurther ? Json(nullptr) : Json(c.steps * step);
+  if (c.kind != Clearance::Kind::kApart) return out;
+  out["static"] = c.static_id;
+  out["mobile"] = c.mobile_id;
+  out["on_static"] = point(c.on_static);
+  out["on_mobile"] = point(c.on_mobile);
+  out["parts"] = {{"static", part_of(geometry.mockup_report, c.static_id)}, {"mobile", part_of(geometry.tool_report, c.mobile_id)}};
+  return out;
+}
+
+}  // namespace
+
+Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pose>& poses, const Parts& parts) {
+  catch_interrupts();
+  Console console;
+  SceneOptions common = options.common;
+  common.all_samples = options.tolerance_m > 0;
+  auto prepared = prepare_scene(common, Purpose::kQuery, parts, console);
+  if (!prepared) return prepared.error();
+  const SceneGeometry& geometry = (*prepared)->loaded.geometry;
+  CollisionBackend& backend = *(*prepared)->backend;
+  const TouchRule rule = TouchRule::of(geometry, options.tolerance_m);
+  if (options.tolerance_m > 0 && (*prepared)->loaded.scene.response.profile == Profile::kPaper)
+    return Error{ErrorCode::kUsage, "--tolerance needs the depths of the profile refined; paper has none"};
+  const std::int32_t within = options.within_m ? static_cast<std::int32_t>(std::min(*options.within_m / geometry.lattice.step_m, 0x1p30)) : INT32_MAX - 2;
+  std::vector<LatticePose> lattice;
+  for (const Pose& pose : poses) {
+    const auto at = to_lattice(pose, geometry);
+    if (!at) return at.error();
+    lattice.push_back(*at);
+  }
+  std::vector<std::uint8_t> bits(std::min(kAtOnce, poses.size()));
+  std::string text;
+  for (std::size_t first = 0; first < poses.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, poses.size() - first);
+    text.clear();
+    if (auto done = backend.touches(std::span(lattice).subspan(first, count), std::span(bits).first(count)); !done) return done;
+    for (std::size_t i = first; i < first + count; ++i) {
+      bool touches = bits[i - first] != 0;
+      if (touches && rule.tolerance > 0) {
+        const auto touch = touch_at(backend, lattice[i], rule);
+        if (!touch) return touch.error();
+        touches = touch->touches;
+      }
+      if (options.any) {
+        text += fmt::format("{{\"pose\":{},\"touches\":{}}}\n", i, touches);
+        continue;
+      }
+      Clearance clearance;
+      if (bits[i - first] != 0)
+        clearance.kind = Clearance::Kind::kTouching;
+      else if (auto done = backend.clearance(lattice[i], within, clearance); !done)
+        return done;
+      if (options.within_m && clearance.kind == Clearance::Kind::kFurther) continue;
+      text += clearance_json(geometry, i, clearance, touches).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+      if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
+    }
+    if (auto done = put(text); !done) return done;
+    if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
+  }
+  for (const std::string& note : backend.take_notes()) console.note(note);
+  return {};
+}
+
+}  // namespace palpate

@@ -1,0 +1,109 @@
+#include "service/report/section_svg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "service/cli/numbers.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kWidth = 460, kHeight = 340;   // of the picture, its own units
+constexpr std::size_t kMostLines = 20'000;      // of a body (chosen: a megabyte)
+
+struct Line {
+  double x[2], y[2];
+};
+
+/// Where a triangle crosses the plane, seen in the picture; empty: nowhere, or out of sight.
+std::optional<Line> cut(const Vec3 corners[3], const SectionView& view, const Vec3& normal) {
+  double height[3];
+  for (int k = 0; k < 3; ++k) height[k] = glm::dot(normal, corners[k] - view.middle);
+  Line line{};
+  int ends = 0;
+  for (int k = 0; k < 3 && ends < 2; ++k) {
+    const double a = height[k], b = height[(k + 1) % 3];
+    if ((a < 0) == (b < 0)) continue;
+    const Vec3 p = corners[k] + (corners[(k + 1) % 3] - corners[k]) * (a / (a - b)) - view.middle;
+    const double scale = kWidth / view.width_m;
+    line.x[ends] = kWidth / 2 + scale * glm::dot(p, view.right);
+    line.y[ends] = kHeight / 2 - scale * glm::dot(p, view.up);
+    ++ends;
+  }
+  if (ends < 2) return std::nullopt;
+  if (std::max(line.x[0], line.x[1]) < 0 || std::min(line.x[0], line.x[1]) > kWidth || std::max(line.y[0], line.y[1]) < 0 || std::min(line.y[0], line.y[1]) > kHeight) return std::nullopt;
+  return line;
+}
+
+template <class Corner>
+std::string outline(std::size_t triangles, const char* colour, const SectionView& view, const Corner& corner) {
+  const Vec3 normal = glm::cross(view.right, view.up);
+  std::string path;
+  std::size_t lines = 0;
+  for (std::uint32_t t = 0; t < triangles && lines < kMostLines; ++t) {
+    const Vec3 corners[3] = {corner(t, 0), corner(t, 1), corner(t, 2)};
+    const auto line = cut(corners, view, normal);
+    if (!line) continue;
+    ++lines;
+    path += fmt::format("M{:.2f} {:.2f}L{:.2f} {:.2f}", line->x[0], line->y[0], line->x[1], line->y[1]);
+  }
+  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linecap=\"round\"/>", path, colour);
+}
+
+std::string text_of(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is at most a fifth of the width.
+double bar_length(double width_m) {
+  const double most = width_m / 5, power = std::pow(10, std::floor(std::log10(most)));
+  return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+}
+
+}  // namespace
+
+SectionView section_through(const Vec3& middle, const Vec3& apart, double width_m) {
+  SectionView view;
+  view.middle = middle;
+  view.width_m = width_m;
+  const double size = glm::length(apart);
+  if (!(size > 0)) return view;
+  const Vec3 way = apart / size;
+  // Upright, as the gap leads; where that leads up or down, across x.
+  const Vec3 vertical(0, 0, 1);
+  if (std::abs(glm::dot(way, vertical)) < 0.9) {
+    view.right = way;
+    view.up = glm::normalize(vertical - way * glm::dot(way, vertical));
+  } else {
+    view.up = way * (way.z < 0 ? -1.0 : 1.0);
+    view.right = glm::normalize(Vec3(1, 0, 0) - view.up * view.up.x);
+  }
+  return view;
+}
+
+std::string section_svg(const SceneGeometry& geometry, const LatticePose& pose, const SectionView& view) {
+  const auto world = [&](const Int3& p) { return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p); };
+  std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http:{}\">", kWidth, kHeight, "//www.w3.org/2000/svg");
+  out += outline(geometry.mockup.triangles.size(), "var(--cst, #c2453f)", view, [&](std::uint32_t t, int k) { return world(geometry.mockup.corner(t, k)); });
+  out += outline(geometry.tool.triangles.size(), "var(--cmt, #2f6fd6)", view, [&](std::uint32_t t, int k) { return world(transform(pose, geometry.tool.corner(t, k))); });
+  const double scale = kWidth / view.width_m;
+  const auto x_of = [&](const Vec3& p) { return kWidth / 2 + scale * glm::dot(p - view.middle, view.right); };
+  const auto y_of = [&](const Vec3& p) { return kHeight / 2 - scale * glm::dot(p - view.middle, view.up); };
+  if (view.gap)
+    out += fmt::format("<line x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" stroke=\"currentColor\" stroke-width=\"1.2\" stroke-dasharray=\"3 2\"/>", x_of(view.on_static), y_of(view.on_static),
+                       x_of(view.on_mobile), y_of(view.on_mobile));
+  out += fmt::format("<circle cx=\"{0}\" cy=\"{1}\" r=\"7\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1\"/>", kWidth / 2, kHeight / 2);
+  out += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"13\" fill=\"currentColor\" paint-order=\"stroke\" stroke=\"var(--card, #fff)\" stroke-width=\"3\">{}</text>", kWidth / 2 + 12, kHeight / 2 - 10, text_of(view.label));
+  const double bar = bar_length(view.width_m);
+  out += fmt::format("<path d=\"M12 {0}h{1:.2f}m0 -4v8M12 {2}v8\" fill=\"none\" stroke=\"currentColor\"/><text x=\"12\" y=\"{3}\" font-size=\"12\" fill=\"currentColor\">{4}</text>", kHeight - 14, scale * bar,
+                     kHeight - 18, kHeight - 22, length_text(bar));
+  return out + "</svg>";
+}
+
+}  // namespace palpate

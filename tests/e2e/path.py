@@ -1,0 +1,90 @@
+"""Paths and verdicts: touch or not, how far, when; what is printed, what is left, and the exit codes."""
+import csv
+
+from harness import *
+
+HEADER = 'x,y,z,qx,qy,qz,qw\n'
+
+
+def ball_over_a_block(folder):
+    """A ball of 10 mm radius; the block's top is z = 0."""
+    folder = pathlib.Path(folder)
+    (folder / 'block.stl').write_bytes(stl(box((0.1, 0.1, 0.02), (0, 0, -0.01))))
+    (folder / 'ball.stl').write_bytes(stl(sphere(0.01)))
+    scene = folder / 'scene.json'
+    scene.write_text(json.dumps({'static': [{'mesh': 'block.stl', 'units': 'm'}], 'tool': {'mesh': 'ball.stl', 'units': 'm'}}))
+    return scene
+
+
+def poses(folder, *heights):
+    path = pathlib.Path(folder) / 'path.csv'
+    path.write_text(HEADER + ''.join(f'0.001,0.002,{z},0,0,0,1\n' for z in heights))
+    return path
+
+
+def test_a_clear_path_says_so_and_how_near_it_came():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        done = palpate('path', scene, poses(folder, 0.02, 0.012, 0.02), '--out', folder + '/out')
+        expect(done.code == 0, done)
+        report = json.loads(done.out)
+        expect(report['clear'] and report['first_contact'] is None and report['closest_pose'] == 1, report)
+        expect(abs(report['least_clearance_m'] - 0.002) < 1e-7, report)
+        expect(report['examined']['poses'] == 3 and report['examined']['screws'] == 2 and report['examined']['evaluations'] > 3, report)
+        rows = list(csv.DictReader(open(folder + '/out/path.csv')))
+        expect(len(rows) == 3 and all(row['touches'] == '0' for row in rows) and rows[1]['tool_part'], rows)
+        page = open(folder + '/out/path.html').read()
+        expect('The path is clear' in page and page.count('<svg') >= 3 and 'src=' not in page, 'a self-contained page')
+        expect(len(json.load(open(folder + '/out/path.json'))['poses']) == 3, 'a pose each')
+
+
+def test_a_path_through_the_block_is_not_clear_though_its_poses_are():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        done = palpate('path', scene, poses(folder, 0.05, -0.05))   # from above to below
+        expect(done.code == 5 and 'touches between pose 0 and pose 1' in done.err, done)
+        report = json.loads(done.out)
+        expect(not report['clear'] and abs(report['first_contact']['pose'] - 0.4) < 2e-5, report)
+        expect(report['first_contact']['pose'] <= 0.4 and report['first_contact']['tool_part'] and report['worst_depth_m'] is None, report)
+
+
+def test_a_tolerance_lets_shallow_contact_pass():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        shallow = poses(folder, 0.02, 0.0098, 0.02)
+        expect(palpate('path', scene, shallow).code == 5, 'without tolerance')
+        expect(palpate('path', scene, shallow, '--tolerance', '0.001').code == 0, 'with more than it is deep')
+        for backend in ('cpu', 'ref'):
+            lines = lines_of(palpate('query', scene, '--poses', shallow, '--any', '--tolerance', '0.001', '--backend', backend))
+            expect([line['touches'] for line in lines] == [False, False, False], lines)
+
+
+def test_verdicts_of_poses_are_the_same_of_both_engines():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        asked = poses(folder, 0.015, 0.0099, -0.005, 0.0103, 9)
+        told = {}
+        for backend in ('cpu', 'ref'):
+            any_lines = lines_of(palpate('query', scene, '--poses', asked, '--any', '--backend', backend))
+            expect([line['touches'] for line in any_lines] == [False, True, True, False, False], any_lines)
+            told[backend] = lines_of(palpate('query', scene, '--poses', asked, '--clearance', '--backend', backend))
+            near = lines_of(palpate('query', scene, '--poses', asked, '--within', '0.001', '--backend', backend))
+            expect([line['pose'] for line in near] == [1, 2, 3], near)
+        expect(told['cpu'] == told['ref'], told)
+        lines = told['cpu']
+        expect(abs(lines[0]['clearance'] - 0.005) < 1e-7 and lines[1]['clearance'] == 0 and 'static' not in lines[1] and lines[4]['clearance'] is None, lines)
+        gap = [a - b for a, b in zip(lines[0]['on_static'], lines[0]['on_mobile'])]
+        expect(abs(math.hypot(*gap) - 0.005) < 1e-7 and lines[0]['parts']['static'], lines[0])
+
+
+def test_what_examines_nothing_is_an_error_and_never_clear():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        expect_refused(palpate('path', scene, poses(folder)), 3, 'path.csv', 'no pose')
+        expect_refused(palpate('path', scene, poses(folder, 'nan')), 3, 'path.csv')
+        expect_refused(palpate('path', scene, folder + '/none.csv'), 3, 'none.csv')
+        expect_refused(palpate('path', scene, poses(folder, 0.05), '--tolerance', '-1'), 3, '--tolerance')
+        expect_refused(palpate('query', scene, '--poses', poses(folder, 0.05), '--tolerance', '0.001'), 2, '--any')
+
+
+main(globals())
