@@ -61,7 +61,7 @@ Clearance smallest_distance(const Frame& frame, std::int32_t within) {
       std::pair<std::int64_t, std::uint32_t> first{INT64_MAX, 0};
       const Box box = triangle_of(frame.mockup(), near.front()).box();
       for (std::uint32_t m = 0; m < frame.tool.size(); ++m)
-        if (!frame.tool[m].collapsed()) first = std::min(first, {gap(box, frame.tool[m].box()), m});
+        if (!frame.tool[m].collapsed()) first = std::min(first, std::pair{gap(box, frame.tool[m].box()), m});
       if (first.first != INT64_MAX) take_from(first.second, grown(frame.tool_box, by));
     }
     if (by > within || by > 1 << 30) break;

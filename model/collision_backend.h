@@ -110,6 +110,9 @@ class CollisionBackend : public PoseQuery {
   /// mock-up's at the true and at every rounded pose. The pose is not in contact. Error: as clearance().
   virtual Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out);
 
+  /// Name of the engine that answered the last touches(), clearance() or free_time().
+  virtual std::string measured_by() const { return name(); }
+
   /// Makes room for what truncated the last query, so that the same pose can be asked again. Takes time and memory: not for a loop that
   /// somebody waits for. Error: there is no more room, or what ran out is not room; the back end goes on answering as before.
   virtual Result<void> enlarge() { return Error{ErrorCode::kInternal, "the " + name() + " back end has no lists to enlarge"}; }

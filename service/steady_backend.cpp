@@ -126,19 +126,26 @@ Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std:
 template <class Ask>
 Result<void> SteadyBackend::ask_either(Ask ask) {
   if (first_ready_) {
+    measured_by_ = first_->name();
     const Result<void> answered = ask(*first_);
     if (answered || !make_spare_) return answered;
     if (answered.error().code != ErrorCode::kUsage) first_failed(answered.error());   // kUsage: it never answers that, and goes on with the rest
   }
   if (!spare_ready_)
     if (auto prepared = prepare_spare([](const char*, double) { return true; }); !prepared) return prepared;
+  measured_by_ = spare_->name();
   return ask(*spare_);
 }
 
 // Whatever is wrong with the batch is dealt with frame by frame, as for a batch of whole answers.
 Result<void> SteadyBackend::touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
-  if (first_ready_ && first_->touches(poses, bits)) return {};
-  return CollisionBackend::touches(poses, bits);
+  if (first_ready_) {
+    measured_by_ = first_->name();
+    if (first_->touches(poses, bits)) return {};
+  }
+  const Result<void> answered = CollisionBackend::touches(poses, bits);
+  if (spare_ready_ && measured_by_ != spare_->name()) measured_by_ += (measured_by_.empty() ? "" : " or ") + spare_->name();
+  return answered;
 }
 
 Result<void> SteadyBackend::clearance(const LatticePose& pose, std::int32_t within, Clearance& out) {

@@ -40,6 +40,7 @@ class SteadyBackend final : public CollisionBackend {
   Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override { return by_spare_ ? spare_->pairs() : now().pairs(); }
   bool has_internal_voxels() const override { return now().has_internal_voxels(); }
+  std::string measured_by() const override { return measured_by_.empty() ? name() : measured_by_; }
   std::string name() const override { return now().name(); }         ///< of the one that answers now
   std::string device() const override { return now().device(); }
   std::uint64_t memory_bytes() const override;
@@ -61,6 +62,7 @@ class SteadyBackend final : public CollisionBackend {
   bool first_ready_ = false;         ///< it has prepared the scene
   bool spare_ready_ = false;
   bool by_spare_ = false;            ///< the last query was answered by the spare
+  std::string measured_by_;          ///< who answered the last of the planner's questions
   const SceneGeometry* geometry_ = nullptr;
   Plan plan_;
   std::string full_;                 ///< the list that could not be enlarged last

@@ -41,6 +41,7 @@ A first quarter of an hour, as README.md has it:
   palpate generate disassembly --triangles 20000 --out engine      stands for a mesh of yours: mock-up, tool, scene
   palpate info engine/mockup.stl                                   what was read: parts, size, closed or open
   palpate query engine/scene.json --pose "0 0 0 0 0 0 1"           contact, force and torque at one pose
+  palpate query engine/scene.json --pose "0 0 0 0 0 0 1" --clearance   how far apart, where, between which parts
   palpate plan engine/scene.json                                   what this scene needs, and why
   palpate run engine/scene.json --pace asap --out run              the whole task; then open run/report.html
 
@@ -242,7 +243,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   query_app->add_flag("--names", query.names, "parts: which named parts touch");
   query_app->add_flag("--json", query.json, "one JSON object a pose at a terminal, too; elsewhere that is so anyway");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
-  auto* any = query_app->add_flag("--any", query.any, "touch or not alone, containment included: pose and touches");
+  auto* any = query_app->add_flag("--any", query.any, "touch or not alone, containment included: number, engine and touches");
   auto* clearance = query_app->add_flag("--clearance", query.clearance, "the exact smallest distance alone: clearance m (null: beyond the lattice), static and mobile triangle, their points and parts");
   query_app->add_option_function<double>("--within", [&query](const double& value) {
         if (!(value >= 0 && value <= 100)) throw CLI::ValidationError("--within", fmt::format("{} is not from 0 to 100", value));

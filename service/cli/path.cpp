@@ -126,7 +126,7 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
   console.finish();
   if (!report) return report.error();
   for (const std::string& note : backend.take_notes()) console.note(note);
-  const std::string engine = backend.name() + " on " + backend.device();
+  const std::string engine = backend.name() + " on " + backend.device() + (backend.measured_by() == backend.name() ? "" : ", distances by " + backend.measured_by());
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
     const auto dump = [](const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n"; };

@@ -21,13 +21,15 @@ Result<void> put(const std::string& text) {
   return Error{ErrorCode::kInternal, "standard output can't be written"};
 }
 
-Json clearance_json(const SceneGeometry& geometry, std::size_t pose, const Clearance& c, bool touches) {
+Json clearance_json(const SceneGeometry& geometry, std::size_t number, const Pose& pose, const Clearance& c, bool touches, const std::string& engine) {
   const double step = geometry.lattice.step_m;
   const auto point = [&](const Int3& p) {
     const Vec3 at = geometry.lattice.origin_m + step * Vec3(p);
     return Json{at.x, at.y, at.z};
   };
-  Json out{{"pose", pose}, {"touches", touches}};
+  const Vec3& p = pose.position;
+  const Quat& q = pose.rotation;
+  Json out{{"number", number}, {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}}, {"engine", engine}, {"touches", touches}};
   out["clearance"] = c.kind == Clearance::Kind::kFurther ? Json(nullptr) : Json(c.steps * step);
   if (c.kind != Clearance::Kind::kApart) return out;
   out["static"] = c.static_id;
@@ -65,6 +67,7 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
     const std::size_t count = std::min(kAtOnce, poses.size() - first);
     text.clear();
     if (auto done = backend.touches(std::span(lattice).subspan(first, count), std::span(bits).first(count)); !done) return done;
+    const std::string engine = backend.measured_by();
     for (std::size_t i = first; i < first + count; ++i) {
       bool touches = bits[i - first] != 0;
       if (touches && rule.tolerance > 0) {
@@ -73,7 +76,7 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
         touches = touch->touches;
       }
       if (options.any) {
-        text += fmt::format("{{\"pose\":{},\"touches\":{}}}\n", i, touches);
+        text += fmt::format("{{\"number\":{},\"engine\":\"{}\",\"touches\":{}}}\n", i, engine, touches);
         continue;
       }
       Clearance clearance;
@@ -82,7 +85,7 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
       else if (auto done = backend.clearance(lattice[i], within, clearance); !done)
         return done;
       if (options.within_m && clearance.kind == Clearance::Kind::kFurther) continue;
-      text += clearance_json(geometry, i, clearance, touches).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+      text += clearance_json(geometry, i, poses[i], clearance, touches, bits[i - first] != 0 ? engine : backend.measured_by()).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
       if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
     }
     if (auto done = put(text); !done) return done;

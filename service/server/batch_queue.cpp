@@ -209,9 +209,14 @@ Result<void> BatchQueue::touch_slice(Batch& batch) {
     poses.push_back(*pose);
   }
   std::vector<std::uint8_t> bits(poses.size());
+  std::string engine;
   {
     const Aside aside = request.scene->loops() > 0 ? store_.aside(*request.scene) : Aside{};
-    const auto ask = [&](CollisionBackend& backend) { return backend.touches(poses, bits); };
+    const auto ask = [&](CollisionBackend& backend) {
+      auto done = backend.touches(poses, bits);
+      engine = backend.measured_by();
+      return done;
+    };
     if (aside.backend) {
       if (auto done = ask(*aside.backend); !done) return done;
     } else {
@@ -220,7 +225,7 @@ Result<void> BatchQueue::touch_slice(Batch& batch) {
     }
   }
   for (const std::uint8_t bit : bits) {
-    batch.made += "{\"pose\":" + std::to_string(batch.next++) + (bit != 0 ? ",\"touches\":true}\n" : ",\"touches\":false}\n");
+    batch.made += "{\"number\":" + std::to_string(batch.next++) + ",\"engine\":\"" + engine + (bit != 0 ? "\",\"touches\":true}\n" : "\",\"touches\":false}\n");
     ++metrics_.poses;
   }
   return {};

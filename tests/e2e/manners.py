@@ -8,7 +8,7 @@ import signal
 
 from harness import *
 
-CLI = ('run', 'query', 'plan', 'info', 'generate', 'devices', 'serve', 'tune', 'bench', 'completions', 'man')
+CLI = ('run', 'query', 'path', 'plan', 'info', 'generate', 'devices', 'serve', 'tune', 'bench', 'completions', 'man')
 
 
 def at_terminal(*arguments, until=None, cwd=None, both=True):
@@ -164,7 +164,7 @@ def test_there_is_one_first_tour():
     tour = [re.split(r'  +', line.strip())[0] for line in palpate('--help').out.split('A first quarter of an hour')[1].split('\n\n')[0].splitlines()[1:]]
     text = (SOURCE / 'README.md').read_text().split('## Your own mock-up')[1]
     readme = [line.split('#')[0].strip() for line in re.search(r'```sh\n(.*?)```', text, re.S)[1].splitlines()]
-    expect(len(tour) == 5 and tour == readme, f'{tour}\n{readme}')
+    expect(len(tour) == 6 and tour == readme, f'{tour}\n{readme}')
 
 
 def test_the_demo_tells_how_to_call_the_program():

@@ -103,6 +103,8 @@ def test_a_named_scene_answers_csv_json_and_bytes_alike():
         expect(without_times(by_csv.body) == without_times(by_json.body) == without_times(by_bytes.body), 'three forms, three answers')
         lone = server.ask('POST', query, {'pose': rows[0]})
         expect(without_times(lone.body) == without_times(by_csv.body.split(b'\n')[0] + b'\n'), lone)
+        verdicts = [json.loads(line) for line in server.ask('POST', query + '?any=1', {'poses': rows}).body.splitlines()]
+        expect([(v['number'], v['touches']) for v in verdicts] == [(i, json.loads(line)['contact']) for i, line in enumerate(by_json.body.splitlines())] and all(v['engine'] for v in verdicts), verdicts)
         brief = server.ask('POST', query + '?sets=0', {'poses': rows})
         wrenches = server.ask('POST', query, packed, {'Content-Type': 'application/vnd.palpate.poses', 'Accept': 'application/vnd.palpate.wrenches'}).body
         expect(len(wrenches) == 64 * len(rows), len(wrenches))
