@@ -180,7 +180,7 @@ TEST_F(ImportChild, ItDoesNotBeginForOneWhoIsGone) {
   const std::string nobody = std::to_string(::getppid());   // somebody, but not its parent
   const pid_t child = ::fork();
   if (child == 0) {
-    ::execl(PALPATE_IMPORT_FAULTY, PALPATE_IMPORT_FAULTY, file_.c_str(), "0x1p+0", "419430400", "100", ".", nobody.c_str(), "0", "15", "", nullptr);
+    ::execl(PALPATE_IMPORT_FAULTY, PALPATE_IMPORT_FAULTY, file_.c_str(), "0x1p+0", "419430400", "100", ".", nobody.c_str(), "0", "15", "", "1", nullptr);
     ::_exit(127);
   }
   int status = -1;
