@@ -115,9 +115,7 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
   }
   catch_interrupts();
   Console console;
-  SceneOptions common = options.common;
-  common.all_samples = options.tolerance_m > 0;
-  auto prepared = prepare_scene(common, Purpose::kQuery, parts, console);
+  auto prepared = prepare_for_verdicts(options.common, options.tolerance_m, parts, console);
   if (!prepared) return prepared.error();
   const LoadedScene& scene = (*prepared)->loaded;
   CollisionBackend& backend = *(*prepared)->backend;

@@ -137,6 +137,12 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   return prepared;
 }
 
+Result<std::unique_ptr<HostedScene>> prepare_for_verdicts(SceneOptions options, double tolerance_m, const Parts& parts, Console& console) {
+  options.profile = Profile::kRefined;
+  options.all_samples = tolerance_m > 0;
+  return prepare_scene(options, Purpose::kQuery, parts, console);
+}
+
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
   return prepare_scene(options, purpose, parts,
                        PrepareWatch{.note = [&console](const std::string& sentence) { console.note(sentence); },

@@ -50,6 +50,10 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
 /// The same with notes and progress on `console`.
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console);
 
+/// The same for the planner's questions (docs/EXACTNESS.md, section 10), which no force decides: whatever the scene's profile, contact and depth are those of `refined`.
+/// `tolerance_m` > 0: all samples count.
+Result<std::unique_ptr<HostedScene>> prepare_for_verdicts(SceneOptions options, double tolerance_m, const Parts& parts, Console& console);
+
 /// The engine that `name` asks for, for scenes of a profile; empty: of either. "auto" or empty: gpu on a GPU, else cpu, with one sentence. What an engine
 /// can't do another does, but for gpu asked for by name. Error kNoDevice: that, and there is no device.
 Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts,

@@ -45,15 +45,11 @@ Json clearance_json(const SceneGeometry& geometry, std::size_t number, const Pos
 Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pose>& poses, const Parts& parts) {
   catch_interrupts();
   Console console;
-  SceneOptions common = options.common;
-  common.all_samples = options.tolerance_m > 0;
-  auto prepared = prepare_scene(common, Purpose::kQuery, parts, console);
+  auto prepared = prepare_for_verdicts(options.common, options.tolerance_m, parts, console);
   if (!prepared) return prepared.error();
   const SceneGeometry& geometry = (*prepared)->loaded.geometry;
   CollisionBackend& backend = *(*prepared)->backend;
   const TouchRule rule = TouchRule::of(geometry, options.tolerance_m);
-  if (options.tolerance_m > 0 && (*prepared)->loaded.scene.response.profile == Profile::kPaper)
-    return Error{ErrorCode::kUsage, "--tolerance needs the depths of the profile refined; paper has none"};
   const std::int32_t within = options.within_m ? static_cast<std::int32_t>(std::min(*options.within_m / geometry.lattice.step_m, 0x1p30)) : INT32_MAX - 2;
   std::vector<LatticePose> lattice;
   for (const Pose& pose : poses) {

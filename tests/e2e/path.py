@@ -48,6 +48,19 @@ def test_a_path_through_the_block_is_not_clear_though_its_poses_are():
         expect(report['first_contact']['pose'] <= 0.4 and report['first_contact']['tool_part'] and report['worst_depth_m'] is None, report)
 
 
+def test_a_scene_of_profile_paper_gets_the_same_verdicts():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        path = poses(folder, 0.02, 0.0095)
+        told = []
+        for profile in ('refined', 'paper'):
+            scene.write_text(json.dumps({**json.loads(scene.read_text()), 'response': {'profile': profile}}))
+            done = palpate('path', scene, path, '--tolerance', '0.0001')
+            expect(done.code == 5, done)
+            told.append(json.loads(done.out))
+        expect(told[0] == told[1] and told[0]['worst_depth_m'] > 0.0004, told)
+
+
 def test_a_tolerance_lets_shallow_contact_pass():
     with tempfile.TemporaryDirectory() as folder:
         scene = ball_over_a_block(folder)
