@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/voxel_grid.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate::cpu_ref {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "cpu_ref/frame.h"
-#include "model/clearance.h"
+#include "model/contact/clearance.h"
 
 namespace palpate::cpu_ref {
 

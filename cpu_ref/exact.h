@@ -2,9 +2,9 @@
 #include <array>
 #include <cstdint>
 
-#include "model/lattice.h"
-#include "model/lattice_mesh.h"
-#include "model/vector.h"
+#include "model/lattice/lattice.h"
+#include "model/lattice/lattice_mesh.h"
+#include "model/lattice/vector.h"
 
 /// Integer arithmetic wide enough that nothing here ever rounds. Lattice steps throughout. Bounds: |coordinate| ≤ 2^28,
 /// so differences stay within 2^29, raw normals within 2^59.2 a component, N·(p − a) within 2^90 and that times 2^30

@@ -5,9 +5,9 @@
 
 #include "cpu_ref/box_tree.h"
 #include "cpu_ref/partition.h"
-#include "model/contacts.h"
-#include "model/plan.h"
-#include "model/scene_geometry.h"
+#include "model/contact/contacts.h"
+#include "model/scene/plan.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate::cpu_ref {
 

@@ -6,8 +6,8 @@
 #include "cpu_ref/brick_classes.h"
 #include "cpu_ref/exact.h"
 #include "model/collision_backend.h"
-#include "model/lattice_mesh.h"
-#include "model/voxel_grid.h"
+#include "model/lattice/lattice_mesh.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate::cpu_ref {
 

@@ -12,7 +12,7 @@
 #include "cpu_ref/frame.h"
 #include "cpu_ref/heights.h"
 #include "cpu_ref/sets.h"
-#include "model/contact_areas.h"
+#include "model/contact/contact_areas.h"
 #include "model/pose_threads.h"
 
 namespace palpate {

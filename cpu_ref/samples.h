@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "cpu_ref/exact.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate::cpu_ref {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "cpu_ref/exact.h"
-#include "model/voxel_grid.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate::cpu_ref {
 

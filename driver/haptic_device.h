@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 #include "model/result.h"
 
 namespace palpate {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "driver/haptic_device.h"
-#include "model/rotation.h"
+#include "model/lattice/rotation.h"
 
 namespace palpate {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "model/rotation.h"
+#include "model/lattice/rotation.h"
 
 namespace palpate {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace palpate {
 

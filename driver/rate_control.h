@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdint>
 
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 
 namespace palpate {
 

@@ -9,7 +9,7 @@
 #include "driver/limits.h"
 #include "driver/mass_spring.h"
 #include "driver/path.h"
-#include "model/rotation.h"
+#include "model/lattice/rotation.h"
 
 namespace palpate {
 namespace {

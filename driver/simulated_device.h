@@ -4,7 +4,7 @@
 
 #include "driver/haptic_device.h"
 #include "model/result.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace palpate {
 

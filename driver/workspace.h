@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "model/pose.h"
-#include "model/workspace_settings.h"
+#include "model/lattice/pose.h"
+#include "model/scene/workspace_settings.h"
 
 namespace palpate {
 

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "model/clearance.h"
-#include "model/contacts.h"
-#include "model/lattice.h"
-#include "model/plan.h"
+#include "model/contact/clearance.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/lattice.h"
+#include "model/scene/plan.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace palpate {
 

@@ -7,7 +7,7 @@
 #include "cpu_ref/ref_backend.h"
 #include "driver/device_list.h"
 #include "service/cli/cli.h"
-#include "service/bench/peer.h"
+#include "service/bench/time/peer.h"
 
 namespace {
 

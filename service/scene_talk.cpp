@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/response.h"
+#include "model/contact/response.h"
 
 namespace palpate {
 namespace {

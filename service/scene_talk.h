@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "model/collision_backend.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace palpate {
 

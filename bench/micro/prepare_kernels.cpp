@@ -8,7 +8,7 @@
 
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "model/generate.h"
-#include "model/geometry_build.h"
+#include "model/scene/geometry_build.h"
 
 namespace {
 

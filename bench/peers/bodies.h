@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/lattice.h"
-#include "model/lattice_mesh.h"
-#include "model/vector.h"
+#include "model/lattice/lattice.h"
+#include "model/lattice/lattice_mesh.h"
+#include "model/lattice/vector.h"
 
 namespace palpate::peers {
 

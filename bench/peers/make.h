@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "service/bench/peer.h"
+#include "service/bench/time/peer.h"
 
 namespace palpate::peers {
 

@@ -1,4 +1,4 @@
-#include "service/bench/peer.h"
+#include "service/bench/time/peer.h"
 
 #include "bench/peers/make.h"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "model/vector.h"
+#include "model/lattice/vector.h"
 
 namespace palpate::peers {
 

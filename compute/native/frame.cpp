@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "compute/search/tool_order.h"
-#include "model/contact_areas.h"
+#include "model/contact/contact_areas.h"
 
 namespace palpate::native {
 namespace {

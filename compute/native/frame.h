@@ -13,9 +13,9 @@
 #include "compute/search/posed_tool.h"
 #include "compute/search/run_tree.h"
 #include "model/collision_backend.h"
-#include "model/contacts.h"
-#include "model/plan.h"
-#include "model/scene_geometry.h"
+#include "model/contact/contacts.h"
+#include "model/scene/plan.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate::native {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "model/plan.h"
-#include "model/scene_geometry.h"
+#include "model/scene/plan.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

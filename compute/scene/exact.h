@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <glm/common.hpp>
 
-#include "model/sample_grid.h"
-#include "model/vector.h"
+#include "model/lattice/sample_grid.h"
+#include "model/lattice/vector.h"
 
 namespace palpate::exact {
 

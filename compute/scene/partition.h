@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/voxel_grid.h"
+#include "model/lattice/voxel_grid.h"
 #include "shaders/shared/scene.h"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "compute/scene/scene_tables.h"
-#include "model/vector.h"
+#include "model/lattice/vector.h"
 
 namespace palpate {
 

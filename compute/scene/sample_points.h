@@ -5,7 +5,7 @@
 
 #include "compute/scene/samples.h"
 #include "compute/scene/scene_tables.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

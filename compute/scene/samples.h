@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/sample_grid.h"
-#include "model/vector.h"
+#include "model/lattice/sample_grid.h"
+#include "model/lattice/vector.h"
 #include "shaders/shared/prepare.h"
 
 namespace palpate {

@@ -1,6 +1,6 @@
 #include "compute/scene/scene_constants.h"
 
-#include "model/field.h"
+#include "model/contact/field.h"
 
 namespace palpate {
 namespace {

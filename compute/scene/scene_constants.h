@@ -1,6 +1,6 @@
 #pragma once
-#include "model/plan.h"
-#include "model/scene_geometry.h"
+#include "model/scene/plan.h"
+#include "model/scene/scene_geometry.h"
 #include "shaders/shared/scene.h"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 
 #include "compute/scene/scene_tables.h"
 #include "compute/scene/triangle_tree.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

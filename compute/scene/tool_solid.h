@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "compute/scene/scene_tables.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

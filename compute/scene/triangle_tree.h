@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compute/scene/scene_tables.h"
-#include "model/vector.h"
+#include "model/lattice/vector.h"
 
 namespace palpate {
 

@@ -14,9 +14,9 @@
 #include "compute/scene/scene_tables.h"
 #include "compute/search/run_tree.h"
 #include "compute/search/turned_boxes.h"
-#include "model/lattice.h"
+#include "model/lattice/lattice.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 #include "shaders/shared/frame.h"
 
 namespace palpate {

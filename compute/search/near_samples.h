@@ -8,8 +8,8 @@
 #include "compute/scene/samples.h"
 #include "compute/search/near_lists.h"
 #include "compute/scene/scene_tables.h"
-#include "model/lattice.h"
-#include "model/scene_geometry.h"
+#include "model/lattice/lattice.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "compute/scene/exact.h"
-#include "model/lattice.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

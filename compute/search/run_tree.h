@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compute/search/turned_boxes.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

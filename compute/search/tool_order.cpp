@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "model/lattice.h"
+#include "model/lattice/lattice.h"
 
 namespace palpate {
 namespace {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

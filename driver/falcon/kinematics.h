@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "model/vector.h"
+#include "model/lattice/vector.h"
 
 /// Kinematics of the Novint Falcon, a delta robot of three legs. Base frame: origin in the middle of the base, z out of
 /// the base towards the hand, y up; metres, radians, newtons. Leg i lies in the plane turned by φ_i about z; its own frame

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "model/csv_file.h"
+#include "model/files/csv_file.h"
 
 namespace palpate::replay {
 namespace {

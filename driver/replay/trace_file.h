@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 #include "model/result.h"
 
 namespace palpate::replay {

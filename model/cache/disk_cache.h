@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/cache/content_key.h"
-#include "model/file_view.h"
+#include "model/files/file_view.h"
 
 namespace palpate {
 

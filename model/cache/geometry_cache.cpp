@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "model/cache/archive.h"
-#include "model/file_view.h"
+#include "model/files/file_view.h"
 
 namespace palpate {
 namespace {

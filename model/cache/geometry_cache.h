@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "model/cache/disk_cache.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "model/generate/turn.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace palpate {
 

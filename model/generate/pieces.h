@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "model/generate/solids.h"
-#include "model/mesh.h"
-#include "model/pose.h"
+#include "model/mesh/mesh.h"
+#include "model/lattice/pose.h"
 
 /// Solids that can be tessellated as finely as asked, and the sharing of a number of triangles among them.
 namespace palpate::pieces {

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "model/mesh.h"
-#include "model/pose.h"
+#include "model/mesh/mesh.h"
+#include "model/lattice/pose.h"
 
 /// Closed, outward oriented solids of a chosen tessellation, in metres, the same bytes on every machine. The scene
 /// generators are made of them and so are most tests. Every function needs positive sizes and the least counts stated; less is

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "model/vector.h"
+#include "model/lattice/vector.h"
 
 namespace palpate {
 

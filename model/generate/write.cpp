@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "model/generate.h"
-#include "model/path_file.h"
+#include "model/files/path_file.h"
 
 namespace palpate {
 namespace {

@@ -55,12 +55,12 @@
 #include <string_view>
 #include <vector>
 
-#include "model/file_view.h"
+#include "model/files/file_view.h"
 #include "model/import/mesh_read.h"
 #include "model/import/part_names.h"
-#include "model/lattice_build.h"
-#include "model/one_line.h"
-#include "model/weld.h"
+#include "model/lattice/lattice_build.h"
+#include "model/files/one_line.h"
+#include "model/mesh/weld.h"
 
 namespace palpate {
 namespace {
@@ -363,7 +363,7 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
 }
 
 /// IGES has faces one by one, and some the wrong way round: those whose edges meet are joined, so that a body
-/// is closed again. Which side is out is found out for all formats in the same way (model/orientation.h).
+/// is closed again. Which side is out is found out for all formats in the same way (model/mesh/orientation.h).
 std::vector<Body> sew(std::vector<Body> bodies, const std::string& name, const Colours& colours) {
   BRepBuilderAPI_Sewing sewing(kSewingMm);
   std::vector<Body> out, loose;

@@ -16,7 +16,7 @@
 #include <cstring>
 
 #include "model/import/mesh_parcel.h"
-#include "model/one_line.h"
+#include "model/files/one_line.h"
 
 extern char** environ;
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "model/mesh_import.h"
+#include "model/mesh/mesh_import.h"
 
 namespace palpate {
 
@@ -20,7 +20,7 @@ struct ChildEnd {
 
 /// Runs `program` on a file until it ends, its limits do, or `progress` says no; it and what it started are gone afterwards. Its parcel is then
 /// in the file `parcel`, and how far it is before (model/import/mesh_parcel.h). Starts it by posix_spawn: other threads (a Vulkan driver's) may exist. No descriptor is inherited but its own four.
-/// `folder`: see model/confined_import.h; `colours`: see model/import/mesh_read.h. Error kInternal: it can't be started.
+/// `folder`: see model/mesh/confined_import.h; `colours`: see model/import/mesh_read.h. Error kInternal: it can't be started.
 Result<ChildEnd> run_import_child(const std::string& program, const std::string& path, double scale, const ImportLimits& limits, int parcel,
                                   const ImportProgress& progress, const std::string& folder = {}, const Tessellation& tessellation = {}, bool colours = true);
 

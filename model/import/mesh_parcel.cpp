@@ -10,9 +10,9 @@
 #include <cstring>
 #include <span>
 
-#include "model/lattice_build.h"
-#include "model/one_line.h"
-#include "model/weld.h"
+#include "model/lattice/lattice_build.h"
+#include "model/files/one_line.h"
+#include "model/mesh/weld.h"
 
 namespace palpate {
 namespace {
@@ -91,7 +91,7 @@ Result<Header> read_header(int file) {
   return header;
 }
 
-/// What the importer promises of a mesh (model/mesh.h), which nobody behind it checks again.
+/// What the importer promises of a mesh (model/mesh/mesh.h), which nobody behind it checks again.
 const char* wrong_with(const Mesh& mesh) {
   if (mesh.triangles.empty()) return "it has no triangle";
   for (const Vec3& point : mesh.vertices)

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "model/mesh_import.h"
+#include "model/mesh/mesh_import.h"
 
 namespace palpate {
 

@@ -15,14 +15,14 @@
 #include <optional>
 #include <vector>
 
-#include "model/file_view.h"
+#include "model/files/file_view.h"
 #include "model/import/import_checks.h"
 #include "model/import/part_names.h"
 #include "model/import/polygon_split.h"
 #include "model/import/threemf_read.h"
-#include "model/lattice_build.h"
-#include "model/one_line.h"
-#include "model/weld.h"
+#include "model/lattice/lattice_build.h"
+#include "model/files/one_line.h"
+#include "model/mesh/weld.h"
 
 namespace palpate {
 namespace {

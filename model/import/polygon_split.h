@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "model/vector.h"
+#include "model/lattice/vector.h"
 
 namespace palpate {
 

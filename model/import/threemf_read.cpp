@@ -9,9 +9,9 @@
 #include <memory>
 
 #include "model/import/part_names.h"
-#include "model/lattice_build.h"
-#include "model/one_line.h"
-#include "model/weld.h"
+#include "model/lattice/lattice_build.h"
+#include "model/files/one_line.h"
+#include "model/mesh/weld.h"
 
 namespace palpate {
 namespace {

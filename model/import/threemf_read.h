@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "model/mesh_import.h"
+#include "model/mesh/mesh_import.h"
 
 namespace palpate {
 

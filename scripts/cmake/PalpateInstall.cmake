@@ -25,7 +25,7 @@ install(TARGETS ${palpate_importers} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXEC
 set(PALPATE_IMPORT_PATH "${CMAKE_INSTALL_LIBEXECDIR}/palpate/palpate-import")
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
 
-# Headers keep their folders, so that "model/pose.h" means the same here and there.
+# Headers keep their folders, so that "model/lattice/pose.h" means the same here and there.
 install(DIRECTORY model driver service DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT library
   FILES_MATCHING PATTERN "*.h" PATTERN "service/server" EXCLUDE PATTERN "service/viewer" EXCLUDE PATTERN "service/report" EXCLUDE PATTERN "service/clients" EXCLUDE
   PATTERN "service/deploy" EXCLUDE)

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "model/path_file.h"
+#include "model/files/path_file.h"
 #include "service/cli/pose_input.h"
-#include "service/session.h"
+#include "service/loop/session.h"
 
 namespace palpate {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 #include "service/bench/bench.h"
 #include "service/cli/console.h"
 #include "service/cli/scene_host.h"

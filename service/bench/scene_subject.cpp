@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "model/scene_file.h"
+#include "model/scene/scene_file.h"
 #include "service/bench/poses.h"
 #include "service/cli/scene_host.h"
 #include "service/report/run_summary.h"

@@ -3,7 +3,7 @@
 
 #include "model/result.h"
 #include "service/bench/bench.h"
-#include "service/bench/error_subjects.h"
+#include "service/bench/error/error_subjects.h"
 #include "service/cli/console.h"
 
 namespace palpate {

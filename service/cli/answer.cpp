@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "service/lone_query.h"
+#include "service/queries/lone_query.h"
 
 namespace palpate {
 

@@ -2,9 +2,9 @@
 #include <span>
 #include <vector>
 
-#include "model/contacts.h"
-#include "model/pose.h"
-#include "model/response.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/pose.h"
+#include "model/contact/response.h"
 #include "service/cli/scene_host.h"
 
 namespace palpate {

@@ -16,7 +16,7 @@
 #include <string_view>
 
 #include "generated/commit.h"
-#include "model/one_line.h"
+#include "model/files/one_line.h"
 #include "service/bench/bench.h"
 #include "service/cli/console.h"
 #include "service/cli/manual.h"

@@ -9,10 +9,10 @@
 #include "driver/haptic_device.h"
 #include "model/cache/disk_cache.h"
 #include "model/collision_backend.h"
-#include "model/mesh_import.h"
-#include "model/pose.h"
-#include "model/scene.h"
-#include "service/bench/peer.h"
+#include "model/mesh/mesh_import.h"
+#include "model/lattice/pose.h"
+#include "model/scene/scene.h"
+#include "service/bench/time/peer.h"
 
 namespace palpate {
 
@@ -39,7 +39,7 @@ struct Parts {
   std::function<Result<std::unique_ptr<HapticDevice>>(const std::string& name, const Scene& scene, const Vec3& tool_gc_m,
                                                             const std::string& firmware)> make_device;
   std::function<std::vector<DeviceLine>()> list_devices;
-  /// Other collision libraries, for `bench peers`, and the judge of their pairs (service/bench/peer.h); empty where they were not built.
+  /// Other collision libraries, for `bench peers`, and the judge of their pairs (service/bench/time/peer.h); empty where they were not built.
   std::function<std::vector<std::unique_ptr<Peer>>()> make_peers;
   std::function<std::unique_ptr<Peer>()> make_judge;
 };

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "model/collision_backend.h"
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

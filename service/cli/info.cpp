@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "model/geometry_build.h"
-#include "model/mesh_import.h"
-#include "model/one_line.h"
+#include "model/scene/geometry_build.h"
+#include "model/mesh/mesh_import.h"
+#include "model/files/one_line.h"
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"

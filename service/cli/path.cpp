@@ -14,7 +14,7 @@
 #include "service/cli/numbers.h"
 #include "service/cli/pose_input.h"
 #include "service/cli/scene_host.h"
-#include "service/path_check.h"
+#include "service/queries/path_check.h"
 #include "service/report/path_page.h"
 
 namespace palpate {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "model/path_file.h"
-#include "service/bench/plan_trial.h"
+#include "model/files/path_file.h"
+#include "service/bench/plan/plan_trial.h"
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string_view>
 
-#include "model/one_line.h"
-#include "model/scene_geometry.h"
+#include "model/files/one_line.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 namespace {

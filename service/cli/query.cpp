@@ -12,7 +12,7 @@
 #include "service/cli/pose_input.h"
 #include "service/cli/query_text.h"
 #include "service/cli/scene_host.h"
-#include "service/query_json.h"
+#include "service/queries/query_json.h"
 #include "service/scene_talk.h"
 
 namespace palpate {

@@ -2,10 +2,10 @@
 #include <cstdint>
 #include <string>
 
-#include "model/contacts.h"
-#include "model/pose.h"
-#include "model/response.h"
-#include "service/touched_parts.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/pose.h"
+#include "model/contact/response.h"
+#include "service/queries/touched_parts.h"
 
 namespace palpate {
 

@@ -12,12 +12,12 @@
 #include "service/cli/console.h"
 #include "service/cli/output_folder.h"
 #include "service/cli/scene_host.h"
-#include "service/recorder.h"
+#include "service/loop/recorder.h"
 #include "service/report/report.h"
 #include "service/report/run_summary.h"
 #include "service/scene_talk.h"
-#include "service/session.h"
-#include "service/touched_parts.h"
+#include "service/loop/session.h"
+#include "service/queries/touched_parts.h"
 
 namespace palpate {
 namespace {

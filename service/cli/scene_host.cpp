@@ -5,9 +5,9 @@
 #include <chrono>
 #include <utility>
 
-#include "model/scene_file.h"
+#include "model/scene/scene_file.h"
 #include "service/cli/numbers.h"
-#include "service/steady_backend.h"
+#include "service/loop/steady_backend.h"
 
 namespace palpate {
 namespace {

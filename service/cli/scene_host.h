@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "model/plan.h"
-#include "model/scene.h"
+#include "model/scene/plan.h"
+#include "model/scene/scene.h"
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 
@@ -40,7 +40,7 @@ struct PrepareWatch {
   /// Asked once the triangles are known and before the work begins; may be empty. An error ends the preparation.
   std::function<Result<void>(const LoadedScene& loaded)> admit;
   bool cached = true;   ///< false, for a stranger's scene: the cache's keys are no match for someone who wants two scenes to have the same
-  std::string folder;   ///< files that a mesh names in turn must lie below it (model/confined_import.h); empty: anywhere
+  std::string folder;   ///< files that a mesh names in turn must lie below it (model/mesh/confined_import.h); empty: anywhere
 };
 
 /// Reads the scene, chooses the back end, imports, decides the plan and prepares.

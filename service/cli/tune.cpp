@@ -11,8 +11,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "model/voxel_size.h"
-#include "service/bench/error_sweep.h"
+#include "model/lattice/voxel_size.h"
+#include "service/bench/error/error_sweep.h"
 #include "service/bench/output.h"
 #include "service/bench/scene_subject.h"
 #include "service/cli/numbers.h"

@@ -7,7 +7,7 @@
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/scene_host.h"
-#include "service/path_check.h"
+#include "service/queries/path_check.h"
 
 namespace palpate {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-#include "model/scene.h"
-#include "service/path_check.h"
+#include "model/scene/scene.h"
+#include "service/queries/path_check.h"
 
 namespace palpate {
 

@@ -9,7 +9,7 @@
 #include "service/cli/numbers.h"
 #include "service/report/report_assets.h"
 #include "service/report/run_summary.h"
-#include "service/virtual_coupling.h"
+#include "service/loop/virtual_coupling.h"
 
 namespace palpate {
 namespace {

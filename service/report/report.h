@@ -1,9 +1,9 @@
 #pragma once
 #include <string>
 
-#include "model/scene.h"
+#include "model/scene/scene.h"
 #include "service/report/report_series.h"
-#include "service/session.h"
+#include "service/loop/session.h"
 
 namespace palpate {
 

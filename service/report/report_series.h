@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "service/run_record.h"
+#include "service/loop/run_record.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "service/session.h"
+#include "service/loop/session.h"
 
 namespace palpate {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-#include "model/lattice.h"
-#include "model/scene_geometry.h"
+#include "model/lattice/lattice.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

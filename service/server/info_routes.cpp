@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "service/server/json_input.h"
+#include "service/server/http/json_input.h"
 #include "service/server/openapi.h"
 #include "service/viewer/viewer_files.h"
 

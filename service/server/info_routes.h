@@ -3,12 +3,12 @@
 #include <string>
 
 #include "service/cli/cli.h"
-#include "service/server/limits.h"
+#include "service/server/http/limits.h"
 #include "service/server/metrics.h"
-#include "service/server/router.h"
-#include "service/server/scene_store.h"
-#include "service/server/session_host.h"
-#include "service/server/worker_pool.h"
+#include "service/server/http/router.h"
+#include "service/server/scenes/scene_store.h"
+#include "service/server/sessions/session_host.h"
+#include "service/server/queries/worker_pool.h"
 
 namespace palpate {
 

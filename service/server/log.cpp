@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "model/one_line.h"
+#include "model/files/one_line.h"
 
 namespace palpate {
 

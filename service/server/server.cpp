@@ -12,16 +12,16 @@
 #include <thread>
 
 #include "service/cli/console.h"
-#include "service/server/batch_queue.h"
-#include "service/server/drawing_routes.h"
+#include "service/server/queries/batch_queue.h"
+#include "service/server/scenes/drawing_routes.h"
 #include "service/server/info_routes.h"
-#include "service/server/query_route.h"
-#include "service/server/remote_loops.h"
-#include "service/server/run_routes.h"
-#include "service/server/scene_routes.h"
-#include "service/server/scene_store.h"
-#include "service/server/session_host.h"
-#include "service/server/worker_pool.h"
+#include "service/server/queries/query_route.h"
+#include "service/server/sessions/remote_loops.h"
+#include "service/server/sessions/run_routes.h"
+#include "service/server/scenes/scene_routes.h"
+#include "service/server/scenes/scene_store.h"
+#include "service/server/sessions/session_host.h"
+#include "service/server/queries/worker_pool.h"
 
 namespace palpate {
 namespace {

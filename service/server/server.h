@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "service/cli/cli.h"
-#include "service/server/limits.h"
-#include "service/server/listener.h"
+#include "service/server/http/limits.h"
+#include "service/server/http/listener.h"
 
 namespace palpate {
 

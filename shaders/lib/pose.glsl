@@ -15,7 +15,7 @@ ivec3 turned(ivec3 v) {
   return p;
 }
 
-// World lattice point of tool lattice point v (model/lattice.h). |v| ≤ 2^28.
+// World lattice point of tool lattice point v (model/lattice/lattice.h). |v| ≤ 2^28.
 ivec3 world_from_tool(ivec3 v) { return turned(v) + frame_input.translation; }
 
 // Tool lattice point of world lattice point p (docs/EXACTNESS.md section 4). |p − translation| < 2^31: sums within 3 · 2^61.

@@ -25,7 +25,7 @@ PALPATE_CONSTANT uint32_t kGroupSize = 64;                       // invocations 
 PALPATE_CONSTANT uint32_t kMaxGroupsX = 65535;                   // Vulkan's smallest maxComputeWorkGroupCount
 PALPATE_CONSTANT uint32_t kClusterSize = 64;                     // tool triangles in a cluster; the last one may be short
 PALPATE_CONSTANT uint32_t kRunSize = 8;                          // tool triangles in a run; 8 runs make a cluster
-PALPATE_CONSTANT uint32_t kMaxFrameAreas = 256;                  // kMaxAreas of model/contacts.h
+PALPATE_CONSTANT uint32_t kMaxFrameAreas = 256;                  // kMaxAreas of model/contact/contacts.h
 PALPATE_CONSTANT uint32_t kNone = 0xFFFFFFFFu;                   // no item
 
 // ---- bindings ------------------------------------------------------------------------------------------------------------
@@ -261,7 +261,7 @@ PALPATE_CONSTANT uint32_t kCornerProbe = 1u << 31;               // more triangl
 // sorts by id and renumbers.
 struct AreaResult {
   uint32_t id;                    // smallest static id
-  uint32_t flags;                 // ContactFlag bits of model/contacts.h
+  uint32_t flags;                 // ContactFlag bits of model/contact/contacts.h
   ivec3 direction;
   uint32_t rays;
   uint32_t max_height;

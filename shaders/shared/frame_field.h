@@ -24,7 +24,7 @@ PALPATE_CONSTANT int32_t kBindResultCarriers = 105;   // CarrierWork[C_s], by sl
 PALPATE_CONSTANT int32_t kBindMockupLevels = 106;     // a uint32_t a triangle: 1 + place of its side's levels, or 0; then kSideLevelWords a place: the coarsest level, factors (Q30)
 PALPATE_CONSTANT int32_t kBindToolLevels = 107;       // likewise
 
-PALPATE_CONSTANT uint32_t kMostSampleLevel = 4u;      // kSampleLevels of model/lattice_mesh.h
+PALPATE_CONSTANT uint32_t kMostSampleLevel = 4u;      // kSampleLevels of model/lattice/lattice_mesh.h
 PALPATE_CONSTANT uint32_t kSideLevelWords = 1u + kMostSampleLevel;
 
 PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
@@ -36,7 +36,7 @@ PALPATE_CONSTANT int32_t kDepthSlack = 16;            // steps by which a distan
 
 // ---- structs -------------------------------------------------------------------------------------------------------------
 
-// ExtraSample of model/lattice_mesh.h.
+// ExtraSample of model/lattice/lattice_mesh.h.
 struct ExtraSample {
   uint32_t triangle;
   ivec3 point;
@@ -56,7 +56,7 @@ struct FieldTile {
   int32_t first_u, first_v;
 };
 
-// FieldBin of model/field.h; low and high are those of WideSum.
+// FieldBin of model/contact/field.h; low and high are those of WideSum.
 struct FieldBinWork {
   int64_t samples;
   int64_t push_low[3];
@@ -82,7 +82,7 @@ PALPATE_CONSTANT uint32_t kWordSheet = kWordDeepest + 2u;
 PALPATE_CONSTANT uint32_t kFieldWords = kWordSheet + 1u;
 PALPATE_ASSERT_SIZE(FieldWork, 8 * kFieldWords);
 
-// CarrierSums of model/field.h.
+// CarrierSums of model/contact/field.h.
 struct CarrierWork {
   int64_t samples;
   int64_t weight_sum;

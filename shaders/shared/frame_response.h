@@ -44,7 +44,7 @@ struct AreaWork {
 };
 PALPATE_ASSERT_SIZE(AreaWork, 144);
 
-// ContactFlag of model/contacts.h.
+// ContactFlag of model/contact/contacts.h.
 PALPATE_CONSTANT uint32_t kAreaFlagCancelled = 1u << 0;
 PALPATE_CONSTANT uint32_t kAreaFlagNoDirection = 1u << 3;
 

@@ -9,12 +9,12 @@ PALPATE_SHARED_BEGIN
 PALPATE_CONSTANT uint32_t kBrickExternal = 0xFFFFFFFFu;
 PALPATE_CONSTANT uint32_t kBrickInternal = 0xFFFFFFFEu;
 
-// Classes of a voxel, as VoxelClass of model/voxel_grid.h.
+// Classes of a voxel, as VoxelClass of model/lattice/voxel_grid.h.
 PALPATE_CONSTANT uint32_t kVoxelExternal = 0u;
 PALPATE_CONSTANT uint32_t kVoxelBoundary = 1u;
 PALPATE_CONSTANT uint32_t kVoxelInternal = 2u;
 
-// triangle_info[]: bits 0–7 are TriangleFlag of model/lattice_mesh.h, bits 8–9 the sample axis; bit 10: it has extra samples.
+// triangle_info[]: bits 0–7 are TriangleFlag of model/lattice/lattice_mesh.h, bits 8–9 the sample axis; bit 10: it has extra samples.
 PALPATE_CONSTANT uint32_t kInfoCollapsed = 1u;
 PALPATE_CONSTANT uint32_t kInfoSheet = 2u;
 PALPATE_CONSTANT uint32_t kInfoAxisShift = 8u;
@@ -26,7 +26,7 @@ PALPATE_CONSTANT uint32_t kNoVoxel = 0xFFFFFFFFu;
 // Steps by which a tool's voxel grows before it is asked what it touches.
 PALPATE_CONSTANT int32_t kToolVoxelGrowth = 3;
 
-// A grid of voxels: VoxelGrid of model/voxel_grid.h, and how much of it is detailed.
+// A grid of voxels: VoxelGrid of model/lattice/voxel_grid.h, and how much of it is detailed.
 struct GridConstants {
   ivec3 origin;              // lattice steps
   int32_t size;              // lattice steps
@@ -61,7 +61,7 @@ struct SceneConstants {
   BodyConstants mockup;
   BodyConstants tool;
   int32_t tool_radius;       // steps
-  int32_t lever_shift;       // of it (model/field.h)
+  int32_t lever_shift;       // of it (model/contact/field.h)
   int32_t sample_spacing;    // steps
   uint32_t refined;          // 1: profile `refined`, 0: `paper`
   uint32_t mockup_extras;    // extra samples; refined

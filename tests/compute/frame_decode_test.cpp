@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compute/gpu/frame/decode.h"
-#include "model/contacts.h"
+#include "model/contact/contacts.h"
 #include "shaders/shared/frame.h"
 #include "tests/driver/allocation_count.h"
 

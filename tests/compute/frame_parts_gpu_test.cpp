@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "model/lattice.h"
+#include "model/lattice/lattice.h"
 #include "tests/compute/code.h"
 #include "tests/compute/gpu_test.h"
 #include "tests/compute/probe_cases.h"

@@ -7,7 +7,7 @@
 
 #include "compute/native/native_backend.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
+#include "model/scene/geometry_build.h"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "model/vector.h"
+#include "model/lattice/vector.h"
 #include "shaders/shared/prepare.h"
 #include "shaders/shared/scene.h"
 #include "tests/compute/module_run.h"

@@ -8,7 +8,7 @@
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
+#include "model/scene/geometry_build.h"
 #include "tests/compute/gpu_test.h"
 #include "tests/compute/partition_equality.h"
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "model/geometry_build.h"
-#include "model/pose.h"
-#include "model/response.h"
+#include "model/scene/geometry_build.h"
+#include "model/lattice/pose.h"
+#include "model/contact/response.h"
 #include "tests/cpu_ref/bench_backend.h"
 
 namespace palpate {

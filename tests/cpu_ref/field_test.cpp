@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "model/field_response.h"
+#include "model/contact/field_response.h"
 #include "model/generate/solids.h"
-#include "model/rotation.h"
+#include "model/lattice/rotation.h"
 #include "tests/cpu_ref/bench_scene.h"
 
 namespace palpate {

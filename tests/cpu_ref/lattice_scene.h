@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "model/patches.h"
-#include "model/geometry_build.h"
+#include "model/mesh/patches.h"
+#include "model/scene/geometry_build.h"
 #include "tests/cpu_ref/lattice_solids.h"
 
 /// Scenes whose metres are lattice steps: what is written is what is judged.

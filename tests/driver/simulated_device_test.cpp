@@ -11,7 +11,7 @@
 #include "driver/limits.h"
 #include "driver/mass_spring.h"
 #include "driver/path.h"
-#include "model/rotation.h"
+#include "model/lattice/rotation.h"
 #include "tests/driver/allocation_count.h"
 
 namespace palpate {

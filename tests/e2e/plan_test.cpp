@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "model/plan.h"
-#include "model/scene.h"
+#include "model/scene/plan.h"
+#include "model/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "service/query_json.h"
+#include "service/queries/query_json.h"
 
 namespace palpate {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "model/lattice.h"
-#include "model/plan.h"
+#include "model/lattice/lattice.h"
+#include "model/scene/plan.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 #include "tests/equivalence/random.h"
 
 namespace palpate::equivalence {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "model/response.h"
+#include "model/contact/response.h"
 #include "tests/equivalence/contacts_difference.h"
 #include "tests/equivalence/known.h"
 #include "tests/equivalence/touching_poses.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "model/generate/solids.h"
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 #include "tests/equivalence/case.h"
 #include "tests/equivalence/mesh_scene.h"
 

@@ -2,7 +2,7 @@
 // tests/mutation, where a changed operator went unseen.
 #include "model/generate/solids.h"
 #include "model/generate/turn.h"
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 #include "tests/equivalence/case.h"
 #include "tests/equivalence/lattice_shapes.h"
 #include "tests/equivalence/rectangles.h"

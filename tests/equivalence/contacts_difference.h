@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-#include "model/contacts.h"
-#include "model/voxel_grid.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate {
 

@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <string>
 
-#include "model/contacts.h"
-#include "model/response.h"
-#include "model/voxel_grid.h"
+#include "model/contact/contacts.h"
+#include "model/contact/response.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate::equivalence {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <cstdint>
 
-#include "model/contacts.h"
-#include "model/lattice.h"
-#include "model/scene_geometry.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/lattice.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate::equivalence {
 

@@ -2,8 +2,8 @@
 #include <functional>
 #include <string>
 
-#include "model/contacts.h"
-#include "model/voxel_grid.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/voxel_grid.h"
 #include "tests/equivalence/case.h"
 
 namespace palpate::equivalence {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/patches.h"
-#include "model/lattice_build.h"
-#include "model/smooth_angle.h"
+#include "model/mesh/patches.h"
+#include "model/lattice/lattice_build.h"
+#include "model/mesh/smooth_angle.h"
 
 namespace palpate::equivalence {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 #include <vector>
 
-#include "model/geometry_build.h"
-#include "model/mesh.h"
+#include "model/scene/geometry_build.h"
+#include "model/mesh/mesh.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate::equivalence {
 

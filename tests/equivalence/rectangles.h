@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "model/vector.h"
-#include "model/voxel_grid.h"
+#include "model/lattice/vector.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate::equivalence {
 

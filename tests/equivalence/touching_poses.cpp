@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 
 namespace palpate::equivalence {
 namespace {

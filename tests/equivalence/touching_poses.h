@@ -1,6 +1,6 @@
 #pragma once
-#include "model/lattice.h"
-#include "model/scene_geometry.h"
+#include "model/lattice/lattice.h"
+#include "model/scene/scene_geometry.h"
 #include "tests/equivalence/random.h"
 
 namespace palpate::equivalence {

@@ -8,9 +8,9 @@
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
-#include "model/pose.h"
-#include "model/response.h"
+#include "model/scene/geometry_build.h"
+#include "model/lattice/pose.h"
+#include "model/contact/response.h"
 #include "tests/equivalence/contacts_difference.h"
 
 namespace palpate {

@@ -8,8 +8,8 @@
 #include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
-#include "model/pose.h"
+#include "model/scene/geometry_build.h"
+#include "model/lattice/pose.h"
 #include "tests/equivalence/contacts_difference.h"
 
 namespace palpate {

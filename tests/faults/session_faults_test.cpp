@@ -5,8 +5,8 @@
 
 #include "compute/native/native_backend.h"
 #include "driver/simulated_device.h"
-#include "service/session.h"
-#include "service/steady_backend.h"
+#include "service/loop/session.h"
+#include "service/loop/steady_backend.h"
 #include "tests/faults/fault_scene.h"
 
 namespace palpate {

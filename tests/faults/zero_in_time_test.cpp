@@ -12,7 +12,7 @@
 #include "driver/safe_device.h"
 #include "driver/simulated_device.h"
 #include "service/cli/console.h"
-#include "service/session.h"
+#include "service/loop/session.h"
 #include "tests/driver/fake_usb/falcon_table.h"
 #include "tests/service/half_space.h"
 

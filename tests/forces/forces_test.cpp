@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "compute/native/native_backend.h"
-#include "service/bench/force_judge.h"
+#include "service/bench/force/force_judge.h"
 
 namespace palpate {
 namespace {

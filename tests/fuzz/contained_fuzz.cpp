@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "model/mesh_import.h"
+#include "model/mesh/mesh_import.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/model/temporary_folder.h"
 

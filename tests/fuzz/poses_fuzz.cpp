@@ -1,7 +1,7 @@
 // Poses, the hand's path and a guide (CSV), and the pose of a command line: finite numbers and unit rotations, or one sentence.
 #include <cmath>
 
-#include "model/path_file.h"
+#include "model/files/path_file.h"
 #include "service/cli/pose_input.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/input_file.h"

@@ -2,13 +2,13 @@
 #include <cmath>
 #include <string>
 
-#include "service/server/auth.h"
-#include "service/server/drawing.h"
-#include "service/server/http_message.h"
-#include "service/server/json_input.h"
-#include "service/server/multipart.h"
-#include "service/server/pose_body.h"
-#include "service/server/safe_path.h"
+#include "service/server/http/auth.h"
+#include "service/server/scenes/drawing.h"
+#include "service/server/http/http_message.h"
+#include "service/server/http/json_input.h"
+#include "service/server/http/multipart.h"
+#include "service/server/queries/pose_body.h"
+#include "service/server/http/safe_path.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Scene files: a Scene within the stated limits, or one sentence.
-#include "model/scene_file.h"
+#include "model/scene/scene_file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/input_file.h"
 

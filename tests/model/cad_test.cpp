@@ -39,10 +39,10 @@
 
 #include "cpu_ref/ref_backend.h"
 #include "model/cache/geometry_cache.h"
-#include "model/geometry_build.h"
-#include "model/mesh_import.h"
-#include "model/response.h"
-#include "model/scene_file.h"
+#include "model/scene/geometry_build.h"
+#include "model/mesh/mesh_import.h"
+#include "model/contact/response.h"
+#include "model/scene/scene_file.h"
 #include "tests/model/temporary_folder.h"
 
 // For builds with the address sanitizer: OpenCASCADE's writers, which this test calls in its own process,

@@ -6,9 +6,9 @@
 
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/turn.h"
-#include "model/path_file.h"
-#include "model/response.h"
-#include "model/scene_file.h"
+#include "model/files/path_file.h"
+#include "model/contact/response.h"
+#include "model/scene/scene_file.h"
 #include "temporary_folder.h"
 
 namespace palpate {

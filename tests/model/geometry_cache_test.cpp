@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "model/cache/archive.h"
-#include "model/scene_file.h"
+#include "model/scene/scene_file.h"
 #include "temporary_folder.h"
 
 namespace palpate {

@@ -12,7 +12,7 @@
 #include <fstream>
 
 #include "model/generate/solids.h"
-#include "model/mesh_import.h"
+#include "model/mesh/mesh_import.h"
 
 namespace palpate {
 namespace {

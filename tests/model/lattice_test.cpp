@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
-#include "model/voxel_size.h"
+#include "model/scene/geometry_build.h"
+#include "model/lattice/voxel_size.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "model/orientation.h"
+#include "model/mesh/orientation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
-#include "model/mass.h"
+#include "model/scene/geometry_build.h"
+#include "model/mesh/mass.h"
 
 namespace palpate {
 namespace {

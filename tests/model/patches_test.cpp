@@ -1,5 +1,5 @@
 // Patches are about the faces that a CAD file knows, and no face is too small or too thin for the pressure field.
-#include "model/patches.h"
+#include "model/mesh/patches.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 #include "cpu_ref/exact.h"
 #include "cpu_ref/samples.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
-#include "model/mass.h"
-#include "model/triangle.h"
+#include "model/scene/geometry_build.h"
+#include "model/mesh/mass.h"
+#include "model/lattice/triangle.h"
 
 namespace palpate {
 namespace {

@@ -1,11 +1,11 @@
-#include "model/path_file.h"
+#include "model/files/path_file.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "model/generate.h"
-#include "model/scene_file.h"
+#include "model/scene/scene_file.h"
 #include "temporary_folder.h"
 
 namespace palpate {

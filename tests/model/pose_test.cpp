@@ -1,4 +1,4 @@
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
+#include "model/scene/geometry_build.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "model/scene_file.h"
+#include "model/scene/scene_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "model/scene_file.h"
+#include "model/scene/scene_file.h"
 #include "temporary_folder.h"
 
 namespace palpate {

@@ -10,8 +10,8 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include "model/scene_file.h"
-#include "model/scene_keys.h"
+#include "model/scene/scene_file.h"
+#include "model/scene/scene_keys.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "model/smooth_angle.h"
+#include "model/mesh/smooth_angle.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "model/response.h"
+#include "model/contact/response.h"
 #include "tests/equivalence/contacts_difference.h"
 #include "tests/equivalence/touching_poses.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "model/collision_backend.h"
-#include "model/response.h"
+#include "model/contact/response.h"
 #include "tests/equivalence/case.h"
 
 namespace palpate::mutation {

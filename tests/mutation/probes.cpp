@@ -11,9 +11,9 @@
 #include "cpu_ref/samples.h"
 #include "cpu_ref/triangle_cube.h"
 #include "cpu_ref/triangle_triangle.h"
-#include "model/geometry_build.h"
-#include "model/response.h"
-#include "model/smooth_angle.h"
+#include "model/scene/geometry_build.h"
+#include "model/contact/response.h"
+#include "model/mesh/smooth_angle.h"
 #include "tests/compute/geometry_cases.h"
 
 namespace palpate::mutation {

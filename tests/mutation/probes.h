@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate::mutation {
 

@@ -3,8 +3,8 @@
 
 #include "compute/native/native_backend.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
-#include "model/response.h"
+#include "model/scene/geometry_build.h"
+#include "model/contact/response.h"
 
 int main() {
   using namespace palpate;

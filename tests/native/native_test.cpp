@@ -11,7 +11,7 @@
 #include "cpu_ref/ref_backend.h"
 #include "model/generate.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
+#include "model/scene/geometry_build.h"
 #include "tests/driver/allocation_count.h"
 #include "tests/equivalence/contacts_difference.h"
 

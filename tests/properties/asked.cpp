@@ -11,9 +11,9 @@
 
 #include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/ref_backend.h"
-#include "model/geometry_build.h"
-#include "model/patches.h"
-#include "model/triangle.h"
+#include "model/scene/geometry_build.h"
+#include "model/mesh/patches.h"
+#include "model/lattice/triangle.h"
 
 namespace palpate::properties {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "model/collision_backend.h"
-#include "model/response.h"
-#include "model/voxel_grid.h"
+#include "model/contact/response.h"
+#include "model/lattice/voxel_grid.h"
 
 /// Small scenes asked of a back end, and answers as text in which equal means equal in every bit. Lattice steps throughout.
 namespace palpate::properties {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ostream>
 
-#include "model/pose.h"
+#include "model/lattice/pose.h"
 
 namespace palpate::properties {
 namespace {

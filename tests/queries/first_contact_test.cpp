@@ -9,10 +9,10 @@
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
-#include "model/geometry_build.h"
-#include "model/rotation.h"
-#include "model/screw.h"
-#include "service/first_contact.h"
+#include "model/scene/geometry_build.h"
+#include "model/lattice/rotation.h"
+#include "model/lattice/screw.h"
+#include "service/queries/first_contact.h"
 #include "tests/equivalence/random.h"
 
 namespace palpate {

@@ -15,10 +15,10 @@
 
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
-#include "model/rotation.h"
-#include "model/screw.h"
+#include "model/lattice/rotation.h"
+#include "model/lattice/screw.h"
 #include "service/cli/pose_input.h"
-#include "service/first_contact.h"
+#include "service/queries/first_contact.h"
 #include "tests/queries/scene_poses.h"
 
 namespace palpate::queries {

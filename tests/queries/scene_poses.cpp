@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "model/path_file.h"
-#include "model/rotation.h"
-#include "model/scene_file.h"
+#include "model/files/path_file.h"
+#include "model/lattice/rotation.h"
+#include "model/scene/scene_file.h"
 #include "tests/equivalence/touching_poses.h"
 
 namespace palpate::queries {

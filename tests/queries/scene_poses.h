@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-#include "model/pose.h"
-#include "model/scene.h"
-#include "model/scene_geometry.h"
+#include "model/lattice/pose.h"
+#include "model/scene/scene.h"
+#include "model/scene/scene_geometry.h"
 #include "tests/equivalence/case.h"
 
 namespace palpate::queries {

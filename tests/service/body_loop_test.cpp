@@ -1,5 +1,5 @@
 // Six degrees of freedom: the simulated device, its safety wrapper, the shipped law and the virtual coupling in one loop.
-#include "service/body_loop.h"
+#include "service/loop/body_loop.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 #include "driver/limits.h"
 #include "driver/simulated_device.h"
-#include "model/rotation.h"
-#include "service/bench/stability_bodies.h"
+#include "model/lattice/rotation.h"
+#include "service/bench/stability/stability_bodies.h"
 #include "tests/driver/allocation_count.h"
 
 namespace palpate {

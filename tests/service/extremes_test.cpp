@@ -11,9 +11,9 @@
 #include <random>
 
 #include "driver/limits.h"
-#include "model/rotation.h"
-#include "service/axis_loop.h"
-#include "service/control_loop.h"
+#include "model/lattice/rotation.h"
+#include "service/loop/axis_loop.h"
+#include "service/loop/control_loop.h"
 #include "tests/driver/allocation_count.h"
 
 namespace palpate {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "service/axis_loop.h"
-#include "service/force_law.h"
+#include "service/loop/axis_loop.h"
+#include "service/loop/force_law.h"
 
 // What the tests of the force law share.
 namespace palpate {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "driver/limits.h"
-#include "model/rotation.h"
+#include "model/lattice/rotation.h"
 #include "tests/service/force_law_fixture.h"
 
 namespace palpate {

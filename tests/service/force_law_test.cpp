@@ -1,4 +1,4 @@
-#include "service/force_law.h"
+#include "service/loop/force_law.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "driver/limits.h"
-#include "model/rotation.h"
+#include "model/lattice/rotation.h"
 #include "tests/driver/allocation_count.h"
 #include "tests/service/force_law_fixture.h"
 

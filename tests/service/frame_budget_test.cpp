@@ -1,4 +1,4 @@
-#include "service/frame_budget.h"
+#include "service/loop/frame_budget.h"
 
 #include <gtest/gtest.h>
 

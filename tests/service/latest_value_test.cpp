@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "service/histogram.h"
+#include "service/loop/histogram.h"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,5 @@
 // From a contact response to planes.
-#include "service/law_result.h"
+#include "service/loop/law_result.h"
 
 #include <gtest/gtest.h>
 

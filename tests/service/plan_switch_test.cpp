@@ -1,5 +1,5 @@
 // Another plan in mid-run: the loop goes on, what a person can't feel changes no tick, and another profile fades in.
-#include "service/plan_switch.h"
+#include "service/loop/plan_switch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "driver/simulated_device.h"
-#include "service/session.h"
+#include "service/loop/session.h"
 #include "tests/service/half_space.h"
 
 namespace palpate {

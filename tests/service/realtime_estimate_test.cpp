@@ -1,4 +1,4 @@
-#include "service/realtime_estimate.h"
+#include "service/loop/realtime_estimate.h"
 
 #include <gtest/gtest.h>
 

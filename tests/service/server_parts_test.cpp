@@ -6,10 +6,10 @@
 #include <numeric>
 #include <thread>
 
-#include "service/control_loop.h"
-#include "service/server/batch_queue.h"
-#include "service/server/pausable_device.h"
-#include "service/server/telemetry.h"
+#include "service/loop/control_loop.h"
+#include "service/server/queries/batch_queue.h"
+#include "service/server/sessions/pausable_device.h"
+#include "service/server/sessions/telemetry.h"
 #include "tests/service/half_space.h"
 
 namespace palpate {

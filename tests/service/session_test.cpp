@@ -1,4 +1,4 @@
-#include "service/session.h"
+#include "service/loop/session.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 
 #include "driver/limits.h"
 #include "driver/simulated_device.h"
-#include "service/control_loop.h"
-#include "service/recorder.h"
+#include "service/loop/control_loop.h"
+#include "service/loop/recorder.h"
 #include "tests/driver/allocation_count.h"
 #include "tests/service/half_space.h"
 

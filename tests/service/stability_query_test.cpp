@@ -8,9 +8,9 @@
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
 #include "driver/simulated_device.h"
-#include "service/bench/stability_bodies.h"
-#include "service/bench/stability_contacts.h"
-#include "service/spring_balance.h"
+#include "service/bench/stability/stability_bodies.h"
+#include "service/bench/stability/stability_contacts.h"
+#include "service/loop/spring_balance.h"
 
 namespace palpate {
 namespace {

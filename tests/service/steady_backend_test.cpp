@@ -1,5 +1,5 @@
 // A back end with a spare: who is asked about what.
-#include "service/steady_backend.h"
+#include "service/loop/steady_backend.h"
 
 #include <gtest/gtest.h>
 

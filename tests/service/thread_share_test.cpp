@@ -1,4 +1,4 @@
-#include "service/thread_share.h"
+#include "service/loop/thread_share.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>

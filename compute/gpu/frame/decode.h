@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "model/contacts.h"
+#include "model/contact/contacts.h"
 #include "shaders/shared/frame.h"
 
 namespace palpate {

@@ -7,9 +7,9 @@
 #include "compute/gpu/frame/recorder.h"
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/vulkan/device.h"
-#include "model/plan.h"
+#include "model/scene/plan.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

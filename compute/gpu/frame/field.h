@@ -6,10 +6,10 @@
 #include "compute/gpu/frame/recorder.h"
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/vulkan/device.h"
-#include "model/contacts.h"
-#include "model/plan.h"
+#include "model/contact/contacts.h"
+#include "model/scene/plan.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 #include "shaders/shared/frame_field.h"
 
 namespace palpate {

@@ -22,7 +22,7 @@
 #include "compute/search/run_tree.h"
 #include "compute/gpu/frame/stage_memory.h"
 #include "compute/gpu/scene_copies.h"
-#include "model/contact_areas.h"
+#include "model/contact/contact_areas.h"
 
 namespace palpate {
 namespace {

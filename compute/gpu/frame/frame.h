@@ -9,10 +9,10 @@
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/vulkan/device.h"
 #include "model/collision_backend.h"
-#include "model/contacts.h"
-#include "model/lattice.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/lattice.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

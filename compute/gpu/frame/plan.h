@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "compute/vulkan/pipeline.h"
-#include "model/plan.h"
+#include "model/scene/plan.h"
 
 namespace palpate {
 

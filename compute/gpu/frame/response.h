@@ -4,7 +4,7 @@
 #include "compute/gpu/frame/capacity.h"
 #include "compute/gpu/frame/recorder.h"
 #include "compute/vulkan/device.h"
-#include "model/plan.h"
+#include "model/scene/plan.h"
 #include "model/result.h"
 #include "shaders/shared/frame_response.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compute/gpu/prepare/partition.h"
-#include "model/voxel_size.h"
+#include "model/lattice/voxel_size.h"
 #include "shaders/code.h"
 #include "shaders/shared/prepare.h"
 

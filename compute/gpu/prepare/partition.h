@@ -3,8 +3,8 @@
 
 #include "compute/gpu/prepare/steps.h"
 #include "compute/gpu/prepare/prepared_scene.h"
-#include "model/lattice_mesh.h"
-#include "model/voxel_grid.h"
+#include "model/lattice/lattice_mesh.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate {
 

@@ -7,9 +7,9 @@
 #include "compute/vulkan/buffer.h"
 #include "compute/vulkan/device.h"
 #include "model/collision_backend.h"
-#include "model/plan.h"
+#include "model/scene/plan.h"
 #include "model/result.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 #include "shaders/shared/scene.h"
 
 namespace palpate {

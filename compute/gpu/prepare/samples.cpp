@@ -10,7 +10,7 @@
 #include "compute/gpu/scene_copies.h"
 #include "compute/scene/sample_points.h"
 #include "compute/scene/tool_solid.h"
-#include "model/geometry_build.h"
+#include "model/scene/geometry_build.h"
 #include "shaders/code.h"
 #include "shaders/shared/frame.h"
 #include "shaders/shared/prepare.h"

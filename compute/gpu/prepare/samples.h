@@ -2,7 +2,7 @@
 #include "compute/gpu/prepare/partition.h"
 #include "compute/gpu/prepare/steps.h"
 #include "compute/gpu/prepare/prepared_scene.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "compute/scene/triangle_tree.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

@@ -9,8 +9,8 @@
 #include "compute/native/narrow_phase/sets.h"
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/scene/triangle_tree.h"
-#include "model/contacts.h"
-#include "model/scene_geometry.h"
+#include "model/contact/contacts.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compute/scene/partition_lookup.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

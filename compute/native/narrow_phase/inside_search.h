@@ -5,7 +5,7 @@
 
 #include "compute/native/narrow_phase/inside_cells.h"
 #include "compute/scene/partition_lookup.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
 

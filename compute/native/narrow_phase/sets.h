@@ -13,7 +13,7 @@
 #include "compute/native/narrow_phase/pair_filter.h"
 #include "compute/search/posed_tool.h"
 #include "compute/scene/scene_tables.h"
-#include "model/scene_geometry.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate {
 

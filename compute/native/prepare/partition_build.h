@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "compute/scene/partition.h"
-#include "model/lattice_mesh.h"
+#include "model/lattice/lattice_mesh.h"
 #include "model/result.h"
-#include "model/voxel_grid.h"
+#include "model/lattice/voxel_grid.h"
 
 namespace palpate::native {
 

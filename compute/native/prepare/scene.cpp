@@ -7,7 +7,7 @@
 #include "compute/scene/scene_constants.h"
 #include "compute/scene/search_tables.h"
 #include "compute/scene/tool_solid.h"
-#include "model/geometry_build.h"
+#include "model/scene/geometry_build.h"
 
 namespace palpate::native {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "compute/scene/scene_tables.h"
 #include "model/collision_backend.h"
-#include "model/plan.h"
+#include "model/scene/plan.h"
 
 namespace palpate::native {
 

@@ -7,9 +7,9 @@
 #include "compute/native/narrow_phase/pair_filter.h"
 #include "compute/native/queries/pair_distance.h"
 #include "compute/scene/triangle_tree.h"
-#include "model/clearance.h"
-#include "model/lattice.h"
-#include "model/scene_geometry.h"
+#include "model/contact/clearance.h"
+#include "model/lattice/lattice.h"
+#include "model/scene/scene_geometry.h"
 
 namespace palpate::native {
 

@@ -5,7 +5,7 @@
 #include "compute/native/frame.h"
 #include "compute/native/queries/pair_search.h"
 #include "compute/scene/partition_lookup.h"
-#include "model/clearance.h"
+#include "model/contact/clearance.h"
 #include "model/result.h"
 
 namespace palpate::native {

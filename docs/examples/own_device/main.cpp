@@ -1,7 +1,7 @@
 // A device of one's own on palpate's control loop: implement HapticDevice, hand it to run_session().
 #include <cpu_ref/ref_backend.h>
 #include <model/generate.h>
-#include <service/session.h>
+#include <service/loop/session.h>
 
 #include <cstdio>
 #include <utility>

@@ -1,5 +1,5 @@
 // Reads a mesh through the installed library, whose importer is a program that find_package(palpate) knows.
-#include <model/mesh_import.h>
+#include <model/mesh/mesh_import.h>
 
 #include <cstdio>
 

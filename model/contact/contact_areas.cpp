@@ -1,0 +1,152 @@
+#include "model/contact/contact_areas.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <numeric>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+std::int64_t floor_third(std::int64_t sum) { return sum >= 0 ? sum / 3 : -((2 - sum) / 3); }
+
+/// Triangles joined into sets, each known by its first member.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::uint32_t{0}); }
+  std::uint32_t first(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = first(a);
+    b = first(b);
+    if (a < b) parent_[b] = a;
+    else parent_[a] = b;
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+void add(WideSum& to, const WideSum& from) {
+  to.low += from.low;
+  to.high += from.high;
+}
+
+void add(CarrierSums& to, const CarrierSums& from) {
+  to.samples += from.samples;
+  to.max_depth = std::max(to.max_depth, from.max_depth);
+  to.weight_sum += from.weight_sum;
+  to.depth_sum += from.depth_sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    add(to.push[k], from.push[k]);
+    add(to.moment[k], from.moment[k]);
+  }
+}
+
+/// Where an area lies.
+struct Bounds {
+  Int3 low{INT32_MAX}, high{INT32_MIN};
+  void include(const Int3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+};
+
+/// C_m to areas by the chapter's rule (EXACTNESS section 5): every area whose sphere holds the triangle's centroid, else the nearest.
+void associate(const SceneGeometry& geometry, const LatticePose& pose, const std::vector<Bounds>& bounds, Contacts& contacts) {
+  if (contacts.areas.empty()) return;
+  std::vector<std::uint32_t> mobile;
+  for (const auto* set : {&contacts.cmt, &contacts.bmt, &contacts.imt}) mobile.insert(mobile.end(), set->begin(), set->end());
+  std::sort(mobile.begin(), mobile.end());
+  for (const std::uint32_t m : mobile) {
+    Long3 sum(0);
+    for (int k = 0; k < 3; ++k) sum += Long3(transform(pose, geometry.tool.corner(m, k)));
+    const Long3 g(floor_third(sum.x), floor_third(sum.y), floor_third(sum.z));
+    std::size_t nearest = 0;
+    std::int64_t nearest_distance = -1;
+    bool held = false;
+    for (std::size_t a = 0; a < bounds.size(); ++a) {
+      const Long3 away = std::int64_t{2} * g - Long3(bounds[a].low) - Long3(bounds[a].high), diagonal = Long3(bounds[a].high) - Long3(bounds[a].low);
+      const std::int64_t distance = away.x * away.x + away.y * away.y + away.z * away.z;   // within 3 · 2^60
+      if (distance <= diagonal.x * diagonal.x + diagonal.y * diagonal.y + diagonal.z * diagonal.z) {
+        contacts.areas[a].mobile_ids.push_back(m);
+        held = true;
+      }
+      if (nearest_distance < 0 || distance < nearest_distance) nearest_distance = distance, nearest = a;
+    }
+    if (!held) contacts.areas[nearest].mobile_ids.push_back(m);
+  }
+}
+
+}  // namespace
+
+Int3 lattice_direction(const Long3& sum) {
+  const std::int64_t largest = std::max({std::llabs(sum.x), std::llabs(sum.y), std::llabs(sum.z)});
+  int left = 0, right = 0;
+  while (largest << left < std::int64_t{1} << 28) ++left;
+  while (largest >> right >= std::int64_t{1} << 29) ++right;
+  Int3 out;
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t size = std::llabs(sum[k]) << left >> right;   // one of them is 0
+    out[k] = static_cast<std::int32_t>(sum[k] < 0 ? -size : size);
+  }
+  return out;
+}
+
+void gather_areas(const SceneGeometry& geometry, const LatticePose& pose, Contacts& contacts) {
+  contacts.areas.clear();
+  const std::vector<CarrierSums>& carriers = contacts.carriers;
+  const LatticeMesh& mesh = geometry.mockup;
+  Sets areas(carriers.size()), zones(carriers.size());
+  for (std::uint32_t i = 0; i < carriers.size(); ++i)
+    for (std::uint32_t n = mesh.neighbour_begin[carriers[i].id]; n < mesh.neighbour_begin[carriers[i].id + 1]; ++n) {
+      const std::uint32_t other = mesh.neighbours[n] >> 1;
+      const auto found = std::lower_bound(carriers.begin(), carriers.end(), other, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
+      if (found == carriers.end() || found->id != other) continue;
+      const auto j = static_cast<std::uint32_t>(found - carriers.begin());
+      areas.join(i, j);
+      if ((mesh.neighbours[n] & 1u) != 0) zones.join(i, j);
+    }
+
+  // Carriers ascend, so the first of a set names it and sets come in the order of their names.
+  std::vector<std::size_t> area_at(carriers.size()), zone_at(carriers.size());
+  std::vector<Bounds> bounds;
+  for (std::uint32_t i = 0; i < carriers.size(); ++i) {
+    const CarrierSums& carrier = carriers[i];
+    const std::uint32_t first = areas.first(i), zone = zones.first(i);
+    if (first == i) {
+      area_at[i] = contacts.areas.size();
+      contacts.areas.emplace_back().id = carrier.id;
+      bounds.emplace_back();
+    }
+    ContactArea& area = contacts.areas[area_at[first]];
+    if (zone == i) {
+      zone_at[i] = area.zones.size();
+      area.zones.emplace_back();
+    }
+    area.static_ids.push_back(carrier.id);
+    area.zones[zone_at[zone]].push_back(carrier.id);
+    if ((mesh.flags[carrier.id] & kTriangleSheet) != 0) area.flags |= kFlagSheet;
+    add(area.field, carrier);
+    for (int k = 0; k < 3; ++k) bounds[area_at[first]].include(mesh.corner(carrier.id, k));
+  }
+  for (ContactArea& area : contacts.areas) {
+    // A push that may not fit 64 bits loses its low 32, all of its components alike: terms within 2^62 >> 32, fewer than 2^31 of them.
+    const auto large = [](const WideSum& push) { return std::llabs(push.high + (push.low >> 32)) >= std::int64_t{1} << 29; };
+    const bool wide = std::any_of(area.field.push.begin(), area.field.push.end(), large);
+    Long3 sum(0);
+    for (int k = 0; k < 3; ++k) {
+      const WideSum& push = area.field.push[static_cast<std::size_t>(k)];
+      const std::int64_t high = push.high + (push.low >> 32);
+      sum[k] = wide ? high : high * (std::int64_t{1} << 32) + (push.low & 0xFFFFFFFF);
+    }
+    if (sum != Long3(0)) area.direction = lattice_direction(sum);
+    area.rays = area.field.samples;
+  }
+  associate(geometry, pose, bounds, contacts);
+}
+
+}  // namespace palpate

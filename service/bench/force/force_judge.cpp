@@ -1,0 +1,211 @@
+#include "service/bench/force/force_judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/scene/geometry_build.h"
+#include "model/lattice/rotation.h"
+#include "service/queries/lone_query.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+struct Answer {
+  Wrench wrench;
+  std::uint32_t flags = 0;
+  bool contact = false;
+};
+
+/// Asks what is felt at poses.
+class Asking {
+ public:
+  Asking(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness)
+      : geometry_(geometry), backend_(backend), profile_(profile), stiffness_(stiffness), lone_(geometry, stiffness) {}
+
+  Result<Answer> at(const Pose& pose) {
+    const Result<LatticePose> rounded = to_lattice(pose, geometry_);
+    if (!rounded) return rounded.error();
+    if (auto done = backend_.query(*rounded, nullptr, contacts_); !done) return done.error();
+    respond(contacts_, *rounded, geometry_, profile_, stiffness_, response_);
+    Answer out{response_.wrench, response_.flags, response_.contact};
+    if (profile_ == Profile::kRefined) {
+      if (auto done = lone_.feel(backend_, nullptr, pose, response_); !done) return done.error();
+      if (response_.felt) out.wrench = response_.felt->wrench;
+      out.flags = response_.flags;
+    }
+    return out;
+  }
+
+ private:
+  const SceneGeometry& geometry_;
+  CollisionBackend& backend_;
+  Profile profile_;
+  double stiffness_;
+  LoneQuery lone_;
+  Contacts contacts_;
+  ContactResponse response_;
+};
+
+double angle(const Vec3& a, const Vec3& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * kDegrees; }
+
+/// Turn from one rotation to the other, rad.
+Vec3 turn_between(const Quat& from, const Quat& to) {
+  Quat by = to * glm::conjugate(from);
+  if (by.w < 0) by = -by;
+  const Vec3 v(by.x, by.y, by.z);
+  const double sine = glm::length(v);
+  return sine > 0 ? v * (2 * std::atan2(sine, by.w) / sine) : 2.0 * v;
+}
+
+/// |A − Aᵀ| / |A + Aᵀ| by central differences; poses turn about the centre of mass. Small turns about two axes don't commute, so of a conservative torque, too,
+/// ∂T_i/∂θ_j − ∂T_j/∂θ_i is not 0 but ε_ijk T_k, which is left out.
+Result<double> antisymmetry(Asking& asking, const SceneGeometry& geometry, const Pose& pose) {
+  const double step = 20e-6, rho = geometry.tool_gyration_m;   // about what the hand moves in a tick
+  const Vec3 gc = geometry.tool_gc_m;
+  std::array<std::array<double, 6>, 6> a{};
+  for (std::size_t j = 0; j < 6; ++j) {
+    std::array<Wrench, 2> ends;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double way = side == 0 ? -step : step;
+      Pose moved = pose;
+      Vec3 by(0);
+      by[static_cast<int>(j % 3)] = j < 3 ? way : way / rho;
+      if (j < 3) {
+        moved.position += by;
+      } else {
+        moved.rotation = rotation_by(by) * pose.rotation;
+        moved.position = pose.position + pose.rotation * gc - moved.rotation * gc;
+      }
+      const Result<Answer> answer = asking.at(moved);
+      if (!answer) return answer.error();
+      ends[side] = answer->wrench;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      a[i][j] = (ends[1].force[static_cast<int>(i)] - ends[0].force[static_cast<int>(i)]) / (2 * step);
+      a[i + 3][j] = (ends[1].torque[static_cast<int>(i)] - ends[0].torque[static_cast<int>(i)]) / (2 * step * rho);
+    }
+  }
+  const Result<Answer> here = asking.at(pose);
+  if (!here) return here.error();
+  const Vec3 torque = here->wrench.torque / (rho * rho);
+  for (std::size_t k = 0; k < 3; ++k) a[3 + (k + 1) % 3][3 + (k + 2) % 3] -= torque[static_cast<int>(k)];
+  double odd = 0, even = 0;
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) {
+      odd += (a[i][j] - a[j][i]) * (a[i][j] - a[j][i]);
+      even += (a[i][j] + a[j][i]) * (a[i][j] + a[j][i]);
+    }
+  return even > 0 ? std::sqrt(odd / even) : 0;
+}
+
+void judge_truths(const ForceCase& subject, const std::vector<Answer>& answers, ForceFigures& out) {
+  for (const ForceCase::Truth& truth : subject.truths) {
+    const Wrench& wrench = answers[truth.at].wrench;
+    const double force = glm::length(wrench.force);
+    if (truth.direction) {
+      const double off = angle(wrench.force, *truth.direction);
+      if (force == 0 || off > truth.direction_deg) out.broken.push_back(fmt::format("pose {}: {:.3g} N, {:.1f}° from the way it must push ({}°)", truth.at, force, off, truth.direction_deg));
+    }
+    if (truth.most_force && force > *truth.most_force) out.broken.push_back(fmt::format("pose {}: {:.3g} N where there is no net force ({:.3g})", truth.at, force, *truth.most_force));
+    if (truth.couple_against && !(glm::dot(wrench.torque, *truth.couple_against) < 0)) out.broken.push_back(fmt::format("pose {}: the couple does not right it", truth.at));
+  }
+}
+
+}  // namespace
+
+std::vector<Pose> finer_path(const std::vector<Pose>& path, std::size_t count) {
+  std::vector<Pose> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double place = static_cast<double>(i) * static_cast<double>(path.size() - 1) / static_cast<double>(std::max<std::size_t>(count - 1, 1));
+    const std::size_t first = std::min(static_cast<std::size_t>(place), path.size() - 1), second = std::min(first + 1, path.size() - 1);
+    const double part = place - static_cast<double>(first);
+    const Pose &a = path[first], &b = path[second];
+    out.push_back({a.position + part * (b.position - a.position), rotation_by(part * turn_between(a.rotation, b.rotation)) * a.rotation});
+  }
+  return out;
+}
+
+Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness) {
+  Asking asking(geometry, backend, profile, stiffness);
+  ForceFigures out;
+  out.poses = subject.path.size();
+  std::vector<Answer> answers;
+  for (const Pose& pose : subject.path) {
+    Result<Answer> answer = asking.at(pose);
+    if (!answer) return answer.error();
+    answers.push_back(*answer);
+    const double force = glm::length(answer->wrench.force);
+    out.force_n.push_back(force);
+    if (answer->contact) ++out.touching;
+    if (answer->contact && (answer->flags & kFlagNoDirection) != 0) ++out.made_up;
+    if ((answer->flags & kFlagUnsettled) != 0) ++out.unsettled;
+    out.largest_n = std::max(out.largest_n, force);
+  }
+  const double rho = geometry.tool_gyration_m;
+  double work = 0, moved_work = 0, deepest = 0;
+  bool touched = false;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const Wrench& here = answers[i].wrench;
+    if (subject.approach && !touched && out.force_n[i] > 1e-6) {
+      touched = true;
+      out.first_along = glm::dot(here.force, *subject.approach) / out.force_n[i];
+    }
+    if (subject.approach) {
+      deepest = std::max(deepest, out.force_n[i]);
+      if (deepest > 0) out.largest_loss = std::max(out.largest_loss, (deepest - out.force_n[i]) / std::max(deepest, 0.01 * out.largest_n));
+    }
+    if (i == 0) continue;
+    const Wrench& before = answers[i - 1].wrench;
+    const Pose &p = subject.path[i - 1], &q = subject.path[i];
+    const Vec3 turn = turn_between(p.rotation, q.rotation);
+    const Vec3 way = (q.position + q.rotation * geometry.tool_gc_m) - (p.position + p.rotation * geometry.tool_gc_m);
+    const double size = glm::length(way) + rho * glm::length(turn);
+    if (size > 0 && glm::length(here.force - before.force) / (stiffness * size) > out.largest_step) {
+      out.largest_step = glm::length(here.force - before.force) / (stiffness * size);
+      out.largest_step_at = i;
+    }
+    const double floor = 0.01 * out.largest_n;
+    if (out.force_n[i] > floor && out.force_n[i - 1] > floor && glm::dot(here.force, before.force) < 0) ++out.reversals;
+    const double part = 0.5 * (glm::dot(here.force + before.force, way) + glm::dot(here.torque + before.torque, turn));
+    work += part;
+    moved_work += std::fabs(part);
+  }
+  if (subject.loop && moved_work > 0) out.loop_share = std::fabs(work) / moved_work;
+  if (out.largest_n > 0) {
+    const auto largest = static_cast<std::size_t>(std::max_element(out.force_n.begin(), out.force_n.end()) - out.force_n.begin());
+    const Result<double> odd = antisymmetry(asking, geometry, subject.path[largest]);
+    if (!odd) return odd.error();
+    out.antisymmetry = *odd;
+  }
+  if (out.touching == 0) out.broken.emplace_back("nothing touches");
+  judge_truths(subject, answers, out);
+  if (!subject.slips && out.largest_step > kMostStep) out.broken.push_back(fmt::format("a step of {:.3g} K Δx at pose {}", out.largest_step, out.largest_step_at));
+  if (!subject.slips && out.loop_share > kMostLoop) out.broken.push_back(fmt::format("{:.1f} % of the work is lost round the loop", 100 * out.loop_share));
+  if (out.antisymmetry > kMostAntisymmetry) out.broken.push_back(fmt::format("∂F is {:.1f} % antisymmetric", 100 * out.antisymmetry));
+  if (out.first_along > 0) out.broken.emplace_back("pulled in at first touch");
+  if (out.largest_loss > kMostLoss) out.broken.push_back(fmt::format("{:.1f} % less while going deeper", 100 * out.largest_loss));
+  return out;
+}
+
+Result<ForceFigures> judge_force(const ForceCase& subject, CollisionBackend& backend, Profile profile, double voxel_scale) {
+  GeometrySettings settings;
+  if (subject.voxel_m > 0) settings.voxel_size_m = subject.voxel_m * voxel_scale;
+  Result<SceneGeometry> geometry = build_geometry(subject.mockup, subject.tool, settings);
+  if (!geometry) return geometry.error();
+  if (subject.voxel_m == 0 && voxel_scale != 1) {
+    settings.voxel_size_m = voxel_scale * geometry->mockup_grid.size * geometry->lattice.step_m;
+    geometry = build_geometry(subject.mockup, subject.tool, settings);
+    if (!geometry) return geometry.error();
+  }
+  Plan plan;
+  plan.profile = profile;
+  if (auto done = backend.prepare(*geometry, plan, {}); !done) return done.error();
+  return judge_path(subject, *geometry, backend, profile, kForceStiffness);
+}
+
+}  // namespace palpate

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "service/bench/bench.h"
+#include "service/bench/output.h"
+#include "service/bench/poses.h"
+#include "service/bench/time/times.h"
+#include "service/cli/answer.h"
+#include "service/report/run_summary.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kSizes[] = {1, 4, 16, 64, 256, 1024};
+
+/// Poses asked together, and what they took.
+struct Series {
+  bool answers = false;          ///< with a lone query's balance
+  std::size_t size = 0;          ///< 0: asked singly
+  std::vector<double> pose_us;   ///< a round each: the mean over all poses
+  DeviceWork work;               ///< of one batch
+};
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+/// Frames of a batch as a session asks for them: contacts and responses.
+Result<void> ask_frames(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
+  const Stopwatch watch(false);
+  const ResponseSettings& settings = scene.loaded.scene.response;
+  out.poses.clear();
+  for (const Pose& pose : poses) {
+    const auto lattice = to_lattice(pose, scene.loaded.geometry);
+    if (!lattice) return lattice.error();
+    out.poses.push_back(*lattice);
+  }
+  out.contacts.resize(poses.size());
+  out.responses.resize(poses.size());
+  if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    respond(out.contacts[i], out.poses[i], scene.loaded.geometry, settings.profile, settings.stiffness_n_per_m, out.responses[i]);
+  out.total_us = watch.us();
+  return {};
+}
+
+/// Goes through all poses once; µs a pose.
+Result<double> ask_all(const Series& series, HostedScene& scene, std::span<const Pose> all, Answer& answer, BatchAnswer& batch) {
+  double us = 0;
+  for (std::size_t first = 0; first < all.size(); first += std::max<std::size_t>(series.size, 1)) {
+    const auto poses = all.subspan(first, std::min(std::max<std::size_t>(series.size, 1), all.size() - first));
+    Result<void> done = {};
+    if (series.size == 0) done = series.answers ? answer_pose(scene, poses.front(), answer) : answer_frame(scene, poses.front(), answer);
+    else done = series.answers ? answer_batch(scene, poses, batch) : ask_frames(scene, poses, batch);
+    if (!done) return done.error();
+    us += series.size == 0 ? answer.total_us : batch.total_us;
+  }
+  return us / static_cast<double>(all.size());
+}
+
+/// In turns: single poses, then a batch of each size, again and again; the first round warms up.
+Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& scene, const std::vector<Pose>& poses, Console& console) {
+  std::vector<Series> out;
+  for (const bool answers : {false, true}) {
+    out.push_back({answers, 0, {}, {}});
+    for (const std::size_t size : kSizes) out.push_back({answers, size, {}, {}});
+  }
+  // The same poses for all: as many as the largest batch has, gone through as often as need be.
+  std::vector<Pose> all;
+  for (std::size_t i = 0; i < kSizes[std::size(kSizes) - 1]; ++i) all.push_back(poses[i % poses.size()]);
+  Answer answer;
+  BatchAnswer batch;
+  console.step("measuring");
+  for (std::uint64_t round = 0; round <= options.rounds; ++round)
+    for (Series& series : out) {
+      const DeviceWork before = scene.backend->device_work();
+      const auto us = ask_all(series, scene, all, answer, batch);
+      if (!us) return us.error();
+      const std::uint64_t batches = all.size() / std::max<std::size_t>(series.size, 1);
+      series.work = since(before, scene.backend->device_work());
+      for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers, &DeviceWork::bytes_up, &DeviceWork::bytes_down}) series.work.*member /= batches;
+      series.work.host_us /= static_cast<double>(batches);
+      if (round > 0) series.pose_us.push_back(*us);
+      if (!console.progress("poses", static_cast<double>(round) / static_cast<double>(options.rounds + 1))) return Error{ErrorCode::kInternal, "interrupted"};
+    }
+  console.finish();
+  return out;
+}
+
+}  // namespace
+
+Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
+  catch_interrupts();
+  Console console;
+  BenchFacts facts{.command = "throughput", .device = {}, .more = {}};
+  BenchTable table{{"scene", "backend", "asked", "batch", "poses_per_s", "pose_us", "share_of_single"}, {}};
+  table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
+  BenchChart chart{.title = "Poses a second", .unit = "1/s", .labels = {}, .series = {}, .log_x = true, .x_title = "poses a batch"};
+  const double load = load_average();
+  const std::vector<std::string> backends = options.backends.empty() ? std::vector<std::string>{""} : options.backends;
+  for (const std::string& file : options.scenes)
+    for (const std::string& wanted : backends) {
+      auto prepared = prepare_scene({file, wanted, options.profile, false}, Purpose::kQuery, parts, console);
+      if (!prepared) return prepared.error();
+      if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
+      HostedScene& scene = **prepared;
+      const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
+      if (!poses) return poses.error();
+      const auto outcome = measure(options, scene, *poses, console);
+      if (!outcome) return outcome.error();
+      const std::string name = scene_name(file), backend = scene.backend->name();
+      double single = 0;
+      BenchChart::Series line{};
+      for (const Series& series : *outcome) {
+        const double us = mean(series.pose_us);
+        const std::string asked = series.answers ? "answers" : "frames";
+        if (series.size == 0) {
+          single = us;
+          line = {name + ", " + backend + ", " + asked, {}, {}};
+        } else {
+          line.x.push_back(static_cast<double>(series.size));
+          line.y.push_back(1e6 / us);
+          if (series.size == kSizes[std::size(kSizes) - 1]) chart.series.push_back(line);
+        }
+        auto& row = table.rows.emplace_back(std::vector<BenchCell>{name, backend, asked, series.size == 0 ? BenchCell(std::string("single")) : BenchCell(std::uint64_t{series.size}), 1e6 / us, us, us / single});
+        for (BenchCell& cell : work_cells(series.work)) row.push_back(std::move(cell));
+      }
+      const std::string device = device_text(*scene.backend, parts);
+      if (facts.device.find(device) == std::string::npos) facts.device += (facts.device.empty() ? "" : "; ") + device;
+      facts.more.emplace_back(name + ", " + backend, fmt::format("{} poses", poses->size()));
+    }
+  facts.more.emplace_back("clock", "wall");
+  facts.more.emplace_back("load average", fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
+  return write_bench(options.out, facts, table, {chart});
+}
+
+}  // namespace palpate
