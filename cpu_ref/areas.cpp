@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 namespace palpate::cpu_ref {
 namespace {
 
@@ -18,8 +17,9 @@ struct Links {
 /// The place of a triangle in C_s, or C_s.size().
 std::size_t place(const std::vector<std::uint32_t>& contact_static, std::uint32_t id) {
   const auto found = std::lower_bound(contact_static.begin(), contact_static.end(), id);
-  return found != contact_static.end() && *found == id ? static_cast<std::size_t>(found - contact_static.begin())
-                                                       : contact_static.size();
+  return found != contact_static.end() && *found == id
+             ? static_cast<std::size_t>(found - contact_static.begin())
+             : contact_static.size();
 }
 
 Links shared_edges(const Frame& frame) {
@@ -30,7 +30,8 @@ Links shared_edges(const Frame& frame) {
     const std::uint32_t s = frame.contact_static[i];
     for (std::uint32_t n = mesh.neighbour_begin[s]; n < mesh.neighbour_begin[s + 1]; ++n) {
       const std::size_t j = place(frame.contact_static, mesh.neighbours[n] >> 1);
-      if (j < links.of.size()) links.of[i].push_back({static_cast<std::uint32_t>(j), (mesh.neighbours[n] & 1) != 0});
+      if (j < links.of.size())
+        links.of[i].push_back({static_cast<std::uint32_t>(j), (mesh.neighbours[n] & 1) != 0});
     }
   }
   return links;
@@ -97,11 +98,11 @@ std::vector<Area> find_areas(const Frame& frame) {
   const std::vector<std::uint32_t> area_of = components(links, false), zone_of = components(links, true);
 
   std::vector<Area> areas;
-  std::vector<std::uint32_t> zone_place(links.of.size());   // of each zone: its place in its area
+  std::vector<std::uint32_t> zone_place(links.of.size());  // of each zone: its place in its area
   std::vector<bool> zone_seen(links.of.size(), false);
   for (std::size_t i = 0; i < area_of.size(); ++i) {
     const std::uint32_t s = frame.contact_static[i];
-    if (area_of[i] == areas.size()) {   // C_s is ascending: the first triangle of a component names it
+    if (area_of[i] == areas.size()) {  // C_s is ascending: the first triangle of a component names it
       areas.emplace_back();
       areas.back().out.id = s;
     }

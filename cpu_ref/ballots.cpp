@@ -1,5 +1,5 @@
-// Winding numbers at voxel centres: a row of centres along an axis sees each triangle that its line passes exactly once,
-// as far as the last centre before it.
+// Winding numbers at voxel centres: a row of centres along an axis sees each triangle that its line passes
+// exactly once, as far as the last centre before it.
 #include <algorithm>
 
 #include "cpu_ref/partition.h"
@@ -22,9 +22,12 @@ struct Rows {
   Int3 size;
 
   Rows(const VoxelGrid& g, int a) : grid(g), axis(a), u((a + 1) % 3), v((a + 2) % 3), size(g.voxels()) {}
-  std::uint64_t count() const { return static_cast<std::uint64_t>(size[u]) * static_cast<std::uint64_t>(size[v]); }
+  std::uint64_t count() const {
+    return static_cast<std::uint64_t>(size[u]) * static_cast<std::uint64_t>(size[v]);
+  }
   std::uint64_t number(const Int3& voxel) const {
-    return static_cast<std::uint64_t>(voxel[u]) + static_cast<std::uint64_t>(size[u]) * static_cast<std::uint64_t>(voxel[v]);
+    return static_cast<std::uint64_t>(voxel[u]) +
+           static_cast<std::uint64_t>(size[u]) * static_cast<std::uint64_t>(voxel[v]);
   }
   /// The first voxel of a row.
   Int3 start(std::uint64_t row) const {
@@ -43,14 +46,18 @@ struct Rows {
   }
 };
 
-/// The last voxel of a row whose ray crosses a triangle that the row's line passes; `start` is the row's first centre. A centre
-/// on the triangle itself is in a V_bnd voxel and never asks, so that its tie need not be broken.
-std::int64_t last_before(const Int3& start, const Triangle& triangle, int axis, int facing, std::int64_t step) {
+/// The last voxel of a row whose ray crosses a triangle that the row's line passes; `start` is the row's
+/// first centre. A centre on the triangle itself is in a V_bnd voxel and never asks, so that its tie need not
+/// be broken.
+std::int64_t last_before(const Int3& start, const Triangle& triangle, int axis, int facing,
+                         std::int64_t step) {
   // (a − p)·N · facing > 0 means ahead; a step along the row takes |N_axis| · step off it.
-  return static_cast<std::int64_t>(floor_divide(-triangle.side(start) * facing, Int128{triangle.normal[axis]} * facing * step));
+  return static_cast<std::int64_t>(
+      floor_divide(-triangle.side(start) * facing, Int128{triangle.normal[axis]} * facing * step));
 }
 
-std::vector<RowCrossing> row_crossings(const LatticeMesh& mesh, const Rows& rows, const std::vector<bool>& wanted) {
+std::vector<RowCrossing> row_crossings(const LatticeMesh& mesh, const Rows& rows,
+                                       const std::vector<bool>& wanted) {
   std::vector<RowCrossing> crossings;
   Int3 along(0);
   along[rows.axis] = 1;
@@ -70,7 +77,9 @@ std::vector<RowCrossing> row_crossings(const LatticeMesh& mesh, const Rows& rows
         if (facing == 0) continue;
         const std::int64_t last = last_before(start, triangle, rows.axis, facing, rows.grid.size);
         if (last < 0) continue;
-        crossings.push_back({rows.number(voxel), static_cast<std::int32_t>(std::min(last, std::int64_t{rows.size[rows.axis]} - 1)), facing});
+        crossings.push_back(
+            {rows.number(voxel),
+             static_cast<std::int32_t>(std::min(last, std::int64_t{rows.size[rows.axis]} - 1)), facing});
       }
   }
   std::sort(crossings.begin(), crossings.end(), [](const RowCrossing& a, const RowCrossing& b) {
@@ -88,15 +97,16 @@ std::vector<bool> rows_with(VoxelClass undecided, const Rows& rows, const BrickC
     for (int z = 0; z < kBrickSide; ++z)
       for (int y = 0; y < kBrickSide; ++y)
         for (int x = 0; x < kBrickSide; ++x)
-          if (classes.at(first + Int3(x, y, z)) >= undecided) wanted[rows.number(first + Int3(x, y, z))] = true;
+          if (classes.at(first + Int3(x, y, z)) >= undecided)
+            wanted[rows.number(first + Int3(x, y, z))] = true;
   }
   return wanted;
 }
 
 }  // namespace
 
-void cast_ballots(const LatticeMesh& mesh, const VoxelGrid& grid, int axis, VoxelClass undecided, BrickClasses& classes,
-                  Ballots& ballots) {
+void cast_ballots(const LatticeMesh& mesh, const VoxelGrid& grid, int axis, VoxelClass undecided,
+                  BrickClasses& classes, Ballots& ballots) {
   const Rows rows(grid, axis);
   const std::vector<RowCrossing> crossings = row_crossings(mesh, rows, rows_with(undecided, rows, classes));
   // Walk each row from its far end: crossings ahead of a voxel come in one after the other.

@@ -13,11 +13,13 @@
 namespace palpate::cpu_ref {
 namespace {
 
-/// Steps by which every box grows. Coordinates reach 2^28 and rays are followed for 2^29, in numbers of 24 bits: an origin
-/// is off by up to 2^4, a direction of relative error 2^-24 by 2^5 at its end, the slab test by a few times that. Chosen: 2^9.
+/// Steps by which every box grows. Coordinates reach 2^28 and rays are followed for 2^29, in numbers of 24
+/// bits: an origin is off by up to 2^4, a direction of relative error 2^-24 by 2^5 at its end, the slab test
+/// by a few times that. Chosen: 2^9.
 constexpr float kMargin = 512;
 
-/// One device for the program. Embree's threads=1 alone does not keep its collisions to one thread; see in_one_thread.
+/// One device for the program. Embree's threads=1 alone does not keep its collisions to one thread; see
+/// in_one_thread.
 RTCDevice device() {
   struct Holder {
     RTCDevice device = rtcNewDevice("threads=1");
@@ -25,8 +27,9 @@ RTCDevice device() {
   };
   static Holder holder;
   if (holder.device == nullptr) {
-    if (rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU) throw std::runtime_error("Embree does not know this processor");
-    throw std::bad_alloc();   // what else keeps it from starting
+    if (rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU)
+      throw std::runtime_error("Embree does not know this processor");
+    throw std::bad_alloc();  // what else keeps it from starting
   }
   return holder.device;
 }
@@ -60,7 +63,7 @@ BoxTree::BoxTree() : embree_(std::make_unique<Embree>()) {
       [](const RTCBoundsFunctionArguments* arguments) {
         const Box& box = static_cast<const Embree*>(arguments->geometryUserPtr)->boxes[arguments->primID];
         RTCBounds& out = *arguments->bounds_o;
-        if (box.min.x > box.max.x) {   // Embree leaves out what has lower > upper
+        if (box.min.x > box.max.x) {  // Embree leaves out what has lower > upper
           out.lower_x = out.lower_y = out.lower_z = std::numeric_limits<float>::infinity();
           out.upper_x = out.upper_y = out.upper_z = -std::numeric_limits<float>::infinity();
           return;
@@ -96,14 +99,16 @@ void BoxTree::build(std::vector<Box> boxes) {
     rtcCommitGeometry(embree_->geometry);
     rtcCommitScene(embree_->scene);
   });
-  if (rtcGetDeviceError(device()) != RTC_ERROR_NONE) throw std::runtime_error("Embree could not build a hierarchy of boxes.");
+  if (rtcGetDeviceError(device()) != RTC_ERROR_NONE)
+    throw std::runtime_error("Embree could not build a hierarchy of boxes.");
 }
 
 void BoxTree::along_ray(const Int3& origin, const Int3& direction, std::vector<std::uint32_t>& found) const {
   Gathering gathering;
   rtcInitIntersectContext(&gathering.context);
   gathering.found = &found;
-  // A direction of length about 1 keeps Embree's reciprocals in range; only candidates depend on its rounding.
+  // A direction of length about 1 keeps Embree's reciprocals in range; only candidates depend on its
+  // rounding.
   const Vec3 along(direction);
   const double largest = std::max({std::fabs(along.x), std::fabs(along.y), std::fabs(along.z)});
   RTCRay ray{};
@@ -132,7 +137,8 @@ void BoxTree::meeting(const Box& box, std::vector<std::uint32_t>& found) const {
   query.x = static_cast<float>(centre.x);
   query.y = static_cast<float>(centre.y);
   query.z = static_cast<float>(centre.z);
-  query.radius = static_cast<float>(std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z)) * 1.001f + kMargin;
+  query.radius =
+      static_cast<float>(std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z)) * 1.001f + kMargin;
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   const std::size_t first = found.size();
@@ -141,13 +147,14 @@ void BoxTree::meeting(const Box& box, std::vector<std::uint32_t>& found) const {
       [](RTCPointQueryFunctionArguments* arguments) {
         const Query& data = *static_cast<const Query*>(arguments->userPtr);
         if (data.boxes[arguments->primID].meets(data.box)) data.found.push_back(arguments->primID);
-        return false;   // the radius stays
+        return false;  // the radius stays
       },
       &query_data);
   std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
 }
 
-void BoxTree::meeting_pairs(const BoxTree& a, const BoxTree& b, std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) {
+void BoxTree::meeting_pairs(const BoxTree& a, const BoxTree& b,
+                            std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) {
   if (a.embree_->boxes.empty() || b.embree_->boxes.empty()) return;
   struct Query {
     const std::vector<Box>& a;

@@ -8,8 +8,9 @@
 
 namespace palpate::cpu_ref {
 
-/// A hierarchy of boxes that proposes candidates: what it leaves out is certainly no answer, what it finds may not be one.
-/// Embree works in single precision inside; every box is grown by far more than that can lose. One thread at a time.
+/// A hierarchy of boxes that proposes candidates: what it leaves out is certainly no answer, what it finds
+/// may not be one. Embree works in single precision inside; every box is grown by far more than that can
+/// lose. One thread at a time.
 class BoxTree {
  public:
   BoxTree();
@@ -20,7 +21,8 @@ class BoxTree {
   /// Replaces the boxes. Empty ones are never found. |coordinate| ≤ 2^29. Allocates.
   void build(std::vector<Box> boxes);
 
-  /// Appends the numbers of boxes that the ray may pass, in no order. |direction|'s largest component is not 0.
+  /// Appends the numbers of boxes that the ray may pass, in no order. |direction|'s largest component is not
+  /// 0.
   void along_ray(const Int3& origin, const Int3& direction, std::vector<std::uint32_t>& found) const;
 
   /// Appends, ascending, the numbers of boxes that meet `box`.

@@ -7,8 +7,8 @@
 
 namespace palpate::cpu_ref {
 
-/// The class of every voxel of a grid, in two levels: one for a brick whose voxels were never told apart, 512 for others.
-/// Memory follows the surface. Not bounds-checked: voxels lie in the grid.
+/// The class of every voxel of a grid, in two levels: one for a brick whose voxels were never told apart, 512
+/// for others. Memory follows the surface. Not bounds-checked: voxels lie in the grid.
 class BrickClasses {
  public:
   BrickClasses() = default;
@@ -23,13 +23,15 @@ class BrickClasses {
   }
   Int3 first_voxel(std::size_t brick) const {
     const auto x = static_cast<std::size_t>(bricks_.x), y = static_cast<std::size_t>(bricks_.y);
-    return kBrickSide * Int3(static_cast<int>(brick % x), static_cast<int>(brick / x % y), static_cast<int>(brick / x / y));
+    return kBrickSide * Int3(static_cast<int>(brick % x), static_cast<int>(brick / x % y),
+                             static_cast<int>(brick / x / y));
   }
   /// Whether one class stands for all of a brick.
   bool uniform(std::size_t brick) const { return states_[brick] < kFirstDetail; }
   VoxelClass at(const Int3& voxel) const {
     const std::uint32_t state = states_[brick_of(voxel)];
-    return state < kFirstDetail ? static_cast<VoxelClass>(state) : details_[state - kFirstDetail][place(voxel)];
+    return state < kFirstDetail ? static_cast<VoxelClass>(state)
+                                : details_[state - kFirstDetail][place(voxel)];
   }
   /// The class of one voxel, or of its whole brick where that is uniform.
   void mark(const Int3& voxel, VoxelClass c) {
@@ -49,8 +51,9 @@ class BrickClasses {
     details_[state - kFirstDetail][place(voxel)] = c;
   }
 
-  /// Marks with `to` all that is connected through faces with `start` and for which inside(class); inside(to) must be
-  /// false. Calls visit(voxel, class, count) before, with count 512 and any voxel of it for a uniform brick, else 1.
+  /// Marks with `to` all that is connected through faces with `start` and for which inside(class); inside(to)
+  /// must be false. Calls visit(voxel, class, count) before, with count 512 and any voxel of it for a uniform
+  /// brick, else 1.
   template <class Inside, class Visit>
   void flood(const Int3& start, VoxelClass to, const Inside& inside, const Visit& visit) {
     std::vector<Int3> open{start};
@@ -61,7 +64,7 @@ class BrickClasses {
     while (!open.empty()) {
       const Int3 voxel = open.back();
       open.pop_back();
-      if (!inside(at(voxel))) continue;   // reached by another way meanwhile
+      if (!inside(at(voxel))) continue;  // reached by another way meanwhile
       const bool whole = uniform(brick_of(voxel));
       visit(voxel, at(voxel), whole ? kBrickSide * kBrickSide * kBrickSide : 1);
       mark(voxel, to);
@@ -96,17 +99,19 @@ class BrickClasses {
 
  private:
   using Detail = std::array<VoxelClass, kBrickSide * kBrickSide * kBrickSide>;
-  static constexpr std::uint32_t kFirstDetail = 256;   ///< smaller states are classes
+  static constexpr std::uint32_t kFirstDetail = 256;  ///< smaller states are classes
 
   static std::size_t count(const Int3& bricks) {
-    return static_cast<std::size_t>(bricks.x) * static_cast<std::size_t>(bricks.y) * static_cast<std::size_t>(bricks.z);
+    return static_cast<std::size_t>(bricks.x) * static_cast<std::size_t>(bricks.y) *
+           static_cast<std::size_t>(bricks.z);
   }
   static std::size_t place(const Int3& voxel) {
-    return static_cast<std::size_t>(voxel.x % kBrickSide + kBrickSide * (voxel.y % kBrickSide + kBrickSide * (voxel.z % kBrickSide)));
+    return static_cast<std::size_t>(
+        voxel.x % kBrickSide + kBrickSide * (voxel.y % kBrickSide + kBrickSide * (voxel.z % kBrickSide)));
   }
 
   Int3 bricks_{0};
-  std::vector<std::uint32_t> states_;   ///< a class, or kFirstDetail + place in details_
+  std::vector<std::uint32_t> states_;  ///< a class, or kFirstDetail + place in details_
   std::vector<Detail> details_;
 };
 

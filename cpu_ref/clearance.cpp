@@ -12,14 +12,15 @@ namespace {
 std::int64_t gap(const Box& a, const Box& b) {
   std::int64_t sum = 0;
   for (int k = 0; k < 3; ++k) {
-    const std::int64_t away = std::max({std::int64_t{b.min[k]} - a.max[k], std::int64_t{a.min[k]} - b.max[k], std::int64_t{0}});
+    const std::int64_t away =
+        std::max({std::int64_t{b.min[k]} - a.max[k], std::int64_t{a.min[k]} - b.max[k], std::int64_t{0}});
     sum += away * away;
   }
   return sum;
 }
 
 Box grown(const Box& box, std::int64_t by) {
-  constexpr std::int64_t kEnd = 1 << 29;   // what a tree may be asked about
+  constexpr std::int64_t kEnd = 1 << 29;  // what a tree may be asked about
   Box out;
   for (int k = 0; k < 3; ++k) {
     out.min[k] = static_cast<std::int32_t>(std::max(box.min[k] - by, -kEnd));
@@ -32,7 +33,7 @@ Box grown(const Box& box, std::int64_t by) {
 
 Clearance smallest_distance(const Frame& frame, std::int32_t within) {
   Clearance best;
-  std::int64_t reach = within;   // no pair further than that is wanted
+  std::int64_t reach = within;  // no pair further than that is wanted
   std::vector<std::uint32_t> near;
   std::vector<std::pair<std::int64_t, std::uint32_t>> by_gap;
   const auto take_from = [&](std::uint32_t m, const Box& region) {
@@ -42,18 +43,22 @@ Clearance smallest_distance(const Frame& frame, std::int32_t within) {
     by_gap.clear();
     frame.scene.mockup_tree.meeting(region, near);
     for (const std::uint32_t s : near)
-      if (!frame.mockup().collapsed(s)) by_gap.emplace_back(gap(triangle_of(frame.mockup(), s).box(), own), s);
+      if (!frame.mockup().collapsed(s))
+        by_gap.emplace_back(gap(triangle_of(frame.mockup(), s).box(), own), s);
     std::sort(by_gap.begin(), by_gap.end());
     for (const auto& [squared, s] : by_gap) {
-      if (squared >= (reach + 1) * (reach + 1)) return;   // at least a step further
+      if (squared >= (reach + 1) * (reach + 1)) return;  // at least a step further
       const TriangleDistance found = distance_of(triangle_of(frame.mockup(), s), mobile);
       if (found.steps > reach) continue;
-      if (best.kind == Clearance::Kind::kApart && std::tuple(found.steps, s, m) >= std::tuple(best.steps, best.static_id, best.mobile_id)) continue;
+      if (best.kind == Clearance::Kind::kApart &&
+          std::tuple(found.steps, s, m) >= std::tuple(best.steps, best.static_id, best.mobile_id))
+        continue;
       best = {Clearance::Kind::kApart, found.steps, s, m, found.on_s, found.on_m};
       reach = found.steps;
     }
   };
-  // A first pair that is about as near as any: of what lies in a box round the tool, doubled until something does.
+  // A first pair that is about as near as any: of what lies in a box round the tool, doubled until something
+  // does.
   for (std::int64_t by = 1024; best.kind == Clearance::Kind::kFurther; by *= 2) {
     near.clear();
     frame.scene.mockup_tree.meeting(grown(frame.tool_box, by), near);

@@ -4,8 +4,8 @@
 
 namespace palpate::cpu_ref {
 
-/// The smallest distance of the tool's triangles at the pose to the mock-up's, of which none meets any (EXACTNESS section 10).
-/// `frame`: as transform_tool() leaves it, its tree built.
+/// The smallest distance of the tool's triangles at the pose to the mock-up's, of which none meets any
+/// (EXACTNESS section 10). `frame`: as transform_tool() leaves it, its tree built.
 Clearance smallest_distance(const Frame& frame, std::int32_t within);
 
 }  // namespace palpate::cpu_ref

@@ -21,7 +21,7 @@ std::int64_t root(std::int64_t v) {
   return low;
 }
 
-constexpr std::int64_t kRounding = 16;   // steps by which `distance` may be off, and more
+constexpr std::int64_t kRounding = 16;  // steps by which `distance` may be off, and more
 
 std::int64_t product(const Long3& a, const Long3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
@@ -30,20 +30,21 @@ std::int64_t product(const Long3& a, const Long3& b) { return a.x * b.x + a.y * 
 std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& point) {
   const Long3 n(mesh.unit_normal_q30[triangle]);
   // Above the plane: 3 · 2^30 · 2^29.6.
-  const std::int64_t height = std::llabs((product(n, difference(point, mesh.corner(triangle, 0))) + (std::int64_t{1} << 29)) >> 30);
-  std::int64_t least = -1;   // squared, to the edges that have the point on their outer side
+  const std::int64_t height =
+      std::llabs((product(n, difference(point, mesh.corner(triangle, 0))) + (std::int64_t{1} << 29)) >> 30);
+  std::int64_t least = -1;  // squared, to the edges that have the point on their outer side
   for (int k = 0; k < 3; ++k) {
     const Int3 &u = mesh.corner(triangle, k), &v = mesh.corner(triangle, (k + 1) % 3);
     const Long3 edge = difference(v, u), from = difference(point, u);
-    const Long3 along(normalise(edge));                                     // within 2^29
-    Long3 out = cross(along, n);                                            // within 2^60
+    const Long3 along(normalise(edge));  // within 2^29
+    Long3 out = cross(along, n);         // within 2^60
     for (int c = 0; c < 3; ++c) out[c] >>= 30;
-    const std::int64_t size = root(product(along, along));                  // below 2^30
+    const std::int64_t size = root(product(along, along));  // below 2^30
     const std::int64_t side = floor_divide(product(out, from), size);
     if (side <= 0) continue;
     const std::int64_t at = floor_divide(product(along, from), size), length = root(product(edge, edge));
     const std::int64_t over = std::max({std::int64_t{0}, -at, at - length});
-    const std::int64_t squared = height * height + side * side + over * over;   // within 3 · 2^60
+    const std::int64_t squared = height * height + side * side + over * over;  // within 3 · 2^60
     if (least < 0 || squared < least) least = squared;
   }
   if (least >= 0) return static_cast<std::uint32_t>(root(least));
@@ -59,7 +60,9 @@ std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const
   std::optional<Depth> best;
   std::vector<std::uint32_t> near;
   const auto within = [&](std::int64_t reach) {
-    const auto limit = [](std::int64_t v) { return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -(1 << 30), 1 << 30)); };
+    const auto limit = [](std::int64_t v) {
+      return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -(1 << 30), 1 << 30));
+    };
     Box box;
     for (int k = 0; k < 3; ++k) {
       box.min[k] = limit(point[k] - reach);
@@ -70,10 +73,12 @@ std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const
     for (const std::uint32_t t : near) {
       if (mesh.collapsed(t) || is_sheet(mesh, t)) continue;
       const std::uint32_t steps = distance(mesh, t, point);
-      if (!best || steps < best->steps) best = Depth{steps, t};   // ascending ids: a tie stays with the smallest
+      if (!best || steps < best->steps)
+        best = Depth{steps, t};  // ascending ids: a tie stays with the smallest
     }
   };
-  // Cubes twice as large each time until one holds something; whatever is nearer than that lies in a cube of its distance, and rounding.
+  // Cubes twice as large each time until one holds something; whatever is nearer than that lies in a cube of
+  // its distance, and rounding.
   for (std::int64_t reach = 1024; !best && reach <= std::int64_t{1} << 31; reach *= 2) within(reach);
   if (best) {
     const std::int64_t reach = best->steps + kRounding;
@@ -102,8 +107,10 @@ int crossed(const LatticeMesh& mesh, const BoxTree& tree, const Int3& from, cons
   return net;
 }
 
-/// How deep in a V_bnd voxel's middle is, in shells: what most of six walks say that end in the next voxels that are not V_bnd.
-int winding_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& voxel) {
+/// How deep in a V_bnd voxel's middle is, in shells: what most of six walks say that end in the next voxels
+/// that are not V_bnd.
+int winding_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition,
+                     const Int3& voxel) {
   std::array<int, 6> said{};
   for (std::size_t i = 0; i < 6; ++i) {
     const int axis = static_cast<int>(i / 2), way = i % 2 == 0 ? 1 : -1;
@@ -123,9 +130,12 @@ int winding_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partiti
 
 }  // namespace
 
-bool inside_open(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point) {
+bool inside_open(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition,
+                 const Int3& point) {
   const Int3 voxel = partition.holding(point);
-  return winding_by_walks(mesh, tree, partition, voxel) + crossed(mesh, tree, point, partition.centre(voxel)) > 0;
+  return winding_by_walks(mesh, tree, partition, voxel) +
+             crossed(mesh, tree, point, partition.centre(voxel)) >
+         0;
 }
 
 bool inside_mockup(const Frame& frame, const Int3& point) {

@@ -8,17 +8,20 @@ namespace palpate::cpu_ref {
 
 /// How far a point lies below a body's surface, and below which triangle.
 struct Depth {
-  std::uint32_t steps = 0;      ///< φ
-  std::uint32_t triangle = 0;   ///< the nearest one; of several the smallest id
+  std::uint32_t steps = 0;     ///< φ
+  std::uint32_t triangle = 0;  ///< the nearest one; of several the smallest id
 };
 
-/// Distance between a lattice point and a triangle of `mesh` that did not collapse (EXACTNESS section 4, "Depth").
+/// Distance between a lattice point and a triangle of `mesh` that did not collapse (EXACTNESS section 4,
+/// "Depth").
 std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& point);
 
-/// The nearest triangle that bounds a solid: neither collapsed nor of a sheet. `tree` holds the boxes of `mesh`'s triangles.
+/// The nearest triangle that bounds a solid: neither collapsed nor of a sheet. `tree` holds the boxes of
+/// `mesh`'s triangles.
 std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point);
 
-/// Whether a point in a V_bnd voxel of a body that is not `closed` lies inside it: what most of six walks say of the voxel's middle, and what lies between (EXACTNESS section 4).
+/// Whether a point in a V_bnd voxel of a body that is not `closed` lies inside it: what most of six walks say
+/// of the voxel's middle, and what lies between (EXACTNESS section 4).
 bool inside_open(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point);
 
 /// Whether a world lattice point lies inside the mock-up.

@@ -1,4 +1,5 @@
-// Exact by whole numbers of 640 bits: every place is a quotient whose denominator is a Gram determinant, nothing is rounded before the end.
+// Exact by whole numbers of 640 bits: every place is a quotient whose denominator is a Gram determinant,
+// nothing is rounded before the end.
 #include "cpu_ref/distance_of_triangles.h"
 
 #include <array>
@@ -8,10 +9,14 @@
 namespace palpate::cpu_ref {
 namespace {
 
-// Differences are within 2^30, determinants within 2^122, points times a determinant within 2^154, their squares within 2^310.
-using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<640, 640, boost::multiprecision::signed_magnitude, boost::multiprecision::unchecked, void>>;
+// Differences are within 2^30, determinants within 2^122, points times a determinant within 2^154, their
+// squares within 2^310.
+using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<
+    640, 640, boost::multiprecision::signed_magnitude, boost::multiprecision::unchecked, void>>;
 
-Integer product(const Int3& a, const Int3& b) { return Integer(a.x) * b.x + Integer(a.y) * b.y + Integer(a.z) * b.z; }
+Integer product(const Int3& a, const Int3& b) {
+  return Integer(a.x) * b.x + Integer(a.y) * b.y + Integer(a.z) * b.z;
+}
 
 /// A point base + Σ weight · edge / den.
 struct Place {
@@ -20,10 +25,12 @@ struct Place {
   std::array<Integer, 2> weights{};
   Integer den = 1;
 
-  Integer scaled(int k) const { return Integer(base[k]) * den + weights[0] * edges[0][k] + weights[1] * edges[1][k]; }
+  Integer scaled(int k) const {
+    return Integer(base[k]) * den + weights[0] * edges[0][k] + weights[1] * edges[1][k];
+  }
   std::int32_t rounded(int k) const {
     const Integer twice = 2 * scaled(k) + den, under = 2 * den;
-    Integer quotient = twice / under;   // towards 0
+    Integer quotient = twice / under;  // towards 0
     if (quotient * under > twice) --quotient;
     return static_cast<std::int32_t>(quotient);
   }
@@ -33,7 +40,8 @@ struct Place {
 std::int32_t steps_between(const Place& a, const Place& b) {
   Integer sum = 0;
   for (int k = 0; k < 3; ++k) {
-    const Integer way = a.scaled(k) * b.den - b.scaled(k) * a.den;   // one of the two has den 1, or both the same
+    const Integer way =
+        a.scaled(k) * b.den - b.scaled(k) * a.den;  // one of the two has den 1, or both the same
     sum += way * way;
   }
   const Integer den = a.den * b.den;
@@ -45,9 +53,14 @@ Place corner(const Int3& p) { return {.base = p}; }
 /// The foot of p's perpendicular on the triangle's plane, if it lies in the closed triangle.
 std::optional<Place> foot_on_face(const Int3& p, const Triangle& t) {
   const Int3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
-  const Integer uu = product(u, u), uv = product(u, v), vv = product(v, v), uw = product(u, w), vw = product(v, w);
-  Place out{.base = t[0], .edges = {u, v}, .weights = {uw * vv - vw * uv, vw * uu - uw * uv}, .den = uu * vv - uv * uv};
-  if (out.weights[0] < 0 || out.weights[1] < 0 || out.weights[0] + out.weights[1] > out.den) return std::nullopt;
+  const Integer uu = product(u, u), uv = product(u, v), vv = product(v, v), uw = product(u, w),
+                vw = product(v, w);
+  Place out{.base = t[0],
+            .edges = {u, v},
+            .weights = {uw * vv - vw * uv, vw * uu - uw * uv},
+            .den = uu * vv - uv * uv};
+  if (out.weights[0] < 0 || out.weights[1] < 0 || out.weights[0] + out.weights[1] > out.den)
+    return std::nullopt;
   return out;
 }
 
@@ -61,11 +74,13 @@ Place nearest_on_edge(const Int3& p, const Int3& a, const Int3& b) {
 /// Where two lines come nearest, if they are not parallel and come nearest on both edges.
 std::optional<std::array<Place, 2>> crossing(const Int3& a, const Int3& b, const Int3& c, const Int3& d) {
   const Int3 u = b - a, v = d - c, w = c - a;
-  const Integer uu = product(u, u), uv = product(u, v), vv = product(v, v), uw = product(u, w), vw = product(v, w), den = uu * vv - uv * uv;
+  const Integer uu = product(u, u), uv = product(u, v), vv = product(v, v), uw = product(u, w),
+                vw = product(v, w), den = uu * vv - uv * uv;
   if (den == 0) return std::nullopt;
   const Integer s = uw * vv - vw * uv, t = uw * uv - vw * uu;
   if (s < 0 || s > den || t < 0 || t > den) return std::nullopt;
-  return std::array{Place{.base = a, .edges = {u, Int3(0)}, .weights = {s, 0}, .den = den}, Place{.base = c, .edges = {v, Int3(0)}, .weights = {t, 0}, .den = den}};
+  return std::array{Place{.base = a, .edges = {u, Int3(0)}, .weights = {s, 0}, .den = den},
+                    Place{.base = c, .edges = {v, Int3(0)}, .weights = {t, 0}, .den = den}};
 }
 
 }  // namespace
@@ -75,7 +90,8 @@ TriangleDistance distance_of(const Triangle& s, const Triangle& m) {
   const auto take = [&](const Place& on_s, const Place& on_m) {
     const std::int32_t steps = steps_between(on_s, on_m);
     if (best && steps >= best->steps) return;
-    best = TriangleDistance{steps, Int3(on_s.rounded(0), on_s.rounded(1), on_s.rounded(2)), Int3(on_m.rounded(0), on_m.rounded(1), on_m.rounded(2))};
+    best = TriangleDistance{steps, Int3(on_s.rounded(0), on_s.rounded(1), on_s.rounded(2)),
+                            Int3(on_m.rounded(0), on_m.rounded(1), on_m.rounded(2))};
   };
   // In the order of the features: corners of m, of s, then edges.
   for (int i = 0; i < 3; ++i) {
@@ -88,7 +104,8 @@ TriangleDistance distance_of(const Triangle& s, const Triangle& m) {
   }
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      if (const auto places = crossing(s[i], s[(i + 1) % 3], m[j], m[(j + 1) % 3])) take((*places)[0], (*places)[1]);
+      if (const auto places = crossing(s[i], s[(i + 1) % 3], m[j], m[(j + 1) % 3]))
+        take((*places)[0], (*places)[1]);
   return *best;
 }
 

@@ -7,8 +7,8 @@ namespace palpate::cpu_ref {
 
 /// How far two triangles that share no point are apart (EXACTNESS section 10).
 struct TriangleDistance {
-  std::int32_t steps = 0;   ///< floor
-  Int3 on_s{0}, on_m{0};    ///< on the first feature that is so near, rounded to nearest
+  std::int32_t steps = 0;  ///< floor
+  Int3 on_s{0}, on_m{0};   ///< on the first feature that is so near, rounded to nearest
 };
 
 /// Neither is collapsed.

@@ -6,9 +6,9 @@
 #include "model/lattice/lattice_mesh.h"
 #include "model/lattice/vector.h"
 
-/// Integer arithmetic wide enough that nothing here ever rounds. Lattice steps throughout. Bounds: |coordinate| ≤ 2^28,
-/// so differences stay within 2^29, raw normals within 2^59.2 a component, N·(p − a) within 2^90 and that times 2^30
-/// within 2^120: 128 bits hold every product of docs/EXACTNESS.md.
+/// Integer arithmetic wide enough that nothing here ever rounds. Lattice steps throughout. Bounds:
+/// |coordinate| ≤ 2^28, so differences stay within 2^29, raw normals within 2^59.2 a component, N·(p − a)
+/// within 2^90 and that times 2^30 within 2^120: 128 bits hold every product of docs/EXACTNESS.md.
 namespace palpate::cpu_ref {
 
 __extension__ typedef __int128 Int128;

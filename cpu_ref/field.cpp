@@ -19,17 +19,19 @@ void add(WideSum& sum, std::int64_t term) {
 
 /// A sample that lies inside the other body.
 struct Push {
-  Int3 at{0};                  ///< world lattice
-  Int3 along{0};               ///< n: the way it pushes the tool, Q30
-  Int3 against{0};             ///< u: φ falls as the tool moves along it, Q30
-  std::uint32_t depth = 0;     ///< φ, steps
-  std::uint32_t weight = 0;    ///< w, Q24: half of the sample's, for the other body's samples say the same once more; all of it where they can't (sheets)
-  std::uint32_t whole = 0;     ///< the sample's own
+  Int3 at{0};                ///< world lattice
+  Int3 along{0};             ///< n: the way it pushes the tool, Q30
+  Int3 against{0};           ///< u: φ falls as the tool moves along it, Q30
+  std::uint32_t depth = 0;   ///< φ, steps
+  std::uint32_t weight = 0;  ///< w, Q24: half of the sample's, for the other body's samples say the same once
+                             ///< more; all of it where they can't (sheets)
+  std::uint32_t whole = 0;   ///< the sample's own
 };
 
-/// Which of the bins a direction belongs to: about an eighth of a turn round each axis, edge and corner of a cube.
+/// Which of the bins a direction belongs to: about an eighth of a turn round each axis, edge and corner of a
+/// cube.
 std::uint32_t bin_of(const Int3& n) {
-  constexpr std::int32_t kLeast = 444764242;   // tan 22.5° in Q30
+  constexpr std::int32_t kLeast = 444764242;  // tan 22.5° in Q30
   std::uint32_t bin = 0;
   for (int k = 2; k >= 0; --k) bin = 3 * bin + (n[k] > kLeast ? 2 : n[k] < -kLeast ? 0 : 1);
   return bin;
@@ -44,7 +46,8 @@ std::int64_t binary_log_q8(std::int64_t count) {
 
 class Summing {
  public:
-  Summing(const Frame& frame, Contacts& out) : frame_(frame), out_(out), shift_(lever_shift(frame.scene.geometry->tool_radius)) {
+  Summing(const Frame& frame, Contacts& out)
+      : frame_(frame), out_(out), shift_(lever_shift(frame.scene.geometry->tool_radius)) {
     const std::int64_t wanted = frame.scene.geometry->contact_samples;
     const auto count = static_cast<std::int64_t>(frame.counting.size() + frame.contact_mobile.size() / 16);
     if (wanted > 0 && count > wanted) grade_ = binary_log_q8(count) - binary_log_q8(wanted);
@@ -53,9 +56,9 @@ class Summing {
   }
 
   void add_push(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier) {
-    const Long3 r = difference(push.at, frame_.pose.translation);          // within tool_radius + a few
-    const Long3 turned = cross(r, Long3(push.along));                      // within 2^60
-    const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);   // below 2^46
+    const Long3 r = difference(push.at, frame_.pose.translation);  // within tool_radius + a few
+    const Long3 turned = cross(r, Long3(push.along));              // within 2^60
+    const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);  // below 2^46
     FieldBin& bin = out_.field.bins[bin_of(push.along)];
     bin.samples += 1;
     for (int k = 0; k < 3; ++k) {
@@ -67,7 +70,7 @@ class Summing {
     std::int64_t steep = 0;
     for (int k = 0; k < 3; ++k) steep += std::int64_t{push.along[k]} * push.against[k];
     steep = std::max<std::int64_t>(steep >> 30, 0);
-    const std::int64_t give = (std::int64_t{push.weight} * steep) >> 34;   // Q20
+    const std::int64_t give = (std::int64_t{push.weight} * steep) >> 34;  // Q20
     const Long3 lever(r.x >> shift_, r.y >> shift_, r.z >> shift_);
     bin.give += give;
     for (int k = 0; k < 3; ++k) {
@@ -102,11 +105,16 @@ class Summing {
   void mockup_in_tool() {
     const LatticeMesh& mockup = frame_.mockup();
     for (const Sample& sample : frame_.counting)
-      if (const std::uint64_t weight = weight_of(mockup, sample.triangle, sample.point, frame_.scene.geometry->sample_spacing); weight != 0)
+      if (const std::uint64_t weight =
+              weight_of(mockup, sample.triangle, sample.point, frame_.scene.geometry->sample_spacing);
+          weight != 0)
         mockup_sample(sample.triangle, sample.point, static_cast<std::uint32_t>(weight >> 6));
     if (!frame_.scene.tool_has_inside) return;
     for (const ExtraSample& extra : mockup.extra_samples)
-      if (const std::uint64_t weight = weight_of(extra); weight != 0 && std::binary_search(frame_.contact_static.begin(), frame_.contact_static.end(), extra.triangle) && inside_tool(frame_, extra.point))
+      if (const std::uint64_t weight = weight_of(extra);
+          weight != 0 &&
+          std::binary_search(frame_.contact_static.begin(), frame_.contact_static.end(), extra.triangle) &&
+          inside_tool(frame_, extra.point))
         mockup_sample(extra.triangle, extra.point, static_cast<std::uint32_t>(weight >> 6));
   }
 
@@ -120,11 +128,14 @@ class Summing {
     for (const std::uint32_t m : frame_.contact_mobile) {
       if (tool.field_weight_q30[m] == 0) continue;
       for_each_sample(tool, m, spacing, everywhere, [&](const Int3& own) {
-        if (const std::uint64_t weight = weight_of(tool, m, own, spacing); weight != 0) tool_sample(m, own, static_cast<std::uint32_t>(weight >> 4));
+        if (const std::uint64_t weight = weight_of(tool, m, own, spacing); weight != 0)
+          tool_sample(m, own, static_cast<std::uint32_t>(weight >> 4));
       });
     }
     for (const ExtraSample& extra : tool.extra_samples)
-      if (const std::uint64_t weight = weight_of(extra); weight != 0 && std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle))
+      if (const std::uint64_t weight = weight_of(extra);
+          weight != 0 &&
+          std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle))
         tool_sample(extra.triangle, extra.point, static_cast<std::uint32_t>(weight >> 4));
   }
 
@@ -140,15 +151,22 @@ class Summing {
 
  private:
   /// What a grid sample weighs in this frame, Q30: between what it weighs at one level and at the next.
-  std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& sample, std::int32_t spacing) const {
+  std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& sample,
+                          std::int32_t spacing) const {
     const int axis = mesh.sample_axis[triangle];
-    const int level = level_of({floor_divide(std::int64_t{sample[(axis + 1) % 3]}, std::int64_t{spacing}), floor_divide(std::int64_t{sample[(axis + 2) % 3]}, std::int64_t{spacing})});
-    const SideLevels* side = mesh.levels_of[triangle] == 0 ? nullptr : &mesh.side_levels[mesh.levels_of[triangle] - 1];
+    const int level = level_of({floor_divide(std::int64_t{sample[(axis + 1) % 3]}, std::int64_t{spacing}),
+                                floor_divide(std::int64_t{sample[(axis + 2) % 3]}, std::int64_t{spacing})});
+    const SideLevels* side =
+        mesh.levels_of[triangle] == 0 ? nullptr : &mesh.side_levels[mesh.levels_of[triangle] - 1];
     const auto at = [&](std::int64_t wanted) -> std::uint64_t {
-      const int taken = side == nullptr ? 0 : static_cast<int>(std::min<std::int64_t>(wanted, side->coarsest));
+      const int taken =
+          side == nullptr ? 0 : static_cast<int>(std::min<std::int64_t>(wanted, side->coarsest));
       if (level < taken) return 0;
       if (taken == 0) return mesh.field_weight_q30[triangle];
-      return ((std::uint64_t{mesh.field_weight_q30[triangle]} * side->factor_q30[static_cast<std::size_t>(taken - 1)]) >> 30) << taken;
+      return ((std::uint64_t{mesh.field_weight_q30[triangle]} *
+               side->factor_q30[static_cast<std::size_t>(taken - 1)]) >>
+              30)
+             << taken;
     };
     return blended(at);
   }
@@ -165,10 +183,13 @@ class Summing {
   template <class AtLevel>
   std::uint64_t blended(AtLevel&& at) const {
     const std::int64_t whole = grade_ / 256, part = grade_ % 256;
-    return (static_cast<std::uint64_t>(256 - part) * at(whole) + static_cast<std::uint64_t>(part) * at(whole + 1)) >> 8;
+    return (static_cast<std::uint64_t>(256 - part) * at(whole) +
+            static_cast<std::uint64_t>(part) * at(whole + 1)) >>
+           8;
   }
 
-  /// Whether a point of a mobile triangle counts as inside the mock-up: what touches nothing is on one side of it, with its first corner.
+  /// Whether a point of a mobile triangle counts as inside the mock-up: what touches nothing is on one side
+  /// of it, with its first corner.
   bool counts_inside(std::uint32_t m, const Int3& point) const {
     if (std::binary_search(out_.cmt.begin(), out_.cmt.end(), m)) return inside_mockup(frame_, point);
     return inside_mockup(frame_, transform(frame_.pose, frame_.tool_mesh().corner(m, 0)));
@@ -179,7 +200,9 @@ class Summing {
     const auto below = nearest(tool, frame_.scene.tool_rest_tree, to_tool(frame_.pose, point));
     if (!below || ignored(id)) return;
     const bool sheet = is_sheet(mockup, id);
-    Push push{.at = point, .against = -turned(frame_.pose, tool.unit_normal_q30[below->triangle]), .depth = below->steps};
+    Push push{.at = point,
+              .against = -turned(frame_.pose, tool.unit_normal_q30[below->triangle]),
+              .depth = below->steps};
     push.along = sheet ? push.against : mockup.unit_normal_q30[id];
     push.whole = weight;
     push.weight = weight >> (sheet ? 0 : 1);
@@ -212,15 +235,16 @@ class Summing {
   }
 
   CarrierSums* carrier(std::uint32_t id) {
-    const auto found = std::lower_bound(out_.carriers.begin(), out_.carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
+    const auto found = std::lower_bound(out_.carriers.begin(), out_.carriers.end(), id,
+                                        [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
     return found != out_.carriers.end() && found->id == id ? &*found : nullptr;
   }
 
   const Frame& frame_;
   Contacts& out_;
   int shift_;
-  std::int64_t grade_ = 0;            ///< the level of samples, Q8
-  std::set<std::uint32_t> touched_;   ///< ignored patches in which something would push
+  std::int64_t grade_ = 0;           ///< the level of samples, Q8
+  std::set<std::uint32_t> touched_;  ///< ignored patches in which something would push
 };
 
 }  // namespace

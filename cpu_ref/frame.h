@@ -16,10 +16,10 @@ struct Prepared {
   const SceneGeometry* geometry = nullptr;
   Profile profile = Profile::kRefined;
   Partition mockup;
-  Partition tool;                 ///< `refined` only
-  bool tool_has_inside = true;    ///< closed, or its partition has a V_int voxel
-  BoxTree mockup_tree;            ///< boxes of the mock-up's triangles
-  BoxTree tool_rest_tree;         ///< `refined`: boxes of the tool's triangles in its own frame
+  Partition tool;               ///< `refined` only
+  bool tool_has_inside = true;  ///< closed, or its partition has a V_int voxel
+  BoxTree mockup_tree;          ///< boxes of the mock-up's triangles
+  BoxTree tool_rest_tree;       ///< `refined`: boxes of the tool's triangles in its own frame
 
   bool refined() const { return profile == Profile::kRefined; }
   /// No inside was found: its samples push as a sheet's do (EXACTNESS section 8).
@@ -36,17 +36,18 @@ struct Sample {
 struct Frame {
   const Prepared& scene;
   const LatticePose& pose;
-  const Ignored* ignored;                         ///< may be null
-  const BoxTree& tool_tree;                       ///< boxes of `tool`
+  const Ignored* ignored;    ///< may be null
+  const BoxTree& tool_tree;  ///< boxes of `tool`
 
-  std::vector<Int3> vertices;                     ///< of the tool, transformed
-  std::vector<Triangle> tool;                     ///< of the tool, transformed; collapsed: in nothing at this pose
-  Box tool_box;                                   ///< of those that did not collapse
+  std::vector<Int3> vertices;  ///< of the tool, transformed
+  std::vector<Triangle> tool;  ///< of the tool, transformed; collapsed: in nothing at this pose
+  Box tool_box;                ///< of those that did not collapse
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;   ///< static, mobile
-  std::vector<std::uint64_t> touched_boundary, touched_internal;   ///< V_bnd and V_int voxels a mobile triangle touches
-  std::vector<Sample> counting;                   ///< `refined`: samples inside the tool, by triangle
-  std::vector<std::uint32_t> contact_static, contact_mobile;       ///< C_s, C_m
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  ///< static, mobile
+  std::vector<std::uint64_t> touched_boundary,
+      touched_internal;          ///< V_bnd and V_int voxels a mobile triangle touches
+  std::vector<Sample> counting;  ///< `refined`: samples inside the tool, by triangle
+  std::vector<std::uint32_t> contact_static, contact_mobile;  ///< C_s, C_m
 
   const LatticeMesh& mockup() const { return scene.geometry->mockup; }
   const LatticeMesh& tool_mesh() const { return scene.geometry->tool; }
@@ -55,7 +56,7 @@ struct Frame {
 /// One area of `paper` on its way to `out`.
 struct Area {
   ContactArea out;
-  Box box;                                        ///< of its triangles' corners
+  Box box;  ///< of its triangles' corners
 
   Int3 doubled_centre() const { return box.min + box.max; }
 };

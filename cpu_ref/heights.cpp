@@ -6,14 +6,17 @@
 
 namespace palpate::cpu_ref {
 
-std::optional<std::uint32_t> height(const Frame& frame, const Area& area, const Int3& origin, const Int3& direction) {
+std::optional<std::uint32_t> height(const Frame& frame, const Area& area, const Int3& origin,
+                                    const Int3& direction) {
   std::vector<std::uint32_t> candidates;
   frame.tool_tree.along_ray(origin, direction, candidates);
   std::optional<std::uint32_t> least;
   const std::vector<std::uint32_t>& own = area.out.mobile_ids;
   for (const std::uint32_t m : candidates) {
-    if (!std::binary_search(own.begin(), own.end(), m)) continue;   // another area's, or nobody's
-    if (const auto crossing = ray_crosses_at(origin, direction, frame.tool[m]); crossing && (!least || crossing->height < *least)) least = crossing->height;
+    if (!std::binary_search(own.begin(), own.end(), m)) continue;  // another area's, or nobody's
+    if (const auto crossing = ray_crosses_at(origin, direction, frame.tool[m]);
+        crossing && (!least || crossing->height < *least))
+      least = crossing->height;
   }
   return least;
 }
@@ -25,7 +28,8 @@ void measure_heights(const Frame& frame, Area& area) {
   for (const std::uint32_t s : area.out.static_ids) {
     const Long3 sum = Long3(mesh.corner(s, 0)) + Long3(mesh.corner(s, 1)) + Long3(mesh.corner(s, 2));
     Int3 centroid;
-    for (int k = 0; k < 3; ++k) centroid[k] = static_cast<std::int32_t>(floor_divide(sum[k], std::int64_t{3}));
+    for (int k = 0; k < 3; ++k)
+      centroid[k] = static_cast<std::int32_t>(floor_divide(sum[k], std::int64_t{3}));
     const auto found = height(frame, area, centroid, down);
     if (!found) continue;
     area.out.rays += 1;

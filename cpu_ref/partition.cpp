@@ -9,14 +9,14 @@ namespace palpate::cpu_ref {
 namespace {
 
 // Beside the three classes, a voxel under way is one of these, plus its ballots of non-zero winding (0 to 3).
-constexpr VoxelClass kUndecided{8};   ///< not V_bnd; enclosed, once V_ext is known
-constexpr VoxelClass kCounted{16};    ///< its component's ballots are being counted
+constexpr VoxelClass kUndecided{8};  ///< not V_bnd; enclosed, once V_ext is known
+constexpr VoxelClass kCounted{16};   ///< its component's ballots are being counted
 
 bool undecided(VoxelClass c) { return c >= kUndecided && c < kCounted; }
 bool counted(VoxelClass c) { return c == kCounted; }
 
 void list_boundary(const LatticeMesh& mesh, std::int32_t grow, Partition& out) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> touched;   // voxel, triangle
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> touched;  // voxel, triangle
   for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id) {
     if (mesh.collapsed(id)) continue;
     for_each_touched_voxel(
@@ -56,22 +56,27 @@ bool count_votes(int directions, const Ballots& ballots, BrickClasses& classes) 
     classes.flood(start, kCounted, undecided, [&](const Int3& voxel, VoxelClass c, int voxels) {
       const std::size_t brick = classes.brick_of(voxel);
       cast += static_cast<std::uint64_t>(voxels * directions);
-      non_zero += classes.uniform(brick) ? ballots.of_brick[brick] : static_cast<std::uint64_t>(c) - static_cast<std::uint64_t>(kUndecided);
+      non_zero += classes.uniform(brick)
+                      ? ballots.of_brick[brick]
+                      : static_cast<std::uint64_t>(c) - static_cast<std::uint64_t>(kUndecided);
     });
     const bool internal = non_zero > cast - non_zero;
     any_internal = any_internal || internal;
-    classes.flood(start, internal ? VoxelClass::kInternal : VoxelClass::kExternal, counted, [](const Int3&, VoxelClass, int) {});
+    classes.flood(start, internal ? VoxelClass::kInternal : VoxelClass::kExternal, counted,
+                  [](const Int3&, VoxelClass, int) {});
   });
   return any_internal;
 }
 
 }  // namespace
 
-Result<Partition> make_partition(const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t grow, const Progress& progress) {
+Result<Partition> make_partition(const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t grow,
+                                 const Progress& progress) {
   const Int128 bricks = Int128{grid.bricks.x} * grid.bricks.y * grid.bricks.z;
   if (bricks > Int128{kMaxBricks})
-    return bad_value("The voxel grid has " + std::to_string(grid.bricks.x) + " x " + std::to_string(grid.bricks.y) + " x " +
-                     std::to_string(grid.bricks.z) + " bricks of 512 voxels, which is more than the CPU reference keeps (" +
+    return bad_value("The voxel grid has " + std::to_string(grid.bricks.x) + " x " +
+                     std::to_string(grid.bricks.y) + " x " + std::to_string(grid.bricks.z) +
+                     " bricks of 512 voxels, which is more than the CPU reference keeps (" +
                      std::to_string(kMaxBricks) + "): choose larger voxels.");
   const Error stopped{ErrorCode::kUsage, "Preparation was cancelled."};
   const auto go_on = [&](double done) { return !progress || progress("voxel partition", done); };
@@ -83,7 +88,8 @@ Result<Partition> make_partition(const LatticeMesh& mesh, const VoxelGrid& grid,
   if (!go_on(0)) return stopped;
   list_boundary(mesh, grow, partition);
   if (!go_on(0.5)) return stopped;
-  // The grid's outermost layer has no V_bnd voxel (its margins see to that): all of the border hangs together.
+  // The grid's outermost layer has no V_bnd voxel (its margins see to that): all of the border hangs
+  // together.
   classes.flood(Int3(0), VoxelClass::kExternal, undecided, [](const Int3&, VoxelClass, int) {});
   const int directions = mesh.closed ? 1 : 3;
   Ballots ballots;
@@ -98,13 +104,15 @@ Result<Partition> make_partition(const LatticeMesh& mesh, const VoxelGrid& grid,
 Int3 Partition::voxel(std::uint64_t number) const {
   const Int3 n = grid.voxels();
   const auto nx = static_cast<std::uint64_t>(n.x), ny = static_cast<std::uint64_t>(n.y);
-  return Int3(static_cast<int>(number % nx), static_cast<int>(number / nx % ny), static_cast<int>(number / nx / ny));
+  return Int3(static_cast<int>(number % nx), static_cast<int>(number / nx % ny),
+              static_cast<int>(number / nx / ny));
 }
 
 Int3 Partition::holding(const Int3& point) const {
   Int3 voxel;
   for (int k = 0; k < 3; ++k)
-    voxel[k] = static_cast<int>(floor_divide(std::int64_t{point[k]} - grid.origin[k], std::int64_t{grid.size}));
+    voxel[k] =
+        static_cast<int>(floor_divide(std::int64_t{point[k]} - grid.origin[k], std::int64_t{grid.size}));
   return voxel;
 }
 
@@ -129,7 +137,8 @@ std::span<const std::uint32_t> Partition::listed(std::uint64_t number) const {
 
 bool Partition::block_is_external(const Int3& begin, const Int3& end) const {
   const std::size_t brick = classes.brick_of(begin);
-  return brick == classes.brick_of(end - Int3(1)) && classes.uniform(brick) && classes.at(begin) == VoxelClass::kExternal;
+  return brick == classes.brick_of(end - Int3(1)) && classes.uniform(brick) &&
+         classes.at(begin) == VoxelClass::kExternal;
 }
 
 Long3 Partition::to_nearest_external(const Int3& point) const {
@@ -142,12 +151,13 @@ Long3 Partition::to_nearest_external(const Int3& point) const {
   for (int shell = 0; shell <= last_shell; ++shell) {
     const Int128 least = Int128{2 * shell - 1} * grid.size;
     if (nearest >= 0 && shell > 0 && nearest < least * least) break;
-    const Int3 low = glm::max(home - Int3(shell), Int3(0)), high = glm::min(home + Int3(shell), size - Int3(1));
+    const Int3 low = glm::max(home - Int3(shell), Int3(0)),
+               high = glm::min(home + Int3(shell), size - Int3(1));
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y) {
         const bool on_shell = std::abs(z - home.z) == shell || std::abs(y - home.y) == shell;
         for (int x = low.x; x <= high.x; ++x) {
-          if (!on_shell && std::abs(x - home.x) != shell) {   // skip the shell's inside
+          if (!on_shell && std::abs(x - home.x) != shell) {  // skip the shell's inside
             x = std::max(x, home.x + shell - 1);
             continue;
           }
@@ -162,15 +172,16 @@ Long3 Partition::to_nearest_external(const Int3& point) const {
         }
       }
   }
-  return difference(centre(voxel(nearest_number)), point);   // the grid's border is V_ext: there is always one
+  return difference(centre(voxel(nearest_number)), point);  // the grid's border is V_ext: there is always one
 }
 
 Result<VoxelPartition> Partition::dense() const {
   const Int3 n = grid.voxels();
   const Int128 count = Int128{n.x} * n.y * n.z;
   if (count > Int128{kMaxDenseVoxels})
-    return bad_value("The voxel grid has " + std::to_string(n.x) + " x " + std::to_string(n.y) + " x " + std::to_string(n.z) +
-                     " voxels, too many to list one by one (limit " + std::to_string(kMaxDenseVoxels) + ").");
+    return bad_value("The voxel grid has " + std::to_string(n.x) + " x " + std::to_string(n.y) + " x " +
+                     std::to_string(n.z) + " voxels, too many to list one by one (limit " +
+                     std::to_string(kMaxDenseVoxels) + ").");
   VoxelPartition out{grid, {}, boundary_voxels, list_begin, list_triangles};
   out.classes.reserve(static_cast<std::size_t>(count));
   for (int z = 0; z < n.z; ++z)
@@ -180,8 +191,8 @@ Result<VoxelPartition> Partition::dense() const {
 }
 
 std::uint64_t Partition::memory_bytes() const {
-  return classes.memory_bytes() + boundary_voxels.capacity() * sizeof(std::uint64_t) + list_begin.capacity() * sizeof(std::uint64_t) +
-         list_triangles.capacity() * sizeof(std::uint32_t);
+  return classes.memory_bytes() + boundary_voxels.capacity() * sizeof(std::uint64_t) +
+         list_begin.capacity() * sizeof(std::uint64_t) + list_triangles.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace palpate::cpu_ref

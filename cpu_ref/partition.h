@@ -21,16 +21,18 @@ inline constexpr std::uint64_t kMaxDenseVoxels = std::uint64_t{1} << 32;
 struct Partition {
   VoxelGrid grid;
   BrickClasses classes;
-  std::vector<std::uint64_t> boundary_voxels;   ///< linear voxel numbers, ascending
-  std::vector<std::uint64_t> list_begin;        ///< of each boundary voxel's triangles in list_triangles, one more at the end
-  std::vector<std::uint32_t> list_triangles;    ///< ids, ascending in each voxel
+  std::vector<std::uint64_t> boundary_voxels;  ///< linear voxel numbers, ascending
+  std::vector<std::uint64_t>
+      list_begin;  ///< of each boundary voxel's triangles in list_triangles, one more at the end
+  std::vector<std::uint32_t> list_triangles;  ///< ids, ascending in each voxel
   bool has_internal = false;
 
   std::uint64_t number(const Int3& voxel) const {
     const Int3 n = grid.voxels();
     return static_cast<std::uint64_t>(voxel.x) +
            static_cast<std::uint64_t>(n.x) *
-               (static_cast<std::uint64_t>(voxel.y) + static_cast<std::uint64_t>(n.y) * static_cast<std::uint64_t>(voxel.z));
+               (static_cast<std::uint64_t>(voxel.y) +
+                static_cast<std::uint64_t>(n.y) * static_cast<std::uint64_t>(voxel.z));
   }
   /// Where a linear voxel number lies.
   Int3 voxel(std::uint64_t number) const;
@@ -39,9 +41,7 @@ struct Partition {
   bool in_grid(const Int3& voxel) const;
   /// Class of the voxel that holds a point; V_ext off the grid.
   VoxelClass class_of(const Int3& point) const;
-  Int3 centre(const Int3& voxel) const {
-    return grid.origin + grid.size * voxel + Int3(grid.size / 2);
-  }
+  Int3 centre(const Int3& voxel) const { return grid.origin + grid.size * voxel + Int3(grid.size / 2); }
   /// The triangles that a V_bnd voxel lists, ascending; empty for other voxels.
   std::span<const std::uint32_t> listed(std::uint64_t number) const;
   /// Whether a block of voxels lies in one brick that is V_ext throughout.
@@ -56,16 +56,17 @@ struct Partition {
 
 /// `grow`: steps by which every cube grows before it is asked what it touches (0 mock-up, 3 tool).
 /// Errors: kBadValue for a grid of more than kMaxBricks, kUsage when `progress` says stop.
-Result<Partition> make_partition(const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t grow, const Progress& progress);
+Result<Partition> make_partition(const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t grow,
+                                 const Progress& progress);
 
 /// What the voxels of an enclosed component have said: ballots of non-zero winding.
 struct Ballots {
-  std::vector<std::uint16_t> of_brick;   ///< for uniform bricks, over all their voxels: at most 3 · 512
+  std::vector<std::uint16_t> of_brick;  ///< for uniform bricks, over all their voxels: at most 3 · 512
 };
 
-/// Asks the winding of the ray from the centre of every voxel of class ≥ `undecided` along +axis. Where it is not 0, a voxel
-/// in a detailed brick goes up by one class, and a uniform brick's ballots go up by one.
-void cast_ballots(const LatticeMesh& mesh, const VoxelGrid& grid, int axis, VoxelClass undecided, BrickClasses& classes,
-                  Ballots& ballots);
+/// Asks the winding of the ray from the centre of every voxel of class ≥ `undecided` along +axis. Where it is
+/// not 0, a voxel in a detailed brick goes up by one class, and a uniform brick's ballots go up by one.
+void cast_ballots(const LatticeMesh& mesh, const VoxelGrid& grid, int axis, VoxelClass undecided,
+                  BrickClasses& classes, Ballots& ballots);
 
 }  // namespace palpate::cpu_ref

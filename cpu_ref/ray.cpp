@@ -14,7 +14,8 @@ int line_passes(const Int3& p, const Int3& direction, const Triangle& triangle) 
   if (facing == 0) return 0;
   for (int k = 0; k < 3; ++k) {
     const Int3 &from = triangle[k], &to = triangle[(k + 1) % 3];
-    // D·((u − p) × (v − p)): within 2^29 · 2^59.2 · 3. Its derivative by p is D × (v − u), which the ε's pick apart.
+    // D·((u − p) × (v − p)): within 2^29 · 2^59.2 · 3. Its derivative by p is D × (v − u), which the ε's pick
+    // apart.
     int side = sign(dot(d, cross(difference(from, p), difference(to, p))));
     if (side == 0) side = first_sign(cross(d, difference(to, from)));
     if (side != facing) return 0;

@@ -120,7 +120,8 @@ class Asked final : public PoseQuery {
     for (Area& area : areas) out.areas.push_back(std::move(area.out));
   }
 
-  /// Everything is worked out here, so that nothing that a plan changes can change the rest; what nobody asks for is then taken away.
+  /// Everything is worked out here, so that nothing that a plan changes can change the rest; what nobody asks
+  /// for is then taken away.
   void leave_out(Contacts& out) const {
     out.contact_points = plan_.contact_point;
     out.lists = plan_.telemetry;
@@ -141,7 +142,7 @@ class Asked final : public PoseQuery {
   const Prepared& scene_;
   const Plan& plan_;
   BoxTree tool_tree_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;   ///< of the last query
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  ///< of the last query
 };
 
 class RefBackend final : public CollisionBackend {
@@ -175,8 +176,9 @@ class RefBackend final : public CollisionBackend {
       scene_ = std::move(scene);
       asked_.emplace(*scene_, plan_);
       return {};
-    } catch (const std::exception& failure) {   // out of memory, or Embree
-      return Error{ErrorCode::kInternal, std::string("The CPU reference could not prepare the scene: ") + failure.what()};
+    } catch (const std::exception& failure) {  // out of memory, or Embree
+      return Error{ErrorCode::kInternal,
+                   std::string("The CPU reference could not prepare the scene: ") + failure.what()};
     }
   }
 
@@ -201,18 +203,21 @@ class RefBackend final : public CollisionBackend {
   }
 
   Result<void> replan(const Plan& plan) override {
-    if (!scene_ || plan.profile != scene_->profile) return Error{ErrorCode::kInternal, "The CPU reference has not been prepared for this profile."};
+    if (!scene_ || plan.profile != scene_->profile)
+      return Error{ErrorCode::kInternal, "The CPU reference has not been prepared for this profile."};
     plan_ = plan;
     return {};
   }
 
   Result<VoxelPartition> partition(bool tool) const override {
-    if (!scene_ || (tool && !scene_->refined())) return Error{ErrorCode::kInternal, "There is no such partition."};
+    if (!scene_ || (tool && !scene_->refined()))
+      return Error{ErrorCode::kInternal, "There is no such partition."};
     return tool ? scene_->tool.dense() : scene_->mockup.dense();
   }
 
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override {
-    if (!asked_) return Error{ErrorCode::kInternal, "The CPU reference was asked for pairs before it was prepared."};
+    if (!asked_)
+      return Error{ErrorCode::kInternal, "The CPU reference was asked for pairs before it was prepared."};
     return asked_->pairs();
   }
 
@@ -221,7 +226,8 @@ class RefBackend final : public CollisionBackend {
   std::string device() const override { return "CPU reference"; }
   std::uint64_t memory_bytes() const override {
     if (!scene_) return 0;
-    std::uint64_t sum = scene_->mockup.memory_bytes() + scene_->tool.memory_bytes() + scene_->mockup_tree.memory_bytes() + asked_->memory_bytes();
+    std::uint64_t sum = scene_->mockup.memory_bytes() + scene_->tool.memory_bytes() +
+                        scene_->mockup_tree.memory_bytes() + asked_->memory_bytes();
     for (const auto& helper : helpers_) sum += helper->memory_bytes();
     return sum;
   }
@@ -236,16 +242,17 @@ class RefBackend final : public CollisionBackend {
   /// Somebody to ask, and a thread, for every other processor.
   void make_helpers() {
     std::vector<PoseQuery*> asked;
-    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) asked.push_back(helpers_.emplace_back(std::make_unique<Asked>(*scene_, plan_)).get());
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
+      asked.push_back(helpers_.emplace_back(std::make_unique<Asked>(*scene_, plan_)).get());
     threads_.emplace(std::move(asked));
   }
 
   Plan plan_;
   std::unique_ptr<Prepared> scene_;
-  std::optional<Asked> asked_;   ///< by query()
+  std::optional<Asked> asked_;  ///< by query()
   std::vector<std::unique_ptr<Asked>> helpers_;
-  std::optional<PoseThreads> threads_;   ///< of these
-  std::size_t shared_ = 0;               ///< pieces of all work so far
+  std::optional<PoseThreads> threads_;  ///< of these
+  std::size_t shared_ = 0;              ///< pieces of all work so far
 };
 
 }  // namespace

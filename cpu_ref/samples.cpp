@@ -3,13 +3,16 @@
 namespace palpate::cpu_ref {
 
 std::int64_t golden_part(std::int64_t n) {
-  constexpr std::int64_t kWhole = std::int64_t{1} << 32, kRatio = 2654435769;   // (√5 − 1) / 2, which has the same fractional parts
+  constexpr std::int64_t kWhole = std::int64_t{1} << 32,
+                         kRatio = 2654435769;  // (√5 − 1) / 2, which has the same fractional parts
   const std::int64_t within = n - floor_divide(n, kWhole) * kWhole;
   return static_cast<std::int64_t>(Int128{within} * kRatio % kWhole);
 }
 
 Cell sample_of(const Cell& cell, std::int32_t spacing) {
-  const auto moved = [&](std::int64_t n) { return floor_divide(golden_part(n) * spacing, std::int64_t{1} << 32); };
+  const auto moved = [&](std::int64_t n) {
+    return floor_divide(golden_part(n) * spacing, std::int64_t{1} << 32);
+  };
   return {cell.i * spacing + moved(cell.j), cell.j * spacing + moved(cell.i)};
 }
 
@@ -17,7 +20,8 @@ int level_of(Cell cell) {
   for (int level = 0; level < kSampleLevels; level += 2) {
     const Cell block{floor_divide(cell.i, std::int64_t{2}), floor_divide(cell.j, std::int64_t{2})};
     // Where a sample of the block as one cell would be, the one that stands for the block is.
-    const Cell stands{2 * block.i + floor_divide(2 * golden_part(block.j), std::int64_t{1} << 32), 2 * block.j + floor_divide(2 * golden_part(block.i), std::int64_t{1} << 32)};
+    const Cell stands{2 * block.i + floor_divide(2 * golden_part(block.j), std::int64_t{1} << 32),
+                      2 * block.j + floor_divide(2 * golden_part(block.i), std::int64_t{1} << 32)};
     const Cell opposite{4 * block.i + 1 - stands.i, 4 * block.j + 1 - stands.j};
     if (cell == opposite) return level + 1;
     if (cell != stands) return level;
@@ -32,7 +36,7 @@ bool projection_holds(const Triangle& triangle, int axis, std::int64_t g_u, std:
   for (int k = 0; k < 3; ++k) {
     const Int3 &p = triangle[k], &q = triangle[(k + 1) % 3];
     const std::int64_t along_u = std::int64_t{q[u]} - p[u], along_v = std::int64_t{q[v]} - p[v];
-    const std::int64_t area = along_u * (g_v - p[v]) - along_v * (g_u - p[u]);   // within 2^59
+    const std::int64_t area = along_u * (g_v - p[v]) - along_v * (g_u - p[u]);  // within 2^59
     int side = (area > 0) - (area < 0);
     if (side == 0) side = along_v != 0 ? (along_v < 0 ? 1 : -1) : along_u > 0 ? 1 : -1;
     if (side != facing) return false;

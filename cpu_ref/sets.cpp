@@ -36,7 +36,8 @@ Int3 to_tool(const LatticePose& pose, const Int3& point) {
   const Long3 from = difference(point, pose.translation);
   Int3 result;
   for (int c = 0; c < 3; ++c) {
-    const std::int64_t sum = pose.rotation_q30[0][c] * from.x + pose.rotation_q30[1][c] * from.y + pose.rotation_q30[2][c] * from.z;
+    const std::int64_t sum = pose.rotation_q30[0][c] * from.x + pose.rotation_q30[1][c] * from.y +
+                             pose.rotation_q30[2][c] * from.z;
     result[c] = static_cast<std::int32_t>((sum + (std::int64_t{1} << 29)) >> 30);
   }
   return result;
@@ -50,7 +51,7 @@ std::vector<Box> transform_tool(Frame& frame) {
     const auto& [a, b, c] = mesh.triangles[m];
     Triangle triangle(frame.vertices[a], frame.vertices[b], frame.vertices[c]);
     if (mesh.collapsed(m)) triangle = Triangle();
-    Box box;   // empty: never found
+    Box box;  // empty: never found
     if (!triangle.collapsed()) {
       box = triangle.box();
       frame.tool_box.include(box.min);
@@ -114,7 +115,8 @@ bool inside_tool(const Frame& frame, const Int3& point) {
   const Int3 own = to_tool(frame.pose, point);
   const VoxelClass voxel_class = frame.scene.tool.class_of(own);
   if (voxel_class != VoxelClass::kBoundary) return voxel_class == VoxelClass::kInternal;
-  if (!frame.tool_mesh().closed) return inside_open(frame.tool_mesh(), frame.scene.tool_rest_tree, frame.scene.tool, own);
+  if (!frame.tool_mesh().closed)
+    return inside_open(frame.tool_mesh(), frame.scene.tool_rest_tree, frame.scene.tool, own);
   // The two frames round differently near the surface: the transformed mesh itself decides.
   std::vector<std::uint32_t> candidates;
   const Int3 along_x(1, 0, 0);
@@ -127,8 +129,8 @@ bool inside_tool(const Frame& frame, const Int3& point) {
 
 void find_samples(Frame& frame, Contacts& out) {
   if (frame.scene.refined() && frame.scene.tool_has_inside) {
-    // V_int voxels of an open tool may stand out of its triangles' box: they lie in the hull of V_bnd voxels, and a point of such a
-    // voxel is within √3 (V + 6) of a triangle.
+    // V_int voxels of an open tool may stand out of its triangles' box: they lie in the hull of V_bnd voxels,
+    // and a point of such a voxel is within √3 (V + 6) of a triangle.
     const Int3 margin(2 * frame.scene.geometry->tool_grid.size + 20);
     const Box reach{frame.tool_box.min - margin, frame.tool_box.max + margin};
     std::vector<std::uint32_t> near;
@@ -139,7 +141,8 @@ void find_samples(Frame& frame, Contacts& out) {
       for_each_sample(frame.mockup(), s, frame.scene.geometry->sample_spacing, reach, [&](const Int3& point) {
         if (inside_tool(frame, point)) frame.counting.push_back({s, point});
       });
-      // A triangle that crosses nothing is wholly inside or wholly outside: one corner tells, where it has no sample.
+      // A triangle that crosses nothing is wholly inside or wholly outside: one corner tells, where it has no
+      // sample.
       const bool inside = frame.counting.size() > before || inside_tool(frame, frame.mockup().corner(s, 0));
       if (inside && !has(out.cst, s)) out.est.push_back(s);
     }

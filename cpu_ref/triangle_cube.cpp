@@ -9,9 +9,11 @@ namespace {
 
 /// A fraction of the way from p to q. Numerator and denominator within 2^30, so cross products fit 64 bits.
 struct Fraction {
-  std::int64_t numerator = 0, denominator = 1;   ///< denominator > 0
+  std::int64_t numerator = 0, denominator = 1;  ///< denominator > 0
 };
-bool less(const Fraction& a, const Fraction& b) { return a.numerator * b.denominator < b.numerator * a.denominator; }
+bool less(const Fraction& a, const Fraction& b) {
+  return a.numerator * b.denominator < b.numerator * a.denominator;
+}
 
 }  // namespace
 
@@ -37,8 +39,9 @@ bool triangle_meets_box(const Triangle& triangle, const Box& box) {
   if (!triangle.box().meets(box)) return false;
   for (int k = 0; k < 3; ++k)
     if (segment_meets_box(triangle[k], triangle[(k + 1) % 3], box)) return true;
-  // No edge enters the box. The plane cuts the box in a convex polygon that is then wholly inside the triangle or wholly
-  // outside. The diagonal that runs most along N has a point of that polygon, if there is one at all.
+  // No edge enters the box. The plane cuts the box in a convex polygon that is then wholly inside the
+  // triangle or wholly outside. The diagonal that runs most along N has a point of that polygon, if there is
+  // one at all.
   Int3 low, high;
   for (int k = 0; k < 3; ++k) {
     low[k] = triangle.normal[k] >= 0 ? box.min[k] : box.max[k];

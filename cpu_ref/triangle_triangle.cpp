@@ -17,7 +17,8 @@ int turn(const Point2& p, const Point2& q, const Point2& r) {
 
 /// Whether r, known to be collinear with pq, lies between them.
 bool between(const Point2& p, const Point2& q, const Point2& r) {
-  return std::min(p.u, q.u) <= r.u && r.u <= std::max(p.u, q.u) && std::min(p.v, q.v) <= r.v && r.v <= std::max(p.v, q.v);
+  return std::min(p.u, q.u) <= r.u && r.u <= std::max(p.u, q.u) && std::min(p.v, q.v) <= r.v &&
+         r.v <= std::max(p.v, q.v);
 }
 
 bool segments_meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
@@ -54,8 +55,8 @@ bool segment_meets_triangle(const Int3& p, const Int3& q, const Triangle& triang
   const int side_p = sign(triangle.side(p)), side_q = sign(triangle.side(q));
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) return coplanar_segment_meets_triangle(p, q, triangle);
-  // The segment has one point in the plane. It is in the triangle when the line pq passes all three edges on the same
-  // side. D·((u − p) × (v − p)): within 2^29 · 2^59.2 · 3.
+  // The segment has one point in the plane. It is in the triangle when the line pq passes all three edges on
+  // the same side. D·((u − p) × (v − p)): within 2^29 · 2^59.2 · 3.
   const Long3 direction = difference(q, p);
   bool left = false, right = false;
   for (int k = 0; k < 3; ++k) {
@@ -69,8 +70,8 @@ bool segment_meets_triangle(const Int3& p, const Int3& q, const Triangle& triang
 
 bool triangles_intersect(const Triangle& s, const Triangle& t) {
   if (!s.box().meets(t.box()) || on_one_side(s, t) || on_one_side(t, s)) return false;
-  // Two triangles that share a point share one that lies on an edge of either: the ends of their common segment are,
-  // and of a common polygon the corners are.
+  // Two triangles that share a point share one that lies on an edge of either: the ends of their common
+  // segment are, and of a common polygon the corners are.
   for (int k = 0; k < 3; ++k) {
     if (segment_meets_triangle(s[k], s[(k + 1) % 3], t)) return true;
     if (segment_meets_triangle(t[k], t[(k + 1) % 3], s)) return true;

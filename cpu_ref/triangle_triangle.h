@@ -3,7 +3,8 @@
 
 namespace palpate::cpu_ref {
 
-/// Whether the closed segment pq and the closed triangle share a point. `triangle` is not collapsed; p = q is allowed.
+/// Whether the closed segment pq and the closed triangle share a point. `triangle` is not collapsed; p = q is
+/// allowed.
 bool segment_meets_triangle(const Int3& p, const Int3& q, const Triangle& triangle);
 
 /// Whether two closed triangles, neither collapsed, share a point.

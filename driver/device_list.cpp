@@ -23,10 +23,11 @@ HapticDeviceInfo usb_info(std::string name, std::string what, std::span<const Us
     return info;
   }
   for (const UsbDeviceInfo& device : *found) {
-    if (device.usable && device.kernel_driver) info.what += "; the kernel's own driver has it now, palpate takes it over for a run";
+    if (device.usable && device.kernel_driver)
+      info.what += "; the kernel's own driver has it now, palpate takes it over for a run";
     info.usable = info.usable || device.usable;
     info.reason = info.usable ? "" : device.reason;
-    if (info.usable) break;   // the one that a run takes
+    if (info.usable) break;  // the one that a run takes
   }
   return info;
 }
@@ -36,7 +37,9 @@ HapticDeviceInfo falcon_info() {
   HapticDeviceInfo info = usb_info("falcon", "Novint Falcon, 3 forces", ids);
   if (!info.usable) return info;
   auto port = falcon::open_first_falcon();
-  info.what += port && falcon::runs_firmware(std::move(*port)) ? "; its firmware runs" : "; firmware missing: name your file with --firmware";
+  info.what += port && falcon::runs_firmware(std::move(*port))
+                   ? "; its firmware runs"
+                   : "; firmware missing: name your file with --firmware";
   return info;
 }
 
@@ -51,8 +54,9 @@ std::vector<HapticDeviceInfo> list_haptic_devices() {
   };
 }
 
-Result<std::unique_ptr<HapticDevice>> make_haptic_device(const std::string& name, const DeviceSettings& settings,
-                                                         const Pose& start, const Vec3& tool_gc_m, const std::string& firmware) {
+Result<std::unique_ptr<HapticDevice>> make_haptic_device(const std::string& name,
+                                                         const DeviceSettings& settings, const Pose& start,
+                                                         const Vec3& tool_gc_m, const std::string& firmware) {
   if (name == "simulated") return make_simulated_device(settings, start, tool_gc_m);
   if (name == "falcon") {
     falcon::FalconSettings falcon;
@@ -60,13 +64,17 @@ Result<std::unique_ptr<HapticDevice>> make_haptic_device(const std::string& name
     falcon.workspace = settings.workspace;
     return falcon::make_falcon(falcon, start);
   }
-  if (name == "spacemouse") return spacemouse::make_spacemouse({.rate = {}, .workspace = settings.workspace}, start);
+  if (name == "spacemouse")
+    return spacemouse::make_spacemouse({.rate = {}, .workspace = settings.workspace}, start);
   if (name == "replay") {
     if (settings.replay_file.empty())
-      return bad_value("haptic device 'replay' needs a recorded trace: --device replay:FILE, or the scene's device.path beside \"driver\": \"replay\"");
+      return bad_value(
+          "haptic device 'replay' needs a recorded trace: --device replay:FILE, or the scene's device.path "
+          "beside \"driver\": \"replay\"");
     return replay::make_replay(settings.replay_file, settings.max_force_n, settings.max_torque_nm);
   }
-  return Error{ErrorCode::kUsage, "unknown haptic device '" + name + "', known are simulated, falcon, spacemouse, replay"};
+  return Error{ErrorCode::kUsage,
+               "unknown haptic device '" + name + "', known are simulated, falcon, spacemouse, replay"};
 }
 
 }  // namespace palpate

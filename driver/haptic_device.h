@@ -18,44 +18,47 @@ enum class DeviceState : std::uint8_t { kClosed, kOpening, kLoading, kHoming, kR
 struct DeviceCapabilities {
   std::array<bool, 6> sensed{};
   std::array<bool, 6> actuated{};
-  double max_force_n = 0;             ///< largest length of the force; 0: none is ever sent
-  double max_torque_nm = 0;           ///< largest length of the torque; 0: none is ever sent
-  double max_stiffness_n_per_m = 0;   ///< 0: not stated
+  double max_force_n = 0;            ///< largest length of the force; 0: none is ever sent
+  double max_torque_nm = 0;          ///< largest length of the torque; 0: none is ever sent
+  double max_stiffness_n_per_m = 0;  ///< 0: not stated
   double rate_hz = 1000;
 };
 
 /// What the device reports at a tick.
 struct DeviceSample {
-  Pose pose;                       ///< world from tool
-  std::int64_t time_ns = 0;        ///< when it was sensed: steady clock, or virtual time
+  Pose pose;                 ///< world from tool
+  std::int64_t time_ns = 0;  ///< when it was sensed: steady clock, or virtual time
   std::uint32_t buttons = 0;
   DeviceState state = DeviceState::kClosed;
-  int stage = 0;                   ///< of the recorded or simulated path, 0: none
-  bool clutched = false;           ///< the hand moves without the tool, or was paused: it must feel nothing
-  bool paused = false;             ///< somebody has taken the force off from outside; a simulated device stands still, this pose included
+  int stage = 0;          ///< of the recorded or simulated path, 0: none
+  bool clutched = false;  ///< the hand moves without the tool, or was paused: it must feel nothing
+  bool paused = false;    ///< somebody has taken the force off from outside; a simulated device stands still,
+                          ///< this pose included
 };
 
 /// A haptic device. Implement it to plug in a device with a closed SDK (docs/examples).
-/// open and close may take their time; read and write are called once a tick by one thread and never allocate, lock, throw or wait
-/// longer than the tick allows. A device that fails reports kFault in its sample and ignores wrenches.
+/// open and close may take their time; read and write are called once a tick by one thread and never
+/// allocate, lock, throw or wait longer than the tick allows. A device that fails reports kFault in its
+/// sample and ignores wrenches.
 class HapticDevice {
  public:
   virtual ~HapticDevice() = default;
   virtual std::string name() const = 0;
   virtual DeviceCapabilities capabilities() const = 0;
   virtual Result<void> open() = 0;
-  virtual void close() noexcept = 0;                      ///< forces zero, then closed
+  virtual void close() noexcept = 0;  ///< forces zero, then closed
   virtual DeviceSample read() noexcept = 0;
-  /// What the person at the device should do now (home it, plug it in), or why it is at fault; "" when there is nothing to say. Text that
-  /// outlives the device; the thread that reads may ask.
+  /// What the person at the device should do now (home it, plug it in), or why it is at fault; "" when there
+  /// is nothing to say. Text that outlives the device; the thread that reads may ask.
   virtual const char* guidance() const noexcept { return ""; }
   /// How long the device moves by itself, s; 0: a person moves it, for as long as they like.
   virtual double motion_s() const { return 0; }
-  /// The part of a wrench that the motors can exert at the pose last read; what they can't is left out before limits
-  /// apply, so that it doesn't use them up. As given: the actuated axes of the world. A device whose axes are its
-  /// own (a guide, a tilted base) overrides it. Called like write().
+  /// The part of a wrench that the motors can exert at the pose last read; what they can't is left out before
+  /// limits apply, so that it doesn't use them up. As given: the actuated axes of the world. A device whose
+  /// axes are its own (a guide, a tilted base) overrides it. Called like write().
   virtual Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept;
-  /// Force and torque on the hand's tool, world frame, torque about the centre of mass gc given in world metres.
+  /// Force and torque on the hand's tool, world frame, torque about the centre of mass gc given in world
+  /// metres.
   virtual void write(const Wrench& wrench, const Vec3& gc) noexcept = 0;
 };
 

@@ -12,7 +12,8 @@ inline bool finite(const Wrench& wrench) { return finite(wrench.force) && finite
 /// Euclidean length that neither overflows nor turns a finite vector into infinity.
 inline double length(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
 
-/// The vector, shortened to `limit` where it is longer; its direction stays. A limit that is not > 0 leaves nothing.
+/// The vector, shortened to `limit` where it is longer; its direction stays. A limit that is not > 0 leaves
+/// nothing.
 inline Vec3 shortened(const Vec3& v, double limit) {
   if (!(limit > 0)) return Vec3(0);
   const double size = length(v);

@@ -20,7 +20,8 @@ Matrix product(const Matrix& a, const Matrix& b) {
 /// e^A by its series on A / 2^s (entries below 1/2, so 20 terms reach double precision), squared s times.
 Matrix exponential(Matrix a) {
   double largest = 0;
-  for (const auto& row : a) largest = std::fmax(largest, std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]));
+  for (const auto& row : a)
+    largest = std::fmax(largest, std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]));
   int squarings = 0;
   for (; largest > 0.5; largest /= 2) ++squarings;
   const double scale = std::ldexp(1.0, -squarings);
@@ -29,7 +30,7 @@ Matrix exponential(Matrix a) {
 
   const Matrix identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Matrix sum = identity;
-  for (int term = 20; term >= 1; --term) {   // Horner: I + A/1 (I + A/2 (I + …))
+  for (int term = 20; term >= 1; --term) {  // Horner: I + A/1 (I + A/2 (I + …))
     sum = product(a, sum);
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 3; ++c) sum[r][c] = identity[r][c] + sum[r][c] / term;
@@ -42,7 +43,8 @@ Matrix exponential(Matrix a) {
 
 MassSpring::MassSpring(double mass, double damping, double stiffness, double tick_s) {
   // State (y, ẏ, g); g does not change in a tick.
-  const Matrix rates{{{0, tick_s, 0}, {-stiffness / mass * tick_s, -damping / mass * tick_s, tick_s / mass}, {0, 0, 0}}};
+  const Matrix rates{
+      {{0, tick_s, 0}, {-stiffness / mass * tick_s, -damping / mass * tick_s, tick_s / mass}, {0, 0, 0}}};
   const Matrix e = exponential(rates);
   yy_ = e[0][0], yv_ = e[0][1], yg_ = e[0][2];
   vy_ = e[1][0], vv_ = e[1][1], vg_ = e[1][2];

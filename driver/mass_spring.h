@@ -2,8 +2,8 @@
 
 namespace palpate {
 
-/// One tick of M ÿ + c ẏ + k y = g with g constant over the tick, solved exactly (a matrix exponential made once):
-/// stable for every M > 0, c ≥ 0, k ≥ 0, whatever the tick. Works on any vector type V.
+/// One tick of M ÿ + c ẏ + k y = g with g constant over the tick, solved exactly (a matrix exponential made
+/// once): stable for every M > 0, c ≥ 0, k ≥ 0, whatever the tick. Works on any vector type V.
 class MassSpring {
  public:
   MassSpring(double mass, double damping, double stiffness, double tick_s);

@@ -24,7 +24,7 @@ Wrench Passivity::damping() const noexcept {
   const double way = glm::dot(moved_, moved_) + kArm * kArm * glm::dot(turned_, turned_);
   if (!(way > 0)) return {};
   const double all = work_ * kTickSeconds / way;
-  const double damping = std::min(all, kMostDamping) / kTickSeconds;   // N per metre of a tick's way
+  const double damping = std::min(all, kMostDamping) / kTickSeconds;  // N per metre of a tick's way
   return {-damping * moved_, -damping * kArm * kArm * turned_};
 }
 

@@ -16,8 +16,9 @@ Vec3 between(const Quat& from, const Quat& to) { return rotation_vector(to * glm
 }  // namespace
 
 PathPoint path_at(const std::vector<PathPoint>& path, double time_s) {
-  const auto after = std::upper_bound(path.begin(), path.end(), time_s,
-                                      [](double time, const PathPoint& point) { return time < point.time_s; });
+  const auto after =
+      std::upper_bound(path.begin(), path.end(), time_s,
+                       [](double time, const PathPoint& point) { return time < point.time_s; });
   if (after == path.begin()) return path.front();
   const PathPoint& a = *(after - 1);
   if (after == path.end()) return a;
@@ -33,8 +34,9 @@ PathPoint path_at(const std::vector<PathPoint>& path, double time_s) {
 
 GuideState guide_at(const std::vector<GuidePoint>& guide, double travel_m) {
   const double travel = std::clamp(travel_m, guide.front().travel_m, guide.back().travel_m);
-  const auto after = std::upper_bound(guide.begin() + 1, guide.end() - 1, travel,
-                                      [](double value, const GuidePoint& point) { return value < point.travel_m; });
+  const auto after =
+      std::upper_bound(guide.begin() + 1, guide.end() - 1, travel,
+                       [](double value, const GuidePoint& point) { return value < point.travel_m; });
   const GuidePoint& a = *(after - 1);
   const GuidePoint& b = *after;
   const double length = b.travel_m - a.travel_m;

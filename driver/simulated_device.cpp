@@ -20,7 +20,8 @@ class SimulatedDevice : public HapticDevice {
   SimulatedDevice(const DeviceSettings& settings, const Pose& start, const Vec3& tool_gc)
       : settings_(settings),
         tool_gc_(tool_gc),
-        sliding_(settings.mass_kg + settings.hand_mass_kg, settings.damping_n_s_per_m + settings.hand_damping_n_s_per_m,
+        sliding_(settings.mass_kg + settings.hand_mass_kg,
+                 settings.damping_n_s_per_m + settings.hand_damping_n_s_per_m,
                  settings.hand_stiffness_n_per_m, kTickSeconds),
         turning_(settings.inertia_kg_m2, settings.angular_damping_nm_s + settings.hand_angular_damping_nm_s,
                  settings.hand_angular_stiffness_nm, kTickSeconds) {
@@ -100,10 +101,10 @@ class SimulatedDevice : public HapticDevice {
   }
 
   DeviceSettings settings_;
-  Vec3 tool_gc_;       ///< tool frame, m
+  Vec3 tool_gc_;  ///< tool frame, m
   MassSpring sliding_, turning_;
-  PathPoint hand_;     ///< where the hand is at the present tick
-  Pose pose_;          ///< of the tool, world
+  PathPoint hand_;  ///< where the hand is at the present tick
+  Pose pose_;       ///< of the tool, world
 
  private:
   std::int64_t ticks_ = 0;
@@ -126,12 +127,14 @@ class FreeDevice final : public SimulatedDevice {
 
   void advance(const Wrench& wrench, const Vec3& gc, const PathPoint& next) noexcept override {
     const Wrench exerted = masked(moved(wrench, gc, gc_));
-    slide(gc_, velocity_, gc_of(hand_.pose), gc_of(next.pose), shortened(exerted.force, settings_.max_force_n));
-    turn(pose_.rotation, rate_, hand_.pose.rotation, next.pose.rotation, shortened(exerted.torque, settings_.max_torque_nm));
+    slide(gc_, velocity_, gc_of(hand_.pose), gc_of(next.pose),
+          shortened(exerted.force, settings_.max_force_n));
+    turn(pose_.rotation, rate_, hand_.pose.rotation, next.pose.rotation,
+         shortened(exerted.torque, settings_.max_torque_nm));
     pose_.position = gc_ - pose_.rotation * tool_gc_;
   }
 
-  Vec3 gc_{0}, velocity_{0}, rate_{0};   ///< m, m/s, rad/s, world
+  Vec3 gc_{0}, velocity_{0}, rate_{0};  ///< m, m/s, rad/s, world
 };
 
 /// One travel and three rotations; the state is the travel and the rotation relative to the guide's frame.
@@ -148,7 +151,8 @@ class GuidedDevice final : public SimulatedDevice {
   Wrench pivot_wrench(const Wrench& wrench) const noexcept {
     const double slope = length(at_.tangent);
     Vec3 along(0);
-    if (settings_.actuated[0] && slope > 0) along = (glm::dot(wrench.force, at_.tangent) / (slope * slope)) * at_.tangent;
+    if (settings_.actuated[0] && slope > 0)
+      along = (glm::dot(wrench.force, at_.tangent) / (slope * slope)) * at_.tangent;
     Vec3 torque = glm::conjugate(at_.frame.rotation) * wrench.torque;
     for (int axis = 0; axis < 3; ++axis)
       if (!settings_.actuated[static_cast<std::size_t>(axis) + 3]) torque[axis] = 0;
@@ -165,11 +169,14 @@ class GuidedDevice final : public SimulatedDevice {
 
   void advance(const Wrench& wrench, const Vec3& gc, const PathPoint& next) noexcept override {
     Wrench exerted = pivot_wrench(moved(wrench, gc, pose_.position));
-    exerted = {shortened(exerted.force, settings_.max_force_n), shortened(exerted.torque, settings_.max_torque_nm)};
-    // Virtual work of the wrench on a travel: the origin moves along the tangent, and the whole tool turns with the frame.
+    exerted = {shortened(exerted.force, settings_.max_force_n),
+               shortened(exerted.torque, settings_.max_torque_nm)};
+    // Virtual work of the wrench on a travel: the origin moves along the tangent, and the whole tool turns
+    // with the frame.
     const double push = glm::dot(exerted.force, at_.tangent) + glm::dot(exerted.torque, at_.turning);
     slide(travel_, speed_, hand_.travel_m, next.travel_m, push);
-    turn(relative_, rate_, hand_.pose.rotation, next.pose.rotation, glm::conjugate(at_.frame.rotation) * exerted.torque);
+    turn(relative_, rate_, hand_.pose.rotation, next.pose.rotation,
+         glm::conjugate(at_.frame.rotation) * exerted.torque);
     // The guide's ends are hard.
     const double first = settings_.guide.front().travel_m, last = settings_.guide.back().travel_m;
     if (travel_ <= first) travel_ = first, speed_ = std::fmax(speed_, 0);
@@ -183,9 +190,9 @@ class GuidedDevice final : public SimulatedDevice {
     pose_.rotation = glm::normalize(at_.frame.rotation * relative_);
   }
 
-  double travel_ = 0, speed_ = 0;        ///< m, m/s
-  Quat relative_{1, 0, 0, 0};            ///< guide frame from tool
-  Vec3 rate_{0};                         ///< rad/s, guide frame
+  double travel_ = 0, speed_ = 0;  ///< m, m/s
+  Quat relative_{1, 0, 0, 0};      ///< guide frame from tool
+  Vec3 rate_{0};                   ///< rad/s, guide frame
   GuideState at_;
 };
 
@@ -194,12 +201,13 @@ std::string fault_in(const DeviceSettings& settings, const Pose& start, const Ve
   const auto at_least = [](double value, double least, const char* name) {
     return std::isfinite(value) && value >= least
                ? std::string()
-               : std::string("simulated device: ") + name + " is " + std::to_string(value) + ", must be a finite number ≥ " +
-                     std::to_string(least);
+               : std::string("simulated device: ") + name + " is " + std::to_string(value) +
+                     ", must be a finite number ≥ " + std::to_string(least);
   };
-  constexpr double kLeastMass = 1e-3, kLeastInertia = 1e-7;   // chosen: nothing that a hand holds is lighter
+  constexpr double kLeastMass = 1e-3, kLeastInertia = 1e-7;  // chosen: nothing that a hand holds is lighter
   for (const std::string& fault :
-       {at_least(settings.mass_kg, kLeastMass, "mass (kg)"), at_least(settings.inertia_kg_m2, kLeastInertia, "inertia (kg·m²)"),
+       {at_least(settings.mass_kg, kLeastMass, "mass (kg)"),
+        at_least(settings.inertia_kg_m2, kLeastInertia, "inertia (kg·m²)"),
         at_least(settings.damping_n_s_per_m, 0, "damping (N·s/m)"),
         at_least(settings.angular_damping_nm_s, 0, "angular damping (N·m·s)"),
         at_least(settings.hand_stiffness_n_per_m, 0, "hand stiffness (N/m)"),
@@ -207,7 +215,8 @@ std::string fault_in(const DeviceSettings& settings, const Pose& start, const Ve
         at_least(settings.hand_mass_kg, 0, "hand mass (kg)"),
         at_least(settings.hand_angular_stiffness_nm, 0, "hand angular stiffness (N·m)"),
         at_least(settings.hand_angular_damping_nm_s, 0, "hand angular damping (N·m·s)"),
-        at_least(settings.max_force_n, 0, "largest force (N)"), at_least(settings.max_torque_nm, 0, "largest torque (N·m)")})
+        at_least(settings.max_force_n, 0, "largest force (N)"),
+        at_least(settings.max_torque_nm, 0, "largest torque (N·m)")})
     if (!fault.empty()) return fault;
   if (!sound(start) || !finite(tool_gc)) return "simulated device: start pose or centre of mass isn't finite";
   for (std::size_t i = 0; i < settings.path.size(); ++i) {
@@ -222,7 +231,8 @@ std::string fault_in(const DeviceSettings& settings, const Pose& start, const Ve
   for (std::size_t i = 0; i < settings.guide.size(); ++i) {
     const GuidePoint& point = settings.guide[i];
     const std::string place = "simulated device: guide point " + std::to_string(i);
-    if (!std::isfinite(point.travel_m) || !sound(point.frame)) return place + " isn't finite or has no unit rotation";
+    if (!std::isfinite(point.travel_m) || !sound(point.frame))
+      return place + " isn't finite or has no unit rotation";
     if (i > 0 && !(point.travel_m > settings.guide[i - 1].travel_m))
       return place + " has travel " + std::to_string(point.travel_m) + " m, not beyond the point ahead of it";
   }
@@ -233,8 +243,10 @@ std::string fault_in(const DeviceSettings& settings, const Pose& start, const Ve
 
 Result<std::unique_ptr<HapticDevice>> make_simulated_device(const DeviceSettings& settings, const Pose& start,
                                                             const Vec3& tool_gc_m) {
-  if (std::string fault = fault_in(settings, start, tool_gc_m); !fault.empty()) return bad_value(std::move(fault));
-  if (settings.guide.empty()) return std::unique_ptr<HapticDevice>(std::make_unique<FreeDevice>(settings, start, tool_gc_m));
+  if (std::string fault = fault_in(settings, start, tool_gc_m); !fault.empty())
+    return bad_value(std::move(fault));
+  if (settings.guide.empty())
+    return std::unique_ptr<HapticDevice>(std::make_unique<FreeDevice>(settings, start, tool_gc_m));
   return std::unique_ptr<HapticDevice>(std::make_unique<GuidedDevice>(settings, start, tool_gc_m));
 }
 

@@ -9,9 +9,9 @@
 namespace palpate {
 namespace {
 
-constexpr int kInTransfers = 4;          // so that one is always posted while the others are being handled
+constexpr int kInTransfers = 4;  // so that one is always posted while the others are being handled
 constexpr std::size_t kSendBytes = 64;
-constexpr int kErrorsInARow = 16;        // transfers failing one after the other: the device is as good as gone
+constexpr int kErrorsInARow = 16;  // transfers failing one after the other: the device is as good as gone
 
 struct ContextDeleter {
   void operator()(libusb_context* context) const { libusb_exit(context); }
@@ -43,23 +43,33 @@ std::string name_of(UsbId id) { return hex(id.vendor) + ":" + hex(id.product); }
 std::string meaning(int error, UsbId id) {
   switch (error) {
     case LIBUSB_ERROR_ACCESS:
-      return "USB device " + name_of(id) + " may not be opened by this user: install 70-palpate.rules (in driver/udev, or a bundle's share/palpate) and plug it in again";
-    case LIBUSB_ERROR_BUSY: return "USB device " + name_of(id) + " is in use by another program";
-    case LIBUSB_ERROR_NO_DEVICE: return "USB device " + name_of(id) + " was unplugged";
-    case LIBUSB_ERROR_TIMEOUT: return "USB device " + name_of(id) + " did not answer in time";
-    case LIBUSB_ERROR_PIPE: return "USB device " + name_of(id) + " refused a request (stall)";
-    default: return "USB device " + name_of(id) + ": " + libusb_strerror(static_cast<libusb_error>(error));
+      return "USB device " + name_of(id) +
+             " may not be opened by this user: install 70-palpate.rules (in driver/udev, or a bundle's "
+             "share/palpate) and plug it in again";
+    case LIBUSB_ERROR_BUSY:
+      return "USB device " + name_of(id) + " is in use by another program";
+    case LIBUSB_ERROR_NO_DEVICE:
+      return "USB device " + name_of(id) + " was unplugged";
+    case LIBUSB_ERROR_TIMEOUT:
+      return "USB device " + name_of(id) + " did not answer in time";
+    case LIBUSB_ERROR_PIPE:
+      return "USB device " + name_of(id) + " refused a request (stall)";
+    default:
+      return "USB device " + name_of(id) + ": " + libusb_strerror(static_cast<libusb_error>(error));
   }
 }
 
 Result<Context> make_context(bool discovery) {
   if (!discovery) {
-    if (const int error = libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY); error != LIBUSB_SUCCESS)
-      return no_device(std::string("libusb can't open a descriptor: ") + libusb_strerror(static_cast<libusb_error>(error)));
+    if (const int error = libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
+        error != LIBUSB_SUCCESS)
+      return no_device(std::string("libusb can't open a descriptor: ") +
+                       libusb_strerror(static_cast<libusb_error>(error)));
   }
   libusb_context* context = nullptr;
   if (const int error = libusb_init(&context); error != LIBUSB_SUCCESS)
-    return no_device(std::string("libusb does not start: ") + libusb_strerror(static_cast<libusb_error>(error)));
+    return no_device(std::string("libusb does not start: ") +
+                     libusb_strerror(static_cast<libusb_error>(error)));
   return Context(context);
 }
 
@@ -72,7 +82,9 @@ class DeviceList {
   }
   DeviceList(const DeviceList&) = delete;
   DeviceList& operator=(const DeviceList&) = delete;
-  std::span<libusb_device*> devices() const { return {list_, size_ < 0 ? 0 : static_cast<std::size_t>(size_)}; }
+  std::span<libusb_device*> devices() const {
+    return {list_, size_ < 0 ? 0 : static_cast<std::size_t>(size_)};
+  }
 
  private:
   libusb_device** list_ = nullptr;
@@ -86,7 +98,9 @@ bool wanted(libusb_device* device, std::span<const UsbId> ids, UsbId& id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-int milliseconds(UsbPort::Milliseconds time) { return static_cast<int>(std::max<std::int64_t>(time.count(), 1)); }
+int milliseconds(UsbPort::Milliseconds time) {
+  return static_cast<int>(std::max<std::int64_t>(time.count(), 1));
+}
 
 }  // namespace
 
@@ -101,7 +115,7 @@ struct UsbPort::State {
   std::array<std::vector<std::uint8_t>, kInTransfers> in_bytes;
   Transfer out;
   std::array<std::uint8_t, kSendBytes> out_bytes{};
-  int in_flight = 0;          // IN transfers posted
+  int in_flight = 0;  // IN transfers posted
   bool out_in_flight = false;
   bool closing = false, gone = false;
   int errors_in_a_row = 0;
@@ -112,8 +126,8 @@ struct UsbPort::State {
     for (const Transfer& transfer : in)
       if (transfer) libusb_cancel_transfer(transfer.get());
     if (out_in_flight) libusb_cancel_transfer(out.get());
-    // A transfer may be freed only when it has come back. Cancelled ones come back at once unless the kernel is stuck; then the
-    // memory is left alone rather than freed under the kernel's hands.
+    // A transfer may be freed only when it has come back. Cancelled ones come back at once unless the kernel
+    // is stuck; then the memory is left alone rather than freed under the kernel's hands.
     for (int tries = 0; (in_flight > 0 || out_in_flight) && tries < 100; ++tries) {
       timeval wait{0, 10'000};
       libusb_handle_events_timeout_completed(context.get(), &wait, nullptr);
@@ -124,7 +138,8 @@ struct UsbPort::State {
     }
     if (claimed) {
       libusb_release_interface(handle.get(), interface);
-      libusb_attach_kernel_driver(handle.get(), interface);   // what open() detached; an error only says there was none
+      libusb_attach_kernel_driver(handle.get(),
+                                  interface);  // what open() detached; an error only says there was none
     }
   }
 
@@ -151,7 +166,8 @@ struct UsbPort::State {
     if (state.closing) return;
     state.judge(transfer->status);
     // A transfer that failed may have brought bytes all the same.
-    if (transfer->actual_length > 0) state.on_packet({transfer->buffer, static_cast<std::size_t>(transfer->actual_length)});
+    if (transfer->actual_length > 0)
+      state.on_packet({transfer->buffer, static_cast<std::size_t>(transfer->actual_length)});
     if (state.gone || transfer->status == LIBUSB_TRANSFER_CANCELLED) return;
     if (transfer->status == LIBUSB_TRANSFER_STALL) state.stalled = true;
     if (libusb_submit_transfer(transfer) == LIBUSB_SUCCESS)
@@ -166,7 +182,7 @@ struct UsbPort::State {
     if (!state.closing) state.judge(transfer->status);
   }
 
-  bool stalled = false;   // the IN endpoint's halt is to be cleared, outside the callback
+  bool stalled = false;  // the IN endpoint's halt is to be cleared, outside the callback
   std::uint8_t in_endpoint = 0;
 };
 
@@ -178,10 +194,12 @@ namespace {
 Result<void> claim(libusb_device_handle* handle, int interface, UsbId id) {
   const int active = libusb_kernel_driver_active(handle, interface);
   if (active == 1)
-    if (const int error = libusb_detach_kernel_driver(handle, interface); error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_NOT_FOUND)
+    if (const int error = libusb_detach_kernel_driver(handle, interface);
+        error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_NOT_FOUND)
       return no_device("USB device " + name_of(id) + " is held by a kernel driver that can't be detached (" +
                        libusb_strerror(static_cast<libusb_error>(error)) + ")");
-  if (const int error = libusb_claim_interface(handle, interface); error != LIBUSB_SUCCESS) return no_device(meaning(error, id));
+  if (const int error = libusb_claim_interface(handle, interface); error != LIBUSB_SUCCESS)
+    return no_device(meaning(error, id));
   return {};
 }
 
@@ -228,11 +246,14 @@ Result<std::unique_ptr<UsbPort>> UsbPort::open_descriptor(int descriptor, int in
   state->context = std::move(*context);
   state->interface = interface;
   libusb_device_handle* handle = nullptr;
-  if (const int error = libusb_wrap_sys_device(state->context.get(), descriptor, &handle); error != LIBUSB_SUCCESS)
-    return no_device(std::string("the descriptor is no USB device: ") + libusb_strerror(static_cast<libusb_error>(error)));
+  if (const int error = libusb_wrap_sys_device(state->context.get(), descriptor, &handle);
+      error != LIBUSB_SUCCESS)
+    return no_device(std::string("the descriptor is no USB device: ") +
+                     libusb_strerror(static_cast<libusb_error>(error)));
   state->handle.reset(handle);
   libusb_device_descriptor about{};
-  if (libusb_get_device_descriptor(libusb_get_device(handle), &about) == LIBUSB_SUCCESS) state->id = {about.idVendor, about.idProduct};
+  if (libusb_get_device_descriptor(libusb_get_device(handle), &about) == LIBUSB_SUCCESS)
+    state->id = {about.idVendor, about.idProduct};
   if (auto claimed = claim(handle, interface, state->id); !claimed) return claimed.error();
   state->claimed = true;
   return std::unique_ptr<UsbPort>(new UsbPort(std::move(state)));
@@ -240,28 +261,32 @@ Result<std::unique_ptr<UsbPort>> UsbPort::open_descriptor(int descriptor, int in
 
 UsbId UsbPort::id() const { return state_->id; }
 
-Result<void> UsbPort::control(std::uint8_t request_type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
-                              Milliseconds timeout, std::span<const std::uint8_t> data) {
+Result<void> UsbPort::control(std::uint8_t request_type, std::uint8_t request, std::uint16_t value,
+                              std::uint16_t index, Milliseconds timeout, std::span<const std::uint8_t> data) {
   if (state_->gone) return state_->failed(LIBUSB_ERROR_NO_DEVICE);
-  std::array<std::uint8_t, kSendBytes> copy{};   // libusb asks for bytes that it could write to
-  if (data.size() > copy.size()) return Error{ErrorCode::kInternal, "a USB control transfer carries at most 64 bytes here"};
+  std::array<std::uint8_t, kSendBytes> copy{};  // libusb asks for bytes that it could write to
+  if (data.size() > copy.size())
+    return Error{ErrorCode::kInternal, "a USB control transfer carries at most 64 bytes here"};
   std::copy(data.begin(), data.end(), copy.begin());
-  const int done = libusb_control_transfer(state_->handle.get(), request_type, request, value, index, copy.data(),
-                                           static_cast<std::uint16_t>(data.size()),
+  const int done = libusb_control_transfer(state_->handle.get(), request_type, request, value, index,
+                                           copy.data(), static_cast<std::uint16_t>(data.size()),
                                            static_cast<unsigned>(milliseconds(timeout)));
   if (done < 0) return state_->failed(done);
   return {};
 }
 
-Result<void> UsbPort::write(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, Milliseconds timeout) {
+Result<void> UsbPort::write(std::uint8_t endpoint, std::span<const std::uint8_t> bytes,
+                            Milliseconds timeout) {
   if (state_->gone) return state_->failed(LIBUSB_ERROR_NO_DEVICE);
-  std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());   // libusb asks for bytes that it could write to
+  std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());  // libusb asks for bytes that it could write to
   int sent = 0;
-  const int error = libusb_bulk_transfer(state_->handle.get(), endpoint, copy.data(), static_cast<int>(copy.size()), &sent,
-                                         static_cast<unsigned>(milliseconds(timeout)));
+  const int error =
+      libusb_bulk_transfer(state_->handle.get(), endpoint, copy.data(), static_cast<int>(copy.size()), &sent,
+                           static_cast<unsigned>(milliseconds(timeout)));
   if (error != LIBUSB_SUCCESS) return state_->failed(error);
   if (static_cast<std::size_t>(sent) != copy.size())
-    return no_device("USB device " + name_of(state_->id) + " took " + std::to_string(sent) + " of " + std::to_string(copy.size()) + " bytes");
+    return no_device("USB device " + name_of(state_->id) + " took " + std::to_string(sent) + " of " +
+                     std::to_string(copy.size()) + " bytes");
   return {};
 }
 
@@ -274,9 +299,10 @@ Result<void> UsbPort::listen(std::uint8_t endpoint, bool interrupt, std::size_t 
     if (!state_->in[i]) return Error{ErrorCode::kInternal, "no memory for USB transfers"};
     state_->in_bytes[i].resize(size);
     const auto fill = interrupt ? libusb_fill_interrupt_transfer : libusb_fill_bulk_transfer;
-    fill(state_->in[i].get(), state_->handle.get(), endpoint, state_->in_bytes[i].data(), static_cast<int>(size), &State::in_done,
-         state_.get(), 0);
-    if (const int error = libusb_submit_transfer(state_->in[i].get()); error != LIBUSB_SUCCESS) return state_->failed(error);
+    fill(state_->in[i].get(), state_->handle.get(), endpoint, state_->in_bytes[i].data(),
+         static_cast<int>(size), &State::in_done, state_.get(), 0);
+    if (const int error = libusb_submit_transfer(state_->in[i].get()); error != LIBUSB_SUCCESS)
+      return state_->failed(error);
     ++state_->in_flight;
   }
   return {};
@@ -288,9 +314,10 @@ bool UsbPort::send(std::uint8_t endpoint, std::span<const std::uint8_t> bytes) {
   if (!state.out) state.out.reset(libusb_alloc_transfer(0));
   if (!state.out) return false;
   std::copy(bytes.begin(), bytes.end(), state.out_bytes.begin());
-  // Time-out: a device that takes no bytes for 100 ms would otherwise keep the newest force from ever being sent.
-  libusb_fill_bulk_transfer(state.out.get(), state.handle.get(), endpoint, state.out_bytes.data(), static_cast<int>(bytes.size()),
-                            &State::out_done, state_.get(), 100);
+  // Time-out: a device that takes no bytes for 100 ms would otherwise keep the newest force from ever being
+  // sent.
+  libusb_fill_bulk_transfer(state.out.get(), state.handle.get(), endpoint, state.out_bytes.data(),
+                            static_cast<int>(bytes.size()), &State::out_done, state_.get(), 100);
   const int error = libusb_submit_transfer(state.out.get());
   if (error != LIBUSB_SUCCESS) {
     if (error == LIBUSB_ERROR_NO_DEVICE) state.gone = true;
@@ -302,7 +329,8 @@ bool UsbPort::send(std::uint8_t endpoint, std::span<const std::uint8_t> bytes) {
 
 void UsbPort::pump(std::chrono::microseconds timeout) {
   State& state = *state_;
-  timeval wait{static_cast<time_t>(timeout.count() / 1'000'000), static_cast<suseconds_t>(timeout.count() % 1'000'000)};
+  timeval wait{static_cast<time_t>(timeout.count() / 1'000'000),
+               static_cast<suseconds_t>(timeout.count() % 1'000'000)};
   const int error = libusb_handle_events_timeout_completed(state.context.get(), &wait, nullptr);
   if (error == LIBUSB_ERROR_NO_DEVICE) state.gone = true;
   if (state.stalled && !state.gone) {
@@ -323,7 +351,8 @@ Result<std::vector<UsbDeviceInfo>> list_usb_devices(std::span<const UsbId> ids) 
   for (libusb_device* device : list.devices()) {
     UsbDeviceInfo info;
     if (!wanted(device, ids, info.id)) continue;
-    info.place = std::to_string(libusb_get_bus_number(device)) + "-" + std::to_string(libusb_get_device_address(device));
+    info.place = std::to_string(libusb_get_bus_number(device)) + "-" +
+                 std::to_string(libusb_get_device_address(device));
     libusb_device_handle* handle = nullptr;
     const int error = libusb_open(device, &handle);
     if (error == LIBUSB_SUCCESS) {

@@ -6,13 +6,16 @@
 namespace palpate {
 
 Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
-  constexpr std::size_t kAtOnce = 1024;   // contacts that are held (chosen: some megabytes)
+  constexpr std::size_t kAtOnce = 1024;  // contacts that are held (chosen: some megabytes)
   std::vector<Contacts> contacts(std::min(kAtOnce, poses.size()));
   for (std::size_t first = 0; first < poses.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, poses.size() - first);
-    if (auto done = query_batch(poses.subspan(first, count), std::span(contacts).first(count)); !done) return done;
+    if (auto done = query_batch(poses.subspan(first, count), std::span(contacts).first(count)); !done)
+      return done;
     for (std::size_t i = 0; i < count; ++i) {
-      if (contacts[i].truncated) return Error{ErrorCode::kInternal, std::string("a frame of a batch had too little room for ") + contacts[i].truncated_capacity};
+      if (contacts[i].truncated)
+        return Error{ErrorCode::kInternal, std::string("a frame of a batch had too little room for ") +
+                                               contacts[i].truncated_capacity};
       bits[first + i] = contacts[i].contact ? 1 : 0;
     }
   }
@@ -20,8 +23,11 @@ Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::
 }
 
 // No point of the tool is faster than its origin and a turn about that at the tool's radius together.
-Result<void> CollisionBackend::free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out) {
-  const double speed = std::sqrt(twist.velocity.x * twist.velocity.x + twist.velocity.y * twist.velocity.y + twist.velocity.z * twist.velocity.z) + twist.angle * twist.radius;
+Result<void> CollisionBackend::free_time(const LatticePose& pose, const Twist& twist, double longest,
+                                         FreeTime& out) {
+  const double speed = std::sqrt(twist.velocity.x * twist.velocity.x + twist.velocity.y * twist.velocity.y +
+                                 twist.velocity.z * twist.velocity.z) +
+                       twist.angle * twist.radius;
   out = {.time = longest};
   const double reach = std::min(speed * longest + kMotionSlack + 1, 0x1p30);
   Clearance near;
@@ -29,7 +35,11 @@ Result<void> CollisionBackend::free_time(const LatticePose& pose, const Twist& t
   if (near.kind == Clearance::Kind::kFurther) return {};
   const double time = std::max(near.steps - kMotionSlack, 0) / speed;
   if (time >= longest) return {};
-  out = {.time = time, .blocked = true, .steps = near.steps, .static_id = near.static_id, .mobile_id = near.mobile_id};
+  out = {.time = time,
+         .blocked = true,
+         .steps = near.steps,
+         .static_id = near.static_id,
+         .mobile_id = near.mobile_id};
   return {};
 }
 

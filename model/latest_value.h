@@ -6,9 +6,9 @@
 
 namespace palpate {
 
-/// A mailbox that keeps the newest value only: one thread publishes, another takes, neither ever waits for the other.
-/// Three slots: the writer's, the reader's, and one between that either swaps with its own in a single atomic
-/// exchange, so nobody sees a slot half written. Wait-free, never allocates.
+/// A mailbox that keeps the newest value only: one thread publishes, another takes, neither ever waits for
+/// the other. Three slots: the writer's, the reader's, and one between that either swaps with its own in a
+/// single atomic exchange, so nobody sees a slot half written. Wait-free, never allocates.
 template <class T>
 class LatestValue {
   static_assert(std::is_trivially_copyable_v<T>, "values are copied, a copy must not allocate");
@@ -18,10 +18,12 @@ class LatestValue {
   /// Writer's thread only.
   void publish(const T& value) noexcept {
     slots_[writers_] = value;
-    writers_ = between_.exchange(static_cast<std::uint8_t>(writers_ | kNew), std::memory_order_acq_rel) & kSlot;
+    writers_ =
+        between_.exchange(static_cast<std::uint8_t>(writers_ | kNew), std::memory_order_acq_rel) & kSlot;
   }
 
-  /// Reader's thread only. The newest value if it has not been taken yet, else null. It stays as it is until the next call.
+  /// Reader's thread only. The newest value if it has not been taken yet, else null. It stays as it is until
+  /// the next call.
   const T* take() noexcept {
     if ((between_.load(std::memory_order_relaxed) & kNew) == 0) return nullptr;
     readers_ = between_.exchange(readers_, std::memory_order_acq_rel) & kSlot;

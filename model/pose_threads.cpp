@@ -8,7 +8,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostAtOnce = 8;   // pieces that a thread takes at a time (chosen: less handing over; few, so that all end together)
+constexpr std::size_t kMostAtOnce =
+    8;  // pieces that a thread takes at a time (chosen: less handing over; few, so that all end together)
 
 }  // namespace
 
@@ -18,7 +19,7 @@ PoseThreads::PoseThreads(std::vector<PoseQuery*> helpers) : helpers_(std::move(h
     try {
       threads_.emplace_back([this, helper] { serve(*helper); });
     } catch (const std::system_error&) {
-      return;   // those that can't be had are done without
+      return;  // those that can't be had are done without
     }
   }
 }
@@ -47,7 +48,7 @@ void PoseThreads::take(PoseQuery& asked) {
       Result<void> answered = Error{ErrorCode::kInternal, "there was no memory left for a pose of a batch"};
       try {
         answered = (*work_)(asked, i);
-      } catch (const std::bad_alloc&) {   // must not end a helper's thread, and the program with it
+      } catch (const std::bad_alloc&) {  // must not end a helper's thread, and the program with it
       }
       if (answered) continue;
       const std::lock_guard lock(mutex_);

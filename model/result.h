@@ -8,11 +8,11 @@ namespace palpate {
 
 /// What went wrong, as the command line's exit code says it.
 enum class ErrorCode {
-  kInternal = 1,      ///< a fault of ours or of a library
-  kUsage = 2,         ///< a flag that is unknown, missing or contradictory
-  kBadValue = 3,      ///< a value in a file or an argument
-  kNoDevice = 4,      ///< no usable Vulkan or haptic device
-  kNotClear = 5,      ///< no fault: a path that was asked about is not clear
+  kInternal = 1,  ///< a fault of ours or of a library
+  kUsage = 2,     ///< a flag that is unknown, missing or contradictory
+  kBadValue = 3,  ///< a value in a file or an argument
+  kNoDevice = 4,  ///< no usable Vulkan or haptic device
+  kNotClear = 5,  ///< no fault: a path that was asked about is not clear
 };
 
 /// One clear sentence with file, offending value and limit.
@@ -27,8 +27,8 @@ inline Error bad_value(std::string sentence) { return {ErrorCode::kBadValue, std
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}       // NOLINT(google-explicit-constructor)
-  Result(Error error) : state_(std::move(error)) {}   // NOLINT(google-explicit-constructor)
+  Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
   explicit operator bool() const { return state_.index() == 0; }
   T& value() & { return std::get<0>(state_); }
   const T& value() const& { return std::get<0>(state_); }
@@ -48,7 +48,7 @@ template <>
 class [[nodiscard]] Result<void> {
  public:
   Result() = default;
-  Result(Error error) : error_(std::move(error)) {}   // NOLINT(google-explicit-constructor)
+  Result(Error error) : error_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
   explicit operator bool() const { return !error_.has_value(); }
   const Error& error() const { return *error_; }
 

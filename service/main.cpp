@@ -6,8 +6,8 @@
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
 #include "driver/device_list.h"
-#include "service/cli/cli.h"
 #include "service/bench/time/peer.h"
+#include "service/cli/cli.h"
 
 namespace {
 
@@ -17,7 +17,8 @@ std::vector<DeviceLine> list_devices() {
   std::vector<DeviceLine> lines;
   const std::vector<VulkanDeviceInfo> vulkan = list_vulkan_devices();
   if (vulkan.empty())
-    if (const auto none = make_gpu_backend({}); !none) lines.push_back({"vulkan", "none", false, none.error().sentence});
+    if (const auto none = make_gpu_backend({}); !none)
+      lines.push_back({"vulkan", "none", false, none.error().sentence});
   for (const VulkanDeviceInfo& device : vulkan)
     lines.push_back({"vulkan", device.name, device.usable, device.usable ? device.driver : device.reason});
   for (const HapticDeviceInfo& device : list_haptic_devices())
@@ -25,8 +26,8 @@ std::vector<DeviceLine> list_devices() {
   return lines;
 }
 
-Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const Scene& scene, const Vec3& tool_gc_m,
-                                                  const std::string& firmware) {
+Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const Scene& scene,
+                                                  const Vec3& tool_gc_m, const std::string& firmware) {
   auto device = make_haptic_device(name, scene.device, scene.start, tool_gc_m, firmware);
   if (!device && device.error().code == ErrorCode::kUsage) return bad_value(device.error().sentence);
   return device;
@@ -36,7 +37,9 @@ Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const
 
 int main(int argc, char** argv) {
   const auto folder = palpate::DiskCache::usual_folder();
-  const auto cache = folder ? std::make_shared<palpate::DiskCache>(palpate::DiskCache::Settings{.folder = *folder}) : nullptr;
+  const auto cache =
+      folder ? std::make_shared<palpate::DiskCache>(palpate::DiskCache::Settings{.folder = *folder})
+             : nullptr;
   const palpate::Parts parts{
       .make_gpu =
           [&cache](bool cached) {
@@ -49,7 +52,8 @@ int main(int argc, char** argv) {
       .has_gpu =
           [] {
             const auto devices = palpate::list_vulkan_devices();
-            return std::any_of(devices.begin(), devices.end(), [](const auto& device) { return device.usable && !device.processor; });
+            return std::any_of(devices.begin(), devices.end(),
+                               [](const auto& device) { return device.usable && !device.processor; });
           },
       .cache = cache,
       .make_device = make_device,

@@ -22,32 +22,46 @@ std::string part_of(const MeshReport& report, std::uint32_t triangle, const char
 
 std::string place(const Vec3& p) { return fmt::format("{:.6g} {:.6g} {:.6g} m", p.x, p.y, p.z); }
 
-constexpr std::size_t kToldAreas = 3;   // chosen
+constexpr std::size_t kToldAreas = 3;  // chosen
 
-void tell_start(const LoadedScene& scene, const Contacts& contacts, const ContactResponse& response, std::vector<std::string>& out) {
+void tell_start(const LoadedScene& scene, const Contacts& contacts, const ContactResponse& response,
+                std::vector<std::string>& out) {
   const SceneGeometry& geometry = scene.geometry;
   if (contacts.field.max_depth == 0) return;
   const std::string tool = part_of(geometry.tool_report, contacts.field.deepest_mobile, "the tool");
   std::vector<std::size_t> deepest;
   for (std::size_t i = 0; i < response.areas.size(); ++i)
     if (response.areas[i].max_depth > 0) deepest.push_back(i);
-  std::stable_sort(deepest.begin(), deepest.end(), [&](std::size_t a, std::size_t b) { return response.areas[a].max_depth > response.areas[b].max_depth; });
+  std::stable_sort(deepest.begin(), deepest.end(), [&](std::size_t a, std::size_t b) {
+    return response.areas[a].max_depth > response.areas[b].max_depth;
+  });
   const std::size_t more = deepest.size() - std::min(deepest.size(), kToldAreas);
   deepest.resize(deepest.size() - more);
-  const auto start = [](double depth, const std::string& part) { return fmt::format("the tool starts {:.3g} mm deep in {}", depth * 1000, part); };
+  const auto start = [](double depth, const std::string& part) {
+    return fmt::format("the tool starts {:.3g} mm deep in {}", depth * 1000, part);
+  };
   for (const std::size_t i : deepest) {
     const ContactArea& area = contacts.areas[i];
-    std::string sentence = start(response.areas[i].max_depth, part_of(geometry.mockup_report, area.static_ids.empty() ? area.id : area.static_ids.front(), "the mock-up"));
-    if (!area.mobile_ids.empty()) sentence += ", its part " + part_of(geometry.tool_report, area.mobile_ids.front(), "the tool");
-    else if (i == deepest.front() && !geometry.tool_report.parts.empty()) sentence += ", its part " + tool;
+    std::string sentence =
+        start(response.areas[i].max_depth,
+              part_of(geometry.mockup_report, area.static_ids.empty() ? area.id : area.static_ids.front(),
+                      "the mock-up"));
+    if (!area.mobile_ids.empty())
+      sentence += ", its part " + part_of(geometry.tool_report, area.mobile_ids.front(), "the tool");
+    else if (i == deepest.front() && !geometry.tool_report.parts.empty())
+      sentence += ", its part " + tool;
     out.push_back(sentence + ", at " + place(response.areas[i].point));
   }
   if (deepest.empty())
-    out.push_back(start(geometry.lattice.step_m * contacts.field.max_depth, part_of(geometry.mockup_report, contacts.field.deepest_static, "the mock-up")) + ", its part " + tool);
+    out.push_back(start(geometry.lattice.step_m * contacts.field.max_depth,
+                        part_of(geometry.mockup_report, contacts.field.deepest_static, "the mock-up")) +
+                  ", its part " + tool);
   if (more > 0) out.push_back(fmt::format("and in {} more {}", more, more > 1 ? "places" : "place"));
   out.push_back(scene.scene.start_contacts == StartContacts::kIgnoreInitial
-                    ? "the scene has \"start\": \"ignore_initial\": a run leaves these contacts out until they have opened once"
-                    : "these contacts push from the start; \"start\": \"ignore_initial\" in the scene leaves them out until they have opened once");
+                    ? "the scene has \"start\": \"ignore_initial\": a run leaves these contacts out until "
+                      "they have opened once"
+                    : "these contacts push from the start; \"start\": \"ignore_initial\" in the scene leaves "
+                      "them out until they have opened once");
 }
 
 }  // namespace
@@ -65,18 +79,28 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
   respond(contacts, *pose, geometry, Profile::kRefined, stiffness, response);
   tell_start(scene, contacts, response, out.start);
 
-  if (!geometry.mockup.closed && backend.has_internal_voxels()) out.bodies.push_back("the mock-up is not closed: what is inside it is a majority vote (docs/EXACTNESS.md, section 2)");
+  if (!geometry.mockup.closed && backend.has_internal_voxels())
+    out.bodies.push_back(
+        "the mock-up is not closed: what is inside it is a majority vote (docs/EXACTNESS.md, section 2)");
   if (!geometry.tool.closed && !pose->beyond_lattice)
-    out.bodies.push_back((contacts.flags & kFlagToolOpen) != 0 ? "the tool is open and has no inside: it is pushed as a sheet is, out of the mock-up"
-                                                         : "the tool is not closed: what is inside it is a majority vote (docs/EXACTNESS.md, section 2)");
+    out.bodies.push_back(
+        (contacts.flags & kFlagToolOpen) != 0
+            ? "the tool is open and has no inside: it is pushed as a sheet is, out of the mock-up"
+            : "the tool is not closed: what is inside it is a majority vote (docs/EXACTNESS.md, section 2)");
 
-  // The mean thickness, of a plate its own: what is thick on the whole may have thin walls, but one sentence on every block would be read by nobody.
+  // The mean thickness, of a plate its own: what is thick on the whole may have thin walls, but one sentence
+  // on every block would be read by nobody.
   const double force = scene.scene.device.max_force_n, least = least_wall_m(stiffness, force);
-  const auto mean = [&](const SurfaceMeasure& body) { return body.area > 0 && body.volume > 0 ? 2 * body.volume / body.area * geometry.lattice.step_m : 0; };
-  for (const auto& [thickness, body] : {std::pair{mean(geometry.tool_surface), "tool"}, {mean(geometry.mockup_surface), "mock-up"}})
+  const auto mean = [&](const SurfaceMeasure& body) {
+    return body.area > 0 && body.volume > 0 ? 2 * body.volume / body.area * geometry.lattice.step_m : 0;
+  };
+  for (const auto& [thickness, body] :
+       {std::pair{mean(geometry.tool_surface), "tool"}, {mean(geometry.mockup_surface), "mock-up"}})
     if (thickness > 0 && thickness < least)
-      out.bodies.push_back(fmt::format("walls of the {} are {:.2g} mm thick on the mean; thinner than {:.2g} mm the device's {:g} N push through them where they meet on {:.3g} mm² or less", body,
-                                thickness * 1000, least * 1000, force, geometry.reference_area_m2 * 1e6));
+      out.bodies.push_back(
+          fmt::format("walls of the {} are {:.2g} mm thick on the mean; thinner than {:.2g} mm the device's "
+                      "{:g} N push through them where they meet on {:.3g} mm² or less",
+                      body, thickness * 1000, least * 1000, force, geometry.reference_area_m2 * 1e6));
   return out;
 }
 

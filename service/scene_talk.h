@@ -7,17 +7,24 @@
 
 namespace palpate {
 
-/// What somebody should know of a scene before it is felt, a sentence each. Profile `refined`; for `paper`, which is the chapter's letter, nothing.
+/// What somebody should know of a scene before it is felt, a sentence each. Profile `refined`; for `paper`,
+/// which is the chapter's letter, nothing.
 struct SceneTalk {
-  std::vector<std::string> start;    ///< how deep the tool starts, where and between which parts
-  std::vector<std::string> bodies;   ///< whose inside is a majority vote, or whose walls are so thin that the device pushes through them
+  std::vector<std::string> start;   ///< how deep the tool starts, where and between which parts
+  std::vector<std::string> bodies;  ///< whose inside is a majority vote, or whose walls are so thin that the
+                                    ///< device pushes through them
 };
 
-/// Asks `backend`, which is prepared for the scene, about the start pose; not while anything else asks it. Error: the back end failed.
+/// Asks `backend`, which is prepared for the scene, about the start pose; not while anything else asks it.
+/// Error: the back end failed.
 Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend);
 
-/// How thick a plate must be to hold against `force_n` on the scene's reference area, m. Pushed right through a wall, a plate of thickness t is pushed back by
-/// half of k'·t on each of its places: front and back face differ by t in depth, and the other body's own samples say nothing any more. k' times the reference area is K.
-inline double least_wall_m(double stiffness_n_per_m, double force_n) { return stiffness_n_per_m > 0 ? 2 * force_n / stiffness_n_per_m : 0; }
+/// How thick a plate must be to hold against `force_n` on the scene's reference area, m. Pushed right through
+/// a wall, a plate of thickness t is pushed back by half of k'·t on each of its places: front and back face
+/// differ by t in depth, and the other body's own samples say nothing any more. k' times the reference area
+/// is K.
+inline double least_wall_m(double stiffness_n_per_m, double force_n) {
+  return stiffness_n_per_m > 0 ? 2 * force_n / stiffness_n_per_m : 0;
+}
 
 }  // namespace palpate

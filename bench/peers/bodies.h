@@ -9,11 +9,11 @@
 
 namespace palpate::peers {
 
-/// Triangles that take part in anything. A collapsed one meets nothing, but peers would report it: they are given the others
-/// alone, and `ids` leads back.
+/// Triangles that take part in anything. A collapsed one meets nothing, but peers would report it: they are
+/// given the others alone, and `ids` leads back.
 struct Body {
   std::vector<std::uint32_t> ids;
-  std::vector<std::array<std::uint32_t, 3>> triangles;   ///< vertex numbers, one a number in `ids`
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertex numbers, one a number in `ids`
 };
 
 inline Body body_of(const LatticeMesh& mesh) {
@@ -26,7 +26,8 @@ inline Body body_of(const LatticeMesh& mesh) {
   return out;
 }
 
-/// The pose as a rigid motion in metres from the lattice's origin; turned vertices differ from the lattice's by up to a step.
+/// The pose as a rigid motion in metres from the lattice's origin; turned vertices differ from the lattice's
+/// by up to a step.
 struct RigidMotion {
   double rotation[3][3];
   Vec3 translation_m;
@@ -35,7 +36,8 @@ struct RigidMotion {
 inline RigidMotion rigid_motion(const LatticePose& pose, double step_m) {
   RigidMotion out{};
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) out.rotation[i][j] = static_cast<double>(pose.rotation_q30[i][j]) * 0x1p-30;
+    for (std::size_t j = 0; j < 3; ++j)
+      out.rotation[i][j] = static_cast<double>(pose.rotation_q30[i][j]) * 0x1p-30;
   out.translation_m = step_m * Vec3(pose.translation);
   return out;
 }

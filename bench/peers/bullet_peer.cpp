@@ -1,5 +1,6 @@
-// Bullet's GImpact: quantised box trees over both bodies, built once, and its own triangle test, in single precision as Debian builds
-// it. Its contact API would merge and multiply pairs, so tree and test are called by themselves.
+// Bullet's GImpact: quantised box trees over both bodies, built once, and its own triangle test, in single
+// precision as Debian builds it. Its contact API would merge and multiply pairs, so tree and test are called
+// by themselves.
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <LinearMath/btScalar.h>
@@ -26,9 +27,9 @@ struct Shape {
     indices.reserve(body.triangles.size() * 3);
     for (const auto& triangle : body.triangles)
       for (const std::uint32_t i : triangle) indices.push_back(static_cast<int>(i));
-    arrays = std::make_unique<btTriangleIndexVertexArray>(static_cast<int>(body.triangles.size()), indices.data(),
-                                                          static_cast<int>(3 * sizeof(int)), static_cast<int>(mesh.vertices.size()),
-                                                          points.data(), static_cast<int>(3 * sizeof(btScalar)));
+    arrays = std::make_unique<btTriangleIndexVertexArray>(
+        static_cast<int>(body.triangles.size()), indices.data(), static_cast<int>(3 * sizeof(int)),
+        static_cast<int>(mesh.vertices.size()), points.data(), static_cast<int>(3 * sizeof(btScalar)));
     shape = std::make_unique<btGImpactMeshShape>(arrays.get());
     shape->setMargin(0);
     shape->updateBound();
@@ -40,7 +41,9 @@ struct Shape {
 class BulletPeer final : public Peer {
  public:
   std::string name() const override { return "Bullet GImpact"; }
-  std::string version() const override { return std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100); }
+  std::string version() const override {
+    return std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100);
+  }
 
   void build(const SceneGeometry& geometry) override {
     step_m_ = geometry.lattice.step_m;
@@ -54,12 +57,14 @@ class BulletPeer final : public Peer {
     btTransform world_from_tool;
     btMatrix3x3& basis = world_from_tool.getBasis();
     for (int i = 0; i < 3; ++i)
-      basis[i].setValue(scalar(motion.rotation[i][0]), scalar(motion.rotation[i][1]), scalar(motion.rotation[i][2]));
-    world_from_tool.setOrigin({scalar(motion.translation_m.x), scalar(motion.translation_m.y), scalar(motion.translation_m.z)});
+      basis[i].setValue(scalar(motion.rotation[i][0]), scalar(motion.rotation[i][1]),
+                        scalar(motion.rotation[i][2]));
+    world_from_tool.setOrigin(
+        {scalar(motion.translation_m.x), scalar(motion.translation_m.y), scalar(motion.translation_m.z)});
 
     candidates_.resizeNoInitialize(0);
-    btGImpactQuantizedBvh::find_collision(mockup_.part()->getBoxSet(), btTransform::getIdentity(), tool_.part()->getBoxSet(),
-                                          world_from_tool, candidates_);
+    btGImpactQuantizedBvh::find_collision(mockup_.part()->getBoxSet(), btTransform::getIdentity(),
+                                          tool_.part()->getBoxSet(), world_from_tool, candidates_);
     pairs.clear();
     for (int i = 0; i < candidates_.size(); ++i) {
       const GIM_PAIR& pair = candidates_[i];
@@ -72,7 +77,8 @@ class BulletPeer final : public Peer {
       m.buildTriPlane();
       GIM_TRIANGLE_CONTACT contact;
       if (s.overlap_test_conservative(m) && s.find_triangle_collision_clip_method(m, contact))
-        pairs.emplace_back(mockup_.ids[static_cast<std::size_t>(pair.m_index1)], tool_.ids[static_cast<std::size_t>(pair.m_index2)]);
+        pairs.emplace_back(mockup_.ids[static_cast<std::size_t>(pair.m_index1)],
+                           tool_.ids[static_cast<std::size_t>(pair.m_index2)]);
     }
   }
 

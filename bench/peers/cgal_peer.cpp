@@ -1,4 +1,5 @@
-// CGAL: a tree of boxes over the mock-up, built once, and a query for every triangle of the tool, with exact predicates.
+// CGAL: a tree of boxes over the mock-up, built once, and a query for every triangle of the tool, with exact
+// predicates.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -30,7 +31,8 @@ class CgalPeer final : public Peer {
     tool_ids_ = body_of(geometry.tool).ids;
     mockup_.reserve(mockup_ids_.size());
     for (const std::uint32_t t : mockup_ids_)
-      mockup_.emplace_back(point(geometry.mockup.corner(t, 0), step_m), point(geometry.mockup.corner(t, 1), step_m),
+      mockup_.emplace_back(point(geometry.mockup.corner(t, 0), step_m),
+                           point(geometry.mockup.corner(t, 1), step_m),
                            point(geometry.mockup.corner(t, 2), step_m));
     tree_.insert(mockup_.cbegin(), mockup_.cend());
     tree_.build();
@@ -48,7 +50,8 @@ class CgalPeer final : public Peer {
       if (triangle.is_degenerate()) continue;
       found_.clear();
       tree_.all_intersected_primitives(triangle, std::back_inserter(found_));
-      for (const auto& primitive : found_) pairs.emplace_back(mockup_ids_[static_cast<std::size_t>(primitive - mockup_.cbegin())], t);
+      for (const auto& primitive : found_)
+        pairs.emplace_back(mockup_ids_[static_cast<std::size_t>(primitive - mockup_.cbegin())], t);
     }
   }
 

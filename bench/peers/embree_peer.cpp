@@ -1,5 +1,5 @@
-// Embree's collide: trees of boxes over both bodies, the tool's refitted at every pose; it proposes pairs of boxes that meet, and
-// triangles are then tested in double precision.
+// Embree's collide: trees of boxes over both bodies, the tool's refitted at every pose; it proposes pairs of
+// boxes that meet, and triangles are then tested in double precision.
 #include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 /// A scene of boxes around the triangles of a body at its present place.
 struct Boxes {
-  std::vector<Vec3> points;   ///< m
+  std::vector<Vec3> points;  ///< m
   Body body;
   RTCScene scene = nullptr;
   RTCGeometry geometry = nullptr;
@@ -87,10 +87,12 @@ class EmbreePeer final : public Peer {
   void find(const LatticePose& pose, std::vector<TrianglePair>& pairs) override {
     const double step_m = geometry_->lattice.step_m;
     const std::vector<Int3>& vertices = geometry_->tool.vertices;
-    for (std::size_t i = 0; i < vertices.size(); ++i) tool_->points[i] = step_m * Vec3(transform(pose, vertices[i]));
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      tool_->points[i] = step_m * Vec3(transform(pose, vertices[i]));
     pairs.clear();
     pairs_ = &pairs;
-    // rtcCollide spreads over all of TBB's threads whatever the device was told; one arena of one thread holds it.
+    // rtcCollide spreads over all of TBB's threads whatever the device was told; one arena of one thread
+    // holds it.
     one_thread_.execute([&] {
       rtcCommitGeometry(tool_->geometry);
       rtcCommitScene(tool_->scene);

@@ -40,7 +40,8 @@ class FclPeer final : public Peer {
     pairs.clear();
     for (std::size_t i = 0; i < result_.numContacts(); ++i) {
       const auto& contact = result_.getContact(i);
-      pairs.emplace_back(mockup_ids_[static_cast<std::size_t>(contact.b1)], tool_ids_[static_cast<std::size_t>(contact.b2)]);
+      pairs.emplace_back(mockup_ids_[static_cast<std::size_t>(contact.b1)],
+                         tool_ids_[static_cast<std::size_t>(contact.b2)]);
     }
   }
 

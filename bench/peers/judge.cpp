@@ -30,7 +30,8 @@ class Judge final : public Peer {
     std::vector<Box> boxes(tool.size());
     for (std::uint32_t t = 0; t < tool.size(); ++t) {
       if (mesh.collapsed(t)) continue;
-      tool[t] = Triangle(transform(pose, mesh.corner(t, 0)), transform(pose, mesh.corner(t, 1)), transform(pose, mesh.corner(t, 2)));
+      tool[t] = Triangle(transform(pose, mesh.corner(t, 0)), transform(pose, mesh.corner(t, 1)),
+                         transform(pose, mesh.corner(t, 2)));
       if (!tool[t].collapsed()) boxes[t] = tool[t].box();
     }
     BoxTree tool_tree;
@@ -39,7 +40,8 @@ class Judge final : public Peer {
     BoxTree::meeting_pairs(mockup_tree_, tool_tree, candidates);
     pairs.clear();
     for (const auto& [s, m] : candidates)
-      if (cpu_ref::triangles_intersect(cpu_ref::triangle_of(geometry_->mockup, s), tool[m])) pairs.emplace_back(s, m);
+      if (cpu_ref::triangles_intersect(cpu_ref::triangle_of(geometry_->mockup, s), tool[m]))
+        pairs.emplace_back(s, m);
   }
 
  private:

@@ -11,10 +11,13 @@ using DoubleTriangle = std::array<Vec3, 3>;
 
 namespace detail {
 
-inline Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// The interval in which a triangle crosses the line of both planes, along `axis`; `side`: its corners' distances from the other plane.
+/// The interval in which a triangle crosses the line of both planes, along `axis`; `side`: its corners'
+/// distances from the other plane.
 inline std::array<double, 2> crossing(const DoubleTriangle& t, const std::array<double, 3>& side, int axis) {
   std::array<double, 2> out{INFINITY, -INFINITY};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -29,12 +32,15 @@ inline std::array<double, 2> crossing(const DoubleTriangle& t, const std::array<
 /// Two triangles of one plane, seen along `axis`: no edge's line has them on different sides.
 inline bool flat_meet(const DoubleTriangle& a, const DoubleTriangle& b, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const auto side = [&](const Vec3& p, const Vec3& q, const Vec3& r) { return (q[u] - p[u]) * (r[v] - p[v]) - (q[v] - p[v]) * (r[u] - p[u]); };
+  const auto side = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+    return (q[u] - p[u]) * (r[v] - p[v]) - (q[v] - p[v]) * (r[u] - p[u]);
+  };
   const auto parted = [&](const DoubleTriangle& s, const DoubleTriangle& t) {
     const double turn = side(s[0], s[1], s[2]) < 0 ? -1 : 1;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 &p = s[i], &q = s[(i + 1) % 3];
-      if (turn * side(p, q, t[0]) < 0 && turn * side(p, q, t[1]) < 0 && turn * side(p, q, t[2]) < 0) return true;
+      if (turn * side(p, q, t[0]) < 0 && turn * side(p, q, t[1]) < 0 && turn * side(p, q, t[2]) < 0)
+        return true;
     }
     return false;
   };
@@ -43,8 +49,8 @@ inline bool flat_meet(const DoubleTriangle& a, const DoubleTriangle& b, int axis
 
 }  // namespace detail
 
-/// Whether two triangles meet, in double precision: planes first, then the intervals on their common line (the way of Möller 1997).
-/// What any user of a library that proposes boxes would write; not exact.
+/// Whether two triangles meet, in double precision: planes first, then the intervals on their common line
+/// (the way of Möller 1997). What any user of a library that proposes boxes would write; not exact.
 inline bool triangles_meet(const DoubleTriangle& a, const DoubleTriangle& b) {
   using namespace detail;
   const Vec3 nb = cross(b[1] - b[0], b[2] - b[0]);

@@ -12,7 +12,7 @@ class RoomyFrame final : public PoseQuery {
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     for (;;) {
       if (auto answered = frame_.query(pose, ignored, out); !answered || !out.truncated) return answered;
-      if (!frame_.enlarge()) return {};   // truncated it stays
+      if (!frame_.enlarge()) return {};  // truncated it stays
     }
   }
 
@@ -22,8 +22,10 @@ class RoomyFrame final : public PoseQuery {
 
 }  // namespace
 
-Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& options, VulkanDevice* device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                                           const Plan& plan, unsigned helpers) {
+Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& options, VulkanDevice* device,
+                                                           const SceneGeometry& geometry,
+                                                           const PreparedScene& scene, const Plan& plan,
+                                                           unsigned helpers) {
   std::unique_ptr<BatchWorkers> out(new BatchWorkers);
   for (unsigned i = 0; i < helpers; ++i) {
     auto helper = std::make_unique<Helper>();
@@ -35,8 +37,9 @@ Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& opt
       if (!shared) return shared.error();
       helper->scene = std::move(*shared);
     }
-    auto frame = device == nullptr ? Frame::create(*helper->device, geometry, helper->scene, options.first_capacity, plan)
-                                   : Frame::create(*device, geometry, scene, options.first_capacity, plan);
+    auto frame = device == nullptr
+                     ? Frame::create(*helper->device, geometry, helper->scene, options.first_capacity, plan)
+                     : Frame::create(*device, geometry, scene, options.first_capacity, plan);
     if (!frame) return frame.error();
     helper->frame = std::move(*frame);
     out->helpers_.push_back(std::move(helper));

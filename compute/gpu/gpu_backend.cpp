@@ -10,14 +10,14 @@
 #include "compute/gpu/batch_workers.h"
 #include "compute/gpu/frame/frame.h"
 #include "compute/gpu/prepare/cache.h"
-#include "compute/scene/estimate.h"
 #include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/scene/estimate.h"
 #include "compute/vulkan/device.h"
 
 namespace palpate {
 namespace {
 
-constexpr unsigned kMostHelpers = 7;         // each takes a frame's memory (chosen)
+constexpr unsigned kMostHelpers = 7;  // each takes a frame's memory (chosen)
 
 /// The device engine: a device, the scene on it, and the frame that answers queries.
 class GpuBackend final : public CollisionBackend {
@@ -39,7 +39,7 @@ class GpuBackend final : public CollisionBackend {
   Result<void> replan(const Plan& plan) override {
     if (!scene_ || (plan.profile == Profile::kRefined) != (scene_->constants.refined != 0))
       return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
-    frame_.reset();   // two frames' lists may not fit
+    frame_.reset();  // two frames' lists may not fit
     workers_.reset();
     no_workers_ = false;
     return make_frame(plan);
@@ -51,7 +51,9 @@ class GpuBackend final : public CollisionBackend {
     return device_->check_guards();
   }
 
-  std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override { return estimate_preparation(geometry, plan); }
+  std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override {
+    return estimate_preparation(geometry, plan);
+  }
 
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
@@ -89,7 +91,8 @@ class GpuBackend final : public CollisionBackend {
   std::string name() const override { return "gpu"; }
   std::string device() const override { return device_->name(); }
   std::uint64_t memory_bytes() const override {
-    return (scene_ ? scene_->memory_bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0) + (workers_ ? workers_->memory_bytes() : 0);
+    return (scene_ ? scene_->memory_bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0) +
+           (workers_ ? workers_->memory_bytes() : 0);
   }
   DeviceWork device_work() const override {
     DeviceWork sum = frame_ ? frame_->work() : DeviceWork{};
@@ -116,9 +119,11 @@ class GpuBackend final : public CollisionBackend {
     if (options_.cache) scene_ = find_prepared(*device_, *options_.cache, key, geometry, plan);
     if (scene_) return {};
     if (const std::uint64_t bytes = estimate_preparation(geometry, plan); bytes > device_->limits().heap)
-      return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles takes up to " + std::to_string(bytes >> 20) +
-                       " MiB, more than the " + std::to_string(device_->limits().heap >> 20) + " MiB of memory of " + device_->name());
-    // Preparation is large dispatches, for which lavapipe's own threads are worth their start; a frame's are small.
+      return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) +
+                       " triangles takes up to " + std::to_string(bytes >> 20) + " MiB, more than the " +
+                       std::to_string(device_->limits().heap >> 20) + " MiB of memory of " + device_->name());
+    // Preparation is large dispatches, for which lavapipe's own threads are worth their start; a frame's are
+    // small.
     const auto wide = wide_device();
     auto scene = prepare_scene(wide ? *wide : *device_, geometry, plan, progress);
     if (!scene) return scene.error();
@@ -126,21 +131,27 @@ class GpuBackend final : public CollisionBackend {
       auto shared = share_scene(*device_, *scene);
       if (!shared) return shared.error();
       scene_.emplace(std::move(*shared));
-      scene = Error{};   // what the wide device has of it
+      scene = Error{};  // what the wide device has of it
     } else {
       scene_.emplace(std::move(*scene));
     }
-    if (options_.cache) keep_prepared(*device_, *options_.cache, key, *scene_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (options_.cache)
+      keep_prepared(*device_, *options_.cache, key, *scene_,
+                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return {};
   }
 
-  /// The same device with threads of its own, for preparation; null where it has none to offer or tests look on.
+  /// The same device with threads of its own, for preparation; null where it has none to offer or tests look
+  /// on.
   std::unique_ptr<VulkanDevice> wide_device() const {
-    if (!options_.inline_execution || !device_->shares_memory() || device_->guarded || options_.fault || std::getenv("LP_NUM_THREADS") != nullptr) return nullptr;
+    if (!options_.inline_execution || !device_->shares_memory() || device_->guarded || options_.fault ||
+        std::getenv("LP_NUM_THREADS") != nullptr)
+      return nullptr;
     GpuOptions options = options_;
     options.inline_execution = false;
     auto made = VulkanDevice::create(options);
-    return made && (*made)->name() == device_->name() && (*made)->shares_memory() ? std::move(*made) : nullptr;
+    return made && (*made)->name() == device_->name() && (*made)->shares_memory() ? std::move(*made)
+                                                                                  : nullptr;
   }
 
   void set_helpers_up() {
@@ -148,19 +159,20 @@ class GpuBackend final : public CollisionBackend {
     const unsigned cores = std::thread::hardware_concurrency();
     if (cores < 2) return;
     const bool own_devices = device_->shares_memory() && options_.inline_execution;
-    auto made = BatchWorkers::create(options_, own_devices ? nullptr : device_.get(), *geometry_, *scene_, plan_, std::min(cores - 1, kMostHelpers));
-    if (made) workers_ = std::move(*made);   // else one thread answers all, as before
+    auto made = BatchWorkers::create(options_, own_devices ? nullptr : device_.get(), *geometry_, *scene_,
+                                     plan_, std::min(cores - 1, kMostHelpers));
+    if (made) workers_ = std::move(*made);  // else one thread answers all, as before
   }
 
   std::unique_ptr<VulkanDevice> device_;
   GpuOptions options_;
-  const SceneGeometry* geometry_ = nullptr;   ///< of scene_
-  Plan plan_;                                 ///< of frame_
+  const SceneGeometry* geometry_ = nullptr;  ///< of scene_
+  Plan plan_;                                ///< of frame_
   std::optional<PreparedScene> scene_;
   std::unique_ptr<Frame> frame_;
   std::unique_ptr<BatchWorkers> workers_;
-  bool no_workers_ = false;      ///< setting them up was tried
-  std::size_t shared_ = 0;       ///< pieces of all work so far
+  bool no_workers_ = false;  ///< setting them up was tried
+  std::size_t shared_ = 0;   ///< pieces of all work so far
 };
 
 }  // namespace

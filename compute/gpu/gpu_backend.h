@@ -12,13 +12,15 @@
 namespace palpate {
 
 struct GpuOptions : DeviceOptions {
-  std::shared_ptr<DiskCache> cache{};   ///< where prepared scenes are kept; may be null
-  std::map<std::string, std::uint32_t> first_capacity{};   ///< for tests: items that a list of a frame holds to begin with, by its name in
-                                                           ///< Contacts::truncated_capacity; lists not named here choose for themselves
+  std::shared_ptr<DiskCache> cache{};  ///< where prepared scenes are kept; may be null
+  std::map<std::string, std::uint32_t>
+      first_capacity{};  ///< for tests: items that a list of a frame holds to begin with, by its name in
+                         ///< Contacts::truncated_capacity; lists not named here choose for themselves
 };
 
-/// The device engine: every decision by shaders, on any Vulkan device, lavapipe too. Error (kNoDevice) with the reason for each device that was refused.
-/// Call before any thread exists: on lavapipe it sets an environment variable.
+/// The device engine: every decision by shaders, on any Vulkan device, lavapipe too. Error (kNoDevice) with
+/// the reason for each device that was refused. Call before any thread exists: on lavapipe it sets an
+/// environment variable.
 Result<std::unique_ptr<CollisionBackend>> make_gpu_backend(const GpuOptions& options);
 
 std::vector<VulkanDeviceInfo> list_vulkan_devices();

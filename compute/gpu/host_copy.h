@@ -9,8 +9,9 @@
 
 namespace palpate {
 
-/// What a device buffer holds, for the host to read at any time: the buffer's own memory where it is mapped, else a copy, one for all who ask while
-/// somebody has it. The buffer outlives this and is not written meanwhile.
+/// What a device buffer holds, for the host to read at any time: the buffer's own memory where it is mapped,
+/// else a copy, one for all who ask while somebody has it. The buffer outlives this and is not written
+/// meanwhile.
 template <class T>
 class HostCopy {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= alignof(std::uint64_t));

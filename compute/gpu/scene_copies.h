@@ -15,7 +15,8 @@ class PartitionCopy {
     if (auto r = mixed_brick_.read(device, from.mixed_brick, grid_.mixed_bricks); !r) return r;
     if (auto r = bricks_.read(device, from.bricks, grid_.mixed_bricks); !r) return r;
     if (auto r = boundary_place_.read(device, from.boundary_place, grid_.boundary_voxels); !r) return r;
-    if (auto r = list_begin_.read(device, from.list_begin, std::size_t{grid_.boundary_voxels} + 1); !r) return r;
+    if (auto r = list_begin_.read(device, from.list_begin, std::size_t{grid_.boundary_voxels} + 1); !r)
+      return r;
     return list_triangles_.read(device, from.list_triangles, grid_.list_entries);
   }
   PartitionView view() const {

@@ -11,7 +11,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kUsualItems = 1u << 14;   // of a list to begin with (chosen: a deep contact of 100,000 by 2,000 triangles takes half of it)
+constexpr std::size_t kUsualItems =
+    1u
+    << 14;  // of a list to begin with (chosen: a deep contact of 100,000 by 2,000 triangles takes half of it)
 
 bool turned(const LatticePose& pose) {
   for (int r = 0; r < 3; ++r)
@@ -25,7 +27,8 @@ void clear(Contacts& out) {
   out.contact = out.truncated = false;
   out.truncated_capacity = "";
   out.pairs = 0;
-  for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt, &out.ignored_touched}) ids->clear();
+  for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt, &out.ignored_touched})
+    ids->clear();
   out.areas.clear();
   out.flags = 0;
   out.field = {};
@@ -49,7 +52,8 @@ Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan
       inside_(kUsualItems),
       open_(kUsualItems) {}
 
-/// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on its processors, and a loop's are chosen well.
+/// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on
+/// its processors, and a loop's are chosen well.
 FrameHelper* Frame::helper() {
   if (!sharing_) return nullptr;
   if (!helper_tried_ && (helper_ = FrameHelper::make())) broad_phase_.share();
@@ -60,22 +64,38 @@ FrameHelper* Frame::helper() {
 bool Frame::enlarge(std::uint32_t list) {
   const auto twice = [](auto& room) { room.resize(2 * room.size()); };
   switch (list) {
-    case gpu::kListTouchCandidates: twice(touch_); return true;
-    case gpu::kListPairCandidates: twice(near_pairs_); return true;
-    case gpu::kListSampleChunks: twice(chunks_); return true;
-    case gpu::kListInsideSamples: twice(inside_); return true;
-    case gpu::kListOpenSamples: twice(open_); return true;
-    default: return false;
+    case gpu::kListTouchCandidates:
+      twice(touch_);
+      return true;
+    case gpu::kListPairCandidates:
+      twice(near_pairs_);
+      return true;
+    case gpu::kListSampleChunks:
+      twice(chunks_);
+      return true;
+    case gpu::kListInsideSamples:
+      twice(inside_);
+      return true;
+    case gpu::kListOpenSamples:
+      twice(open_);
+      return true;
+    default:
+      return false;
   }
 }
 
 /// What is near, with more room where there is too little. Whether anything is.
 bool Frame::find(NearLists& near) {
   do {
-    near = NearLists{.touch = {touch_}, .pairs = {near_pairs_}, .samples = {chunks_}, .inside = {inside_}, .open = {open_}};
+    near = NearLists{.touch = {touch_},
+                     .pairs = {near_pairs_},
+                     .samples = {chunks_},
+                     .inside = {inside_},
+                     .open = {open_}};
     broad_phase_.find(posed_, helper(), near);
   } while (near.full != gpu::kNone && enlarge(near.full));
-  return near.touch.count + near.samples.count + near.inside.count + near.open.count != 0;   // every pair lies in a voxel that may be touched
+  return near.touch.count + near.samples.count + near.inside.count + near.open.count !=
+         0;  // every pair lies in a voxel that may be touched
 }
 
 Result<void> Frame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
@@ -95,7 +115,8 @@ Result<void> Frame::query(const LatticePose& pose, const Ignored* ignored, Conta
     stage("cull", 0);
     return {};
   }
-  if (!plan_.transform_rotates && turned(pose)) return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
+  if (!plan_.transform_rotates && turned(pose))
+    return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
   out.flags = flags_;
   posed_.begin(pose);
   NearLists near;
@@ -117,7 +138,9 @@ std::span<const gpu::ContactPair> Frame::pairs() const {
 }
 
 std::uint64_t Frame::memory_bytes() const {
-  return sizeof touch_[0] * std::uint64_t{touch_.size()} + sizeof near_pairs_[0] * std::uint64_t{near_pairs_.size()} + sizeof chunks_[0] * std::uint64_t{chunks_.size()} +
+  return sizeof touch_[0] * std::uint64_t{touch_.size()} +
+         sizeof near_pairs_[0] * std::uint64_t{near_pairs_.size()} +
+         sizeof chunks_[0] * std::uint64_t{chunks_.size()} +
          sizeof inside_[0] * (std::uint64_t{inside_.size()} + open_.size());
 }
 

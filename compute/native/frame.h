@@ -19,8 +19,8 @@
 
 namespace palpate::native {
 
-/// Answers one pose at a time on a prepared scene, in `refined`. One thread and, where share() says so, its helper. query() allocates only when more is near
-/// than ever before.
+/// Answers one pose at a time on a prepared scene, in `refined`. One thread and, where share() says so, its
+/// helper. query() allocates only when more is near than ever before.
 class Frame final : public PoseQuery {
  public:
   /// Geometry, and what `scene` names, outlive this. Allocates.
@@ -45,15 +45,15 @@ class Frame final : public PoseQuery {
 
   const SceneGeometry& geometry_;
   Plan plan_;
-  std::vector<std::uint32_t> order_;   ///< ids of the tool's triangles by place
+  std::vector<std::uint32_t> order_;  ///< ids of the tool's triangles by place
   RunTree runs_;
   PosedTool posed_;
   BroadPhase broad_phase_;
   std::unique_ptr<HostContact> contact_;
-  std::unique_ptr<FrameHelper> helper_;   ///< null: not asked for yet (helper_tried_), or there is none
+  std::unique_ptr<FrameHelper> helper_;  ///< null: not asked for yet (helper_tried_), or there is none
   bool sharing_ = false, helper_tried_ = false;
-  bool solved_ = false;                   ///< the last query came to the contact
-  std::uint32_t flags_ = 0;               ///< of every frame within the lattice
+  bool solved_ = false;      ///< the last query came to the contact
+  std::uint32_t flags_ = 0;  ///< of every frame within the lattice
   // Room for what the search finds.
   std::vector<gpu::TouchCandidate> touch_;
   std::vector<gpu::PairCandidate> near_pairs_;

@@ -43,7 +43,8 @@ std::string processor_name() {
 
 /// Bytes that this process may come to hold.
 std::uint64_t memory_limit() {
-  const auto whole = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  const auto whole =
+      static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   const auto left = address_space_left();
   return left ? std::min(whole, *left) : whole;
 }
@@ -55,9 +56,11 @@ class NativeBackend final : public CollisionBackend {
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
     drop_frames();
     scene_.reset();
-    if (plan.profile != Profile::kRefined) return bad_value("the cpu engine answers the profile refined alone; gpu and ref answer paper, too");
+    if (plan.profile != Profile::kRefined)
+      return bad_value("the cpu engine answers the profile refined alone; gpu and ref answer paper, too");
     if (const std::uint64_t bytes = estimate_preparation(geometry, plan), most = memory_limit(); bytes > most)
-      return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles takes up to " + std::to_string(bytes >> 20) + " MiB, more than the " +
+      return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) +
+                       " triangles takes up to " + std::to_string(bytes >> 20) + " MiB, more than the " +
                        std::to_string(most >> 20) + " MiB of memory that this process may have");
     try {
       if (auto found = scene_for(geometry, plan, progress); !found) return found;
@@ -69,19 +72,23 @@ class NativeBackend final : public CollisionBackend {
     } catch (const std::bad_alloc&) {
       frame_.reset();
       scene_.reset();
-      return Error{ErrorCode::kInternal, "there was no memory left for preparing " + std::to_string(geometry.mockup.triangles.size()) + " triangles"};
+      return Error{ErrorCode::kInternal, "there was no memory left for preparing " +
+                                             std::to_string(geometry.mockup.triangles.size()) + " triangles"};
     }
   }
 
   Result<void> replan(const Plan& plan) override {
-    if (!frame_ || plan.profile != Profile::kRefined) return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
+    if (!frame_ || plan.profile != Profile::kRefined)
+      return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
     plan_ = plan;
     frame_->replan(plan);
     for (const auto& helper : helpers_) helper->replan(plan);
     return {};
   }
 
-  std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override { return estimate_preparation(geometry, plan); }
+  std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override {
+    return estimate_preparation(geometry, plan);
+  }
 
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
@@ -93,7 +100,7 @@ class NativeBackend final : public CollisionBackend {
     shared_ += count;
     if (!threads_ && shared_ >= kWorthThreads) make_helpers();
     if (!threads_ || count < 2) return CollisionBackend::share(count, work);
-    frame_->share(false);   // the other processors have poses of their own
+    frame_->share(false);  // the other processors have poses of their own
     auto done = threads_->share(*frame_, count, work);
     frame_->share(true);
     return done;
@@ -103,7 +110,9 @@ class NativeBackend final : public CollisionBackend {
     if (!frame_) return Error{ErrorCode::kInternal, "touches before prepare"};
     ask();
     if (!threads_ && (shared_ += poses.size()) >= kWorthThreads) make_helpers();
-    while (questions_.size() < 1 + helpers_.size()) questions_.push_back(std::make_unique<Questions>(*trees_, *containment_, *helpers_[questions_.size() - 1]));
+    while (questions_.size() < 1 + helpers_.size())
+      questions_.push_back(
+          std::make_unique<Questions>(*trees_, *containment_, *helpers_[questions_.size() - 1]));
     // Poses that follow each other mostly touch alike: each thread has runs of them.
     constexpr std::size_t kRunOfPoses = 64;
     std::atomic<std::size_t> next{0};
@@ -123,8 +132,10 @@ class NativeBackend final : public CollisionBackend {
         }
     };
     frame_->share(false);
-    const auto threads = static_cast<std::uint32_t>(std::clamp<std::size_t>(poses.size() / kRunOfPoses, 1, questions_.size()));
-    in_shares(threads, [&](std::uint32_t share) { serve(*questions_[share]); }, [](std::uint32_t) { return true; });
+    const auto threads =
+        static_cast<std::uint32_t>(std::clamp<std::size_t>(poses.size() / kRunOfPoses, 1, questions_.size()));
+    in_shares(
+        threads, [&](std::uint32_t share) { serve(*questions_[share]); }, [](std::uint32_t) { return true; });
     frame_->share(true);
     return outcome;
   }
@@ -134,7 +145,8 @@ class NativeBackend final : public CollisionBackend {
     return ask().clearance(pose, within, out);
   }
 
-  Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out) override {
+  Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest,
+                         FreeTime& out) override {
     if (!frame_) return Error{ErrorCode::kInternal, "free_time before prepare"};
     out = pose.beyond_lattice ? FreeTime{} : ask().free_time(pose, twist, longest);
     return {};
@@ -172,10 +184,13 @@ class NativeBackend final : public CollisionBackend {
     auto scene = native::prepare_scene(geometry, plan, progress);
     if (!scene) return scene.error();
     scene_.emplace(std::move(*scene));
-    if (cache_) native::keep_scene(*cache_, key, *scene_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (cache_)
+      native::keep_scene(*cache_, key, *scene_,
+                         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return {};
   }
-  /// Who answers the planner's questions on this thread; what they read is made when the first of them is asked.
+  /// Who answers the planner's questions on this thread; what they read is made when the first of them is
+  /// asked.
   Questions& ask() {
     if (!trees_) {
       trees_.emplace(*geometry_);
@@ -197,26 +212,30 @@ class NativeBackend final : public CollisionBackend {
   void make_helpers() {
     const unsigned cores = std::thread::hardware_concurrency();
     std::vector<PoseQuery*> asked;
-    for (unsigned i = 1; i < cores; ++i) asked.push_back(helpers_.emplace_back(std::make_unique<Frame>(*geometry_, scene_->tables(), plan_)).get());
+    for (unsigned i = 1; i < cores; ++i)
+      asked.push_back(
+          helpers_.emplace_back(std::make_unique<Frame>(*geometry_, scene_->tables(), plan_)).get());
     threads_.emplace(std::move(asked));
   }
 
-  const std::shared_ptr<DiskCache> cache_;    ///< may be null
+  const std::shared_ptr<DiskCache> cache_;  ///< may be null
   const std::string device_ = processor_name();
-  const SceneGeometry* geometry_ = nullptr;   ///< of scene_
-  Plan plan_;                                 ///< of frame_
+  const SceneGeometry* geometry_ = nullptr;  ///< of scene_
+  Plan plan_;                                ///< of frame_
   std::optional<native::Scene> scene_;
   std::optional<Frame> frame_;
   std::vector<std::unique_ptr<Frame>> helpers_;
-  std::optional<PoseThreads> threads_;        ///< of these
-  std::size_t shared_ = 0;                    ///< pieces of all work so far
+  std::optional<PoseThreads> threads_;  ///< of these
+  std::size_t shared_ = 0;              ///< pieces of all work so far
   std::optional<native::PairTrees> trees_;
   std::optional<native::Containment> containment_;
-  std::vector<std::unique_ptr<Questions>> questions_;   ///< of this thread and the helpers
+  std::vector<std::unique_ptr<Questions>> questions_;  ///< of this thread and the helpers
 };
 
 }  // namespace
 
-std::unique_ptr<CollisionBackend> make_native_backend(std::shared_ptr<DiskCache> cache) { return std::make_unique<NativeBackend>(std::move(cache)); }
+std::unique_ptr<CollisionBackend> make_native_backend(std::shared_ptr<DiskCache> cache) {
+  return std::make_unique<NativeBackend>(std::move(cache));
+}
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #pragma once
 
-// What engines keep of a prepared scene in the cache, written and read by the same lines (model/cache/archive.h).
+// What engines keep of a prepared scene in the cache, written and read by the same lines
+// (model/cache/archive.h).
 
 namespace palpate {
 

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kEntriesAShare = 1u << 14;   // of the voxels' lists (chosen: milliseconds)
+constexpr std::uint32_t kEntriesAShare = 1u << 14;  // of the voxels' lists (chosen: milliseconds)
 
 /// A triangle whose first corner lies in a voxel: that vertex, and the entry of the voxel's list.
 struct Owner {
@@ -30,12 +30,14 @@ std::vector<std::uint32_t> entry_shares(const PartitionView& lists) {
   return begins;
 }
 
-Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::int32_t spacing, const ListingProgress& go_on, EntrySamples from, HostSamples& out) {
+Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::int32_t spacing,
+                    const ListingProgress& go_on, EntrySamples from, HostSamples& out) {
   const std::vector<std::uint32_t> shares = entry_shares(lists);
   const auto count = static_cast<std::uint32_t>(shares.size() - 1);
   out.begin.resize(std::size_t{lists.grid.boundary_voxels} + 1);
   for (std::uint32_t voxel = 0; voxel < lists.grid.boundary_voxels; ++voxel)
-    if (lists.list_begin[voxel + 1] - lists.list_begin[voxel] > HostSamples::kLongestList) return Listing::kTooMany;
+    if (lists.list_begin[voxel + 1] - lists.list_begin[voxel] > HostSamples::kLongestList)
+      return Listing::kTooMany;
   // First how many there are in each voxel, then the numbers of its first ones.
   const auto in_voxels = [&](double begin, double part, auto&& take) {
     return in_shares(
@@ -45,7 +47,8 @@ Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::in
           for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) {
             owners.clear();
             for (std::uint32_t e = lists.list_begin[voxel]; e < lists.list_begin[voxel + 1]; ++e)
-              if (from.has_corner(e)) owners.push_back({mesh.triangles[lists.list_triangles[e]][0], e - lists.list_begin[voxel]});
+              if (from.has_corner(e))
+                owners.push_back({mesh.triangles[lists.list_triangles[e]][0], e - lists.list_begin[voxel]});
             std::sort(owners.begin(), owners.end());
             take(voxel, owners);
           }
@@ -53,9 +56,11 @@ Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::in
         [&](std::uint32_t begun) { return go_on(begin + part * begun / count); });
   };
   const bool counted = in_voxels(0, 0.4, [&](std::uint32_t voxel, const std::vector<Owner>& owners) {
-    const std::uint32_t samples = from.first(lists.list_begin[voxel + 1]) - from.first(lists.list_begin[voxel]);
+    const std::uint32_t samples =
+        from.first(lists.list_begin[voxel + 1]) - from.first(lists.list_begin[voxel]);
     std::uint32_t corners = 0;
-    for (std::size_t i = 0; i < owners.size(); ++i) corners += i == 0 || owners[i].vertex != owners[i - 1].vertex ? 1u : 0u;
+    for (std::size_t i = 0; i < owners.size(); ++i)
+      corners += i == 0 || owners[i].vertex != owners[i - 1].vertex ? 1u : 0u;
     out.begin[voxel] = {corners + samples, samples, static_cast<std::uint32_t>(owners.size())};
   });
   if (!counted) return Listing::kCancelled;
@@ -74,7 +79,10 @@ Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::in
     std::uint32_t at = out.begin[voxel].point;
     const auto put = [&](const Int3& p, std::uint32_t entry, int axis) {
       std::uint32_t word = static_cast<std::uint32_t>(axis) << HostSamples::kAxisShift;
-      for (int k = 0; k < 3; ++k) word |= static_cast<std::uint32_t>((std::int64_t{p[k] - grid.low[k]} << HostSamples::kPointBits) / lists.grid.size) << HostSamples::kPointBits * k;
+      for (int k = 0; k < 3; ++k)
+        word |= static_cast<std::uint32_t>((std::int64_t{p[k] - grid.low[k]} << HostSamples::kPointBits) /
+                                           lists.grid.size)
+                << HostSamples::kPointBits * k;
       out.points[at] = word;
       out.entries[at++] = static_cast<std::uint16_t>(entry);
     };
@@ -84,7 +92,8 @@ Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::in
       out.owners[out.begin[voxel].owner + i] = static_cast<std::uint16_t>(owners[i].entry);
     }
     for (std::uint32_t e = begin; e < end; ++e)
-      for (std::uint32_t i = from.first(e); i < from.first(e + 1); ++i) put(out.sample(grid, from.axis(e), i), e - begin, from.axis(e));
+      for (std::uint32_t i = from.first(e); i < from.first(e + 1); ++i)
+        put(out.sample(grid, from.axis(e), i), e - begin, from.axis(e));
   });
   return written ? Listing::kDone : Listing::kCancelled;
 }

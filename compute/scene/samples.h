@@ -8,44 +8,51 @@
 
 namespace palpate {
 
-/// Samples and first corners of the mock-up's triangles, voxel by voxel: they do not depend on the pose, and only the host reads them. A sample is
-/// the place of its cell among those that reach into the voxel, two numbers below 64, and its height above the voxel's low side along its triangle's sample axis.
+/// Samples and first corners of the mock-up's triangles, voxel by voxel: they do not depend on the pose, and
+/// only the host reads them. A sample is the place of its cell among those that reach into the voxel, two
+/// numbers below 64, and its height above the voxel's low side along its triangle's sample axis.
 struct HostSamples {
   struct Begin {
-    std::uint32_t point, sample, owner;   ///< numbers of the voxel's first ones
+    std::uint32_t point, sample, owner;  ///< numbers of the voxel's first ones
     bool operator==(const Begin&) const = default;
   };
-  std::vector<Begin> begin;   ///< by boundary voxel, and one more
+  std::vector<Begin> begin;  ///< by boundary voxel, and one more
 
-  /// A voxel's points: vertices that are first corners, each once, by their numbers in the mesh; then samples in the order of the voxel's list. Which of
-  /// the voxel's 1024ths along x, y and z a point lies in (ten bits each, x lowest), and above that a sample's axis, 0 for a corner. kPointsAtOnce - 1
-  /// more at the end say nothing.
+  /// A voxel's points: vertices that are first corners, each once, by their numbers in the mesh; then samples
+  /// in the order of the voxel's list. Which of the voxel's 1024ths along x, y and z a point lies in (ten
+  /// bits each, x lowest), and above that a sample's axis, 0 for a corner. kPointsAtOnce - 1 more at the end
+  /// say nothing.
   std::vector<std::uint32_t> points;
-  /// Of each point, for a sample: which entry of the voxel's list is its triangle's; for a corner: which of the voxel's `owners` is its first. The next
-  /// corner's end them, and after the last corner the voxel's.
+  /// Of each point, for a sample: which entry of the voxel's list is its triangle's; for a corner: which of
+  /// the voxel's `owners` is its first. The next corner's end them, and after the last corner the voxel's.
   std::vector<std::uint16_t> entries;
-  std::vector<std::uint16_t> owners;   ///< corner by corner the entries of the triangles that begin there
-  /// By sample. Narrow: a word, height | u << 20 | v << 26. Wide, for voxels of more than kNarrowVoxel steps: the height, then u | v << 6.
+  std::vector<std::uint16_t> owners;  ///< corner by corner the entries of the triangles that begin there
+  /// By sample. Narrow: a word, height | u << 20 | v << 26. Wide, for voxels of more than kNarrowVoxel steps:
+  /// the height, then u | v << 6.
   std::vector<std::uint32_t> words;
   bool wide = false;
 
   static constexpr int kPointBits = 10;
   static constexpr int kAxisShift = 3 * kPointBits;
-  static constexpr std::size_t kPointsAtOnce = 8;           ///< may be read from any place on
-  static constexpr std::uint32_t kLongestList = 1u << 16;   ///< entries of a voxel that can be told apart: with longer ones nothing is listed
-  static constexpr std::int32_t kNarrowVoxel = 1 << 20;     ///< steps: the largest that a height of 20 bits is enough for
+  static constexpr std::size_t kPointsAtOnce = 8;  ///< may be read from any place on
+  static constexpr std::uint32_t kLongestList =
+      1u << 16;  ///< entries of a voxel that can be told apart: with longer ones nothing is listed
+  static constexpr std::int32_t kNarrowVoxel =
+      1 << 20;  ///< steps: the largest that a height of 20 bits is enough for
 
   bool operator==(const HostSamples&) const = default;
   std::uint64_t count() const { return words.size() / (wide ? 2 : 1); }
   bool listed() const { return !begin.empty(); }
   std::uint64_t bytes() const {
-    return sizeof(Begin) * begin.size() + 4 * std::uint64_t{points.size()} + 2 * std::uint64_t{entries.size()} + 2 * std::uint64_t{owners.size()} + 4 * std::uint64_t{words.size()};
+    return sizeof(Begin) * begin.size() + 4 * std::uint64_t{points.size()} +
+           2 * std::uint64_t{entries.size()} + 2 * std::uint64_t{owners.size()} +
+           4 * std::uint64_t{words.size()};
   }
 
   /// A voxel's samples as lattice points. Steps.
   struct Voxel {
-    Int3 low;     ///< its lowest lattice point
-    Int3 first;   ///< the first cell of samples that reaches into it, axis by axis
+    Int3 low;    ///< its lowest lattice point
+    Int3 first;  ///< the first cell of samples that reaches into it, axis by axis
     SampleGrid grid;
     Voxel(const Int3& lowest, std::int32_t spacing) : low(lowest), grid{spacing} {
       for (int k = 0; k < 3; ++k) first[k] = static_cast<std::int32_t>(grid.cell(low[k]));
@@ -58,7 +65,8 @@ struct HostSamples {
     const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
     Int3 out;
     out[axis] = voxel.low[axis] + static_cast<std::int32_t>(height);
-    const std::int32_t i = voxel.first[u] + static_cast<std::int32_t>(place & 63), j = voxel.first[v] + static_cast<std::int32_t>(place >> 6);
+    const std::int32_t i = voxel.first[u] + static_cast<std::int32_t>(place & 63),
+                       j = voxel.first[v] + static_cast<std::int32_t>(place >> 6);
     out[u] = static_cast<std::int32_t>(voxel.grid.u(i, j));
     out[v] = static_cast<std::int32_t>(voxel.grid.v(i, j));
     return out;
@@ -67,10 +75,10 @@ struct HostSamples {
 
 /// The same while it is prepared, entry by entry of the voxels' lists (a triangle in a voxel).
 struct EntrySamples {
-  /// Begin of an entry's samples in its low bits, then whether the triangle's first corner lies in the voxel (gpu::kSampleCorner), then the triangle's
-  /// sample axis (gpu::kSampleAxisShift). One more at the end.
+  /// Begin of an entry's samples in its low bits, then whether the triangle's first corner lies in the voxel
+  /// (gpu::kSampleCorner), then the triangle's sample axis (gpu::kSampleAxisShift). One more at the end.
   std::vector<std::uint32_t> begin;
-  std::vector<std::uint32_t> words;   ///< as HostSamples::words
+  std::vector<std::uint32_t> words;  ///< as HostSamples::words
   bool wide = false;
 
   static constexpr std::uint32_t kBegin = gpu::kSampleCorner - 1;

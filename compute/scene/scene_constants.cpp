@@ -17,7 +17,9 @@ gpu::BodyConstants constants_of(const LatticeMesh& mesh, const PreparedGrid& pre
 
 }  // namespace
 
-gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& plan, const PreparedGrid& mockup, const PreparedGrid& tool, const gpu::GridConstants& fine) {
+gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& plan,
+                                    const PreparedGrid& mockup, const PreparedGrid& tool,
+                                    const gpu::GridConstants& fine) {
   gpu::SceneConstants out{};
   out.mockup = constants_of(geometry.mockup, mockup);
   out.tool = constants_of(geometry.tool, tool);

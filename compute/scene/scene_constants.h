@@ -12,6 +12,8 @@ struct PreparedGrid {
 };
 
 /// Numbers of a prepared scene. `fine`: the tool's finer partition, or its own.
-gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& plan, const PreparedGrid& mockup, const PreparedGrid& tool, const gpu::GridConstants& fine);
+gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& plan,
+                                    const PreparedGrid& mockup, const PreparedGrid& tool,
+                                    const gpu::GridConstants& fine);
 
 }  // namespace palpate

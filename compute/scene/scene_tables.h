@@ -11,7 +11,8 @@ namespace palpate {
 
 struct SearchTables;
 
-inline constexpr std::int32_t kVoxelParts = 256;   ///< of a voxel's side, in which boxes of triangles in it are kept: a byte says which
+inline constexpr std::int32_t kVoxelParts =
+    256;  ///< of a voxel's side, in which boxes of triangles in it are kept: a byte says which
 
 /// A partition that lies somewhere on the host: as Partition.
 struct PartitionView {
@@ -20,8 +21,14 @@ struct PartitionView {
   std::span<const gpu::Brick> bricks;
 
   PartitionView() = default;
-  PartitionView(const Partition& p)   // NOLINT: a partition is a view of itself
-      : grid(p.grid), brick_slot(p.brick_slot), mixed_brick(p.mixed_brick), boundary_place(p.boundary_place), list_begin(p.list_begin), list_triangles(p.list_triangles), bricks(p.bricks) {}
+  PartitionView(const Partition& p)  // NOLINT: a partition is a view of itself
+      : grid(p.grid),
+        brick_slot(p.brick_slot),
+        mixed_brick(p.mixed_brick),
+        boundary_place(p.boundary_place),
+        list_begin(p.list_begin),
+        list_triangles(p.list_triangles),
+        bricks(p.bricks) {}
 
   /// The voxel of a boundary voxel's number.
   Int3 boundary_voxel(std::uint32_t boundary) const {
@@ -34,12 +41,13 @@ struct PartitionView {
 struct SceneTables {
   gpu::SceneConstants constants{};
   PartitionView mockup;
-  PartitionView tool;                           ///< empty in `paper`
-  PartitionView fine;                           ///< of a closed tool in finer voxels; where there is none, the tool's own
-  std::span<const std::uint32_t> fine_exit;     ///< by boundary voxel of a closed tool's `fine`: kBindFineExit
-  std::span<const std::uint32_t> tool_near;     ///< a bit a voxel of `fine`: a mock-up voxel with its centre there may meet the tool's solid; may be empty: all may
-  std::shared_ptr<const HostSamples> samples;   ///< may be null or empty: frames work them out
-  std::shared_ptr<const SearchTables> search;   ///< never null
+  PartitionView tool;  ///< empty in `paper`
+  PartitionView fine;  ///< of a closed tool in finer voxels; where there is none, the tool's own
+  std::span<const std::uint32_t> fine_exit;    ///< by boundary voxel of a closed tool's `fine`: kBindFineExit
+  std::span<const std::uint32_t> tool_near;    ///< a bit a voxel of `fine`: a mock-up voxel with its centre
+                                               ///< there may meet the tool's solid; may be empty: all may
+  std::shared_ptr<const HostSamples> samples;  ///< may be null or empty: frames work them out
+  std::shared_ptr<const SearchTables> search;  ///< never null
 };
 
 }  // namespace palpate

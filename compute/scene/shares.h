@@ -10,9 +10,10 @@
 
 namespace palpate {
 
-/// Calls work(share) for the shares 0 … count − 1, on this thread and others, one a core (at most 8: chosen), in no order. After each of its own
-/// shares this thread asks between(shares begun); false: no more are begun. True: all have been done. Threads that can't be had are done
-/// without; what work() throws is thrown again here once all threads have ended.
+/// Calls work(share) for the shares 0 … count − 1, on this thread and others, one a core (at most 8: chosen),
+/// in no order. After each of its own shares this thread asks between(shares begun); false: no more are
+/// begun. True: all have been done. Threads that can't be had are done without; what work() throws is thrown
+/// again here once all threads have ended.
 template <class Work, class Between>
 bool in_shares(std::uint32_t count, Work&& work, Between&& between) {
   constexpr unsigned kMostThreads = 8;
@@ -38,7 +39,10 @@ bool in_shares(std::uint32_t count, Work&& work, Between&& between) {
   others.reserve(cores);
   for (unsigned i = 1; i < cores; ++i) {
     try {
-      others.emplace_back([&] { while (one()) {} });
+      others.emplace_back([&] {
+        while (one()) {
+        }
+      });
     } catch (const std::system_error&) {
       break;
     }

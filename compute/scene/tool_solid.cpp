@@ -8,20 +8,24 @@
 namespace palpate {
 namespace {
 
-constexpr std::int32_t kFiner = 4;                            // a fine voxel's side is that part of a voxel's (chosen: a sample's spacing)
-constexpr std::uint64_t kMostFineVoxels = 4'000'000;          // boundary voxels, estimated (chosen: memory)
+constexpr std::int32_t kFiner =
+    4;  // a fine voxel's side is that part of a voxel's (chosen: a sample's spacing)
+constexpr std::uint64_t kMostFineVoxels = 4'000'000;  // boundary voxels, estimated (chosen: memory)
 constexpr std::uint64_t kMostFineBricks = 8'000'000;
-constexpr std::int32_t kMostFineRadius = 1 << 27;             // steps: up to it, rotations keep lengths to 0.3 steps (lib/tool_walk.glsl)
+constexpr std::int32_t kMostFineRadius =
+    1 << 27;  // steps: up to it, rotations keep lengths to 0.3 steps (lib/tool_walk.glsl)
 constexpr std::uint64_t kMostNearVoxels = std::uint64_t{1} << 29;
 
-/// The axis step that leads out of the solid through the fewest boundary voxels; every straight line leads out.
+/// The axis step that leads out of the solid through the fewest boundary voxels; every straight line leads
+/// out.
 std::uint32_t way_out(const HostPartition& classes, const Int3& from) {
   std::uint32_t best = 0;
   int fewest = INT32_MAX;
   for (std::uint32_t step = 0; step < 6; ++step) {
     Int3 at = from;
     int crossed = 0;
-    for (std::uint32_t c = gpu::kVoxelBoundary; c != gpu::kVoxelExternal && crossed < fewest; c = classes.at(at).kind) {
+    for (std::uint32_t c = gpu::kVoxelBoundary; c != gpu::kVoxelExternal && crossed < fewest;
+         c = classes.at(at).kind) {
       if (c == gpu::kVoxelBoundary) crossed += 8;
       crossed += 1;
       at[static_cast<int>(step / 2)] += step % 2 == 0 ? -1 : 1;
@@ -38,7 +42,8 @@ std::uint32_t way_out(const HostPartition& classes, const Int3& from) {
 std::int32_t fine_voxel_size(const SceneGeometry& geometry, const gpu::GridConstants& own) {
   const std::int32_t size = own.size / kFiner & ~1;
   const std::uint64_t more = std::uint64_t{kFiner} * kFiner;
-  const bool worth = geometry.tool.closed && size >= 8 && geometry.tool_radius <= kMostFineRadius && own.boundary_voxels * more <= kMostFineVoxels &&
+  const bool worth = geometry.tool.closed && size >= 8 && geometry.tool_radius <= kMostFineRadius &&
+                     own.boundary_voxels * more <= kMostFineVoxels &&
                      brick_count(own.bricks) * more * kFiner <= kMostFineBricks;
   return worth ? size : 0;
 }
@@ -46,7 +51,8 @@ std::int32_t fine_voxel_size(const SceneGeometry& geometry, const gpu::GridConst
 std::vector<std::uint32_t> ways_out(const PartitionView& p) {
   const HostPartition classes(p);
   std::vector<std::uint32_t> exits(p.grid.boundary_voxels);
-  for (std::uint32_t boundary = 0; boundary < exits.size(); ++boundary) exits[boundary] = way_out(classes, p.boundary_voxel(boundary));
+  for (std::uint32_t boundary = 0; boundary < exits.size(); ++boundary)
+    exits[boundary] = way_out(classes, p.boundary_voxel(boundary));
   return exits;
 }
 
@@ -64,7 +70,10 @@ std::vector<std::uint32_t> near_tool(const PartitionView& p, std::int32_t voxel_
   // Two voxels whose index differs by d have points (|d| − 1)+ voxels apart an axis; rounding adds two steps.
   const double reach = (std::sqrt(0.75) * voxel_size + 4) / p.grid.size;
   const int most = static_cast<int>(reach) + 1;
-  const auto gap = [](int d) { const double g = std::max(std::abs(d) - 1, 0); return g * g; };
+  const auto gap = [](int d) {
+    const double g = std::max(std::abs(d) - 1, 0);
+    return g * g;
+  };
   for (std::uint32_t boundary = 0; boundary < p.grid.boundary_voxels; ++boundary) {
     const Int3 v = p.boundary_voxel(boundary);
     for (int z = std::max(v.z - most, 0); z <= std::min(v.z + most, n.z - 1); ++z)
@@ -72,9 +81,12 @@ std::vector<std::uint32_t> near_tool(const PartitionView& p, std::int32_t voxel_
         const double left = reach * reach - gap(z - v.z) - gap(y - v.y);
         if (left < 0) continue;
         const int wide = static_cast<int>(std::sqrt(left)) + 1;
-        const std::size_t row = static_cast<std::size_t>(n.x) * (static_cast<std::size_t>(y) + static_cast<std::size_t>(n.y) * static_cast<std::size_t>(z));
+        const std::size_t row =
+            static_cast<std::size_t>(n.x) *
+            (static_cast<std::size_t>(y) + static_cast<std::size_t>(n.y) * static_cast<std::size_t>(z));
         const int first = std::max(v.x - wide, 0), last = std::min(v.x + wide, n.x - 1);
-        std::fill(near.begin() + static_cast<std::ptrdiff_t>(row) + first, near.begin() + static_cast<std::ptrdiff_t>(row) + last + 1, std::uint8_t{1});
+        std::fill(near.begin() + static_cast<std::ptrdiff_t>(row) + first,
+                  near.begin() + static_cast<std::ptrdiff_t>(row) + last + 1, std::uint8_t{1});
       }
   }
   std::vector<std::uint32_t> bits(voxels / 32);

@@ -14,10 +14,10 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kEight = TriangleTree::kEight;
-constexpr std::size_t kWorthSharing = std::size_t{1} << 15;   // triangles (chosen: milliseconds)
+constexpr std::size_t kWorthSharing = std::size_t{1} << 15;  // triangles (chosen: milliseconds)
 
 struct Centre {
-  Int3 sum;   ///< of the corners, within 3 · 2^28
+  Int3 sum;  ///< of the corners, within 3 · 2^28
   std::uint32_t id;
 };
 
@@ -25,7 +25,8 @@ struct Part {
   std::size_t begin, size;
 };
 
-/// Halves of a part, of which the first fills children of its node: cut across the longest side of the box of all centres.
+/// Halves of a part, of which the first fills children of its node: cut across the longest side of the box of
+/// all centres.
 std::array<Part, 2> halves(std::span<Centre> all, const Part& part) {
   std::size_t child = kEight;
   while (child * kEight < part.size) child *= kEight;
@@ -38,9 +39,10 @@ std::array<Part, 2> halves(std::span<Centre> all, const Part& part) {
   }
   const Int3 side = high / 2 - low / 2;
   const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-  std::nth_element(centres.begin(), centres.begin() + static_cast<std::ptrdiff_t>(first), centres.end(), [&](const Centre& a, const Centre& b) {
-    return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.id < b.id;
-  });
+  std::nth_element(centres.begin(), centres.begin() + static_cast<std::ptrdiff_t>(first), centres.end(),
+                   [&](const Centre& a, const Centre& b) {
+                     return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.id < b.id;
+                   });
   return {{{part.begin, first}, {part.begin + first, part.size - first}}};
 }
 
@@ -56,11 +58,13 @@ void set(TriangleTree::Boxes& boxes, std::size_t i, const Int3& low, const Int3&
   }
 }
 
-constexpr std::int32_t kNowhere = std::int32_t{1} << 30;   // beyond the lattice
-constexpr std::size_t kGroupsAShare = 256;                 // of eight runs (chosen: a millisecond)
+constexpr std::int32_t kNowhere = std::int32_t{1} << 30;  // beyond the lattice
+constexpr std::size_t kGroupsAShare = 256;                // of eight runs (chosen: a millisecond)
 
-/// The box of a run along the mean of its normals, its longest side as seen along that, and what is at right angles to both.
-void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mesh, std::span<const std::uint32_t> run) {
+/// The box of a run along the mean of its normals, its longest side as seen along that, and what is at right
+/// angles to both.
+void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mesh,
+         std::span<const std::uint32_t> run) {
   const Int3 origin = mesh.corner(run.front(), 0);
   Vec3 normal(0), along(0);
   for (const std::uint32_t id : run) {
@@ -75,13 +79,15 @@ void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mes
       side -= glm::dot(side, normal) * normal;
       if (glm::dot(side, side) > glm::dot(along, along)) along = side;
     }
-  if (glm::dot(along, along) < 1) along = glm::cross(normal, std::abs(normal.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
+  if (glm::dot(along, along) < 1)
+    along = glm::cross(normal, std::abs(normal.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
   along = glm::normalize(along);
   const Vec3 axes[3] = {normal, along, glm::cross(normal, along)};
   for (std::size_t a = 0; a < 3; ++a) {
     boxes.corner[a][i] = origin[static_cast<int>(a)];
-    Vec3 axis;   // as it is rounded
-    for (std::size_t k = 0; k < 3; ++k) axis[static_cast<int>(k)] = boxes.axis[a][k][i] = static_cast<float>(axes[a][static_cast<int>(k)]);
+    Vec3 axis;  // as it is rounded
+    for (std::size_t k = 0; k < 3; ++k)
+      axis[static_cast<int>(k)] = boxes.axis[a][k][i] = static_cast<float>(axes[a][static_cast<int>(k)]);
     double low = 0, high = 0;
     for (const std::uint32_t id : run)
       for (int corner = 0; corner < 3; ++corner) {
@@ -97,11 +103,13 @@ void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mes
 
 }  // namespace
 
-TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<bool()>& go_on, std::uint8_t without) {
+TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<bool()>& go_on,
+                                std::uint8_t without) {
   std::vector<Centre> centres;
   centres.reserve(mesh.triangles.size());
   for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id)
-    if ((mesh.flags[id] & without) == 0) centres.push_back({mesh.corner(id, 0) + mesh.corner(id, 1) + mesh.corner(id, 2), id});
+    if ((mesh.flags[id] & without) == 0)
+      centres.push_back({mesh.corner(id, 0) + mesh.corner(id, 1) + mesh.corner(id, 2), id});
 
   std::vector<Part> large{{0, centres.size()}}, shares;
   while (!large.empty()) {
@@ -113,7 +121,11 @@ TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<boo
     else
       for (const Part& half : halves(centres, part)) large.push_back(half);
   }
-  if (!in_shares(static_cast<std::uint32_t>(shares.size()), [&](std::uint32_t share) { sort_part(centres, shares[share]); }, [&](std::uint32_t) { return go_on(); })) return {};
+  if (!in_shares(
+          static_cast<std::uint32_t>(shares.size()),
+          [&](std::uint32_t share) { sort_part(centres, shares[share]); },
+          [&](std::uint32_t) { return go_on(); }))
+    return {};
 
   TriangleTree out;
   out.order.reserve(centres.size());
@@ -145,10 +157,14 @@ TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<boo
   const std::size_t runs = (out.order.size() + kEight - 1) / kEight, groups = (runs + kEight - 1) / kEight;
   out.turned.resize(groups);
   const auto turn = [&](std::uint32_t share) {
-    for (std::size_t run = share * kGroupsAShare * kEight; run < std::min((share + 1) * kGroupsAShare * kEight, runs); ++run)
-      set(out.turned[run / kEight], run % kEight, mesh, std::span(out.order).subspan(kEight * run, std::min(kEight, out.order.size() - kEight * run)));
+    for (std::size_t run = share * kGroupsAShare * kEight;
+         run < std::min((share + 1) * kGroupsAShare * kEight, runs); ++run)
+      set(out.turned[run / kEight], run % kEight, mesh,
+          std::span(out.order).subspan(kEight * run, std::min(kEight, out.order.size() - kEight * run)));
   };
-  if (!in_shares(static_cast<std::uint32_t>((groups + kGroupsAShare - 1) / kGroupsAShare), turn, [&](std::uint32_t) { return go_on(); })) return {};
+  if (!in_shares(static_cast<std::uint32_t>((groups + kGroupsAShare - 1) / kGroupsAShare), turn,
+                 [&](std::uint32_t) { return go_on(); }))
+    return {};
   return out;
 }
 

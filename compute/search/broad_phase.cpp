@@ -5,17 +5,18 @@
 #include <cmath>
 #include <utility>
 
-#include "compute/search/processor.h"
 #include "compute/scene/search_tables.h"
+#include "compute/search/processor.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostGroups = 256;   // into which the tool is divided for two threads (chosen)
-constexpr std::int32_t kManyBricks = 3;   // along an axis, beyond which bricks are asked and not voxels (chosen)
+constexpr std::size_t kMostGroups = 256;  // into which the tool is divided for two threads (chosen)
+constexpr std::int32_t kManyBricks =
+    3;  // along an axis, beyond which bricks are asked and not voxels (chosen)
 
-// Transformed vertices are rounded by half a step an axis, and doubles by far less than a thousandth: two steps hold both, and
-// voxels are closed.
+// Transformed vertices are rounded by half a step an axis, and doubles by far less than a thousandth: two
+// steps hold both, and voxels are closed.
 constexpr double kMargin = gpu::kCloseSteps + 2.0;
 
 static_assert(gpu::kRunSize == kEight);
@@ -45,13 +46,14 @@ BroadPhase BroadPhase::make(const SceneGeometry& geometry, const SceneTables& sc
   BroadPhase out;
   out.tree_ = &runs;
   out.order_ = runs.order();
-  out.has_inside_ = scene.constants.refined != 0 && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
+  out.has_inside_ = scene.constants.refined != 0 &&
+                    (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
   out.pairs_ = NearPairs::make(scene);
   out.seen_[0].resize(geometry.mockup.triangles.size());
   out.statics_ = geometry.mockup.triangles.size();
   if (out.has_inside_) out.samples_ = NearSamples::make(geometry, scene);
-  out.inside_margin_ = 1.75 * geometry.tool_grid.size + 16;   // a grown voxel's diagonal
+  out.inside_margin_ = 1.75 * geometry.tool_grid.size + 16;  // a grown voxel's diagonal
   out.make_runs(geometry.tool);
   out.tool_radius_ = geometry.tool_radius;
   out.make_occupancy(scene.mockup);
@@ -70,7 +72,9 @@ void BroadPhase::make_runs(const LatticeMesh& tool) {
       const Int3 p = tool.corner(order_[place], corner);
       low = glm::min(low, p);
       high = glm::max(high, p);
-      for (int k = 0; k < 3; ++k) runs_[place / kEight][static_cast<std::size_t>(3 * corner + k)][place % kEight] = static_cast<float>(p[k]);
+      for (int k = 0; k < 3; ++k)
+        runs_[place / kEight][static_cast<std::size_t>(3 * corner + k)][place % kEight] =
+            static_cast<float>(p[k]);
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -85,14 +89,18 @@ void BroadPhase::make_occupancy(const PartitionView& mockup) {
   per_voxel_ = 1.0 / grid_.size;
   occupied_.emplace_back().make(mockup, BrickBits::Of::kOccupied);
   cubes_.make(occupied_.front());
-  while (std::max({occupied_.back().size().x, occupied_.back().size().y, occupied_.back().size().z}) > kManyBricks) occupied_.push_back(occupied_.back().coarser());
+  while (std::max({occupied_.back().size().x, occupied_.back().size().y, occupied_.back().size().z}) >
+         kManyBricks)
+    occupied_.push_back(occupied_.back().coarser());
 }
 
 BroadPhase::Reach BroadPhase::reach(const Turn& turn, const Box& box) const {
   Reach out;
   for (std::size_t r = 0; r < 3; ++r) {
-    const double centre = turn.rotation[r][0] * box.centre[0] + turn.rotation[r][1] * box.centre[1] + turn.rotation[r][2] * box.centre[2] + turn.translation[r];
-    const double half = turn.size[r][0] * box.half[0] + turn.size[r][1] * box.half[1] + turn.size[r][2] * box.half[2] + kMargin;
+    const double centre = turn.rotation[r][0] * box.centre[0] + turn.rotation[r][1] * box.centre[1] +
+                          turn.rotation[r][2] * box.centre[2] + turn.translation[r];
+    const double half = turn.size[r][0] * box.half[0] + turn.size[r][1] * box.half[1] +
+                        turn.size[r][2] * box.half[2] + kMargin;
     out.low[r] = centre - half;
     out.high[r] = centre + half;
   }
@@ -104,9 +112,10 @@ bool BroadPhase::meets(const Reach& reach) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const int axis = static_cast<int>(k);
     const double end = grid_.bricks[axis] * 8;
-    const double low = (reach.low[k] - grid_.origin[axis]) * per_voxel_, high = (reach.high[k] - grid_.origin[axis]) * per_voxel_;
+    const double low = (reach.low[k] - grid_.origin[axis]) * per_voxel_,
+                 high = (reach.high[k] - grid_.origin[axis]) * per_voxel_;
     if (high < 0 || low >= end) return false;
-    voxels.first[k] = static_cast<std::int32_t>(std::max(low, 0.0));   // rounded down
+    voxels.first[k] = static_cast<std::int32_t>(std::max(low, 0.0));  // rounded down
     voxels.last[k] = static_cast<std::int32_t>(std::min(high, end - 1));
   }
   return meets(voxels);
@@ -115,7 +124,9 @@ bool BroadPhase::meets(const Reach& reach) const {
 /// Whether any of the voxels is occupied; of many voxels, whether any of their bricks has one.
 bool BroadPhase::meets(BrickBits::Range voxels) const {
   std::size_t level = 0;
-  const auto many = [&](std::size_t k) { return (voxels.last[k] >> 3) - (voxels.first[k] >> 3) >= kManyBricks; };
+  const auto many = [&](std::size_t k) {
+    return (voxels.last[k] >> 3) - (voxels.first[k] >> 3) >= kManyBricks;
+  };
   while (level + 1 < occupied_.size() && (many(0) || many(1) || many(2))) {
     for (std::size_t k = 0; k < 3; ++k) {
       voxels.first[k] >>= 3;
@@ -134,12 +145,14 @@ void BroadPhase::share() {
 unsigned BroadPhase::occupied(const EightRanges& voxels) const {
   unsigned out = 0;
   for (unsigned near = cubes_.near(voxels); near != 0; near &= near - 1)
-    if (const int i = std::countr_zero(near); meets(voxels.range(static_cast<std::size_t>(i)))) out |= 1u << i;
+    if (const int i = std::countr_zero(near); meets(voxels.range(static_cast<std::size_t>(i))))
+      out |= 1u << i;
   return out;
 }
 
 /// From some nodes of the tool's tree to runs of triangles.
-void BroadPhase::descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen, NearLists& lists) const {
+void BroadPhase::descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen,
+                         NearLists& lists) const {
   on_this_processor([&] {
     tree_->descend(
         search.voxels, from, [&](const EightRanges& voxels) { return occupied(voxels); },
@@ -151,7 +164,8 @@ void BroadPhase::descend(const Search& search, const RunTree::Group& from, NearP
 }
 
 /// The triangles of a run, each by the box of its corners.
-void BroadPhase::take_run(const Search& search, std::size_t run, NearPairs::Seen& seen, NearLists& lists) const {
+void BroadPhase::take_run(const Search& search, std::size_t run, NearPairs::Seen& seen,
+                          NearLists& lists) const {
   const BrickBits& occupied = occupied_.front();
   EightRanges voxels;
   voxels_of(search.voxels, runs_[run], voxels);
@@ -163,7 +177,8 @@ void BroadPhase::take_run(const Search& search, std::size_t run, NearPairs::Seen
     occupied.for_bricks(voxels.range(i), [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       const Int3 brick(x, y, z);
       const std::uint32_t slot = occupied.slot(occupied.number(x, y, z));
-      if (!begun && !pairs_.begin(search.tool.corners(order_[place]), place, voxels, i, seen, triangle)) return true;
+      if (!begun && !pairs_.begin(search.tool.corners(order_[place]), place, voxels, i, seen, triangle))
+        return true;
       begun = true;
       return !pairs_.take(triangle, brick, slot, seen, lists);
     });
@@ -185,16 +200,24 @@ bool append(HostList<T>& list, const HostList<T>& more) {
 }  // namespace
 
 /// Pairs in parts beside each other, and samples, too, where `samples_of` is not null.
-void BroadPhase::find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, NearLists& lists) {
+void BroadPhase::find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper,
+                             NearLists& lists) {
   std::array<RunTree::Group, kMostGroups> groups;
-  const std::size_t count = tree_->divide(search.voxels, [&](const EightRanges& voxels) { return occupied(voxels); }, groups);
-  if (second_touch_.size() != lists.touch.room.size()) second_touch_.resize(lists.touch.room.size());   // at first, and when the lists have been enlarged
+  const std::size_t count = tree_->divide(
+      search.voxels, [&](const EightRanges& voxels) { return occupied(voxels); }, groups);
+  if (second_touch_.size() != lists.touch.room.size())
+    second_touch_.resize(lists.touch.room.size());  // at first, and when the lists have been enlarged
   if (second_pairs_.size() != lists.pairs.room.size()) second_pairs_.resize(lists.pairs.room.size());
-  NearLists samples = lists, second{.touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
+  NearLists samples = lists,
+            second{
+                .touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
   const std::uint32_t ahead = samples_of != nullptr ? 1 : 0;
   share_parts(&helper, static_cast<std::uint32_t>(count) + ahead, [&](std::uint32_t part, int lane) {
-    if (part < ahead) find_samples(search.tool.pose(), *samples_of, samples);
-    else descend(search, groups[part - ahead], seen_[static_cast<std::size_t>(lane)], lane == 0 ? lists : second);
+    if (part < ahead)
+      find_samples(search.tool.pose(), *samples_of, samples);
+    else
+      descend(search, groups[part - ahead], seen_[static_cast<std::size_t>(lane)],
+              lane == 0 ? lists : second);
   });
   if (lists.full == gpu::kNone) lists.full = second.full;
   if (lists.full == gpu::kNone && !append(lists.touch, second.touch)) lists.full = gpu::kListTouchCandidates;
@@ -207,12 +230,14 @@ void BroadPhase::find_beside(const Search& search, const Reach* samples_of, Fram
 }
 
 void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const {
-  // The tool's inside reaches beyond its triangles by less than a grown voxel of its partition (EXACTNESS.md, section 2).
+  // The tool's inside reaches beyond its triangles by less than a grown voxel of its partition (EXACTNESS.md,
+  // section 2).
   const double margin = inside_margin_, brick = 8.0 * grid_.size;
   Int3 first, last;
   for (std::size_t k = 0; k < 3; ++k) {
     const int axis = static_cast<int>(k);
-    const double low = (whole.low[k] - margin - grid_.origin[axis]) / brick, high = (whole.high[k] + margin - grid_.origin[axis]) / brick;
+    const double low = (whole.low[k] - margin - grid_.origin[axis]) / brick,
+                 high = (whole.high[k] + margin - grid_.origin[axis]) / brick;
     if (high < 0 || low >= grid_.bricks[axis]) return;
     first[axis] = static_cast<std::int32_t>(std::max(low, 0.0));
     last[axis] = static_cast<std::int32_t>(std::min(high, grid_.bricks[axis] - 1.0));
@@ -235,9 +260,10 @@ bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, NearLists& lis
   if (!meets(whole) && !always_samples_) return false;
   Search search{tool, {}};
   for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) search.voxels.rotation[r][c] = static_cast<float>(turn.rotation[r][c] * per_voxel_);
-    // Coordinates and entries rounded to 24 bits, three products, their sum, a box's half besides its centre, and the sum with the place: below
-    // 16 · 2^-24 of the tool's radius and the place, in voxels.
+    for (std::size_t c = 0; c < 3; ++c)
+      search.voxels.rotation[r][c] = static_cast<float>(turn.rotation[r][c] * per_voxel_);
+    // Coordinates and entries rounded to 24 bits, three products, their sum, a box's half besides its centre,
+    // and the sum with the place: below 16 · 2^-24 of the tool's radius and the place, in voxels.
     const double at = (turn.translation[r] - grid_.origin[static_cast<int>(r)]) * per_voxel_;
     const double margin = kMargin * per_voxel_ + (std::abs(at) + tool_radius_ * per_voxel_) * 0x1p-20;
     search.voxels.below[r] = static_cast<float>(at - margin);
@@ -246,16 +272,18 @@ bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, NearLists& lis
   }
   // Where the last pose wanted samples this one mostly does, too: they are looked for beside the pairs.
   const bool ahead = helper != nullptr && has_inside_ && met_;
-  if (helper != nullptr) find_beside(search, ahead ? &whole : nullptr, *helper, lists);
-  else descend(search, tree_->root(), seen_[0], lists);
+  if (helper != nullptr)
+    find_beside(search, ahead ? &whole : nullptr, *helper, lists);
+  else
+    descend(search, tree_->root(), seen_[0], lists);
   if (lists.full != gpu::kNone) return false;
   if (!has_inside_) return lists.touch.count != 0;
   bool meet = always_samples_ || lists.pairs.count != 0;
   // A whole connected part of the mock-up may lie inside the tool.
   for (std::size_t i = 0; i < parts_.size() && !meet; ++i) {
     const auto& part = parts_[i];
-    meet = part[0] >= whole.low[0] && part[1] >= whole.low[1] && part[2] >= whole.low[2] && part[3] <= whole.high[0] && part[4] <= whole.high[1] &&
-           part[5] <= whole.high[2];
+    meet = part[0] >= whole.low[0] && part[1] >= whole.low[1] && part[2] >= whole.low[2] &&
+           part[3] <= whole.high[0] && part[4] <= whole.high[1] && part[5] <= whole.high[2];
   }
   met_ = meet;
   if (ahead && !meet) lists.samples.count = lists.inside.count = lists.open.count = 0;

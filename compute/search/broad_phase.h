@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "compute/scene/scene_tables.h"
 #include "compute/search/brick_bits.h"
 #include "compute/search/frame_helper.h"
 #include "compute/search/near_lists.h"
@@ -11,7 +12,6 @@
 #include "compute/search/near_samples.h"
 #include "compute/search/occupied_cubes.h"
 #include "compute/search/posed_tool.h"
-#include "compute/scene/scene_tables.h"
 #include "compute/search/run_tree.h"
 #include "compute/search/turned_boxes.h"
 #include "model/lattice/lattice.h"
@@ -21,9 +21,10 @@
 
 namespace palpate {
 
-/// What of tool and mock-up may meet at a pose, from boxes that turn with the tool: on the host, so that a frame which can't touch
-/// costs no submission, and one that can begins with what is near. Errs only towards "may meet".
-/// One thread and its helper; find() does not block, and allocates only where with a helper the lists are larger than before.
+/// What of tool and mock-up may meet at a pose, from boxes that turn with the tool: on the host, so that a
+/// frame which can't touch costs no submission, and one that can begins with what is near. Errs only towards
+/// "may meet". One thread and its helper; find() does not block, and allocates only where with a helper the
+/// lists are larger than before.
 class BroadPhase {
  public:
   /// `runs`: of the tool; they, geometry and scene outlive this. Allocates.
@@ -31,19 +32,19 @@ class BroadPhase {
   /// Before find() has a helper: what that one needs for itself. Allocates.
   void share();
 
-  /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may come,
-  /// pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be
-  /// beyond the lattice. `helper` may be null.
+  /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may
+  /// come, pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside
+  /// the tool. True: they may. The pose must not be beyond the lattice. `helper` may be null.
   bool find(PosedTool& tool, FrameHelper* helper, NearLists& lists);
   /// Voxels, list entries and samples that the last find() looked at.
   std::uint64_t looks() const { return looks_; }
 
  private:
   struct Box {
-    std::array<double, 3> centre, half;   ///< steps, tool lattice frame; half < 0: empty
+    std::array<double, 3> centre, half;  ///< steps, tool lattice frame; half < 0: empty
   };
   struct Reach {
-    std::array<double, 3> low, high;      ///< steps, world; closed
+    std::array<double, 3> low, high;  ///< steps, world; closed
   };
   struct Turn;
   struct Search;
@@ -55,32 +56,34 @@ class BroadPhase {
   bool meets(BrickBits::Range voxels) const;
   bool search_all(PosedTool& tool, FrameHelper* helper, NearLists& lists);
   unsigned occupied(const EightRanges& voxels) const;
-  void descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen, NearLists& lists) const;
+  void descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen,
+               NearLists& lists) const;
   void find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, NearLists& lists);
   void take_run(const Search& search, std::size_t run, NearPairs::Seen& seen, NearLists& lists) const;
   void find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const;
 
   std::span<const std::uint32_t> order_;
-  std::size_t statics_ = 0;   ///< triangles of the mock-up
+  std::size_t statics_ = 0;  ///< triangles of the mock-up
   NearPairs pairs_;
-  std::array<NearPairs::Seen, FrameHelper::kLanes> seen_;   ///< by thread of the frame
+  std::array<NearPairs::Seen, FrameHelper::kLanes> seen_;  ///< by thread of the frame
   std::uint64_t looks_ = 0;
-  std::vector<gpu::TouchCandidate> second_touch_;           ///< what the helper finds, as large as the lists
+  std::vector<gpu::TouchCandidate> second_touch_;  ///< what the helper finds, as large as the lists
   std::vector<gpu::PairCandidate> second_pairs_;
   NearSamples samples_;
-  double inside_margin_ = 0;      ///< steps
-  bool has_inside_ = false;       ///< samples are asked whether they lie inside the tool
-  bool always_samples_ = false;   ///< the tool has an inside that its surface does not close
-  bool met_ = false;              ///< at the last pose that was searched, the bodies might meet
+  double inside_margin_ = 0;     ///< steps
+  bool has_inside_ = false;      ///< samples are asked whether they lie inside the tool
+  bool always_samples_ = false;  ///< the tool has an inside that its surface does not close
+  bool met_ = false;             ///< at the last pose that was searched, the bodies might meet
   Box whole_{};
   const RunTree* tree_ = nullptr;
   std::vector<EightTriangles> runs_;
   std::int32_t tool_radius_ = 0;
   gpu::GridConstants grid_{};
-  double per_voxel_ = 0;   ///< voxels a step
-  std::vector<BrickBits> occupied_;                         ///< voxels that are not V_ext, bricks with such a voxel, bricks of bricks …
+  double per_voxel_ = 0;  ///< voxels a step
+  std::vector<BrickBits>
+      occupied_;  ///< voxels that are not V_ext, bricks with such a voxel, bricks of bricks …
   OccupiedCubes cubes_;
-  std::span<const std::array<std::int32_t, 6>> parts_;      ///< SearchTables::parts
+  std::span<const std::array<std::int32_t, 6>> parts_;  ///< SearchTables::parts
 };
 
 }  // namespace palpate

@@ -6,7 +6,8 @@
 namespace palpate {
 namespace {
 
-constexpr int kSpins = 1000;   // some 20 to 50 us: the next shared stage of a frame mostly begins before (chosen)
+constexpr int kSpins =
+    1000;  // some 20 to 50 us: the next shared stage of a frame mostly begins before (chosen)
 
 inline void pause() {
 #if defined(__x86_64__)
@@ -39,14 +40,16 @@ FrameHelper::~FrameHelper() {
   thread_.join();
 }
 
-/// Takes parts until none is left. A part that was taken keeps its round from ending, and with it call_ and context_ as they are.
+/// Takes parts until none is left. A part that was taken keeps its round from ending, and with it call_ and
+/// context_ as they are.
 void FrameHelper::take_parts(int lane) noexcept {
   std::uint64_t state = next_.load(std::memory_order_acquire);
   while (next_of(state) < parts_of(state)) {
-    if (!next_.compare_exchange_weak(state, state + 1, std::memory_order_acq_rel, std::memory_order_acquire)) continue;
+    if (!next_.compare_exchange_weak(state, state + 1, std::memory_order_acq_rel, std::memory_order_acquire))
+      continue;
     try {
       call_(context_, next_of(state), lane);
-    } catch (...) {   // no memory
+    } catch (...) {  // no memory
       thrown_[static_cast<std::size_t>(lane)] = std::current_exception();
     }
     done_.fetch_add(1, std::memory_order_release);

@@ -8,12 +8,13 @@
 
 namespace palpate {
 
-/// A thread beside the one that asks, for parts of a frame that do not need each other. It takes parts when it comes in time and is never waited for to come,
-/// so a frame is never later than alone but by a part that it has begun. What a part leaves may not depend on who did it.
+/// A thread beside the one that asks, for parts of a frame that do not need each other. It takes parts when
+/// it comes in time and is never waited for to come, so a frame is never later than alone but by a part that
+/// it has begun. What a part leaves may not depend on who did it.
 class FrameHelper {
  public:
-  static constexpr std::uint32_t kMostParts = 0xFFFF;   ///< of a round: 16 bits of next_
-  static constexpr int kLanes = 2;                      ///< threads: the asker's, 0, and the helper's, 1
+  static constexpr std::uint32_t kMostParts = 0xFFFF;  ///< of a round: 16 bits of next_
+  static constexpr int kLanes = 2;                     ///< threads: the asker's, 0, and the helper's, 1
 
   /// Null where there is but one processor for this process, or no thread to be had.
   static std::unique_ptr<FrameHelper> make();
@@ -21,11 +22,14 @@ class FrameHelper {
   FrameHelper(const FrameHelper&) = delete;
   FrameHelper& operator=(const FrameHelper&) = delete;
 
-  /// Calls part(i, lane) for i = 0 … parts − 1, each once, on this thread (lane 0) and the helper's (lane 1); returns when all have returned. At most kMostParts.
-  /// What a part throws is thrown on here, once all have ended. One caller at a time. Neither allocates nor blocks: it spins for the last part of the other.
+  /// Calls part(i, lane) for i = 0 … parts − 1, each once, on this thread (lane 0) and the helper's (lane 1);
+  /// returns when all have returned. At most kMostParts. What a part throws is thrown on here, once all have
+  /// ended. One caller at a time. Neither allocates nor blocks: it spins for the last part of the other.
   template <class Part>
   void share(std::uint32_t parts, Part part) {
-    run(parts, [](void* context, std::uint32_t i, int lane) { (*static_cast<Part*>(context))(i, lane); }, &part);
+    run(
+        parts, [](void* context, std::uint32_t i, int lane) { (*static_cast<Part*>(context))(i, lane); },
+        &part);
   }
 
  private:
@@ -35,13 +39,14 @@ class FrameHelper {
   void take_parts(int lane) noexcept;
   void serve();
 
-  std::atomic<std::uint64_t> next_{0};   ///< round, how many parts it has, the next to be taken: 32, 16 and 16 bits
-  std::atomic<std::uint32_t> done_{0};   ///< parts of the round
+  std::atomic<std::uint64_t> next_{
+      0};  ///< round, how many parts it has, the next to be taken: 32, 16 and 16 bits
+  std::atomic<std::uint32_t> done_{0};  ///< parts of the round
   std::atomic<std::uint32_t> bell_{0};
   std::atomic<bool> stop_{false};
-  Call call_ = nullptr;                  ///< of the round; whoever has taken a part of it may read
+  Call call_ = nullptr;  ///< of the round; whoever has taken a part of it may read
   void* context_ = nullptr;
-  std::array<std::exception_ptr, kLanes> thrown_;   ///< in this round, by each thread
+  std::array<std::exception_ptr, kLanes> thrown_;  ///< in this round, by each thread
   std::thread thread_;
 };
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "compute/search/processor.h"
 #include "compute/scene/search_tables.h"
+#include "compute/search/processor.h"
 #include "compute/search/turned_boxes.h"
 
 namespace palpate {
@@ -26,22 +26,28 @@ constexpr std::size_t kWidth = 4;
 static void spread(const Four& four, Four& out) { out = four; }
 static Four gather(const Four& words) { return words; }
 #include "compute/search/listed_boxes_lanes.h"
-}
+}  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
 constexpr std::size_t kWidth = 8;
 using Twice = std::int32_t __attribute__((vector_size(2 * kLanes)));
-static void spread(const Four& four, Twice& out) { out = __builtin_shufflevector(four, four, 0, 1, 2, 3, 0, 1, 2, 3); }
-static Four gather(const Twice& words) { return __builtin_shufflevector(words, words, 0, 1, 2, 3) | __builtin_shufflevector(words, words, 4, 5, 6, 7); }
-#include "compute/search/listed_boxes_lanes.h"
+static void spread(const Four& four, Twice& out) {
+  out = __builtin_shufflevector(four, four, 0, 1, 2, 3, 0, 1, 2, 3);
 }
+static Four gather(const Twice& words) {
+  return __builtin_shufflevector(words, words, 0, 1, 2, 3) |
+         __builtin_shufflevector(words, words, 4, 5, 6, 7);
+}
+#include "compute/search/listed_boxes_lanes.h"
+}  // namespace second
 PALPATE_SECOND_CODE_END
 #endif
 
 }  // namespace
 
-std::uint64_t near_boxes(const ListLook& look, const std::uint8_t* boxes, std::size_t stride, std::size_t count) {
+std::uint64_t near_boxes(const ListLook& look, const std::uint8_t* boxes, std::size_t stride,
+                         std::size_t count) {
 #if PALPATE_TWO_CODES
   if (has_second_code()) return second::near_boxes(look, boxes, stride, count);
 #endif

@@ -19,13 +19,15 @@ struct HostList {
   }
 };
 
-/// What the search finds near at a pose: all that the engine then decides exactly. Errs only towards "may meet".
+/// What the search finds near at a pose: all that the engine then decides exactly. Errs only towards "may
+/// meet".
 struct NearLists {
   HostList<gpu::TouchCandidate> touch;
   HostList<gpu::PairCandidate> pairs;
-  HostList<gpu::SampleChunk> samples;           ///< where samples are not listed
-  HostList<gpu::FrameSample> inside, open;      ///< where they are: what the tool's fine partition has inside, and what it leaves open
-  std::uint32_t full = gpu::kNone;   ///< the kList… that had no room; the search ended there
+  HostList<gpu::SampleChunk> samples;  ///< where samples are not listed
+  HostList<gpu::FrameSample> inside,
+      open;  ///< where they are: what the tool's fine partition has inside, and what it leaves open
+  std::uint32_t full = gpu::kNone;  ///< the kList… that had no room; the search ended there
 
   /// As HostList::push; notes `list` as full.
   template <class T>

@@ -16,7 +16,9 @@ constexpr double kRootThree = 1.7320508075688774;
 
 std::size_t at(const Int3& cell, const Int3& cells) {
   return static_cast<std::size_t>(cell.x) +
-         static_cast<std::size_t>(cells.x) * (static_cast<std::size_t>(cell.y) + static_cast<std::size_t>(cells.y) * static_cast<std::size_t>(cell.z));
+         static_cast<std::size_t>(cells.x) *
+             (static_cast<std::size_t>(cell.y) +
+              static_cast<std::size_t>(cells.y) * static_cast<std::size_t>(cell.z));
 }
 
 /// Every cell takes the largest of those up to `reach` before and behind it along an axis.
@@ -28,7 +30,9 @@ void widen(std::vector<std::uint8_t>& cells, const Int3& n, int axis, std::int32
       for (c.x = 0; c.x < n.x; ++c.x) {
         Int3 other = c;
         std::uint8_t most = 0;
-        for (other[axis] = std::max(c[axis] - reach, 0); other[axis] <= std::min(c[axis] + reach, n[axis] - 1); ++other[axis]) most |= before[at(other, n)];
+        for (other[axis] = std::max(c[axis] - reach, 0);
+             other[axis] <= std::min(c[axis] + reach, n[axis] - 1); ++other[axis])
+          most |= before[at(other, n)];
         cells[at(c, n)] = most;
       }
 }
@@ -45,8 +49,8 @@ struct FineTurn {
 
 /// Boundary voxels of a brick.
 struct BrickVoxels {
-  double first_centre[3];                ///< the centre of the brick's first voxel, in fine voxels
-  std::int32_t bit[512 + kEight];        ///< x + 8y + 64z
+  double first_centre[3];          ///< the centre of the brick's first voxel, in fine voxels
+  std::int32_t bit[512 + kEight];  ///< x + 8y + 64z
   std::uint32_t number[512];
   std::size_t count = 0;
 };
@@ -54,38 +58,41 @@ struct BrickVoxels {
 /// Which fine voxels are near to the tool's solid (SceneTables::tool_near).
 struct NearCells {
   std::span<const std::uint32_t> bits;
-  std::int32_t size[3];   ///< fine voxels, …
-  double end[3];          ///< … the same
-  double beyond;    ///< what reaches so far out of the grid has its nearest voxel of the solid seen from the border: the grid is padded by two voxels
+  std::int32_t size[3];  ///< fine voxels, …
+  double end[3];         ///< … the same
+  double beyond;  ///< what reaches so far out of the grid has its nearest voxel of the solid seen from the
+                  ///< border: the grid is padded by two voxels
 };
 
 /// Points in fine voxels of the tool.
 struct SolidPoints {
-  unsigned may, unsure;                            ///< a bit each: may lie in the solid; the voxel may be the next one
-  std::uint32_t brick[kEight], bit[kEight];        ///< which voxel, where it is sure (BrickBits)
+  unsigned may, unsure;  ///< a bit each: may lie in the solid; the voxel may be the next one
+  std::uint32_t brick[kEight], bit[kEight];  ///< which voxel, where it is sure (BrickBits)
 };
 
 namespace plain {
 constexpr std::size_t kWidth = 4;
 #include "compute/search/near_samples_lanes.h"
-}
+}  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
 constexpr std::size_t kWidth = 8;
 #include "compute/search/near_samples_lanes.h"
-}
+}  // namespace second
 PALPATE_SECOND_CODE_END
 #endif
 
-std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const NearCells& cells, std::uint16_t* near) {
+std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const NearCells& cells,
+                        std::uint16_t* near) {
 #if PALPATE_TWO_CODES
   if (has_second_code()) return second::near_voxels(turn, voxels, cells, near);
 #endif
   return plain::near_voxels(turn, voxels, cells, near);
 }
 
-void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& solid, const std::uint32_t* points, SolidPoints& out) {
+void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& solid,
+                  const std::uint32_t* points, SolidPoints& out) {
 #if PALPATE_TWO_CODES
   if (has_second_code()) return second::solid_points(turn, low, solid, points, out);
 #endif
@@ -96,7 +103,7 @@ void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& 
 
 struct NearSamples::Search {
   const LatticePose& pose;
-  double rotation[3][3];      // world from tool
+  double rotation[3][3];  // world from tool
   double translation[3];
   NearLists& lists;
   FineTurn fine{};
@@ -104,14 +111,17 @@ struct NearSamples::Search {
   /// Tool lattice point of a world lattice point, off by less than 2^-20.
   void to_tool(const Int3& p, double (&out)[3]) const {
     const double d[3] = {p.x - translation[0], p.y - translation[1], p.z - translation[2]};
-    for (std::size_t c = 0; c < 3; ++c) out[c] = rotation[0][c] * d[0] + rotation[1][c] * d[1] + rotation[2][c] * d[2];
+    for (std::size_t c = 0; c < 3; ++c)
+      out[c] = rotation[0][c] * d[0] + rotation[1][c] * d[1] + rotation[2][c] * d[2];
   }
   /// The same as docs/EXACTNESS.md section 4 rounds it. |p − translation| < 2^31: sums within 3 · 2^61.
   Int3 rounded_to_tool(const Int3& p) const {
-    const std::int64_t d[3] = {std::int64_t{p.x} - pose.translation.x, std::int64_t{p.y} - pose.translation.y, std::int64_t{p.z} - pose.translation.z};
+    const std::int64_t d[3] = {std::int64_t{p.x} - pose.translation.x, std::int64_t{p.y} - pose.translation.y,
+                               std::int64_t{p.z} - pose.translation.z};
     Int3 out;
     for (int c = 0; c < 3; ++c) {
-      const std::int64_t sum = pose.rotation_q30[0][c] * d[0] + pose.rotation_q30[1][c] * d[1] + pose.rotation_q30[2][c] * d[2] + (std::int64_t{1} << 29);
+      const std::int64_t sum = pose.rotation_q30[0][c] * d[0] + pose.rotation_q30[1][c] * d[1] +
+                               pose.rotation_q30[2][c] * d[2] + (std::int64_t{1} << 29);
       out[c] = static_cast<std::int32_t>(sum >> 30);
     }
     return out;
@@ -151,8 +161,8 @@ NearSamples NearSamples::make(const SceneGeometry& geometry, const SceneTables& 
         for (c.x = 0; c.x < cells.x; ++c.x, ++i)
           if ((out.near_[i >> 5] >> (i & 31) & 1u) != 0) any[at(c / 8, cubes)] = 1;
   }
-  // Centres of voxels are within 3.5 voxels an axis of their brick's centre, within 1.5 of their octant's; what is beyond the fine grid
-  // counts as at its border up to a voxel away.
+  // Centres of voxels are within 3.5 voxels an axis of their brick's centre, within 1.5 of their octant's;
+  // what is beyond the fine grid counts as at its border up to a voxel away.
   out.brick_ = out.make_level(any, 3.5 * kRootThree * m.grid.size + m.grid.size);
   out.octant_ = out.make_level(any, 1.5 * kRootThree * m.grid.size + m.grid.size);
   return out;
@@ -162,11 +172,13 @@ NearSamples::Level NearSamples::make_level(const std::vector<std::uint8_t>& cube
   Level out;
   out.border = static_cast<std::int32_t>((reach + 2) * per_cube_) + 1;
   out.cells = fine_.bricks + 2 * out.border;
-  out.near.resize(static_cast<std::size_t>(out.cells.x) * static_cast<std::size_t>(out.cells.y) * static_cast<std::size_t>(out.cells.z));
+  out.near.resize(static_cast<std::size_t>(out.cells.x) * static_cast<std::size_t>(out.cells.y) *
+                  static_cast<std::size_t>(out.cells.z));
   Int3 c;
   for (c.z = 0; c.z < fine_.bricks.z; ++c.z)
     for (c.y = 0; c.y < fine_.bricks.y; ++c.y)
-      for (c.x = 0; c.x < fine_.bricks.x; ++c.x) out.near[at(c + out.border, out.cells)] = cubes[at(c, fine_.bricks)];
+      for (c.x = 0; c.x < fine_.bricks.x; ++c.x)
+        out.near[at(c + out.border, out.cells)] = cubes[at(c, fine_.bricks)];
   for (int axis = 0; axis < 3; ++axis) widen(out.near, out.cells, axis, out.border);
   return out;
 }
@@ -181,7 +193,8 @@ bool NearSamples::near_cube(const Level& level, const double (&p)[3]) const {
   return level.near[at(cell, level.cells)] != 0;
 }
 
-/// kVoxel… of the fine voxel that holds a point; V_ext beyond the grid. For an open sample the device begins at the same voxel.
+/// kVoxel… of the fine voxel that holds a point; V_ext beyond the grid. For an open sample the device begins
+/// at the same voxel.
 std::uint32_t NearSamples::fine_class(const Int3& p) const {
   Int3 v;
   for (int k = 0; k < 3; ++k) {
@@ -192,20 +205,23 @@ std::uint32_t NearSamples::fine_class(const Int3& p) const {
   }
   const std::size_t brick = solid_.number(v.x >> 3, v.y >> 3, v.z >> 3);
   const auto bit = static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
-  return internal_.at(brick, bit) ? gpu::kVoxelInternal : solid_.at(brick, bit) ? gpu::kVoxelBoundary : gpu::kVoxelExternal;
+  return internal_.at(brick, bit) ? gpu::kVoxelInternal
+         : solid_.at(brick, bit)  ? gpu::kVoxelBoundary
+                                  : gpu::kVoxelExternal;
 }
 
 bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
   const HostSamples& from = *sampled_;
   const Int3 lowest = mockup_.origin + mockup_.size * voxel;
-  std::optional<HostSamples::Voxel> grid;   // once a point is wanted
+  std::optional<HostSamples::Voxel> grid;  // once a point is wanted
   double at[3];
   search.to_tool(lowest, at);
   float low[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    const float (&column)[3] = search.fine.point_column[k];
+    const float(&column)[3] = search.fine.point_column[k];
     // Half a step, since points are rounded to steps (fine_class), and half a 1024th.
-    low[k] = static_cast<float>((at[k] - fine_.origin[static_cast<int>(k)] + 0.5) * per_fine_) + 0.5F * (column[0] + column[1] + column[2]);
+    low[k] = static_cast<float>((at[k] - fine_.origin[static_cast<int>(k)] + 0.5) * per_fine_) +
+             0.5F * (column[0] + column[1] + column[2]);
   }
   const std::uint32_t* const ids = &list_triangles_[list_begin_[boundary]];
   const HostSamples::Begin begin = from.begin[boundary], end = from.begin[boundary + 1];
@@ -219,18 +235,23 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
       const auto lane = static_cast<unsigned>(std::countr_zero(solid.may));
       const std::uint32_t point = first + lane;
       const bool sure = (solid.unsure >> lane & 1) == 0;
-      std::uint32_t kind = sure && internal_.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal : gpu::kVoxelBoundary;
+      std::uint32_t kind = sure && internal_.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal
+                                                                                    : gpu::kVoxelBoundary;
       gpu::FrameSample sample{};
       std::span<const std::uint16_t> triangles(&from.entries[point], 1);
       std::uint32_t mark = 0;
       if (point < first_sample) {
-        const std::uint32_t last = point + 1 < first_sample ? from.entries[point + 1] : end.owner - begin.owner;
+        const std::uint32_t last =
+            point + 1 < first_sample ? from.entries[point + 1] : end.owner - begin.owner;
         triangles = {owners + from.entries[point], owners + last};
-        if (kind == gpu::kVoxelBoundary) sample.point = mesh_->corner(ids[triangles.front()], 0);   // two loads, anywhere in the mesh; inside nobody asks
+        if (kind == gpu::kVoxelBoundary)
+          sample.point = mesh_->corner(ids[triangles.front()],
+                                       0);  // two loads, anywhere in the mesh; inside nobody asks
         mark = gpu::kCornerProbe;
       } else {
         if (!grid) grid.emplace(lowest, spacing_);
-        sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> HostSamples::kAxisShift), begin.sample + (point - first_sample));
+        sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> HostSamples::kAxisShift),
+                                   begin.sample + (point - first_sample));
       }
       if (!sure) kind = fine_class(search.rounded_to_tool(sample.point));
       if (kind == gpu::kVoxelExternal) continue;
@@ -238,7 +259,8 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
       auto& list = internal ? search.lists.inside : search.lists.open;
       for (const std::uint16_t entry : triangles) {
         sample.static_id = ids[entry] | mark;
-        if (!search.lists.push(list, internal ? gpu::kListInsideSamples : gpu::kListOpenSamples, sample)) return false;
+        if (!search.lists.push(list, internal ? gpu::kListInsideSamples : gpu::kListOpenSamples, sample))
+          return false;
       }
     }
   }
@@ -249,7 +271,9 @@ bool NearSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t bo
   if (listed_) return take_listed(search, voxel, boundary);
   const std::uint32_t end = list_begin_[boundary + 1];
   for (std::uint32_t e = list_begin_[boundary]; e < end; e += gpu::kSampleChunk)
-    if (!search.lists.push(search.lists.samples, gpu::kListSampleChunks, {voxel, e, std::min(e + gpu::kSampleChunk, end)})) return false;
+    if (!search.lists.push(search.lists.samples, gpu::kListSampleChunks,
+                           {voxel, e, std::min(e + gpu::kSampleChunk, end)}))
+      return false;
   return true;
 }
 
@@ -275,7 +299,8 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
       for (std::uint32_t rest = boundary & mask; rest != 0; rest &= rest - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(rest));
         found.bit[found.count] = static_cast<std::int32_t>(word << 5 | bit);
-        found.number[found.count++] = voxels.first[word] + static_cast<std::uint32_t>(std::popcount(boundary & ((1u << bit) - 1)));
+        found.number[found.count++] =
+            voxels.first[word] + static_cast<std::uint32_t>(std::popcount(boundary & ((1u << bit) - 1)));
       }
     }
   }
@@ -320,15 +345,18 @@ void NearSamples::find(const LatticePose& pose, const Int3& first, const Int3& l
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t r = 0; r < 3; ++r) {
       search.fine.column[k][r] = search.rotation[r][k] * ratio;
-      search.fine.point_column[k][r] = static_cast<float>(search.fine.column[k][r] / (1 << HostSamples::kPointBits));
+      search.fine.point_column[k][r] =
+          static_cast<float>(search.fine.column[k][r] / (1 << HostSamples::kPointBits));
     }
     const double cells = 8.0 * fine_.bricks[static_cast<int>(k)];
     search.fine.end[k] = static_cast<float>(cells);
     most = std::max(most, cells);
   }
-  // A point lies within half a 1024th of its word's middle along each axis, √3 / 2 of one at most along a turned one. Single precision: the voxel's
-  // low corner, three columns, their products and sums, all below the grid's size and a few voxels: eight roundings.
-  search.fine.error = static_cast<float>(kRootThree / 2 * ratio / (1 << HostSamples::kPointBits) + (most + 4 * ratio + 4) * 0x1p-21);
+  // A point lies within half a 1024th of its word's middle along each axis, √3 / 2 of one at most along a
+  // turned one. Single precision: the voxel's low corner, three columns, their products and sums, all below
+  // the grid's size and a few voxels: eight roundings.
+  search.fine.error = static_cast<float>(kRootThree / 2 * ratio / (1 << HostSamples::kPointBits) +
+                                         (most + 4 * ratio + 4) * 0x1p-21);
   on_this_processor([&] {
     Int3 b;
     for (b.z = first.z; b.z <= last.z; ++b.z)

@@ -1,25 +1,30 @@
-// Included by near_samples.cpp alone, once for each processor's code (processor.h); so it guards nothing and includes nothing. kWidth: floats in a
-// vector of the processor's.
+// Included by near_samples.cpp alone, once for each processor's code (processor.h); so it guards nothing and
+// includes nothing. kWidth: floats in a vector of the processor's.
 
 using Floats = float __attribute__((vector_size(4 * kWidth)));
 using Doubles = double __attribute__((vector_size(8 * kWidth / 2)));
 using Words = std::int32_t __attribute__((vector_size(4 * kWidth)));
 using HalfWords = std::int32_t __attribute__((vector_size(2 * kWidth)));
 
-// Of voxels of a brick, those whose centres lie in cells near the solid: their places in `voxels`, packed at the front of `near`.
-static std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const NearCells& cells, std::uint16_t* near) {
+// Of voxels of a brick, those whose centres lie in cells near the solid: their places in `voxels`, packed at
+// the front of `near`.
+static std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const NearCells& cells,
+                               std::uint16_t* near) {
   constexpr std::size_t kHalf = kWidth / 2;
   std::size_t count = 0;
   for (std::size_t begin = 0; begin < voxels.count; begin += kHalf) {
     HalfWords code;
     std::memcpy(&code, voxels.bit + begin, sizeof code);
-    const Doubles x = __builtin_convertvector(code & 7, Doubles), y = __builtin_convertvector(code >> 3 & 7, Doubles), z = __builtin_convertvector(code >> 6 & 7, Doubles);
+    const Doubles x = __builtin_convertvector(code & 7, Doubles),
+                  y = __builtin_convertvector(code >> 3 & 7, Doubles),
+                  z = __builtin_convertvector(code >> 6 & 7, Doubles);
     HalfWords may = HalfWords{} - 1, cell{};
     for (std::size_t k = 3; k-- > 0;) {
-      const Doubles at = voxels.first_centre[k] + turn.column[k][0] * x + turn.column[k][1] * y + turn.column[k][2] * z;
+      const Doubles at =
+          voxels.first_centre[k] + turn.column[k][0] * x + turn.column[k][1] * y + turn.column[k][2] * z;
       may &= __builtin_convertvector((at >= -cells.beyond) & (at <= cells.end[k] + cells.beyond), HalfWords);
       const Doubles low = at < 0 ? Doubles{} : at, last = Doubles{} + (cells.end[k] - 1);
-      cell = cell * cells.size[k] + __builtin_convertvector(low < last ? low : last, HalfWords);   // down
+      cell = cell * cells.size[k] + __builtin_convertvector(low < last ? low : last, HalfWords);  // down
     }
     std::int32_t index[kHalf], good[kHalf];
     std::memcpy(index, &cell, sizeof cell);
@@ -35,22 +40,24 @@ static std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, 
 }
 
 // Of kEight points of a voxel (words of HostSamples::points) those that may lie in the solid.
-static void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& solid, const std::uint32_t* points, SolidPoints& out) {
+static void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& solid,
+                         const std::uint32_t* points, SolidPoints& out) {
   out.may = out.unsure = 0;
   for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
     Words word;
     std::memcpy(&word, points + begin, sizeof word);
     constexpr std::int32_t kMost = (1 << HostSamples::kPointBits) - 1;
-    const Floats x = __builtin_convertvector(word & kMost, Floats), y = __builtin_convertvector(word >> HostSamples::kPointBits & kMost, Floats),
+    const Floats x = __builtin_convertvector(word & kMost, Floats),
+                 y = __builtin_convertvector(word >> HostSamples::kPointBits & kMost, Floats),
                  z = __builtin_convertvector(word >> 2 * HostSamples::kPointBits & kMost, Floats);
     Words may = Words{} - 1, beside{}, brick{}, bit{};
     for (std::size_t k = 3; k-- > 0;) {
-      const float (&column)[3] = turn.point_column[k];
+      const float(&column)[3] = turn.point_column[k];
       const Floats at = low[k] + column[0] * x + column[1] * y + column[2] * z;
       const float end = turn.end[k];
       may &= (at >= -turn.error) & (at <= end + turn.error);
       const Floats from = at < 0 ? Floats{} : at, last = Floats{} + (end - 1);
-      const Words cell = __builtin_convertvector(from < last ? from : last, Words);   // down
+      const Words cell = __builtin_convertvector(from < last ? from : last, Words);  // down
       const Floats in_cell = at - __builtin_convertvector(cell, Floats);
       beside |= (in_cell < turn.error) | (in_cell > 1 - turn.error);
       brick = brick * solid.size()[static_cast<int>(k)] + (cell >> 3);

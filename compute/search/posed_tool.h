@@ -8,15 +8,17 @@
 
 namespace palpate {
 
-/// The tool's triangles at a pose, each moved when it is first asked for. One thread; only the constructor allocates.
+/// The tool's triangles at a pose, each moved when it is first asked for. One thread; only the constructor
+/// allocates.
 class PosedTool {
  public:
-  explicit PosedTool(const LatticeMesh& tool) : tool_(&tool), moved_(tool.triangles.size()), corners_(tool.triangles.size()) {}
+  explicit PosedTool(const LatticeMesh& tool)
+      : tool_(&tool), moved_(tool.triangles.size()), corners_(tool.triangles.size()) {}
 
   void begin(const LatticePose& pose) {
     pose_ = pose;
     if (++now_ != 0) return;
-    moved_.assign(moved_.size(), 0);   // once in 2^32 frames
+    moved_.assign(moved_.size(), 0);  // once in 2^32 frames
     now_ = 1;
   }
   const LatticePose& pose() const { return pose_; }
@@ -24,7 +26,8 @@ class PosedTool {
   const exact::Corners& corners(std::uint32_t id) {
     if (moved_[id] != now_) {
       moved_[id] = now_;
-      for (int k = 0; k < 3; ++k) corners_[id][static_cast<std::size_t>(k)] = transform(pose_, tool_->corner(id, k));
+      for (int k = 0; k < 3; ++k)
+        corners_[id][static_cast<std::size_t>(k)] = transform(pose_, tool_->corner(id, k));
     }
     return corners_[id];
   }
@@ -35,7 +38,7 @@ class PosedTool {
   const LatticeMesh* tool_;
   LatticePose pose_{};
   std::uint32_t now_ = 0;
-  std::vector<std::uint32_t> moved_;   ///< by triangle: the frame it was last moved in
+  std::vector<std::uint32_t> moved_;  ///< by triangle: the frame it was last moved in
   std::vector<exact::Corners> corners_;
 };
 

@@ -1,10 +1,11 @@
 #pragma once
 
-// Code for the processor at hand. Hot loops are compiled twice, for every processor and once more for those with AVX2, and a look at the
-// processor decides which runs. Nothing that is computed depends on it: integers decide, floating-point numbers only sort out, within bounds that
-// hold for both (docs/EXACTNESS.md).
+// Code for the processor at hand. Hot loops are compiled twice, for every processor and once more for those
+// with AVX2, and a look at the processor decides which runs. Nothing that is computed depends on it: integers
+// decide, floating-point numbers only sort out, within bounds that hold for both (docs/EXACTNESS.md).
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define PALPATE_TWO_CODES 1
 #else
 #define PALPATE_TWO_CODES 0
@@ -15,7 +16,8 @@ namespace palpate {
 #if PALPATE_TWO_CODES
 /// Whether the second code runs here.
 inline bool has_second_code() {
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+         __builtin_cpu_supports("popcnt");
 }
 
 /// Calls body() with all that it calls, as far as it is seen here, drawn in and compiled for AVX2.
@@ -25,8 +27,9 @@ template <class Body>
 }
 #endif
 
-/// Calls body() in the best code for this processor. For loops over single numbers: GCC takes vectors apart before it draws code in. Code of
-/// vectors is a file that is included twice, the second time after PALPATE_SECOND_CODE_BEGIN.
+/// Calls body() in the best code for this processor. For loops over single numbers: GCC takes vectors apart
+/// before it draws code in. Code of vectors is a file that is included twice, the second time after
+/// PALPATE_SECOND_CODE_BEGIN.
 template <class Body>
 auto on_this_processor(Body body) {
 #if PALPATE_TWO_CODES

@@ -7,7 +7,8 @@
 namespace palpate {
 
 RunTree::RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order) : order_(order) {
-  std::vector<Int3> low((order.size() + kEight - 1) / kEight, Int3(INT32_MAX)), high(low.size(), Int3(INT32_MIN));
+  std::vector<Int3> low((order.size() + kEight - 1) / kEight, Int3(INT32_MAX)),
+      high(low.size(), Int3(INT32_MIN));
   for (std::size_t place = 0; place < order.size(); ++place) {
     if (tool.collapsed(order[place])) continue;
     for (int corner = 0; corner < 3; ++corner) {
@@ -25,8 +26,11 @@ RunTree::RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order) 
         const bool empty = node >= low.size() || low[node].x > high[node].x;
         for (std::size_t k = 0; k < 3; ++k) {
           const int axis = static_cast<int>(k);
-          level[group].centre[k][i] = empty ? kNowhere : static_cast<float>((static_cast<double>(low[node][axis]) + high[node][axis]) / 2);
-          level[group].half[k][i] = empty ? 0 : static_cast<float>((static_cast<double>(high[node][axis]) - low[node][axis]) / 2);
+          level[group].centre[k][i] =
+              empty ? kNowhere
+                    : static_cast<float>((static_cast<double>(low[node][axis]) + high[node][axis]) / 2);
+          level[group].half[k][i] =
+              empty ? 0 : static_cast<float>((static_cast<double>(high[node][axis]) - low[node][axis]) / 2);
         }
         if (empty) continue;
         low_above[group] = glm::min(low_above[group], low[node]);

@@ -11,7 +11,8 @@
 
 namespace palpate {
 
-/// Boxes of a tool's runs of eight triangles, of eight runs, and so on, in its lattice frame: 3.5 bytes a triangle. What has collapsed is in none.
+/// Boxes of a tool's runs of eight triangles, of eight runs, and so on, in its lattice frame: 3.5 bytes a
+/// triangle. What has collapsed is in none.
 class RunTree {
  public:
   /// `order`: ids of the tool's triangles by place; it outlives this. Allocates.
@@ -25,20 +26,22 @@ class RunTree {
 
   Group root() const { return {static_cast<std::uint32_t>(levels_.size() - 1), 0}; }
 
-  /// Fills `out` with groups from which descents find what one from the root finds, and returns how many: from one, the root, to `out.size()`, at least kEight.
-  /// `which` as in descend(), of whose work this is the beginning.
+  /// Fills `out` with groups from which descents find what one from the root finds, and returns how many:
+  /// from one, the root, to `out.size()`, at least kEight. `which` as in descend(), of whose work this is the
+  /// beginning.
   template <class Which>
   std::size_t divide(const VoxelTurn& turn, Which&& which, std::span<Group> out) const {
     std::size_t count = 1;
     out[0] = root();
     EightRanges ranges;
-    while (count != 0 && out[0].level != 0 && count * kEight <= out.size()) {   // all are of one level
-      std::size_t below = out.size();   // the next level's, from the end on: behind what is still to be read
+    while (count != 0 && out[0].level != 0 && count * kEight <= out.size()) {  // all are of one level
+      std::size_t below = out.size();  // the next level's, from the end on: behind what is still to be read
       for (std::size_t i = count; i-- > 0;) {
         const Group group = out[i];
         voxels_of(turn, levels_[group.level][group.number], ranges);
         for (unsigned left = which(ranges); left != 0; left &= left - 1)
-          out[--below] = {group.level - 1, static_cast<std::uint32_t>(kEight) * group.number + static_cast<std::uint32_t>(std::countr_zero(left))};
+          out[--below] = {group.level - 1, static_cast<std::uint32_t>(kEight) * group.number +
+                                               static_cast<std::uint32_t>(std::countr_zero(left))};
       }
       std::copy(out.begin() + static_cast<std::ptrdiff_t>(below), out.end(), out.begin());
       count = out.size() - below;
@@ -46,11 +49,13 @@ class RunTree {
     return count;
   }
 
-  /// Calls take(run) for every run below `from` that which(ranges) names with each node above it, until take() returns false. which() tells, a bit each, which of
-  /// eight nodes it wants, by the voxels that their turned boxes meet (voxels_of()); what meets none must not be among them.
+  /// Calls take(run) for every run below `from` that which(ranges) names with each node above it, until
+  /// take() returns false. which() tells, a bit each, which of eight nodes it wants, by the voxels that their
+  /// turned boxes meet (voxels_of()); what meets none must not be among them.
   template <class Which, class Take>
   void descend(const VoxelTurn& turn, const Group& from, Which&& which, Take&& take) const {
-    std::array<Group, kEight * 12> open;   // 8^12 runs are more than a mesh can have; a level leaves at most eight groups waiting
+    std::array<Group, kEight * 12>
+        open;  // 8^12 runs are more than a mesh can have; a level leaves at most eight groups waiting
     std::size_t count = 0;
     open[count++] = from;
     EightRanges ranges;
@@ -58,7 +63,8 @@ class RunTree {
       const Group next = open[--count];
       voxels_of(turn, levels_[next.level][next.number], ranges);
       for (unsigned left = which(ranges); left != 0; left &= left - 1) {
-        const std::uint32_t node = static_cast<std::uint32_t>(kEight) * next.number + static_cast<std::uint32_t>(std::countr_zero(left));
+        const std::uint32_t node = static_cast<std::uint32_t>(kEight) * next.number +
+                                   static_cast<std::uint32_t>(std::countr_zero(left));
         if (next.level != 0)
           open[count++] = {next.level - 1, node};
         else if (!take(node))
@@ -69,7 +75,7 @@ class RunTree {
 
  private:
   std::span<const std::uint32_t> order_;
-  std::vector<std::vector<EightBoxes>> levels_;   // of runs first; the last level is one group
+  std::vector<std::vector<EightBoxes>> levels_;  // of runs first; the last level is one group
 };
 
 }  // namespace palpate

@@ -22,8 +22,10 @@ std::vector<std::uint32_t> order_in_space(const LatticeMesh& mesh) {
   for (std::uint32_t id = 0; id < keys.size(); ++id) {
     std::uint64_t code = 0;
     for (int k = 0; k < 3; ++k) {
-      // Three coordinates within ±2^28: moved up by 3 · 2^28 the sum is below 2^31; its 20 leading bits are enough.
-      const std::int64_t sum = std::int64_t{mesh.corner(id, 0)[k]} + mesh.corner(id, 1)[k] + mesh.corner(id, 2)[k] + 3 * std::int64_t{kLatticeReach};
+      // Three coordinates within ±2^28: moved up by 3 · 2^28 the sum is below 2^31; its 20 leading bits are
+      // enough.
+      const std::int64_t sum = std::int64_t{mesh.corner(id, 0)[k]} + mesh.corner(id, 1)[k] +
+                               mesh.corner(id, 2)[k] + 3 * std::int64_t{kLatticeReach};
       code |= spread(static_cast<std::uint64_t>(sum) >> 11) << k;
     }
     keys[id] = {code, id};

@@ -8,7 +8,8 @@
 
 namespace palpate {
 
-/// Boxes that turn with the tool, eight at a time in single precision: which voxels of the mock-up's grid they may meet.
+/// Boxes that turn with the tool, eight at a time in single precision: which voxels of the mock-up's grid
+/// they may meet.
 inline constexpr std::size_t kEight = 8;
 using Eight = std::array<float, kEight>;
 
@@ -23,7 +24,7 @@ inline constexpr float kNowhere = 1e30f;
 /// A pose in voxels of the grid: a low is turned + below, a high turned + above.
 struct VoxelTurn {
   float rotation[3][3], below[3], above[3];
-  float end[3];   ///< the grid's voxels
+  float end[3];  ///< the grid's voxels
 };
 
 /// Voxels first … last along each axis, clipped to the grid. `may` 0: none.
@@ -31,7 +32,9 @@ struct EightRanges {
   alignas(32) std::int32_t first[3][kEight], last[3][kEight], may[kEight];
   /// Of triangles alone: their boxes in kVoxelParts-ths of a voxel, as far as they lie in the grid.
   alignas(32) std::int32_t low[3][kEight], high[3][kEight];
-  BrickBits::Range range(std::size_t i) const { return {{first[0][i], first[1][i], first[2][i]}, {last[0][i], last[1][i], last[2][i]}}; }
+  BrickBits::Range range(std::size_t i) const {
+    return {{first[0][i], first[1][i], first[2][i]}, {last[0][i], last[1][i], last[2][i]}};
+  }
 };
 
 void voxels_of(const VoxelTurn& turn, const EightBoxes& boxes, EightRanges& out);

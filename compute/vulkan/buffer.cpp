@@ -20,23 +20,28 @@ std::string mebibytes(std::uint64_t bytes) {
 
 }  // namespace
 
-Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind) {
+Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what, std::uint64_t bytes,
+                                          BufferKind kind) {
   return make(device, what, std::max<std::uint64_t>(4, (bytes + 3) & ~std::uint64_t{3}), kind, nullptr);
 }
 
 Result<VulkanBuffer> VulkanBuffer::alias(VulkanDevice& device, const VulkanBuffer& of) {
-  if (!of.pages_ || !device.shares_memory()) return Error{ErrorCode::kInternal, "a buffer of " + device.name() + " can't be shared"};
+  if (!of.pages_ || !device.shares_memory())
+    return Error{ErrorCode::kInternal, "a buffer of " + device.name() + " can't be shared"};
   return make(device, "a shared buffer", of.bytes_, BufferKind::kDevice, &of);
 }
 
-Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, std::uint64_t bytes, BufferKind kind, const VulkanBuffer* of) {
+Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, std::uint64_t bytes,
+                                        BufferKind kind, const VulkanBuffer* of) {
   const auto& limits = device.limits();
   if (bytes > limits.storage_range)
-    return bad_value(std::string(what) + " need " + mebibytes(bytes) + ", more than the " + mebibytes(limits.storage_range) +
-                     " that a shader may see in one buffer on " + device.name());
+    return bad_value(std::string(what) + " need " + mebibytes(bytes) + ", more than the " +
+                     mebibytes(limits.storage_range) + " that a shader may see in one buffer on " +
+                     device.name());
   if (of == nullptr && (bytes > limits.allocation || device.allocated + bytes > limits.heap))
-    return bad_value(std::string(what) + " need " + mebibytes(bytes) + " beside " + mebibytes(device.allocated) +
-                     " in use, more than the " + mebibytes(limits.heap) + " of memory of " + device.name());
+    return bad_value(std::string(what) + " need " + mebibytes(bytes) + " beside " +
+                     mebibytes(device.allocated) + " in use, more than the " + mebibytes(limits.heap) +
+                     " of memory of " + device.name());
 
   VulkanBuffer out;
   out.device_ = &device;
@@ -50,15 +55,17 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
   create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   create.pNext = shares ? &external : nullptr;
   create.size = bytes + (device.guarded ? BufferGuard::kBytes : 0);
-  create.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  create.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   create.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
   if (const VkResult r = vkCreateBuffer(device.handle(), &create, nullptr, &out.buffer_); r != VK_SUCCESS)
     return vulkan_error("vkCreateBuffer", r);
 
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(device.handle(), out.buffer_, &needs);
-  const VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const VkMemoryPropertyFlags host =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   const bool map = kind != BufferKind::kDevice || device.unified();
   int type = -1;
   if (!map) {
@@ -79,30 +86,39 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
   if (shares && allocated == VK_SUCCESS) {
     const std::uint64_t page = device.page();
     allocate.allocationSize = (allocate.allocationSize + page - 1) / page * page;
-    out.pages_ = of != nullptr ? of->pages_ : std::shared_ptr<void>(std::aligned_alloc(page, allocate.allocationSize), std::free);
+    out.pages_ = of != nullptr
+                     ? of->pages_
+                     : std::shared_ptr<void>(std::aligned_alloc(page, allocate.allocationSize), std::free);
     if (!out.pages_) allocated = VK_ERROR_OUT_OF_HOST_MEMORY;
     import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT;
     import.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
     import.pHostPointer = out.pages_.get();
     allocate.pNext = &import;
   }
-  if (allocated == VK_SUCCESS) allocated = vkAllocateMemory(device.handle(), &allocate, nullptr, &out.memory_);
+  if (allocated == VK_SUCCESS)
+    allocated = vkAllocateMemory(device.handle(), &allocate, nullptr, &out.memory_);
   if (allocated != VK_SUCCESS)
-    return Error{ErrorCode::kInternal, std::string(what) + " need " + mebibytes(bytes) + " beside " + mebibytes(device.allocated) + " in use, which " +
-                                           device.name() + " with " + mebibytes(limits.heap) + " of memory could not give (" +
+    return Error{ErrorCode::kInternal, std::string(what) + " need " + mebibytes(bytes) + " beside " +
+                                           mebibytes(device.allocated) + " in use, which " + device.name() +
+                                           " with " + mebibytes(limits.heap) + " of memory could not give (" +
                                            vulkan_error("vkAllocateMemory", allocated).sentence + ")"};
   if (of == nullptr) {
     out.counted_ = bytes;
     const std::uint64_t now = device.allocated += bytes;
-    for (std::uint64_t most = device.most_allocated; most < now && !device.most_allocated.compare_exchange_weak(most, now);) {}
+    for (std::uint64_t most = device.most_allocated;
+         most < now && !device.most_allocated.compare_exchange_weak(most, now);) {
+    }
   }
-  if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, before); r != VK_SUCCESS)
+  if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, before);
+      r != VK_SUCCESS)
     return vulkan_error("vkBindBufferMemory", r);
   if (map)
-    if (const VkResult r = vkMapMemory(device.handle(), out.memory_, 0, VK_WHOLE_SIZE, 0, &out.mapped_); r != VK_SUCCESS)
+    if (const VkResult r = vkMapMemory(device.handle(), out.memory_, 0, VK_WHOLE_SIZE, 0, &out.mapped_);
+        r != VK_SUCCESS)
       return vulkan_error("vkMapMemory", r);
   if (device.guarded) {
-    if (of == nullptr) out.guard_ = std::make_unique<BufferGuard>(device, what, out.memory_, out.mapped_, before, bytes);
+    if (of == nullptr)
+      out.guard_ = std::make_unique<BufferGuard>(device, what, out.memory_, out.mapped_, before, bytes);
     if (map) out.mapped_ = static_cast<char*>(out.mapped_) + before;
   }
   return out;
@@ -151,7 +167,8 @@ Result<void> upload(VulkanDevice& device, const VulkanBuffer& to, const void* da
   return recorder->submit_and_wait();
 }
 
-Result<void> download(VulkanDevice& device, const VulkanBuffer& buffer, std::uint64_t from, void* data, std::uint64_t bytes) {
+Result<void> download(VulkanDevice& device, const VulkanBuffer& buffer, std::uint64_t from, void* data,
+                      std::uint64_t bytes) {
   if (bytes == 0) return {};
   if (const char* there = buffer.as<char>()) {
     std::memcpy(data, there + from, bytes);

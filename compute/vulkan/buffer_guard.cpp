@@ -4,8 +4,8 @@
 #include <cstring>
 #include <utility>
 
-#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/buffer.h"
+#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/device.h"
 
 namespace palpate {
@@ -14,8 +14,14 @@ constexpr std::uint8_t kCanary = 0xA5;
 constexpr std::uint32_t kCanaryWord = 0xA5A5A5A5u;
 }  // namespace
 
-BufferGuard::BufferGuard(VulkanDevice& device, std::string what, VkDeviceMemory memory, void* mapped, std::uint64_t before, std::uint64_t bytes)
-    : device_(device), what_(std::move(what)), memory_(memory), mapped_(static_cast<std::uint8_t*>(mapped)), before_(before), bytes_(bytes) {
+BufferGuard::BufferGuard(VulkanDevice& device, std::string what, VkDeviceMemory memory, void* mapped,
+                         std::uint64_t before, std::uint64_t bytes)
+    : device_(device),
+      what_(std::move(what)),
+      memory_(memory),
+      mapped_(static_cast<std::uint8_t*>(mapped)),
+      before_(before),
+      bytes_(bytes) {
   const std::uint64_t all = before_ + bytes_ + kBytes;
   std::string error;
   if (mapped_ != nullptr) {
@@ -26,7 +32,8 @@ BufferGuard::BufferGuard(VulkanDevice& device, std::string what, VkDeviceMemory 
     create.size = all;
     create.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     create.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
-    if (vkCreateBuffer(device_.handle(), &create, nullptr, &whole_) != VK_SUCCESS || vkBindBufferMemory(device_.handle(), whole_, memory_, 0) != VK_SUCCESS) {
+    if (vkCreateBuffer(device_.handle(), &create, nullptr, &whole_) != VK_SUCCESS ||
+        vkBindBufferMemory(device_.handle(), whole_, memory_, 0) != VK_SUCCESS) {
       error = what_ + ": no guard could be made";
     } else if (auto recorder = CommandRecorder::create(device_)) {
       recorder->begin();
@@ -72,7 +79,8 @@ std::optional<std::string> BufferGuard::broken() {
     if (wrong == bytes.end()) continue;
     const auto at = static_cast<std::uint64_t>(wrong - bytes.begin());
     return what_ + " (" + std::to_string(bytes_) + " bytes): something wrote " +
-           (behind ? std::to_string(at) + " bytes behind its end" : std::to_string(before_ - at) + " bytes before its start");
+           (behind ? std::to_string(at) + " bytes behind its end"
+                   : std::to_string(before_ - at) + " bytes before its start");
   }
   return std::nullopt;
 }

@@ -25,7 +25,8 @@ Result<CommandRecorder> CommandRecorder::create(VulkanDevice& device, std::uint3
   allocate.commandPool = out.pool_;
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   allocate.commandBufferCount = 1;
-  if (const VkResult r = vkAllocateCommandBuffers(device.handle(), &allocate, &out.commands_); r != VK_SUCCESS)
+  if (const VkResult r = vkAllocateCommandBuffers(device.handle(), &allocate, &out.commands_);
+      r != VK_SUCCESS)
     return vulkan_error("vkAllocateCommandBuffers", r);
   VkFenceCreateInfo fence{};
   fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
@@ -36,7 +37,8 @@ Result<CommandRecorder> CommandRecorder::create(VulkanDevice& device, std::uint3
     queries.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
     queries.queryCount = stages + 1;
-    if (const VkResult r = vkCreateQueryPool(device.handle(), &queries, nullptr, &out.queries_); r != VK_SUCCESS)
+    if (const VkResult r = vkCreateQueryPool(device.handle(), &queries, nullptr, &out.queries_);
+        r != VK_SUCCESS)
       return vulkan_error("vkCreateQueryPool", r);
   }
   return out;
@@ -44,7 +46,7 @@ Result<CommandRecorder> CommandRecorder::create(VulkanDevice& device, std::uint3
 
 CommandRecorder::~CommandRecorder() {
   if (device_ == nullptr) return;
-  if (pending_) device_->wait_idle();   // submitted and never waited for
+  if (pending_) device_->wait_idle();  // submitted and never waited for
   vkDestroyQueryPool(device_->handle(), queries_, nullptr);
   vkDestroyFence(device_->handle(), fence_, nullptr);
   vkDestroyCommandPool(device_->handle(), pool_, nullptr);
@@ -72,7 +74,8 @@ CommandRecorder& CommandRecorder::operator=(CommandRecorder&& other) noexcept {
 void CommandRecorder::begin() {
   VkCommandBufferBeginInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  vkBeginCommandBuffer(commands_, &info);   // resets; its only failures are out-of-memory, which end() reports again
+  vkBeginCommandBuffer(commands_,
+                       &info);  // resets; its only failures are out-of-memory, which end() reports again
   stages_.clear();
   refused_.reset();
   dispatches_ = barriers_ = 0;
@@ -80,9 +83,10 @@ void CommandRecorder::begin() {
   recording_ = true;
 }
 
-bool CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
-                           std::uint32_t push_bytes) {
-  assert(buffers.size() == pipeline.buffers() && buffers.size() <= kMostBindings && push_bytes == pipeline.push_bytes());
+bool CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const BufferView> buffers,
+                           const void* push, std::uint32_t push_bytes) {
+  assert(buffers.size() == pipeline.buffers() && buffers.size() <= kMostBindings &&
+         push_bytes == pipeline.push_bytes());
   if (auto made = pipeline.wait(); !made) {
     if (!refused_) refused_ = made.error();
     return false;
@@ -97,18 +101,21 @@ bool CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const Buff
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     writes[i].dstBinding = i;
     writes[i].descriptorCount = 1;
-    writes[i].descriptorType = pipeline.uniform(i) ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    writes[i].descriptorType =
+        pipeline.uniform(i) ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     writes[i].pBufferInfo = &infos[i];
   }
   if (count > 0)
-    device_->push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout(), 0, count, writes.data());
+    device_->push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout(), 0, count,
+                              writes.data());
   if (push_bytes > 0)
     vkCmdPushConstants(commands_, pipeline.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes, push);
   return true;
 }
 
-void CommandRecorder::dispatch_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
-                                   std::uint32_t push_bytes, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+void CommandRecorder::dispatch_raw(const ComputePipeline& pipeline, std::span<const BufferView> buffers,
+                                   const void* push, std::uint32_t push_bytes, std::uint32_t x,
+                                   std::uint32_t y, std::uint32_t z) {
   if (bind(pipeline, buffers, push, push_bytes)) vkCmdDispatch(commands_, x, y, z);
 }
 
@@ -121,8 +128,9 @@ void CommandRecorder::barrier(VkPipelineStageFlags2 more_stages, VkAccessFlags2 
   memory.srcAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
   memory.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
                         VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | more_stages;
-  memory.dstAccessMask = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
-                         VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | more_access;
+  memory.dstAccessMask = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
+                         VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
+                         VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | more_access;
   VkDependencyInfo dependency{};
   dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   dependency.memoryBarrierCount = 1;
@@ -134,7 +142,8 @@ void CommandRecorder::fill(VkBuffer buffer, std::uint32_t word, std::uint64_t of
   vkCmdFillBuffer(commands_, buffer, offset, bytes, word);
 }
 
-void CommandRecorder::copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to, std::uint64_t to_offset, std::uint64_t bytes) {
+void CommandRecorder::copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to, std::uint64_t to_offset,
+                           std::uint64_t bytes) {
   if (bytes == 0) return;
   const VkBufferCopy region{from_offset, to_offset, bytes};
   vkCmdCopyBuffer(commands_, from, to, 1, &region);
@@ -143,17 +152,20 @@ void CommandRecorder::copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to
 void CommandRecorder::stage(const char* name) {
   if (queries_ == VK_NULL_HANDLE) return;
   assert(stages_.size() < stage_limit_);
-  vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
+  vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_,
+                       static_cast<std::uint32_t>(stages_.size()));
   stages_.push_back(name);
 }
 
 Result<void> CommandRecorder::end() {
   if (!recording_) return {};
   if (!stages_.empty())
-    vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
-  barrier(VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);   // of what shaders and copies wrote
+    vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_,
+                         static_cast<std::uint32_t>(stages_.size()));
+  barrier(VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);  // of what shaders and copies wrote
   recording_ = false;
-  if (const VkResult r = vkEndCommandBuffer(commands_); r != VK_SUCCESS) return vulkan_error("vkEndCommandBuffer", r);
+  if (const VkResult r = vkEndCommandBuffer(commands_); r != VK_SUCCESS)
+    return vulkan_error("vkEndCommandBuffer", r);
   if (refused_) return *refused_;
   return device_->take_validation_error();
 }
@@ -179,7 +191,7 @@ Result<void> CommandRecorder::wait(std::uint64_t timeout_ns) {
   if (waited == VK_SUCCESS) waited = vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, timeout_ns);
   pending_ = false;
   if (waited != VK_SUCCESS) {
-    device_->wait_idle();   // whoever hears of the failure will destroy what may still be in use
+    device_->wait_idle();  // whoever hears of the failure will destroy what may still be in use
     return vulkan_error("vkWaitForFences", waited);
   }
   return device_->take_validation_error();
@@ -197,12 +209,13 @@ Result<void> CommandRecorder::times(std::vector<StageTime>& out) const {
   std::array<std::uint64_t, 65> ticks{};
   assert(stages_.size() < ticks.size());
   const auto count = static_cast<std::uint32_t>(stages_.size() + 1);
-  if (const VkResult r = vkGetQueryPoolResults(device_->handle(), queries_, 0, count, sizeof ticks, ticks.data(), 8,
-                                               VK_QUERY_RESULT_64_BIT);
+  if (const VkResult r = vkGetQueryPoolResults(device_->handle(), queries_, 0, count, sizeof ticks,
+                                               ticks.data(), 8, VK_QUERY_RESULT_64_BIT);
       r != VK_SUCCESS)
     return vulkan_error("vkGetQueryPoolResults", r);
   for (std::size_t i = 0; i < stages_.size(); ++i)
-    out.push_back({stages_[i], static_cast<double>(ticks[i + 1] - ticks[i]) * device_->limits().timestamp_ns * 1e-3});
+    out.push_back(
+        {stages_[i], static_cast<double>(ticks[i + 1] - ticks[i]) * device_->limits().timestamp_ns * 1e-3});
   return {};
 }
 

@@ -4,8 +4,8 @@
 
 namespace palpate {
 
-/// Runs jobs on a few threads of its own, in the order of their coming; threads come with the jobs and go when none is left. For
-/// compiling pipelines side by side. One thread at a time may call it.
+/// Runs jobs on a few threads of its own, in the order of their coming; threads come with the jobs and go
+/// when none is left. For compiling pipelines side by side. One thread at a time may call it.
 class Compilers {
  public:
   Compilers();

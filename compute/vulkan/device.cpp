@@ -41,7 +41,8 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> extensions(count);
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
 /// The compute queue family: one without graphics if there is one. −1: none.
@@ -63,7 +64,8 @@ int compute_family(VkPhysicalDevice device) {
 std::string refusal(VkPhysicalDevice device) {
   VkPhysicalDeviceProperties p{};
   vkGetPhysicalDeviceProperties(device, &p);
-  if (p.apiVersion < VK_API_VERSION_1_3) return "it offers Vulkan " + version_text(p.apiVersion) + ", 1.3 is needed";
+  if (p.apiVersion < VK_API_VERSION_1_3)
+    return "it offers Vulkan " + version_text(p.apiVersion) + ", 1.3 is needed";
   Features f;
   vkGetPhysicalDeviceFeatures2(device, &f.base);
   if (!f.base.features.shaderInt64) return "its shaders have no 64-bit integers";
@@ -72,16 +74,17 @@ std::string refusal(VkPhysicalDevice device) {
   if (!f.v13.synchronization2) return "it has no synchronization2";
   if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return "it has no push descriptors";
   if (p.limits.maxPerStageDescriptorStorageBuffers < kBindings)
-    return "a shader may use " + std::to_string(p.limits.maxPerStageDescriptorStorageBuffers) + " storage buffers, " +
-           std::to_string(kBindings) + " are needed";
-  if (p.limits.maxComputeWorkGroupInvocations < kGroupSize || p.limits.maxComputeWorkGroupSize[0] < kGroupSize)
+    return "a shader may use " + std::to_string(p.limits.maxPerStageDescriptorStorageBuffers) +
+           " storage buffers, " + std::to_string(kBindings) + " are needed";
+  if (p.limits.maxComputeWorkGroupInvocations < kGroupSize ||
+      p.limits.maxComputeWorkGroupSize[0] < kGroupSize)
     return "its workgroups have fewer than " + std::to_string(kGroupSize) + " invocations";
   if (p.limits.maxComputeSharedMemorySize < kSharedBytes)
     return "it has " + std::to_string(p.limits.maxComputeSharedMemorySize) + " bytes of shared memory, " +
            std::to_string(kSharedBytes) + " are needed";
   if (p.limits.maxPushConstantsSize < kPushBytes)
-    return "it has " + std::to_string(p.limits.maxPushConstantsSize) + " bytes of push constants, " + std::to_string(kPushBytes) +
-           " are needed";
+    return "it has " + std::to_string(p.limits.maxPushConstantsSize) + " bytes of push constants, " +
+           std::to_string(kPushBytes) + " are needed";
   if (compute_family(device) < 0) return "it has no compute queue with timestamps";
   return "";
 }
@@ -89,11 +92,16 @@ std::string refusal(VkPhysicalDevice device) {
 /// Higher is better: a discrete GPU, then an integrated one, then others, then a CPU.
 int rank(VkPhysicalDeviceType type) {
   switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 4;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 3;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: return 0;
-    default: return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 0;
+    default:
+      return 1;
   }
 }
 
@@ -120,8 +128,8 @@ VulkanDeviceInfo describe(VkPhysicalDevice device) {
   return info;
 }
 
-/// lavapipe reads LP_NUM_THREADS at an instance's first enumeration. A value set by the user stays; ours is taken back
-/// so that neither children nor a second instance inherit it.
+/// lavapipe reads LP_NUM_THREADS at an instance's first enumeration. A value set by the user stays; ours is
+/// taken back so that neither children nor a second instance inherit it.
 class InlineExecution {
  public:
   explicit InlineExecution(bool wanted) : set_(wanted && std::getenv(kName) == nullptr) {
@@ -143,14 +151,30 @@ class InlineExecution {
 Error vulkan_error(const char* call, VkResult result) {
   std::string what;
   switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY: what = "out of host memory"; break;
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY: what = "out of device memory"; break;
-    case VK_ERROR_DEVICE_LOST: what = "the device was lost"; break;
-    case VK_ERROR_INCOMPATIBLE_DRIVER: what = "no Vulkan driver"; break;
-    case VK_ERROR_LAYER_NOT_PRESENT: what = "the validation layer is not installed"; break;
-    case VK_ERROR_INITIALIZATION_FAILED: what = "initialisation failed"; break;
-    case VK_TIMEOUT: what = "the device did not answer in time"; break;
-    default: what = "VkResult " + std::to_string(static_cast<int>(result)); break;
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      what = "out of host memory";
+      break;
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      what = "out of device memory";
+      break;
+    case VK_ERROR_DEVICE_LOST:
+      what = "the device was lost";
+      break;
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+      what = "no Vulkan driver";
+      break;
+    case VK_ERROR_LAYER_NOT_PRESENT:
+      what = "the validation layer is not installed";
+      break;
+    case VK_ERROR_INITIALIZATION_FAILED:
+      what = "initialisation failed";
+      break;
+    case VK_TIMEOUT:
+      what = "the device did not answer in time";
+      break;
+    default:
+      what = "VkResult " + std::to_string(static_cast<int>(result));
+      break;
   }
   const bool no_device = result == VK_ERROR_INCOMPATIBLE_DRIVER || result == VK_ERROR_LAYER_NOT_PRESENT;
   return {no_device ? ErrorCode::kNoDevice : ErrorCode::kInternal, std::string(call) + " failed: " + what};
@@ -158,16 +182,19 @@ Error vulkan_error(const char* call, VkResult result) {
 
 VKAPI_ATTR VkBool32 VKAPI_CALL VulkanDevice::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                         VkDebugUtilsMessageTypeFlagsEXT,
-                                                        const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+                                                        const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                        void* user) {
   auto* self = static_cast<VulkanDevice*>(user);
   const std::lock_guard lock(self->message_mutex_);
-  if (self->message_.empty()) self->message_ = data->pMessage != nullptr ? data->pMessage : "a message without text";
+  if (self->message_.empty())
+    self->message_ = data->pMessage != nullptr ? data->pMessage : "a message without text";
   return VK_FALSE;
 }
 
 Result<void> VulkanDevice::make_instance(bool validation) {
   if (const auto left = address_space_left(); left && *left < kDriverAddressSpace)
-    return Error{ErrorCode::kNoDevice, "this process may take " + std::to_string(*left >> 20) + " MiB more of address space (ulimit -v), a Vulkan driver needs " +
+    return Error{ErrorCode::kNoDevice, "this process may take " + std::to_string(*left >> 20) +
+                                           " MiB more of address space (ulimit -v), a Vulkan driver needs " +
                                            std::to_string(kDriverAddressSpace >> 20) + " MiB"};
   VkApplicationInfo application{};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
@@ -216,7 +243,8 @@ Result<void> VulkanDevice::choose(const std::string& wanted) {
     const VulkanDeviceInfo info = describe(candidate);
     const bool named = info.name.find(wanted) != std::string::npos;
     if (!info.usable || !named) {
-      reasons += (reasons.empty() ? "" : "; ") + info.name + ": " + (named ? info.reason : "not named \"" + wanted + "\"");
+      reasons += (reasons.empty() ? "" : "; ") + info.name + ": " +
+                 (named ? info.reason : "not named \"" + wanted + "\"");
       continue;
     }
     VkPhysicalDeviceProperties p{};
@@ -228,8 +256,7 @@ Result<void> VulkanDevice::choose(const std::string& wanted) {
     driver_ = info.driver;
   }
   if (physical_ == VK_NULL_HANDLE)
-    return Error{ErrorCode::kNoDevice,
-                 reasons.empty() ? std::string("no driver shows any") : reasons};
+    return Error{ErrorCode::kNoDevice, reasons.empty() ? std::string("no driver shows any") : reasons};
   return {};
 }
 
@@ -247,7 +274,8 @@ Result<void> VulkanDevice::make_device(bool own_memory) {
     if ((memory_.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0)
       limits_.heap = std::max<std::uint64_t>(limits_.heap, memory_.memoryHeaps[i].size);
   // Buffers leave the driver what it needs itself.
-  if (const auto left = address_space_left()) limits_.heap = std::min(limits_.heap, *left - std::min(*left, kDriverAddressSpace / 2));
+  if (const auto left = address_space_left())
+    limits_.heap = std::min(limits_.heap, *left - std::min(*left, kDriverAddressSpace / 2));
   processor_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !own_memory;
   unified_ = processor_ || (p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU && !own_memory);
   const bool shares = processor_ && has_extension(physical_, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
@@ -264,7 +292,7 @@ Result<void> VulkanDevice::make_device(bool own_memory) {
   features.v12.shaderBufferInt64Atomics = VK_TRUE;
   features.v12.scalarBlockLayout = VK_TRUE;
   features.v13.synchronization2 = VK_TRUE;
-  features.v13.maintenance4 = VK_TRUE;   // workgroup size by specialisation constant
+  features.v13.maintenance4 = VK_TRUE;  // workgroup size by specialisation constant
   queue_family_ = static_cast<std::uint32_t>(compute_family(physical_));
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{};
@@ -272,7 +300,8 @@ Result<void> VulkanDevice::make_device(bool own_memory) {
   queue.queueFamilyIndex = queue_family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
+  const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
+                              VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
   VkDeviceCreateInfo create{};
   create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   create.pNext = &features.base;
@@ -283,8 +312,8 @@ Result<void> VulkanDevice::make_device(bool own_memory) {
   if (const VkResult r = vkCreateDevice(physical_, &create, nullptr, &device_); r != VK_SUCCESS)
     return vulkan_error("vkCreateDevice", r);
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-  push_descriptors =
-      reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(vkGetDeviceProcAddr(device_, "vkCmdPushDescriptorSetKHR"));
+  push_descriptors = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
+      vkGetDeviceProcAddr(device_, "vkCmdPushDescriptorSetKHR"));
   return {};
 }
 
@@ -324,7 +353,8 @@ VulkanDevice::~VulkanDevice() {
   if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
 }
 
-int VulkanDevice::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags preferred) const {
+int VulkanDevice::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted,
+                              VkMemoryPropertyFlags preferred) const {
   int found = -1;
   for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
     const VkMemoryPropertyFlags flags = memory_.memoryTypes[i].propertyFlags;
@@ -346,7 +376,7 @@ void VulkanDevice::wait_idle() {
 }
 
 Result<void> VulkanDevice::check_guards() {
-  for (BufferGuard* guard : std::set<BufferGuard*>(guards)) {   // a copy: reading one may make another buffer
+  for (BufferGuard* guard : std::set<BufferGuard*>(guards)) {  // a copy: reading one may make another buffer
     if (!guard_error.empty()) break;
     guard_error = guard->broken().value_or("");
   }

@@ -24,15 +24,16 @@ struct PendingPipeline;
 Error vulkan_error(const char* call, VkResult result);
 
 /// An instance, one device and its one compute queue. Everything made from it must die first.
-/// One thread at a time, but that several may make and drop buffers, record, submit and wait, each with recorders of its own.
+/// One thread at a time, but that several may make and drop buffers, record, submit and wait, each with
+/// recorders of its own.
 class VulkanDevice {
  public:
   struct Limits {
-    std::uint64_t storage_range = 0;   ///< bytes that one binding may span
-    std::uint64_t allocation = 0;      ///< bytes of the largest buffer
-    std::uint64_t heap = 0;            ///< bytes of the device-local heap
-    std::uint32_t groups = 0;          ///< workgroups along x
-    double timestamp_ns = 0;           ///< nanoseconds a tick
+    std::uint64_t storage_range = 0;  ///< bytes that one binding may span
+    std::uint64_t allocation = 0;     ///< bytes of the largest buffer
+    std::uint64_t heap = 0;           ///< bytes of the device-local heap
+    std::uint32_t groups = 0;         ///< workgroups along x
+    double timestamp_ns = 0;          ///< nanoseconds a tick
   };
 
   /// Error (kNoDevice): one sentence with the reason for every device that was refused.
@@ -50,11 +51,12 @@ class VulkanDevice {
   std::uint32_t queue_family() const { return queue_family_; }
   const Limits& limits() const { return limits_; }
   const std::string& name() const { return name_; }
-  const std::string& driver() const { return driver_; }   ///< its name and version
+  const std::string& driver() const { return driver_; }  ///< its name and version
   /// Device memory is host memory (lavapipe, integrated GPUs): buffers are written in place, without staging.
   bool unified() const { return unified_; }
 
-  /// Buffers lie in host memory that several devices may import at once (lavapipe): what one has made, another can use without a copy.
+  /// Buffers lie in host memory that several devices may import at once (lavapipe): what one has made,
+  /// another can use without a copy.
   bool shares_memory() const { return page_ != 0; }
   /// Alignment of such memory, bytes.
   std::uint64_t page() const { return page_; }
@@ -87,10 +89,11 @@ class VulkanDevice {
   /// For benches: told how long each shader that its owner watches took on how many items; may be empty.
   std::function<void(const char* kernel, std::uint64_t items, double seconds)> kernel_watch;
 
-  /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of the buffers that live;
-  /// `guard_error`: the first that was found broken when its buffer died, or empty.
+  /// For tests: every buffer lies between guard bytes and starts with bytes that are not zero. `guards`: of
+  /// the buffers that live; `guard_error`: the first that was found broken when its buffer died, or empty.
   bool guarded = false;
-  std::mutex guard_mutex;   ///< of the next two, while several threads make and drop buffers; check_guards() wants to be alone
+  std::mutex guard_mutex;  ///< of the next two, while several threads make and drop buffers; check_guards()
+                           ///< wants to be alone
   std::set<BufferGuard*> guards;
   std::string guard_error;
   /// Success, or a sentence that names a buffer that something wrote beyond. Nothing when not `guarded`.
@@ -103,7 +106,8 @@ class VulkanDevice {
   Result<void> make_device(bool own_memory);
   static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                    VkDebugUtilsMessageTypeFlagsEXT types,
-                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                   void* user);
 
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
@@ -116,8 +120,8 @@ class VulkanDevice {
   Limits limits_;
   std::string name_, driver_;
   bool unified_ = false;
-  bool processor_ = false;   ///< the host's own
-  std::uint64_t page_ = 0;   ///< 0: does not share memory
+  bool processor_ = false;  ///< the host's own
+  std::uint64_t page_ = 0;  ///< 0: does not share memory
   std::shared_ptr<GpuFault> fault_;
   std::mutex message_mutex_;
   std::string message_;

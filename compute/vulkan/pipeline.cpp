@@ -4,22 +4,24 @@
 #include <utility>
 #include <vector>
 
-#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/buffer.h"
+#include "compute/vulkan/command_recorder.h"
 
 namespace palpate {
 namespace {
 
 using MadePipeline = Result<std::shared_ptr<const PipelineObjects>>;
 
-MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers, std::uint32_t push_bytes,
-                          std::span<const SpecConstant> constants, std::uint32_t uniform) {
+MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
+                          std::uint32_t push_bytes, std::span<const SpecConstant> constants,
+                          std::uint32_t uniform) {
   auto out = std::make_shared<PipelineObjects>(device.handle());
   std::vector<VkDescriptorSetLayoutBinding> bindings(buffers);
   for (std::uint32_t i = 0; i < buffers; ++i) {
     bindings[i] = {};
     bindings[i].binding = i;
-    bindings[i].descriptorType = (uniform >> i & 1u) != 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    bindings[i].descriptorType =
+        (uniform >> i & 1u) != 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     bindings[i].descriptorCount = 1;
     bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
   }
@@ -28,7 +30,8 @@ MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uin
   set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set.bindingCount = buffers;
   set.pBindings = bindings.data();
-  if (const VkResult r = vkCreateDescriptorSetLayout(out->device, &set, nullptr, &out->set_layout); r != VK_SUCCESS)
+  if (const VkResult r = vkCreateDescriptorSetLayout(out->device, &set, nullptr, &out->set_layout);
+      r != VK_SUCCESS)
     return vulkan_error("vkCreateDescriptorSetLayout", r);
 
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
@@ -55,8 +58,8 @@ MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uin
     entries.push_back({c.id, static_cast<std::uint32_t>(values.size() * 4), 4});
     values.push_back(c.value);
   }
-  const VkSpecializationInfo specialisation{static_cast<std::uint32_t>(entries.size()), entries.data(), values.size() * 4,
-                                            values.data()};
+  const VkSpecializationInfo specialisation{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                            values.size() * 4, values.data()};
   VkComputePipelineCreateInfo create{};
   create.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   create.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -65,7 +68,8 @@ MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uin
   create.stage.pName = "main";
   create.stage.pSpecializationInfo = &specialisation;
   create.layout = out->layout;
-  const VkResult made = vkCreateComputePipelines(out->device, VK_NULL_HANDLE, 1, &create, nullptr, &out->pipeline);
+  const VkResult made =
+      vkCreateComputePipelines(out->device, VK_NULL_HANDLE, 1, &create, nullptr, &out->pipeline);
   vkDestroyShaderModule(out->device, shader, nullptr);
   if (made != VK_SUCCESS) return vulkan_error("vkCreateComputePipelines", made);
   // A module that the layout does not fit is a bug of ours that the layer finds here.
@@ -76,8 +80,9 @@ MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uin
 
 }  // namespace
 
-Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
-                                                std::uint32_t push_bytes, std::span<const SpecConstant> constants,
+Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const ShaderCode& code,
+                                                std::uint32_t buffers, std::uint32_t push_bytes,
+                                                std::span<const SpecConstant> constants,
                                                 std::uint32_t uniform) {
   std::vector<std::uint32_t> key{buffers, push_bytes, uniform, static_cast<std::uint32_t>(constants.size())};
   for (const SpecConstant& c : constants) key.insert(key.end(), {c.id, c.value});
@@ -85,11 +90,15 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
   std::shared_ptr<PendingPipeline>& kept = device.pipelines[std::move(key)];
   if (!kept) {
     auto promise = std::make_shared<std::promise<MadePipeline>>();
-    kept = std::make_shared<PendingPipeline>(PendingPipeline{device.compilers.get(), promise->get_future().share()});
-    device.compilers->add([&device, name = code.name, words = std::vector<std::uint32_t>(code.words, code.words + code.bytes / 4), buffers, push_bytes,
-                           values = std::vector<SpecConstant>(constants.begin(), constants.end()), uniform, promise] {
-      promise->set_value(make_objects(device, {name, words.data(), words.size() * 4}, buffers, push_bytes, values, uniform));
-    });
+    kept = std::make_shared<PendingPipeline>(
+        PendingPipeline{device.compilers.get(), promise->get_future().share()});
+    device.compilers->add(
+        [&device, name = code.name,
+         words = std::vector<std::uint32_t>(code.words, code.words + code.bytes / 4), buffers, push_bytes,
+         values = std::vector<SpecConstant>(constants.begin(), constants.end()), uniform, promise] {
+          promise->set_value(make_objects(device, {name, words.data(), words.size() * 4}, buffers, push_bytes,
+                                          values, uniform));
+        });
   }
   ComputePipeline out;
   out.made_ = kept;
@@ -122,7 +131,7 @@ Result<void> warm_up(VulkanDevice& device, std::span<const ComputePipeline* cons
   for (const ComputePipeline* pipeline : pipelines) {
     const std::vector<BufferView> buffers(pipeline->buffers(), BufferView(*dummy));
     recorder->dispatch_raw(*pipeline, buffers, zero.data(), pipeline->push_bytes(), 0, 1, 1);
-    recorder->barrier();   // one dummy buffer stands for all
+    recorder->barrier();  // one dummy buffer stands for all
   }
   return recorder->submit_and_wait();
 }

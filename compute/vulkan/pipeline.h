@@ -32,25 +32,28 @@ struct PipelineObjects {
 
 /// A pipeline that is being made.
 struct PendingPipeline {
-  Compilers* by;   ///< the device's
+  Compilers* by;  ///< the device's
   std::shared_future<Result<std::shared_ptr<const PipelineObjects>>> made;
 };
 
-/// A compute pipeline whose set 0 is `buffers` buffers, bindings 0 … buffers − 1 (push descriptors), with `push_bytes` of push
-/// constants. Bit i of `uniform`: binding i is a uniform buffer, else a storage buffer. Copies share what the driver made; so do all that one device was ever asked for with the
-/// same module and constants, so that a second scene compiles nothing. create() comes back at once: the driver works on while pipelines are
-/// asked for, several at a time, and wait() tells what came of it.
+/// A compute pipeline whose set 0 is `buffers` buffers, bindings 0 … buffers − 1 (push descriptors), with
+/// `push_bytes` of push constants. Bit i of `uniform`: binding i is a uniform buffer, else a storage buffer.
+/// Copies share what the driver made; so do all that one device was ever asked for with the same module and
+/// constants, so that a second scene compiles nothing. create() comes back at once: the driver works on while
+/// pipelines are asked for, several at a time, and wait() tells what came of it.
 class ComputePipeline {
  public:
   ComputePipeline() = default;
   static Result<ComputePipeline> create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
-                                        std::uint32_t push_bytes = 0, std::span<const SpecConstant> constants = {},
+                                        std::uint32_t push_bytes = 0,
+                                        std::span<const SpecConstant> constants = {},
                                         std::uint32_t uniform = 0);
 
-  /// Waits until the pipeline is there; makes the compilers begin. An error: the driver refused, or the module does not fit.
+  /// Waits until the pipeline is there; makes the compilers begin. An error: the driver refused, or the
+  /// module does not fit.
   Result<void> wait() const;
-  VkPipeline handle() const { return objects().pipeline; }        ///< after wait() has succeeded
-  VkPipelineLayout layout() const { return objects().layout; }   ///< likewise
+  VkPipeline handle() const { return objects().pipeline; }      ///< after wait() has succeeded
+  VkPipelineLayout layout() const { return objects().layout; }  ///< likewise
   std::uint32_t buffers() const { return buffers_; }
   std::uint32_t push_bytes() const { return push_bytes_; }
   bool uniform(std::uint32_t binding) const { return (uniform_ >> binding & 1u) != 0; }
@@ -66,7 +69,8 @@ class ComputePipeline {
   const char* name_ = "";
 };
 
-/// Makes the driver compile now what it would compile at the first dispatch: runs each pipeline on zero workgroups.
+/// Makes the driver compile now what it would compile at the first dispatch: runs each pipeline on zero
+/// workgroups.
 Result<void> warm_up(VulkanDevice& device, std::span<const ComputePipeline* const> pipelines);
 
 }  // namespace palpate

@@ -9,12 +9,16 @@
 namespace palpate::falcon {
 namespace {
 
-constexpr const char* kLying = "the Falcon's encoders say what its arms can't do; unplug it, plug it in and home it anew";
+constexpr const char* kLying =
+    "the Falcon's encoders say what its arms can't do; unplug it, plug it in and home it anew";
 
 class FalconDevice final : public HapticDevice, public DeviceNotes {
  public:
-  FalconDevice(const FalconSettings& settings, std::vector<std::uint8_t> image, const Pose& start, OpenPort open_port)
-      : settings_(settings), workspace_(settings.workspace, start), link_(settings, std::move(image), std::move(open_port)) {
+  FalconDevice(const FalconSettings& settings, std::vector<std::uint8_t> image, const Pose& start,
+               OpenPort open_port)
+      : settings_(settings),
+        workspace_(settings.workspace, start),
+        link_(settings, std::move(image), std::move(open_port)) {
     sample_.pose = start;
   }
   ~FalconDevice() override { close(); }
@@ -71,15 +75,18 @@ class FalconDevice final : public HapticDevice, public DeviceNotes {
   std::vector<std::string> notes() const override {
     const BusCounts& bus = link_.counts();
     if (bus.late + bus.malformed + bus.jumps + bus.errors == 0) return {};
-    return {"falcon: of " + std::to_string(bus.reports) + " reports " + std::to_string(bus.late) + " came late, " + std::to_string(bus.malformed) +
-            " more were malformed, " + std::to_string(bus.jumps) + " had encoders that jumped; " + std::to_string(bus.errors) + " bus errors"};
+    return {"falcon: of " + std::to_string(bus.reports) + " reports " + std::to_string(bus.late) +
+            " came late, " + std::to_string(bus.malformed) + " more were malformed, " +
+            std::to_string(bus.jumps) + " had encoders that jumped; " + std::to_string(bus.errors) +
+            " bus errors"};
   }
 
   const char* guidance() const noexcept override { return lying_ ? kLying : device_.guidance; }
 
   void write(const Wrench& wrench, const Vec3& /*gc*/) noexcept override {
     FromLoop wanted;
-    if (sample_.state == DeviceState::kReady && !sample_.clutched && finite(wrench.force) && wrench.force != Vec3(0)) {
+    if (sample_.state == DeviceState::kReady && !sample_.clutched && finite(wrench.force) &&
+        wrench.force != Vec3(0)) {
       if (const auto torques = torques_of_force(angles_, grip_, workspace_.device(wrench.force))) {
         std::array<double, 3> counts{};
         for (std::size_t i = 0; i < 3; ++i) counts[i] = settings_.counts_per_newton_metre * (*torques)[i];
@@ -112,17 +119,20 @@ bool runs_firmware(std::unique_ptr<UsbPort> port) {
   return line.begin() && set_running_line(line) && answers(line);
 }
 
-Result<std::unique_ptr<HapticDevice>> make_falcon(const FalconSettings& settings, const Pose& start, OpenPort open_port) {
-  if (!(std::isfinite(settings.counts_per_newton_metre) && settings.max_force_n > 0 && settings.homing_timeout_s > 0 &&
-        settings.workspace.scale > 0))
-    return bad_value("the Falcon's gain must be finite, its force limit, homing time and workspace scale above 0");
+Result<std::unique_ptr<HapticDevice>> make_falcon(const FalconSettings& settings, const Pose& start,
+                                                  OpenPort open_port) {
+  if (!(std::isfinite(settings.counts_per_newton_metre) && settings.max_force_n > 0 &&
+        settings.homing_timeout_s > 0 && settings.workspace.scale > 0))
+    return bad_value(
+        "the Falcon's gain must be finite, its force limit, homing time and workspace scale above 0");
   std::vector<std::uint8_t> image;
   if (!settings.firmware.empty()) {
     auto read = read_firmware(settings.firmware);
     if (!read) return read.error();
     image = std::move(*read);
   }
-  return std::unique_ptr<HapticDevice>(new FalconDevice(settings, std::move(image), start, std::move(open_port)));
+  return std::unique_ptr<HapticDevice>(
+      new FalconDevice(settings, std::move(image), start, std::move(open_port)));
 }
 
 }  // namespace palpate::falcon

@@ -15,17 +15,21 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr auto kReopenEvery = milliseconds(250);
-constexpr auto kPause = microseconds(500);           // between two packets at least: twice the device's design rate
-constexpr auto kAnswerTime = milliseconds(5);        // without an answer by then the next packet goes out all the same
-constexpr auto kLoopSilence = milliseconds(20);      // without a new force by then the motors get zero
-constexpr auto kDeviceSilence = milliseconds(200);   // without a sound report by then the device counts as gone
+constexpr auto kPause = microseconds(500);  // between two packets at least: twice the device's design rate
+constexpr auto kAnswerTime =
+    milliseconds(5);  // without an answer by then the next packet goes out all the same
+constexpr auto kLoopSilence = milliseconds(20);  // without a new force by then the motors get zero
+constexpr auto kDeviceSilence =
+    milliseconds(200);  // without a sound report by then the device counts as gone
 
 constexpr const char* kUnplugged = "the Falcon is gone; plug it in again";
 constexpr const char* kLoading = "loading the Falcon's firmware";
-constexpr const char* kHomingText = "home the Falcon: pull the grip all the way out, then push it all the way in";
+constexpr const char* kHomingText =
+    "home the Falcon: pull the grip all the way out, then push it all the way in";
 constexpr const char* kNoFirmware = "the Falcon runs no firmware; name its file with --firmware";
 constexpr const char* kNotHomed = "the Falcon was not homed in time; start again";
-constexpr const char* kJumped = "the Falcon's encoders keep jumping, so its homing is lost; start again and home it";
+constexpr const char* kJumped =
+    "the Falcon's encoders keep jumping, so its homing is lost; start again and home it";
 
 std::int64_t nanoseconds(Clock::time_point time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
@@ -66,17 +70,20 @@ void FalconLink::tell(DeviceState state, const char* guidance) noexcept {
 }
 
 void FalconLink::run() {
-  // As punctual as the control loop, and just behind it (its priority is 80). Refused, it is an ordinary thread, as the loop is then.
+  // As punctual as the control loop, and just behind it (its priority is 80). Refused, it is an ordinary
+  // thread, as the loop is then.
   const sched_param priority{.sched_priority = 79};
   (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   while (!stopping()) {
     const Next next = line_ ? serve(*line_) : Next::kReopen;
-    if (line_ && !line_->lost()) (void)line_->write(encode(Command{}), milliseconds(100));   // whatever ended it: no force stays on
+    if (line_ && !line_->lost())
+      (void)line_->write(encode(Command{}), milliseconds(100));  // whatever ended it: no force stays on
     if (next == Next::kStop) return;
     line_.reset();
-    if (next == Next::kFault) return;   // told already; the next start() begins anew
+    if (next == Next::kFault) return;  // told already; the next start() begins anew
     tell(DeviceState::kOpening, kUnplugged);
-    for (const auto again = Clock::now() + kReopenEvery; Clock::now() < again && !stopping();) std::this_thread::sleep_for(milliseconds(10));
+    for (const auto again = Clock::now() + kReopenEvery; Clock::now() < again && !stopping();)
+      std::this_thread::sleep_for(milliseconds(10));
     if (stopping()) return;
     if (auto port = open_port_()) {
       line_ = std::make_unique<SerialLine>(std::move(*port));
@@ -103,7 +110,8 @@ std::optional<FalconLink::Next> FalconLink::bring_up(SerialLine& line) {
   if (loaded) return std::nullopt;
   if (stopping()) return Next::kStop;
   if (line.lost()) return Next::kReopen;
-  tell(DeviceState::kFault, kept_text(loaded.error().sentence + "; unplug the Falcon, plug it in and start again"));
+  tell(DeviceState::kFault,
+       kept_text(loaded.error().sentence + "; unplug the Falcon, plug it in and start again"));
   return Next::kFault;
 }
 
@@ -123,19 +131,20 @@ FalconLink::Next FalconLink::exchange(SerialLine& line) {
   const auto begun = Clock::now();
   auto last_sound = begun, last_sent = begun - kAnswerTime, homing_since = begun;
   bool answered = true;
-  const BusCounts before = now_.counts;   // of earlier times that it was plugged in
+  const BusCounts before = now_.counts;  // of earlier times that it was plugged in
   tell(DeviceState::kHoming, kHomingText);
   while (!stopping()) {
     const auto now = Clock::now();
     if (line.lost() || now - last_sound > kDeviceSilence) return Next::kReopen;
-    if (filter.homed()) homing_since = now;   // lost homing has the whole time again
+    if (filter.homed()) homing_since = now;  // lost homing has the whole time again
     if (now - homing_since > std::chrono::duration<double>(settings_.homing_timeout_s)) {
       tell(DeviceState::kFault, kNotHomed);
       return Next::kFault;
     }
     if ((answered && now - last_sent >= kPause) || now - last_sent >= kAnswerTime) {
       const bool ready = filter.homed();
-      const Command command{ready ? wanted_motors() : MotorCounts{}, static_cast<std::uint8_t>(kHomingOn | (ready ? kGreen : kRed))};
+      const Command command{ready ? wanted_motors() : MotorCounts{},
+                            static_cast<std::uint8_t>(kHomingOn | (ready ? kGreen : kRed))};
       if (line.send(encode(command))) {
         if (!answered) ++now_.counts.late;
         last_sent = now;

@@ -20,11 +20,11 @@ struct FromLoop {
 
 /// What happened on the bus since start().
 struct BusCounts {
-  std::uint64_t reports = 0;           ///< sound ones
-  std::uint64_t late = 0;              ///< commands without an answer within 5 ms
-  std::uint64_t malformed = 0;         ///< reports begun and not ended as they must
-  std::uint64_t jumps = 0;             ///< whose encoders were rejected
-  std::uint64_t errors = 0;            ///< transfers that failed: stall, babble, protocol
+  std::uint64_t reports = 0;    ///< sound ones
+  std::uint64_t late = 0;       ///< commands without an answer within 5 ms
+  std::uint64_t malformed = 0;  ///< reports begun and not ended as they must
+  std::uint64_t jumps = 0;      ///< whose encoders were rejected
+  std::uint64_t errors = 0;     ///< transfers that failed: stall, babble, protocol
 };
 
 /// What the link knows of the device.
@@ -32,13 +32,13 @@ struct FromDevice {
   Encoders encoders{};
   std::uint8_t buttons = 0;
   DeviceState state = DeviceState::kOpening;
-  std::int64_t time_ns = 0;            ///< steady clock, when the newest sound report came
-  const char* guidance = "";           ///< for the person at the device; text that outlives everything
+  std::int64_t time_ns = 0;   ///< steady clock, when the newest sound report came
+  const char* guidance = "";  ///< for the person at the device; text that outlives everything
   BusCounts counts;
 };
 
-/// The thread that talks to a Falcon: loads, homes, exchanges packets, finds the device again. The control loop's side is two
-/// mailboxes, wait-free.
+/// The thread that talks to a Falcon: loads, homes, exchanges packets, finds the device again. The control
+/// loop's side is two mailboxes, wait-free.
 class FalconLink {
  public:
   FalconLink(FalconSettings settings, std::vector<std::uint8_t> image, OpenPort open_port);
@@ -62,7 +62,7 @@ class FalconLink {
   enum class Next { kReopen, kFault, kStop };
   void run();
   Next serve(SerialLine& line);
-  std::optional<Next> bring_up(SerialLine& line);   ///< nothing once the firmware runs
+  std::optional<Next> bring_up(SerialLine& line);  ///< nothing once the firmware runs
   Next exchange(SerialLine& line);
   MotorCounts wanted_motors() noexcept;
   void tell(DeviceState state, const char* guidance) noexcept;
@@ -71,12 +71,12 @@ class FalconLink {
   FalconSettings settings_;
   std::vector<std::uint8_t> image_;
   OpenPort open_port_;
-  std::unique_ptr<SerialLine> line_;     // the thread's, once started
+  std::unique_ptr<SerialLine> line_;  // the thread's, once started
   std::thread thread_;
   std::atomic<bool> stop_{false};
   LatestValue<FromLoop> to_device_;
   LatestValue<FromDevice> from_device_;
-  FromDevice now_;                       // the thread's
+  FromDevice now_;  // the thread's
   FromLoop newest_;
   std::int64_t newest_ns_ = 0;
 };

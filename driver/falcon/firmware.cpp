@@ -16,18 +16,21 @@ constexpr std::array<std::uint8_t, 3> kGreeting{0x0A, 0x43, 0x0D};
 constexpr std::array<std::uint8_t, 4> kGreeted{0x0A, 0x44, 0x2C, 0x0D};
 constexpr std::array<std::uint8_t, 1> kReady{0x41};
 constexpr int kGreetings = 100;
-constexpr auto kGreetingTime = milliseconds(20);   // four bytes at 9600 baud take 4 ms, the chip's latency timer 16 ms more
+constexpr auto kGreetingTime =
+    milliseconds(20);  // four bytes at 9600 baud take 4 ms, the chip's latency timer 16 ms more
 constexpr auto kWriteTime = milliseconds(500);
 constexpr auto kEchoTime = milliseconds(500);
 constexpr int kProbes = 10;
 constexpr auto kProbeTime = milliseconds(10);
 
 Error failed(const std::string& step, const std::string& why) {
-  return {ErrorCode::kNoDevice, "the Falcon's firmware did not load: " + step + (why.empty() ? "" : " (" + why + ")")};
+  return {ErrorCode::kNoDevice,
+          "the Falcon's firmware did not load: " + step + (why.empty() ? "" : " (" + why + ")")};
 }
 
 /// Runs set-up requests in order; the first that fails is named.
-Result<void> in_order(const std::string& step, std::initializer_list<std::function<Result<void>()>> requests) {
+Result<void> in_order(const std::string& step,
+                      std::initializer_list<std::function<Result<void>()>> requests) {
   for (const auto& request : requests)
     if (auto done = request(); !done) return failed(step, done.error().sentence);
   return {};
@@ -35,28 +38,35 @@ Result<void> in_order(const std::string& step, std::initializer_list<std::functi
 
 Result<void> greet(SerialLine& line, const std::function<bool()>& stop) {
   for (int i = 0; i < kGreetings && !stop() && !line.lost(); ++i) {
-    if (auto sent = line.write(kGreeting, kWriteTime); !sent) return failed("sending the greeting", sent.error().sentence);
+    if (auto sent = line.write(kGreeting, kWriteTime); !sent)
+      return failed("sending the greeting", sent.error().sentence);
     std::vector<std::uint8_t> answer = line.read(kGreeted.size(), kGreetingTime);
-    if (!answer.empty() && answer.front() == 0) {   // some devices lead with a zero
+    if (!answer.empty() && answer.front() == 0) {  // some devices lead with a zero
       answer.erase(answer.begin());
-      for (const std::uint8_t byte : line.read(kGreeted.size() - answer.size(), kGreetingTime)) answer.push_back(byte);
+      for (const std::uint8_t byte : line.read(kGreeted.size() - answer.size(), kGreetingTime))
+        answer.push_back(byte);
     }
     if (std::equal(answer.begin(), answer.end(), kGreeted.begin(), kGreeted.end())) return {};
   }
   return failed("the greeting was not answered", std::to_string(kGreetings) + " tries");
 }
 
-Result<void> send_image(SerialLine& line, std::span<const std::uint8_t> image, const std::function<bool()>& stop) {
+Result<void> send_image(SerialLine& line, std::span<const std::uint8_t> image,
+                        const std::function<bool()>& stop) {
   const std::size_t chunks = (image.size() + kFirmwareChunk - 1) / kFirmwareChunk;
   for (std::size_t i = 0; i < chunks; ++i) {
     if (stop()) return failed("stopped", "");
-    const auto chunk = image.subspan(i * kFirmwareChunk, std::min(kFirmwareChunk, image.size() - i * kFirmwareChunk));
+    const auto chunk =
+        image.subspan(i * kFirmwareChunk, std::min(kFirmwareChunk, image.size() - i * kFirmwareChunk));
     const std::string step = "chunk " + std::to_string(i + 1) + " of " + std::to_string(chunks);
-    if (auto sent = line.write(chunk, kWriteTime); !sent) return failed("sending " + step, sent.error().sentence);
+    if (auto sent = line.write(chunk, kWriteTime); !sent)
+      return failed("sending " + step, sent.error().sentence);
     const std::vector<std::uint8_t> echo = line.read(chunk.size(), kEchoTime);
     if (echo.size() < chunk.size())
-      return failed("the echo of " + step + " is missing", std::to_string(echo.size()) + " of " + std::to_string(chunk.size()) + " bytes");
-    if (!std::equal(echo.begin(), echo.end(), chunk.begin())) return failed("the echo of " + step + " differs", "");
+      return failed("the echo of " + step + " is missing",
+                    std::to_string(echo.size()) + " of " + std::to_string(chunk.size()) + " bytes");
+    if (!std::equal(echo.begin(), echo.end(), chunk.begin()))
+      return failed("the echo of " + step + " differs", "");
   }
   return {};
 }
@@ -70,7 +80,8 @@ Result<std::vector<std::uint8_t>> read_firmware(const std::string& path) {
   image.reserve(65536);
   for (std::istreambuf_iterator<char> byte(in), end; byte != end; ++byte) {
     if (image.size() == kLargestFirmware)
-      return bad_value(path + ": the firmware is longer than " + std::to_string(kLargestFirmware) + " bytes, so it is none");
+      return bad_value(path + ": the firmware is longer than " + std::to_string(kLargestFirmware) +
+                       " bytes, so it is none");
     image.push_back(static_cast<std::uint8_t>(*byte));
   }
   if (image.empty()) return bad_value(path + ": the firmware file is empty");
@@ -78,8 +89,9 @@ Result<std::vector<std::uint8_t>> read_firmware(const std::string& path) {
 }
 
 Result<void> set_running_line(SerialLine& line) {
-  return in_order("setting the running line", {[&] { return line.set_latency(1); }, [&] { return line.set_baud(Baud::k1500000); },
-                                               [&] { return line.purge(); }});
+  return in_order("setting the running line",
+                  {[&] { return line.set_latency(1); }, [&] { return line.set_baud(Baud::k1500000); },
+                   [&] { return line.purge(); }});
 }
 
 bool answers(SerialLine& line) {
@@ -92,7 +104,8 @@ bool answers(SerialLine& line) {
   return false;
 }
 
-Result<void> load_once(SerialLine& line, std::span<const std::uint8_t> image, const std::function<bool()>& stop) {
+Result<void> load_once(SerialLine& line, std::span<const std::uint8_t> image,
+                       const std::function<bool()>& stop) {
   if (auto done = in_order("setting the line for the greeting",
                            {[&] { return line.purge(); }, [&] { return line.set_latency(16); },
                             [&] { return line.set_baud(Baud::k9600); }, [&] { return line.set_frame_8n1(); },
@@ -108,12 +121,14 @@ Result<void> load_once(SerialLine& line, std::span<const std::uint8_t> image, co
     return done;
   const std::vector<std::uint8_t> ready = line.read(kReady.size(), kEchoTime);
   if (!std::equal(ready.begin(), ready.end(), kReady.begin(), kReady.end()))
-    return failed(ready.empty() ? "the new baud rate was not answered" : "the new baud rate was answered wrongly", "");
+    return failed(
+        ready.empty() ? "the new baud rate was not answered" : "the new baud rate was answered wrongly", "");
   if (auto done = send_image(line, image, stop); !done) return done;
   return set_running_line(line);
 }
 
-Result<void> load_firmware(SerialLine& line, std::span<const std::uint8_t> image, const std::function<bool()>& stop) {
+Result<void> load_firmware(SerialLine& line, std::span<const std::uint8_t> image,
+                           const std::function<bool()>& stop) {
   Error last = failed("stopped", "");
   int attempts = 0;
   while (attempts < kLoadAttempts && !stop() && !line.lost()) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint8_t kOpen = '<', kClose = '>', kZero = 0x41;
 constexpr std::size_t kJ = 13, kK = 14, kEnd = 15;
-constexpr std::uint8_t kLargestJ = 0x7F;   // a report's: four buttons, three homed bits
+constexpr std::uint8_t kLargestJ = 0x7F;  // a report's: four buttons, three homed bits
 
 void put(std::int16_t value, std::uint8_t* bytes) noexcept {
   const auto bits = static_cast<std::uint16_t>(value);
@@ -59,7 +59,8 @@ MotorCounts limited(const std::array<double, 3>& counts) noexcept {
   }
   const double factor = largest > kLargestMotorCount ? kLargestMotorCount / largest : 1;
   MotorCounts out{};
-  // The factor's rounding can leave the largest count a hair beyond the limit, not half a count: rounding settles it.
+  // The factor's rounding can leave the largest count a hair beyond the limit, not half a count: rounding
+  // settles it.
   for (std::size_t i = 0; i < 3; ++i) out[i] = static_cast<std::int16_t>(std::lround(counts[i] * factor));
   return out;
 }

@@ -7,12 +7,13 @@
 
 #include "driver/falcon/kinematics.h"
 
-/// The Falcon's packets, 16 bytes each way: '<', three groups of four nibbles (int16, least significant nibble first), two
-/// more values j and k, '>'. A value v travels as the byte 0x41 + v. There is no checksum, so everything that can be checked is.
+/// The Falcon's packets, 16 bytes each way: '<', three groups of four nibbles (int16, least significant
+/// nibble first), two more values j and k, '>'. A value v travels as the byte 0x41 + v. There is no checksum,
+/// so everything that can be checked is.
 namespace palpate::falcon {
 
 inline constexpr std::size_t kPacketBytes = 16;
-inline constexpr std::int16_t kLargestMotorCount = 4095;   ///< beyond it the firmware's own arithmetic wraps
+inline constexpr std::int16_t kLargestMotorCount = 4095;  ///< beyond it the firmware's own arithmetic wraps
 
 using Packet = std::array<std::uint8_t, kPacketBytes>;
 using MotorCounts = std::array<std::int16_t, 3>;
@@ -25,17 +26,17 @@ enum ButtonBits : std::uint8_t { kPlus = 1, kForward = 2, kCentreButton = 4, kMi
 
 struct Command {
   MotorCounts motors{};
-  std::uint8_t bits = 0;   ///< CommandBits
+  std::uint8_t bits = 0;  ///< CommandBits
 };
 
 struct Report {
   Encoders encoders{};
-  std::uint8_t buttons = 0;   ///< ButtonBits
-  std::uint8_t homed = 0;     ///< bit i: encoder i + 1 has passed its index
+  std::uint8_t buttons = 0;  ///< ButtonBits
+  std::uint8_t homed = 0;    ///< bit i: encoder i + 1 has passed its index
 };
 
-/// A command's bytes. Motor counts beyond ±kLargestMotorCount are brought to it, all three by the same factor, so that the force keeps its
-/// direction.
+/// A command's bytes. Motor counts beyond ±kLargestMotorCount are brought to it, all three by the same
+/// factor, so that the force keeps its direction.
 Packet encode(const Command& command) noexcept;
 /// A report's bytes: the device's side of encode(), for models of the device.
 Packet encode(const Report& report) noexcept;
@@ -45,11 +46,12 @@ std::optional<Report> decode_report(std::span<const std::uint8_t, kPacketBytes> 
 /// What 16 bytes say as a command, for models of the device.
 std::optional<Command> decode_command(std::span<const std::uint8_t, kPacketBytes> bytes) noexcept;
 
-/// Motor counts scaled into ±kLargestMotorCount, keeping their ratios; zero where a count isn't finite. Rounded to the nearest.
+/// Motor counts scaled into ±kLargestMotorCount, keeping their ratios; zero where a count isn't finite.
+/// Rounded to the nearest.
 MotorCounts limited(const std::array<double, 3>& counts) noexcept;
 
-/// Finds packets in a stream of bytes that may be split, merged, cut short or broken. Every '<' begins a packet, for no
-/// other byte of a sound packet is one: after any damage the next whole packet is found.
+/// Finds packets in a stream of bytes that may be split, merged, cut short or broken. Every '<' begins a
+/// packet, for no other byte of a sound packet is one: after any damage the next whole packet is found.
 class PacketStream {
  public:
   /// Takes one byte; the packet that it completes, if it is well-formed.
@@ -57,8 +59,10 @@ class PacketStream {
   /// Forgets a packet begun.
   void reset() noexcept { size_ = 0; }
 
-  std::uint64_t malformed() const noexcept { return malformed_; }   ///< packets begun and not ended as they must
-  std::uint64_t stray() const noexcept { return stray_; }           ///< bytes outside any packet
+  std::uint64_t malformed() const noexcept {
+    return malformed_;
+  }                                                        ///< packets begun and not ended as they must
+  std::uint64_t stray() const noexcept { return stray_; }  ///< bytes outside any packet
 
  private:
   Packet packet_{};

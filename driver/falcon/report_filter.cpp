@@ -19,7 +19,8 @@ bool ReportFilter::take(const Report& report, int ticks) noexcept {
   const int limit = kLargestEncoderStep * std::clamp(ticks, 1, 1000);
   bool jumped = false;
   if (was_homed && !first_)
-    for (std::size_t i = 0; i < 3; ++i) jumped = jumped || std::abs(report.encoders[i] - encoders_[i]) > limit;
+    for (std::size_t i = 0; i < 3; ++i)
+      jumped = jumped || std::abs(report.encoders[i] - encoders_[i]) > limit;
   if (jumped) {
     ++jumps_;
     ++jumps_in_a_row_;

@@ -46,7 +46,8 @@ Result<void> SerialLine::write(std::span<const std::uint8_t> bytes, Milliseconds
 std::vector<std::uint8_t> SerialLine::read(std::size_t count, Milliseconds timeout) {
   const auto end = std::chrono::steady_clock::now() + timeout;
   while (received_.size() < count && !port_->lost()) {
-    const auto left = std::chrono::duration_cast<std::chrono::microseconds>(end - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::duration_cast<std::chrono::microseconds>(end - std::chrono::steady_clock::now());
     if (left.count() <= 0) break;
     port_->pump(left);
   }

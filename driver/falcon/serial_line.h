@@ -14,8 +14,8 @@ namespace palpate::falcon {
 /// Values of the serial chip's baud rate request.
 enum class Baud : std::uint16_t { k9600 = 0x4138, k142857 = 0x0015, k1500000 = 0x0002 };
 
-/// The Falcon's serial line: an FTDI chip behind a USB port. Every IN packet of the chip opens with two bytes of modem
-/// status, which are dropped here. For the device's own thread.
+/// The Falcon's serial line: an FTDI chip behind a USB port. Every IN packet of the chip opens with two bytes
+/// of modem status, which are dropped here. For the device's own thread.
 class SerialLine {
  public:
   using Milliseconds = std::chrono::milliseconds;
@@ -24,7 +24,7 @@ class SerialLine {
 
   /// Begins to listen. Before anything else.
   Result<void> begin();
-  Result<void> purge();                       ///< throws away what waits in the chip, both ways, and here
+  Result<void> purge();  ///< throws away what waits in the chip, both ways, and here
   Result<void> set_latency(std::uint8_t milliseconds);
   Result<void> set_baud(Baud baud);
   Result<void> set_frame_8n1();
@@ -55,7 +55,7 @@ class SerialLine {
   static constexpr std::uint8_t kOut = 0x02, kIn = 0x81;
   Result<void> request(std::uint8_t request, std::uint16_t value);
 
-  std::deque<std::uint8_t> received_;   // before port_, whose callback fills it
+  std::deque<std::uint8_t> received_;  // before port_, whose callback fills it
   std::unique_ptr<UsbPort> port_;
 };
 

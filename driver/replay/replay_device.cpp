@@ -9,7 +9,8 @@
 namespace palpate::replay {
 namespace {
 
-// A row stands at a tick when it is less than this from it, s: the recorder prints times to the last bit of tick / 1000.
+// A row stands at a tick when it is less than this from it, s: the recorder prints times to the last bit of
+// tick / 1000.
 constexpr double kSameTime = 1e-9;
 
 class ReplayDevice final : public HapticDevice {
@@ -39,7 +40,7 @@ class ReplayDevice final : public HapticDevice {
   DeviceSample read() noexcept override {
     DeviceSample sample;
     sample.state = open_ ? DeviceState::kReady : DeviceState::kClosed;
-    const double now = static_cast<double>(tick_) / 1000;   // as the recorder counts: the same double
+    const double now = static_cast<double>(tick_) / 1000;  // as the recorder counts: the same double
     sample.time_ns = tick_ * std::int64_t{1'000'000};
     while (at_ + 1 < rows_.size() && rows_[at_ + 1].time_s <= now + kSameTime) ++at_;
     const TraceRow& row = rows_[at_];
@@ -61,16 +62,18 @@ class ReplayDevice final : public HapticDevice {
   std::vector<TraceRow> rows_;
   double max_force_n_, max_torque_nm_;
   std::int64_t tick_ = 0;
-  std::size_t at_ = 0;   // the last row at or before the present tick
+  std::size_t at_ = 0;  // the last row at or before the present tick
   bool open_ = false;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<HapticDevice>> make_replay(const std::string& trace_file, double max_force_n, double max_torque_nm) {
+Result<std::unique_ptr<HapticDevice>> make_replay(const std::string& trace_file, double max_force_n,
+                                                  double max_torque_nm) {
   auto rows = read_trace(trace_file);
   if (!rows) return rows.error();
-  return std::unique_ptr<HapticDevice>(std::make_unique<ReplayDevice>(std::move(*rows), max_force_n, max_torque_nm));
+  return std::unique_ptr<HapticDevice>(
+      std::make_unique<ReplayDevice>(std::move(*rows), max_force_n, max_torque_nm));
 }
 
 }  // namespace palpate::replay

@@ -18,7 +18,8 @@ Result<std::vector<TraceRow>> read_trace(const std::string& file) {
   std::optional<std::size_t> stage_column;
   std::vector<TraceRow> rows;
   const auto names = [&](const std::vector<std::string_view>& found) {
-    if (const auto at = std::find(found.begin(), found.end(), "stage"); at != found.end()) stage_column = static_cast<std::size_t>(at - found.begin());
+    if (const auto at = std::find(found.begin(), found.end(), "stage"); at != found.end())
+      stage_column = static_cast<std::size_t>(at - found.begin());
   };
   const auto take = [&](const CsvRow& row) -> Result<void> {
     const auto time = row.time(0);
@@ -28,8 +29,11 @@ Result<std::vector<TraceRow>> read_trace(const std::string& file) {
     const Result<int> stage = stage_column ? row.stage(*stage_column) : 0;
     if (!stage) return stage.error();
     if (!rows.empty() && *time <= rows.back().time_s)
-      return bad_value(row.place() + ": time " + printed(*time) + " s must be above the one before, " + printed(rows.back().time_s) + " s");
-    if (rows.size() == kMostRows) return bad_value(row.place() + ": a trace has at most " + std::to_string(kMostRows) + " rows, a day of them");
+      return bad_value(row.place() + ": time " + printed(*time) + " s must be above the one before, " +
+                       printed(rows.back().time_s) + " s");
+    if (rows.size() == kMostRows)
+      return bad_value(row.place() + ": a trace has at most " + std::to_string(kMostRows) +
+                       " rows, a day of them");
     rows.push_back({*time, *pose, *stage});
     return {};
   };

@@ -7,7 +7,8 @@ namespace {
 
 std::int16_t axis_at(std::span<const std::uint8_t> report, std::size_t place) noexcept {
   const auto bits = static_cast<std::uint16_t>(report[place] | (report[place + 1] << 8));
-  return std::clamp(static_cast<std::int16_t>(bits), static_cast<std::int16_t>(-kFullDeflection), kFullDeflection);
+  return std::clamp(static_cast<std::int16_t>(bits), static_cast<std::int16_t>(-kFullDeflection),
+                    kFullDeflection);
 }
 
 void put_axes(std::span<const std::uint8_t> report, std::size_t count, std::size_t first, Cap& cap) noexcept {
@@ -29,11 +30,13 @@ bool take(std::span<const std::uint8_t> report, Cap& cap) noexcept {
       return true;
     case 3: {
       std::uint32_t bits = 0;
-      for (std::size_t i = 1; i < std::min<std::size_t>(report.size(), 5); ++i) bits |= std::uint32_t{report[i]} << (8 * (i - 1));
+      for (std::size_t i = 1; i < std::min<std::size_t>(report.size(), 5); ++i)
+        bits |= std::uint32_t{report[i]} << (8 * (i - 1));
       cap.buttons = bits;
       return true;
     }
-    default: return false;
+    default:
+      return false;
   }
 }
 

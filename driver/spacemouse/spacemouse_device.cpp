@@ -14,9 +14,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::uint8_t kIn = 0x81;
-constexpr std::size_t kReportBytes = 16;       // the longest report has 13
+constexpr std::size_t kReportBytes = 16;  // the longest report has 13
 constexpr auto kReopenEvery = milliseconds(250);
-constexpr auto kPump = std::chrono::microseconds(20'000);   // only how soon a stop is seen
+constexpr auto kPump = std::chrono::microseconds(20'000);  // only how soon a stop is seen
 constexpr const char* kUnplugged = "the SpaceMouse is gone; plug it in again";
 
 struct News {
@@ -28,7 +28,10 @@ struct News {
 class SpaceMouseDevice final : public HapticDevice {
  public:
   SpaceMouseDevice(const SpaceMouseSettings& settings, const Pose& start, OpenPort open_port)
-      : settings_(settings), axes_(settings.workspace, Pose{}), rate_(scaled(settings), start), open_port_(std::move(open_port)) {
+      : settings_(settings),
+        axes_(settings.workspace, Pose{}),
+        rate_(scaled(settings), start),
+        open_port_(std::move(open_port)) {
     sample_.pose = start;
   }
   ~SpaceMouseDevice() override { close(); }
@@ -46,7 +49,8 @@ class SpaceMouseDevice final : public HapticDevice {
     auto port = open_port_();
     if (!port) return Error{port.error().code, "spacemouse: " + port.error().sentence};
     port_ = std::move(*port);
-    if (auto begun = begin(); !begun) return Error{begun.error().code, "spacemouse: " + begun.error().sentence};
+    if (auto begun = begin(); !begun)
+      return Error{begun.error().code, "spacemouse: " + begun.error().sentence};
     sample_.state = DeviceState::kReady;
     stop_ = false;
     thread_ = std::thread([this] { run(); });
@@ -92,10 +96,13 @@ class SpaceMouseDevice final : public HapticDevice {
     now_ = {};
     auto listening = port_->listen(kIn, true, kReportBytes, [this](std::span<const std::uint8_t> bytes) {
       if (!take(bytes, now_.cap)) return;
-      now_.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+      now_.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                         std::chrono::steady_clock::now().time_since_epoch())
+                         .count();
       news_.publish(now_);
     });
-    // The ring's light: HID's SET_REPORT of output report 4. A model without one refuses it, which is no fault.
+    // The ring's light: HID's SET_REPORT of output report 4. A model without one refuses it, which is no
+    // fault.
     constexpr std::array<std::uint8_t, 2> light{4, 1};
     if (listening) (void)port_->control(0x21, 0x09, 0x0204, 0, milliseconds(100), light);
     return listening;
@@ -111,7 +118,8 @@ class SpaceMouseDevice final : public HapticDevice {
       now_ = {};
       now_.plugged = false;
       news_.publish(now_);
-      for (int i = 0; i < kReopenEvery / milliseconds(10) && !stop_; ++i) std::this_thread::sleep_for(milliseconds(10));
+      for (int i = 0; i < kReopenEvery / milliseconds(10) && !stop_; ++i)
+        std::this_thread::sleep_for(milliseconds(10));
       if (stop_) return;
       if (auto port = open_port_()) {
         port_ = std::move(*port);
@@ -124,12 +132,12 @@ class SpaceMouseDevice final : public HapticDevice {
   Workspace axes_;
   RateControl rate_;
   OpenPort open_port_;
-  std::unique_ptr<UsbPort> port_;   // the thread's, once it runs
+  std::unique_ptr<UsbPort> port_;  // the thread's, once it runs
   std::thread thread_;
   std::atomic<bool> stop_{false};
   LatestValue<News> news_;
-  News now_;      // the thread's
-  News newest_;   // the control loop's
+  News now_;     // the thread's
+  News newest_;  // the control loop's
   DeviceSample sample_;
 };
 
@@ -137,7 +145,8 @@ class SpaceMouseDevice final : public HapticDevice {
 
 Result<std::unique_ptr<UsbPort>> open_first_spacemouse() { return UsbPort::open(kModels, 0); }
 
-std::unique_ptr<HapticDevice> make_spacemouse(const SpaceMouseSettings& settings, const Pose& start, OpenPort open_port) {
+std::unique_ptr<HapticDevice> make_spacemouse(const SpaceMouseSettings& settings, const Pose& start,
+                                              OpenPort open_port) {
   return std::make_unique<SpaceMouseDevice>(settings, start, std::move(open_port));
 }
 

@@ -9,10 +9,12 @@
 
 namespace palpate {
 
-inline constexpr std::size_t kListAlignment = 8;   ///< bytes from the row's begin to a list's first entry are a multiple of it
+inline constexpr std::size_t kListAlignment =
+    8;  ///< bytes from the row's begin to a list's first entry are a multiple of it
 
-/// Writes values and lists as a row of bytes. One function `template <class Archive> void archive(Archive& a, …)` that calls a(x) for each
-/// member serves both this and ArchiveReader, so that they can't fall out of step. Lists are not copied: they must outlive the archive.
+/// Writes values and lists as a row of bytes. One function `template <class Archive> void archive(Archive& a,
+/// …)` that calls a(x) for each member serves both this and ArchiveReader, so that they can't fall out of
+/// step. Lists are not copied: they must outlive the archive.
 class ArchiveWriter {
  public:
   template <PlainValue T>
@@ -46,9 +48,9 @@ class ArchiveWriter {
     small_.emplace_back(static_cast<const char*>(data), size);
     borrow(small_.back());
   }
-  std::deque<std::string> small_;   // a deque: what pieces_ points to stays where it is
+  std::deque<std::string> small_;  // a deque: what pieces_ points to stays where it is
   std::vector<std::string_view> pieces_;
-  std::size_t bytes_ = 0;   // of all of them
+  std::size_t bytes_ = 0;  // of all of them
 };
 
 /// Reads such a row back. What lies beyond the end reads as zero or empty, and ok() is false from then on.
@@ -58,7 +60,8 @@ class ArchiveReader {
 
   template <PlainValue T>
   void operator()(T& v) {
-    if (const std::string_view piece = take(sizeof v); !piece.empty()) std::memcpy(&v, piece.data(), sizeof v);
+    if (const std::string_view piece = take(sizeof v); !piece.empty())
+      std::memcpy(&v, piece.data(), sizeof v);
   }
   void operator()(std::string& s) { s = take(size(1)); }
   template <PlainValue T>
@@ -104,7 +107,7 @@ class ArchiveReader {
     ok_ = false;
     return 0;
   }
-  std::size_t bytes_ = 0;   // of the whole row
+  std::size_t bytes_ = 0;  // of the whole row
   std::string_view rest_;
   bool ok_ = true;
 };

@@ -10,18 +10,20 @@
 
 namespace palpate {
 
-/// 128 bits that stand for some content (XXH3: fast and even, not made against an adversary; the cache's folder is its owner's alone).
+/// 128 bits that stand for some content (XXH3: fast and even, not made against an adversary; the cache's
+/// folder is its owner's alone).
 struct ContentKey {
   std::uint64_t high = 0, low = 0;
   bool operator==(const ContentKey&) const = default;
-  std::string hex() const;   ///< 32 digits
+  std::string hex() const;  ///< 32 digits
 };
 
 /// Values without padding, whose bytes are their content.
 template <class T>
 concept PlainValue = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 
-/// Works out the key of content that is given piece by piece. Every list is preceded by its length, so that no two contents read alike.
+/// Works out the key of content that is given piece by piece. Every list is preceded by its length, so that
+/// no two contents read alike.
 class KeyBuilder {
  public:
   KeyBuilder();
@@ -33,7 +35,8 @@ class KeyBuilder {
   /// `T` must have no padding: its bytes are hashed.
   template <PlainValue T>
   void value(const T& v) {
-    static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>, "padding would be hashed");
+    static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>,
+                  "padding would be hashed");
     bytes(&v, sizeof v);
   }
   void text(std::string_view s) {
@@ -55,7 +58,8 @@ class KeyBuilder {
   std::unique_ptr<State> state_;
 };
 
-/// Key of the running program: what another build has worked out may mean something else. Zero where the program can't be read.
+/// Key of the running program: what another build has worked out may mean something else. Zero where the
+/// program can't be read.
 const ContentKey& program_key();
 
 }  // namespace palpate

@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In front of every entry's payload. A new layout of anything that is kept needs no new version: the program is part of every key.
+/// In front of every entry's payload. A new layout of anything that is kept needs no new version: the program
+/// is part of every key.
 struct Head {
   char magic[16] = {'p', 'a', 'l', 'p', 'a', 't', 'e', ' ', 'c', 'a', 'c', 'h', 'e', '\n', '\0', '\0'};
   std::uint64_t version = 1;
@@ -27,7 +28,8 @@ struct Head {
 static_assert(sizeof(Head) == 64);
 
 constexpr std::string_view kSuffix = ".palpate";
-constexpr auto kAbandoned = std::chrono::hours(24);   // a half-written file this old has lost its writer (chosen)
+constexpr auto kAbandoned =
+    std::chrono::hours(24);  // a half-written file this old has lost its writer (chosen)
 
 ContentKey checksum_of(const std::vector<std::string_view>& pieces) {
   KeyBuilder builder;
@@ -51,10 +53,12 @@ std::string_view DiskCache::Entry::payload() const { return file_.bytes().substr
 
 std::optional<fs::path> DiskCache::usual_folder() {
   const auto variable = [](const char* name) -> std::string_view {
-    const char* value = std::getenv(name);   // NOLINT(concurrency-mt-unsafe): read before any thread changes it
+    const char* value =
+        std::getenv(name);  // NOLINT(concurrency-mt-unsafe): read before any thread changes it
     return value ? value : "";
   };
-  if (const auto own = variable("PALPATE_CACHE"); !own.empty()) return own == "off" ? std::nullopt : std::optional(fs::path(own));
+  if (const auto own = variable("PALPATE_CACHE"); !own.empty())
+    return own == "off" ? std::nullopt : std::optional(fs::path(own));
   if (const auto xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return fs::path(xdg) / "palpate";
   if (const auto home = variable("HOME"); !home.empty()) return fs::path(home) / ".cache" / "palpate";
   return std::nullopt;
@@ -85,14 +89,15 @@ std::optional<DiskCache::Entry> DiskCache::find(const std::string& kind, const C
     Head head, expected;
     std::memcpy(&head, file->bytes().data(), sizeof head);
     const std::string_view payload = file->bytes().substr(sizeof head);
-    return std::memcmp(head.magic, expected.magic, sizeof head.magic) == 0 && head.version == expected.version && head.key == key &&
-           head.payload_bytes == payload.size() && head.checksum == checksum_of({payload});
+    return std::memcmp(head.magic, expected.magic, sizeof head.magic) == 0 &&
+           head.version == expected.version && head.key == key && head.payload_bytes == payload.size() &&
+           head.checksum == checksum_of({payload});
   };
   if (!sound()) {
     drop(kind, key, "is damaged");
     return std::nullopt;
   }
-  ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);   // used now: the last to go
+  ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used now: the last to go
   return Entry(std::move(*file));
 }
 
@@ -103,12 +108,14 @@ void DiskCache::drop(const std::string& kind, const ContentKey& key, const std::
   fs::remove(path, error);
 }
 
-void DiskCache::keep(const std::string& kind, const ContentKey& key, const std::vector<std::string_view>& pieces, double seconds) {
+void DiskCache::keep(const std::string& kind, const ContentKey& key,
+                     const std::vector<std::string_view>& pieces, double seconds) {
   if (seconds < settings_.worth_s) return;
   std::error_code error;
   fs::create_directories(settings_.folder, error);
   if (!error) fs::permissions(settings_.folder, fs::perms::owner_all, error);
-  if (error) return note(fmt::format("cache: '{}' can't be used: {}", settings_.folder.string(), error.message()));
+  if (error)
+    return note(fmt::format("cache: '{}' can't be used: {}", settings_.folder.string(), error.message()));
 
   Head head;
   head.key = key;
@@ -116,7 +123,8 @@ void DiskCache::keep(const std::string& kind, const ContentKey& key, const std::
   for (const std::string_view piece : pieces) head.payload_bytes += piece.size();
   if (head.payload_bytes > settings_.max_bytes) return;
   static std::atomic<unsigned> count{0};
-  const fs::path path = path_of(kind, key), beside = path.string() + fmt::format(".{}.{}", ::getpid(), count++);
+  const fs::path path = path_of(kind, key),
+                 beside = path.string() + fmt::format(".{}.{}", ::getpid(), count++);
   const int file = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   bool written = file >= 0 && write_all(file, {reinterpret_cast<const char*>(&head), sizeof head});
   for (const std::string_view piece : pieces) written = written && write_all(file, piece);
@@ -140,7 +148,7 @@ void DiskCache::make_room() {
   std::uint64_t sum = 0;
   std::error_code error;
   for (fs::directory_iterator it(settings_.folder, error), end; !error && it != end; it.increment(error)) {
-    std::error_code gone;   // another process may have removed it
+    std::error_code gone;  // another process may have removed it
     const std::string name = it->path().filename().string();
     const auto used = it->last_write_time(gone);
     if (gone || name.find(kSuffix) == std::string::npos) continue;

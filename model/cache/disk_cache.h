@@ -13,15 +13,17 @@
 
 namespace palpate {
 
-/// Results of long work, kept in a folder under the key of all that they depend on, the program included. It can only save time: whatever is
-/// damaged, missing or can't be written counts as not there, with a note. Entries used longest ago go first when the folder grows too large.
-/// May be used by several threads and processes at once.
+/// Results of long work, kept in a folder under the key of all that they depend on, the program included. It
+/// can only save time: whatever is damaged, missing or can't be written counts as not there, with a note.
+/// Entries used longest ago go first when the folder grows too large. May be used by several threads and
+/// processes at once.
 class DiskCache {
  public:
   struct Settings {
     std::filesystem::path folder;
-    std::uint64_t max_bytes = std::uint64_t{8} << 30;   ///< of all entries (chosen: some scenes of ten million triangles)
-    double worth_s = 0.25;                              ///< work that took less is not kept
+    std::uint64_t max_bytes = std::uint64_t{8}
+                              << 30;  ///< of all entries (chosen: some scenes of ten million triangles)
+    double worth_s = 0.25;            ///< work that took less is not kept
   };
 
   /// An entry, mapped.
@@ -37,14 +39,16 @@ class DiskCache {
 
   explicit DiskCache(Settings settings) : settings_(std::move(settings)) {}
 
-  /// Where the environment wants it: PALPATE_CACHE (a folder; `off`: no cache), else XDG_CACHE_HOME/palpate, else HOME/.cache/palpate.
-  /// Empty: nowhere.
+  /// Where the environment wants it: PALPATE_CACHE (a folder; `off`: no cache), else XDG_CACHE_HOME/palpate,
+  /// else HOME/.cache/palpate. Empty: nowhere.
   static std::optional<std::filesystem::path> usual_folder();
 
   /// `kind` is a short word, part of the file's name.
   std::optional<Entry> find(const std::string& kind, const ContentKey& key);
-  /// Keeps `pieces`, one after the other, if making them took `seconds` that are worth it. Written beside, then renamed: never half there.
-  void keep(const std::string& kind, const ContentKey& key, const std::vector<std::string_view>& pieces, double seconds);
+  /// Keeps `pieces`, one after the other, if making them took `seconds` that are worth it. Written beside,
+  /// then renamed: never half there.
+  void keep(const std::string& kind, const ContentKey& key, const std::vector<std::string_view>& pieces,
+            double seconds);
   /// Drops an entry whose checksum is right and whose content is not.
   void drop(const std::string& kind, const ContentKey& key, const std::string& why);
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kKind = "geometry";
 
-// One list of members for writing and reading. --------------------------------------------------------------------------
+// One list of members for writing and reading.
+// --------------------------------------------------------------------------
 
 template <class Archive, class Grid>
 void archive_grid(Archive& a, Grid& grid) {
@@ -99,14 +100,16 @@ void archive_loaded(Archive& a, Loaded& loaded) {
   a.each(loaded.warnings, [](Archive& warning_archive, auto& warning) { warning_archive(warning); });
 }
 
-// ---- the key -----------------------------------------------------------------------------------------------------------
+// ---- the key
+// -----------------------------------------------------------------------------------------------------------
 
 /// Whether a binary glTF may name other files: its JSON chunk, the first, holds a "uri".
 bool glb_stands_alone(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(path.c_str(), "rbe"), &std::fclose);
   std::array<unsigned char, 20> head{};
   if (!in || std::fread(head.data(), 1, head.size(), in.get()) != head.size()) return false;
-  const std::size_t json = head[12] | std::size_t{head[13]} << 8 | std::size_t{head[14]} << 16 | std::size_t{head[15]} << 24;
+  const std::size_t json =
+      head[12] | std::size_t{head[13]} << 8 | std::size_t{head[14]} << 16 | std::size_t{head[15]} << 24;
   if (json > (std::size_t{64} << 20)) return false;
   std::string text(json, '\0');
   return std::fread(text.data(), 1, json, in.get()) == json && text.find("\"uri\"") == std::string::npos;
@@ -124,15 +127,18 @@ bool stands_alone(const std::string& path) {
   const auto dot = path.rfind('.');
   if (dot == std::string::npos) return false;
   std::string ending = path.substr(dot + 1);
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == "stl" || ending == "ply" || ending == "off" || ending == "3mf" || ending == "iges" || ending == "igs" || ending == "brep" || ending == "brp" ||
-         ((ending == "step" || ending == "stp") && step_stands_alone(path)) || (ending == "glb" && glb_stands_alone(path));
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == "stl" || ending == "ply" || ending == "off" || ending == "3mf" || ending == "iges" ||
+         ending == "igs" || ending == "brep" || ending == "brp" ||
+         ((ending == "step" || ending == "stp") && step_stands_alone(path)) ||
+         (ending == "glb" && glb_stands_alone(path));
 }
 
 namespace {
 
 bool add_source(KeyBuilder& key, const MeshSource& source) {
-  key.text(source.file);   // its name is in warnings
+  key.text(source.file);  // its name is in warnings
   if (!source.file.empty() && (!stands_alone(source.file) || !key.file(source.file))) return false;
   key.value(source.scale);
   key.text(source.part);
@@ -164,7 +170,7 @@ class KeyArchive {
   explicit KeyArchive(KeyBuilder& key) : key_(key) {}
   template <PlainValue T>
   void operator()(const T& v) {
-    key_.bytes(&v, sizeof v);   // numbers and vectors of numbers: no padding
+    key_.bytes(&v, sizeof v);  // numbers and vectors of numbers: no padding
   }
   template <PlainValue T>
   void operator()(const std::vector<T>& v) {
@@ -182,7 +188,7 @@ std::optional<ContentKey> geometry_key(const Scene& scene) {
   KeyBuilder key;
   key.value(program_key().high);
   key.value(program_key().low);
-  key.text(scene.file);   // its name is in warnings and errors
+  key.text(scene.file);  // its name is in warnings and errors
   key.value(scene.statics.size());
   for (const StaticBody& body : scene.statics) {
     if (!add_source(key, body.source)) return std::nullopt;

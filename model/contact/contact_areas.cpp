@@ -14,7 +14,9 @@ std::int64_t floor_third(std::int64_t sum) { return sum >= 0 ? sum / 3 : -((2 - 
 /// Triangles joined into sets, each known by its first member.
 class Sets {
  public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::uint32_t{0}); }
+  explicit Sets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
+  }
   std::uint32_t first(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
@@ -22,8 +24,10 @@ class Sets {
   void join(std::uint32_t a, std::uint32_t b) {
     a = first(a);
     b = first(b);
-    if (a < b) parent_[b] = a;
-    else parent_[a] = b;
+    if (a < b)
+      parent_[b] = a;
+    else
+      parent_[a] = b;
   }
 
  private:
@@ -55,11 +59,14 @@ struct Bounds {
   }
 };
 
-/// C_m to areas by the chapter's rule (EXACTNESS section 5): every area whose sphere holds the triangle's centroid, else the nearest.
-void associate(const SceneGeometry& geometry, const LatticePose& pose, const std::vector<Bounds>& bounds, Contacts& contacts) {
+/// C_m to areas by the chapter's rule (EXACTNESS section 5): every area whose sphere holds the triangle's
+/// centroid, else the nearest.
+void associate(const SceneGeometry& geometry, const LatticePose& pose, const std::vector<Bounds>& bounds,
+               Contacts& contacts) {
   if (contacts.areas.empty()) return;
   std::vector<std::uint32_t> mobile;
-  for (const auto* set : {&contacts.cmt, &contacts.bmt, &contacts.imt}) mobile.insert(mobile.end(), set->begin(), set->end());
+  for (const auto* set : {&contacts.cmt, &contacts.bmt, &contacts.imt})
+    mobile.insert(mobile.end(), set->begin(), set->end());
   std::sort(mobile.begin(), mobile.end());
   for (const std::uint32_t m : mobile) {
     Long3 sum(0);
@@ -69,8 +76,9 @@ void associate(const SceneGeometry& geometry, const LatticePose& pose, const std
     std::int64_t nearest_distance = -1;
     bool held = false;
     for (std::size_t a = 0; a < bounds.size(); ++a) {
-      const Long3 away = std::int64_t{2} * g - Long3(bounds[a].low) - Long3(bounds[a].high), diagonal = Long3(bounds[a].high) - Long3(bounds[a].low);
-      const std::int64_t distance = away.x * away.x + away.y * away.y + away.z * away.z;   // within 3 · 2^60
+      const Long3 away = std::int64_t{2} * g - Long3(bounds[a].low) - Long3(bounds[a].high),
+                  diagonal = Long3(bounds[a].high) - Long3(bounds[a].low);
+      const std::int64_t distance = away.x * away.x + away.y * away.y + away.z * away.z;  // within 3 · 2^60
       if (distance <= diagonal.x * diagonal.x + diagonal.y * diagonal.y + diagonal.z * diagonal.z) {
         contacts.areas[a].mobile_ids.push_back(m);
         held = true;
@@ -90,7 +98,7 @@ Int3 lattice_direction(const Long3& sum) {
   while (largest >> right >= std::int64_t{1} << 29) ++right;
   Int3 out;
   for (int k = 0; k < 3; ++k) {
-    const std::int64_t size = std::llabs(sum[k]) << left >> right;   // one of them is 0
+    const std::int64_t size = std::llabs(sum[k]) << left >> right;  // one of them is 0
     out[k] = static_cast<std::int32_t>(sum[k] < 0 ? -size : size);
   }
   return out;
@@ -102,9 +110,11 @@ void gather_areas(const SceneGeometry& geometry, const LatticePose& pose, Contac
   const LatticeMesh& mesh = geometry.mockup;
   Sets areas(carriers.size()), zones(carriers.size());
   for (std::uint32_t i = 0; i < carriers.size(); ++i)
-    for (std::uint32_t n = mesh.neighbour_begin[carriers[i].id]; n < mesh.neighbour_begin[carriers[i].id + 1]; ++n) {
+    for (std::uint32_t n = mesh.neighbour_begin[carriers[i].id]; n < mesh.neighbour_begin[carriers[i].id + 1];
+         ++n) {
       const std::uint32_t other = mesh.neighbours[n] >> 1;
-      const auto found = std::lower_bound(carriers.begin(), carriers.end(), other, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
+      const auto found = std::lower_bound(carriers.begin(), carriers.end(), other,
+                                          [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
       if (found == carriers.end() || found->id != other) continue;
       const auto j = static_cast<std::uint32_t>(found - carriers.begin());
       areas.join(i, j);
@@ -134,8 +144,11 @@ void gather_areas(const SceneGeometry& geometry, const LatticePose& pose, Contac
     for (int k = 0; k < 3; ++k) bounds[area_at[first]].include(mesh.corner(carrier.id, k));
   }
   for (ContactArea& area : contacts.areas) {
-    // A push that may not fit 64 bits loses its low 32, all of its components alike: terms within 2^62 >> 32, fewer than 2^31 of them.
-    const auto large = [](const WideSum& push) { return std::llabs(push.high + (push.low >> 32)) >= std::int64_t{1} << 29; };
+    // A push that may not fit 64 bits loses its low 32, all of its components alike: terms within 2^62 >> 32,
+    // fewer than 2^31 of them.
+    const auto large = [](const WideSum& push) {
+      return std::llabs(push.high + (push.low >> 32)) >= std::int64_t{1} << 29;
+    };
     const bool wide = std::any_of(area.field.push.begin(), area.field.push.end(), large);
     Long3 sum(0);
     for (int k = 0; k < 3; ++k) {

@@ -4,7 +4,8 @@
 namespace palpate {
 
 /// A contact as the force law extrapolates it: it pushes along `normal` with
-/// max(0, force − stiffness · (normal·Δgc + lever·Δθ)), Δ the motion since the pose it belongs to. World frame.
+/// max(0, force − stiffness · (normal·Δgc + lever·Δθ)), Δ the motion since the pose it belongs to. World
+/// frame.
 struct ContactPlane {
   Vec3 normal{0};        ///< unit
   Vec3 lever{0};         ///< torque about gc per newton, m

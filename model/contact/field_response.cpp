@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kQ20 = 1048576.0, kQ30 = 1073741824.0;
 
-Vec3 to_vector(const std::array<WideSum, 3>& sums) { return Vec3(to_double(sums[0]), to_double(sums[1]), to_double(sums[2])); }
+Vec3 to_vector(const std::array<WideSum, 3>& sums) {
+  return Vec3(to_double(sums[0]), to_double(sums[1]), to_double(sums[2]));
+}
 
 /// What a sample's φ w of one is worth, N: k' · step · spacing².
 double newton(const SceneGeometry& geometry, double stiffness) {
@@ -23,14 +25,16 @@ Vec3 origin_of(const LatticePose& pose, const SceneGeometry& geometry) {
 }
 
 /// Force of a bin, and its torque about gc.
-Wrench wrench_of(const FieldBin& bin, const SceneGeometry& geometry, double newtons, const Vec3& origin, const Vec3& gc) {
+Wrench wrench_of(const FieldBin& bin, const SceneGeometry& geometry, double newtons, const Vec3& origin,
+                 const Vec3& gc) {
   Wrench out;
   out.force = (newtons / kQ30) * to_vector(bin.push);
   out.torque = newtons * geometry.lattice.step_m * to_vector(bin.turn) + glm::cross(origin - gc, out.force);
   return out;
 }
 
-/// Main axes of a symmetric 2×2 matrix [[a, b], [b, c]]: larger and smaller eigenvalue, and the first one's direction.
+/// Main axes of a symmetric 2×2 matrix [[a, b], [b, c]]: larger and smaller eigenvalue, and the first one's
+/// direction.
 struct Axes {
   double large, small, x, y;
 };
@@ -49,7 +53,8 @@ Axes main_axes(double a, double b, double c) {
 
 }  // namespace
 
-Wrench field_wrench(const FieldSums& field, const LatticePose& pose, const SceneGeometry& geometry, double stiffness, const Vec3& gc) {
+Wrench field_wrench(const FieldSums& field, const LatticePose& pose, const SceneGeometry& geometry,
+                    double stiffness, const Vec3& gc) {
   const double newtons = newton(geometry, stiffness);
   const Vec3 origin = origin_of(pose, geometry);
   Wrench sum;
@@ -62,10 +67,11 @@ Wrench field_wrench(const FieldSums& field, const LatticePose& pose, const Scene
   return sum;
 }
 
-void field_planes(const FieldSums& field, const LatticePose& pose, const SceneGeometry& geometry, double stiffness, const Vec3& gc, std::vector<ContactPlane>& planes) {
+void field_planes(const FieldSums& field, const LatticePose& pose, const SceneGeometry& geometry,
+                  double stiffness, const Vec3& gc, std::vector<ContactPlane>& planes) {
   planes.clear();
   const double newtons = newton(geometry, stiffness), step = geometry.lattice.step_m;
-  const double lever = step * std::ldexp(1.0, lever_shift(geometry.tool_radius));   // m of one in give_at
+  const double lever = step * std::ldexp(1.0, lever_shift(geometry.tool_radius));  // m of one in give_at
   const Vec3 origin = origin_of(pose, geometry);
   for (const FieldBin& bin : field.bins) {
     if (bin.samples == 0) continue;
@@ -82,13 +88,18 @@ void field_planes(const FieldSums& field, const LatticePose& pose, const SceneGe
 
     // Where the surface gives way, and how far that spreads across the push.
     const auto mean = [&](std::size_t k) { return static_cast<double>(bin.give_at[k]) / give; };
-    const auto spread = [&](std::size_t i, std::size_t k, std::size_t l) { return 256 * static_cast<double>(bin.give_spread[i]) / give - mean(k) * mean(l); };
+    const auto spread = [&](std::size_t i, std::size_t k, std::size_t l) {
+      return 256 * static_cast<double>(bin.give_spread[i]) / give - mean(k) * mean(l);
+    };
     const Vec3 centre = origin + lever * Vec3(mean(0), mean(1), mean(2));
-    const double xx = spread(0, 0, 0), yy = spread(1, 1, 1), zz = spread(2, 2, 2), xy = spread(3, 0, 1), yz = spread(4, 1, 2), zx = spread(5, 2, 0);
+    const double xx = spread(0, 0, 0), yy = spread(1, 1, 1), zz = spread(2, 2, 2), xy = spread(3, 0, 1),
+                 yz = spread(4, 1, 2), zx = spread(5, 2, 0);
     const Vec3 side = std::fabs(n.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
     const Vec3 e = glm::normalize(glm::cross(n, side)), f = glm::cross(n, e);
     const auto along = [&](const Vec3& a, const Vec3& b) {
-      return lever * lever * (a.x * b.x * xx + a.y * b.y * yy + a.z * b.z * zz + (a.x * b.y + a.y * b.x) * xy + (a.y * b.z + a.z * b.y) * yz + (a.z * b.x + a.x * b.z) * zx);
+      return lever * lever *
+             (a.x * b.x * xx + a.y * b.y * yy + a.z * b.z * zz + (a.x * b.y + a.y * b.x) * xy +
+              (a.y * b.z + a.z * b.y) * yz + (a.z * b.x + a.x * b.z) * zx);
     };
     const Axes axes = main_axes(along(e, e), along(e, f), along(f, f));
     const Vec3 first = axes.x * e + axes.y * f, second = glm::cross(n, first);
@@ -96,10 +107,11 @@ void field_planes(const FieldSums& field, const LatticePose& pose, const SceneGe
     const Vec3 about_centre = wrench.torque - glm::cross(centre - gc, wrench.force);
     const Vec3 away = glm::cross(n, about_centre) / force;
 
-    Vec3 left = about_centre;   // torque that the planes' places don't explain
+    Vec3 left = about_centre;  // torque that the planes' places don't explain
     const std::size_t begin = planes.size();
-    constexpr double kLeastSpread = 1e-6;   // m: nearer than that two planes are one (chosen)
-    const double reach_1 = std::sqrt(2 * std::max(axes.large, 0.0)), reach_2 = std::sqrt(2 * std::max(axes.small, 0.0));
+    constexpr double kLeastSpread = 1e-6;  // m: nearer than that two planes are one (chosen)
+    const double reach_1 = std::sqrt(2 * std::max(axes.large, 0.0)),
+                 reach_2 = std::sqrt(2 * std::max(axes.small, 0.0));
     if (reach_1 < kLeastSpread) {
       plane.lever = glm::cross(centre - gc, n) + left / force;
       planes.push_back(plane);

@@ -7,8 +7,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kFarthest = 1e4;   // m
-constexpr double kLatest = 1e6;     // s: eleven days
+constexpr double kFarthest = 1e4;  // m
+constexpr double kLatest = 1e6;    // s: eleven days
 
 /// A piece of the file, short enough and plain enough for a sentence.
 std::string quoted(std::string_view text) {
@@ -47,13 +47,15 @@ Result<double> CsvRow::number(std::size_t column) const {
   const std::string_view cell = cells_[column];
   double value = 0;
   const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (fault != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) return bad_value(place() + ": " + quoted(cell) + " is not a finite number");
+  if (fault != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+    return bad_value(place() + ": " + quoted(cell) + " is not a finite number");
   return value;
 }
 
 Result<double> CsvRow::time(std::size_t column) const {
   const auto value = number(column);
-  if (value && (*value < 0 || *value > kLatest)) return bad_value(place() + ": time " + printed(*value) + " s is not from 0 to 1000000 s");
+  if (value && (*value < 0 || *value > kLatest))
+    return bad_value(place() + ": time " + printed(*value) + " s is not from 0 to 1000000 s");
   return value;
 }
 
@@ -71,17 +73,22 @@ Result<Pose> CsvRow::pose(std::size_t column) const {
     const auto value = number(column + i);
     if (!value) return value.error();
     values[i] = *value;
-    if (i < 3 && std::abs(*value) > kFarthest) return bad_value(place() + ": position " + printed(*value) + " m is beyond 10000 m");
+    if (i < 3 && std::abs(*value) > kFarthest)
+      return bad_value(place() + ": position " + printed(*value) + " m is beyond 10000 m");
   }
-  const double square = values[3] * values[3] + values[4] * values[4] + values[5] * values[5] + values[6] * values[6];
+  const double square =
+      values[3] * values[3] + values[4] * values[4] + values[5] * values[5] + values[6] * values[6];
   if (!(std::abs(square - 1) <= kUnitQuaternionTolerance))
-    return bad_value(place() + ": the rotation's length is " + printed(std::sqrt(square)) + "; a unit quaternion has length 1");
+    return bad_value(place() + ": the rotation's length is " + printed(std::sqrt(square)) +
+                     "; a unit quaternion has length 1");
   return Pose{{values[0], values[1], values[2]}, Quat(values[6], values[3], values[4], values[5])};
 }
 
-Result<void> read_csv(const std::string& file, const CsvHeader& header, const std::function<void(const std::vector<std::string_view>& names)>& names,
+Result<void> read_csv(const std::string& file, const CsvHeader& header,
+                      const std::function<void(const std::vector<std::string_view>& names)>& names,
                       const std::function<Result<void>(const CsvRow& row)>& take) {
-  const std::string wanted = (header.more ? "it must begin with \"" : "it must be \"") + std::string(header.columns) + "\"";
+  const std::string wanted =
+      (header.more ? "it must begin with \"" : "it must be \"") + std::string(header.columns) + "\"";
   std::ifstream in(file, std::ios::binary);
   if (!in) return bad_value(file + " cannot be opened");
   std::string line;
@@ -98,7 +105,9 @@ Result<void> read_csv(const std::string& file, const CsvHeader& header, const st
     }
     if (line.empty()) continue;
     const CsvRow row(file, number, cells_of(line));
-    if (row.size() != columns) return bad_value(row.place() + " has " + std::to_string(row.size()) + " values; the header has " + std::to_string(columns));
+    if (row.size() != columns)
+      return bad_value(row.place() + " has " + std::to_string(row.size()) + " values; the header has " +
+                       std::to_string(columns));
     if (Result<void> taken = take(row); !taken) return taken.error();
   }
   if (in.bad() || (columns == 0 && !in.eof())) return bad_value(file + " cannot be read");

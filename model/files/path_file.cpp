@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kFreeHeader = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage";
 constexpr std::string_view kGuidedHeader = "time_s,travel_m,rx_rad,ry_rad,rz_rad,stage";
 constexpr std::string_view kGuideHeader = "travel_m,x_m,y_m,z_m,qx,qy,qz,qw";
-constexpr double kFarthest = 1e4;   ///< m of travel; a scene is below 100 m or warned about
+constexpr double kFarthest = 1e4;  ///< m of travel; a scene is below 100 m or warned about
 
 Result<Pose> unit_pose(const CsvRow& row) {
   auto pose = row.pose(1);
@@ -29,8 +29,10 @@ Result<PathPoint> guided_point(const CsvRow& row) {
     const auto value = row.number(i + 1);
     if (!value) return value.error();
     values[i] = *value;
-    if (i == 0 && std::abs(*value) > kFarthest) return bad_value(row.place() + ": travel " + printed(*value) + " m is beyond 10000 m");
-    if (i > 0 && std::abs(*value) > 2 * kPi) return bad_value(row.place() + ": rotation " + printed(*value) + " rad is beyond a whole turn");
+    if (i == 0 && std::abs(*value) > kFarthest)
+      return bad_value(row.place() + ": travel " + printed(*value) + " m is beyond 10000 m");
+    if (i > 0 && std::abs(*value) > 2 * kPi)
+      return bad_value(row.place() + ": rotation " + printed(*value) + " rad is beyond a whole turn");
   }
   PathPoint point;
   point.travel_m = values[0];
@@ -39,8 +41,8 @@ Result<PathPoint> guided_point(const CsvRow& row) {
 }
 
 void add_pose(std::string& out, const Pose& pose) {
-  for (const double value : {pose.position.x, pose.position.y, pose.position.z, pose.rotation.x, pose.rotation.y,
-                             pose.rotation.z, pose.rotation.w})
+  for (const double value : {pose.position.x, pose.position.y, pose.position.z, pose.rotation.x,
+                             pose.rotation.y, pose.rotation.z, pose.rotation.w})
     out += ',' + printed(value);
 }
 
@@ -62,7 +64,8 @@ Result<std::vector<PathPoint>> read_path(const std::string& file, bool guided) {
     const auto time = row.time(0);
     if (!time) return time.error();
     if (!path.empty() && *time <= path.back().time_s)
-      return bad_value(row.place() + ": time " + printed(*time) + " s must be above the one before, " + printed(path.back().time_s) + " s");
+      return bad_value(row.place() + ": time " + printed(*time) + " s must be above the one before, " +
+                       printed(path.back().time_s) + " s");
     const auto stage = row.stage(row.size() - 1);
     if (!stage) return stage.error();
     point.time_s = *time;
@@ -70,7 +73,8 @@ Result<std::vector<PathPoint>> read_path(const std::string& file, bool guided) {
     path.push_back(point);
     return {};
   };
-  if (auto read = read_csv(file, {guided ? kGuidedHeader : kFreeHeader}, nullptr, take); !read) return read.error();
+  if (auto read = read_csv(file, {guided ? kGuidedHeader : kFreeHeader}, nullptr, take); !read)
+    return read.error();
   if (path.empty()) return bad_value(file + " has no point");
   return path;
 }
@@ -81,7 +85,8 @@ Result<std::vector<GuidePoint>> read_guide(const std::string& file) {
     const auto travel = row.number(0);
     if (!travel) return travel.error();
     if (!guide.empty() && *travel <= guide.back().travel_m)
-      return bad_value(row.place() + ": travel " + printed(*travel) + " m must be above the one before, " + printed(guide.back().travel_m) + " m");
+      return bad_value(row.place() + ": travel " + printed(*travel) + " m must be above the one before, " +
+                       printed(guide.back().travel_m) + " m");
     const auto pose = unit_pose(row);
     if (!pose) return pose.error();
     guide.push_back({*travel, *pose});
@@ -122,8 +127,9 @@ std::string guide_text(const std::vector<GuidePoint>& guide) {
 Pose guide_frame(const std::vector<GuidePoint>& guide, double travel_m) {
   if (travel_m <= guide.front().travel_m) return guide.front().frame;
   if (travel_m >= guide.back().travel_m) return guide.back().frame;
-  const auto after = std::upper_bound(guide.begin(), guide.end(), travel_m,
-                                      [](double travel, const GuidePoint& point) { return travel < point.travel_m; });
+  const auto after =
+      std::upper_bound(guide.begin(), guide.end(), travel_m,
+                       [](double travel, const GuidePoint& point) { return travel < point.travel_m; });
   const GuidePoint &a = *(after - 1), &b = *after;
   const double share = (travel_m - a.travel_m) / (b.travel_m - a.travel_m);
   const Vec3 turn = rotation_vector(b.frame.rotation * glm::conjugate(a.frame.rotation));

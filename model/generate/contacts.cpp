@@ -13,17 +13,17 @@
 //                |
 //              handle
 //
-// The cylinder reaches higher than the blocks and the blocks reach lower: high up the clamp meets the cylinder alone,
-// low down the edges alone, between them all four at once. All lengths in metres, all chosen.
+// The cylinder reaches higher than the blocks and the blocks reach lower: high up the clamp meets the
+// cylinder alone, low down the edges alone, between them all four at once. All lengths in metres, all chosen.
 namespace palpate {
 namespace {
 
 constexpr double kCylinderRadius = 0.030, kCylinderTop = 0.200;
 constexpr double kBlockBottom = -0.080, kBlockTop = 0.120;
-constexpr double kEdgeX = 0.075;                              // of the blocks' edges
-constexpr double kPadRadius = 0.008, kPadX = 0.027;           // pads at (±kPadX, 0) of the tool
-constexpr double kBarFront = -0.060;                          // y of the bar's front face in the tool
-constexpr double kArm = 0.030, kHalfWidth = 0.006, kHalfHeight = 0.015;   // of the bow
+constexpr double kEdgeX = 0.075;                     // of the blocks' edges
+constexpr double kPadRadius = 0.008, kPadX = 0.027;  // pads at (±kPadX, 0) of the tool
+constexpr double kBarFront = -0.060;                 // y of the bar's front face in the tool
+constexpr double kArm = 0.030, kHalfWidth = 0.006, kHalfHeight = 0.015;  // of the bow
 
 /// y of the tool when the pads touch the cylinder.
 double touching_y() {
@@ -33,11 +33,13 @@ double touching_y() {
 
 std::vector<pieces::Piece> mockup() {
   const Quat eighth = rotation_about({0, 0, 1}, kPi / 4);
-  const double edge_y = touching_y() + kBarFront;             // pads and bar touch at the same moment
+  const double edge_y = touching_y() + kBarFront;  // pads and bar touch at the same moment
   return {
       pieces::cylinder("cylinder", 1, kCylinderRadius, kCylinderTop, 24, {}),
-      pieces::block("right block", {0, 0, kBlockBottom}, {0.070, 0.035, kBlockTop}, 1, {{kEdgeX, edge_y, 0}, eighth}),
-      pieces::block("left block", {0, 0, kBlockBottom}, {0.035, 0.070, kBlockTop}, 1, {{-kEdgeX, edge_y, 0}, eighth}),
+      pieces::block("right block", {0, 0, kBlockBottom}, {0.070, 0.035, kBlockTop}, 1,
+                    {{kEdgeX, edge_y, 0}, eighth}),
+      pieces::block("left block", {0, 0, kBlockBottom}, {0.035, 0.070, kBlockTop}, 1,
+                    {{-kEdgeX, edge_y, 0}, eighth}),
   };
 }
 
@@ -47,7 +49,7 @@ std::vector<pieces::Piece> clamp() {
     const double f = p.fraction();
     const Turn t = turn_by(-0.5 * f);
     Pose pose;
-    double quarters = -1;   // heading: −y
+    double quarters = -1;  // heading: −y
     if (p.span == 0) pose.position = {kPadX, -kArm * f, 0};
     if (p.span == 1) {
       pose.position = {kPadX * t.cos, -kArm + kPadX * t.sin, 0};
@@ -78,8 +80,8 @@ std::vector<pieces::Piece> clamp() {
   };
 }
 
-/// Comes on along y, presses, twists about all three axes while pressing (`yaw`: about z, `tilt`: about x and y), and goes back.
-/// With a `skew` about z one side comes first.
+/// Comes on along y, presses, twists about all three axes while pressing (`yaw`: about z, `tilt`: about x and
+/// y), and goes back. With a `skew` about z one side comes first.
 void collide(Motion& motion, double height, double push, double yaw, double tilt, double skew, int stage) {
   const double away = touching_y() - 0.030, pressed = touching_y() + push;
   motion.go({0, away, height}, {0, 0, skew}, 0.8, stage);
@@ -104,7 +106,8 @@ GeneratedScene generate_contacts(std::uint64_t triangles, std::uint64_t tool_tri
   scene.mockup = pieces::tessellate(mockup(), triangles);
   scene.tool = pieces::tessellate(clamp(), tool_triangles);
 
-  // The hand pulls with 135 N/m (the default), the contact pushes back with 2000 N/m an area: 20 mm of intent give 1–3 mm of depth.
+  // The hand pulls with 135 N/m (the default), the contact pushes back with 2000 N/m an area: 20 mm of intent
+  // give 1–3 mm of depth.
   Motion motion({0, touching_y() - 0.040, 0.160}, Vec3(0), 1);
   motion.rest(0.4, 1);
   collide(motion, 0.160, 0.020, 0.06, 0.25, 0, 1);
@@ -112,7 +115,8 @@ GeneratedScene generate_contacts(std::uint64_t triangles, std::uint64_t tool_tri
   collide(motion, 0.060, 0.030, 0.03, 0.12, 0, 3);
   motion.rest(0.4, 3);
   scene.path = motion.take();
-  scene.stage_names = {"two areas on the cylinder", "the corners of the blocks, one and then both", "four areas at once"};
+  scene.stage_names = {"two areas on the cylinder", "the corners of the blocks, one and then both",
+                       "four areas at once"};
   scene.actuated = {true, true, true, true, true, true};
   return scene;
 }

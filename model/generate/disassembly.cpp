@@ -5,8 +5,9 @@
 #include "model/generate/motion.h"
 #include "model/generate/pieces.h"
 
-// A pipe of 44 mm leaves a wall along x, bends left, up and away, and ends open to the clamp. Behind it: an engine's plates, casings,
-// cylinders, bolts. All lengths in metres, all chosen. The clamp's frame is the guide's: x along the pipe, z where its ears are.
+// A pipe of 44 mm leaves a wall along x, bends left, up and away, and ends open to the clamp. Behind it: an
+// engine's plates, casings, cylinders, bolts. All lengths in metres, all chosen. The clamp's frame is the
+// guide's: x along the pipe, z where its ears are.
 namespace palpate {
 namespace {
 
@@ -15,9 +16,10 @@ using pieces::GridPlace;
 using pieces::Piece;
 
 constexpr double kPipeRadius = 0.022, kBendRadius = 0.140;
-constexpr double kBore = 0.030, kBand = 0.0075, kHalfWidth = 0.022;     // clamp, unfastened: 8 mm of play on the pipe
-constexpr double kGap = 22.0 / 360;                                    // turns either side of z
-constexpr double kPortal = 0.200, kPortalThickness = 0.012;            // the first obstacle's front, along the pipe
+constexpr double kBore = 0.030, kBand = 0.0075,
+                 kHalfWidth = 0.022;                         // clamp, unfastened: 8 mm of play on the pipe
+constexpr double kGap = 22.0 / 360;                          // turns either side of z
+constexpr double kPortal = 0.200, kPortalThickness = 0.012;  // the first obstacle's front, along the pipe
 constexpr double kSlotHalf = 0.024, kEarTop = 0.066, kEarOutside = 0.015;
 
 Centreline pipe_line() {
@@ -46,13 +48,15 @@ Piece pipe(const Centreline& line) {
   return pieces::swept("pipe", 0.45, {{2 * kPi * kPipeRadius, 12}}, circle, spine, frame, kPipeRadius);
 }
 
-/// The first obstacle: a plate across the pipe with an opening for the clamp's band and a slot above it for its ears.
+/// The first obstacle: a plate across the pipe with an opening for the clamp's band and a slot above it for
+/// its ears.
 Piece portal() {
-  const Outline opening{{0.046, -0.046}, {0.046, 0.041}, {kSlotHalf, 0.041}, {kSlotHalf, 0.074},
-                        {-kSlotHalf, 0.074}, {-kSlotHalf, 0.041}, {-0.046, 0.041}, {-0.046, -0.046}};
-  const Outline outside{{0.085, -0.150}, {0.085, 0.020}, {0.085, 0.105}, {0.045, 0.105},
+  const Outline opening{{0.046, -0.046},     {0.046, 0.041},      {kSlotHalf, 0.041}, {kSlotHalf, 0.074},
+                        {-kSlotHalf, 0.074}, {-kSlotHalf, 0.041}, {-0.046, 0.041},    {-0.046, -0.046}};
+  const Outline outside{{0.085, -0.150}, {0.085, 0.020},  {0.085, 0.105},  {0.045, 0.105},
                         {-0.045, 0.105}, {-0.085, 0.105}, {-0.085, 0.020}, {-0.085, -0.150}};
-  return pieces::framed_opening("portal", 1, opening, outside, false, kPortalThickness, {{kPortal, 0, 0}, Quat(1, 0, 0, 0)});
+  return pieces::framed_opening("portal", 1, opening, outside, false, kPortalThickness,
+                                {{kPortal, 0, 0}, Quat(1, 0, 0, 0)});
 }
 
 std::vector<Piece> mockup(const Centreline& line) {
@@ -67,7 +71,8 @@ std::vector<Piece> mockup(const Centreline& line) {
       pieces::block("base plate", {-0.050, -0.320, -0.162}, {1.000, 0.520, -0.150}, 0),
       pieces::block("casing", {0.080, -0.300, -0.150}, {0.460, -0.110, 0.060}, 3),
       pieces::block("gearbox", {0.740, 0.020, -0.150}, {0.960, 0.420, 0.080}, 3),
-      pieces::block("heat shield", {-0.090, -0.002, -0.120}, {0.090, 0.002, 0.080}, 1, {{0.545, 0.010, 0}, left_50}),
+      pieces::block("heat shield", {-0.090, -0.002, -0.120}, {0.090, 0.002, 0.080}, 1,
+                    {{0.545, 0.010, 0}, left_50}),
       pieces::block("cover", {0.070, -0.310, 0.060}, {0.470, -0.105, 0.064}, 0),
       pieces::block("post", {0.560, -0.300, -0.150}, {0.620, -0.240, 0.250}, 0),
       pieces::cylinder("engine cylinder 1", 2, 0.060, 0.260, 12, {{0.120, 0.300, -0.150}, none}),
@@ -89,12 +94,13 @@ std::vector<Piece> mockup(const Centreline& line) {
 std::vector<Piece> clamp() {
   // The band goes round x from one side of the gap to the other, seen from +x counter-clockwise.
   const auto spine = [](const GridPlace& p) {
-    const double from_z = kGap + (1 - 2 * kGap) * p.fraction();   // turns
+    const double from_z = kGap + (1 - 2 * kGap) * p.fraction();  // turns
     const Turn t = turn_by(0.25 + from_z);
     const double middle = kBore + kBand / 2;
     // Frame: x along the band (tangent), y inwards, z along the clamp's x.
-    const Quat half_about_xz(0, 0.70710678118654752, 0, 0.70710678118654752);   // x to z, z to x, y to −y
-    return Pose{{0, middle * t.cos, middle * t.sin}, rotation_about({1, 0, 0}, 2 * kPi * (0.25 + from_z)) * half_about_xz};
+    const Quat half_about_xz(0, 0.70710678118654752, 0, 0.70710678118654752);  // x to z, z to x, y to −y
+    return Pose{{0, middle * t.cos, middle * t.sin},
+                rotation_about({1, 0, 0}, 2 * kPi * (0.25 + from_z)) * half_about_xz};
   };
   const auto section = [](const GridPlace& p) {
     const double f = 2 * p.fraction() - 1;
@@ -103,18 +109,21 @@ std::vector<Piece> clamp() {
     if (p.span == 2) return std::pair(-kBand / 2, -kHalfWidth * f);
     return std::pair(kBand / 2 * f, -kHalfWidth);
   };
-  std::vector<Piece> all{pieces::swept("band", 1, {{2 * kHalfWidth, 1}, {kBand, 1}, {2 * kHalfWidth, 1}, {kBand, 1}}, section,
-                                       {{2 * kPi * kBore * (1 - 2 * kGap), 20}}, spine, kBand)};
+  std::vector<Piece> all{pieces::swept("band", 1,
+                                       {{2 * kHalfWidth, 1}, {kBand, 1}, {2 * kHalfWidth, 1}, {kBand, 1}},
+                                       section, {{2 * kPi * kBore * (1 - 2 * kGap), 20}}, spine, kBand)};
   // Two ears with a hole each for the bolt that has been taken out.
   constexpr double kHole = 0.0075, kEarBottom = 0.031, kEarThickness = 0.005, kHalfEar = 0.018;
   constexpr double kCentre = (kEarBottom + kEarTop) / 2, kHalfHeight = (kEarTop - kEarBottom) / 2;
   constexpr double kDiagonal = kHole * 0.70710678118654752;
-  const Outline hole{{kDiagonal, -kDiagonal}, {kDiagonal, kDiagonal}, {-kDiagonal, kDiagonal}, {-kDiagonal, -kDiagonal}};
-  const Outline square{{kHalfEar, -kHalfHeight}, {kHalfEar, kHalfHeight}, {-kHalfEar, kHalfHeight}, {-kHalfEar, -kHalfHeight}};
+  const Outline hole{
+      {kDiagonal, -kDiagonal}, {kDiagonal, kDiagonal}, {-kDiagonal, kDiagonal}, {-kDiagonal, -kDiagonal}};
+  const Outline square{
+      {kHalfEar, -kHalfHeight}, {kHalfEar, kHalfHeight}, {-kHalfEar, kHalfHeight}, {-kHalfEar, -kHalfHeight}};
   const Quat x_to_y = rotation_about({0, 0, 1}, kPi / 2);
   for (const double y : {-kEarOutside, kEarOutside - kEarThickness})
-    all.push_back(pieces::framed_opening(y < 0 ? "right ear" : "left ear", 0.8, hole, square, true, kEarThickness,
-                                         {{0, y, kCentre}, x_to_y}));
+    all.push_back(pieces::framed_opening(y < 0 ? "right ear" : "left ear", 0.8, hole, square, true,
+                                         kEarThickness, {{0, y, kCentre}, x_to_y}));
   return all;
 }
 
@@ -125,7 +134,8 @@ std::vector<GuidePoint> guide(const Centreline& line) {
   return points;
 }
 
-/// What the hand intends. It pulls with 135 N/m and turns with 2 N·m/rad (the defaults), so that it means to go farther than it gets.
+/// What the hand intends. It pulls with 135 N/m and turns with 2 N·m/rad (the defaults), so that it means to
+/// go farther than it gets.
 std::vector<PathPoint> path(const Centreline& line) {
   const double first_bend_end = 0.300 + 50 * kPi / 180 * kBendRadius;
   const double second_bend = first_bend_end + 0.140;
@@ -172,8 +182,12 @@ GeneratedScene generate_disassembly(std::uint64_t triangles, std::uint64_t tool_
   scene.tool = pieces::tessellate(clamp(), tool_triangles);
   scene.guide = guide(line);
   scene.path = path(line);
-  scene.stage_names = {"initial position", "against the first obstacle", "upper part of the obstacle, turning about x",
-                       "against the pipe, turning about z", "against the pipe, turning about all axes", "final position"};
+  scene.stage_names = {"initial position",
+                       "against the first obstacle",
+                       "upper part of the obstacle, turning about x",
+                       "against the pipe, turning about z",
+                       "against the pipe, turning about all axes",
+                       "final position"};
   scene.actuated = {true, false, false, true, true, true};
   return scene;
 }

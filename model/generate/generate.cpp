@@ -9,25 +9,28 @@ namespace {
 
 struct Generator {
   const char* name;
-  std::uint64_t triangles, tool_triangles;   ///< the chapter's
+  std::uint64_t triangles, tool_triangles;  ///< the chapter's
   GeneratedScene (*make)(std::uint64_t triangles, std::uint64_t tool_triangles);
 };
 
-constexpr std::array<Generator, 2> kGenerators{{{"contacts", 25'000, 1'500, generate_contacts},
-                                                {"disassembly", 100'000, 2'000, generate_disassembly}}};
+constexpr std::array<Generator, 2> kGenerators{
+    {{"contacts", 25'000, 1'500, generate_contacts}, {"disassembly", 100'000, 2'000, generate_disassembly}}};
 constexpr std::uint64_t kLeast = 1'000, kMost = 10'000'000;
 
 Result<void> check_count(const char* what, std::uint64_t count) {
   if (count != 0 && (count < kLeast || count > kMost))
-    return bad_value(std::string(what) + " is " + std::to_string(count) + "; a generated body has 1000 to 10000000");
+    return bad_value(std::string(what) + " is " + std::to_string(count) +
+                     "; a generated body has 1000 to 10000000");
   return {};
 }
 
 }  // namespace
 
-Result<GeneratedScene> generate_scene(const std::string& name, std::uint64_t triangles, std::uint64_t tool_triangles) {
+Result<GeneratedScene> generate_scene(const std::string& name, std::uint64_t triangles,
+                                      std::uint64_t tool_triangles) {
   if (auto checked = check_count("number of triangles", triangles); !checked) return checked.error();
-  if (auto checked = check_count("number of tool triangles", tool_triangles); !checked) return checked.error();
+  if (auto checked = check_count("number of tool triangles", tool_triangles); !checked)
+    return checked.error();
   for (const Generator& generator : kGenerators)
     if (name == generator.name)
       return generator.make(triangles ? triangles : generator.triangles,

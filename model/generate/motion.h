@@ -11,7 +11,9 @@ namespace palpate {
 class Motion {
  public:
   /// `place`: position in m (guided: its x is the travel); `turn`: rotation vector, rad.
-  Motion(const Vec3& place, const Vec3& turn, int stage) : place_(place), turn_(turn) { add(place, turn, stage); }
+  Motion(const Vec3& place, const Vec3& turn, int stage) : place_(place), turn_(turn) {
+    add(place, turn, stage);
+  }
 
   /// Moves within `seconds` (a multiple of 20 ms) with the least jerk: 10 f³ − 15 f⁴ + 6 f⁵.
   void go(const Vec3& place, const Vec3& turn, double seconds, int stage) {
@@ -32,7 +34,7 @@ class Motion {
   std::vector<PathPoint> take() { return std::move(path_); }
 
  private:
-  static constexpr int kRate = 50;   ///< points a second (chosen: the device interpolates)
+  static constexpr int kRate = 50;  ///< points a second (chosen: the device interpolates)
 
   void add(const Vec3& place, const Vec3& turn, int stage) {
     path_.push_back({static_cast<double>(tick_) / kRate, {place, rotation_about(turn)}, place.x, stage});

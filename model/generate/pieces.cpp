@@ -19,11 +19,14 @@ std::uint64_t sum(const Divisions& divisions, std::size_t first, std::size_t cou
   return total;
 }
 
-/// All places of a grid line, the end of a span being the start of the next one; the very end only if `with_end`.
-std::vector<GridPlace> places(const Divisions& divisions, std::size_t first, std::size_t count, bool with_end) {
+/// All places of a grid line, the end of a span being the start of the next one; the very end only if
+/// `with_end`.
+std::vector<GridPlace> places(const Divisions& divisions, std::size_t first, std::size_t count,
+                              bool with_end) {
   std::vector<GridPlace> out;
   for (std::size_t span = 0; span < count; ++span)
-    for (std::uint32_t step = 0; step < divisions[first + span]; ++step) out.push_back({span, step, divisions[first + span]});
+    for (std::uint32_t step = 0; step < divisions[first + span]; ++step)
+      out.push_back({span, step, divisions[first + span]});
   if (with_end) out.push_back({count - 1, divisions[first + count - 1], divisions[first + count - 1]});
   return out;
 }
@@ -44,7 +47,8 @@ std::uint64_t count_all(const std::vector<Piece>& pieces, double cell) {
   return total;
 }
 
-/// Puts a point in the middle of `splits` triangles, spread evenly: two triangles more for each, still closed.
+/// Puts a point in the middle of `splits` triangles, spread evenly: two triangles more for each, still
+/// closed.
 void split_triangles(Mesh& mesh, std::uint64_t splits) {
   const std::uint64_t size = mesh.triangles.size();
   splits = std::min(splits, size);
@@ -73,7 +77,9 @@ Piece block(std::string name, const Vec3& min, const Vec3& max, double fineness,
   piece.count = [](const Divisions& n) {
     return 4 * (std::uint64_t{n[0]} * n[1] + std::uint64_t{n[1]} * n[2] + std::uint64_t{n[2]} * n[0]);
   };
-  piece.make = [=](const Divisions& n) { return solids::moved(solids::box(min, max, Int3(n[0], n[1], n[2])), pose); };
+  piece.make = [=](const Divisions& n) {
+    return solids::moved(solids::box(min, max, Int3(n[0], n[1], n[2])), pose);
+  };
   return piece;
 }
 
@@ -123,10 +129,11 @@ Piece swept(std::string name, double fineness, std::vector<Span> section_spans,
 }
 
 Piece framed_opening(std::string name, double fineness, std::vector<std::pair<double, double>> inner,
-                     std::vector<std::pair<double, double>> outer, bool round_inside, double thickness, const Pose& pose) {
+                     std::vector<std::pair<double, double>> outer, bool round_inside, double thickness,
+                     const Pose& pose) {
   const std::size_t corners = inner.size();
   std::vector<Span> around;
-  double web = 0;   // the widest stretch between the outlines
+  double web = 0;  // the widest stretch between the outlines
   for (std::size_t i = 0; i < corners; ++i) {
     const auto [y0, z0] = outer[i];
     const auto [y1, z1] = outer[(i + 1) % corners];
@@ -151,11 +158,12 @@ Piece framed_opening(std::string name, double fineness, std::vector<std::pair<do
     return pose.position + pose.rotation * Vec3(x * thickness, in.first + (out.first - in.first) * outward,
                                                 in.second + (out.second - in.second) * outward);
   };
-  return lofted(std::move(name), fineness, std::move(around), {{web, 1}, {thickness, 1}, {web, 1}, {thickness, 1}},
-                Ends::kJoined, point);
+  return lofted(std::move(name), fineness, std::move(around),
+                {{web, 1}, {thickness, 1}, {web, 1}, {thickness, 1}}, Ends::kJoined, point);
 }
 
-Piece cylinder(std::string name, double fineness, double radius, double height, std::uint32_t least_segments, const Pose& pose) {
+Piece cylinder(std::string name, double fineness, double radius, double height, std::uint32_t least_segments,
+               const Pose& pose) {
   const auto point = [=](const GridPlace& u, const GridPlace& v) {
     const Turn t = turn_by(u.fraction());
     double r = radius, z = height * v.fraction();
@@ -168,8 +176,8 @@ Piece cylinder(std::string name, double fineness, double radius, double height, 
     }
     return pose.position + pose.rotation * Vec3(r * t.cos, r * t.sin, z);
   };
-  return lofted(std::move(name), fineness, {{2 * kPi * radius, least_segments}}, {{radius, 1}, {height, 1}, {radius, 1}},
-                Ends::kPoints, point);
+  return lofted(std::move(name), fineness, {{2 * kPi * radius, least_segments}},
+                {{radius, 1}, {height, 1}, {radius, 1}}, Ends::kPoints, point);
 }
 
 Piece torus(std::string name, double fineness, double ring_radius, double tube_radius, const Pose& pose) {
@@ -178,11 +186,12 @@ Piece torus(std::string name, double fineness, double ring_radius, double tube_r
     const double r = ring_radius + tube_radius * tube.cos;
     return pose.position + pose.rotation * Vec3(r * round.cos, r * round.sin, tube_radius * tube.sin);
   };
-  return lofted(std::move(name), fineness, {{2 * kPi * ring_radius, 12}}, {{2 * kPi * tube_radius, 8}}, Ends::kJoined, point);
+  return lofted(std::move(name), fineness, {{2 * kPi * ring_radius, 12}}, {{2 * kPi * tube_radius, 8}},
+                Ends::kJoined, point);
 }
 
 Mesh tessellate(std::vector<Piece> pieces, std::uint64_t triangles) {
-  constexpr double kCoarsest = 1e3;   // m, so that every span has its least number of cells
+  constexpr double kCoarsest = 1e3;  // m, so that every span has its least number of cells
   while (pieces.size() > 1 && count_all(pieces, kCoarsest) > triangles / 10 * 9) pieces.pop_back();
 
   // The cell size just coarse enough, then piece by piece the next finer step while there is room.

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "model/generate/solids.h"
-#include "model/mesh/mesh.h"
 #include "model/lattice/pose.h"
+#include "model/mesh/mesh.h"
 
 /// Solids that can be tessellated as finely as asked, and the sharing of a number of triangles among them.
 namespace palpate::pieces {
 
 /// A stretch of a grid line that is divided evenly.
 struct Span {
-  double length = 0;          ///< m, decides into how many cells it is divided
-  std::uint32_t least = 1;    ///< cells even when coarsest
+  double length = 0;        ///< m, decides into how many cells it is divided
+  std::uint32_t least = 1;  ///< cells even when coarsest
 };
 
 /// Place on a grid line: span `span`, `step` of `steps` cells along it.
@@ -26,14 +26,14 @@ struct GridPlace {
   double fraction() const { return static_cast<double>(step) / static_cast<double>(steps); }
 };
 
-using Divisions = std::vector<std::uint32_t>;   ///< cells, one number a span
+using Divisions = std::vector<std::uint32_t>;  ///< cells, one number a span
 
 /// One closed solid of a scene.
 struct Piece {
   std::string name;
-  double fineness = 1;   ///< edge of its cells, relative to the scene's; 0: never divided
+  double fineness = 1;  ///< edge of its cells, relative to the scene's; 0: never divided
   std::vector<Span> spans;
-  std::function<std::uint64_t(const Divisions&)> count;   ///< triangles it will have
+  std::function<std::uint64_t(const Divisions&)> count;  ///< triangles it will have
   std::function<Mesh(const Divisions&)> make;
 };
 
@@ -41,28 +41,32 @@ struct Piece {
 Piece block(std::string name, const Vec3& min, const Vec3& max, double fineness, const Pose& pose = {});
 
 /// A grid of `around` × `along` spans (solids::loft says which way round is outward).
-Piece lofted(std::string name, double fineness, std::vector<Span> around, std::vector<Span> along, solids::Ends ends,
-             std::function<Vec3(const GridPlace& around, const GridPlace& along)> point);
+Piece lofted(std::string name, double fineness, std::vector<Span> around, std::vector<Span> along,
+             solids::Ends ends, std::function<Vec3(const GridPlace& around, const GridPlace& along)> point);
 
-/// A section in the (y, z) plane of a frame that moves along its own x; closed at both ends by shrinking the section
-/// to the frame's origin. The section runs counter-clockwise seen from +x.
+/// A section in the (y, z) plane of a frame that moves along its own x; closed at both ends by shrinking the
+/// section to the frame's origin. The section runs counter-clockwise seen from +x.
 Piece swept(std::string name, double fineness, std::vector<Span> section_spans,
             std::function<std::pair<double, double>(const GridPlace&)> section, std::vector<Span> spine_spans,
             std::function<Pose(const GridPlace&)> spine, double cap_m);
 
-/// A plate of thickness `thickness` along x with an opening: two outlines in (y, z), counter-clockwise seen from +x, corner i of
-/// the one joined to corner i of the other. `round_inside`: the inner one is a circle through its corners.
+/// A plate of thickness `thickness` along x with an opening: two outlines in (y, z), counter-clockwise seen
+/// from +x, corner i of the one joined to corner i of the other. `round_inside`: the inner one is a circle
+/// through its corners.
 Piece framed_opening(std::string name, double fineness, std::vector<std::pair<double, double>> inner,
-                     std::vector<std::pair<double, double>> outer, bool round_inside, double thickness, const Pose& pose);
+                     std::vector<std::pair<double, double>> outer, bool round_inside, double thickness,
+                     const Pose& pose);
 
 /// Cylinder along z from 0 to `height`.
-Piece cylinder(std::string name, double fineness, double radius, double height, std::uint32_t least_segments, const Pose& pose);
+Piece cylinder(std::string name, double fineness, double radius, double height, std::uint32_t least_segments,
+               const Pose& pose);
 
 /// Torus about z.
 Piece torus(std::string name, double fineness, double ring_radius, double tube_radius, const Pose& pose);
 
-/// Tessellates all pieces so that together they have `triangles`, or one less when that is odd. Pieces from the end of the list are
-/// left out while even the coarsest tessellation of all needs more than nine tenths of `triangles`.
+/// Tessellates all pieces so that together they have `triangles`, or one less when that is odd. Pieces from
+/// the end of the list are left out while even the coarsest tessellation of all needs more than nine tenths
+/// of `triangles`.
 Mesh tessellate(std::vector<Piece> pieces, std::uint64_t triangles);
 
 }  // namespace palpate::pieces

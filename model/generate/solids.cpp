@@ -53,7 +53,8 @@ Mesh loft(const std::vector<Loop>& loops, Ends ends) {
     mesh.vertices.push_back(mean_of(loops.front()));
     mesh.vertices.push_back(mean_of(loops.back()));
     const std::size_t last = (loops.size() - 1) * size;
-    for (std::size_t j = 0; j < size; ++j) mesh.triangles.push_back({first, index_of((j + 1) % size), index_of(j)});
+    for (std::size_t j = 0; j < size; ++j)
+      mesh.triangles.push_back({first, index_of((j + 1) % size), index_of(j)});
     for (std::size_t j = 0; j < size; ++j)
       mesh.triangles.push_back({first + 1, index_of(last + j), index_of(last + (j + 1) % size)});
   }
@@ -107,7 +108,8 @@ Mesh revolve(const std::vector<std::pair<double, double>>& profile, std::uint32_
     loops.push_back(std::move(loop));
   }
   Mesh mesh = loft(loops, ends);
-  if (ends == Ends::kPoints) {   // the fans' centres lie on the axis, whatever the mean of the cosines rounds to
+  if (ends ==
+      Ends::kPoints) {  // the fans' centres lie on the axis, whatever the mean of the cosines rounds to
     mesh.vertices[mesh.vertices.size() - 2] = {0, 0, profile.front().second};
     mesh.vertices.back() = {0, 0, profile.back().second};
   }
@@ -134,13 +136,15 @@ Mesh sphere_of(double radius, std::uint64_t triangles) {
   return sphere(radius, 2 * r, r);
 }
 
-Mesh cylinder(double radius, double height, std::uint32_t segments, std::uint32_t rows, std::uint32_t cap_rings) {
+Mesh cylinder(double radius, double height, std::uint32_t segments, std::uint32_t rows,
+              std::uint32_t cap_rings) {
   rows = std::max(1u, rows);
   cap_rings = std::max(1u, cap_rings);
   std::vector<std::pair<double, double>> profile;
   for (std::uint32_t i = 1; i < cap_rings; ++i) profile.emplace_back(between(0, radius, i, cap_rings), 0);
   for (std::uint32_t i = 0; i <= rows; ++i) profile.emplace_back(radius, between(0, height, i, rows));
-  for (std::uint32_t i = cap_rings - 1; i >= 1; --i) profile.emplace_back(between(0, radius, i, cap_rings), height);
+  for (std::uint32_t i = cap_rings - 1; i >= 1; --i)
+    profile.emplace_back(between(0, radius, i, cap_rings), height);
   return revolve(profile, segments, Ends::kPoints);
 }
 
@@ -148,10 +152,12 @@ Mesh ring(double inner_radius, double outer_radius, double height, std::uint32_t
           std::uint32_t steps) {
   rows = std::max(1u, rows);
   steps = std::max(1u, steps);
-  std::vector<std::pair<double, double>> profile;   // counter-clockwise in (r, z)
-  for (std::uint32_t i = 0; i < steps; ++i) profile.emplace_back(between(inner_radius, outer_radius, i, steps), 0);
+  std::vector<std::pair<double, double>> profile;  // counter-clockwise in (r, z)
+  for (std::uint32_t i = 0; i < steps; ++i)
+    profile.emplace_back(between(inner_radius, outer_radius, i, steps), 0);
   for (std::uint32_t i = 0; i < rows; ++i) profile.emplace_back(outer_radius, between(0, height, i, rows));
-  for (std::uint32_t i = steps; i > 0; --i) profile.emplace_back(between(inner_radius, outer_radius, i, steps), height);
+  for (std::uint32_t i = steps; i > 0; --i)
+    profile.emplace_back(between(inner_radius, outer_radius, i, steps), height);
   for (std::uint32_t i = rows; i > 0; --i) profile.emplace_back(inner_radius, between(0, height, i, rows));
   return revolve(profile, segments, Ends::kJoined);
 }
@@ -220,7 +226,8 @@ std::uint64_t open_edges(const Mesh& mesh) {
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i;
     int sum = 0;
-    for (; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j) sum += edges[j].sign;
+    for (; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j)
+      sum += edges[j].sign;
     open += sum != 0;
     i = j;
   }

@@ -7,8 +7,8 @@ namespace palpate {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// Cosine and sine of an angle. Unlike the C library's they are sums and products alone, so a generated scene has the
-/// same bytes on every machine. Accurate to 2e-16; exact at quarter turns.
+/// Cosine and sine of an angle. Unlike the C library's they are sums and products alone, so a generated scene
+/// has the same bytes on every machine. Accurate to 2e-16; exact at quarter turns.
 struct Turn {
   double cos = 1;
   double sin = 0;
@@ -18,10 +18,10 @@ struct Turn {
 inline Turn turn_by(double turns) {
   const double quarters = turns * 4;
   const double nearest = std::floor(quarters + 0.5);
-  const double r = (quarters - nearest) * (kPi / 2);   // [−π/4, π/4]
+  const double r = (quarters - nearest) * (kPi / 2);  // [−π/4, π/4]
   const double s = -r * r;
   double sine = 1, cosine = 1;
-  for (int k = 18; k >= 2; k -= 2) {                   // Taylor by Horner; the first term left out is below 1e-19
+  for (int k = 18; k >= 2; k -= 2) {  // Taylor by Horner; the first term left out is below 1e-19
     sine = 1 + s / (k * (k + 1)) * sine;
     cosine = 1 + s / ((k - 1) * k) * cosine;
   }

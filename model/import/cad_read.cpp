@@ -56,10 +56,10 @@
 #include <vector>
 
 #include "model/files/file_view.h"
+#include "model/files/one_line.h"
 #include "model/import/mesh_read.h"
 #include "model/import/part_names.h"
 #include "model/lattice/lattice_build.h"
-#include "model/files/one_line.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {
@@ -363,7 +363,8 @@ Result<std::vector<Body>> read_step(const std::string& path, ImportReport& repor
 }
 
 /// IGES has faces one by one, and some the wrong way round: those whose edges meet are joined, so that a body
-/// is closed again. Which side is out is found out for all formats in the same way (model/mesh/orientation.h).
+/// is closed again. Which side is out is found out for all formats in the same way
+/// (model/mesh/orientation.h).
 std::vector<Body> sew(std::vector<Body> bodies, const std::string& name, const Colours& colours) {
   BRepBuilderAPI_Sewing sewing(kSewingMm);
   std::vector<Body> out, loose;
@@ -634,9 +635,10 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   try {
     const std::string name = clean_name(std::filesystem::path(path).stem().string());
-    Result<std::vector<Body>> bodies = format == Format::kStep   ? read_step(path, report, tell, colours)
-                                       : format == Format::kIges ? read_iges(path, name, report, tell, colours)
-                                                                 : read_brep(path, name, tell);
+    Result<std::vector<Body>> bodies = format == Format::kStep ? read_step(path, report, tell, colours)
+                                       : format == Format::kIges
+                                           ? read_iges(path, name, report, tell, colours)
+                                           : read_brep(path, name, tell);
     if (!bodies) return bodies.error();
     return Triangulator(path, scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre))
         .run(*bodies, tessellation, report, tell);

@@ -46,7 +46,8 @@ constexpr const char* kUtf16 = "is UTF-16 text; save it as UTF-8 or ASCII";
 /// By the mark at its beginning, or by the byte of zeros in every character of ASCII.
 bool is_utf16(std::string_view bytes) {
   const std::string_view begin = bytes.substr(0, 2);
-  return begin == std::string_view("\xFF\xFE", 2) || begin == std::string_view("\xFE\xFF", 2) || begin == std::string_view("<\0", 2) || begin == std::string_view("\0<", 2);
+  return begin == std::string_view("\xFF\xFE", 2) || begin == std::string_view("\xFE\xFF", 2) ||
+         begin == std::string_view("<\0", 2) || begin == std::string_view("\0<", 2);
 }
 
 }  // namespace
@@ -64,37 +65,50 @@ std::string distrust_stl(std::string_view bytes) {
     if (trimmed(end.substr(last == std::string_view::npos ? 0 : last)).substr(0, 8) == "endsolid") return {};
     return "is cut short: it does not end with 'endsolid'";
   }
-  if (bytes.size() < kHeader) return fmt::format("is cut short: a binary STL has at least {} bytes, it has {}", kHeader, bytes.size());
-  return fmt::format("{}: its {} facets take {} bytes, it has {}", bytes.size() < binary_size ? "is cut short" : "is not an STL file",
-                     facets, binary_size, bytes.size());
+  if (bytes.size() < kHeader)
+    return fmt::format("is cut short: a binary STL has at least {} bytes, it has {}", kHeader, bytes.size());
+  return fmt::format("{}: its {} facets take {} bytes, it has {}",
+                     bytes.size() < binary_size ? "is cut short" : "is not an STL file", facets, binary_size,
+                     bytes.size());
 }
 
 std::string distrust_off(std::string_view bytes) {
   const std::size_t size = bytes.size();
   std::string_view line = next_line(bytes);
-  if (const std::size_t name = line.find("OFF"); name != std::string_view::npos) {   // "OFF", "COFF", …, counts may follow
+  if (const std::size_t name = line.find("OFF");
+      name != std::string_view::npos) {  // "OFF", "COFF", …, counts may follow
     line = trimmed(line.substr(name + 3));
     if (line == "BINARY") return "is a binary OFF file, which can't be read";
     if (line.empty()) line = next_line(bytes);
   }
   std::uint64_t vertices = 0, faces = 0;
-  if (!take_number(line, vertices) || !take_number(line, faces)) return "has no vertex and face counts in its header";
+  if (!take_number(line, vertices) || !take_number(line, faces))
+    return "has no vertex and face counts in its header";
   // A vertex takes at least "0 0 0\n", a face "1 0\n".
   if (vertices > size / 6 || faces > size / 4)
-    return fmt::format("promises {} vertices and {} faces, more than its {} bytes can hold", vertices, faces, size);
+    return fmt::format("promises {} vertices and {} faces, more than its {} bytes can hold", vertices, faces,
+                       size);
   for (std::uint64_t v = 0; v < vertices; ++v)
-    if (next_line(bytes).empty()) return fmt::format("is cut short: it promises {} vertices and has {}", vertices, v);
+    if (next_line(bytes).empty())
+      return fmt::format("is cut short: it promises {} vertices and has {}", vertices, v);
   for (std::uint64_t f = 0; f < faces; ++f) {
     line = next_line(bytes);
     if (line.empty()) return fmt::format("is cut short: it promises {} faces and has {}", faces, f);
     std::uint64_t corners = 0, index = 0;
     if (!take_number(line, corners)) return fmt::format("has no corner count in face {}", f);
-    constexpr std::uint64_t kMostCorners = 9;   // the library leaves larger ones out, and empty ones, and then counts the others wrong
-    if (corners == 0) return fmt::format("has 0 corners in face {}; OFF files with such faces can't be read", f);
-    if (corners > kMostCorners) return fmt::format("has {} corners in face {}; OFF faces of more than {} can't be read", corners, f, kMostCorners);
+    constexpr std::uint64_t kMostCorners =
+        9;  // the library leaves larger ones out, and empty ones, and then counts the others wrong
+    if (corners == 0)
+      return fmt::format("has 0 corners in face {}; OFF files with such faces can't be read", f);
+    if (corners > kMostCorners)
+      return fmt::format("has {} corners in face {}; OFF faces of more than {} can't be read", corners, f,
+                         kMostCorners);
     for (std::uint64_t k = 0; k < corners; ++k) {
-      if (!take_number(line, index)) return fmt::format("is cut short in face {}: {} of {} corners", f, k, corners);
-      if (index >= vertices) return fmt::format("has vertex index {} in face {}, beyond the vertex list (size {})", index, f, vertices);
+      if (!take_number(line, index))
+        return fmt::format("is cut short in face {}: {} of {} corners", f, k, corners);
+      if (index >= vertices)
+        return fmt::format("has vertex index {} in face {}, beyond the vertex list (size {})", index, f,
+                           vertices);
     }
   }
   return {};
@@ -103,7 +117,8 @@ std::string distrust_off(std::string_view bytes) {
 namespace {
 
 /// Faces of an OBJ: indices from 1 on, or from −1 back.
-std::string distrust_obj_face(std::string_view line, std::uint64_t before, std::uint64_t all, std::size_t number) {
+std::string distrust_obj_face(std::string_view line, std::uint64_t before, std::uint64_t all,
+                              std::size_t number) {
   while (!line.empty()) {
     const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
     std::string_view word = line.substr(0, end);
@@ -111,10 +126,12 @@ std::string distrust_obj_face(std::string_view line, std::uint64_t before, std::
     const std::string_view index = word.substr(0, word.find('/'));
     std::int64_t value = 0;
     const auto [rest, error] = std::from_chars(index.data(), index.data() + index.size(), value);
-    if (error != std::errc() || rest != index.data() + index.size()) return fmt::format("has '{}' for a vertex in line {}", word.substr(0, 40), number);
+    if (error != std::errc() || rest != index.data() + index.size())
+      return fmt::format("has '{}' for a vertex in line {}", word.substr(0, 40), number);
     if (value == 0) return fmt::format("has vertex index 0 in line {}; they begin with 1", number);
     if (value > 0 ? static_cast<std::uint64_t>(value) > all : static_cast<std::uint64_t>(-value) > before)
-      return fmt::format("has vertex index {} in line {}, beyond the vertex list (size {})", value, number, value > 0 ? all : before);
+      return fmt::format("has vertex index {} in line {}, beyond the vertex list (size {})", value, number,
+                         value > 0 ? all : before);
   }
   return {};
 }
@@ -123,12 +140,14 @@ std::string distrust_obj_face(std::string_view line, std::uint64_t before, std::
 
 std::string distrust_obj(std::string_view bytes) {
   if (is_utf16(bytes)) return kUtf16;
-  std::string joined;   // where lines go on in the next: a backslash and a line's end are a blank
+  std::string joined;  // where lines go on in the next: a backslash and a line's end are a blank
   if (bytes.find("\\\n") != std::string_view::npos || bytes.find("\\\r\n") != std::string_view::npos) {
     joined = bytes;
     for (std::size_t at = joined.find('\\'); at != std::string::npos; at = joined.find('\\', at + 1)) {
       const std::size_t end = joined.compare(at + 1, 2, "\r\n") == 0 ? at + 2 : at + 1;
-      if (end < joined.size() && joined[end] == '\n') std::fill(joined.begin() + static_cast<std::ptrdiff_t>(at), joined.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
+      if (end < joined.size() && joined[end] == '\n')
+        std::fill(joined.begin() + static_cast<std::ptrdiff_t>(at),
+                  joined.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
     }
     bytes = joined;
   }
@@ -145,7 +164,8 @@ std::string distrust_obj(std::string_view bytes) {
       if (line.size() < 2 || !blank(line[1])) continue;
       if (line[0] == 'v') ++(count ? all : before);
       if (count || line[0] != 'f') continue;
-      line = trimmed(line.substr(1, line.find('#') == std::string_view::npos ? std::string_view::npos : line.find('#') - 1));
+      line = trimmed(line.substr(
+          1, line.find('#') == std::string_view::npos ? std::string_view::npos : line.find('#') - 1));
       if (std::string wrong = distrust_obj_face(line, before, all, number); !wrong.empty()) return wrong;
     }
   }
@@ -172,10 +192,11 @@ bool is_count(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Every accessor of a COLLADA file against the numbers that the library takes from its array: as many as the array has, and as it says that it has.
-/// Where an accessor goes further the library reads what lies behind them.
+/// Every accessor of a COLLADA file against the numbers that the library takes from its array: as many as the
+/// array has, and as it says that it has. Where an accessor goes further the library reads what lies behind
+/// them.
 std::string distrust_dae_arrays(std::string_view bytes) {
-  std::map<std::string_view, std::uint64_t> holds;   // by id
+  std::map<std::string_view, std::uint64_t> holds;  // by id
   const auto value = [](std::string_view digits, std::uint64_t otherwise) {
     std::uint64_t out = 0;
     return take_number(digits, out) ? out : otherwise;
@@ -186,9 +207,11 @@ std::string distrust_dae_arrays(std::string_view bytes) {
       const bool array = rest.starts_with("<float_array"), accessor = rest.starts_with("<accessor");
       if (!array && !accessor) continue;
       const bool empty = tag.ends_with('/');
-      const std::string_view content = rest.substr(std::min(rest.size(), tag.size() + 1)), count = attribute_of(tag, "count");
+      const std::string_view content = rest.substr(std::min(rest.size(), tag.size() + 1)),
+                             count = attribute_of(tag, "count");
       for (const std::string_view number : {count, attribute_of(tag, "stride"), attribute_of(tag, "offset")})
-        if (!is_count(number)) return fmt::format("has '{}' for a count, stride or offset", number.substr(0, 40));
+        if (!is_count(number))
+          return fmt::format("has '{}' for a count, stride or offset", number.substr(0, 40));
       if (arrays && array) {
         std::uint64_t numbers = 0;
         if (!empty) {
@@ -205,12 +228,20 @@ std::string distrust_dae_arrays(std::string_view bytes) {
         const auto of = source.empty() ? holds.end() : holds.find(source.substr(1));
         const std::uint64_t times = value(count, 0);
         if (of == holds.end() || times == 0) continue;
-        std::uint64_t names = 0;   // each is the place of a number, from where an item begins
-        const std::string_view body = empty ? std::string_view() : content.substr(0, content.find("</accessor"));
-        for (std::size_t name = body.find("<param"); name != std::string_view::npos; name = body.find("<param", name + 1)) ++names;
-        const std::uint64_t stride = value(attribute_of(tag, "stride"), 1), offset = value(attribute_of(tag, "offset"), 0), item = std::max(stride, names);
-        if (offset > of->second || item > of->second - offset || (stride != 0 && times - 1 > (of->second - offset - item) / stride))
-          return fmt::format("has an accessor of {} times {} numbers, {} apart, from number {} on, beyond its array '{}' of {}", times, item, stride, offset, of->first.substr(0, 40), of->second);
+        std::uint64_t names = 0;  // each is the place of a number, from where an item begins
+        const std::string_view body =
+            empty ? std::string_view() : content.substr(0, content.find("</accessor"));
+        for (std::size_t name = body.find("<param"); name != std::string_view::npos;
+             name = body.find("<param", name + 1))
+          ++names;
+        const std::uint64_t stride = value(attribute_of(tag, "stride"), 1),
+                            offset = value(attribute_of(tag, "offset"), 0), item = std::max(stride, names);
+        if (offset > of->second || item > of->second - offset ||
+            (stride != 0 && times - 1 > (of->second - offset - item) / stride))
+          return fmt::format(
+              "has an accessor of {} times {} numbers, {} apart, from number {} on, beyond its array '{}' of "
+              "{}",
+              times, item, stride, offset, of->first.substr(0, 40), of->second);
       }
     }
   return {};
@@ -221,7 +252,8 @@ std::string distrust_dae_arrays(std::string_view bytes) {
 std::string distrust_dae(std::string_view bytes) {
   if (is_utf16(bytes)) return kUtf16;
   if (std::string wrong = distrust_dae_arrays(bytes); !wrong.empty()) return wrong;
-  // Which nodes hold which: by nesting, and by <instance_node url="#id"/>. Reads tags alone, and what index lists hold.
+  // Which nodes hold which: by nesting, and by <instance_node url="#id"/>. Reads tags alone, and what index
+  // lists hold.
   std::map<std::string, std::vector<std::string>, std::less<>> holds;
   std::vector<std::string> open;
   const auto attribute = [](std::string_view tag, std::string_view name) -> std::string {
@@ -236,22 +268,26 @@ std::string distrust_dae(std::string_view bytes) {
   for (std::size_t at = bytes.find('<'); at != std::string_view::npos; at = bytes.find('<', at + 1)) {
     const std::string_view rest = bytes.substr(at);
     const auto is = [&](std::string_view start) {
-      return rest.substr(0, start.size()) == start && rest.size() > start.size() && (blank(rest[start.size()]) || rest[start.size()] == '>');
+      return rest.substr(0, start.size()) == start && rest.size() > start.size() &&
+             (blank(rest[start.size()]) || rest[start.size()] == '>');
     };
     const std::string_view tag = rest.substr(0, rest.find('>'));
     if (const std::string count = attribute(tag, " count="); !count.empty()) {
       std::string_view digits = count;
       std::uint64_t value = 0;
       if (!take_number(digits, value) || value > bytes.size())
-        return fmt::format("has a count of '{}', more than its {} bytes can hold", count.substr(0, 40), bytes.size());
+        return fmt::format("has a count of '{}', more than its {} bytes can hold", count.substr(0, 40),
+                           bytes.size());
     }
-    if (is("<p") || is("<vcount") || is("<v") || is("<h")) {   // on anything but digits the importer would turn for ever
+    if (is("<p") || is("<vcount") || is("<v") ||
+        is("<h")) {  // on anything but digits the importer would turn for ever
       const std::string_view content = rest.substr(tag.size(), rest.find('<', tag.size()) - tag.size());
       const std::size_t odd = content.find_first_not_of("0123456789 \t\r\n-", 1);
       if (odd < content.size())
         return std::isprint(static_cast<unsigned char>(content[odd]))
                    ? fmt::format("has '{}' among its vertex indices", content[odd])
-                   : fmt::format("has a byte {:#x} among its vertex indices", static_cast<unsigned char>(content[odd]));
+                   : fmt::format("has a byte {:#x} among its vertex indices",
+                                 static_cast<unsigned char>(content[odd]));
       if (is("<p") && content.find('-') < content.size()) return "has '-' among its vertex indices";
     }
     if (is("<node")) {
@@ -268,7 +304,7 @@ std::string distrust_dae(std::string_view bytes) {
     }
   }
   // Depth first with an explicit stack: a node met again while it is open contains itself.
-  std::map<std::string, int, std::less<>> state;   // 1: open, 2: done
+  std::map<std::string, int, std::less<>> state;  // 1: open, 2: done
   for (const auto& [root, unused] : holds) {
     std::vector<std::pair<std::string, std::size_t>> stack;
     if (state[root] == 0) stack.emplace_back(root, 0), state[root] = 1;
@@ -281,7 +317,8 @@ std::string distrust_dae(std::string_view bytes) {
         continue;
       }
       const std::string child = children->second[next++];
-      if (state[child] == 1) return fmt::format("has a node that contains itself ('{}')", std::string_view(child).substr(0, 40));
+      if (state[child] == 1)
+        return fmt::format("has a node that contains itself ('{}')", std::string_view(child).substr(0, 40));
       if (state[child] == 0) state[child] = 1, stack.emplace_back(child, 0);
     }
   }

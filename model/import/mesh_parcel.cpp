@@ -10,8 +10,8 @@
 #include <cstring>
 #include <span>
 
-#include "model/lattice/lattice_build.h"
 #include "model/files/one_line.h"
+#include "model/lattice/lattice_build.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {
@@ -61,10 +61,13 @@ bool take(int file, std::vector<T>& values, std::size_t count, off_t& at) {
   return move_all(::pread, file, std::as_writable_bytes(std::span(values)), at);
 }
 
-Error unsound(const char* what) { return {ErrorCode::kInternal, std::string("the importer's answer is unsound: ") + what}; }
+Error unsound(const char* what) {
+  return {ErrorCode::kInternal, std::string("the importer's answer is unsound: ") + what};
+}
 
 bool is_one_line(std::string_view text) {
-  return std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+  return std::none_of(text.begin(), text.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
 }
 
 /// Cuts the next piece off the text; false if there is less, or it would break a line.
@@ -80,14 +83,16 @@ Result<Header> read_header(int file) {
   Header header;
   off_t at = 0;
   struct stat status {};
-  if (::fstat(file, &status) != 0 || !move_all(::pread, file, std::as_writable_bytes(std::span(&header, 1)), at) || header.magic != kMagic)
+  if (::fstat(file, &status) != 0 ||
+      !move_all(::pread, file, std::as_writable_bytes(std::span(&header, 1)), at) || header.magic != kMagic)
     return unsound("it has no header");
-  if (header.vertices > 3 * kMaxTriangles || header.triangles > kMaxTriangles || header.parts > header.triangles || header.notes > kMostNotes ||
-      header.text > kMostText)
+  if (header.vertices > 3 * kMaxTriangles || header.triangles > kMaxTriangles ||
+      header.parts > header.triangles || header.notes > kMostNotes || header.text > kMostText)
     return unsound("it counts more than there can be");
-  const std::uint64_t size = sizeof(Header) + header.vertices * sizeof(Vec3) + header.triangles * 12 + header.parts * sizeof(PartEntry) + header.notes * 4 +
-                             header.text;
-  if (static_cast<std::uint64_t>(status.st_size) != size) return unsound("it has another size than its counts take");
+  const std::uint64_t size = sizeof(Header) + header.vertices * sizeof(Vec3) + header.triangles * 12 +
+                             header.parts * sizeof(PartEntry) + header.notes * 4 + header.text;
+  if (static_cast<std::uint64_t>(status.st_size) != size)
+    return unsound("it has another size than its counts take");
   return header;
 }
 
@@ -102,7 +107,8 @@ const char* wrong_with(const Mesh& mesh) {
       if (vertex >= mesh.vertices.size()) return "a triangle has a vertex that does not exist";
   std::size_t next = 0;
   for (const MeshPart& part : mesh.parts) {
-    if (part.first_triangle != next || part.triangle_count > mesh.triangles.size() - next) return "its parts don't follow each other";
+    if (part.first_triangle != next || part.triangle_count > mesh.triangles.size() - next)
+      return "its parts don't follow each other";
     next += part.triangle_count;
   }
   return next == mesh.triangles.size() ? nullptr : "its parts don't cover it";
@@ -121,8 +127,11 @@ void tell_how_far(int file, const HowFar& far) {
 HowFar how_far(int file) {
   StepEntry entry;
   off_t start = 0;
-  if (!move_all(::pread, file, std::as_writable_bytes(std::span(&entry, 1)), start) || entry.mark != StepEntry{}.mark) return {};
-  return {static_cast<ImportStage>(std::min<std::size_t>(entry.stage, kImportStages - 1)), std::min(entry.millionths / kMillionths, 1.0)};
+  if (!move_all(::pread, file, std::as_writable_bytes(std::span(&entry, 1)), start) ||
+      entry.mark != StepEntry{}.mark)
+    return {};
+  return {static_cast<ImportStage>(std::min<std::size_t>(entry.stage, kImportStages - 1)),
+          std::min(entry.millionths / kMillionths, 1.0)};
 }
 
 bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& report) {
@@ -136,8 +145,8 @@ bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& repo
     text = one_line(result.error().sentence);
   }
   for (const MeshPart& part : mesh.parts) {
-    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size()), static_cast<std::uint32_t>(part.also.size()),
-                     part.colour.value_or(kNoColour)});
+    parts.push_back({part.first_triangle, part.triangle_count, static_cast<std::uint32_t>(part.path.size()),
+                     static_cast<std::uint32_t>(part.also.size()), part.colour.value_or(kNoColour)});
     text += part.path + part.also;
   }
   if (result)
@@ -145,11 +154,13 @@ bool write_parcel(int file, const Result<Mesh>& result, const ImportReport& repo
       notes.push_back(static_cast<std::uint32_t>(note.size()));
       text += note;
     }
-  header.vertices = mesh.vertices.size(), header.triangles = mesh.triangles.size(), header.parts = parts.size();
+  header.vertices = mesh.vertices.size(), header.triangles = mesh.triangles.size(),
+  header.parts = parts.size();
   header.notes = notes.size(), header.text = text.size();
   off_t at = sizeof header, start = 0;
-  return put(file, mesh.vertices, at) && put(file, mesh.triangles, at) && put(file, parts, at) && put(file, notes, at) &&
-         move_all(::pwrite, file, std::as_bytes(std::span(text)), at) && move_all(::pwrite, file, std::as_bytes(std::span(&header, 1)), start);
+  return put(file, mesh.vertices, at) && put(file, mesh.triangles, at) && put(file, parts, at) &&
+         put(file, notes, at) && move_all(::pwrite, file, std::as_bytes(std::span(text)), at) &&
+         move_all(::pwrite, file, std::as_bytes(std::span(&header, 1)), start);
 }
 
 Result<Mesh> read_parcel(int file, ImportReport& report) {
@@ -160,17 +171,21 @@ Result<Mesh> read_parcel(int file, ImportReport& report) {
   std::vector<std::uint32_t> notes;
   std::vector<char> characters;
   off_t at = sizeof(Header);
-  if (!take(file, mesh.vertices, header->vertices, at) || !take(file, mesh.triangles, header->triangles, at) ||
-      !take(file, parts, header->parts, at) || !take(file, notes, header->notes, at) || !take(file, characters, header->text, at))
+  if (!take(file, mesh.vertices, header->vertices, at) ||
+      !take(file, mesh.triangles, header->triangles, at) || !take(file, parts, header->parts, at) ||
+      !take(file, notes, header->notes, at) || !take(file, characters, header->text, at))
     return unsound("it can't be read");
   std::string_view text(characters.data(), characters.size());
   if (header->error != 0) {
-    if (header->error > static_cast<std::uint64_t>(ErrorCode::kNoDevice) || text.empty() || !is_one_line(text)) return unsound("its error is none");
+    if (header->error > static_cast<std::uint64_t>(ErrorCode::kNoDevice) || text.empty() ||
+        !is_one_line(text))
+      return unsound("its error is none");
     return Error{static_cast<ErrorCode>(header->error), std::string(text)};
   }
   for (const PartEntry& entry : parts) {
     MeshPart& part = mesh.parts.emplace_back(MeshPart{{}, entry.first, entry.count, {}});
-    if (!take_text(text, entry.path_bytes, part.path) || !take_text(text, entry.also_bytes, part.also)) return unsound("a part has no sound path");
+    if (!take_text(text, entry.path_bytes, part.path) || !take_text(text, entry.also_bytes, part.also))
+      return unsound("a part has no sound path");
     if (entry.colour > kNoColour) return unsound("a part has no sound colour");
     if (entry.colour != kNoColour) part.colour = entry.colour;
   }

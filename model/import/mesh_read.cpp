@@ -2,10 +2,10 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
-#include <assimp/Importer.hpp>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <assimp/Importer.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "model/files/file_view.h"
+#include "model/files/one_line.h"
 #include "model/import/import_checks.h"
 #include "model/import/part_names.h"
 #include "model/import/polygon_split.h"
 #include "model/import/threemf_read.h"
 #include "model/lattice/lattice_build.h"
-#include "model/files/one_line.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {
@@ -32,13 +32,16 @@ class FilesBelow final : public Assimp::DefaultIOSystem {
  public:
   explicit FilesBelow(const std::string& folder) : folder_(folder) {}
   bool Exists(const char* path) const override { return below(path) && DefaultIOSystem::Exists(path); }
-  Assimp::IOStream* Open(const char* path, const char* mode) override { return below(path) ? DefaultIOSystem::Open(path, mode) : nullptr; }
+  Assimp::IOStream* Open(const char* path, const char* mode) override {
+    return below(path) ? DefaultIOSystem::Open(path, mode) : nullptr;
+  }
 
  private:
   bool below(const char* path) const {
     std::error_code error;
     const std::filesystem::path real = std::filesystem::canonical(path, error);
-    return !error && std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first == folder_.end();
+    return !error &&
+           std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first == folder_.end();
   }
   std::filesystem::path folder_;
 };
@@ -54,23 +57,28 @@ struct Transform {
     Transform out;
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 4; ++c)
-        out.m[r][c] = m[r][0] * b.m[0][c] + m[r][1] * b.m[1][c] + m[r][2] * b.m[2][c] + (c == 3 ? m[r][3] : 0);
+        out.m[r][c] =
+            m[r][0] * b.m[0][c] + m[r][1] * b.m[1][c] + m[r][2] * b.m[2][c] + (c == 3 ? m[r][3] : 0);
     return out;
   }
   Vec3 operator*(const aiVector3D& p) const {
     Vec3 out;
     for (int r = 0; r < 3; ++r)
-      out[r] = m[r][0] * static_cast<double>(p.x) + m[r][1] * static_cast<double>(p.y) + m[r][2] * static_cast<double>(p.z) + m[r][3];
+      out[r] = m[r][0] * static_cast<double>(p.x) + m[r][1] * static_cast<double>(p.y) +
+               m[r][2] * static_cast<double>(p.z) + m[r][3];
     return out;
   }
   /// Mirrors: the triangles must be turned, or their normals would point inwards.
   bool mirrors() const {
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) < 0;
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+               m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+           0;
   }
 };
 
-/// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>", "<OFFRoot>", "nodes[3]", …).
+/// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>",
+/// "<OFFRoot>", "nodes[3]", …).
 std::string given_name(const aiString& text) {
   std::string name(text.data, text.length);
   const bool invented = (name.starts_with("nodes[") || name.starts_with("meshes[")) && name.ends_with(']');
@@ -81,18 +89,25 @@ std::string given_name(const aiString& text) {
 /// glTF's colours are linear; a part's is sRGB.
 std::uint32_t srgb_of(const aiColor4D& linear) {
   std::uint32_t out = 0;
-  for (const double part : {std::clamp<double>(linear.r, 0, 1), std::clamp<double>(linear.g, 0, 1), std::clamp<double>(linear.b, 0, 1)})
-    out = out << 8 | static_cast<std::uint32_t>(std::lround(255 * (part <= 0.0031308 ? 12.92 * part : 1.055 * std::pow(part, 1 / 2.4) - 0.055)));   // IEC 61966-2-1
+  for (const double part : {std::clamp<double>(linear.r, 0, 1), std::clamp<double>(linear.g, 0, 1),
+                            std::clamp<double>(linear.b, 0, 1)})
+    out = out << 8 |
+          static_cast<std::uint32_t>(std::lround(
+              255 * (part <= 0.0031308 ? 12.92 * part
+                                       : 1.055 * std::pow(part, 1 / 2.4) - 0.055)));  // IEC 61966-2-1
   return out;
 }
 
-/// The base colour of each material of a glTF file; none where a texture gives it, and for the material that the library adds behind the file's own.
+/// The base colour of each material of a glTF file; none where a texture gives it, and for the material that
+/// the library adds behind the file's own.
 std::vector<std::optional<std::uint32_t>> colours_of(const aiScene& scene) {
   std::vector<std::optional<std::uint32_t>> out(scene.mNumMaterials);
   for (unsigned m = 0; m + 1 < scene.mNumMaterials; ++m) {
     const aiMaterial& material = *scene.mMaterials[m];
     aiColor4D base;
-    if (material.GetTextureCount(aiTextureType_BASE_COLOR) == 0 && material.GetTextureCount(aiTextureType_DIFFUSE) == 0 && material.Get(AI_MATKEY_BASE_COLOR, base) == aiReturn_SUCCESS)
+    if (material.GetTextureCount(aiTextureType_BASE_COLOR) == 0 &&
+        material.GetTextureCount(aiTextureType_DIFFUSE) == 0 &&
+        material.Get(AI_MATKEY_BASE_COLOR, base) == aiReturn_SUCCESS)
       out[m] = srgb_of(base);
   }
   return out;
@@ -100,15 +115,18 @@ std::vector<std::optional<std::uint32_t>> colours_of(const aiScene& scene) {
 
 class Flattener {
  public:
-  /// `turn`: what the file's coordinates are turned by before all else. `colours`: of the materials; empty: none are read.
-  Flattener(const aiScene& scene, double scale, const std::string& file, const Transform& turn, std::vector<std::optional<std::uint32_t>> colours)
+  /// `turn`: what the file's coordinates are turned by before all else. `colours`: of the materials; empty:
+  /// none are read.
+  Flattener(const aiScene& scene, double scale, const std::string& file, const Transform& turn,
+            std::vector<std::optional<std::uint32_t>> colours)
       : scene_(scene), scale_(scale), file_(file), turn_(turn), colours_(std::move(colours)) {}
 
   Result<Mesh> run(std::vector<std::string>& notes) {
     // Depth first with a stack of our own, children in order: pushed back to front.
     std::vector<Visit> stack{{scene_.mRootNode, turn_, ""}};
     stack.back().path = given_name(scene_.mRootNode->mName);
-    if (stack.back().path.empty()) stack.back().path = clean_name(std::filesystem::path(file_).stem().string());
+    if (stack.back().path.empty())
+      stack.back().path = clean_name(std::filesystem::path(file_).stem().string());
     while (!stack.empty()) {
       const Visit visit = std::move(stack.back());
       stack.pop_back();
@@ -120,18 +138,26 @@ class Flattener {
       for (unsigned i = 0; i < visit.node->mNumChildren; ++i) {
         const aiNode* child = visit.node->mChildren[i];
         // A file without names, such as an STL, is one part, named like the file.
-        const bool nameless = visit.node->mNumChildren == 1 && given_name(visit.node->mName).empty() && given_name(child->mName).empty();
+        const bool nameless = visit.node->mNumChildren == 1 && given_name(visit.node->mName).empty() &&
+                              given_name(child->mName).empty();
         const std::string name = node_name(*child);
-        stack.push_back({child, here, nameless ? visit.path : visit.path + "/" + siblings.unique(name.empty() ? "node" : name)});
+        stack.push_back(
+            {child, here,
+             nameless ? visit.path : visit.path + "/" + siblings.unique(name.empty() ? "node" : name)});
       }
       std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
     }
     if (mesh_.triangles.empty())
-      return bad_value(fmt::format("'{}' has no triangles{}", file_, lines_ + points_ ? ", only lines or points" : ""));
+      return bad_value(
+          fmt::format("'{}' has no triangles{}", file_, lines_ + points_ ? ", only lines or points" : ""));
     if (lines_) notes.push_back(fmt::format("dropped {} line primitives", lines_));
     if (points_) notes.push_back(fmt::format("dropped {} point primitives", points_));
     if (polygons_) notes.push_back(fmt::format("split {} polygons into triangles", polygons_));
-    if (crossing_) notes.push_back(fmt::format("{} polygons cross themselves, the first is face {} of '{}': they bound no one area, and were split as fans from their first corners", crossing_, first_crossing_, crossing_path_));
+    if (crossing_)
+      notes.push_back(
+          fmt::format("{} polygons cross themselves, the first is face {} of '{}': they bound no one area, "
+                      "and were split as fans from their first corners",
+                      crossing_, first_crossing_, crossing_path_));
     if (mirrored_) notes.push_back(fmt::format("turned the triangles of {} mirrored nodes", mirrored_));
     return std::move(mesh_);
   }
@@ -146,14 +172,19 @@ class Flattener {
   std::string add_node(const aiNode& node, const Transform& transform, const std::string& path) {
     const std::size_t first = mesh_.triangles.size();
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-      if (node.mMeshes[i] >= scene_.mNumMeshes) return fmt::format("has a node '{}' with a mesh that does not exist", path);
-      if (std::string wrong = add_mesh(*scene_.mMeshes[node.mMeshes[i]], transform, path); !wrong.empty()) return wrong;
+      if (node.mMeshes[i] >= scene_.mNumMeshes)
+        return fmt::format("has a node '{}' with a mesh that does not exist", path);
+      if (std::string wrong = add_mesh(*scene_.mMeshes[node.mMeshes[i]], transform, path); !wrong.empty())
+        return wrong;
     }
     if (mesh_.triangles.size() == first) return {};
-    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh_.triangles.size() - first), other_name(node), colour_of(node)});
+    mesh_.parts.push_back({path, static_cast<std::uint32_t>(first),
+                           static_cast<std::uint32_t>(mesh_.triangles.size() - first), other_name(node),
+                           colour_of(node)});
     if (transform.mirrors()) {
       ++mirrored_;
-      for (std::size_t t = first; t < mesh_.triangles.size(); ++t) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
+      for (std::size_t t = first; t < mesh_.triangles.size(); ++t)
+        std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
     }
     return {};
   }
@@ -165,7 +196,8 @@ class Flattener {
       const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
       if (mesh.mMaterialIndex < colours_.size()) triangles[colours_[mesh.mMaterialIndex]] += mesh.mNumFaces;
     }
-    const auto most = std::max_element(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most = std::max_element(triangles.begin(), triangles.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
     return most == triangles.end() ? std::nullopt : most->first;
   }
 
@@ -204,8 +236,8 @@ class Flattener {
       const Vec3 point = scale_ * (transform * mesh.mVertices[v]);
       for (int k = 0; k < 3; ++k)
         if (!(std::abs(point[k]) <= kLargestCoordinate))
-          return fmt::format("has coordinate {} m in vertex {} of '{}', which is not a number within ±{} m", point[k], v, path,
-                             kLargestCoordinate);
+          return fmt::format("has coordinate {} m in vertex {} of '{}', which is not a number within ±{} m",
+                             point[k], v, path, kLargestCoordinate);
       mesh_.vertices.push_back(point);
     }
     mesh_.triangles.reserve(mesh_.triangles.size() + triangles);
@@ -213,8 +245,8 @@ class Flattener {
       const aiFace& face = mesh.mFaces[f];
       for (unsigned i = 0; i < face.mNumIndices; ++i)
         if (face.mIndices[i] >= mesh.mNumVertices)
-          return fmt::format("has vertex index {} in face {} of '{}', beyond the vertex list (size {})", face.mIndices[i], f, path,
-                             mesh.mNumVertices);
+          return fmt::format("has vertex index {} in face {} of '{}', beyond the vertex list (size {})",
+                             face.mIndices[i], f, path, mesh.mNumVertices);
       if (face.mNumIndices < 3) {
         ++(face.mNumIndices == 2 ? lines_ : points_);
         continue;
@@ -222,12 +254,15 @@ class Flattener {
       if (face.mNumIndices > 3) ++polygons_;
       corners_.clear();
       split_.clear();
-      for (unsigned i = 0; i < face.mNumIndices; ++i) corners_.push_back(mesh_.vertices[base + face.mIndices[i]]);
+      for (unsigned i = 0; i < face.mNumIndices; ++i)
+        corners_.push_back(mesh_.vertices[base + face.mIndices[i]]);
       if (split_polygon(corners_, split_) == PolygonKind::kCrossing && ++crossing_ == 1) {
         first_crossing_ = f;
         crossing_path_ = path;
       }
-      const auto corner = [&](std::uint32_t i) { return static_cast<std::uint32_t>(base + face.mIndices[i]); };
+      const auto corner = [&](std::uint32_t i) {
+        return static_cast<std::uint32_t>(base + face.mIndices[i]);
+      };
       for (const auto& [a, b, c] : split_) mesh_.triangles.push_back({corner(a), corner(b), corner(c)});
     }
     return {};
@@ -242,13 +277,14 @@ class Flattener {
   std::size_t lines_ = 0, points_ = 0, polygons_ = 0, mirrored_ = 0, crossing_ = 0;
   unsigned first_crossing_ = 0;
   std::string crossing_path_;
-  std::vector<Vec3> corners_;                              ///< of the face at hand
+  std::vector<Vec3> corners_;  ///< of the face at hand
   std::vector<std::array<std::uint32_t, 3>> split_;
 };
 
 std::string extension_of(const std::string& path) {
   std::string out = std::filesystem::path(path).extension().string();
-  std::transform(out.begin(), out.end(), out.begin(), [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
   return out;
 }
 
@@ -265,11 +301,15 @@ std::string distrust(const std::string& extension, std::string_view bytes, const
 /// COLLADA states its unit, which arrives as the root node's scale.
 void note_unit(const aiScene& scene, ImportReport& report) {
   const Transform root = Transform::of(scene.mRootNode->mTransformation);
-  const double unit = std::sqrt(root.m[0][0] * root.m[0][0] + root.m[1][0] * root.m[1][0] + root.m[2][0] * root.m[2][0]);
-  if (std::abs(unit - 1) > 1e-4) report.notes.push_back(fmt::format("the file states a unit of {:.6g} m, applied besides the scale asked for", unit));
+  const double unit =
+      std::sqrt(root.m[0][0] * root.m[0][0] + root.m[1][0] * root.m[1][0] + root.m[2][0] * root.m[2][0]);
+  if (std::abs(unit - 1) > 1e-4)
+    report.notes.push_back(
+        fmt::format("the file states a unit of {:.6g} m, applied besides the scale asked for", unit));
 }
 
-/// One rule for all formats: coordinates are the file's own, whichever axis is up. The library turns two formats so that y is up: COLLADA, where it can be told not to, and 3DS.
+/// One rule for all formats: coordinates are the file's own, whichever axis is up. The library turns two
+/// formats so that y is up: COLLADA, where it can be told not to, and 3DS.
 Transform undo_turn(const std::string& extension) {
   if (extension == ".3ds") return {{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}}};
   return {};
@@ -282,10 +322,12 @@ void note_up_axis(const std::string& extension, std::string_view bytes, ImportRe
   const std::size_t at = bytes.find(kTag);
   const std::string_view axis = at == std::string_view::npos ? "Y_UP" : bytes.substr(at + kTag.size(), 4);
   if (axis != "Y_UP" && (axis == "Z_UP" || axis == "X_UP"))
-    report.notes.push_back(fmt::format("the file says that {} is up; coordinates are the file's own", axis == "Z_UP" ? "z" : "x"));
+    report.notes.push_back(fmt::format("the file says that {} is up; coordinates are the file's own",
+                                       axis == "Z_UP" ? "z" : "x"));
 }
 
-/// Whether the library would pass over the first byte of a binary PLY's data: it skips a line end behind the header's, and a number may begin like one.
+/// Whether the library would pass over the first byte of a binary PLY's data: it skips a line end behind the
+/// header's, and a number may begin like one.
 bool begins_like_a_line_end(const std::string& extension, std::string_view bytes) {
   if (extension != ".ply") return false;
   const std::size_t format = bytes.substr(0, 4096).find("format binary"), end = bytes.find("end_header");
@@ -294,9 +336,11 @@ bool begins_like_a_line_end(const std::string& extension, std::string_view bytes
   return data != std::string_view::npos && data + 1 < bytes.size() && bytes[data + 1] == '\n';
 }
 
-/// The same file with one byte more in front of its data: an edge, for which nobody asks. (Of elements that it does not know the library gets the number wrong.)
+/// The same file with one byte more in front of its data: an edge, for which nobody asks. (Of elements that
+/// it does not know the library gets the number wrong.)
 std::string with_a_first_byte(std::string_view bytes) {
-  const std::size_t end = bytes.find("end_header"), data = bytes.find('\n', end) + 1, first = std::min(bytes.find("\nelement") + 1, end);
+  const std::size_t end = bytes.find("end_header"), data = bytes.find('\n', end) + 1,
+                    first = std::min(bytes.find("\nelement") + 1, end);
   std::string out(bytes.substr(0, first));
   out += "element edge 1\nproperty uchar begin\n";
   out += bytes.substr(first, data - first);
@@ -314,16 +358,18 @@ std::string words_of(std::string text) {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder, const Tessellation&, const TellHowFar&, bool /*colours*/) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& folder,
+                       const Tessellation&, const TellHowFar&, bool /*colours*/) {
   report = {path, {}};
   const std::string extension = extension_of(path);
-  std::string in_memory;                 // what is read in the file's place, if anything
-  std::map<std::string, std::uint64_t> faces;   // that a glTF's meshes must have
+  std::string in_memory;                       // what is read in the file's place, if anything
+  std::map<std::string, std::uint64_t> faces;  // that a glTF's meshes must have
   {
     const Result<FileView> file = FileView::open(path);
     if (!file) return file.error();
     const std::string_view bytes = file->bytes();
-    if (const std::string wrong = distrust(extension, bytes, path); !wrong.empty()) return bad_value(fmt::format("'{}' {}", path, wrong));
+    if (const std::string wrong = distrust(extension, bytes, path); !wrong.empty())
+      return bad_value(fmt::format("'{}' {}", path, wrong));
     note_up_axis(extension, bytes, report);
     if (begins_like_a_line_end(extension, bytes)) in_memory = with_a_first_byte(bytes);
     if (extension == ".gltf" || extension == ".glb") faces = faces_of_gltf(bytes);
@@ -332,21 +378,34 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
     if (extension == ".3mf") return read_3mf(path, scale, report);
     // No post-processing: joining vertices, triangulating or sorting by type would renumber or reorder faces.
     Assimp::Importer importer;
-    if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));   // the importer's own from here on
-    if (!importer.IsExtensionSupported(extension)) return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension));
+    if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));  // the importer's own from here on
+    if (!importer.IsExtensionSupported(extension))
+      return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);   // else a file of cameras and lamps alone has triangles, which the library makes up
-    const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0) : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(), 0, extension.c_str() + 1);
-    if (!scene || !scene->mRootNode) return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
+    importer.SetPropertyBool(
+        AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
+        true);  // else a file of cameras and lamps alone has triangles, which the library makes up
+    const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0)
+                                             : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(),
+                                                                           0, extension.c_str() + 1);
+    if (!scene || !scene->mRootNode)
+      return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
     if (extension == ".dae") note_unit(*scene, report);
     // The library leaves out what it can't make sense of.
     std::map<std::string, std::uint64_t> read;
-    for (unsigned m = 0; m < scene->mNumMeshes && !faces.empty(); ++m) read[std::string(scene->mMeshes[m]->mName.data, scene->mMeshes[m]->mName.length)] += scene->mMeshes[m]->mNumFaces;
+    for (unsigned m = 0; m < scene->mNumMeshes && !faces.empty(); ++m)
+      read[std::string(scene->mMeshes[m]->mName.data, scene->mMeshes[m]->mName.length)] +=
+          scene->mMeshes[m]->mNumFaces;
     for (const auto& [name, count] : read)
       if (const auto wanted = faces.find(name); wanted != faces.end() && count < wanted->second)
-        return bad_value(fmt::format("'{}' has {} triangles in mesh '{}' of which {} can be read: the others name vertices that don't exist", path, wanted->second, one_line(name), count));
+        return bad_value(
+            fmt::format("'{}' has {} triangles in mesh '{}' of which {} can be read: the others name "
+                        "vertices that don't exist",
+                        path, wanted->second, one_line(name), count));
     const bool gltf = extension == ".gltf" || extension == ".glb";
-    return Flattener(*scene, scale, path, undo_turn(extension), gltf ? colours_of(*scene) : std::vector<std::optional<std::uint32_t>>{}).run(report.notes);
+    return Flattener(*scene, scale, path, undo_turn(extension),
+                     gltf ? colours_of(*scene) : std::vector<std::optional<std::uint32_t>>{})
+        .run(report.notes);
   } catch (const std::exception& error) {
     return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(error.what())));
   }

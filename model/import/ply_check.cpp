@@ -15,8 +15,8 @@ namespace palpate {
 namespace {
 
 struct Property {
-  std::size_t size = 0;         ///< bytes of the value, or of a list's entry
-  std::size_t count_size = 0;   ///< bytes of a list's count; 0: no list
+  std::size_t size = 0;        ///< bytes of the value, or of a list's entry
+  std::size_t count_size = 0;  ///< bytes of a list's count; 0: no list
 };
 struct Element {
   std::string name;
@@ -26,21 +26,24 @@ struct Element {
 struct Header {
   std::string format;
   std::vector<Element> elements;
-  std::size_t length = 0;   ///< bytes, with end_header and its line end
+  std::size_t length = 0;  ///< bytes, with end_header and its line end
 };
 
 std::size_t size_of_type(const std::string& type) {
   if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
   if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-  if (type == "int" || type == "uint" || type == "float" || type == "int32" || type == "uint32" || type == "float32") return 4;
+  if (type == "int" || type == "uint" || type == "float" || type == "int32" || type == "uint32" ||
+      type == "float32")
+    return 4;
   if (type == "double" || type == "float64") return 8;
   return 0;
 }
 
 constexpr const char* kNoHeader = "has no valid PLY header";
 
-/// Reads the header; what is wrong with it, "" when nothing is. What the importer would pass over or read in another way is wrong: it writes beyond the room
-/// of a first element's vertices when a second one of that name has more.
+/// Reads the header; what is wrong with it, "" when nothing is. What the importer would pass over or read in
+/// another way is wrong: it writes beyond the room of a first element's vertices when a second one of that
+/// name has more.
 std::string read_header(std::string_view bytes, Header& header) {
   std::set<std::string> names;
   std::size_t at = 0;
@@ -58,8 +61,10 @@ std::string read_header(std::string_view bytes, Header& header) {
     } else if (word == "element") {
       Element element;
       if (!(line >> element.name >> element.count)) return kNoHeader;
-      if (element.name == "tristrips") return "keeps its triangles in strips (element 'tristrips'), which can't be read; save it with faces";
-      if (!names.insert(element.name).second) return fmt::format("has two elements '{}'", element.name.substr(0, 40));
+      if (element.name == "tristrips")
+        return "keeps its triangles in strips (element 'tristrips'), which can't be read; save it with faces";
+      if (!names.insert(element.name).second)
+        return fmt::format("has two elements '{}'", element.name.substr(0, 40));
       header.elements.push_back(element);
     } else if (word == "property") {
       Property property;
@@ -76,26 +81,33 @@ std::string read_header(std::string_view bytes, Header& header) {
     } else if (word == "end_header") {
       header.length = at;
       return {};
-    } else if (!word.empty() && word != "comment" && word != "obj_info" && word != "Created") {   // "Created by Blender3D 247", without "comment"
-      return fmt::format("has a header line that begins with '{}', which PLY does not know", word.substr(0, 40));
+    } else if (!word.empty() && word != "comment" && word != "obj_info" &&
+               word != "Created") {  // "Created by Blender3D 247", without "comment"
+      return fmt::format("has a header line that begins with '{}', which PLY does not know",
+                         word.substr(0, 40));
     }
   }
   return kNoHeader;
 }
 
-/// Of an element with a name that the library does not know it gets the number wrong, and with it the place of all that follows.
+/// Of an element with a name that the library does not know it gets the number wrong, and with it the place
+/// of all that follows.
 std::string distrust_order(const Header& header) {
   static const std::set<std::string, std::less<>> known = {"vertex", "face", "edge", "material"};
   for (std::size_t i = 0; i + 1 < header.elements.size(); ++i) {
     const Element& element = header.elements[i];
     if (element.count != 0 && known.count(element.name) == 0)
-      return fmt::format("has {} elements '{}' in front of others, which can't be passed over; save it with vertices and faces alone", element.count, element.name.substr(0, 40));
+      return fmt::format(
+          "has {} elements '{}' in front of others, which can't be passed over; save it with vertices and "
+          "faces alone",
+          element.count, element.name.substr(0, 40));
   }
   return {};
 }
 
 std::string cut_short(const Element& element, std::uint64_t have) {
-  return fmt::format("is cut short: it promises {} elements '{}' and has {}", element.count, element.name.substr(0, 40), have);
+  return fmt::format("is cut short: it promises {} elements '{}' and has {}", element.count,
+                     element.name.substr(0, 40), have);
 }
 
 std::uint64_t read_count(const char* data, std::size_t size, bool big_endian) {
@@ -117,7 +129,7 @@ std::string distrust_binary(std::string_view body, const Header& header) {
       fixed += property.count_size == 0 ? property.size : property.count_size;
       lists |= property.count_size != 0;
     }
-    if (fixed == 0) {   // costs no bytes, so a sane count is what bounds the importer's loop
+    if (fixed == 0) {  // costs no bytes, so a sane count is what bounds the importer's loop
       if (element.count > body.size()) return cut_short(element, 0);
       continue;
     }
@@ -130,7 +142,8 @@ std::string distrust_binary(std::string_view body, const Header& header) {
       for (const Property& property : element.properties) {
         const std::uint64_t head = property.count_size == 0 ? property.size : property.count_size;
         if (head > body.size() - at) return cut_short(element, i);
-        const std::uint64_t entries = property.count_size == 0 ? 0 : read_count(body.data() + at, property.count_size, big_endian);
+        const std::uint64_t entries =
+            property.count_size == 0 ? 0 : read_count(body.data() + at, property.count_size, big_endian);
         at += head;
         if (entries > (body.size() - at) / property.size) return cut_short(element, i);
         at += entries * property.size;
@@ -160,7 +173,8 @@ std::string distrust_ply(std::string_view bytes) {
   if (std::string wrong = distrust_order(header); !wrong.empty()) return wrong;
   const std::string_view body = bytes.substr(header.length);
   if (header.format == "ascii") return distrust_ascii(body, header);
-  if (header.format == "binary_little_endian" || header.format == "binary_big_endian") return distrust_binary(body, header);
+  if (header.format == "binary_little_endian" || header.format == "binary_big_endian")
+    return distrust_binary(body, header);
   return fmt::format("has PLY format '{}', which is unknown", header.format.substr(0, 40));
 }
 

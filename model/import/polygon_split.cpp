@@ -12,7 +12,9 @@ struct Flat {
 };
 
 /// Twice the area of abc, > 0 for a turn to the left.
-double turn(const Flat& a, const Flat& b, const Flat& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+double turn(const Flat& a, const Flat& b, const Flat& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 /// Seen against the mean normal, so that the polygon goes round to the left.
 std::vector<Flat> flattened(std::span<const Vec3> corners) {
@@ -24,7 +26,7 @@ std::vector<Flat> flattened(std::span<const Vec3> corners) {
     sizes += glm::length(more);
     if (glm::length(more) > glm::length(largest)) largest = more;
   }
-  if (glm::length(normal) < 1e-9 * sizes) normal = largest;   // as much to the left as to the right: a bow
+  if (glm::length(normal) < 1e-9 * sizes) normal = largest;  // as much to the left as to the right: a bow
   int axis = 0;
   for (int k = 1; k < 3; ++k)
     if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
@@ -72,7 +74,7 @@ bool is_ear(const std::vector<Flat>& p, const std::vector<std::uint32_t>& left, 
   if (turn(a, b, c) <= 0) return false;
   for (std::size_t j = 0; j < n; ++j) {
     const Flat& q = p[left[j]];
-    if (q == a || q == b || q == c) continue;   // the corners themselves, and others in their place
+    if (q == a || q == b || q == c) continue;  // the corners themselves, and others in their place
     if (turn(a, b, q) >= 0 && turn(b, c, q) >= 0 && turn(c, a, q) >= 0) return false;
   }
   return true;
@@ -101,7 +103,7 @@ PolygonKind split_polygon(std::span<const Vec3> corners, std::vector<std::array<
   const std::size_t before = out.size();
   std::vector<std::uint32_t> left(n);
   for (std::uint32_t i = 0; i < n; ++i) left[i] = i;
-  std::size_t at = 0;   // go round, so that no corner is the apex of all
+  std::size_t at = 0;  // go round, so that no corner is the apex of all
   while (left.size() > 3) {
     const std::size_t count = left.size();
     std::size_t ear = count;
@@ -110,7 +112,7 @@ PolygonKind split_polygon(std::span<const Vec3> corners, std::vector<std::array<
     // None: what is left goes to and fro. A corner on the line between its neighbours takes no area away.
     for (std::size_t i = 0; i < count && ear == count; ++i)
       if (turn(p[left[(i + count - 1) % count]], p[left[i]], p[left[(i + 1) % count]]) == 0) ear = i;
-    if (ear == count) {   // sides that touch or lie on each other, in roundings
+    if (ear == count) {  // sides that touch or lie on each other, in roundings
       out.resize(before);
       fan();
       return PolygonKind::kCrossing;

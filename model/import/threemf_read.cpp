@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "model/files/one_line.h"
 #include "model/import/part_names.h"
 #include "model/lattice/lattice_build.h"
-#include "model/files/one_line.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {

@@ -10,7 +10,7 @@ inline Vec3 rotation_vector(const Quat& rotation) {
   const double sign = rotation.w < 0 ? -1.0 : 1.0;
   const Vec3 v = sign * Vec3(rotation.x, rotation.y, rotation.z);
   const double sine = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-  if (sine < 1e-12) return 2.0 * v;   // 2·atan2(s, w)/s → 2
+  if (sine < 1e-12) return 2.0 * v;  // 2·atan2(s, w)/s → 2
   return (2.0 * std::atan2(sine, sign * rotation.w) / sine) * v;
 }
 

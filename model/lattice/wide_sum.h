@@ -3,6 +3,8 @@
 
 namespace palpate {
 
-inline double to_double(const WideSum& sum) { return static_cast<double>(sum.high) * 4294967296.0 + static_cast<double>(sum.low); }
+inline double to_double(const WideSum& sum) {
+  return static_cast<double>(sum.high) * 4294967296.0 + static_cast<double>(sum.low);
+}
 
 }  // namespace palpate

@@ -20,7 +20,9 @@ double largest_loop(const LatticeMesh& mesh, const std::vector<std::array<std::u
     return v;
   };
   for (const auto& [low, high] : edges) parent[root(low)] = root(high);
-  struct LoopBox { Int3 min, max; };
+  struct LoopBox {
+    Int3 min, max;
+  };
   std::unordered_map<std::uint32_t, LoopBox> boxes;
   for (const auto& edge : edges)
     for (const std::uint32_t v : edge) {
@@ -41,19 +43,21 @@ double largest_loop(const LatticeMesh& mesh, const std::vector<std::array<std::u
 void Boundary::add(const LatticeMesh& mesh, std::uint32_t low, std::uint32_t high, int incidence) {
   const Int3 &p = mesh.vertices[low], &q = mesh.vertices[high];
   Int3 d = q - p;
-  const int divisor = std::gcd(std::gcd(d.x, d.y), d.z);   // > 0: welded vertices differ
+  const int divisor = std::gcd(std::gcd(d.x, d.y), d.z);  // > 0: welded vertices differ
   d /= divisor;
   const int axis = d.x != 0 ? 0 : d.y != 0 ? 1 : 2;
   if (d[axis] < 0) d = -d;
   const Long3 point(p), along(d);
-  const Long3 moment(point.y * along.z - point.z * along.y, point.z * along.x - point.x * along.z, point.x * along.y - point.y * along.x);
+  const Long3 moment(point.y * along.z - point.z * along.y, point.z * along.x - point.x * along.z,
+                     point.x * along.y - point.y * along.x);
   ends_.push_back({d, moment, p[axis], incidence, {low, high}});
   ends_.push_back({d, moment, q[axis], -incidence, {low, high}});
 }
 
 bool Boundary::cancels(const LatticeMesh& mesh) {
   std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) {
-    return std::tuple(line_of(a.direction, a.moment), a.place) < std::tuple(line_of(b.direction, b.moment), b.place);
+    return std::tuple(line_of(a.direction, a.moment), a.place) <
+           std::tuple(line_of(b.direction, b.moment), b.place);
   });
   std::vector<std::array<std::uint32_t, 2>> open;
   for (std::size_t first = 0; first < ends_.size();) {
@@ -64,7 +68,10 @@ bool Boundary::cancels(const LatticeMesh& mesh) {
     while (i < ends_.size() && line_of(ends_[i].direction, ends_[i].moment) == line) {
       const std::int32_t place = ends_[i].place;
       std::int64_t change = 0;
-      for (; i < ends_.size() && ends_[i].place == place && line_of(ends_[i].direction, ends_[i].moment) == line; ++i) change += ends_[i].change;
+      for (; i < ends_.size() && ends_[i].place == place &&
+             line_of(ends_[i].direction, ends_[i].moment) == line;
+           ++i)
+        change += ends_[i].change;
       balanced &= change == 0;
     }
     for (; first < i; ++first)

@@ -1,11 +1,11 @@
 #include "model/mesh/edges.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 #include <numeric>
 
-#include "model/mesh/boundary.h"
 #include "model/lattice/triangle.h"
+#include "model/mesh/boundary.h"
 
 namespace palpate {
 namespace {
@@ -13,14 +13,15 @@ namespace {
 /// Most entries of the neighbour lists together (chosen: 4 GiB of them).
 constexpr std::uint64_t kMaxNeighbours = std::uint64_t{1} << 30;
 
-std::uint32_t third_vertex(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_t low, std::uint32_t high) {
+std::uint32_t third_vertex(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_t low,
+                           std::uint32_t high) {
   for (const std::uint32_t v : mesh.triangles[triangle])
     if (v != low && v != high) return v;
-  return low;   // not reached: a triangle with an edge has three distinct vertices
+  return low;  // not reached: a triangle with an edge has three distinct vertices
 }
 
-/// Triangles on an edge that repeat another's three vertices. Counted on one of the three edges only: the one between
-/// the two lowest vertices.
+/// Triangles on an edge that repeat another's three vertices. Counted on one of the three edges only: the one
+/// between the two lowest vertices.
 std::uint32_t count_duplicates(const LatticeMesh& mesh, std::uint32_t low, std::span<const EdgeUse> uses,
                                std::vector<std::uint32_t>& scratch) {
   scratch.clear();
@@ -50,14 +51,16 @@ EdgeTable::EdgeTable(const LatticeMesh& mesh) : begin_(mesh.vertices.size() + 1,
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
   each_edge([&](const auto& edge, std::uint32_t t) { uses_[next[edge.first]++] = {edge.second, t}; });
   for (std::size_t v = 0; v + 1 < begin_.size(); ++v)
-    std::sort(uses_.begin() + begin_[v], uses_.begin() + begin_[v + 1], [](const EdgeUse& a, const EdgeUse& b) {
-      return a.high_vertex != b.high_vertex ? a.high_vertex < b.high_vertex : a.triangle < b.triangle;
-    });
+    std::sort(
+        uses_.begin() + begin_[v], uses_.begin() + begin_[v + 1], [](const EdgeUse& a, const EdgeUse& b) {
+          return a.high_vertex != b.high_vertex ? a.high_vertex < b.high_vertex : a.triangle < b.triangle;
+        });
 }
 
 int edge_direction(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_t low, std::uint32_t high) {
   const auto& v = mesh.triangles[triangle];
-  return (v[0] == low && v[1] == high) || (v[1] == low && v[2] == high) || (v[2] == low && v[0] == high) ? 1 : -1;
+  return (v[0] == low && v[1] == high) || (v[1] == low && v[2] == high) || (v[2] == low && v[0] == high) ? 1
+                                                                                                         : -1;
 }
 
 Result<void> check_crowded_edges(const EdgeTable& edges, const LatticeMesh& mesh) {
@@ -65,14 +68,16 @@ Result<void> check_crowded_edges(const EdgeTable& edges, const LatticeMesh& mesh
   Int3 most_at(0);
   edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> uses) {
     if (uses.size() <= most) return;
-    const auto solid = static_cast<std::size_t>(std::count_if(uses.begin(), uses.end(), [&](const EdgeUse& use) { return !mesh.collapsed(use.triangle); }));
+    const auto solid = static_cast<std::size_t>(std::count_if(
+        uses.begin(), uses.end(), [&](const EdgeUse& use) { return !mesh.collapsed(use.triangle); }));
     if (solid <= most) return;
     most = solid;
     most_at = mesh.vertices[low];
   });
   if (most > kMaxTrianglesOnEdge)
-    return bad_value(fmt::format("an edge at lattice point ({}, {}, {}) carries {} triangles, the limit is {}", most_at.x, most_at.y,
-                                 most_at.z, most, kMaxTrianglesOnEdge));
+    return bad_value(
+        fmt::format("an edge at lattice point ({}, {}, {}) carries {} triangles, the limit is {}", most_at.x,
+                    most_at.y, most_at.z, most, kMaxTrianglesOnEdge));
   return {};
 }
 
@@ -80,7 +85,7 @@ Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, L
   const std::size_t count = mesh.triangles.size();
   std::vector<std::uint32_t> length(count, 0);
   std::uint64_t total = 0;
-  std::vector<std::uint32_t> solid;   // the triangles on an edge that did not collapse
+  std::vector<std::uint32_t> solid;  // the triangles on an edge that did not collapse
   const auto gather = [&](std::span<const EdgeUse> uses) {
     solid.clear();
     for (const EdgeUse& use : uses)
@@ -94,12 +99,13 @@ Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, L
     for (const std::uint32_t t : solid) length[t] += static_cast<std::uint32_t>(n) - 1;
   });
   if (total > kMaxNeighbours)
-    return bad_value(fmt::format("{} pairs of triangles share an edge, the limit is {}", total / 2, kMaxNeighbours / 2));
+    return bad_value(
+        fmt::format("{} pairs of triangles share an edge, the limit is {}", total / 2, kMaxNeighbours / 2));
 
   mesh.neighbour_begin.assign(count + 1, 0);
   std::partial_sum(length.begin(), length.end(), mesh.neighbour_begin.begin() + 1);
   mesh.neighbours.resize(total);
-  std::vector<std::uint32_t>& next = length;   // reused: where each triangle's next neighbour goes
+  std::vector<std::uint32_t>& next = length;  // reused: where each triangle's next neighbour goes
   std::copy(mesh.neighbour_begin.begin(), mesh.neighbour_begin.end() - 1, next.begin());
   std::vector<Long3> normals;
   edges.for_each([&](std::uint32_t, std::span<const EdgeUse> uses) {
@@ -114,27 +120,29 @@ Result<void> find_neighbours(const EdgeTable& edges, const SmoothAngle& angle, L
       }
   });
 
-  // Ascending, and each neighbour once: two triangles may share two or three edges. The smooth entry sorts last and stays.
+  // Ascending, and each neighbour once: two triangles may share two or three edges. The smooth entry sorts
+  // last and stays.
   std::uint32_t kept = 0;
   for (std::size_t t = 0; t < count; ++t) {
     const std::uint32_t begin = mesh.neighbour_begin[t], end = mesh.neighbour_begin[t + 1];
     std::sort(mesh.neighbours.begin() + begin, mesh.neighbours.begin() + end);
     mesh.neighbour_begin[t] = kept;
     for (std::uint32_t i = begin; i < end; ++i)
-      if (i + 1 == end || mesh.neighbours[i] / 2 != mesh.neighbours[i + 1] / 2) mesh.neighbours[kept++] = mesh.neighbours[i];
+      if (i + 1 == end || mesh.neighbours[i] / 2 != mesh.neighbours[i + 1] / 2)
+        mesh.neighbours[kept++] = mesh.neighbours[i];
   }
   mesh.neighbour_begin[count] = kept;
   mesh.neighbours.resize(kept);
   return {};
 }
 
-void examine_edges(const EdgeTable& edges, double step_m, std::span<const std::uint32_t> part_of, LatticeMesh& mesh,
-                   MeshReport& report) {
+void examine_edges(const EdgeTable& edges, double step_m, std::span<const std::uint32_t> part_of,
+                   LatticeMesh& mesh, MeshReport& report) {
   Boundary whole;
   std::vector<Boundary> of_part(report.parts.size());
   std::vector<std::uint32_t> scratch;
   std::vector<EdgeUse> solid;
-  std::vector<std::pair<std::uint32_t, int>> by_part;   // each triangle's part and direction on this edge
+  std::vector<std::pair<std::uint32_t, int>> by_part;  // each triangle's part and direction on this edge
   edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> all_uses) {
     const std::uint32_t high = all_uses.front().high_vertex;
     solid.clear();

@@ -20,7 +20,8 @@ SurfaceMeasure measure(const LatticeMesh& mesh) {
     const Vec3 a(mesh.corner(t, 0)), b(mesh.corner(t, 1)), c(mesh.corner(t, 2));
     const Vec3 normal(raw_normal(mesh, t));
     const double area = length(normal) / 2;
-    const double volume = (a.x * normal.x + a.y * normal.y + a.z * normal.z) / 6;   // of the tetrahedron to the origin
+    const double volume =
+        (a.x * normal.x + a.y * normal.y + a.z * normal.z) / 6;  // of the tetrahedron to the origin
     out.area += area;
     area_moment += area / 3 * (a + b + c);
     out.volume += volume;
@@ -38,7 +39,8 @@ double gyration_radius(const LatticeMesh& mesh, const Vec3& centre) {
   double area_sum = 0, moment = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.collapsed(t)) continue;
-    const Vec3 a = Vec3(mesh.corner(t, 0)) - centre, b = Vec3(mesh.corner(t, 1)) - centre, c = Vec3(mesh.corner(t, 2)) - centre;
+    const Vec3 a = Vec3(mesh.corner(t, 0)) - centre, b = Vec3(mesh.corner(t, 1)) - centre,
+               c = Vec3(mesh.corner(t, 2)) - centre;
     const double area = length(Vec3(raw_normal(mesh, t))) / 2;
     const Vec3 sum = a + b + c;
     // The integral over a triangle of |x|² is area / 12 · (|a|² + |b|² + |c|² + |a + b + c|²).

@@ -11,14 +11,18 @@
 namespace palpate {
 namespace {
 
-std::string last_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }   // npos + 1 is 0
+std::string last_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}  // npos + 1 is 0
 
 /// A part by its number, "#3"; null: none.
 const MeshPart* numbered(const std::vector<MeshPart>& parts, const std::string& name) {
   std::size_t number = 0;
   if (name.size() < 2 || name[0] != '#') return nullptr;
   const auto [end, wrong] = std::from_chars(name.data() + 1, name.data() + name.size(), number);
-  return wrong == std::errc() && end == name.data() + name.size() && number >= 1 && number <= parts.size() ? &parts[number - 1] : nullptr;
+  return wrong == std::errc() && end == name.data() + name.size() && number >= 1 && number <= parts.size()
+             ? &parts[number - 1]
+             : nullptr;
 }
 
 /// The parts that `keep` holds, with only the vertices they use.
@@ -29,7 +33,8 @@ Mesh subset(const Mesh& mesh, Keep keep) {
   Mesh out;
   for (const MeshPart& part : mesh.parts) {
     if (!keep(part)) continue;
-    out.parts.push_back({part.path, static_cast<std::uint32_t>(out.triangles.size()), part.triangle_count, part.also, part.colour});
+    out.parts.push_back({part.path, static_cast<std::uint32_t>(out.triangles.size()), part.triangle_count,
+                         part.also, part.colour});
     for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
       std::array<std::uint32_t, 3> triangle = mesh.triangles[t];
       for (std::uint32_t& v : triangle) {
@@ -48,11 +53,13 @@ Mesh subset(const Mesh& mesh, Keep keep) {
 }  // namespace
 
 bool is_below(const std::string& path, const std::string& node) {
-  return path == node || (path.size() > node.size() && path.compare(0, node.size(), node) == 0 && path[node.size()] == '/');
+  return path == node ||
+         (path.size() > node.size() && path.compare(0, node.size(), node) == 0 && path[node.size()] == '/');
 }
 
-Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::string& name, const std::string& file) {
-  std::set<std::string> nodes;   // every node that holds triangles, itself or below
+Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::string& name,
+                              const std::string& file) {
+  std::set<std::string> nodes;  // every node that holds triangles, itself or below
   for (const MeshPart& part : parts)
     for (std::size_t end = part.path.find('/');; end = part.path.find('/', end + 1)) {
       nodes.insert(part.path.substr(0, end));
@@ -64,7 +71,7 @@ Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::str
     names.push_back(last_name(node));
     if (names.back() == name) matches.push_back(node);
   }
-  if (matches.empty())   // names of nodes come first
+  if (matches.empty())  // names of nodes come first
     for (const MeshPart& part : parts) {
       if (part.also.empty()) continue;
       names.push_back(part.also);
@@ -72,12 +79,13 @@ Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::str
     }
   if (matches.size() == 1) return matches.front();
   if (matches.size() > 1)
-    return bad_value(fmt::format("'{}' has {} nodes named '{}': say which by its path, such as '{}' or '{}'", file, matches.size(), name,
-                                 matches[0], matches[1]));
+    return bad_value(fmt::format("'{}' has {} nodes named '{}': say which by its path, such as '{}' or '{}'",
+                                 file, matches.size(), name, matches[0], matches[1]));
   if (const MeshPart* part = numbered(parts, name)) return part->path;
   names.insert(names.end(), nodes.begin(), nodes.end());
   const std::string near = near_names(name, names);
-  return bad_value(fmt::format("'{}' has no node named '{}'{} `palpate info --tree '{}'` lists them", file, name, near.empty() ? ";" : near, file));
+  return bad_value(fmt::format("'{}' has no node named '{}'{} `palpate info --tree '{}'` lists them", file,
+                               name, near.empty() ? ";" : near, file));
 }
 
 Result<Mesh> take_part(const Mesh& mesh, const std::string& part, const std::string& file) {
@@ -94,9 +102,11 @@ Result<Mesh> without_parts(const Mesh& mesh, const std::vector<std::string>& par
     nodes.push_back(std::move(*node));
   }
   Mesh out = subset(mesh, [&](const MeshPart& p) {
-    return std::none_of(nodes.begin(), nodes.end(), [&](const std::string& node) { return is_below(p.path, node); });
+    return std::none_of(nodes.begin(), nodes.end(),
+                        [&](const std::string& node) { return is_below(p.path, node); });
   });
-  if (out.triangles.empty()) return bad_value(fmt::format("nothing is left of '{}' without the parts named", file));
+  if (out.triangles.empty())
+    return bad_value(fmt::format("nothing is left of '{}' without the parts named", file));
   return out;
 }
 

@@ -18,7 +18,7 @@ class Agreement {
     bool differs = false;
     while (parent_[t] != t) {
       const std::uint32_t up = parent_[t];
-      differs_[t] = static_cast<std::uint8_t>(differs_[t] ^ differs_[up]);   // a root's own entry is 0
+      differs_[t] = static_cast<std::uint8_t>(differs_[t] ^ differs_[up]);  // a root's own entry is 0
       parent_[t] = parent_[up];
       differs ^= differs_[t] != 0;
       t = parent_[t];
@@ -33,7 +33,7 @@ class Agreement {
       if ((a_differs != b_differs) != differ) contradicts_[root_a] = 1;
       return;
     }
-    if (root_b < root_a) std::swap(root_a, root_b);   // the smallest triangle is the root: it stays as given
+    if (root_b < root_a) std::swap(root_a, root_b);  // the smallest triangle is the root: it stays as given
     parent_[root_b] = root_a;
     differs_[root_b] = static_cast<std::uint8_t>(a_differs ^ b_differs ^ differ);
     contradicts_[root_a] = static_cast<std::uint8_t>(contradicts_[root_a] | contradicts_[root_b]);
@@ -55,7 +55,7 @@ void turn(LatticeMesh& mesh, std::uint32_t triangle) {
 Orientation make_shells(const EdgeTable& edges, std::span<const std::uint32_t> part_of, LatticeMesh& mesh) {
   const std::uint32_t count = static_cast<std::uint32_t>(mesh.triangles.size());
   Agreement agreement(count);
-  std::vector<std::uint32_t> crowd;   // triangles on an edge of several parts, by part
+  std::vector<std::uint32_t> crowd;  // triangles on an edge of several parts, by part
   edges.for_each([&](std::uint32_t low, std::span<const EdgeUse> uses) {
     const std::uint32_t high = uses[0].high_vertex;
     const auto join = [&](std::uint32_t a, std::uint32_t b) {
@@ -65,7 +65,8 @@ Orientation make_shells(const EdgeTable& edges, std::span<const std::uint32_t> p
     if (uses.size() <= 2) return;
     crowd.clear();
     for (const EdgeUse& use : uses) crowd.push_back(use.triangle);
-    std::stable_sort(crowd.begin(), crowd.end(), [&](std::uint32_t a, std::uint32_t b) { return part_of[a] < part_of[b]; });
+    std::stable_sort(crowd.begin(), crowd.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return part_of[a] < part_of[b]; });
     for (std::size_t i = 0; i < crowd.size();) {
       std::size_t end = i + 1;
       while (end < crowd.size() && part_of[crowd[end]] == part_of[crowd[i]]) ++end;
@@ -79,7 +80,7 @@ Orientation make_shells(const EdgeTable& edges, std::span<const std::uint32_t> p
     const auto& v = mesh.triangles[t];
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
     const auto [root, differs] = agreement.find(t);
-    if (root == t) {   // the smallest triangle of its shell, so it comes first
+    if (root == t) {  // the smallest triangle of its shell, so it comes first
       out.shell_of[t] = static_cast<std::uint32_t>(out.shells.size());
       out.shells.push_back({.first_triangle = t, .orientable = !agreement.contradicts(t)});
     } else {
@@ -106,7 +107,8 @@ std::vector<Votes> vote(const Orientation& orientation, const LatticeMesh& mesh)
     const std::uint32_t s = orientation.shell_of[t];
     if (s == kNoShell || mesh.collapsed(t)) continue;
     // Triangle number i of n votes when it is the first with its value of floor(i · rays / n).
-    const std::uint64_t n = orientation.shells[s].triangles, rays = std::min<std::uint64_t>(n, kOrientationRays), i = seen[s]++;
+    const std::uint64_t n = orientation.shells[s].triangles,
+                        rays = std::min<std::uint64_t>(n, kOrientationRays), i = seen[s]++;
     if (i > 0 && i * rays / n == (i - 1) * rays / n) continue;
     voters.push_back(t);
     shell_of_voter.push_back(s);

@@ -14,26 +14,34 @@
 namespace palpate {
 namespace {
 
-/// What the grid may miss or add of a side's area, and of the sum of its normals, as a part of its area (chosen).
+/// What the grid may miss or add of a side's area, and of the sum of its normals, as a part of its area
+/// (chosen).
 constexpr double kFairly = 0.0625;
-/// Samples that stand for less than this part of a side can't stand for it all: weights are at most √3, and 2√3 < 4 is what Q30 holds.
+/// Samples that stand for less than this part of a side can't stand for it all: weights are at most √3, and
+/// 2√3 < 4 is what Q30 holds.
 constexpr double kHardlySeen = 0.5;
-/// How much of the identity there is in a side's tilt, in its area (chosen: a thousandth of the error is left, and no weight is far from the others).
+/// How much of the identity there is in a side's tilt, in its area (chosen: a thousandth of the error is
+/// left, and no weight is far from the others).
 constexpr double kOpen = 1e-4;
-/// Tilted weights stay within (chosen: a side that has to be tilted by more is seen badly; 2√3·1.15 < 4 is what Q30 holds).
+/// Tilted weights stay within (chosen: a side that has to be tilted by more is seen badly; 2√3·1.15 < 4 is
+/// what Q30 holds).
 constexpr double kLeastTilt = 0.5, kMostTilt = 1.15;
-/// Triangles of a side larger than s² share an extra sample as long as they are no larger than s², and reach no further than this many s (chosen: sides that the grid
-/// misses are often narrow, and a contact across one must not slip between).
+/// Triangles of a side larger than s² share an extra sample as long as they are no larger than s², and reach
+/// no further than this many s (chosen: sides that the grid misses are often narrow, and a contact across one
+/// must not slip between).
 constexpr double kExtraReach = 1.5;
 /// So many samples a side keeps at its coarsest level, at least (chosen: about what a small contact has).
 constexpr double kLeastOfLevel = 16;
-/// Narrower than so many s a side has extra samples (chosen, on pins and needles): a round one, a flat one; and from which sum of normals over area on it is flat.
+/// Narrower than so many s a side has extra samples (chosen, on pins and needles): a round one, a flat one;
+/// and from which sum of normals over area on it is flat.
 constexpr double kNarrowRound = 4, kNarrow = 1, kFlat = 0.98;
 /// They lie so many of its widths apart, no closer than this part of s (chosen).
 constexpr double kOfWidth = 0.5, kClosest = 0.25;
-constexpr double kMostExtras = 1024;   // on one triangle (chosen: memory)
-constexpr double kMostCells = 1 << 20;   // of a triangle whose samples are counted (chosen: milliseconds; what so many miss of its area is a thousandth)
-constexpr double kMostOfOne = 3.99;    // 2^level s² that one extra sample stands for: below 4, which is what Q30 holds
+constexpr double kMostExtras = 1024;    // on one triangle (chosen: memory)
+constexpr double kMostCells = 1 << 20;  // of a triangle whose samples are counted (chosen: milliseconds; what
+                                        // so many miss of its area is a thousandth)
+constexpr double kMostOfOne =
+    3.99;  // 2^level s² that one extra sample stands for: below 4, which is what Q30 holds
 
 /// Triangles joined into components; the smallest is the root.
 class Components {
@@ -59,11 +67,12 @@ class Components {
 };
 
 struct Numbering {
-  std::vector<std::uint32_t> of;   ///< by triangle, kNoPatch for collapsed ones
+  std::vector<std::uint32_t> of;  ///< by triangle, kNoPatch for collapsed ones
   std::uint32_t count = 0;
 };
 
-/// Numbers the components over smooth edges between triangles that `together` allows, in the order of their smallest triangle.
+/// Numbers the components over smooth edges between triangles that `together` allows, in the order of their
+/// smallest triangle.
 template <class Together>
 Numbering number_smooth(const LatticeMesh& mesh, const Together& together) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -76,7 +85,7 @@ Numbering number_smooth(const LatticeMesh& mesh, const Together& together) {
   Numbering out{std::vector<std::uint32_t>(count, kNoPatch)};
   for (std::uint32_t t = 0; t < count; ++t) {
     if (mesh.collapsed(t)) continue;
-    const std::uint32_t root = components.find(t);   // not after t, so it has its number
+    const std::uint32_t root = components.find(t);  // not after t, so it has its number
     out.of[t] = root == t ? out.count++ : out.of[root];
   }
   return out;
@@ -84,7 +93,9 @@ Numbering number_smooth(const LatticeMesh& mesh, const Together& together) {
 
 double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
-bool looks_back(const LatticeMesh& mesh, std::uint32_t triangle) { return mesh.unit_normal_q30[triangle][mesh.sample_axis[triangle]] < 0; }
+bool looks_back(const LatticeMesh& mesh, std::uint32_t triangle) {
+  return mesh.unit_normal_q30[triangle][mesh.sample_axis[triangle]] < 0;
+}
 
 std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
   const std::int64_t quotient = value / divisor;
@@ -96,7 +107,8 @@ std::uint32_t weight_q30(double weight) {
   return static_cast<std::uint32_t>(std::clamp(std::nearbyint(weight * 0x1p30), 64.0, 4294967295.0));
 }
 
-/// Cuts a triangle from its longest edge to the opposite corner into `count` of equal area; the centroid of number i of them, rounded down.
+/// Cuts a triangle from its longest edge to the opposite corner into `count` of equal area; the centroid of
+/// number i of them, rounded down.
 Int3 middle_of_share(const LatticeMesh& mesh, std::uint32_t triangle, std::int64_t i, std::int64_t count) {
   double longest = -1;
   int first = 0;
@@ -105,11 +117,13 @@ Int3 middle_of_share(const LatticeMesh& mesh, std::uint32_t triangle, std::int64
     const double length = edge.x * edge.x + edge.y * edge.y + edge.z * edge.z;
     if (length > longest) longest = length, first = k;
   }
-  const Int3 p = mesh.corner(triangle, first), q = mesh.corner(triangle, (first + 1) % 3), apex = mesh.corner(triangle, (first + 2) % 3);
+  const Int3 p = mesh.corner(triangle, first), q = mesh.corner(triangle, (first + 1) % 3),
+             apex = mesh.corner(triangle, (first + 2) % 3);
   Int3 out;
-  for (int k = 0; k < 3; ++k) {   // count ≤ 2^10: within 2^42
+  for (int k = 0; k < 3; ++k) {  // count ≤ 2^10: within 2^42
     const std::int64_t along = (std::int64_t{q[k]} - p[k]) * (2 * i + 1);
-    out[k] = static_cast<std::int32_t>(floor_divide(count * (std::int64_t{apex[k]} + 2 * std::int64_t{p[k]}) + along, 3 * count));
+    out[k] = static_cast<std::int32_t>(
+        floor_divide(count * (std::int64_t{apex[k]} + 2 * std::int64_t{p[k]}) + along, 3 * count));
   }
   return out;
 }
@@ -117,8 +131,9 @@ Int3 middle_of_share(const LatticeMesh& mesh, std::uint32_t triangle, std::int64
 /// Area by where it faces, steps².
 struct Facing {
   double area = 0;
-  Vec3 sum{0};      ///< of n̂
-  Vec3 spread{0};   ///< of |n̂|, each component by itself: a round side seen at its middle alone has the right sum
+  Vec3 sum{0};  ///< of n̂
+  Vec3 spread{
+      0};  ///< of |n̂|, each component by itself: a round side seen at its middle alone has the right sum
   void add(double more, const Vec3& normal) {
     area += more;
     sum += more * normal;
@@ -128,11 +143,11 @@ struct Facing {
 
 /// What looks one way of a patch, and hangs together: all of it is sampled by the same columns of the grid.
 struct Side {
-  std::span<const std::uint32_t> triangles;   ///< ascending
+  std::span<const std::uint32_t> triangles;  ///< ascending
   Facing facing{};
-  double width = 0;                               ///< area over the length of its box's diagonal, steps
-  std::array<Facing, kSampleLevels + 1> seen{};   ///< by samples of at least each level, s²·2^level for each
-  std::vector<double> sampled{};                  ///< by triangle: area that its samples stand for, s² for each
+  double width = 0;                              ///< area over the length of its box's diagonal, steps
+  std::array<Facing, kSampleLevels + 1> seen{};  ///< by samples of at least each level, s²·2^level for each
+  std::vector<double> sampled{};  ///< by triangle: area that its samples stand for, s² for each
 };
 
 /// `square`: s².
@@ -150,18 +165,21 @@ void measure(const LatticeMesh& mesh, std::int32_t spacing, double square, Side&
     side.sampled.push_back(square * samples[0] * (mesh.sample_weight_q30[t] * 0x1p-30));
     for (int level = 0; level <= kSampleLevels; ++level)
       if (const double count = samples[static_cast<std::size_t>(level)]; count != 0)
-        side.seen[static_cast<std::size_t>(level)].add(std::ldexp(square, level) * count * (mesh.sample_weight_q30[t] * 0x1p-30), raw / size);
+        side.seen[static_cast<std::size_t>(level)].add(
+            std::ldexp(square, level) * count * (mesh.sample_weight_q30[t] * 0x1p-30), raw / size);
   }
   side.width = side.facing.area / length(high - low);
 }
 
-/// Whether a side is so narrow that a contact across it would meet too few of the grid's samples: a round one sooner, for they have to see all ways that it faces.
+/// Whether a side is so narrow that a contact across it would meet too few of the grid's samples: a round one
+/// sooner, for they have to see all ways that it faces.
 bool is_narrow(double square, const Side& side) {
   const bool round = length(side.facing.sum) < kFlat * side.facing.area;
   return side.width < (round ? kNarrowRound : kNarrow) * std::sqrt(square);
 }
 
-/// The factor of the weights of its samples of at least `level` with which they stand for all of it; 0 when they can't. `square`: s².
+/// The factor of the weights of its samples of at least `level` with which they stand for all of it; 0 when
+/// they can't. `square`: s².
 double factor_of(int level, const Side& side) {
   const Facing &is = side.facing, &seen = side.seen[static_cast<std::size_t>(level)];
   const double fair = kFairly * is.area;
@@ -170,17 +188,20 @@ double factor_of(int level, const Side& side) {
   };
   if (seen.area < kHardlySeen * is.area) return 0;
   const double factor = is.area / seen.area;
-  return fits(factor) ? factor : 0;   // a round side seen only in places would push askew
+  return fits(factor) ? factor : 0;  // a round side seen only in places would push askew
 }
 
 /// What weights are worth by where their triangle faces: 1 + a + b·n̂.
 struct Tilt {
-  std::array<double, 4> of{};   ///< a, b
-  double at(const Vec3& normal) const { return 1 + of[0] + of[1] * normal.x + of[2] * normal.y + of[3] * normal.z; }
+  std::array<double, 4> of{};  ///< a, b
+  double at(const Vec3& normal) const {
+    return 1 + of[0] + of[1] * normal.x + of[2] * normal.y + of[3] * normal.z;
+  }
 };
 
-/// With its weights times `factor`, how to tilt them so that a side's samples have its area and its sum of normals exactly, or nearly so: least squares with a little of the
-/// identity, as a flat side leaves most of it open. (A closed body under the same pressure all round is then pushed nowhere.)
+/// With its weights times `factor`, how to tilt them so that a side's samples have its area and its sum of
+/// normals exactly, or nearly so: least squares with a little of the identity, as a flat side leaves most of
+/// it open. (A closed body under the same pressure all round is then pushed nowhere.)
 Tilt tilt_of(const LatticeMesh& mesh, double factor, const Side& side) {
   double a[4][4] = {}, b[4] = {side.facing.area, side.facing.sum.x, side.facing.sum.y, side.facing.sum.z};
   for (std::size_t i = 0; i < side.triangles.size(); ++i) {
@@ -193,7 +214,7 @@ Tilt tilt_of(const LatticeMesh& mesh, double factor, const Side& side) {
     }
   }
   for (int k = 0; k < 4; ++k) a[k][k] += kOpen * side.facing.area;
-  for (int k = 0; k < 4; ++k)   // symmetric and positive: no pivots
+  for (int k = 0; k < 4; ++k)  // symmetric and positive: no pivots
     for (int l = k + 1; l < 4; ++l) {
       const double share = a[l][k] / a[k][k];
       for (int m = k; m < 4; ++m) a[l][m] -= share * a[k][m];
@@ -210,9 +231,10 @@ Tilt tilt_of(const LatticeMesh& mesh, double factor, const Side& side) {
 /// The levels at which a side that the grid sees, with its weights times `grid_factor`, is still seen.
 SideLevels levels_of(double square, double grid_factor, const Side& side) {
   SideLevels out;
-  for (int level = 1; level <= kSampleLevels && side.facing.area >= kLeastOfLevel * std::ldexp(square, level); ++level) {
+  for (int level = 1; level <= kSampleLevels && side.facing.area >= kLeastOfLevel * std::ldexp(square, level);
+       ++level) {
     const double factor = factor_of(level, side) / grid_factor;
-    if (factor == 0 || factor >= 4) break;   // 4: what Q30 holds
+    if (factor == 0 || factor >= 4) break;  // 4: what Q30 holds
     out.factor_q30[static_cast<std::size_t>(level - 1)] = weight_q30(factor);
     out.coarsest = static_cast<std::uint32_t>(level);
   }
@@ -226,7 +248,7 @@ void place_extras(LatticeMesh& mesh, double square, const Side& side) {
   const bool one = side.facing.area <= share_of_one;
   double gathered = 0, most = -1;
   std::uint32_t largest = 0;
-  Vec3 low(INFINITY), high(-INFINITY);   // of what is gathered
+  Vec3 low(INFINITY), high(-INFINITY);  // of what is gathered
   for (std::size_t i = 0; i < side.triangles.size(); ++i) {
     const std::uint32_t t = side.triangles[i];
     const Vec3 raw(raw_normal(mesh, t));
@@ -239,10 +261,13 @@ void place_extras(LatticeMesh& mesh, double square, const Side& side) {
     const double reach = length(high - low);
     if (i + 1 < side.triangles.size() && (one || (gathered < share_of_one && reach < most_reach))) continue;
     const double weight = gathered / square;
-    const double count = one ? 1 : std::clamp(std::ceil(std::max(gathered / share_of_one, reach / most_reach)), 1.0, kMostExtras);
+    const double count =
+        one ? 1
+            : std::clamp(std::ceil(std::max(gathered / share_of_one, reach / most_reach)), 1.0, kMostExtras);
     const auto whole = static_cast<std::int64_t>(count);
     for (std::int64_t share = 0; share < whole; ++share)
-      mesh.extra_samples.push_back({largest, middle_of_share(mesh, largest, share, whole), weight_q30(weight / count)});
+      mesh.extra_samples.push_back(
+          {largest, middle_of_share(mesh, largest, share, whole), weight_q30(weight / count)});
     gathered = 0;
     most = -1;
     low = Vec3(INFINITY);
@@ -252,33 +277,40 @@ void place_extras(LatticeMesh& mesh, double square, const Side& side) {
 
 /// Which of 27 ways a normal looks: along an axis no more than tan 22.5° is neither up nor down.
 std::int64_t way_of(const Int3& normal) {
-  constexpr std::int32_t kLeast = 444764242;   // tan 22.5° in Q30
+  constexpr std::int32_t kLeast = 444764242;  // tan 22.5° in Q30
   std::int64_t way = 0;
-  for (int k = 2; k >= 0; --k) way = 3 * way + 1 + (normal[k] > kLeast ? 1 : 0) - (normal[k] < -kLeast ? 1 : 0);
+  for (int k = 2; k >= 0; --k)
+    way = 3 * way + 1 + (normal[k] > kLeast ? 1 : 0) - (normal[k] < -kLeast ? 1 : 0);
   return way;
 }
 
 /// At a level extra samples of a patch that look one way, in a cube of so many s, are one.
 std::int64_t cube_of_level(int level) { return std::int64_t{1} << level / 2; }
 
-/// Fills coarse_q30: of extra samples that are one at a level, the one nearest to their middle and to where they look on average stands for all.
+/// Fills coarse_q30: of extra samples that are one at a level, the one nearest to their middle and to where
+/// they look on average stands for all.
 void level_extras(std::int32_t spacing, LatticeMesh& mesh) {
   std::vector<ExtraSample>& extras = mesh.extra_samples;
   struct Keyed {
-    std::array<std::int64_t, 5> key;   ///< patch, way, cube
+    std::array<std::int64_t, 5> key;  ///< patch, way, cube
     std::uint32_t extra;
     auto operator<=>(const Keyed&) const = default;
   };
   std::vector<Keyed> keyed(extras.size());
   // A patch counts from the corner of its own, so that it is cut the same wherever its body lies.
   std::vector<Int3> corner(mesh.patch_count, Int3(std::numeric_limits<std::int32_t>::max()));
-  for (const ExtraSample& extra : extras) corner[mesh.patch[extra.triangle]] = glm::min(corner[mesh.patch[extra.triangle]], extra.point);
+  for (const ExtraSample& extra : extras)
+    corner[mesh.patch[extra.triangle]] = glm::min(corner[mesh.patch[extra.triangle]], extra.point);
   for (int level = 1; level <= kSampleLevels; ++level) {
     const std::int64_t edge = spacing * cube_of_level(level);
-    const auto place = [&](std::uint32_t i) { return extras[i].point - corner[mesh.patch[extras[i].triangle]]; };
+    const auto place = [&](std::uint32_t i) {
+      return extras[i].point - corner[mesh.patch[extras[i].triangle]];
+    };
     for (std::uint32_t i = 0; i < extras.size(); ++i) {
       const std::uint32_t triangle = extras[i].triangle;
-      keyed[i] = {{mesh.patch[triangle], way_of(mesh.unit_normal_q30[triangle]), place(i).x / edge, place(i).y / edge, place(i).z / edge}, i};
+      keyed[i] = {{mesh.patch[triangle], way_of(mesh.unit_normal_q30[triangle]), place(i).x / edge,
+                   place(i).y / edge, place(i).z / edge},
+                  i};
     }
     std::sort(keyed.begin(), keyed.end());
     for (std::size_t first = 0, end = 0; first < keyed.size(); first = end) {
@@ -287,7 +319,8 @@ void level_extras(std::int32_t spacing, LatticeMesh& mesh) {
       for (end = first; end < keyed.size() && keyed[end].key == keyed[first].key; ++end) {
         const ExtraSample& extra = extras[keyed[end].extra];
         const double weight = extra.weight_q30 * 0x1p-30;
-        if (end > first && sum + weight >= std::ldexp(kMostOfOne, level)) break;   // the rest of the cube is another one
+        if (end > first && sum + weight >= std::ldexp(kMostOfOne, level))
+          break;  // the rest of the cube is another one
         sum += weight;
         middle += weight * Vec3(place(keyed[end].extra));
         facing += weight * 0x1p-30 * Vec3(mesh.unit_normal_q30[extra.triangle]);
@@ -296,8 +329,10 @@ void level_extras(std::int32_t spacing, LatticeMesh& mesh) {
       std::uint32_t chosen = 0;
       for (std::size_t i = first; i < end; ++i) {
         const ExtraSample& extra = extras[keyed[i].extra];
-        const Vec3 away = (Vec3(place(keyed[i].extra)) - middle / sum) / static_cast<double>(edge), turn = 0x1p-30 * Vec3(mesh.unit_normal_q30[extra.triangle]) - facing / sum;
-        if (const double off = glm::dot(away, away) + glm::dot(turn, turn); off < least) least = off, chosen = keyed[i].extra;
+        const Vec3 away = (Vec3(place(keyed[i].extra)) - middle / sum) / static_cast<double>(edge),
+                   turn = 0x1p-30 * Vec3(mesh.unit_normal_q30[extra.triangle]) - facing / sum;
+        if (const double off = glm::dot(away, away) + glm::dot(turn, turn); off < least)
+          least = off, chosen = keyed[i].extra;
       }
       extras[chosen].coarse_q30[static_cast<std::size_t>(level - 1)] = weight_q30(std::ldexp(sum, -level));
     }
@@ -307,12 +342,14 @@ void level_extras(std::int32_t spacing, LatticeMesh& mesh) {
 }  // namespace
 
 void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh) {
-  Numbering found = number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) { return part_of[a] == part_of[b]; });
+  Numbering found =
+      number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) { return part_of[a] == part_of[b]; });
   mesh.patch = std::move(found.of);
   mesh.patch_count = found.count;
 }
 
-std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std::int32_t spacing) {
+std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std::uint32_t triangle,
+                                                    std::int32_t spacing) {
   std::array<double, kSampleLevels + 1> count{};
   if (mesh.collapsed(triangle)) return count;
   const int axis = mesh.sample_axis[triangle], u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -320,12 +357,14 @@ std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std
   const Int3 corners[3] = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
   const auto [min_u, max_u] = std::minmax({corners[0][u], corners[1][u], corners[2][u]});
   const auto [min_v, max_v] = std::minmax({corners[0][v], corners[1][v], corners[2][v]});
-  const std::int64_t first_i = grid.cell(min_u), last_i = grid.cell(max_u), first_j = grid.cell(min_v), last_j = grid.cell(max_v);
+  const std::int64_t first_i = grid.cell(min_u), last_i = grid.cell(max_u), first_j = grid.cell(min_v),
+                     last_j = grid.cell(max_v);
   const Long3 raw = raw_normal(mesh, triangle);
   const std::int64_t facing = raw[axis] < 0 ? -1 : 1;
   if (static_cast<double>(last_i - first_i + 1) * static_cast<double>(last_j - first_j + 1) > kMostCells) {
     for (int level = 0; level <= kSampleLevels; ++level)
-      count[static_cast<std::size_t>(level)] = std::ldexp(0.5 * std::abs(static_cast<double>(raw[axis])) / (double{1} * spacing * spacing), -level);
+      count[static_cast<std::size_t>(level)] = std::ldexp(
+          0.5 * std::abs(static_cast<double>(raw[axis])) / (double{1} * spacing * spacing), -level);
     return count;
   }
   for (std::int64_t j = first_j; j <= last_j; ++j)
@@ -334,12 +373,16 @@ std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std
       bool inside = true;
       for (int k = 0; k < 3 && inside; ++k) {
         const Int3 &p = corners[k], &q = corners[(k + 1) % 3];
-        const std::int64_t along_u = facing * (std::int64_t{q[u]} - p[u]), along_v = facing * (std::int64_t{q[v]} - p[v]);
-        const std::int64_t side = along_u * (at_v - p[v]) - along_v * (at_u - p[u]);   // within 2^59
-        inside = side > 0 || (side == 0 && (along_v < 0 || (along_v == 0 && along_u > 0)));   // on an edge: where (ε, ε²) says
+        const std::int64_t along_u = facing * (std::int64_t{q[u]} - p[u]),
+                           along_v = facing * (std::int64_t{q[v]} - p[v]);
+        const std::int64_t side = along_u * (at_v - p[v]) - along_v * (at_u - p[u]);  // within 2^59
+        inside =
+            side > 0 ||
+            (side == 0 && (along_v < 0 || (along_v == 0 && along_u > 0)));  // on an edge: where (ε, ε²) says
       }
       if (!inside) continue;
-      for (int level = SampleGrid::level(i, j); level >= 0; --level) count[static_cast<std::size_t>(level)] += 1;
+      for (int level = SampleGrid::level(i, j); level >= 0; --level)
+        count[static_cast<std::size_t>(level)] += 1;
     }
   return count;
 }
@@ -348,7 +391,8 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   const double square = static_cast<double>(spacing) * spacing;
   const Numbering sides = number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) {
-    return mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] && looks_back(mesh, a) == looks_back(mesh, b);
+    return mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] &&
+           looks_back(mesh, a) == looks_back(mesh, b);
   });
   std::vector<std::uint32_t> begin(std::size_t{sides.count} + 1, 0), order(count);
   for (const std::uint32_t side : sides.of)
@@ -372,12 +416,15 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
     }
     if (const SideLevels levels = levels_of(square, factor, side); levels.coarsest != 0) {
       mesh.side_levels.push_back(levels);
-      for (const std::uint32_t t : side.triangles) mesh.levels_of[t] = static_cast<std::uint32_t>(mesh.side_levels.size());
+      for (const std::uint32_t t : side.triangles)
+        mesh.levels_of[t] = static_cast<std::uint32_t>(mesh.side_levels.size());
     }
     const Tilt tilt = tilt_of(mesh, factor, side);
     for (const std::uint32_t t : side.triangles) {
       const Vec3 raw(raw_normal(mesh, t));
-      mesh.field_weight_q30[t] = weight_q30(factor * std::clamp(tilt.at(raw / length(raw)), kLeastTilt, kMostTilt) * (mesh.sample_weight_q30[t] * 0x1p-30));
+      mesh.field_weight_q30[t] =
+          weight_q30(factor * std::clamp(tilt.at(raw / length(raw)), kLeastTilt, kMostTilt) *
+                     (mesh.sample_weight_q30[t] * 0x1p-30));
     }
   }
   std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),

@@ -10,11 +10,14 @@ namespace palpate {
 /// Fills `patch` and `patch_count`. `part_of` numbers the part of every triangle; neighbours must be there.
 void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh);
 
-/// How many grid samples of at least each level a triangle has (docs/EXACTNESS.md section 4). Beyond 2^20 cells: about how many, by its area.
-std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std::uint32_t triangle, std::int32_t spacing);
+/// How many grid samples of at least each level a triangle has (docs/EXACTNESS.md section 4). Beyond 2^20
+/// cells: about how many, by its area.
+std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std::uint32_t triangle,
+                                                    std::int32_t spacing);
 
-/// Fills `field_weight_q30` and `extra_samples`, so that what the grid misses of small and thin faces is felt, too, and the levels of large ones (EXACTNESS section 4).
-/// Patches must be there. Double precision in a fixed order: made once at load, read by every back end.
+/// Fills `field_weight_q30` and `extra_samples`, so that what the grid misses of small and thin faces is
+/// felt, too, and the levels of large ones (EXACTNESS section 4). Patches must be there. Double precision in
+/// a fixed order: made once at load, read by every back end.
 void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh);
 
 }  // namespace palpate

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "model/result.h"
 #include "model/lattice/vector.h"
+#include "model/result.h"
 
 namespace palpate {
 

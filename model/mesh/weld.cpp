@@ -1,7 +1,7 @@
 #include "model/mesh/weld.h"
 
-#include <cmath>
 #include <fmt/format.h>
+#include <cmath>
 #include <limits>
 
 #include "model/lattice/triangle.h"
@@ -50,32 +50,35 @@ class PointIndex {
   }
 
   std::vector<Int3>& points_;
-  std::vector<std::uint32_t> slots_;   ///< a power of two of them, at most half full
+  std::vector<std::uint32_t> slots_;  ///< a power of two of them, at most half full
 };
 
 }  // namespace
 
 Result<LatticeMesh> snap_and_weld(const Mesh& mesh, const Lattice& lattice) {
   if (mesh.triangles.size() > kMaxTriangles)
-    return bad_value(fmt::format("the mesh has {} triangles, the limit is {}", mesh.triangles.size(), kMaxTriangles));
+    return bad_value(
+        fmt::format("the mesh has {} triangles, the limit is {}", mesh.triangles.size(), kMaxTriangles));
   LatticeMesh out;
   out.triangles.resize(mesh.triangles.size());
   out.flags.assign(mesh.triangles.size(), 0);
-  std::vector<std::uint32_t> welded(mesh.vertices.size(), kNone);   // mesh vertex → lattice vertex
+  std::vector<std::uint32_t> welded(mesh.vertices.size(), kNone);  // mesh vertex → lattice vertex
   PointIndex index(out.vertices);
   bool any = false;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh.triangles[t][k];
       if (v >= mesh.vertices.size())
-        return bad_value(fmt::format("triangle {}: vertex index {} is beyond the vertex list (size {})", t, v, mesh.vertices.size()));
+        return bad_value(fmt::format("triangle {}: vertex index {} is beyond the vertex list (size {})", t, v,
+                                     mesh.vertices.size()));
       if (welded[v] == kNone) {
         const Vec3 steps = (mesh.vertices[v] - lattice.origin_m) / lattice.step_m;
         Int3 point;
         for (int axis = 0; axis < 3; ++axis) {
-          if (!(std::abs(steps[axis]) <= kLatticeReach))   // false for a NaN too
-            return bad_value(fmt::format("vertex {}: coordinate {} m is not within the lattice ({} m either side of {} m)", v,
-                                         mesh.vertices[v][axis], lattice.step_m * kLatticeReach, lattice.origin_m[axis]));
+          if (!(std::abs(steps[axis]) <= kLatticeReach))  // false for a NaN too
+            return bad_value(fmt::format(
+                "vertex {}: coordinate {} m is not within the lattice ({} m either side of {} m)", v,
+                mesh.vertices[v][axis], lattice.step_m * kLatticeReach, lattice.origin_m[axis]));
           point[axis] = static_cast<std::int32_t>(std::nearbyint(steps[axis]));
         }
         welded[v] = index.number(point);
@@ -97,7 +100,8 @@ Result<LatticeMesh> snap_and_weld(const Mesh& mesh, const Lattice& lattice) {
   if (!any)
     return bad_value(mesh.triangles.empty()
                          ? std::string("the mesh has no triangles")
-                         : fmt::format("all {} triangles collapse on the lattice (step {} m)", mesh.triangles.size(), lattice.step_m));
+                         : fmt::format("all {} triangles collapse on the lattice (step {} m)",
+                                       mesh.triangles.size(), lattice.step_m));
   return out;
 }
 

@@ -27,7 +27,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string near_names(const std::string& name, const std::vector<std::string>& names) {
-  constexpr std::size_t kLongest = 256;   // a longer name is no slip of the pen, and edits() is quadratic
+  constexpr std::size_t kLongest = 256;  // a longer name is no slip of the pen, and edits() is quadratic
   std::vector<std::pair<std::size_t, std::string>> near;
   for (const std::string& other : names) {
     if (name.size() > kLongest || other.size() > kLongest) continue;

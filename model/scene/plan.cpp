@@ -11,8 +11,8 @@ namespace {
 
 bool is_identity(const Quat& q) { return q.x == 0 && q.y == 0 && q.z == 0; }
 
-/// Whether any pose of the session may be turned. Only the simulated device tells its poses beforehand: it follows
-/// its path, and leaves the path's rotation only if a torque can turn it away.
+/// Whether any pose of the session may be turned. Only the simulated device tells its poses beforehand: it
+/// follows its path, and leaves the path's rotation only if a torque can turn it away.
 bool session_rotates(const Scene& scene) {
   const DeviceSettings& device = scene.device;
   if (device.driver != "simulated") return true;
@@ -68,11 +68,14 @@ PlanDecision decide_plan(const PlanFacts& facts) {
 
   plan.transform_rotates = facts.tool_rotates || facts.full;
   line("transform", true,
-       plan.transform_rotates ? "the tool rotates and moves" : "the tool only translates: no rotation is applied");
+       plan.transform_rotates ? "the tool rotates and moves"
+                              : "the tool only translates: no rotation is applied");
   line("cull", true, "only the parts of the tool near the mock-up's surface or inside go on");
   line("pairs", true, "the intersecting triangles are the contact");
   if (facts.internal_voxels.value_or(true))
-    plan.imt = line("imt", true, facts.internal_voxels ? "the mock-up has V_int voxels" : "V_int voxels are known after preparation");
+    plan.imt = line(
+        "imt", true,
+        facts.internal_voxels ? "the mock-up has V_int voxels" : "V_int voxels are known after preparation");
   else
     plan.imt = line("imt", false, "no V_int voxel");
   line("bmt", true, "mobile triangles in V_bnd voxels belong to the contact");
@@ -93,13 +96,15 @@ PlanDecision decide_plan(const PlanFacts& facts) {
   if (facts.torque_wanted)
     plan.contact_point = line("contact_point", true, "torque needs the contact point");
   else
-    plan.contact_point = line("contact_point", false, "the device has no torque axis, and force alone needs no point");
+    plan.contact_point =
+        line("contact_point", false, "the device has no torque axis, and force alone needs no point");
   if (facts.torque_wanted)
     plan.torque = line("torque", true, "torque is asked for");
   else
     plan.torque = line("torque", false, "the device has no torque axis");
   if (facts.subscribers)
-    plan.telemetry = line("telemetry", true, "somebody reads lists of triangles: a viewer, a recording or a query");
+    plan.telemetry =
+        line("telemetry", true, "somebody reads lists of triangles: a viewer, a recording or a query");
   else
     plan.telemetry = line("telemetry", false, "nobody listens: no lists of triangles are made");
   return decision;

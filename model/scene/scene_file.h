@@ -11,16 +11,19 @@ namespace palpate {
 
 class DiskCache;
 
-/// Reads and checks a scene file; meshes are not opened yet. Errors name file, place in it, value and what is allowed;
-/// an unknown key names the nearest known one. `profile` stands in place of the file's; a law that the file does not name follows it.
+/// Reads and checks a scene file; meshes are not opened yet. Errors name file, place in it, value and what is
+/// allowed; an unknown key names the nearest known one. `profile` stands in place of the file's; a law that
+/// the file does not name follows it.
 Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile = std::nullopt);
 
-/// Imports or generates the meshes of a scene, and adds what is odd about them to its warnings. Reports progress; may be cancelled. `limits`
-/// are each mesh file's; `folder` as in model/mesh/confined_import.h.
-Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits = {}, const std::string& folder = {});
+/// Imports or generates the meshes of a scene, and adds what is odd about them to its warnings. Reports
+/// progress; may be cancelled. `limits` are each mesh file's; `folder` as in model/mesh/confined_import.h.
+Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits = {},
+                                 const std::string& folder = {});
 
-/// import_scene, then the geometry of it; or both from `cache` (may be null), if the same program has made them of the same files before.
-Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits = {}, DiskCache* cache = nullptr,
-                               const std::string& folder = {});
+/// import_scene, then the geometry of it; or both from `cache` (may be null), if the same program has made
+/// them of the same files before.
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits = {},
+                               DiskCache* cache = nullptr, const std::string& folder = {});
 
 }  // namespace palpate

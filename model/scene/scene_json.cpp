@@ -17,12 +17,18 @@ std::string described(const json& value) {
   const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
   const std::string shown = text.size() <= 60 ? " (" + text + ")" : "";
   switch (value.type()) {
-    case json::value_t::object: return "an object";
-    case json::value_t::array: return "an array" + shown;
-    case json::value_t::string: return "a string" + shown;
-    case json::value_t::boolean: return "a boolean" + shown;
-    case json::value_t::null: return "null";
-    default: return "a number" + shown;
+    case json::value_t::object:
+      return "an object";
+    case json::value_t::array:
+      return "an array" + shown;
+    case json::value_t::string:
+      return "a string" + shown;
+    case json::value_t::boolean:
+      return "a boolean" + shown;
+    case json::value_t::null:
+      return "null";
+    default:
+      return "a number" + shown;
   }
 }
 
@@ -33,8 +39,10 @@ std::string printed(double value) {
 }
 
 std::string allowed(const Limits& limits) {
-  if (limits.most >= 1e300) return std::string(limits.open_below ? "above " : "at least ") + printed(limits.least) + limits.unit;
-  return (limits.open_below ? "above " + printed(limits.least) + " and at most " : "from " + printed(limits.least) + " to ") +
+  if (limits.most >= 1e300)
+    return std::string(limits.open_below ? "above " : "at least ") + printed(limits.least) + limits.unit;
+  return (limits.open_below ? "above " + printed(limits.least) + " and at most "
+                            : "from " + printed(limits.least) + " to ") +
          printed(limits.most) + limits.unit;
 }
 
@@ -42,7 +50,8 @@ std::string allowed(const Limits& limits) {
 std::string plain(const std::string& key) {
   std::string out = json(key.substr(0, 60)).dump(-1, ' ', true, json::error_handler_t::replace);
   std::string pointer;
-  for (const char c : out.substr(1, out.size() - 2)) pointer += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  for (const char c : out.substr(1, out.size() - 2))
+    pointer += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
   return pointer;
 }
 
@@ -64,7 +73,8 @@ class Place {
   }
   std::string pointer() const {
     std::string out;
-    for (const Level& level : open_) out += "/" + (level.array ? std::to_string(level.index) : plain(level.key));
+    for (const Level& level : open_)
+      out += "/" + (level.array ? std::to_string(level.index) : plain(level.key));
     return out;
   }
 
@@ -80,14 +90,16 @@ class Place {
 
 }  // namespace
 
-SceneObject::SceneObject(const std::string& file, std::string pointer, const json& value, const std::vector<std::string>& keys)
+SceneObject::SceneObject(const std::string& file, std::string pointer, const json& value,
+                         const std::vector<std::string>& keys)
     : file_(file), pointer_(std::move(pointer)), value_(value) {
   if (!value.is_object())
-    throw SceneFault{file_ + ": " + (pointer_.empty() ? "the whole" : pointer_) + " is " + described(value) + "; an object is wanted"};
+    throw SceneFault{file_ + ": " + (pointer_.empty() ? "the whole" : pointer_) + " is " + described(value) +
+                     "; an object is wanted"};
   for (const auto& [key, ignored] : value.items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end())
-      throw SceneFault{file_ + ": " + pointer_ + "/" + plain(key) + " is not a known key; the nearest is \"" + nearest_word(key, keys) +
-                       "\""};
+      throw SceneFault{file_ + ": " + pointer_ + "/" + plain(key) + " is not a known key; the nearest is \"" +
+                       nearest_word(key, keys) + "\""};
 }
 
 void SceneObject::fail(const char* key, const std::string& what) const {
@@ -99,7 +111,8 @@ void SceneObject::number(const char* key, const Limits& limits, double& out) con
   const json& value = at(key);
   if (!value.is_number()) fail(key, "is " + described(value) + "; a number is wanted");
   const double number = value.get<double>();
-  const bool inside = std::isfinite(number) && number <= limits.most && (limits.open_below ? number > limits.least : number >= limits.least);
+  const bool inside = std::isfinite(number) && number <= limits.most &&
+                      (limits.open_below ? number > limits.least : number >= limits.least);
   if (!inside) fail(key, "is " + value.dump() + "; it must be " + allowed(limits));
   out = number;
 }
@@ -109,7 +122,8 @@ void SceneObject::whole(const char* key, int least, int most, int& out) const {
   double number = 0;
   this->number(key, {double{-1e300}, 1e300}, number);
   if (number != std::floor(number) || number < least || number > most)
-    fail(key, "is " + at(key).dump() + "; it must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    fail(key, "is " + at(key).dump() + "; it must be a whole number from " + std::to_string(least) + " to " +
+                  std::to_string(most));
   out = static_cast<int>(number);
 }
 
@@ -125,7 +139,9 @@ void SceneObject::text(const char* key, std::string& out) const {
 void SceneObject::texts(const char* key, std::vector<std::string>& out) const {
   if (!has(key)) return;
   const json& value = at(key);
-  const auto wrong = [&](const json& found) { fail(key, "has " + described(found) + "; an array of strings is wanted"); };
+  const auto wrong = [&](const json& found) {
+    fail(key, "has " + described(found) + "; an array of strings is wanted");
+  };
   if (!value.is_array()) wrong(value);
   for (const json& each : value) {
     if (!each.is_string()) wrong(each);
@@ -136,8 +152,9 @@ void SceneObject::texts(const char* key, std::vector<std::string>& out) const {
 
 std::vector<double> SceneObject::numbers(const char* key, std::size_t count, const char* wanted) const {
   const json& value = at(key);
-  const bool good = value.is_array() && value.size() == count &&
-                    std::all_of(value.begin(), value.end(), [](const json& each) { return each.is_number(); });
+  const bool good =
+      value.is_array() && value.size() == count &&
+      std::all_of(value.begin(), value.end(), [](const json& each) { return each.is_number(); });
   if (!good) fail(key, "is " + described(value) + "; " + wanted + " are wanted");
   return value.get<std::vector<double>>();
 }
@@ -146,7 +163,8 @@ void SceneObject::vector(const char* key, double reach, const char* unit, Vec3& 
   if (!has(key)) return;
   const std::vector<double> values = numbers(key, 3, "three numbers [x, y, z]");
   for (const double value : values)
-    if (!(std::abs(value) <= reach)) fail(key, "has " + printed(value) + "; each must be within ±" + printed(reach) + unit);
+    if (!(std::abs(value) <= reach))
+      fail(key, "has " + printed(value) + "; each must be within ±" + printed(reach) + unit);
   out = {values[0], values[1], values[2]};
 }
 
@@ -155,12 +173,14 @@ void SceneObject::rotation(const char* key, Quat& out) const {
   const std::vector<double> q = numbers(key, 4, "four numbers [x, y, z, w]");
   const double square = std::inner_product(q.begin(), q.end(), q.begin(), 0.0);
   if (!(std::abs(square - 1) <= kUnitQuaternionTolerance))
-    fail(key, "is " + at(key).dump() + ", of length " + printed(std::sqrt(square)) + "; a unit quaternion [x, y, z, w] has length 1");
+    fail(key, "is " + at(key).dump() + ", of length " + printed(std::sqrt(square)) +
+                  "; a unit quaternion [x, y, z, w] has length 1");
   const double length = std::sqrt(square);
   out = Quat(q[3] / length, q[0] / length, q[1] / length, q[2] / length);
 }
 
-std::optional<std::size_t> SceneObject::choice(const char* key, const std::vector<std::string>& choices) const {
+std::optional<std::size_t> SceneObject::choice(const char* key,
+                                               const std::vector<std::string>& choices) const {
   if (!has(key)) return std::nullopt;
   std::string word;
   text(key, word);
@@ -173,13 +193,22 @@ json parse_scene_text(const std::string& file, const std::string& text) {
   Place place;
   const auto watch = [&](int, json::parse_event_t event, json& value) {
     switch (event) {
-      case json::parse_event_t::object_start: place.open(false); break;
-      case json::parse_event_t::array_start: place.open(true); break;
+      case json::parse_event_t::object_start:
+        place.open(false);
+        break;
+      case json::parse_event_t::array_start:
+        place.open(true);
+        break;
       case json::parse_event_t::object_end:
-      case json::parse_event_t::array_end: place.close(); break;
-      case json::parse_event_t::value: place.count(); break;
+      case json::parse_event_t::array_end:
+        place.close();
+        break;
+      case json::parse_event_t::value:
+        place.count();
+        break;
       case json::parse_event_t::key:
-        if (!place.key(value.get<std::string>())) throw SceneFault{file + ": " + place.pointer() + " stands there twice"};
+        if (!place.key(value.get<std::string>()))
+          throw SceneFault{file + ": " + place.pointer() + " stands there twice"};
         break;
     }
     return true;
@@ -187,7 +216,8 @@ json parse_scene_text(const std::string& file, const std::string& text) {
   try {
     return json::parse(text, watch);
   } catch (const json::exception& fault) {
-    // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error …": the number is of no use to a reader.
+    // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error …": the number is of no
+    // use to a reader.
     std::string what = fault.what();
     if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
     for (char& c : what)
@@ -223,7 +253,8 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 
 std::string listed(const std::vector<std::string>& words) {
   std::string out;
-  for (std::size_t i = 0; i < words.size(); ++i) out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + ("\"" + words[i] + "\"");
+  for (std::size_t i = 0; i < words.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + ("\"" + words[i] + "\"");
   return out;
 }
 

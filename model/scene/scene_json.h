@@ -19,16 +19,17 @@ struct SceneFault {
 /// What a number may be.
 struct Limits {
   double least, most;
-  const char* unit = "";        ///< " N/m", with the space
-  bool open_below = false;      ///< `least` itself is not allowed
+  const char* unit = "";    ///< " N/m", with the space
+  bool open_below = false;  ///< `least` itself is not allowed
 };
 
-/// An object of a scene file that is read key by key. Every fault is a SceneFault that names the file, the JSON pointer, what was
-/// found and what is wanted. The object must outlive its readers.
+/// An object of a scene file that is read key by key. Every fault is a SceneFault that names the file, the
+/// JSON pointer, what was found and what is wanted. The object must outlive its readers.
 class SceneObject {
  public:
   /// `value` must be an object whose keys are all among `keys`.
-  SceneObject(const std::string& file, std::string pointer, const nlohmann::json& value, const std::vector<std::string>& keys);
+  SceneObject(const std::string& file, std::string pointer, const nlohmann::json& value,
+              const std::vector<std::string>& keys);
 
   bool has(const char* key) const { return value_.contains(key); }
   std::string pointer(const std::string& key) const { return pointer_ + "/" + key; }
@@ -38,10 +39,11 @@ class SceneObject {
   // Each leaves `out` as it is when the key is missing.
   void number(const char* key, const Limits& limits, double& out) const;
   void whole(const char* key, int least, int most, int& out) const;
-  void text(const char* key, std::string& out) const;                               ///< not empty
+  void text(const char* key, std::string& out) const;  ///< not empty
   void texts(const char* key, std::vector<std::string>& out) const;
-  void vector(const char* key, double reach, const char* unit, Vec3& out) const;    ///< three numbers within ±reach
-  void rotation(const char* key, Quat& out) const;                                  ///< [x, y, z, w], unit; normalised
+  void vector(const char* key, double reach, const char* unit,
+              Vec3& out) const;                     ///< three numbers within ±reach
+  void rotation(const char* key, Quat& out) const;  ///< [x, y, z, w], unit; normalised
   bool is_auto(const char* key) const { return has(key) && at(key).is_string() && at(key) == "auto"; }
 
   /// The index of the text among `choices`, or nothing when the key is missing.

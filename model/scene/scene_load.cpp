@@ -14,7 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kLargestUsual = 100, kSmallestUsual = 1e-3;   ///< m; beyond, the units are probably not the right ones
+constexpr double kLargestUsual = 100,
+                 kSmallestUsual = 1e-3;  ///< m; beyond, the units are probably not the right ones
 
 std::string source_name(const MeshSource& source) {
   return source.file.empty() ? "the generated " + source.generate : source.file;
@@ -29,22 +30,27 @@ Result<Mesh> generate(const MeshSource& source) {
   const auto slash = source.generate.find('/');
   const bool tool = source.generate.substr(slash + 1) == "tool";
   const auto asked = source.generate_parameters.find("triangles");
-  const auto triangles = asked == source.generate_parameters.end() ? 0 : static_cast<std::uint64_t>(asked->second);
-  constexpr std::uint64_t kUnused = 1'000;   // of the body that is not asked for
-  auto scene = generate_scene(source.generate.substr(0, slash), tool ? kUnused : triangles, tool ? triangles : kUnused);
+  const auto triangles =
+      asked == source.generate_parameters.end() ? 0 : static_cast<std::uint64_t>(asked->second);
+  constexpr std::uint64_t kUnused = 1'000;  // of the body that is not asked for
+  auto scene = generate_scene(source.generate.substr(0, slash), tool ? kUnused : triangles,
+                              tool ? triangles : kUnused);
   if (!scene) return scene.error();
   return tool ? std::move(scene->tool) : std::move(scene->mockup);
 }
 
-/// Reads the files of a scene, each once: what several bodies take from one file is kept until the last has had it.
+/// Reads the files of a scene, each once: what several bodies take from one file is kept until the last has
+/// had it.
 class Files {
  public:
-  Files(const Scene& scene, const std::string& folder, const ImportLimits& limits) : folder_(folder), limits_(limits) {
+  Files(const Scene& scene, const std::string& folder, const ImportLimits& limits)
+      : folder_(folder), limits_(limits) {
     ++uses_[key(scene.tool.source)];
     for (const StaticBody& body : scene.statics) ++uses_[key(body.source)];
   }
 
-  Result<Mesh> read(const MeshSource& source, const Tessellation& tessellation, const ImportProgress& progress, std::vector<std::string>& warnings) {
+  Result<Mesh> read(const MeshSource& source, const Tessellation& tessellation,
+                    const ImportProgress& progress, std::vector<std::string>& warnings) {
     int& uses = uses_[key(source)];
     const auto kept = kept_.find(key(source));
     if (kept != kept_.end()) {
@@ -54,7 +60,8 @@ class Files {
       return last;
     }
     ImportReport report;
-    Result<Mesh> mesh = import_mesh_below(folder_, source.file, source.scale, report, limits_, progress, tessellation);
+    Result<Mesh> mesh =
+        import_mesh_below(folder_, source.file, source.scale, report, limits_, progress, tessellation);
     if (!mesh) return mesh;
     for (const std::string& note : report.notes) warnings.push_back(source.file + ": " + note);
     if (--uses > 0) kept_[key(source)] = *mesh;
@@ -67,16 +74,19 @@ class Files {
 
   const std::string& folder_;
   const ImportLimits& limits_;
-  std::map<Key, int> uses_;      ///< still to come
+  std::map<Key, int> uses_;  ///< still to come
   std::map<Key, Mesh> kept_;
 };
 
-Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation, const ImportProgress& progress, std::vector<std::string>& warnings) {
-  Result<Mesh> mesh = source.file.empty() ? generate(source) : files.read(source, tessellation, progress, warnings);
+Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation,
+                     const ImportProgress& progress, std::vector<std::string>& warnings) {
+  Result<Mesh> mesh =
+      source.file.empty() ? generate(source) : files.read(source, tessellation, progress, warnings);
   if (!mesh) return mesh;
   if (!source.part.empty()) mesh = take_part(*mesh, source.part, source_name(source));
   if (mesh && !source.without.empty()) mesh = without_parts(*mesh, source.without, source_name(source));
-  if (mesh && mesh->triangles.empty()) return bad_value(source_name(source) + " has no triangle left after \"part\" and \"without\"");
+  if (mesh && mesh->triangles.empty())
+    return bad_value(source_name(source) + " has no triangle left after \"part\" and \"without\"");
   return mesh;
 }
 
@@ -85,10 +95,14 @@ void place(const Mesh& body, const Pose& placement, const std::string& prefix, M
   const auto vertex = static_cast<std::uint32_t>(mockup.vertices.size());
   const auto triangle = static_cast<std::uint32_t>(mockup.triangles.size());
   for (const Vec3& v : body.vertices) mockup.vertices.push_back(placement.rotation * v + placement.position);
-  for (const auto& [a, b, c] : body.triangles) mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
+  for (const auto& [a, b, c] : body.triangles)
+    mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
   for (const MeshPart& part : body.parts) {
-    const std::string path = prefix.empty() ? part.path : part.path.empty() ? prefix : prefix + "/" + part.path;
-    mockup.parts.push_back({path, part.first_triangle + triangle, part.triangle_count, part.also, part.colour});
+    const std::string path = prefix.empty()      ? part.path
+                             : part.path.empty() ? prefix
+                                                 : prefix + "/" + part.path;
+    mockup.parts.push_back(
+        {path, part.first_triangle + triangle, part.triangle_count, part.also, part.colour});
   }
 }
 
@@ -113,12 +127,17 @@ void warn_of_size(const char* what, const Mesh& mesh, std::vector<std::string>& 
   warnings.emplace_back(text);
 }
 
-/// docs/ACCURACY.md: from a voxel on the force of a contact a few voxels wide is off by 5 % and more. Not kept with the geometry, which is the same for `paper`.
+/// docs/ACCURACY.md: from a voxel on the force of a contact a few voxels wide is off by 5 % and more. Not
+/// kept with the geometry, which is the same for `paper`.
 void warn_of_spacing(Scene& scene, const SceneGeometry& geometry) {
-  if (scene.response.profile != Profile::kRefined || geometry.sample_spacing < geometry.mockup_grid.size) return;
+  if (scene.response.profile != Profile::kRefined || geometry.sample_spacing < geometry.mockup_grid.size)
+    return;
   char text[200];
-  std::snprintf(text, sizeof text, "samples are %.3g m apart, not less than a voxel (%.3g m): the force of a contact a few of them wide or deep is off by 5 %% and more",
-                geometry.sample_spacing * geometry.lattice.step_m, geometry.mockup_grid.size * geometry.lattice.step_m);
+  std::snprintf(text, sizeof text,
+                "samples are %.3g m apart, not less than a voxel (%.3g m): the force of a contact a few of "
+                "them wide or deep is off by 5 %% and more",
+                geometry.sample_spacing * geometry.lattice.step_m,
+                geometry.mockup_grid.size * geometry.lattice.step_m);
   scene.warnings.emplace_back(text);
 }
 
@@ -131,7 +150,8 @@ double stated_deflection(const ResponseSettings& response) {
 }
 
 /// Parts of which nothing is left on the lattice.
-void warn_of_vanished(const char* what, const MeshReport& report, double step_m, std::vector<std::string>& warnings) {
+void warn_of_vanished(const char* what, const MeshReport& report, double step_m,
+                      std::vector<std::string>& warnings) {
   std::size_t count = 0;
   const MeshReport::Part* first = nullptr;
   for (const MeshReport::Part& part : report.parts) {
@@ -141,25 +161,33 @@ void warn_of_vanished(const char* what, const MeshReport& report, double step_m,
   if (count == 0) return;
   char size[32];
   std::snprintf(size, sizeof size, "%.3g", step_m);
-  warnings.push_back(std::to_string(count) + (count == 1 ? " part of the " : " parts of the ") + what + (count == 1 ? " has" : " have") + " no area on the lattice, whose step is " + size +
+  warnings.push_back(std::to_string(count) + (count == 1 ? " part of the " : " parts of the ") + what +
+                     (count == 1 ? " has" : " have") + " no area on the lattice, whose step is " + size +
                      " m, and can't be touched: '" + first->path + "'" + (count > 1 ? " and others" : ""));
 }
 
-bool tell(const Progress& progress, const char* what, double done) { return !progress || progress(what, done); }
+bool tell(const Progress& progress, const char* what, double done) {
+  return !progress || progress(what, done);
+}
 
 }  // namespace
 
-Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits, const std::string& folder) {
+Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const ImportLimits& limits,
+                                 const std::string& folder) {
   const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
   SceneMeshes meshes;
   const double bodies = static_cast<double>(scene.statics.size()) + 1;
   Files files(scene, folder, limits);
-  // The tool comes first: where nothing else says how finely the mock-up's curved surfaces are made of triangles, the tool's size does.
+  // The tool comes first: where nothing else says how finely the mock-up's curved surfaces are made of
+  // triangles, the tool's size does.
   const auto of_body = [&](std::size_t body) {
-    return [&progress, body, bodies](const char* what, double done) { return tell(progress, what, (static_cast<double>(body) + done) / bodies); };
+    return [&progress, body, bodies](const char* what, double done) {
+      return tell(progress, what, (static_cast<double>(body) + done) / bodies);
+    };
   };
   if (!tell(progress, "import", 0)) return cancelled;
-  Tessellation tessellation{stated_deflection(scene.response), scene.response.tessellation_angle_deg, scene.tool.source.part};
+  Tessellation tessellation{stated_deflection(scene.response), scene.response.tessellation_angle_deg,
+                            scene.tool.source.part};
   auto tool = mesh_of(scene.tool.source, files, tessellation, of_body(0), scene.warnings);
   if (!tool) return tool.error();
   meshes.tool = std::move(*tool);
@@ -177,7 +205,8 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
   return meshes;
 }
 
-Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits, DiskCache* cache, const std::string& folder) {
+Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const ImportLimits& limits,
+                               DiskCache* cache, const std::string& folder) {
   const Error cancelled{ErrorCode::kInternal, scene.file + ": loading was cancelled"};
   const auto start = std::chrono::steady_clock::now();
   const std::optional<ContentKey> key = cache ? geometry_key(scene) : std::nullopt;
@@ -195,10 +224,11 @@ Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const Impo
     const auto meshes = import_scene(scene, progress, limits, folder);
     if (!meshes) return meshes.error();
     if (!tell(progress, "geometry", 0)) return cancelled;
-    auto geometry = build_geometry(meshes->mockup, meshes->tool,
-                                   {scene.response.voxel_size_m, scene.response.sample_spacing_m, scene.response.smooth_angle_deg,
-                                    scene.tool.centre_of_mass_m, scene.response.contact_samples},
-                                   [&] { return tell(progress, "geometry", 0); });
+    auto geometry = build_geometry(
+        meshes->mockup, meshes->tool,
+        {scene.response.voxel_size_m, scene.response.sample_spacing_m, scene.response.smooth_angle_deg,
+         scene.tool.centre_of_mass_m, scene.response.contact_samples},
+        [&] { return tell(progress, "geometry", 0); });
     if (!geometry) return Error{geometry.error().code, scene.file + ": " + geometry.error().sentence};
     loaded.geometry = std::move(*geometry);
   }
@@ -206,11 +236,13 @@ Result<LoadedScene> load_scene(Scene scene, const Progress& progress, const Impo
   warn_of_vanished("mock-up", loaded.geometry.mockup_report, loaded.geometry.lattice.step_m, scene.warnings);
   warn_of_vanished("tool", loaded.geometry.tool_report, loaded.geometry.lattice.step_m, scene.warnings);
   if (!loaded.geometry.tool.closed && !scene.tool.centre_of_mass_m)
-    scene.warnings.push_back("the tool " + source_name(scene.tool.source) + " is open (" + std::to_string(loaded.geometry.tool_report.open_edges) +
+    scene.warnings.push_back("the tool " + source_name(scene.tool.source) + " is open (" +
+                             std::to_string(loaded.geometry.tool_report.open_edges) +
                              " open edges); its centre of mass is taken for the centroid of its area");
   if (key) {
     loaded.warnings.assign(scene.warnings.begin() + warnings_before, scene.warnings.end());
-    keep_geometry(*cache, *key, loaded, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    keep_geometry(*cache, *key, loaded,
+                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   warn_of_spacing(scene, loaded.geometry);
   return LoadedScene{std::move(scene), std::move(loaded.geometry), false};

@@ -10,7 +10,8 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kFooter = R"(Times are wall time in microseconds unless a column says otherwise, or --clock. Whatever is compared is measured in turns in one process, for other
+constexpr const char* kFooter =
+    R"(Times are wall time in microseconds unless a column says otherwise, or --clock. Whatever is compared is measured in turns in one process, for other
 work on the machine moves absolute figures; trust ratios of one run. Every file names machine, driver and commit.
 
 Examples:
@@ -32,17 +33,24 @@ void add_out(CLI::App& app, BenchOptions& options) {
 }
 
 void add_common(CLI::App& app, BenchOptions& options, bool scenes_required = true) {
-  app.add_option("scenes", options.scenes, "scene files (JSON)")->required(scenes_required)->type_name("SCENE");
+  app.add_option("scenes", options.scenes, "scene files (JSON)")
+      ->required(scenes_required)
+      ->type_name("SCENE");
   add_out(app, options);
   app.add_option_function<std::string>(
-         "--profile", [&options](const std::string& word) { options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined; },
+         "--profile",
+         [&options](const std::string& word) {
+           options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined;
+         },
          "in place of the scenes'")
       ->check(one_of({"paper", "refined"}))
       ->type_name("paper|refined");
 }
 
 void add_poses(CLI::App& app, BenchOptions& options) {
-  app.add_option("--poses", options.poses, "poses, as for query; `run`: those of a run in virtual time; without it the path's, deeper than a hand gets")
+  app.add_option("--poses", options.poses,
+                 "poses, as for query; `run`: those of a run in virtual time; without it the path's, deeper "
+                 "than a hand gets")
       ->type_name("FILE|run");
   app.add_option("--frames", options.frames, "poses taken from them, evenly (400)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
@@ -60,118 +68,198 @@ void add_poses(CLI::App& app, BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
-  CLI::App* bench = app.add_subcommand("bench", "measure: a frame, batches, growth, preparation, other libraries, plans, the force's error and stability, the loop's punctuality");
+  CLI::App* bench = app.add_subcommand("bench",
+                                       "measure: a frame, batches, growth, preparation, other libraries, "
+                                       "plans, the force's error and stability, the loop's punctuality");
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
-  CLI::App* latency = bench->add_subcommand("latency", "a frame's time by stage: p50, p95, p99, p99.9 (of 1,000 frames and more), max; contact and free apart");
+  CLI::App* latency = bench->add_subcommand("latency",
+                                            "a frame's time by stage: p50, p95, p99, p99.9 (of 1,000 frames "
+                                            "and more), max; contact and free apart");
   add_common(*latency, options);
   add_poses(*latency, options);
   latency->add_option("--backend", options.backends, "the engine, or several in turns, as for run (auto)")
       ->check(one_of(kEngines))
       ->expected(1, 3)
       ->type_name("auto|gpu|cpu|ref");
-  latency->footer("Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing near). Stages are the\n"
-                  "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench out. The frames are a loop's\n"
-                  "that nobody watches: without lists of triangles, and `refined` without areas.\n"
-                  "Rows of `total` have what a frame asks of a device, the median of each: submissions, dispatches, barriers, bytes that the frame writes for it and\n"
-                  "reads of it, and host_us, the host's time beside submitting and waiting.");
+  latency->footer(
+      "Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing "
+      "near). Stages are the\n"
+      "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench "
+      "out. The frames are a loop's\n"
+      "that nobody watches: without lists of triangles, and `refined` without areas.\n"
+      "Rows of `total` have what a frame asks of a device, the median of each: submissions, dispatches, "
+      "barriers, bytes that the frame writes for it and\n"
+      "reads of it, and host_us, the host's time beside submitting and waiting.");
   latency->callback([&] { outcome = bench_latency(options, parts); });
 
   const auto one_backend = [&options](CLI::App& to) {
-    to.add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
+    to.add_option("--backend", options.backends, kEngineHelp)
+        ->check(one_of(kEngines))
+        ->expected(1)
+        ->type_name("auto|gpu|cpu|ref");
   };
-  CLI::App* throughput = bench->add_subcommand("throughput", "poses a second against the size of a batch, beside poses asked singly");
+  CLI::App* throughput = bench->add_subcommand(
+      "throughput", "poses a second against the size of a batch, beside poses asked singly");
   add_common(*throughput, options);
   add_poses(*throughput, options);
-  throughput->add_option("--backend", options.backends, "the engine, or several one after the other, as for run (auto)")
+  throughput
+      ->add_option("--backend", options.backends,
+                   "the engine, or several one after the other, as for run (auto)")
       ->check(one_of(kEngines))
       ->expected(1, 3)
       ->type_name("auto|gpu|cpu|ref");
-  throughput->footer("Batches of 1 to 1,024 poses, in turns with the same poses asked singly. `frames` are a session's, without balance; `answers` a lone query's, with the\n"
-                     "balance of spring and field that `palpate query` finds by asking for more poses. Always the wall's clock: a batch takes all cores. share_of_single: time\n"
-                     "of a pose in the batch over that of one asked singly, by as many threads as its engine gives a frame (cpu: two). Then what a batch asks of a device.");
+  throughput->footer(
+      "Batches of 1 to 1,024 poses, in turns with the same poses asked singly. `frames` are a session's, "
+      "without balance; `answers` a lone query's, with the\n"
+      "balance of spring and field that `palpate query` finds by asking for more poses. Always the wall's "
+      "clock: a batch takes all cores. share_of_single: time\n"
+      "of a pose in the batch over that of one asked singly, by as many threads as its engine gives a frame "
+      "(cpu: two). Then what a batch asks of a device.");
   throughput->callback([&] { outcome = bench_throughput(options, parts); });
 
-  CLI::App* scale = bench->add_subcommand("scale", "a frame's time against the number of triangles: around the same contact, finer, of the tool; or of scenes of your own, refined");
+  CLI::App* scale = bench->add_subcommand("scale",
+                                          "a frame's time against the number of triangles: around the same "
+                                          "contact, finer, of the tool; or of scenes of your own, refined");
   add_common(*scale, options, false);
   add_poses(*scale, options);
   one_backend(*scale);
-  scale->add_option("--most", options.most_triangles, "triangles of the largest mock-up, 100,000 to 10,000,000 (1,000,000)")
+  scale
+      ->add_option("--most", options.most_triangles,
+                   "triangles of the largest mock-up, 100,000 to 10,000,000 (1,000,000)")
       ->check(CLI::Range(std::uint64_t{100'000}, std::uint64_t{10'000'000}).description(""))
       ->type_name("N");
-  scale->footer("Without scenes three series are made; with scenes, and --poses, each is measured as it is, with its edges in two, and in four. Files stay below\n"
-                "DIR/scenes. peak_bytes is the most memory that the process had while it read, prepared and measured.");
+  scale->footer(
+      "Without scenes three series are made; with scenes, and --poses, each is measured as it is, with its "
+      "edges in two, and in four. Files stay below\n"
+      "DIR/scenes. peak_bytes is the most memory that the process had while it read, prepared and measured.");
   scale->callback([&] { outcome = bench_scale(options, parts); });
 
-  CLI::App* prepare = bench->add_subcommand("prepare", "a scene's first start by stage, its start from the cache, and other libraries' trees beside them");
+  CLI::App* prepare = bench->add_subcommand(
+      "prepare",
+      "a scene's first start by stage, its start from the cache, and other libraries' trees beside them");
   add_common(*prepare, options);
   one_backend(*prepare);
-  prepare->add_option_function<std::string>(
-             "--clock", [&options](const std::string& word) { options.cpu_clock = word == "cpu"; }, "wall, or cpu: time that this process itself ran (wall)")
+  prepare
+      ->add_option_function<std::string>(
+          "--clock", [&options](const std::string& word) { options.cpu_clock = word == "cpu"; },
+          "wall, or cpu: time that this process itself ran (wall)")
       ->check(one_of({"wall", "cpu"}))
       ->type_name("wall|cpu");
-  prepare->footer("The first start finds nothing in the cache and keeps what it makes; the second finds it. Shaders that the driver has compiled before are not compiled again.\n"
-                  "Trees are built by a build with -DPALPATE_BENCH_PEERS=ON alone.");
+  prepare->footer(
+      "The first start finds nothing in the cache and keeps what it makes; the second finds it. Shaders that "
+      "the driver has compiled before are not compiled again.\n"
+      "Trees are built by a build with -DPALPATE_BENCH_PEERS=ON alone.");
   prepare->callback([&] { outcome = bench_prepare(options, parts); });
 
-  CLI::App* error = bench->add_subcommand("error", "error of the response against time, for every knob: four closed forms, and scenes against a converged run");
+  CLI::App* error = bench->add_subcommand("error",
+                                          "error of the response against time, for every knob: four closed "
+                                          "forms, and scenes against a converged run");
   add_common(*error, options, false);
   add_poses(*error, options);
-  error->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
+  error->add_option("--backend", options.backends, kEngineHelp)
+      ->check(one_of(kEngines))
+      ->expected(1)
+      ->type_name("auto|gpu|cpu|ref");
   error->add_flag("--scenes-only", options.scenes_only, "without the four closed forms");
-  error->footer("Errors are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 over the poses in contact. Times are whole frames.\n"
-                "A scene's truth is the refined profile at a spacing of a 16th of a voxel; the sweep towards it shows its convergence.");
+  error->footer(
+      "Errors are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 over the poses in "
+      "contact. Times are whole frames.\n"
+      "A scene's truth is the refined profile at a spacing of a 16th of a voxel; the sweep towards it shows "
+      "its convergence.");
   error->callback([&] { outcome = bench_error(options, parts); });
 
-  CLI::App* peers = bench->add_subcommand("peers", "other collision libraries on the same triangles and poses, in turns with palpate");
+  CLI::App* peers = bench->add_subcommand(
+      "peers", "other collision libraries on the same triangles and poses, in turns with palpate");
   add_common(*peers, options);
   add_poses(*peers, options);
-  peers->add_option("--peers", options.peers, "beginnings of names (fcl, embree, bullet, cgal); without it all")->type_name("NAME");
-  peers->footer("palpate's time is a whole frame: sets, areas, zones, rays, wrench. The others' is the pairs alone. Before anything is timed, each\n"
-                "library's pairs are held against the exact ones: `missing` and `extra` count pairs over all poses.");
+  peers
+      ->add_option("--peers", options.peers,
+                   "beginnings of names (fcl, embree, bullet, cgal); without it all")
+      ->type_name("NAME");
+  peers->footer(
+      "palpate's time is a whole frame: sets, areas, zones, rays, wrench. The others' is the pairs alone. "
+      "Before anything is timed, each\n"
+      "library's pairs are held against the exact ones: `missing` and `extra` count pairs over all poses.");
   peers->callback([&] { outcome = bench_peers(options, parts); });
 
-  CLI::App* stability = bench->add_subcommand("stability", "highest stable stiffness of each force law beside theory; steps and energy of the force");
-  stability->add_option("scenes", options.scenes, "scene files (JSON) whose sessions are looked at for jumps, too")->type_name("SCENE");
+  CLI::App* stability = bench->add_subcommand(
+      "stability", "highest stable stiffness of each force law beside theory; steps and energy of the force");
+  stability
+      ->add_option("scenes", options.scenes, "scene files (JSON) whose sessions are looked at for jumps, too")
+      ->type_name("SCENE");
   add_out(*stability, options);
-  stability->footer("In virtual time: the shipped law closed over springs, over a bouncing wall, over tools in six degrees of\n"
-                    "freedom, and over the real collision query. critical_k is found by\n"
-                    "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and torque, and energy given out.");
+  stability->footer(
+      "In virtual time: the shipped law closed over springs, over a bouncing wall, over tools in six degrees "
+      "of\n"
+      "freedom, and over the real collision query. critical_k is found by\n"
+      "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and "
+      "torque, and energy given out.");
   stability->callback([&] { outcome = bench_stability(options, parts); });
 
-  CLI::App* plan = bench->add_subcommand("plan", "scenes that lack something: the whole plan beside their own, the same bits, time and memory");
+  CLI::App* plan = bench->add_subcommand(
+      "plan", "scenes that lack something: the whole plan beside their own, the same bits, time and memory");
   add_out(*plan, options);
-  plan->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
-  plan->add_option("--rounds", options.rounds, "times that all poses are gone through, the two plans in turns (3)")
+  plan->add_option("--backend", options.backends, kEngineHelp)
+      ->check(one_of(kEngines))
+      ->expected(1)
+      ->type_name("auto|gpu|cpu|ref");
+  plan->add_option("--rounds", options.rounds,
+                   "times that all poses are gone through, the two plans in turns (3)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))
       ->type_name("N");
-  plan->footer("A row a scene, plan and stage; `total` is the whole frame, its median over the poses in contact, and all memory. A stage that a plan leaves\n"
-               "out has no row. Before anything is written, both plans' answers are held against each other bit by bit.");
+  plan->footer(
+      "A row a scene, plan and stage; `total` is the whole frame, its median over the poses in contact, and "
+      "all memory. A stage that a plan leaves\n"
+      "out has no row. Before anything is written, both plans' answers are held against each other bit by "
+      "bit.");
   plan->callback([&] { outcome = bench_plan(options, parts); });
 
-  CLI::App* numerics = bench->add_subcommand("numerics", "stiff and extreme cases beside the same method in plain single and double precision: where each breaks");
+  CLI::App* numerics = bench->add_subcommand("numerics",
+                                             "stiff and extreme cases beside the same method in plain single "
+                                             "and double precision: where each breaks");
   add_out(*numerics, options);
-  numerics->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
-  numerics->footer("Swept: K, scale, offset from the origin, aspect of triangles, depth, sample spacing, gaps, age of results. The error is of the force, relative; for\n"
-                   "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; `breaks` in results.json sums up.");
+  numerics->add_option("--backend", options.backends, kEngineHelp)
+      ->check(one_of(kEngines))
+      ->expected(1)
+      ->type_name("auto|gpu|cpu|ref");
+  numerics->footer(
+      "Swept: K, scale, offset from the origin, aspect of triangles, depth, sample spacing, gaps, age of "
+      "results. The error is of the force, relative; for\n"
+      "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; "
+      "`breaks` in results.json sums up.");
   numerics->callback([&] { outcome = bench_numerics(options, parts); });
 
-  CLI::App* force = bench->add_subcommand("force", "the force on fits, plates, thin and open parts against symmetry and closed forms, or along poses before a scene");
+  CLI::App* force = bench->add_subcommand("force",
+                                          "the force on fits, plates, thin and open parts against symmetry "
+                                          "and closed forms, or along poses before a scene");
   add_common(*force, options, false);
   add_poses(*force, options);
   one_backend(*force);
-  force->footer("A row a path: the largest force, the largest step between neighbours in K times the tool's way, work lost round loops, how far ∂F is from symmetric, what is lost\n"
-                "while going deeper, turns by more than 90° between neighbours, poses without a direction, and in words what breaks a limit. A scene's path is divided evenly into --frames poses.");
+  force->footer(
+      "A row a path: the largest force, the largest step between neighbours in K times the tool's way, work "
+      "lost round loops, how far ∂F is from symmetric, what is lost\n"
+      "while going deeper, turns by more than 90° between neighbours, poses without a direction, and in "
+      "words what breaks a limit. A scene's path is divided evenly into --frames poses.");
   force->callback([&] { outcome = bench_force(options, parts); });
 
-  CLI::App* jitter = bench->add_subcommand("jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
+  CLI::App* jitter = bench->add_subcommand(
+      "jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
   add_common(*jitter, options);
-  jitter->add_option("--seconds", options.seconds, "how long (60)")->check(CLI::Range(0.1, 86400.0).description(""))->type_name("S");
-  jitter->add_option("--backend", options.backends, kEngineHelp)->check(one_of(kEngines))->expected(1)->type_name("auto|gpu|cpu|ref");
-  jitter->footer("The session of the (first) scene runs in real time along its path, to and fro, its back end asked as fast as it\n"
-                 "answers. cyclictest (Debian: rt-tests) runs meanwhile with the same period,\n"
-                 "priority and processor, where it is installed. What was not allowed is said. A tick that comes a whole period late is missed.");
+  jitter->add_option("--seconds", options.seconds, "how long (60)")
+      ->check(CLI::Range(0.1, 86400.0).description(""))
+      ->type_name("S");
+  jitter->add_option("--backend", options.backends, kEngineHelp)
+      ->check(one_of(kEngines))
+      ->expected(1)
+      ->type_name("auto|gpu|cpu|ref");
+  jitter->footer(
+      "The session of the (first) scene runs in real time along its path, to and fro, its back end asked as "
+      "fast as it\n"
+      "answers. cyclictest (Debian: rt-tests) runs meanwhile with the same period,\n"
+      "priority and processor, where it is installed. What was not allowed is said. A tick that comes a "
+      "whole period late is missed.");
   jitter->callback([&] { outcome = bench_jitter(options, parts); });
 }
 

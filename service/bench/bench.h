@@ -15,17 +15,17 @@ namespace palpate {
 
 /// What the benches share; each leaves results.csv, results.json and report.html in `out`.
 struct BenchOptions {
-  std::vector<std::string> scenes;        ///< scene files
-  std::vector<std::string> backends;      ///< latency: measured in turns; empty: gpu, else cpu
-  std::optional<Profile> profile;         ///< in place of the scenes'
-  std::string poses;                      ///< CSV of poses; "run": those of a run in virtual time; empty: the path's
-  std::uint64_t frames = 400;             ///< poses taken from it, evenly
-  std::uint64_t rounds = 3;               ///< how often all poses are gone through
-  bool cpu_clock = false;                 ///< time the process's own CPU time instead of the wall's
-  bool scenes_only = false;               ///< error: without the closed forms
-  std::vector<std::string> peers;         ///< names to measure; empty: all
+  std::vector<std::string> scenes;    ///< scene files
+  std::vector<std::string> backends;  ///< latency: measured in turns; empty: gpu, else cpu
+  std::optional<Profile> profile;     ///< in place of the scenes'
+  std::string poses;               ///< CSV of poses; "run": those of a run in virtual time; empty: the path's
+  std::uint64_t frames = 400;      ///< poses taken from it, evenly
+  std::uint64_t rounds = 3;        ///< how often all poses are gone through
+  bool cpu_clock = false;          ///< time the process's own CPU time instead of the wall's
+  bool scenes_only = false;        ///< error: without the closed forms
+  std::vector<std::string> peers;  ///< names to measure; empty: all
   std::uint64_t most_triangles = 1'000'000;  ///< scale: of the largest mock-up
-  double seconds = 60;                    ///< jitter: how long
+  double seconds = 60;                       ///< jitter: how long
   std::string out;
 };
 

@@ -39,8 +39,9 @@ std::string machine_text() {
   const bool known = uname(&system) == 0;
   const std::string cpu = line_of("/proc/cpuinfo", "model name");
   const double gib = std::strtod(line_of("/proc/meminfo", "MemTotal").c_str(), nullptr) / 1048576;
-  return fmt::format("{}, {} threads, {:.0f} GiB, {} {}", cpu.empty() ? "unknown CPU" : cpu, std::thread::hardware_concurrency(), gib,
-                     known ? system.sysname : "", known ? system.release : "");
+  return fmt::format("{}, {} threads, {:.0f} GiB, {} {}", cpu.empty() ? "unknown CPU" : cpu,
+                     std::thread::hardware_concurrency(), gib, known ? system.sysname : "",
+                     known ? system.release : "");
 }
 
 std::string utc_now() {
@@ -105,9 +106,17 @@ Json json_charts(const std::vector<BenchChart>& charts) {
   Json out = Json::array();
   for (const BenchChart& chart : charts) {
     Json series = Json::array();
-    for (const auto& s : chart.series) series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}, {"expected", s.expected}});
-    out.push_back({{"title", chart.title}, {"unit", chart.unit}, {"labels", chart.labels}, {"series", series}, {"stacked", chart.stacked},
-                   {"log_x", chart.log_x}, {"log_y", chart.log_y}, {"x_title", chart.x_title}, {"picture", chart.map ? chart_svg(chart) : ""}});
+    for (const auto& s : chart.series)
+      series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}, {"expected", s.expected}});
+    out.push_back({{"title", chart.title},
+                   {"unit", chart.unit},
+                   {"labels", chart.labels},
+                   {"series", series},
+                   {"stacked", chart.stacked},
+                   {"log_x", chart.log_x},
+                   {"log_y", chart.log_y},
+                   {"x_title", chart.x_title},
+                   {"picture", chart.map ? chart_svg(chart) : ""}});
   }
   return out;
 }
@@ -118,11 +127,14 @@ void print(const BenchTable& table) {
     widths.push_back(table.columns[i].size());
     for (const auto& row : table.rows) widths[i] = std::max(widths[i], readable(row[i]).size());
   }
-  for (std::size_t i = 0; i < widths.size(); ++i) fmt::print("{:<{}}{}", table.columns[i], widths[i], i + 1 < widths.size() ? "  " : "\n");
+  for (std::size_t i = 0; i < widths.size(); ++i)
+    fmt::print("{:<{}}{}", table.columns[i], widths[i], i + 1 < widths.size() ? "  " : "\n");
   for (const auto& row : table.rows)
     for (std::size_t i = 0; i < widths.size(); ++i) {
       const bool text = std::holds_alternative<std::string>(row[i]);
-      fmt::print("{}{}", text ? fmt::format("{:<{}}", readable(row[i]), widths[i]) : fmt::format("{:>{}}", readable(row[i]), widths[i]),
+      fmt::print("{}{}",
+                 text ? fmt::format("{:<{}}", readable(row[i]), widths[i])
+                      : fmt::format("{:>{}}", readable(row[i]), widths[i]),
                  i + 1 < widths.size() ? "  " : "\n");
     }
 }
@@ -138,11 +150,13 @@ Result<void> write_text(const std::filesystem::path& path, const std::string& te
 /// The page with its places filled; nothing inserted is searched again.
 std::string page(const Json& data) {
   std::string text = data.dump();
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.insert(at + 1, "\\");   // would end the script
-  const std::vector<std::pair<std::string_view, std::string>> places = {{"@CSS@", std::string(assets::report_css)},
-                                                                        {"@CHART_JS@", std::string(assets::chart_js)},
-                                                                        {"@DATA@", text},
-                                                                        {"@SCRIPT@", std::string(assets::bench_js)}};
+  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
+    text.insert(at + 1, "\\");  // would end the script
+  const std::vector<std::pair<std::string_view, std::string>> places = {
+      {"@CSS@", std::string(assets::report_css)},
+      {"@CHART_JS@", std::string(assets::chart_js)},
+      {"@DATA@", text},
+      {"@SCRIPT@", std::string(assets::bench_js)}};
   std::string_view rest = assets::bench_html;
   std::string out;
   for (const auto& [name, content] : places) {
@@ -159,17 +173,20 @@ std::string device_text(const CollisionBackend& backend, const Parts& parts) {
   const std::string engine = backend.name() + " on ";
   if (backend.name() == "gpu")
     for (const DeviceLine& line : parts.list_devices())
-      if (line.kind == "vulkan" && line.usable && line.name == backend.device()) return engine + line.name + ", " + line.reason;
+      if (line.kind == "vulkan" && line.usable && line.name == backend.device())
+        return engine + line.name + ", " + line.reason;
   return engine + backend.device();
 }
 
-Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts) {
+Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts,
+                                                        Console& console, BenchFacts& facts) {
   const double load = load_average();
   // Who answers which profile is part of what a time means.
-  auto backend = choose_backend(options.backends.empty() ? "" : options.backends.front(), std::nullopt, parts, [&](const std::string& sentence) {
-    console.note(sentence);
-    facts.more.emplace_back("engines", sentence);
-  });
+  auto backend = choose_backend(options.backends.empty() ? "" : options.backends.front(), std::nullopt, parts,
+                                [&](const std::string& sentence) {
+                                  console.note(sentence);
+                                  facts.more.emplace_back("engines", sentence);
+                                });
   if (!backend) return backend.error();
   facts.device = device_text(**backend, parts);
   facts.more.emplace_back("load average", fmt::format("{:.1f} at the start", load));
@@ -186,16 +203,20 @@ double load_average() {
   return getloadavg(loads, 1) == 1 ? loads[0] : -1;
 }
 
-Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table, const std::vector<BenchChart>& charts) {
+Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table,
+                         const std::vector<BenchChart>& charts) {
   const std::filesystem::path root = directory;
   std::error_code error;
   std::filesystem::create_directories(root, error);
-  if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", directory, error.message()));
+  if (error)
+    return bad_value(fmt::format("{}: the directory can't be made ({})", directory, error.message()));
 
   const std::string machine = machine_text();
-  if (auto done = write_text(root / "results.csv", csv(table, {machine, facts.device, PALPATE_COMMIT})); !done) return done;
-  Json head{{"bench", facts.command}, {"version", PALPATE_VERSION}, {"commit", PALPATE_COMMIT}, {"time", utc_now()}, {"machine", machine},
-            {"device", facts.device}};
+  if (auto done = write_text(root / "results.csv", csv(table, {machine, facts.device, PALPATE_COMMIT}));
+      !done)
+    return done;
+  Json head{{"bench", facts.command}, {"version", PALPATE_VERSION}, {"commit", PALPATE_COMMIT},
+            {"time", utc_now()},      {"machine", machine},         {"device", facts.device}};
   for (const auto& [name, value] : facts.more) head[name] = value;
   Json results = head;
   results["rows"] = json_rows(table);
@@ -207,7 +228,8 @@ Result<void> write_bench(const std::string& directory, const BenchFacts& facts, 
     for (const BenchCell& cell : row) cells.push_back(readable(cell));
     rows.push_back(cells);
   }
-  const Json data{{"facts", head}, {"charts", json_charts(charts)}, {"columns", table.columns}, {"rows", rows}};
+  const Json data{
+      {"facts", head}, {"charts", json_charts(charts)}, {"columns", table.columns}, {"rows", rows}};
   if (auto done = write_text(root / "report.html", page(data)); !done) return done;
   for (std::size_t i = 0; i < charts.size(); ++i)
     if (const std::string picture = chart_svg(charts[i]); !picture.empty())

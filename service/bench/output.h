@@ -19,10 +19,13 @@ namespace palpate {
 using BenchCell = std::variant<std::string, double, std::uint64_t>;
 
 /// Empty where there is none.
-inline BenchCell cell_of(const std::optional<double>& value) { return value ? BenchCell(*value) : BenchCell(std::string()); }
+inline BenchCell cell_of(const std::optional<double>& value) {
+  return value ? BenchCell(*value) : BenchCell(std::string());
+}
 
 /// The columns of what is asked of a device, and a row's cells there: empty where no device was asked.
-inline const std::vector<std::string> kWorkColumns = {"submissions", "dispatches", "barriers", "bytes_up", "bytes_down", "host_us"};
+inline const std::vector<std::string> kWorkColumns = {"submissions", "dispatches", "barriers",
+                                                      "bytes_up",    "bytes_down", "host_us"};
 std::vector<BenchCell> work_cells(const DeviceWork& work);
 
 struct BenchTable {
@@ -30,42 +33,47 @@ struct BenchTable {
   std::vector<std::vector<BenchCell>> rows;
 };
 
-/// A picture of the report. Bars: `labels` and a value a label in each series' y. Lines: points (x, y). A map: `labels` are its columns,
-/// each series a row of it, the colour of a cell the logarithm of its value.
+/// A picture of the report. Bars: `labels` and a value a label in each series' y. Lines: points (x, y). A
+/// map: `labels` are its columns, each series a row of it, the colour of a cell the logarithm of its value.
 struct BenchChart {
   struct Series {
     std::string label;
     std::vector<double> x, y;
-    bool expected = false;   ///< lines: what theory says of the series before it, in its ink, dashed
+    bool expected = false;  ///< lines: what theory says of the series before it, in its ink, dashed
   };
   std::string title, unit;
-  std::vector<std::string> labels;   ///< empty: lines
+  std::vector<std::string> labels;  ///< empty: lines
   std::vector<Series> series;
   bool stacked = false, log_x = false, log_y = false;
-  std::string x_title, y_title = {};   ///< y_title: of a map
+  std::string x_title, y_title = {};  ///< y_title: of a map
   bool map = false;
-  double map_low = 0, map_high = 0;   ///< of a map's colours; 0: from its values
+  double map_low = 0, map_high = 0;  ///< of a map's colours; 0: from its values
 };
 
 /// What figures belong to.
 struct BenchFacts {
-  std::string command;   ///< "latency"
-  std::string device;    ///< the back ends' devices and drivers
-  std::vector<std::pair<std::string, std::string>> more;   ///< of this bench: scenes, poses, versions of libraries
+  std::string command;  ///< "latency"
+  std::string device;   ///< the back ends' devices and drivers
+  std::vector<std::pair<std::string, std::string>>
+      more;  ///< of this bench: scenes, poses, versions of libraries
 };
 
-/// The engine, and name and driver of its device: "gpu on llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6 (LLVM 15.0.6)". Call after the
-/// back end was made: listing devices is not allowed before.
+/// The engine, and name and driver of its device: "gpu on llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe
+/// Mesa 22.3.6 (LLVM 15.0.6)". Call after the back end was made: listing devices is not allowed before.
 std::string device_text(const CollisionBackend& backend, const Parts& parts);
 
 /// Mean number of processes that wanted to run in the last minute; −1: unknown.
 double load_average();
 
-/// The first back end of the options, else the program's own choice; its device and the machine's load are noted in `facts`.
-Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts);
+/// The first back end of the options, else the program's own choice; its device and the machine's load are
+/// noted in `facts`.
+Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& options, const Parts& parts,
+                                                        Console& console, BenchFacts& facts);
 
-/// Writes results.csv, results.json, report.html and chart_N.svg (lines and maps) to `directory` (made if missing), each with machine, device, commit and version, and
-/// prints the table. CSV: `table`'s columns and then machine, device, commit.
-Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table, const std::vector<BenchChart>& charts);
+/// Writes results.csv, results.json, report.html and chart_N.svg (lines and maps) to `directory` (made if
+/// missing), each with machine, device, commit and version, and prints the table. CSV: `table`'s columns and
+/// then machine, device, commit.
+Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table,
+                         const std::vector<BenchChart>& charts);
 
 }  // namespace palpate

@@ -41,7 +41,8 @@ Result<void> write_poses(const std::filesystem::path& file, const std::vector<Po
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << "x,y,z,qx,qy,qz,qw\n";
   for (const Pose& p : poses)
-    out << fmt::format("{},{},{},{},{},{},{}\n", p.position.x, p.position.y, p.position.z, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w);
+    out << fmt::format("{},{},{},{},{},{},{}\n", p.position.x, p.position.y, p.position.z, p.rotation.x,
+                       p.rotation.y, p.rotation.z, p.rotation.w);
   out.flush();
   if (!out) return bad_value(file.string() + ": the file can't be written");
   return {};
@@ -49,7 +50,8 @@ Result<void> write_poses(const std::filesystem::path& file, const std::vector<Po
 
 }  // namespace
 
-Result<std::vector<Pose>> bench_poses(const BenchOptions& options, HostedScene& scene, const Parts& parts, Console& console) {
+Result<std::vector<Pose>> bench_poses(const BenchOptions& options, HostedScene& scene, const Parts& parts,
+                                      Console& console) {
   const LoadedScene& loaded = scene.loaded;
   if (!options.poses.empty() && options.poses != "run") {
     const Result<std::vector<Pose>> read = read_poses(options.poses);
@@ -57,10 +59,13 @@ Result<std::vector<Pose>> bench_poses(const BenchOptions& options, HostedScene& 
     return thinned(*read, options.frames);
   }
   if (loaded.scene.device.path.empty())
-    return Error{ErrorCode::kUsage, loaded.scene.file + ": the scene has no path to take poses from; name a file of poses with --poses"};
+    return Error{
+        ErrorCode::kUsage,
+        loaded.scene.file + ": the scene has no path to take poses from; name a file of poses with --poses"};
   if (options.poses.empty()) {
     std::vector<Pose> poses;
-    for (const PathPoint& point : loaded.scene.device.path) poses.push_back(path_pose(point, loaded.scene.device.guide));
+    for (const PathPoint& point : loaded.scene.device.path)
+      poses.push_back(path_pose(point, loaded.scene.device.guide));
     return thinned(poses, options.frames);
   }
   auto device = parts.make_device("simulated", loaded.scene, loaded.geometry.tool_gc_m, {});
@@ -79,7 +84,8 @@ Result<std::vector<Pose>> bench_poses(const BenchOptions& options, HostedScene& 
   const std::vector<Pose> poses = thinned(keeper.poses, options.frames);
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
-  if (auto done = write_poses(std::filesystem::path(options.out) / "poses.csv", poses); !done) return done.error();
+  if (auto done = write_poses(std::filesystem::path(options.out) / "poses.csv", poses); !done)
+    return done.error();
   return poses;
 }
 

@@ -10,7 +10,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double us_since(Clock::time_point start) { return std::chrono::duration<double, std::micro>(Clock::now() - start).count(); }
+double us_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
 
 Result<void> evaluate(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out) {
   const Result<LatticePose> lattice = to_lattice(pose, scene.geometry);
@@ -30,14 +32,19 @@ Result<void> answer_frame(HostedScene& scene, const Pose& pose, Answer& out) {
   return {};
 }
 
-Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) { return answer_pose(scene.loaded, *scene.backend, pose, out); }
+Result<void> answer_pose(HostedScene& scene, const Pose& pose, Answer& out) {
+  return answer_pose(scene.loaded, *scene.backend, pose, out);
+}
 
 Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, const Pose& pose, Answer& out) {
   const auto start = Clock::now();
   if (auto done = evaluate(scene, backend, pose, out); !done) return done;
   const ResponseSettings& settings = scene.scene.response;
   if (settings.profile == Profile::kRefined)
-    if (auto felt = LoneQuery(scene.geometry, settings.stiffness_n_per_m).feel(backend, nullptr, pose, out.response); !felt) return felt;
+    if (auto felt =
+            LoneQuery(scene.geometry, settings.stiffness_n_per_m).feel(backend, nullptr, pose, out.response);
+        !felt)
+      return felt;
   out.total_us = us_since(start);
   return {};
 }
@@ -57,7 +64,8 @@ Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, Batch
   // Each pose's balance is found by asking for more poses: side by side, too.
   const ResponseSettings& settings = scene.loaded.scene.response;
   const auto respond_to = [&](PoseQuery& asked, std::size_t i) -> Result<void> {
-    respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m, out.responses[i]);
+    respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m,
+            out.responses[i]);
     if (settings.profile != Profile::kRefined) return {};
     return LoneQuery(geometry, settings.stiffness_n_per_m).feel(asked, nullptr, poses[i], out.responses[i]);
   };

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "model/contact/contacts.h"
-#include "model/lattice/pose.h"
 #include "model/contact/response.h"
+#include "model/lattice/pose.h"
 #include "service/cli/scene_host.h"
 
 namespace palpate {
@@ -13,7 +13,7 @@ namespace palpate {
 struct Answer {
   Contacts contacts;
   ContactResponse response;
-  double total_us = 0;   ///< wall time from pose in to wrench and id lists out
+  double total_us = 0;  ///< wall time from pose in to wrench and id lists out
 };
 
 /// What many poses got together.
@@ -21,13 +21,15 @@ struct BatchAnswer {
   std::vector<LatticePose> poses;
   std::vector<Contacts> contacts;
   std::vector<ContactResponse> responses;
-  double total_us = 0;   ///< wall time of all
+  double total_us = 0;  ///< wall time of all
 };
 
-/// Answers poses side by side where the back end can; each as answer_pose would, but for the times. Errors likewise.
+/// Answers poses side by side where the back end can; each as answer_pose would, but for the times. Errors
+/// likewise.
 Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out);
 
-/// One frame, as a session asks it: the field at the pose itself, no balance with a spring. What benches time.
+/// One frame, as a session asks it: the field at the pose itself, no balance with a spring. What benches
+/// time.
 Result<void> answer_frame(HostedScene& scene, const Pose& pose, Answer& out);
 
 /// Answers one pose; a lone query holds nothing from a frame before. Errors: not a pose; the back end failed.

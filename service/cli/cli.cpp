@@ -1,10 +1,10 @@
 #include "service/cli/cli.h"
 
+#include <fmt/format.h>
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -29,10 +29,12 @@ namespace palpate {
 namespace {
 
 constexpr const char* kAbout =
-    "palpate finds where a tool touches a large mock-up of triangles, works out the force and torque that a hand should\n"
+    "palpate finds where a tool touches a large mock-up of triangles, works out the force and torque that a "
+    "hand should\n"
     "feel, and keeps a 1 kHz haptic device fed with them.";
 
-constexpr const char* kFooter = R"(Units are SI: metres, newtons, newton metres, seconds. A pose is `x y z qx qy qz qw`, world from tool, with a unit quaternion.
+constexpr const char* kFooter =
+    R"(Units are SI: metres, newtons, newton metres, seconds. A pose is `x y z qx qy qz qw`, world from tool, with a unit quaternion.
 The result goes to standard output, progress and messages to standard error.
 
 Exit codes: 0 done; 2 wrong usage; 3 a bad value in a file or an argument; 4 no usable device; 5 a path is not clear; 1 anything else.
@@ -47,7 +49,8 @@ A first quarter of an hour, as README.md has it:
 
 `palpate help COMMAND` tells more; `palpate devices` what can compute here and what can be felt.)";
 
-constexpr const char* kRunFooter = R"(DIR then holds trace.csv (a row a tick), frames.jsonl (an answered pose a line), summary.json and report.html
+constexpr const char* kRunFooter =
+    R"(DIR then holds trace.csv (a row a tick), frames.jsonl (an answered pose a line), summary.json and report.html
 (one page with the plots, opens anywhere). The summary is printed too.
 SIGINT (Ctrl-C) or SIGTERM ends the run with zero force and complete files.
 
@@ -59,7 +62,8 @@ Examples:
   palpate run scenes/disassembly.json --pace asap --out a
   palpate run scenes/contacts.json --backend cpu --duration 2)";
 
-constexpr const char* kQueryFooter = R"(At a terminal it prints what touches, how deep and with which force. Elsewhere, and with --json, it prints one JSON object a pose:
+constexpr const char* kQueryFooter =
+    R"(At a terminal it prints what touches, how deep and with which force. Elsewhere, and with --json, it prints one JSON object a pose:
 number (from 0), pose, contact, pairs, cst bst cmt bmt imt est (triangle ids), areas (id, zones, static, mobile, normal, depth m,
 point m, force N, torque N·m, flags), force, torque (about the tool's centre of mass), flags, truncated, time_us.
 With --names also parts: the paths of the mock-up's and of the tool's parts that touch, as palpate info has them.
@@ -77,8 +81,11 @@ Examples:
 CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMember(words).description(""); }
 
 CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
-  return app.add_option("--backend", options.backend, "the engine that answers: gpu, everything in shaders; cpu, native code on this processor; ref, the reference; auto: gpu on a GPU, else cpu, "
-                                                                 "with a sentence on standard error (auto)")
+  return app
+      .add_option("--backend", options.backend,
+                  "the engine that answers: gpu, everything in shaders; cpu, native code on this processor; "
+                  "ref, the reference; auto: gpu on a GPU, else cpu, "
+                  "with a sentence on standard error (auto)")
       ->check(one_of({"auto", "gpu", "cpu", "ref"}))
       ->type_name("auto|gpu|cpu|ref");
 }
@@ -86,44 +93,59 @@ CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
 /// CLI::Range would let nan pass.
 std::function<void(const double&)> number_within(const char* name, double least, double most, double& out) {
   return [=, &out](const double& value) {
-    if (!(value >= least && value <= most)) throw CLI::ValidationError(name, fmt::format("{} is not from {} to {}", value, least, most));
+    if (!(value >= least && value <= most))
+      throw CLI::ValidationError(name, fmt::format("{} is not from {} to {}", value, least, most));
     out = value;
   };
 }
 
 void add_import_limits(CLI::App& app, ImportLimits& limits) {
-  app.add_option_function<std::uint64_t>("--import-memory", [&limits](const std::uint64_t& mib) { limits.memory_bytes = mib << 20; },
-                                         "most memory for reading a mesh file; default 2048 MiB and 20 times the file's size")
+  app.add_option_function<std::uint64_t>(
+         "--import-memory", [&limits](const std::uint64_t& mib) { limits.memory_bytes = mib << 20; },
+         "most memory for reading a mesh file; default 2048 MiB and 20 times the file's size")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description(""))
       ->type_name("MIB");
-  app.add_option_function<double>("--import-seconds", number_within("--import-seconds", 1, 1e6, limits.seconds), "most processor time for reading a mesh file; default 20 s and 1 s a MiB, 60 s and 10 s a MiB for STEP, IGES, BREP")
+  app.add_option_function<double>("--import-seconds",
+                                  number_within("--import-seconds", 1, 1e6, limits.seconds),
+                                  "most processor time for reading a mesh file; default 20 s and 1 s a MiB, "
+                                  "60 s and 10 s a MiB for STEP, IGES, BREP")
       ->type_name("S");
 }
 
 void add_units(CLI::App& app, std::optional<double>& unit_m, const char* help) {
   static const std::map<std::string, double> kUnits{{"m", 1}, {"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}};
-  app.add_option_function<std::string>("--units", [&unit_m](const std::string& word) { unit_m = kUnits.at(word); }, help)->check(one_of({"m", "mm", "cm", "in"}))->type_name("m|mm|cm|in");
+  app.add_option_function<std::string>(
+         "--units", [&unit_m](const std::string& word) { unit_m = kUnits.at(word); }, help)
+      ->check(one_of({"m", "mm", "cm", "in"}))
+      ->type_name("m|mm|cm|in");
 }
 
 void add_tessellation(CLI::App& app, Tessellation& tessellation) {
-  app.add_option_function<double>("--tessellation", number_within("--tessellation", 1e-9, 100, tessellation.deflection_m),
-                                  "the farthest that triangles lie from the surfaces of a STEP, IGES or BREP file; default 1/384 of its longest side")
+  app.add_option_function<double>("--tessellation",
+                                  number_within("--tessellation", 1e-9, 100, tessellation.deflection_m),
+                                  "the farthest that triangles lie from the surfaces of a STEP, IGES or BREP "
+                                  "file; default 1/384 of its longest side")
       ->type_name("M");
-  app.add_option_function<double>("--tessellation-angle", number_within("--tessellation-angle", 1, 90, tessellation.angle_deg), "most between neighbouring triangles of one surface; default 15")
+  app.add_option_function<double>("--tessellation-angle",
+                                  number_within("--tessellation-angle", 1, 90, tessellation.angle_deg),
+                                  "most between neighbouring triangles of one surface; default 15")
       ->type_name("DEG");
 }
 
 void add_scene(CLI::App& app, SceneOptions& options) {
   app.add_option("scene", options.scene, "scene file (JSON)")->required()->type_name("SCENE");
   add_import_limits(app, options.import);
-  add_units(app, options.unit_m, "unit of mesh files for which neither they nor the scene state one; without it metres");
+  add_units(app, options.unit_m,
+            "unit of mesh files for which neither they nor the scene state one; without it metres");
 }
 
 /// `--profile` and `--plan`, which read words and leave enumerators.
 void add_method(CLI::App& app, SceneOptions& options) {
   app.add_option_function<std::string>(
          "--profile",
-         [&options](const std::string& word) { options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined; },
+         [&options](const std::string& word) {
+           options.profile = word == "paper" ? Profile::kPaper : Profile::kRefined;
+         },
          "paper: the chapter to the letter; refined: its faults mended; in place of the scene's")
       ->check(one_of({"paper", "refined"}))
       ->type_name("paper|refined");
@@ -139,7 +161,8 @@ std::string unknown_command(const std::string& word, const std::vector<std::stri
   std::string list;
   for (const std::string& command : commands) list += (list.empty() ? "" : ", ") + command;
   const std::string nearest = nearest_word(word, commands);
-  return fmt::format("'{}' is no command of this version (there are {}){}", word, list, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+  return fmt::format("'{}' is no command of this version (there are {}){}", word, list,
+                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
 
 int fail(const Error& error) {
@@ -156,18 +179,25 @@ int fail_parse(const CLI::ParseError& error, const CLI::App& app) {
     name += " " + command->get_name();
   }
   const bool value = error.get_name() == "ConversionError" || error.get_name() == "ValidationError";
-  std::string sentence = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) ? unexpected_words(*command, name, app.remaining(true)) : error.what();
+  std::string sentence = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)
+                             ? unexpected_words(*command, name, app.remaining(true))
+                             : error.what();
   std::replace(sentence.begin(), sentence.end(), '\n', ' ');
-  return fail({value ? ErrorCode::kBadValue : ErrorCode::kUsage, fmt::format("{} (see {} --help)", sentence, name)});
+  return fail(
+      {value ? ErrorCode::kBadValue : ErrorCode::kUsage, fmt::format("{} (see {} --help)", sentence, name)});
 }
 
 /// All on one line, for bug reports.
-std::string version_text() { return "palpate " PALPATE_VERSION ", commit " PALPATE_COMMIT ", engines gpu, cpu, ref"; }
+std::string version_text() {
+  return "palpate " PALPATE_VERSION ", commit " PALPATE_COMMIT ", engines gpu, cpu, ref";
+}
 
 /// `--quiet` for every command.
 void add_quiet(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) {
-    command->add_flag_callback("-q,--quiet", [] { Console::be_quiet(); }, "no progress and no messages but errors, and what the person at the device has to do");
+    command->add_flag_callback(
+        "-q,--quiet", [] { Console::be_quiet(); },
+        "no progress and no messages but errors, and what the person at the device has to do");
     add_quiet(*command);
   }
 }
@@ -178,9 +208,11 @@ Result<void> write_manual(const CLI::App& app, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   std::vector<std::string> commands{""};
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) commands.push_back(command->get_name());
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
   for (const std::string& command : commands) {
-    const std::filesystem::path file = std::filesystem::path(folder) / ((command.empty() ? "palpate" : "palpate-" + command) + ".1");
+    const std::filesystem::path file =
+        std::filesystem::path(folder) / ((command.empty() ? "palpate" : "palpate-" + command) + ".1");
     std::ofstream out(file, std::ios::binary | std::ios::trunc);
     out << manual_page(app, command, PALPATE_VERSION);
     out.flush();
@@ -203,53 +235,84 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   app.footer(std::string(kFooter) + "\n\n" + kEnvironmentText);
   app.set_version_flag("-V,--version", version_text(), "tell the version, the commit and the engines");
   app.set_help_flag("-h,--help", "tell how to use it");
-  app.require_subcommand(0, 1);   // a scene may be called like a command
+  app.require_subcommand(0, 1);  // a scene may be called like a command
   app.get_formatter()->column_width(38);
 
   Result<void> outcome;
 
   RunOptions run;
-  CLI::App* run_app = app.add_subcommand("run", "run the 1 kHz loop with a device and leave trace, frames, summary and report");
+  CLI::App* run_app = app.add_subcommand(
+      "run", "run the 1 kHz loop with a device and leave trace, frames, summary and report");
   add_scene(*run_app, run.common);
   add_backend(*run_app, run.common);
-  run_app->add_option_function<std::string>("--pace", [&](const std::string& word) { run.asap = word == "asap"; },
-                                            "realtime: by the clock (default); asap: virtual time, reproducible")
+  run_app
+      ->add_option_function<std::string>(
+          "--pace", [&](const std::string& word) { run.asap = word == "asap"; },
+          "realtime: by the clock (default); asap: virtual time, reproducible")
       ->check(one_of({"realtime", "asap"}))
       ->type_name("realtime|asap");
   add_method(*run_app, run.common);
-  run_app->add_option("--device", run.device, "haptic device by name, in place of the scene's (palpate devices lists them); replay:FILE: a recorded trace.csv")->type_name("NAME");
-  run_app->add_option("--firmware", run.firmware, "firmware file for a device that needs one")->type_name("FILE");
+  run_app
+      ->add_option("--device", run.device,
+                   "haptic device by name, in place of the scene's (palpate devices lists them); "
+                   "replay:FILE: a recorded trace.csv")
+      ->type_name("NAME");
+  run_app->add_option("--firmware", run.firmware, "firmware file for a device that needs one")
+      ->type_name("FILE");
   run_app->add_option("--duration", run.duration_s, "seconds; without it to the end of the path")
       ->type_name("S");
-  run_app->add_option("--switch", run.switches, "SECONDS:WORD, again and again: then go over to profile paper or refined, or plan full or auto, without a missed tick")
+  run_app
+      ->add_option("--switch", run.switches,
+                   "SECONDS:WORD, again and again: then go over to profile paper or refined, or plan full or "
+                   "auto, without a missed tick")
       ->type_name("S:WORD");
-  run_app->add_option("--out", run.out, "directory for the files; default a fresh palpate-run-…")->type_name("DIR");
+  run_app->add_option("--out", run.out, "directory for the files; default a fresh palpate-run-…")
+      ->type_name("DIR");
   run_app->add_flag("--overwrite", run.overwrite, "replace the files of a run that is in --out already");
   run_app->footer(kRunFooter);
   run_app->callback([&] { outcome = run_command(run, parts); });
 
   QueryOptions query;
-  CLI::App* query_app = app.add_subcommand("query", "answer poses: contact sets, areas, force and torque, for people or as JSON lines");
+  CLI::App* query_app = app.add_subcommand(
+      "query", "answer poses: contact sets, areas, force and torque, for people or as JSON lines");
   add_scene(*query_app, query.common);
-  auto* pose = query_app->add_option("--pose", query.pose, "one pose, world from tool: metres and a unit quaternion")
-                   ->type_name("\"x y z qx qy qz qw\"");
+  auto* pose =
+      query_app->add_option("--pose", query.pose, "one pose, world from tool: metres and a unit quaternion")
+          ->type_name("\"x y z qx qy qz qw\"");
   auto* poses = query_app->add_option("--poses", query.poses, "CSV file of poses")->type_name("FILE.csv");
   pose->excludes(poses);
   add_backend(*query_app, query.common);
   add_method(*query_app, query.common);
-  query_app->add_option("--batch", query.batch, "answer N poses together, on all cores; time_us is then a pose's share")
+  query_app
+      ->add_option("--batch", query.batch,
+                   "answer N poses together, on all cores; time_us is then a pose's share")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
   query_app->add_flag("--names", query.names, "parts: which named parts touch");
-  query_app->add_flag("--json", query.json, "one JSON object a pose at a terminal, too; elsewhere that is so anyway");
-  query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")->type_name("DIR");
-  auto* any = query_app->add_flag("--any", query.any, "touch or not alone, containment included: number, engine and touches");
-  auto* clearance = query_app->add_flag("--clearance", query.clearance, "the exact smallest distance alone: clearance m (null: beyond the lattice), static and mobile triangle, their points and parts");
-  query_app->add_option_function<double>("--within", [&query](const double& value) {
-        if (!(value >= 0 && value <= 100)) throw CLI::ValidationError("--within", fmt::format("{} is not from 0 to 100", value));
-        query.within_m = value;
-      }, "near-miss check: --clearance of the poses that are no further than M metres, and no others")->type_name("M");
-  query_app->add_option_function<double>("--tolerance", number_within("--tolerance", 0, 100, query.tolerance_m), "with --any or --clearance: a contact no deeper than M metres does not count")->type_name("M");
+  query_app->add_flag("--json", query.json,
+                      "one JSON object a pose at a terminal, too; elsewhere that is so anyway");
+  query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")
+      ->type_name("DIR");
+  auto* any = query_app->add_flag("--any", query.any,
+                                  "touch or not alone, containment included: number, engine and touches");
+  auto* clearance = query_app->add_flag("--clearance", query.clearance,
+                                        "the exact smallest distance alone: clearance m (null: beyond the "
+                                        "lattice), static and mobile triangle, their points and parts");
+  query_app
+      ->add_option_function<double>(
+          "--within",
+          [&query](const double& value) {
+            if (!(value >= 0 && value <= 100))
+              throw CLI::ValidationError("--within", fmt::format("{} is not from 0 to 100", value));
+            query.within_m = value;
+          },
+          "near-miss check: --clearance of the poses that are no further than M metres, and no others")
+      ->type_name("M");
+  query_app
+      ->add_option_function<double>(
+          "--tolerance", number_within("--tolerance", 0, 100, query.tolerance_m),
+          "with --any or --clearance: a contact no deeper than M metres does not count")
+      ->type_name("M");
   any->excludes(clearance);
   query_app->footer(kQueryFooter);
   query_app->callback([&] { outcome = query_command(query, parts); });
@@ -262,35 +325,60 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   CLI::App* plan_app = app.add_subcommand("plan", "tell which stages a run of the scene needs, and why");
   add_scene(*plan_app, plan);
   plan_app->add_flag("--json", plan_json, "{\"stages\":[{\"stage\",\"kept\",\"reason\",\"memory_bytes\"}]}");
-  plan_app->footer("Leaving a stage out never changes an answer; `--plan full` of run and query keeps them all, to compare.");
+  plan_app->footer(
+      "Leaving a stage out never changes an answer; `--plan full` of run and query keeps them all, to "
+      "compare.");
   plan_app->callback([&] { outcome = plan_command(plan, plan_json, parts); });
 
   InfoOptions info;
-  CLI::App* info_app = app.add_subcommand("info", "tell what is in mesh files and what import made of them; of a scene, how its tool starts");
-  info_app->add_option("files", info.files, "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, STEP, IGES, BREP, …; or a scene, .json")->required()->type_name("MESH|SCENE");
+  CLI::App* info_app = app.add_subcommand(
+      "info", "tell what is in mesh files and what import made of them; of a scene, how its tool starts");
+  info_app
+      ->add_option("files", info.files,
+                   "STL, OBJ, PLY, OFF, glTF/GLB, DAE, 3MF, STEP, IGES, BREP, …; or a scene, .json")
+      ->required()
+      ->type_name("MESH|SCENE");
   info_app->add_flag("--tree", info.tree, "parts as the hierarchy that the file has");
   info_app->add_flag("--json", info.json, "one JSON object");
-  add_units(*info_app, info.unit_m, "unit of the files, which then are told in metres; not for STEP, IGES and 3MF, which state theirs");
+  add_units(
+      *info_app, info.unit_m,
+      "unit of the files, which then are told in metres; not for STEP, IGES and 3MF, which state theirs");
   add_import_limits(*info_app, info.import);
   add_tessellation(*info_app, info.tessellation);
-  info_app->footer("A part's path, its last name where that is unique, its other name, or its number, \"#3\", is what `part` and `without` of a scene file name.\n"
-                   "Sizes are in metres where the file states its unit (STEP, IGES, 3MF), its format has one (COLLADA, glTF) or --units says it, else in the file's own.");
+  info_app->footer(
+      "A part's path, its last name where that is unique, its other name, or its number, \"#3\", is what "
+      "`part` and `without` of a scene file name.\n"
+      "Sizes are in metres where the file states its unit (STEP, IGES, 3MF), its format has one (COLLADA, "
+      "glTF) or --units says it, else in the file's own.");
   info_app->callback([&] { outcome = info_command(info, parts); });
 
   GenerateOptions generate;
-  CLI::App* generate_app = app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");
-  generate_app->add_option("name", generate.name, "contacts (section 4.1) or disassembly (section 4.2)")->required()->type_name("NAME");
-  generate_app->add_option("--triangles", generate.triangles, "of the mock-up, 1,000 to 10,000,000; default the chapter's 25,000 or 100,000")
+  CLI::App* generate_app =
+      app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");
+  generate_app->add_option("name", generate.name, "contacts (section 4.1) or disassembly (section 4.2)")
+      ->required()
+      ->type_name("NAME");
+  generate_app
+      ->add_option("--triangles", generate.triangles,
+                   "of the mock-up, 1,000 to 10,000,000; default the chapter's 25,000 or 100,000")
       ->type_name("N");
-  generate_app->add_option("--tool-triangles", generate.tool_triangles, "of the tool; default the chapter's 1,500 or 2,000")->type_name("N");
-  generate_app->add_option("--out", generate.out, "directory for meshes, path and scene.json")->required()->type_name("DIR");
-  generate_app->footer("Writes the meshes as files, so that any of them can be exchanged for a part of yours.\n\nExamples:\n"
-                       "  palpate generate disassembly --out try\n"
-                       "  palpate generate contacts --triangles 1000000 --out big");
+  generate_app
+      ->add_option("--tool-triangles", generate.tool_triangles,
+                   "of the tool; default the chapter's 1,500 or 2,000")
+      ->type_name("N");
+  generate_app->add_option("--out", generate.out, "directory for meshes, path and scene.json")
+      ->required()
+      ->type_name("DIR");
+  generate_app->footer(
+      "Writes the meshes as files, so that any of them can be exchanged for a part of yours.\n\nExamples:\n"
+      "  palpate generate disassembly --out try\n"
+      "  palpate generate contacts --triangles 1000000 --out big");
   generate_app->callback([&] { outcome = generate_command(generate); });
 
-  CLI::App* devices_app = app.add_subcommand("devices", "list Vulkan and haptic devices, with the reason for each that can't be used");
-  devices_app->footer("Of several usable Vulkan devices the best is taken; the back end's name is in the summary of a run.");
+  CLI::App* devices_app = app.add_subcommand(
+      "devices", "list Vulkan and haptic devices, with the reason for each that can't be used");
+  devices_app->footer(
+      "Of several usable Vulkan devices the best is taken; the back end's name is in the summary of a run.");
   devices_app->callback([&] { outcome = devices_command(parts); });
 
   ServeOptions serve;
@@ -304,13 +392,21 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
 
   std::string shell, page, manual;
   CLI::App* completions_app = app.add_subcommand("completions", "print the completion script of a shell");
-  completions_app->add_option("shell", shell, "which one")->required()->check(one_of({"bash", "zsh", "fish"}))->type_name("bash|zsh|fish");
-  completions_app->footer("Examples:\n  source <(palpate completions bash)\n  palpate completions fish > ~/.config/fish/completions/palpate.fish");
+  completions_app->add_option("shell", shell, "which one")
+      ->required()
+      ->check(one_of({"bash", "zsh", "fish"}))
+      ->type_name("bash|zsh|fish");
+  completions_app->footer(
+      "Examples:\n  source <(palpate completions bash)\n  palpate completions fish > "
+      "~/.config/fish/completions/palpate.fish");
   completions_app->callback([&] { fmt::print("{}", completion_script(app, shell)); });
 
   CLI::App* man_app = app.add_subcommand("man", "print a manual page, or write them all");
-  auto* page_option = man_app->add_option("command", page, "whose; without it the program's")->type_name("COMMAND");
-  man_app->add_option("--out", manual, "folder for the pages of all commands, palpate.1, palpate-run.1, …")->type_name("DIR")->excludes(page_option);
+  auto* page_option =
+      man_app->add_option("command", page, "whose; without it the program's")->type_name("COMMAND");
+  man_app->add_option("--out", manual, "folder for the pages of all commands, palpate.1, palpate-run.1, …")
+      ->type_name("DIR")
+      ->excludes(page_option);
   man_app->footer("Example:\n  palpate man run | man -l -");
   man_app->callback([&] {
     if (!manual.empty()) {
@@ -318,7 +414,9 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
       return;
     }
     const std::string text = manual_page(app, page, PALPATE_VERSION);
-    if (text.empty()) outcome = Error{ErrorCode::kUsage, fmt::format("'{}' is no command of palpate (see palpate --help)", page)};
+    if (text.empty())
+      outcome =
+          Error{ErrorCode::kUsage, fmt::format("'{}' is no command of palpate (see palpate --help)", page)};
     fmt::print("{}", text);
   });
   add_quiet(app);
@@ -351,7 +449,8 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   } catch (const CLI::ParseError& error) {
     return fail_parse(error, app);
   }
-  if (app.get_subcommands().empty()) return fail({ErrorCode::kUsage, "a command is missing (see palpate --help)"});
+  if (app.get_subcommands().empty())
+    return fail({ErrorCode::kUsage, "a command is missing (see palpate --help)"});
   return outcome ? 0 : fail(outcome.error());
 }
 
@@ -361,7 +460,8 @@ int command_line(int argc, const char* const* argv, const Parts& parts) noexcept
   // What libraries throw ends here as one sentence.
   try {
     const int code = parse_and_run(argc, argv, parts);
-    if (std::fflush(stdout) != 0 && code == 0) return fail({ErrorCode::kInternal, "standard output can't be written"});
+    if (std::fflush(stdout) != 0 && code == 0)
+      return fail({ErrorCode::kInternal, "standard output can't be written"});
     return code;
   } catch (const std::bad_alloc&) {
     std::fputs("palpate: there is not enough memory for this scene\n", stderr);

@@ -20,7 +20,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 
 extern "C" void on_interrupt(int number) {
   interrupt_seen.store(true, std::memory_order_relaxed);
-  std::signal(number, SIG_DFL);   // a second signal ends a program that hangs
+  std::signal(number, SIG_DFL);  // a second signal ends a program that hangs
 }
 
 std::size_t terminal_columns() {
@@ -94,18 +94,23 @@ void Console::step(std::string_view name) {
 bool Console::progress(const char* what, double done) {
   if (terminal_ ? !drawn_ || done >= 1 || wants_live() : wants_live()) {
     const double percent = 100 * std::clamp(done, 0.0, 1.0);
-    live(terminal_ ? fmt::format("{} {:3.0f} %  {}: {}", bar(done), percent, step_, what) : fmt::format("{}: {}, {:.0f} %", step_, what, percent));
+    live(terminal_ ? fmt::format("{} {:3.0f} %  {}: {}", bar(done), percent, step_, what)
+                   : fmt::format("{}: {}, {:.0f} %", step_, what, percent));
   }
   return !interrupted();
 }
 
-bool Console::wants_live() const { return !is_quiet && std::chrono::steady_clock::now() - last_draw_ >= (terminal_ ? kRedraw : kSignOfLife); }
+bool Console::wants_live() const {
+  return !is_quiet && std::chrono::steady_clock::now() - last_draw_ >= (terminal_ ? kRedraw : kSignOfLife);
+}
 
 void Console::live(std::string_view line) {
   if (is_quiet) return;
   last_draw_ = std::chrono::steady_clock::now();
-  if (terminal_) draw(line);
-  else note(line.substr(std::min(line.find_first_not_of(' '), line.size())));
+  if (terminal_)
+    draw(line);
+  else
+    note(line.substr(std::min(line.find_first_not_of(' '), line.size())));
 }
 
 void Console::finish() {

@@ -6,8 +6,9 @@
 
 namespace palpate {
 
-/// Writes to standard error: sentences, a progress bar, a live line. On a terminal the bar and the live line are redrawn in place; elsewhere
-/// a step is one plain line, and of what is under way a line comes every 10 seconds, so that a log shows that it goes on. One thread at a time.
+/// Writes to standard error: sentences, a progress bar, a live line. On a terminal the bar and the live line
+/// are redrawn in place; elsewhere a step is one plain line, and of what is under way a line comes every 10
+/// seconds, so that a log shows that it goes on. One thread at a time.
 class Console {
  public:
   Console();
@@ -32,7 +33,8 @@ class Console {
   /// user asked to stop (interrupted()), as `Progress` of model/collision_backend.h wants it.
   bool progress(const char* what, double done);
 
-  /// Whether a live line would be seen now: at most 20 times a second on a terminal, every 10 seconds elsewhere.
+  /// Whether a live line would be seen now: at most 20 times a second on a terminal, every 10 seconds
+  /// elsewhere.
   bool wants_live() const;
   /// One line of numbers, on a terminal redrawn in place.
   void live(std::string_view line);
@@ -44,7 +46,7 @@ class Console {
   void draw(std::string_view line);
 
   bool terminal_ = false;
-  bool drawn_ = false;            ///< a bar or live line stands on the current line
+  bool drawn_ = false;  ///< a bar or live line stands on the current line
   std::string step_;
   std::chrono::steady_clock::time_point last_draw_{};
 };

@@ -15,7 +15,8 @@ Result<void> devices_command(const Parts& parts) {
     fmt::print("{} devices\n", kind[0] == 'v' ? "Vulkan" : "Haptic");
     for (const DeviceLine& line : lines) {
       if (line.kind != kind) continue;
-      fmt::print("  {:<{}}  {:<10}  {}\n", line.name, width, line.usable ? "usable" : "not usable", line.reason);
+      fmt::print("  {:<{}}  {:<10}  {}\n", line.name, width, line.usable ? "usable" : "not usable",
+                 line.reason);
     }
   }
   return {};

@@ -26,7 +26,8 @@ Result<void> write_text(const std::filesystem::path& path, const std::string& te
 
 /// Nine integers a triangle, in the order of their ids; a collapsed one keeps its place.
 template <class ToWorld>
-Result<void> write_triangles(const std::filesystem::path& path, const LatticeMesh& mesh, const ToWorld& to_world) {
+Result<void> write_triangles(const std::filesystem::path& path, const LatticeMesh& mesh,
+                             const ToWorld& to_world) {
   std::vector<std::int32_t> words;
   words.reserve(mesh.triangles.size() * 9);
   for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
@@ -39,19 +40,24 @@ Result<void> write_triangles(const std::filesystem::path& path, const LatticeMes
 
 }  // namespace
 
-Result<void> export_geometry(const std::string& directory, const SceneGeometry& geometry, const CollisionBackend& backend,
-                             const std::vector<Pose>& poses, std::vector<std::string>& notes) {
+Result<void> export_geometry(const std::string& directory, const SceneGeometry& geometry,
+                             const CollisionBackend& backend, const std::vector<Pose>& poses,
+                             std::vector<std::string>& notes) {
   const std::filesystem::path root = directory;
   std::error_code error;
   std::filesystem::create_directories(root, error);
-  if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", directory, error.message()));
+  if (error)
+    return bad_value(fmt::format("{}: the directory can't be made ({})", directory, error.message()));
 
   const Lattice& lattice = geometry.lattice;
-  if (auto done = write_text(root / "lattice.json", fmt::format("{{\"step_m\":{},\"origin_m\":[{},{},{}]}}\n", lattice.step_m, lattice.origin_m.x,
-                                                                lattice.origin_m.y, lattice.origin_m.z));
+  if (auto done = write_text(root / "lattice.json",
+                             fmt::format("{{\"step_m\":{},\"origin_m\":[{},{},{}]}}\n", lattice.step_m,
+                                         lattice.origin_m.x, lattice.origin_m.y, lattice.origin_m.z));
       !done)
     return done;
-  if (auto done = write_triangles(root / "static.i32", geometry.mockup, [](const Int3& v) { return v; }); !done) return done;
+  if (auto done = write_triangles(root / "static.i32", geometry.mockup, [](const Int3& v) { return v; });
+      !done)
+    return done;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Result<LatticePose> pose = to_lattice(poses[i], geometry);
     if (!pose) return pose.error();
@@ -60,7 +66,8 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
       continue;
     }
     const auto path = root / fmt::format("tool_{}.i32", i);
-    const auto done = write_triangles(path, geometry.tool, [&](const Int3& v) { return transform(*pose, v); });
+    const auto done =
+        write_triangles(path, geometry.tool, [&](const Int3& v) { return transform(*pose, v); });
     if (!done) return done;
   }
 
@@ -68,9 +75,10 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
   if (!partition) return partition.error();
   const VoxelGrid& grid = partition->grid;
   const Int3 counts = grid.voxels();
-  if (auto done = write_text(root / "voxels.json",
-                             fmt::format("{{\"size\":{},\"origin\":[{},{},{}],\"counts\":[{},{},{}]}}\n", grid.size, grid.origin.x,
-                                         grid.origin.y, grid.origin.z, counts.x, counts.y, counts.z));
+  if (auto done =
+          write_text(root / "voxels.json",
+                     fmt::format("{{\"size\":{},\"origin\":[{},{},{}],\"counts\":[{},{},{}]}}\n", grid.size,
+                                 grid.origin.x, grid.origin.y, grid.origin.z, counts.x, counts.y, counts.z));
       !done)
     return done;
   static_assert(sizeof(VoxelClass) == 1);
@@ -83,7 +91,8 @@ Result<void> export_pairs(const std::string& directory, const CollisionBackend& 
   std::vector<std::uint32_t> words;
   words.reserve(2 * pairs->size());
   for (const auto& [static_id, mobile_id] : *pairs) words.insert(words.end(), {static_id, mobile_id});
-  return write_file(std::filesystem::path(directory) / fmt::format("pairs_{}.u32", pose), words.data(), words.size() * sizeof(std::uint32_t));
+  return write_file(std::filesystem::path(directory) / fmt::format("pairs_{}.u32", pose), words.data(),
+                    words.size() * sizeof(std::uint32_t));
 }
 
 }  // namespace palpate

@@ -12,11 +12,13 @@
 namespace palpate {
 
 Result<void> generate_command(const GenerateOptions& options) {
-  const Result<GeneratedScene> scene = generate_scene(options.name, options.triangles, options.tool_triangles);
+  const Result<GeneratedScene> scene =
+      generate_scene(options.name, options.triangles, options.tool_triangles);
   if (!scene) return scene.error();
   if (auto done = write_generated(*scene, options.name, options.out); !done) return done;
-  fmt::print("{}: mock-up of {} triangles, tool of {}, a path of {:.1f} s\n", options.name, count_text(scene->mockup.triangles.size()),
-             count_text(scene->tool.triangles.size()), scene->path.empty() ? 0.0 : scene->path.back().time_s);
+  fmt::print("{}: mock-up of {} triangles, tool of {}, a path of {:.1f} s\n", options.name,
+             count_text(scene->mockup.triangles.size()), count_text(scene->tool.triangles.size()),
+             scene->path.empty() ? 0.0 : scene->path.back().time_s);
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(options.out))
     if (entry.is_regular_file()) files.push_back(entry.path().string());

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "model/scene/geometry_build.h"
-#include "model/mesh/mesh_import.h"
 #include "model/files/one_line.h"
+#include "model/mesh/mesh_import.h"
+#include "model/scene/geometry_build.h"
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
@@ -22,14 +22,14 @@ namespace {
 struct MeshInfo {
   ImportReport import;
   MeshReport body;
-  std::vector<std::string> also;    ///< other names of the parts; empty: none
-  std::vector<std::string> colours; ///< "#rrggbb"; empty: none
-  std::vector<double> volumes;      ///< of the parts, file units³, where they are closed
-  bool metres = false;              ///< sizes are in metres
-  std::string unit;                 ///< what was taken for the unit, where that is a guess
+  std::vector<std::string> also;     ///< other names of the parts; empty: none
+  std::vector<std::string> colours;  ///< "#rrggbb"; empty: none
+  std::vector<double> volumes;       ///< of the parts, file units³, where they are closed
+  bool metres = false;               ///< sizes are in metres
+  std::string unit;                  ///< what was taken for the unit, where that is a guess
   bool closed = false;
-  double step = 0;       ///< of the lattice on which it was looked at, file units
-  Vec3 min{0}, max{0};   ///< of the vertices that triangles use, file units
+  double step = 0;      ///< of the lattice on which it was looked at, file units
+  Vec3 min{0}, max{0};  ///< of the vertices that triangles use, file units
 };
 
 /// Signed volume between a part's triangles and the origin, about which a closed part doesn't care.
@@ -38,7 +38,8 @@ double volume_of(const Mesh& mesh, const MeshPart& part) {
   const Vec3 origin = mesh.vertices[mesh.triangles[part.first_triangle][0]];
   for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    six += glm::dot(mesh.vertices[a] - origin, glm::cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin));
+    six +=
+        glm::dot(mesh.vertices[a] - origin, glm::cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin));
   }
   return six / 6;
 }
@@ -52,19 +53,27 @@ std::string length_text(double m) {
 
 /// What a file's length is in metres and what in millimetres, where its unit is not certain.
 std::string unit_guess(const std::string& path, const Vec3& size) {
-  constexpr double kLargestUsual = 100;   // m, as for scenes
+  constexpr double kLargestUsual = 100;  // m, as for scenes
   if (states_unit(path)) return {};
   const double longest = std::max({size.x, size.y, size.z});
-  const std::string millimetres = fmt::format("{}, if in millimetres (--units mm)", length_text(longest / 1000));
-  if (!comes_in_metres(path)) return fmt::format("none is stated: {} long, if in metres; {}", length_text(longest), millimetres);
-  return longest > kLargestUsual ? fmt::format("metres by its format: {} long; {}", length_text(longest), millimetres) : std::string();
+  const std::string millimetres =
+      fmt::format("{}, if in millimetres (--units mm)", length_text(longest / 1000));
+  if (!comes_in_metres(path))
+    return fmt::format("none is stated: {} long, if in metres; {}", length_text(longest), millimetres);
+  return longest > kLargestUsual
+             ? fmt::format("metres by its format: {} long; {}", length_text(longest), millimetres)
+             : std::string();
 }
 
-/// Import as it stands in the file (scale 1: one file unit is taken for a metre), then what a mock-up would go through.
+/// Import as it stands in the file (scale 1: one file unit is taken for a metre), then what a mock-up would
+/// go through.
 Result<MeshInfo> inspect(const std::string& path, const InfoOptions& options) {
   MeshInfo info;
-  if (options.unit_m && states_unit(path)) return bad_value(fmt::format("'{}' states its unit and comes in metres; --units is for files that don't", path));
-  const Result<Mesh> mesh = import_mesh(path, options.unit_m.value_or(1), info.import, options.import, {}, options.tessellation);
+  if (options.unit_m && states_unit(path))
+    return bad_value(
+        fmt::format("'{}' states its unit and comes in metres; --units is for files that don't", path));
+  const Result<Mesh> mesh =
+      import_mesh(path, options.unit_m.value_or(1), info.import, options.import, {}, options.tessellation);
   if (!mesh) return mesh.error();
   info.metres = options.unit_m || comes_in_metres(path);
   for (const MeshPart& part : mesh->parts) {
@@ -104,16 +113,18 @@ nlohmann::ordered_json to_json(const MeshInfo& info) {
   nlohmann::ordered_json parts = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < info.body.parts.size(); ++i) {
     const MeshReport::Part& part = info.body.parts[i];
-    parts.push_back({{"number", i + 1},
-                     {"path", part.path},
-                     {"also", info.also[i].empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.also[i])},
-                     {"colour", info.colours[i].empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.colours[i])},
-                     {"triangles", part.triangles},
-                     {"size", to_json(part.box_max_m - part.box_min_m)},
-                     {"bounds", {{"min", to_json(part.box_min_m)}, {"max", to_json(part.box_max_m)}}},
-                     {"closed", part.closed},
-                     {"volume", part.closed ? nlohmann::ordered_json(info.volumes[i]) : nlohmann::ordered_json()},
-                     {"orientation", orientation(part)}});
+    parts.push_back(
+        {{"number", i + 1},
+         {"path", part.path},
+         {"also", info.also[i].empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.also[i])},
+         {"colour",
+          info.colours[i].empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(info.colours[i])},
+         {"triangles", part.triangles},
+         {"size", to_json(part.box_max_m - part.box_min_m)},
+         {"bounds", {{"min", to_json(part.box_min_m)}, {"max", to_json(part.box_max_m)}}},
+         {"closed", part.closed},
+         {"volume", part.closed ? nlohmann::ordered_json(info.volumes[i]) : nlohmann::ordered_json()},
+         {"orientation", orientation(part)}});
   }
   nlohmann::ordered_json notes = nlohmann::ordered_json::array();
   for (const auto* list : {&info.import.notes, &info.body.notes})
@@ -135,11 +146,14 @@ nlohmann::ordered_json to_json(const MeshInfo& info) {
           {"notes", notes}};
 }
 
-std::string size_text(const Vec3& size) { return fmt::format("{:.6g} × {:.6g} × {:.6g}", size.x, size.y, size.z); }
+std::string size_text(const Vec3& size) {
+  return fmt::format("{:.6g} × {:.6g} × {:.6g}", size.x, size.y, size.z);
+}
 
 /// Characters, not bytes: names and × are UTF-8.
 std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
 std::string pad(const std::string& text, std::size_t columns) {
@@ -149,14 +163,21 @@ std::string pad(const std::string& text, std::size_t columns) {
 
 void print_table(const MeshInfo& info) {
   const MeshReport& body = info.body;
-  const auto line = [](const char* name, const std::string& value) { fmt::print("  {:<12} {}\n", name, value); };
+  const auto line = [](const char* name, const std::string& value) {
+    fmt::print("  {:<12} {}\n", name, value);
+  };
   fmt::print("{}\n", info.import.file);
   line("triangles", fmt::format("{} ({} vertices)", count_text(body.triangles), count_text(body.vertices)));
   line("size", fmt::format("{} ({})", size_text(info.max - info.min), info.metres ? "m" : "file units"));
   if (!info.unit.empty()) line("unit", info.unit);
-  line("bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", info.min.x, info.min.y, info.min.z, info.max.x, info.max.y, info.max.z));
-  line("closed", info.closed ? "yes" : body.open_edges == 0 ? "no" : fmt::format("no: {} open edges, the largest gap {:.4g} wide", count_text(body.open_edges), body.largest_gap_m));
-  if (body.nonmanifold_edges > 0) line("edges", fmt::format("{} have more than two triangles", count_text(body.nonmanifold_edges)));
+  line("bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", info.min.x, info.min.y,
+                             info.min.z, info.max.x, info.max.y, info.max.z));
+  line("closed", info.closed            ? "yes"
+                 : body.open_edges == 0 ? "no"
+                                        : fmt::format("no: {} open edges, the largest gap {:.4g} wide",
+                                                      count_text(body.open_edges), body.largest_gap_m));
+  if (body.nonmanifold_edges > 0)
+    line("edges", fmt::format("{} have more than two triangles", count_text(body.nonmanifold_edges)));
   line("degenerate", count_text(body.collapsed));
   line("duplicate", count_text(body.duplicate));
   for (const auto* list : {&info.import.notes, &body.notes})
@@ -172,16 +193,27 @@ struct PartLine {
   std::string closed, orientation, colour;
 };
 
-std::string named(const PartLine& line) { return line.also.empty() ? line.name : fmt::format("{} ({})", line.name, line.also); }
+std::string named(const PartLine& line) {
+  return line.also.empty() ? line.name : fmt::format("{} ({})", line.name, line.also);
+}
 
 PartLine line_of(const MeshInfo& info, std::size_t i, const std::string& name) {
   const MeshReport::Part& part = info.body.parts[i];
-  return {fmt::format("#{}", i + 1), name, info.also[i], 0, part.triangles, part.box_max_m - part.box_min_m, part.closed ? "yes" : "no", orientation(part), info.colours[i]};
+  return {fmt::format("#{}", i + 1),
+          name,
+          info.also[i],
+          0,
+          part.triangles,
+          part.box_max_m - part.box_min_m,
+          part.closed ? "yes" : "no",
+          orientation(part),
+          info.colours[i]};
 }
 
 std::vector<PartLine> listed_parts(const MeshInfo& info) {
   std::vector<PartLine> lines;
-  for (std::size_t i = 0; i < info.body.parts.size(); ++i) lines.push_back(line_of(info, i, info.body.parts[i].path));
+  for (std::size_t i = 0; i < info.body.parts.size(); ++i)
+    lines.push_back(line_of(info, i, info.body.parts[i].path));
   return lines;
 }
 
@@ -194,7 +226,7 @@ std::vector<PartLine> tree_of(const MeshInfo& info) {
     bool closed = true;
   };
   std::vector<PartLine> lines;
-  std::vector<Open> open;   // from the root to the last part's node
+  std::vector<Open> open;  // from the root to the last part's node
   const auto close = [&] {
     const Open last = std::move(open.back());
     open.pop_back();
@@ -213,13 +245,20 @@ std::vector<PartLine> tree_of(const MeshInfo& info) {
     while (open.empty() || open.back().path != part.path) {
       const std::size_t begin = open.empty() ? 0 : open.back().path.size() + 1;
       const std::string path = part.path.substr(0, part.path.find('/', begin));
-      lines.push_back({.number = {}, .name = path.substr(begin), .also = {}, .depth = open.size(), .closed = {}, .orientation = {}, .colour = {}});
+      lines.push_back({.number = {},
+                       .name = path.substr(begin),
+                       .also = {},
+                       .depth = open.size(),
+                       .closed = {},
+                       .orientation = {},
+                       .colour = {}});
       open.push_back({path, lines.size() - 1});
     }
     Open& node = open.back();
     PartLine& line = lines[node.line];
     const PartLine own = line_of(info, i, line.name);
-    line.number = own.number, line.also = own.also, line.orientation = own.orientation, line.colour = own.colour;
+    line.number = own.number, line.also = own.also, line.orientation = own.orientation,
+    line.colour = own.colour;
     line.triangles += own.triangles;
     node.min = glm::min(node.min, part.box_min_m), node.max = glm::max(node.max, part.box_max_m);
     node.closed = node.closed && part.closed;
@@ -233,11 +272,15 @@ nlohmann::ordered_json to_json(const std::vector<PartLine>& lines, std::size_t& 
   nlohmann::ordered_json nodes = nlohmann::ordered_json::array();
   while (at < lines.size() && lines[at].depth == depth) {
     const PartLine& line = lines[at++];
-    nlohmann::ordered_json node{{"name", line.name}, {"triangles", line.triangles}, {"size", to_json(line.size)}, {"closed", line.closed == "yes"}};
+    nlohmann::ordered_json node{{"name", line.name},
+                                {"triangles", line.triangles},
+                                {"size", to_json(line.size)},
+                                {"closed", line.closed == "yes"}};
     if (!line.also.empty()) node["also"] = line.also;
     if (!line.colour.empty()) node["colour"] = line.colour;
     if (!line.number.empty()) node["number"] = std::stoul(line.number.substr(1));
-    if (nlohmann::ordered_json below = to_json(lines, at, depth + 1); !below.empty()) node["below"] = std::move(below);
+    if (nlohmann::ordered_json below = to_json(lines, at, depth + 1); !below.empty())
+      node["below"] = std::move(below);
     nodes.push_back(std::move(node));
   }
   return nodes;
@@ -250,11 +293,16 @@ void print_parts(const std::vector<PartLine>& lines) {
     name_width = std::max(name_width, 2 * line.depth + width(named(line)));
     size_width = std::max(size_width, width(size_text(line.size)));
   }
-  const bool colours = std::any_of(lines.begin(), lines.end(), [](const PartLine& line) { return !line.colour.empty(); });
-  fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad("#", number_width), pad("part", name_width), "triangles", pad("size", size_width), "closed", colours ? "orientation     colour" : "orientation");
+  const bool colours =
+      std::any_of(lines.begin(), lines.end(), [](const PartLine& line) { return !line.colour.empty(); });
+  fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad("#", number_width), pad("part", name_width),
+             "triangles", pad("size", size_width), "closed",
+             colours ? "orientation     colour" : "orientation");
   for (const PartLine& line : lines)
-    fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad(line.number, number_width), pad(std::string(2 * line.depth, ' ') + named(line), name_width), count_text(line.triangles),
-               pad(size_text(line.size), size_width), line.closed, line.colour.empty() ? line.orientation : pad(line.orientation, 14) + "  " + line.colour);
+    fmt::print("  {}  {}  {:>10}  {}  {:<6}  {}\n", pad(line.number, number_width),
+               pad(std::string(2 * line.depth, ' ') + named(line), name_width), count_text(line.triangles),
+               pad(size_text(line.size), size_width), line.closed,
+               line.colour.empty() ? line.orientation : pad(line.orientation, 14) + "  " + line.colour);
 }
 
 struct SceneInfo {
@@ -269,12 +317,14 @@ Result<SceneInfo> inspect_scene(const std::string& path, const ImportLimits& lim
   options.scene = path;
   options.import = limits;
   SceneInfo info{.file = path, .prepared = {}, .talk = {}};
-  const PrepareWatch watch{.note = [&](const std::string& sentence) { info.prepared = sentence; },   // the last one says what was read
-                           .step = [](const char*) {},
-                           .progress = [](const char*, double) { return true; },
-                           .admit = {},
-                           .cached = true,
-                           .folder = {}};
+  const PrepareWatch watch{
+      .note =
+          [&](const std::string& sentence) { info.prepared = sentence; },  // the last one says what was read
+      .step = [](const char*) {},
+      .progress = [](const char*, double) { return true; },
+      .admit = {},
+      .cached = true,
+      .folder = {}};
   Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options, Purpose::kQuery, parts, watch);
   if (!prepared) return prepared.error();
   Result<SceneTalk> talk = scene_talk((*prepared)->loaded, *(*prepared)->backend);
@@ -286,7 +336,8 @@ Result<SceneInfo> inspect_scene(const std::string& path, const ImportLimits& lim
 }  // namespace
 
 Result<void> info_command(const InfoOptions& options, const Parts& parts) {
-  // Scenes first: a back end is made before an import starts threads. What can be read is told whatever becomes of the others; the last reason is this command's.
+  // Scenes first: a back end is made before an import starts threads. What can be read is told whatever
+  // becomes of the others; the last reason is this command's.
   std::optional<Error> failed;
   const auto fail = [&failed](const Error& error) {
     if (failed) std::fprintf(stderr, "palpate: %s\n", one_line(failed->sentence).c_str());
@@ -296,15 +347,19 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
   for (const std::string& path : options.files) {
     if (!is_scene(path)) continue;
     Result<SceneInfo> scene = inspect_scene(path, options.import, parts);
-    if (scene) scenes.push_back(std::move(*scene));
-    else fail(scene.error());
+    if (scene)
+      scenes.push_back(std::move(*scene));
+    else
+      fail(scene.error());
   }
   std::vector<MeshInfo> infos;
   for (const std::string& path : options.files) {
     if (is_scene(path)) continue;
     Result<MeshInfo> info = inspect(path, options);
-    if (info) infos.push_back(std::move(*info));
-    else fail(info.error());
+    if (info)
+      infos.push_back(std::move(*info));
+    else
+      fail(info.error());
   }
   if (infos.empty() && scenes.empty()) return *failed;
   if (options.json) {
@@ -314,7 +369,9 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
       if (std::size_t first = 0; options.tree) list.back()["tree"] = to_json(tree_of(info), first, 0);
     }
     nlohmann::ordered_json out{{"meshes", list}};
-    for (const SceneInfo& scene : scenes) out["scenes"].push_back({{"file", scene.file}, {"start", scene.talk.start}, {"bodies", scene.talk.bodies}});
+    for (const SceneInfo& scene : scenes)
+      out["scenes"].push_back(
+          {{"file", scene.file}, {"start", scene.talk.start}, {"bodies", scene.talk.bodies}});
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return failed ? Result<void>(*failed) : Result<void>();
   }

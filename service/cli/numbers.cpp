@@ -31,7 +31,9 @@ std::string bytes_text(std::uint64_t bytes) {
 
 std::string length_text(double m) {
   if (m == 0) return "0";
-  return m >= 1e-3 ? fmt::format("{:.4g} mm", m * 1e3) : m >= 1e-6 ? fmt::format("{:.3g} µm", m * 1e6) : fmt::format("{:.3g} nm", m * 1e9);
+  return m >= 1e-3   ? fmt::format("{:.4g} mm", m * 1e3)
+         : m >= 1e-6 ? fmt::format("{:.3g} µm", m * 1e6)
+                     : fmt::format("{:.3g} nm", m * 1e9);
 }
 
 }  // namespace palpate

@@ -1,9 +1,9 @@
 #include "service/cli/path.h"
 
+#include <fmt/format.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
-#include <fmt/format.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -22,7 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFooter = R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
+constexpr const char* kFooter =
+    R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
 (pose, with its fraction on the way to the next; parts), least clearance, worst depth, the parts that touch by name, and what was examined. A first contact is never late, and early
 by no more than early_m. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
 Exit codes: 0 the path is clear, 5 it is not, others as ever. A path of which nothing was examined is an error, never clear.
@@ -33,7 +34,10 @@ Examples:
 
 Json json_of(const LoadedScene& scene, const PathReport& report, const std::string& engine, bool moments) {
   const double step = scene.geometry.lattice.step_m;
-  const auto pose_json = [](const Pose& p) { return Json{p.position.x, p.position.y, p.position.z, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w}; };
+  const auto pose_json = [](const Pose& p) {
+    return Json{p.position.x, p.position.y, p.position.z, p.rotation.x,
+                p.rotation.y, p.rotation.z, p.rotation.w};
+  };
   const auto point = [&](const Int3& p) {
     const Vec3 at = scene.geometry.lattice.origin_m + step * Vec3(p);
     return Json{at.x, at.y, at.z};
@@ -42,10 +46,12 @@ Json json_of(const LoadedScene& scene, const PathReport& report, const std::stri
   out["clear"] = report.clear();
   out["first_contact"] = nullptr;
   if (report.first_screw)
-    out["first_contact"] = {{"pose", *report.first_screw == 0 ? 0.0 : static_cast<double>(*report.first_screw) - 1 + report.first_time},
-                            {"at", pose_json(*report.first_pose)},
-                            {"tool_part", report.first_tool},
-                            {"static_part", report.first_static}};
+    out["first_contact"] = {
+        {"pose",
+         *report.first_screw == 0 ? 0.0 : static_cast<double>(*report.first_screw) - 1 + report.first_time},
+        {"at", pose_json(*report.first_pose)},
+        {"tool_part", report.first_tool},
+        {"static_part", report.first_static}};
   out["least_clearance_m"] = nullptr;
   if (report.closest) out["least_clearance_m"] = report.moments[*report.closest].clearance.steps * step;
   out["closest_pose"] = report.closest ? Json(*report.closest) : Json(nullptr);
@@ -54,15 +60,22 @@ Json json_of(const LoadedScene& scene, const PathReport& report, const std::stri
   out["touching"] = {{"static", report.static_parts}, {"tool", report.tool_parts}};
   out["tolerance_m"] = report.rule.tolerance * step;
   out["early_m"] = report.rule.early * step;
-  out["examined"] = {{"poses", report.moments.size()}, {"screws", report.screws}, {"evaluations", report.evaluations}, {"travel_m", report.moments.back().travel_m}};
+  out["examined"] = {{"poses", report.moments.size()},
+                     {"screws", report.screws},
+                     {"evaluations", report.evaluations},
+                     {"travel_m", report.moments.back().travel_m}};
   out["engine"] = engine;
   if (!moments) return out;
   Json& list = out["poses"] = Json::array();
   for (const PathMoment& m : report.moments) {
     Json one{{"at", pose_json(m.pose)}, {"travel_m", m.travel_m}, {"touches", m.touches}};
-    one["clearance_m"] = m.clearance.kind == Clearance::Kind::kFurther ? Json(nullptr) : Json(m.clearance.steps * step);
+    one["clearance_m"] =
+        m.clearance.kind == Clearance::Kind::kFurther ? Json(nullptr) : Json(m.clearance.steps * step);
     if (m.clearance.kind == Clearance::Kind::kApart)
-      one["nearest"] = {{"static", m.clearance.static_id}, {"mobile", m.clearance.mobile_id}, {"on_static", point(m.clearance.on_static)}, {"on_mobile", point(m.clearance.on_mobile)}};
+      one["nearest"] = {{"static", m.clearance.static_id},
+                        {"mobile", m.clearance.mobile_id},
+                        {"on_static", point(m.clearance.on_static)},
+                        {"on_mobile", point(m.clearance.on_mobile)}};
     one["depth_m"] = m.depth_m ? Json(*m.depth_m) : Json(nullptr);
     one["static_part"] = m.static_part;
     one["tool_part"] = m.tool_part;
@@ -83,15 +96,21 @@ std::string field(const std::string& text) {
 
 std::string csv_of(const LoadedScene& scene, const PathReport& report) {
   const double step = scene.geometry.lattice.step_m;
-  std::string out = "pose,x,y,z,qx,qy,qz,qw,travel_m,touches,clearance_m,depth_m,first_contact,static_id,mobile_id,tool_part,static_part\n";
+  std::string out =
+      "pose,x,y,z,qx,qy,qz,qw,travel_m,touches,clearance_m,depth_m,first_contact,static_id,mobile_id,tool_"
+      "part,static_part\n";
   for (std::size_t i = 0; i < report.moments.size(); ++i) {
     const PathMoment& m = report.moments[i];
     const Pose& p = m.pose;
     const bool apart = m.clearance.kind == Clearance::Kind::kApart;
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", i, p.position.x, p.position.y, p.position.z, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w, m.travel_m, m.touches ? 1 : 0,
-                       m.clearance.kind == Clearance::Kind::kFurther ? "" : fmt::format("{}", m.clearance.steps * step), m.depth_m ? fmt::format("{}", *m.depth_m) : "",
-                       m.first_contact ? fmt::format("{}", *m.first_contact) : "", apart ? fmt::format("{}", m.clearance.static_id) : "", apart ? fmt::format("{}", m.clearance.mobile_id) : "", field(m.tool_part),
-                       field(m.static_part));
+    out += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", i, p.position.x, p.position.y, p.position.z,
+        p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w, m.travel_m, m.touches ? 1 : 0,
+        m.clearance.kind == Clearance::Kind::kFurther ? "" : fmt::format("{}", m.clearance.steps * step),
+        m.depth_m ? fmt::format("{}", *m.depth_m) : "",
+        m.first_contact ? fmt::format("{}", *m.first_contact) : "",
+        apart ? fmt::format("{}", m.clearance.static_id) : "",
+        apart ? fmt::format("{}", m.clearance.mobile_id) : "", field(m.tool_part), field(m.static_part));
   }
   return out;
 }
@@ -107,8 +126,9 @@ Result<void> write(const std::filesystem::path& file, const std::string& text) {
 Result<void> path_command(const PathOptions& options, const Parts& parts) {
   auto poses = read_poses(options.path);
   if (!poses) return poses.error();
-  if (poses->empty()) return bad_value(options.path + ": the file has no pose, so there is nothing to examine");
-  if (!options.out.empty()) {   // a folder that can't be made costs no work
+  if (poses->empty())
+    return bad_value(options.path + ": the file has no pose, so there is nothing to examine");
+  if (!options.out.empty()) {  // a folder that can't be made costs no work
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
     if (error) return bad_value(options.out + ": the directory can't be made (" + error.message() + ")");
@@ -120,44 +140,69 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
   const LoadedScene& scene = (*prepared)->loaded;
   CollisionBackend& backend = *(*prepared)->backend;
   console.step("examining the path");
-  const auto report = check_path(scene, backend, *poses, TouchRule::of(scene.geometry, options.tolerance_m), options.within_m, [&](const char* what, double done) { return console.progress(what, done); });
+  const auto report =
+      check_path(scene, backend, *poses, TouchRule::of(scene.geometry, options.tolerance_m), options.within_m,
+                 [&](const char* what, double done) { return console.progress(what, done); });
   console.finish();
   if (!report) return report.error();
   for (const std::string& note : backend.take_notes()) console.note(note);
-  const std::string engine = backend.name() + " on " + backend.device() + (backend.measured_by() == backend.name() ? "" : ", distances by " + backend.measured_by());
+  const std::string engine =
+      backend.name() + " on " + backend.device() +
+      (backend.measured_by() == backend.name() ? "" : ", distances by " + backend.measured_by());
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
-    const auto dump = [](const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n"; };
-    if (auto done = write(folder / "path.json", dump(json_of(scene, *report, engine, true), 1)); !done) return done;
+    const auto dump = [](const Json& json, int indent) {
+      return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+    };
+    if (auto done = write(folder / "path.json", dump(json_of(scene, *report, engine, true), 1)); !done)
+      return done;
     if (auto done = write(folder / "path.csv", csv_of(scene, *report)); !done) return done;
-    if (auto done = write(folder / "path.html", path_page(scene, *report, options.path, engine)); !done) return done;
+    if (auto done = write(folder / "path.html", path_page(scene, *report, options.path, engine)); !done)
+      return done;
   }
-  const std::string line = json_of(scene, *report, engine, false).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (std::fwrite(line.data(), 1, line.size(), stdout) != line.size()) return Error{ErrorCode::kInternal, "standard output can't be written"};
+  const std::string line =
+      json_of(scene, *report, engine, false).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (std::fwrite(line.data(), 1, line.size(), stdout) != line.size())
+    return Error{ErrorCode::kInternal, "standard output can't be written"};
   if (report->clear()) return {};
-  return Error{ErrorCode::kNotClear, *report->first_screw == 0 ? options.path + ": the tool touches where the path starts"
-                                                               : fmt::format("{}: the tool touches between pose {} and pose {}, first at {:.6f} of the way", options.path, *report->first_screw - 1, *report->first_screw, report->first_time)};
+  return Error{
+      ErrorCode::kNotClear,
+      *report->first_screw == 0
+          ? options.path + ": the tool touches where the path starts"
+          : fmt::format("{}: the tool touches between pose {} and pose {}, first at {:.6f} of the way",
+                        options.path, *report->first_screw - 1, *report->first_screw, report->first_time)};
 }
 
 }  // namespace
 
 void add_path_command(CLI::App& app, PathOptions& options, const Parts& parts, Result<void>& outcome) {
-  CLI::App* path = app.add_subcommand("path", "tell whether a path is clear: first contact, clearance along it, worst depth, the parts that touch");
+  CLI::App* path = app.add_subcommand(
+      "path",
+      "tell whether a path is clear: first contact, clearance along it, worst depth, the parts that touch");
   path->add_option("scene", options.common.scene, "scene file (JSON)")->required()->type_name("SCENE");
-  path->add_option("path", options.path, "CSV file of poses, header x,y,z,qx,qy,qz,qw: world from tool")->required()->type_name("PATH.csv");
-  path->add_option("--backend", options.common.backend, "the engine that answers, as for query (auto)")->check(CLI::IsMember({"auto", "gpu", "cpu", "ref"}).description(""))->type_name("auto|gpu|cpu|ref");
+  path->add_option("path", options.path, "CSV file of poses, header x,y,z,qx,qy,qz,qw: world from tool")
+      ->required()
+      ->type_name("PATH.csv");
+  path->add_option("--backend", options.common.backend, "the engine that answers, as for query (auto)")
+      ->check(CLI::IsMember({"auto", "gpu", "cpu", "ref"}).description(""))
+      ->type_name("auto|gpu|cpu|ref");
   const auto metres = [path](const char* name, auto set, const char* help) {
     path->add_option_function<double>(
             name,
             [=](const double& value) {
-              if (!(value >= 0 && value <= 100)) throw CLI::ValidationError(name, fmt::format("{} is not from 0 to 100", value));
+              if (!(value >= 0 && value <= 100))
+                throw CLI::ValidationError(name, fmt::format("{} is not from 0 to 100", value));
               set(value);
             },
             help)
         ->type_name("M");
   };
-  metres("--tolerance", [&options](double value) { options.tolerance_m = value; }, "a contact no deeper than this does not count, m");
-  metres("--within", [&options](double value) { options.within_m = value; }, "measure no clearance further than this, m");
+  metres(
+      "--tolerance", [&options](double value) { options.tolerance_m = value; },
+      "a contact no deeper than this does not count, m");
+  metres(
+      "--within", [&options](double value) { options.within_m = value; },
+      "measure no clearance further than this, m");
   path->add_option("--out", options.out, "directory for path.csv, path.json and path.html")->type_name("DIR");
   path->footer(kFooter);
   path->callback([&] { outcome = path_command(options, parts); });

@@ -9,10 +9,10 @@ namespace palpate {
 
 struct PathOptions {
   SceneOptions common;
-  std::string path;                    ///< CSV file of poses
+  std::string path;  ///< CSV file of poses
   double tolerance_m = 0;
   std::optional<double> within_m;
-  std::string out;                     ///< directory for path.csv, path.json and path.html; empty: none
+  std::string out;  ///< directory for path.csv, path.json and path.html; empty: none
 };
 
 /// Adds `path` to the command line; `options` and `outcome` outlive the parsing.

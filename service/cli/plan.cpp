@@ -18,26 +18,32 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kPoses = 16;   // chosen: tells a few per cent, in milliseconds
+constexpr std::size_t kPoses = 16;  // chosen: tells a few per cent, in milliseconds
 constexpr std::uint64_t kRounds = 3;
 
-/// What leaving out each stage spares, measured: the whole plan beside the whole plan less that stage, in turns, at poses of the scene's path. A plan's
-/// decisions rest on facts alone; this only tells what they are worth here.
+/// What leaving out each stage spares, measured: the whole plan beside the whole plan less that stage, in
+/// turns, at poses of the scene's path. A plan's decisions rest on facts alone; this only tells what they are
+/// worth here.
 Result<void> measure_savings(HostedScene& hosted, Console& console) {
   const LoadedScene& loaded = hosted.loaded;
   PlanQuestion question{&loaded.geometry, {}, loaded.scene.response.stiffness_n_per_m};
   const auto& path = loaded.scene.device.path;
-  for (std::size_t i = 0; i < std::min(kPoses, path.size()); ++i) question.poses.push_back(path_pose(path[i * path.size() / std::min(kPoses, path.size())], loaded.scene.device.guide));
+  for (std::size_t i = 0; i < std::min(kPoses, path.size()); ++i)
+    question.poses.push_back(
+        path_pose(path[i * path.size() / std::min(kPoses, path.size())], loaded.scene.device.guide));
   if (path.empty()) question.poses.push_back(loaded.scene.start);
   const Plan whole = whole_plan_without(hosted.plan.plan.profile, {});
   for (PlanStage& stage : hosted.plan.stages) {
-    const Plan less = whole_plan_without(hosted.plan.plan.profile, stage.stage == "transform" && hosted.plan.plan.transform_rotates ? "" : stage.stage);
+    const Plan less = whole_plan_without(
+        hosted.plan.plan.profile,
+        stage.stage == "transform" && hosted.plan.plan.transform_rotates ? "" : stage.stage);
     if (less == whole || (stage.kept && stage.stage != "transform")) continue;
     console.step(("measuring " + stage.stage).c_str());
     PlanTrial with, without;
     for (std::uint64_t round = 0; round < kRounds; ++round)
       for (const auto& [plan, trial] : {std::pair{&whole, &with}, std::pair{&less, &without}}) {
-        if (!console.progress("poses", static_cast<double>(round) / static_cast<double>(kRounds))) return Error{ErrorCode::kInternal, "interrupted"};
+        if (!console.progress("poses", static_cast<double>(round) / static_cast<double>(kRounds)))
+          return Error{ErrorCode::kInternal, "interrupted"};
         if (auto done = try_plan(*hosted.backend, question, *plan, 1, *trial); !done) return done;
       }
     stage.saved_us = median_frame_us(with) - median_frame_us(without);
@@ -49,22 +55,25 @@ Result<void> measure_savings(HostedScene& hosted, Console& console) {
 /// A frame of an engine at a few poses near the scene's start.
 struct EngineTime {
   std::string engine, device;
-  double frame_us = 0;     ///< median over the poses, of each the least of kRounds
-  std::string missing;     ///< why it could not be measured
+  double frame_us = 0;  ///< median over the poses, of each the least of kRounds
+  std::string missing;  ///< why it could not be measured
 };
 
 std::vector<Pose> poses_near_start(const Scene& scene) {
-  constexpr std::size_t kNear = 8, kSecond = 1000;   // chosen: poses of the path's first second
+  constexpr std::size_t kNear = 8, kSecond = 1000;  // chosen: poses of the path's first second
   std::vector<Pose> out{scene.start};
   const std::size_t ticks = std::min(kSecond, scene.device.path.size());
-  for (std::size_t i = 1; i < kNear && ticks > kNear; ++i) out.push_back(path_pose(scene.device.path[i * ticks / kNear], scene.device.guide));
+  for (std::size_t i = 1; i < kNear && ticks > kNear; ++i)
+    out.push_back(path_pose(scene.device.path[i * ticks / kNear], scene.device.guide));
   return out;
 }
 
 /// Both engines that answer a loop, each prepared for the scene anew. Error: interrupted.
-Result<std::vector<EngineTime>> measure_engines(const HostedScene& hosted, const Parts& parts, Console& console) {
+Result<std::vector<EngineTime>> measure_engines(const HostedScene& hosted, const Parts& parts,
+                                                Console& console) {
   const LoadedScene& loaded = hosted.loaded;
-  const PlanQuestion question{&loaded.geometry, poses_near_start(loaded.scene), loaded.scene.response.stiffness_n_per_m};
+  const PlanQuestion question{&loaded.geometry, poses_near_start(loaded.scene),
+                              loaded.scene.response.stiffness_n_per_m};
   std::vector<EngineTime> out;
   for (const char* name : {"cpu", "gpu"}) {
     console.step((std::string("measuring the engine ") + name).c_str());
@@ -75,11 +84,14 @@ Result<std::vector<EngineTime>> measure_engines(const HostedScene& hosted, const
       continue;
     }
     bool stopped = false;
-    const Progress progress = [&](const char* what, double done) { return !(stopped = stopped || !console.progress(what, done)); };
+    const Progress progress = [&](const char* what, double done) {
+      return !(stopped = stopped || !console.progress(what, done));
+    };
     const Result<void> measured = [&]() -> Result<void> {
       auto backend = choose_backend(name, hosted.plan.plan.profile, parts, [](const std::string&) {});
       if (!backend) return backend.error();
-      if (auto prepared = (*backend)->prepare(loaded.geometry, hosted.plan.plan, progress); !prepared) return prepared;
+      if (auto prepared = (*backend)->prepare(loaded.geometry, hosted.plan.plan, progress); !prepared)
+        return prepared;
       if (auto finished = (*backend)->finish_preparing(); !finished) return finished;
       time.device = (*backend)->device();
       PlanTrial trial;
@@ -99,13 +111,17 @@ std::string engines_text(const std::vector<EngineTime>& engines) {
   const EngineTime* quickest = nullptr;
   const EngineTime* slower = nullptr;
   for (const EngineTime& e : engines) {
-    out += (out.empty() ? "" : "; ") + e.engine + (e.missing.empty() ? fmt::format(" {:.0f} µs on {}", e.frame_us, e.device) : " not measured: " + e.missing);
+    out += (out.empty() ? "" : "; ") + e.engine +
+           (e.missing.empty() ? fmt::format(" {:.0f} µs on {}", e.frame_us, e.device)
+                              : " not measured: " + e.missing);
     if (!e.missing.empty()) continue;
     slower = quickest;
     quickest = &e;
     if (slower != nullptr && slower->frame_us < quickest->frame_us) std::swap(slower, quickest);
   }
-  if (slower != nullptr) out += fmt::format("; {} is the quicker by a factor of {:.3g}", quickest->engine, slower->frame_us / quickest->frame_us);
+  if (slower != nullptr)
+    out += fmt::format("; {} is the quicker by a factor of {:.3g}", quickest->engine,
+                       slower->frame_us / quickest->frame_us);
   return out;
 }
 
@@ -126,21 +142,32 @@ Result<void> plan_command(const SceneOptions& options, bool json, const Parts& p
   if (json) {
     nlohmann::ordered_json lines = nlohmann::ordered_json::array();
     for (const PlanStage& stage : stages)
-      lines.push_back({{"stage", stage.stage}, {"kept", stage.kept}, {"reason", stage.reason}, {"memory_bytes", stage.memory_bytes},
-                       {"saved_bytes", stage.saved_bytes}, {"saved_us", stage.saved_us ? nlohmann::ordered_json(*stage.saved_us) : nlohmann::ordered_json()}});
+      lines.push_back({{"stage", stage.stage},
+                       {"kept", stage.kept},
+                       {"reason", stage.reason},
+                       {"memory_bytes", stage.memory_bytes},
+                       {"saved_bytes", stage.saved_bytes},
+                       {"saved_us", stage.saved_us ? nlohmann::ordered_json(*stage.saved_us)
+                                                   : nlohmann::ordered_json()}});
     nlohmann::ordered_json measured = nlohmann::ordered_json::array();
     for (const EngineTime& e : *engines)
-      measured.push_back({{"engine", e.engine}, {"device", e.device}, {"frame_us", e.missing.empty() ? nlohmann::ordered_json(e.frame_us) : nlohmann::ordered_json()}, {"missing", e.missing}});
+      measured.push_back(
+          {{"engine", e.engine},
+           {"device", e.device},
+           {"frame_us", e.missing.empty() ? nlohmann::ordered_json(e.frame_us) : nlohmann::ordered_json()},
+           {"missing", e.missing}});
     fmt::print("{}\n", nlohmann::ordered_json{{"stages", lines}, {"engines", measured}}.dump());
     return {};
   }
   fmt::print("{:<14} {:<9} {:>10} {:>10} {:>10}  {}\n", "stage", "", "memory", "spared", "a frame", "reason");
   for (const PlanStage& stage : stages)
-    fmt::print("{:<14} {:<9} {:>10} {:>10} {:>10}  {}\n", stage.stage, stage.kept ? "kept" : "left out", bytes_text(stage.memory_bytes),
-               stage.saved_bytes > 0 ? bytes_text(stage.saved_bytes) : "", stage.saved_us ? fmt::format("{:+.1f} µs", -*stage.saved_us) : "", stage.reason);
+    fmt::print("{:<14} {:<9} {:>10} {:>10} {:>10}  {}\n", stage.stage, stage.kept ? "kept" : "left out",
+               bytes_text(stage.memory_bytes), stage.saved_bytes > 0 ? bytes_text(stage.saved_bytes) : "",
+               stage.saved_us ? fmt::format("{:+.1f} µs", -*stage.saved_us) : "", stage.reason);
   std::uint64_t sum = 0;
   for (const PlanStage& stage : stages) sum += stage.memory_bytes;
-  fmt::print("{:<14} {:<9} {:>10} {:>10} {:>10}  on {}\n", "in all", "", bytes_text(sum), "", "", (*prepared)->backend->device());
+  fmt::print("{:<14} {:<9} {:>10} {:>10} {:>10}  on {}\n", "in all", "", bytes_text(sum), "", "",
+             (*prepared)->backend->device());
   fmt::print("engines: a frame near the start, {}\n", engines_text(*engines));
   return {};
 }

@@ -23,7 +23,9 @@ std::string_view trim(std::string_view text) {
 }
 
 /// A value as a sentence may show it.
-std::string shown(std::string_view text) { return one_line(std::string(text.substr(0, 80))) + (text.size() > 80 ? "…" : ""); }
+std::string shown(std::string_view text) {
+  return one_line(std::string(text.substr(0, 80))) + (text.size() > 80 ? "…" : "");
+}
 
 /// Seven fields to a pose; the error says which field, without naming the file.
 Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
@@ -32,12 +34,13 @@ Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
   std::array<double, 7> value{};
   for (std::size_t i = 0; i < fields.size(); ++i) {
     std::string_view field = trim(fields[i]);
-    if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);   // from_chars knows no plus sign
+    if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);  // from_chars knows no plus sign
     const char* end = field.data() + field.size();
     const auto [stop, error] = std::from_chars(field.data(), end, value[i]);
     if (error == std::errc::result_out_of_range && stop == end)
       return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], shown(field)));
-    if (error != std::errc() || stop != end) return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], shown(field)));
+    if (error != std::errc() || stop != end)
+      return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], shown(field)));
   }
   return pose_of(value);
 }
@@ -59,7 +62,8 @@ Result<Pose> pose_of(const std::array<double, 7>& value) {
   Pose pose;
   pose.position = Vec3(value[0], value[1], value[2]);
   pose.rotation = Quat(value[6], value[3], value[4], value[5]);
-  // Whether it is a pose does not depend on the scene, so any lattice tells; a bad one is refused before meshes are read.
+  // Whether it is a pose does not depend on the scene, so any lattice tells; a bad one is refused before
+  // meshes are read.
   SceneGeometry any;
   any.lattice.step_m = 1;
   const Result<LatticePose> lattice = to_lattice(pose, any);
@@ -82,7 +86,8 @@ Result<std::vector<Pose>> read_poses(const std::string& path) {
 Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) {
   std::string text;
   if (!std::getline(in, text) || trim(text) != kHeader)
-    return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, shown(trim(text)), kHeader));
+    return bad_value(
+        fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, shown(trim(text)), kHeader));
 
   std::vector<Pose> poses;
   std::string first_error;

@@ -9,12 +9,13 @@
 
 namespace palpate {
 
-/// Reads `--pose "x y z qx qy qz qw"`: metres and a unit quaternion, between blanks or commas; world from tool.
-/// Errors (kBadValue): not seven numbers, not finite, not a unit rotation.
+/// Reads `--pose "x y z qx qy qz qw"`: metres and a unit quaternion, between blanks or commas; world from
+/// tool. Errors (kBadValue): not seven numbers, not finite, not a unit rotation.
 Result<Pose> parse_pose(const std::string& text);
 
-/// Reads `--poses FILE.csv`: the header `x,y,z,qx,qy,qz,qw` to the letter, then a pose a line; blank lines are passed over.
-/// Error (kBadValue): one sentence with file, line and value of the first bad line, and how many there are.
+/// Reads `--poses FILE.csv`: the header `x,y,z,qx,qy,qz,qw` to the letter, then a pose a line; blank lines
+/// are passed over. Error (kBadValue): one sentence with file, line and value of the first bad line, and how
+/// many there are.
 Result<std::vector<Pose>> read_poses(const std::string& path);
 
 /// The same from a stream that sentences call `name`.

@@ -26,7 +26,9 @@ void share_times(std::vector<Contacts>& batch) {
   std::vector<Contacts::StageTime> sums;
   for (const Contacts& contacts : batch)
     for (const auto& time : contacts.times) {
-      const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return std::string_view(sum.stage) == time.stage; });
+      const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) {
+        return std::string_view(sum.stage) == time.stage;
+      });
       if (found == sums.end())
         sums.push_back(time);
       else
@@ -59,17 +61,22 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   }
 
   if (options.any || options.clearance || options.within_m) return verdicts_command(options, poses, parts);
-  if (options.tolerance_m > 0) return Error{ErrorCode::kUsage, "--tolerance goes with --any, --clearance or --within"};
+  if (options.tolerance_m > 0)
+    return Error{ErrorCode::kUsage, "--tolerance goes with --any, --clearance or --within"};
 
   catch_interrupts();
   Console console;
-  Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options.common, Purpose::kQuery, parts, console);
+  Result<std::unique_ptr<HostedScene>> prepared =
+      prepare_scene(options.common, Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
   HostedScene& scene = **prepared;
 
   if (!options.export_directory.empty()) {
     std::vector<std::string> notes;
-    if (auto done = export_geometry(options.export_directory, scene.loaded.geometry, *scene.backend, poses, notes); !done) return done;
+    if (auto done =
+            export_geometry(options.export_directory, scene.loaded.geometry, *scene.backend, poses, notes);
+        !done)
+      return done;
     for (const std::string& note : notes) console.note(note);
   }
 
@@ -90,13 +97,21 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   const TouchedParts* const parts_asked = options.names ? &named : nullptr;
   const bool for_people = !options.json && ::isatty(STDOUT_FILENO) == 1;
   if (for_people) console.finish();
-  const auto print = [&](std::size_t number, double total_us, const Contacts& contacts, const ContactResponse& response) {
+  const auto print = [&](std::size_t number, double total_us, const Contacts& contacts,
+                         const ContactResponse& response) {
     if (!for_people)
-      append_query_line({.number = number, .total_us = total_us, .batch = options.batch, .tick = std::nullopt, .parts = parts_asked, .pose = &poses[number]}, contacts, response, text);
+      append_query_line({.number = number,
+                         .total_us = total_us,
+                         .batch = options.batch,
+                         .tick = std::nullopt,
+                         .parts = parts_asked,
+                         .pose = &poses[number]},
+                        contacts, response, text);
     else if (poses.size() == 1)
       text += answer_text(poses[number], contacts, response, parts_asked);
     else
-      text += (number == 0 ? answer_table_head() : std::string()) + answer_table_line(number, contacts, response, parts_asked);
+      text += (number == 0 ? answer_table_head() : std::string()) +
+              answer_table_line(number, contacts, response, parts_asked);
     if (response.flags & kFlagUnsettled) ++unsettled;
     if (response.flags & kFlagNoDirection) ++directionless;
     if (!contacts.truncated) return;
@@ -113,7 +128,8 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
       count = std::min<std::size_t>(*options.batch, poses.size() - first);
       if (auto done = answer_batch(scene, {poses.data() + first, count}, batch); !done) return done;
       share_times(batch.contacts);
-      for (std::size_t i = 0; i < count; ++i) print(first + i, batch.total_us / static_cast<double>(count), batch.contacts[i], batch.responses[i]);
+      for (std::size_t i = 0; i < count; ++i)
+        print(first + i, batch.total_us / static_cast<double>(count), batch.contacts[i], batch.responses[i]);
     } else {
       count = 1;
       if (auto done = answer_pose(scene, poses[first], answer); !done) return done;
@@ -125,13 +141,24 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
       print(first, answer.total_us, answer.contacts, answer.response);
     }
     if (auto done = put(text); !done) return done;
-    if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
+    if (interrupted())
+      return Error{ErrorCode::kInternal,
+                   fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
   }
   for (const std::string& note : scene.backend->take_notes()) console.note(note);
-  if (unsettled > 0) console.note(fmt::format("{} of {} poses found no balance of spring and contact (flag unsettled): their force is the nearest to one", unsettled, poses.size()));
+  if (unsettled > 0)
+    console.note(
+        fmt::format("{} of {} poses found no balance of spring and contact (flag unsettled): their force is "
+                    "the nearest to one",
+                    unsettled, poses.size()));
   if (directionless > 0)
-    console.note(fmt::format("{} of {} poses are in contact with nothing that says which way (flag no_direction): they give no force", directionless, poses.size()));
-  if (truncated > 0) console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated, poses.size(), capacity));
+    console.note(
+        fmt::format("{} of {} poses are in contact with nothing that says which way (flag no_direction): "
+                    "they give no force",
+                    directionless, poses.size()));
+  if (truncated > 0)
+    console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated,
+                             poses.size(), capacity));
   return {};
 }
 

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "model/contact/contacts.h"
-#include "model/lattice/pose.h"
 #include "model/contact/response.h"
+#include "model/lattice/pose.h"
 #include "service/queries/touched_parts.h"
 
 namespace palpate {

@@ -13,11 +13,11 @@
 #include "service/cli/output_folder.h"
 #include "service/cli/scene_host.h"
 #include "service/loop/recorder.h"
+#include "service/loop/session.h"
+#include "service/queries/touched_parts.h"
 #include "service/report/report.h"
 #include "service/report/run_summary.h"
 #include "service/scene_talk.h"
-#include "service/loop/session.h"
-#include "service/queries/touched_parts.h"
 
 namespace palpate {
 namespace {
@@ -28,7 +28,11 @@ namespace fs = std::filesystem;
 class RunWatch : public RunObserver {
  public:
   RunWatch(Recorder& recorder, ReportSeries& series, Console& console, const LoadedScene& loaded)
-      : recorder_(recorder), series_(series), console_(console), scene_(loaded.scene), parts_(loaded.geometry) {}
+      : recorder_(recorder),
+        series_(series),
+        console_(console),
+        scene_(loaded.scene),
+        parts_(loaded.geometry) {}
 
   /// Paths of the parts that have touched so far, ascending.
   const std::set<std::string>& statics() const { return statics_; }
@@ -41,9 +45,11 @@ class RunWatch : public RunObserver {
     if (*tick.guidance != 0)
       console_.live(fmt::format("{:7.2f} s  {}", tick.time_s, tick.guidance));
     else
-      console_.live(fmt::format("{:7.2f} s  {:5.2f} N  {:6.3f} N·m  {} areas  frame {:.2f} ms  result {} ticks old  {}", tick.time_s,
-                                glm::length(tick.sent.force), glm::length(tick.sent.torque), areas_, frame_us_ / 1000, tick.result_age_ticks,
-                                tick.stage > 0 ? "stage " + stage_text(tick.stage, scene_.stage_names) : ""));
+      console_.live(
+          fmt::format("{:7.2f} s  {:5.2f} N  {:6.3f} N·m  {} areas  frame {:.2f} ms  result {} ticks old  {}",
+                      tick.time_s, glm::length(tick.sent.force), glm::length(tick.sent.torque), areas_,
+                      frame_us_ / 1000, tick.result_age_ticks,
+                      tick.stage > 0 ? "stage " + stage_text(tick.stage, scene_.stage_names) : ""));
     return series_.on_tick(tick);
   }
 
@@ -59,12 +65,14 @@ class RunWatch : public RunObserver {
   }
 
  private:
-  /// What the person at the device should do: on a terminal it takes the live line's place, elsewhere, and where all else is quiet, each new sentence is a line.
+  /// What the person at the device should do: on a terminal it takes the live line's place, elsewhere, and
+  /// where all else is quiet, each new sentence is a line.
   void guide(const TickRecord& tick) {
     const std::string_view said = tick.guidance;
     if (said == guidance_) return;
     guidance_ = said;
-    if (!console_.terminal() || Console::quiet()) console_.say(said.empty() ? "the haptic device is ready" : said);
+    if (!console_.terminal() || Console::quiet())
+      console_.say(said.empty() ? "the haptic device is ready" : said);
   }
 
   Recorder& recorder_;
@@ -75,7 +83,7 @@ class RunWatch : public RunObserver {
   std::set<std::string> statics_, mobiles_;
   std::size_t areas_ = 0;
   double frame_us_ = 0;
-  std::string_view guidance_;   // text that outlives the run
+  std::string_view guidance_;  // text that outlives the run
 };
 
 /// What a run leaves in its directory.
@@ -84,24 +92,28 @@ constexpr const char* kRunFiles[] = {"trace.csv", "frames.jsonl", "summary.json"
 /// Where a run's files go.
 struct RunFolder {
   fs::path path;
-  std::vector<fs::path> made;   ///< directories that were not there before, from the outermost on
+  std::vector<fs::path> made;  ///< directories that were not there before, from the outermost on
 
   /// A run that never began leaves nothing.
   void take_back() const {
     std::error_code ignored;
     for (const char* file : kRunFiles) fs::remove(path / file, ignored);
-    for (auto folder = made.rbegin(); folder != made.rend(); ++folder) fs::remove(*folder, ignored);   // those that are empty
+    for (auto folder = made.rbegin(); folder != made.rend(); ++folder)
+      fs::remove(*folder, ignored);  // those that are empty
   }
 };
 
 /// Before anything is read: that files can be written to `wanted`, and that none would be lost.
 Result<void> check_output(const RunOptions& options) {
   if (options.out.empty()) return {};
-  if (const std::string wrong = cannot_write_to(options.out); !wrong.empty()) return bad_value("--out " + wrong);
+  if (const std::string wrong = cannot_write_to(options.out); !wrong.empty())
+    return bad_value("--out " + wrong);
   std::error_code ignored;
   for (const char* file : kRunFiles)
     if (!options.overwrite && fs::exists(fs::path(options.out) / file, ignored))
-      return bad_value(fmt::format("--out {}: a run's files are there already ({}); name another folder, or say --overwrite", options.out, file));
+      return bad_value(fmt::format(
+          "--out {}: a run's files are there already ({}); name another folder, or say --overwrite",
+          options.out, file));
   return {};
 }
 
@@ -110,7 +122,9 @@ Result<RunFolder> output_directory(const std::string& wanted, const std::string&
   std::error_code error;
   if (!wanted.empty()) {
     RunFolder out{wanted, {}};
-    for (fs::path above = fs::absolute(wanted, error); !error && !above.empty() && !fs::exists(above, error); above = above.parent_path()) out.made.insert(out.made.begin(), above);
+    for (fs::path above = fs::absolute(wanted, error); !error && !above.empty() && !fs::exists(above, error);
+         above = above.parent_path())
+      out.made.insert(out.made.begin(), above);
     fs::create_directories(wanted, error);
     if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", wanted, error.message()));
     return out;
@@ -119,7 +133,9 @@ Result<RunFolder> output_directory(const std::string& wanted, const std::string&
   for (int n = 1; n < 10000; ++n) {
     const fs::path candidate = n == 1 ? base : fmt::format("{}-{}", base, n);
     if (fs::create_directory(candidate, error)) return RunFolder{candidate, {candidate}};
-    if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", candidate.string(), error.message()));
+    if (error)
+      return bad_value(
+          fmt::format("{}: the directory can't be made ({})", candidate.string(), error.message()));
   }
   return bad_value(fmt::format("{}-N: there are 10,000 of them already; name one with --out", base));
 }
@@ -147,11 +163,16 @@ Result<std::vector<PlanChange>> read_switches(const RunOptions& options, const L
       seconds = std::stod(text.substr(0, colon), &read);
     } catch (const std::exception&) {
     }
-    if (read != std::min(colon, text.size()) || !(seconds >= 0 && seconds < 1e6) || (!out.empty() && seconds * 1000 < static_cast<double>(out.back().tick)))
-      return bad_value(fmt::format("--switch {}: a time in seconds comes first, none before the last one's", text));
-    if (word == "paper" || word == "refined") facts.profile = word == "paper" ? Profile::kPaper : Profile::kRefined;
-    else if (word == "full" || word == "auto") facts.full = word == "full";
-    else return bad_value(fmt::format("--switch {}: after the colon comes paper, refined, full or auto", text));
+    if (read != std::min(colon, text.size()) || !(seconds >= 0 && seconds < 1e6) ||
+        (!out.empty() && seconds * 1000 < static_cast<double>(out.back().tick)))
+      return bad_value(
+          fmt::format("--switch {}: a time in seconds comes first, none before the last one's", text));
+    if (word == "paper" || word == "refined")
+      facts.profile = word == "paper" ? Profile::kPaper : Profile::kRefined;
+    else if (word == "full" || word == "auto")
+      facts.full = word == "full";
+    else
+      return bad_value(fmt::format("--switch {}: after the colon comes paper, refined, full or auto", text));
     out.push_back({std::llround(seconds * 1000), {decide_plan(facts).plan, facts.torque_wanted}});
   }
   return out;
@@ -180,10 +201,15 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
     driver = "replay";
   }
   if (options.asap && driver != "simulated" && driver != "replay")
-    return Error{ErrorCode::kUsage, fmt::format("--pace asap is virtual time, which the device '{}' can't keep: simulated and replay can", driver)};
+    return Error{
+        ErrorCode::kUsage,
+        fmt::format("--pace asap is virtual time, which the device '{}' can't keep: simulated and replay can",
+                    driver)};
   if (!options.firmware.empty() && driver != "falcon")
-    return Error{ErrorCode::kUsage, fmt::format("--firmware is for the device falcon, and the device is {}", driver)};
-  Result<std::unique_ptr<HapticDevice>> device = parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m, options.firmware);
+    return Error{ErrorCode::kUsage,
+                 fmt::format("--firmware is for the device falcon, and the device is {}", driver)};
+  Result<std::unique_ptr<HapticDevice>> device =
+      parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m, options.firmware);
   if (!device) return device.error();
 
   const Result<std::vector<PlanChange>> switches = read_switches(options, loaded);
@@ -218,7 +244,7 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
   console.finish();
   const Result<void> recorded = (*recorder)->finish();
-  if (!summary) {   // it never began: the device can't be opened, say
+  if (!summary) {  // it never began: the device can't be opened, say
     folder->take_back();
     return summary.error();
   }
@@ -228,7 +254,8 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
 
   const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s};
   if (auto done = write_text(directory / "summary.json", summary_json(*summary)); !done) return done;
-  if (auto done = write_text(directory / "report.html", report_page(*summary, loaded, facts, series)); !done) return done;
+  if (auto done = write_text(directory / "report.html", report_page(*summary, loaded, facts, series)); !done)
+    return done;
   for (const std::string& note : summary->notes) console.note(note);
   if (summary->stopped) console.note("stopped before the end, with zero force and complete files");
   if (summary->failure) return *summary->failure;

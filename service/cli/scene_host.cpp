@@ -14,13 +14,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t kWorthTelling = std::uint64_t{256} << 20;   // of memory (chosen)
+constexpr std::uint64_t kWorthTelling = std::uint64_t{256} << 20;  // of memory (chosen)
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 PlanFacts facts_of(const LoadedScene& loaded, Purpose purpose, bool full) {
-  PlanFacts facts = purpose == Purpose::kQuery ? query_facts(loaded.scene, loaded.geometry)
-                                               : session_facts(loaded.scene, loaded.geometry, purpose == Purpose::kRecording);
+  PlanFacts facts = purpose == Purpose::kQuery
+                        ? query_facts(loaded.scene, loaded.geometry)
+                        : session_facts(loaded.scene, loaded.geometry, purpose == Purpose::kRecording);
   facts.full = full;
   return facts;
 }
@@ -36,23 +39,30 @@ void add_memory(const CollisionBackend& backend, std::vector<PlanStage>& stages)
 
 std::string prepared_text(const HostedScene& prepared) {
   const SceneGeometry& geometry = prepared.loaded.geometry;
-  return fmt::format("mock-up {} triangles, tool {}, voxels of {:.3g} mm, {} on {}; {} in {:.2f} s, prepared in {:.2f} s",
-                     count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()),
-                     1000 * geometry.lattice.step_m * geometry.mockup_grid.size, bytes_text(prepared.backend->memory_bytes()),
-                     prepared.backend->device(), prepared.loaded.from_cache ? "known from before, read" : "read", prepared.load_s, prepared.prepare_s);
+  return fmt::format(
+      "mock-up {} triangles, tool {}, voxels of {:.3g} mm, {} on {}; {} in {:.2f} s, prepared in {:.2f} s",
+      count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()),
+      1000 * geometry.lattice.step_m * geometry.mockup_grid.size,
+      bytes_text(prepared.backend->memory_bytes()), prepared.backend->device(),
+      prepared.loaded.from_cache ? "known from before, read" : "read", prepared.load_s, prepared.prepare_s);
 }
 
 }  // namespace
 
-Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts,
-                                                         const std::function<void(const std::string& sentence)>& note, bool cached) {
+Result<std::unique_ptr<CollisionBackend>> choose_backend(
+    const std::string& name, std::optional<Profile> profile, const Parts& parts,
+    const std::function<void(const std::string& sentence)>& note, bool cached) {
   using Backend = std::unique_ptr<CollisionBackend>;
-  const auto steady = [](Backend first, SteadyBackend::Make spare) -> Backend { return std::make_unique<SteadyBackend>(std::move(first), std::move(spare)); };
+  const auto steady = [](Backend first, SteadyBackend::Make spare) -> Backend {
+    return std::make_unique<SteadyBackend>(std::move(first), std::move(spare));
+  };
   // What the native engine can't do, the profile `paper` above all, the reference does.
-  const auto native = [steady, cached, make_cpu = parts.make_cpu, make_ref = parts.make_ref] { return steady(make_cpu(cached), make_ref); };
+  const auto native = [steady, cached, make_cpu = parts.make_cpu, make_ref = parts.make_ref] {
+    return steady(make_cpu(cached), make_ref);
+  };
   if (name == "ref") return parts.make_ref();
   if (name == "cpu") return native();
-  if (name == "gpu") {   // who asks for the device gets it or a refusal
+  if (name == "gpu") {  // who asks for the device gets it or a refusal
     auto gpu = parts.make_gpu(cached);
     if (!gpu) return Error{gpu.error().code, "--backend gpu: " + gpu.error().sentence};
     return steady(std::move(*gpu), nullptr);
@@ -63,7 +73,8 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
     note(gpu.error().sentence + ": the engine cpu answers");
     return native();
   }
-  // On the processor the native engine is the quicker one by far; `paper` it leaves to the shaders, where there is a driver that runs them here.
+  // On the processor the native engine is the quicker one by far; `paper` it leaves to the shaders, where
+  // there is a driver that runs them here.
   if (profile == Profile::kRefined) {
     note("no GPU can be used: the engine cpu answers");
     return native();
@@ -73,42 +84,54 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
     note(gpu.error().sentence + (profile ? ": the engine ref answers" : ": the engines cpu and ref answer"));
     return profile ? parts.make_ref() : native();
   }
-  note("no GPU can be used: the engine gpu answers in paper, on " + (*gpu)->device() + (profile ? "" : ", and the engine cpu in refined"));
+  note("no GPU can be used: the engine gpu answers in paper, on " + (*gpu)->device() +
+       (profile ? "" : ", and the engine cpu in refined"));
   if (profile) return steady(std::move(*gpu), parts.make_ref);
-  const auto shaders = std::make_shared<Backend>(std::move(*gpu));   // taken once
-  return steady(parts.make_cpu(cached), [steady, shaders, make_ref = parts.make_ref] { return steady(std::move(*shaders), make_ref); });
+  const auto shaders = std::make_shared<Backend>(std::move(*gpu));  // taken once
+  return steady(parts.make_cpu(cached), [steady, shaders, make_ref = parts.make_ref] {
+    return steady(std::move(*shaders), make_ref);
+  });
 }
 
-Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name, std::optional<Profile> profile, const Parts& parts, Console& console) {
-  return choose_backend(name, profile, parts, [&console](const std::string& sentence) { console.note(sentence); });
+Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name,
+                                                         std::optional<Profile> profile, const Parts& parts,
+                                                         Console& console) {
+  return choose_backend(name, profile, parts,
+                        [&console](const std::string& sentence) { console.note(sentence); });
 }
 
-Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, const PrepareWatch& watch) {
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose,
+                                                   const Parts& parts, const PrepareWatch& watch) {
   auto prepared = std::make_unique<HostedScene>();
   Result<Scene> scene = read_scene(options.scene, options.profile);
   if (!scene) return scene.error();
   if (options.unit_m) {
     const auto take_unit = [&](MeshSource& source) {
-      if (!source.file.empty() && !source.scale_stated && !states_unit(source.file)) source.scale = *options.unit_m;
+      if (!source.file.empty() && !source.scale_stated && !states_unit(source.file))
+        source.scale = *options.unit_m;
     };
     for (StaticBody& body : scene->statics) take_unit(body.source);
     take_unit(scene->tool.source);
   }
 
   // The back end comes before the meshes: their import may start threads.
-  const std::optional<Profile> profile = options.second_backend ? std::nullopt : std::optional(scene->response.profile);
-  Result<std::unique_ptr<CollisionBackend>> backend = choose_backend(options.backend, profile, parts, watch.note, watch.cached);
+  const std::optional<Profile> profile =
+      options.second_backend ? std::nullopt : std::optional(scene->response.profile);
+  Result<std::unique_ptr<CollisionBackend>> backend =
+      choose_backend(options.backend, profile, parts, watch.note, watch.cached);
   if (!backend) return backend.error();
   prepared->backend = std::move(*backend);
   if (options.second_backend) {
-    auto second = choose_backend(options.backend, profile, parts, [](const std::string&) {}, watch.cached);
+    auto second = choose_backend(
+        options.backend, profile, parts, [](const std::string&) {}, watch.cached);
     if (!second) return second.error();
     prepared->second = std::move(*second);
   }
 
   watch.step("reading the meshes");
   const auto load_start = Clock::now();
-  Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import, watch.cached ? parts.cache.get() : nullptr, watch.folder);
+  Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import,
+                                          watch.cached ? parts.cache.get() : nullptr, watch.folder);
   if (!loaded) return loaded.error();
   prepared->loaded = std::move(*loaded);
   if (options.all_samples) prepared->loaded.geometry.contact_samples = 0;
@@ -122,9 +145,13 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   PlanFacts facts = facts_of(prepared->loaded, purpose, options.full_plan);
   prepared->plan = decide_plan(facts);
   // Only meshes that name no other file are kept, so that `folder` has nothing to say about them.
-  if (const std::uint64_t bytes = prepared->backend->preparation_bytes(prepared->loaded.geometry, prepared->plan.plan); bytes >= kWorthTelling)
+  if (const std::uint64_t bytes =
+          prepared->backend->preparation_bytes(prepared->loaded.geometry, prepared->plan.plan);
+      bytes >= kWorthTelling)
     watch.note(fmt::format("preparing takes up to {} on {}", bytes_text(bytes), prepared->backend->device()));
-  if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, watch.progress); !done) return done.error();
+  if (auto done = prepared->backend->prepare(prepared->loaded.geometry, prepared->plan.plan, watch.progress);
+      !done)
+    return done.error();
   for (const std::string& note : prepared->backend->take_notes()) watch.note(note);
   if (parts.cache)
     for (const std::string& note : parts.cache->take_notes()) watch.note(note);
@@ -137,20 +164,24 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
   return prepared;
 }
 
-Result<std::unique_ptr<HostedScene>> prepare_for_verdicts(SceneOptions options, double tolerance_m, const Parts& parts, Console& console) {
+Result<std::unique_ptr<HostedScene>> prepare_for_verdicts(SceneOptions options, double tolerance_m,
+                                                          const Parts& parts, Console& console) {
   options.profile = Profile::kRefined;
   options.all_samples = tolerance_m > 0;
   return prepare_scene(options, Purpose::kQuery, parts, console);
 }
 
-Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose, const Parts& parts, Console& console) {
-  return prepare_scene(options, purpose, parts,
-                       PrepareWatch{.note = [&console](const std::string& sentence) { console.note(sentence); },
-                                    .step = [&console](const char* step) { console.step(step); },
-                                    .progress = [&console](const char* what, double done) { return console.progress(what, done); },
-                                    .admit = {},
-                                    .cached = true,
-                                    .folder = {}});
+Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose,
+                                                   const Parts& parts, Console& console) {
+  return prepare_scene(
+      options, purpose, parts,
+      PrepareWatch{
+          .note = [&console](const std::string& sentence) { console.note(sentence); },
+          .step = [&console](const char* step) { console.step(step); },
+          .progress = [&console](const char* what, double done) { return console.progress(what, done); },
+          .admit = {},
+          .cached = true,
+          .folder = {}});
 }
 
 }  // namespace palpate

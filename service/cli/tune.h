@@ -8,7 +8,7 @@ class App;
 namespace palpate {
 
 struct TuneOptions {
-  BenchOptions bench;      ///< scene, poses, frames, rounds, back ends
+  BenchOptions bench;  ///< scene, poses, frames, rounds, back ends
   double budget_us = 0;
   bool json = false;
 };

@@ -14,14 +14,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kAtOnce = 4096;   // poses between two looks at the keyboard (chosen)
+constexpr std::size_t kAtOnce = 4096;  // poses between two looks at the keyboard (chosen)
 
 Result<void> put(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
   return Error{ErrorCode::kInternal, "standard output can't be written"};
 }
 
-Json clearance_json(const SceneGeometry& geometry, std::size_t number, const Pose& pose, const Clearance& c, bool touches, const std::string& engine) {
+Json clearance_json(const SceneGeometry& geometry, std::size_t number, const Pose& pose, const Clearance& c,
+                    bool touches, const std::string& engine) {
   const double step = geometry.lattice.step_m;
   const auto point = [&](const Int3& p) {
     const Vec3 at = geometry.lattice.origin_m + step * Vec3(p);
@@ -29,20 +30,25 @@ Json clearance_json(const SceneGeometry& geometry, std::size_t number, const Pos
   };
   const Vec3& p = pose.position;
   const Quat& q = pose.rotation;
-  Json out{{"number", number}, {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}}, {"engine", engine}, {"touches", touches}};
+  Json out{{"number", number},
+           {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}},
+           {"engine", engine},
+           {"touches", touches}};
   out["clearance"] = c.kind == Clearance::Kind::kFurther ? Json(nullptr) : Json(c.steps * step);
   if (c.kind != Clearance::Kind::kApart) return out;
   out["static"] = c.static_id;
   out["mobile"] = c.mobile_id;
   out["on_static"] = point(c.on_static);
   out["on_mobile"] = point(c.on_mobile);
-  out["parts"] = {{"static", part_of(geometry.mockup_report, c.static_id)}, {"mobile", part_of(geometry.tool_report, c.mobile_id)}};
+  out["parts"] = {{"static", part_of(geometry.mockup_report, c.static_id)},
+                  {"mobile", part_of(geometry.tool_report, c.mobile_id)}};
   return out;
 }
 
 }  // namespace
 
-Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pose>& poses, const Parts& parts) {
+Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pose>& poses,
+                              const Parts& parts) {
   catch_interrupts();
   Console console;
   auto prepared = prepare_for_verdicts(options.common, options.tolerance_m, parts, console);
@@ -50,7 +56,10 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
   const SceneGeometry& geometry = (*prepared)->loaded.geometry;
   CollisionBackend& backend = *(*prepared)->backend;
   const TouchRule rule = TouchRule::of(geometry, options.tolerance_m);
-  const std::int32_t within = options.within_m ? static_cast<std::int32_t>(std::min(*options.within_m / geometry.lattice.step_m, 0x1p30)) : INT32_MAX - 2;
+  const std::int32_t within =
+      options.within_m
+          ? static_cast<std::int32_t>(std::min(*options.within_m / geometry.lattice.step_m, 0x1p30))
+          : INT32_MAX - 2;
   std::vector<LatticePose> lattice;
   for (const Pose& pose : poses) {
     const auto at = to_lattice(pose, geometry);
@@ -62,7 +71,9 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
   for (std::size_t first = 0; first < poses.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, poses.size() - first);
     text.clear();
-    if (auto done = backend.touches(std::span(lattice).subspan(first, count), std::span(bits).first(count)); !done) return done;
+    if (auto done = backend.touches(std::span(lattice).subspan(first, count), std::span(bits).first(count));
+        !done)
+      return done;
     const std::string engine = backend.measured_by();
     for (std::size_t i = first; i < first + count; ++i) {
       bool touches = bits[i - first] != 0;
@@ -81,11 +92,17 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
       else if (auto done = backend.clearance(lattice[i], within, clearance); !done)
         return done;
       if (options.within_m && clearance.kind == Clearance::Kind::kFurther) continue;
-      text += clearance_json(geometry, i, poses[i], clearance, touches, bits[i - first] != 0 ? engine : backend.measured_by()).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-      if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
+      text += clearance_json(geometry, i, poses[i], clearance, touches,
+                             bits[i - first] != 0 ? engine : backend.measured_by())
+                  .dump(-1, ' ', false, Json::error_handler_t::replace) +
+              "\n";
+      if (interrupted())
+        return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
     }
     if (auto done = put(text); !done) return done;
-    if (interrupted()) return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
+    if (interrupted())
+      return Error{ErrorCode::kInternal,
+                   fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
   }
   for (const std::string& note : backend.take_notes()) console.note(note);
   return {};

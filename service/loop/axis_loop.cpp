@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kTick = 1e-3;   // s
+constexpr double kTick = 1e-3;  // s
 
 double rounded(double value, double step) { return step > 0 ? step * std::round(value / step) : value; }
 
@@ -46,7 +46,11 @@ AxisLoop::Outcome AxisLoop::run(int ticks) const {
     force = rounded(force, force_step_n);
     const std::size_t slot = static_cast<std::size_t>(i) % on_its_way.size();
     on_its_way[slot] = force;
-    const double acts = device_delay == 0 ? force : i < device_delay ? 0 : on_its_way[(slot + on_its_way.size() - static_cast<std::size_t>(device_delay)) % on_its_way.size()];
+    const double acts = device_delay == 0 ? force
+                        : i < device_delay
+                            ? 0
+                            : on_its_way[(slot + on_its_way.size() - static_cast<std::size_t>(device_delay)) %
+                                         on_its_way.size()];
     if (i > settle_ticks) {
       out.largest_step_n = std::max(out.largest_step_n, std::abs(acts - felt));
       out.least_force_n = std::min(out.least_force_n, acts);
@@ -72,7 +76,8 @@ AxisLoop::Outcome AxisLoop::run(int ticks) const {
 }
 
 bool AxisLoop::stable(const Outcome& outcome, double least_m) {
-  return outcome.finite && !outcome.ran_away && (outcome.late < 0.95 * outcome.early || outcome.late < least_m);
+  return outcome.finite && !outcome.ran_away &&
+         (outcome.late < 0.95 * outcome.early || outcome.late < least_m);
 }
 
 double highest_stable(double low, double high, const std::function<bool(double)>& stable) {
@@ -85,7 +90,9 @@ double highest_stable(double low, double high, const std::function<bool(double)>
   return std::sqrt(low * high);
 }
 
-std::function<void(double, const Pose&, LawResult&)> linear_wall(double stiffness, double depth, std::uint32_t areas, double ratio, bool pushes_only) {
+std::function<void(double, const Pose&, LawResult&)> linear_wall(double stiffness, double depth,
+                                                                 std::uint32_t areas, double ratio,
+                                                                 bool pushes_only) {
   return [=](double x, const Pose&, LawResult& out) {
     const double force = stiffness * (depth - x);
     if (pushes_only && !(force > 0)) return;
@@ -93,7 +100,10 @@ std::function<void(double, const Pose&, LawResult&)> linear_wall(double stiffnes
     out.wrench.force = Vec3(force, 0, 0);
     out.areas = out.plane_count = std::min(areas, kMaxLawPlanes);
     for (std::uint32_t i = 0; i < out.plane_count; ++i)
-      out.planes[i] = {.normal = Vec3(1, 0, 0), .lever = Vec3(0, 0.02 * i, 0), .force = force / out.plane_count, .stiffness = ratio * stiffness / out.plane_count};
+      out.planes[i] = {.normal = Vec3(1, 0, 0),
+                       .lever = Vec3(0, 0.02 * i, 0),
+                       .force = force / out.plane_count,
+                       .stiffness = ratio * stiffness / out.plane_count};
   };
 }
 

@@ -15,7 +15,9 @@ void clear(Contacts& contacts) {
   contacts.contact = contacts.truncated = false;
   contacts.truncated_capacity = "";
   contacts.pairs = 0;
-  for (auto* list : {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est}) list->clear();
+  for (auto* list :
+       {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est})
+    list->clear();
   contacts.areas.clear();
   contacts.flags = 0;
   contacts.field = {};
@@ -35,9 +37,17 @@ double field_us(const Contacts& contacts) {
 
 }  // namespace
 
-CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques, PlanSwitch* plans,
-                               StartContacts start, double slow_us, double budget_us)
-    : geometry_(geometry), backend_(&backend), plans_(plans), profile_(profile), stiffness_(stiffness), torques_(torques), budget_(budget_us), slow_us_(slow_us) {
+CollisionFrame::CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile,
+                               double stiffness, bool torques, PlanSwitch* plans, StartContacts start,
+                               double slow_us, double budget_us)
+    : geometry_(geometry),
+      backend_(&backend),
+      plans_(plans),
+      profile_(profile),
+      stiffness_(stiffness),
+      torques_(torques),
+      budget_(budget_us),
+      slow_us_(slow_us) {
   if (start != StartContacts::kIgnoreInitial) return;
   ignored_.patches.resize(geometry.mockup.patch_count);
   std::iota(ignored_.patches.begin(), ignored_.patches.end(), 0u);
@@ -85,7 +95,7 @@ Result<void> CollisionFrame::solve(FrameSlot& slot, LawResult& result) noexcept 
 
 Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
   take_plan();
-  const auto start = std::chrono::steady_clock::now();   // recorded, decides nothing
+  const auto start = std::chrono::steady_clock::now();  // recorded, decides nothing
   const auto lattice_pose = to_lattice(slot.sample.pose, geometry_);
   if (!lattice_pose) return lattice_pose.error();
   slot.lattice_pose = *lattice_pose;
@@ -95,7 +105,9 @@ Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
     clear(slot.contacts);
   } else {
     ignored_.coarser = budget_.coarser();
-    if (auto answered = backend_->query(slot.lattice_pose, refined ? &ignored_ : nullptr, slot.contacts); !answered) return answered;
+    if (auto answered = backend_->query(slot.lattice_pose, refined ? &ignored_ : nullptr, slot.contacts);
+        !answered)
+      return answered;
   }
   if (refined) ignore_what_has_not_opened(slot.contacts);
   respond(slot.contacts, slot.lattice_pose, geometry_, profile_, stiffness_, slot.response);

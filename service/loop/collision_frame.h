@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "model/collision_backend.h"
-#include "model/scene/plan.h"
 #include "model/contact/response.h"
+#include "model/scene/plan.h"
 #include "model/scene/scene.h"
 #include "model/scene/scene_geometry.h"
 #include "service/loop/frame_budget.h"
@@ -38,7 +38,7 @@ struct FrameSlot {
 struct SlowFrame {
   PoseSample sample;
   double us = 0;
-  const char* stage = "";   ///< empty: the back end told none
+  const char* stage = "";  ///< empty: the back end told none
   double stage_us = 0;
 };
 
@@ -46,11 +46,14 @@ struct SlowFrame {
 /// Used by one thread at a time. Allocates only as the back end and growing lists do.
 class CollisionFrame {
  public:
-  /// All outlive this. `plans`: where other plans come from in mid-run, with back ends of their own; may be null. `torques`: the device has torque axes; without them the plan may have left out
-  /// contact points, so torques and levers are not used. `start`: what becomes of contacts that the first frame has. `slow_us`: frames that take longer are counted.
-  /// `budget_us`: frames that take longer are sampled coarser (`refined`); 0: none is.
-  CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness, bool torques,
-                 PlanSwitch* plans = nullptr, StartContacts start = StartContacts::kAsIs, double slow_us = std::numeric_limits<double>::infinity(), double budget_us = 0);
+  /// All outlive this. `plans`: where other plans come from in mid-run, with back ends of their own; may be
+  /// null. `torques`: the device has torque axes; without them the plan may have left out contact points, so
+  /// torques and levers are not used. `start`: what becomes of contacts that the first frame has. `slow_us`:
+  /// frames that take longer are counted. `budget_us`: frames that take longer are sampled coarser
+  /// (`refined`); 0: none is.
+  CollisionFrame(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness,
+                 bool torques, PlanSwitch* plans = nullptr, StartContacts start = StartContacts::kAsIs,
+                 double slow_us = std::numeric_limits<double>::infinity(), double budget_us = 0);
 
   /// Fills `slot` (its sample is set by the caller) and `result`. An error means that the back end failed, by
   /// status or by exception, or that the pose isn't one: the caller sends zero force.
@@ -59,18 +62,22 @@ class CollisionFrame {
   const Histogram& frame_ns() const { return frame_ns_; }
   std::uint64_t frames() const { return frame_ns_.total(); }
   std::uint64_t slow_frames() const { return slow_frames_; }
-  const SlowFrame& slowest() const { return slowest_; }                     ///< of slow_frames(); tick −1: there is none
+  const SlowFrame& slowest() const { return slowest_; }  ///< of slow_frames(); tick −1: there is none
   std::uint64_t truncated_frames() const { return truncated_frames_; }
-  const char* truncated_capacity() const { return truncated_capacity_; }   ///< of the last truncated frame
-  std::uint64_t no_direction_frames() const { return no_direction_frames_; }   ///< with contact and nothing that pushes (kFlagNoDirection)
+  const char* truncated_capacity() const { return truncated_capacity_; }  ///< of the last truncated frame
+  std::uint64_t no_direction_frames() const {
+    return no_direction_frames_;
+  }  ///< with contact and nothing that pushes (kFlagNoDirection)
   const PoseSample& no_direction_first() const { return no_direction_first_; }  ///< of the first of them
   /// The contacts that are left out, as they are there from the start and have not opened yet; null: none.
   const Ignored* ignored() const { return ignored_.patches.empty() ? nullptr : &ignored_; }
   const FrameBudget& budget() const { return budget_; }
-  std::size_t ignored_at_first() const { return ignored_at_first_; }   ///< patches
+  std::size_t ignored_at_first() const { return ignored_at_first_; }  ///< patches
   std::uint64_t plan_changes() const { return plan_changes_; }
   std::uint32_t areas_max() const { return areas_max_; }
-  std::uint64_t merged_frames() const { return merged_frames_; }           ///< more areas than the force law keeps apart
+  std::uint64_t merged_frames() const {
+    return merged_frames_;
+  }  ///< more areas than the force law keeps apart
 
  private:
   void take_plan() noexcept;
@@ -84,8 +91,8 @@ class CollisionFrame {
   Profile profile_;
   double stiffness_;
   bool torques_;
-  Ignored ignored_;              ///< to begin with, of start contacts that are to be ignored, every patch
-  bool ignored_known_ = true;    ///< false: it is still every patch
+  Ignored ignored_;            ///< to begin with, of start contacts that are to be ignored, every patch
+  bool ignored_known_ = true;  ///< false: it is still every patch
   std::size_t ignored_at_first_ = 0;
   Histogram frame_ns_;
   FrameBudget budget_;

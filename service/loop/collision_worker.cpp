@@ -10,14 +10,15 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kFrameSlots = 64;   ///< 64 ms of 1 ms frames; the recording thread looks every few ms (chosen)
+constexpr std::size_t kFrameSlots =
+    64;  ///< 64 ms of 1 ms frames; the recording thread looks every few ms (chosen)
 
 }  // namespace
 
 /// Slots go round: free → worker fills → filled → recorder writes → free.
 struct CollisionWorker::Queues {
   std::array<FrameSlot, kFrameSlots> slots;
-  FrameSlot spare;   ///< for a frame that nobody records
+  FrameSlot spare;  ///< for a frame that nobody records
   boost::lockfree::spsc_queue<FrameSlot*, boost::lockfree::capacity<kFrameSlots>> free, filled;
 };
 
@@ -54,7 +55,8 @@ FrameSlot* CollisionWorker::next_frame() {
 void CollisionWorker::release(FrameSlot* slot) { queues_->free.push(slot); }
 
 void CollisionWorker::run() noexcept {
-  // It shares the loop's processor, on which nobody else of this process runs: beside those who answer batches it would wait for milliseconds.
+  // It shares the loop's processor, on which nobody else of this process runs: beside those who answer
+  // batches it would wait for milliseconds.
   const ForHand for_hand;
   set_nice(kNiceContact);
   set_slice(may_be_realtime() ? kSliceContactUs : kSliceBesideLoopUs);

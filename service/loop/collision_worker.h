@@ -5,20 +5,21 @@
 #include <optional>
 #include <thread>
 
+#include "model/latest_value.h"
 #include "model/result.h"
 #include "service/loop/collision_frame.h"
-#include "model/latest_value.h"
 
 namespace palpate {
 
-/// Collision detection and response on a thread of its own, in real time: always the newest pose, as fast as it goes.
-/// The control loop talks to it through two mailboxes and a flag, and never waits for it. Answered frames go to a bounded queue;
-/// when the recording side is behind, a frame is not recorded and counted, but never waited for.
+/// Collision detection and response on a thread of its own, in real time: always the newest pose, as fast as
+/// it goes. The control loop talks to it through two mailboxes and a flag, and never waits for it. Answered
+/// frames go to a bounded queue; when the recording side is behind, a frame is not recorded and counted, but
+/// never waited for.
 class CollisionWorker {
  public:
   /// `frame` outlives the worker and is used by its thread alone while it runs.
   explicit CollisionWorker(CollisionFrame& frame);
-  ~CollisionWorker();   ///< stops
+  ~CollisionWorker();  ///< stops
 
   void start();
   /// Ends the thread after the query under way; waits for it. Force must be off by then.

@@ -32,12 +32,14 @@ void sleep_until(std::int64_t ns) noexcept {
 
 }  // namespace
 
-ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc, const Couplings& couplings, bool field)
+ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc,
+                         const Couplings& couplings, bool field)
     : device_(device), settings_(law), law_(law), couplings_(couplings), coupling_({}), tool_gc_(tool_gc) {
   couple(field);
 }
 
-/// Takes the springs that go with the profile. Where nothing reaches the device but by a spring, the spring keeps the force from jumping, and the law need not.
+/// Takes the springs that go with the profile. Where nothing reaches the device but by a spring, the spring
+/// keeps the force from jumping, and the law need not.
 void ControlTick::couple(bool field) noexcept {
   field_ = field;
   coupling_ = VirtualCoupling(field ? couplings_.field : couplings_.areas, settings_.change_n_per_s);
@@ -55,7 +57,8 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
   record_.paused = sample.paused;
   record_.guidance = device_.guidance();
   if (!record_.ready) ++unready_ticks_;
-  if (sample.stage > 0 && static_cast<std::size_t>(sample.stage) < kMaxStages) stages_[static_cast<std::size_t>(sample.stage)] = true;
+  if (sample.stage > 0 && static_cast<std::size_t>(sample.stage) < kMaxStages)
+    stages_[static_cast<std::size_t>(sample.stage)] = true;
   device_gc_ = sample.pose.position + sample.pose.rotation * tool_gc_;
   pose_ = {tick, device_gc_, sample.pose.rotation};
   if (!coupled_) return {tick, sample.pose};
@@ -65,14 +68,15 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
 
 const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
   Wrench wrench = law_.step(pose_, fresh);
-  if (law_.jumped()) {   // the device homed, or slipped
+  if (law_.jumped()) {  // the device homed, or slipped
     device_.restart_fade();
     coupling_.reset();
   }
   if (law_.took_fresh()) {
     device_.fresh();
     result_tick_ = fresh->tick;
-    if (fresh->change != change_) device_.restart_fade();   // another profile or device: nothing is as it was felt
+    if (fresh->change != change_)
+      device_.restart_fade();  // another profile or device: nothing is as it was felt
     change_ = fresh->change;
     if (fresh->field != field_) couple(fresh->field);
     record_.response = fresh->wrench;
@@ -91,10 +95,11 @@ const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
   return record_;
 }
 
-std::uint64_t run_realtime_loop(ControlTick& tick, SafeDevice& device, CollisionWorker& worker, std::uint64_t ticks, LoopSignals& signals,
-                                LoopTiming& timing, TickSink sink, void* sink_context) noexcept {
+std::uint64_t run_realtime_loop(ControlTick& tick, SafeDevice& device, CollisionWorker& worker,
+                                std::uint64_t ticks, LoopSignals& signals, LoopTiming& timing, TickSink sink,
+                                void* sink_context) noexcept {
   std::uint64_t dropped = 0;
-  std::int64_t period = 0;   // grid index of this tick
+  std::int64_t period = 0;  // grid index of this tick
   const std::int64_t start = now_ns();
   while (tick.ticks() < ticks) {
     if (signals.stop && signals.stop->load(std::memory_order_relaxed)) {
@@ -116,7 +121,7 @@ std::uint64_t run_realtime_loop(ControlTick& tick, SafeDevice& device, Collision
     }
     tick.note_timing(late, timing.missed_ticks);
   }
-  device.close();   // zero force first
+  device.close();  // zero force first
   signals.done.store(true, std::memory_order_release);
   return dropped;
 }
@@ -135,7 +140,8 @@ int bind_to(int processor) {
 RealtimeGrant make_realtime() {
   RealtimeGrant grant;
   const auto refuse = [&](std::string what, int error, const char* so) {
-    grant.refused += (grant.refused.empty() ? "" : "; ") + std::move(what) + " (" + std::strerror(error) + ")" + so;
+    grant.refused +=
+        (grant.refused.empty() ? "" : "; ") + std::move(what) + " (" + std::strerror(error) + ")" + so;
   };
   set_exact_sleep();
   const sched_param priority{.sched_priority = kLoopPriority};
@@ -144,7 +150,8 @@ RealtimeGrant make_realtime() {
     set_slice(kSliceTickUs);
   }
   if (const int processor = loop_processor(); processor >= 0)
-    if (const int unbound = bind_to(processor); unbound != 0) refuse("the loop isn't bound to a processor", unbound, "");
+    if (const int unbound = bind_to(processor); unbound != 0)
+      refuse("the loop isn't bound to a processor", unbound, "");
   grant.locked = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
   if (!grant.locked) refuse("memory isn't locked", errno, "");
   return grant;

@@ -21,16 +21,20 @@ int Delivery::duration(std::uint64_t query) const {
     case Kind::kLost:
       return delay;
     case Kind::kRandom:
-      return 1 + static_cast<int>(scrambled(seed, query) % static_cast<std::uint64_t>(std::max(2 * delay - 1, 1)));
+      return 1 + static_cast<int>(scrambled(seed, query) %
+                                  static_cast<std::uint64_t>(std::max(2 * delay - 1, 1)));
     case Kind::kBursty:
       return query % 8 == 7 ? 4 * delay : delay;
   }
   return delay;
 }
 
-bool Delivery::lost(std::uint64_t query) const { return kind == Kind::kLost && scrambled(seed, query) % 4 == 0; }
+bool Delivery::lost(std::uint64_t query) const {
+  return kind == Kind::kLost && scrambled(seed, query) % 4 == 0;
+}
 
-const LawResult* Courier::at(std::int64_t tick, const Pose& pose, const std::function<void(LawResult&)>& contact) {
+const LawResult* Courier::at(std::int64_t tick, const Pose& pose,
+                             const std::function<void(LawResult&)>& contact) {
   const LawResult* fresh = asked_ && tick >= due_ ? deliver() : nullptr;
   if (!asked_) {
     pending_ = {};
@@ -40,7 +44,7 @@ const LawResult* Courier::at(std::int64_t tick, const Pose& pose, const std::fun
     pending_.rotation = pose.rotation;
     due_ = tick + delivery_.duration(query_);
     asked_ = true;
-    if (due_ == tick) fresh = deliver();   // no delay at all
+    if (due_ == tick) fresh = deliver();  // no delay at all
   }
   return fresh;
 }

@@ -10,15 +10,17 @@ namespace palpate {
 namespace {
 
 // In a tick of 1 ms a hand goes no further (chosen: 50 m/s, 500 rad/s); a device that homes or slips does.
-constexpr double kJump = 0.05, kJumpTurn = 0.5;   // m, rad
-constexpr double kLeastLever = 0.02;              // m: nearer to gc than that, torques are weighed as if it were so far (chosen)
-constexpr double kTick = 1e-3;                    // s
+constexpr double kJump = 0.05, kJumpTurn = 0.5;  // m, rad
+constexpr double kLeastLever =
+    0.02;  // m: nearer to gc than that, torques are weighed as if it were so far (chosen)
+constexpr double kTick = 1e-3;  // s
 
 double size(const Vec3& v) { return std::sqrt(glm::dot(v, v)); }
 
 double longest_lever(const PlaneSet& set) {
   double longest = 0;
-  for (std::uint32_t i = 0; i < set.plane_count; ++i) longest = std::max(longest, glm::dot(set.planes[i].lever, set.planes[i].lever));
+  for (std::uint32_t i = 0; i < set.plane_count; ++i)
+    longest = std::max(longest, glm::dot(set.planes[i].lever, set.planes[i].lever));
   return std::sqrt(longest);
 }
 
@@ -66,16 +68,17 @@ void ForceLawState::measure_age(std::int64_t age) {
   transitions_ = std::clamp(static_cast<int>(std::lround(mean_age_)), 1, kMaxTransitions);
 }
 
-/// Equations 4–6 to the letter. They print K(U_h(i) − U_h(i−j)), the displacement alone, so rotation changes nothing
-/// and K pulls along every direction, in free space too.
+/// Equations 4–6 to the letter. They print K(U_h(i) − U_h(i−j)), the displacement alone, so rotation changes
+/// nothing and K pulls along every direction, in free space too.
 Wrench ForceLawState::printed(const LawPose& pose, const LawResult* fresh) {
   if (newest_tick_ < 0) return {};
   const double k = settings_.stiffness_n_per_m;
-  if (fresh) {   // eq. 4 and 5
-    step_.force = (fresh->wrench.force - k * (pose.gc - fresh->gc) - force_.force) / static_cast<double>(transitions_);
+  if (fresh) {  // eq. 4 and 5
+    step_.force =
+        (fresh->wrench.force - k * (pose.gc - fresh->gc) - force_.force) / static_cast<double>(transitions_);
     step_.torque = (fresh->wrench.torque - force_.torque) / static_cast<double>(transitions_);
     steps_left_ = transitions_;
-  } else {       // eq. 6
+  } else {  // eq. 6
     force_.force -= k * (pose.gc - last_.gc);
   }
   if (steps_left_ > 0 || !settings_.printed_stops_at_n) {
@@ -97,22 +100,26 @@ Wrench ForceLawState::corrected(const LawPose& pose, const LawResult* fresh) {
   }
   if (fresh) take(pose, *fresh);
 
-  const Wrench before = pushed(from_, pose.gc, pose.rotation, from_grows_), after = pushed(to_, pose.gc, pose.rotation);
+  const Wrench before = pushed(from_, pose.gc, pose.rotation, from_grows_),
+               after = pushed(to_, pose.gc, pose.rotation);
   if (share_ >= 1) return after;
   const double lever = std::max({longest_lever(from_), longest_lever(to_), kLeastLever});
   const double gap = std::max(size(after.force - before.force), size(after.torque - before.torque) / lever);
   double step = ticks / transitions_;
   if (settings_.change_n_per_s > 0) {
-    const double may = settings_.change_n_per_s * kTick * ticks + 2 * settings_.stiffness_n_per_m * (went + lever * turned);
+    const double may =
+        settings_.change_n_per_s * kTick * ticks + 2 * settings_.stiffness_n_per_m * (went + lever * turned);
     // What a ramp of n ticks can't bridge is a change of areas.
     if (fresh) from_grows_ = gap <= may * transitions_;
     step = std::min(step, may / std::max(gap, 1e-12));
   }
   share_ = std::min(share_ + step, 1.0);
-  return {before.force + share_ * (after.force - before.force), before.torque + share_ * (after.torque - before.torque)};
+  return {before.force + share_ * (after.force - before.force),
+          before.torque + share_ * (after.torque - before.torque)};
 }
 
-void ForceLawState::feel(const Vec3& gc, const Quat& rotation, Wrench& force, StiffnessMatrix& stiffness) const {
+void ForceLawState::feel(const Vec3& gc, const Quat& rotation, Wrench& force,
+                         StiffnessMatrix& stiffness) const {
   force = {};
   stiffness = {};
   add_pushed(force, stiffness, from_, 1 - share_, gc, rotation, from_grows_);
@@ -140,7 +147,8 @@ void ForceLawState::take(const LawPose& pose, const LawResult& result) {
 }
 
 /// Adds to `next`, the planes of a new result, those of to_ that the result doesn't speak about.
-void ForceLawState::remember(const LawResult& result, PlaneSet& next, std::array<LawPose, kMaxLawPlanes>& seen) const {
+void ForceLawState::remember(const LawResult& result, PlaneSet& next,
+                             std::array<LawPose, kMaxLawPlanes>& seen) const {
   const Vec3 moved = result.gc - to_.gc;
   const Vec3 turned = rotation_vector(result.rotation * glm::conjugate(to_.rotation));
   for (std::uint32_t i = 0; i < to_.plane_count && next.plane_count < kMaxLawPlanes; ++i) {
@@ -149,12 +157,14 @@ void ForceLawState::remember(const LawResult& result, PlaneSet& next, std::array
     if (plane.force > 0 || !(plane.stiffness > 0) || -plane.force > kKeepAway * plane.stiffness) continue;
     const LawPose& last = seen_[i];
     const Vec3 went = result.gc - last.gc;
-    const double along = size(went - glm::dot(went, plane.normal) * plane.normal) +
-                         size(plane.lever) * size(rotation_vector(result.rotation * glm::conjugate(last.rotation)));
+    const double along =
+        size(went - glm::dot(went, plane.normal) * plane.normal) +
+        size(plane.lever) * size(rotation_vector(result.rotation * glm::conjugate(last.rotation)));
     if (along > kKeepAlong || result.tick - last.tick > kKeepTicks) continue;
-    bool known = false;   // the result has an area of the same wall
+    bool known = false;  // the result has an area of the same wall
     for (std::uint32_t p = 0; p < result.plane_count; ++p)
-      known = known || (glm::dot(result.planes[p].normal, plane.normal) > 0.9 && size(result.planes[p].lever - plane.lever) < kLeastLever);
+      known = known || (glm::dot(result.planes[p].normal, plane.normal) > 0.9 &&
+                        size(result.planes[p].lever - plane.lever) < kLeastLever);
     if (known) continue;
     seen[next.plane_count] = last;
     next.planes[next.plane_count++] = plane;
@@ -164,7 +174,7 @@ void ForceLawState::remember(const LawResult& result, PlaneSet& next, std::array
 void ForceLawState::forget(const LawPose& pose) {
   from_.plane_count = to_.plane_count = 0;
   share_ = 1;
-  newest_tick_ = std::max(newest_tick_, pose.tick - 1);   // results for poses before are worth nothing
+  newest_tick_ = std::max(newest_tick_, pose.tick - 1);  // results for poses before are worth nothing
 }
 
 }  // namespace palpate

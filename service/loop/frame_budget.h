@@ -6,8 +6,9 @@
 
 namespace palpate {
 
-/// Keeps a loop's frames to a budget of time: while they exceed it they are sampled coarser, little by little, so that no frame's force jumps. Does nothing
-/// where samples are not what takes the time. One thread; neither allocates nor blocks.
+/// Keeps a loop's frames to a budget of time: while they exceed it they are sampled coarser, little by
+/// little, so that no frame's force jumps. Does nothing where samples are not what takes the time. One
+/// thread; neither allocates nor blocks.
 class FrameBudget {
  public:
   /// `budget_us`: of a whole frame; 0: none.
@@ -28,14 +29,18 @@ class FrameBudget {
     }
   }
 
-  std::uint64_t coarse_frames() const noexcept { return coarse_frames_; }   ///< frames that were coarser than their size asked for
-  std::uint32_t coarsest() const noexcept { return coarsest_; }             ///< of these, 256ths of a level
+  std::uint64_t coarse_frames() const noexcept {
+    return coarse_frames_;
+  }  ///< frames that were coarser than their size asked for
+  std::uint32_t coarsest() const noexcept { return coarsest_; }  ///< of these, 256ths of a level
 
  private:
-  // Chosen. A sixteenth of a level moves a force by a sixteenth of what two levels differ by: a level comes in 16 frames, some 70 ms at the budget, and goes in 64.
+  // Chosen. A sixteenth of a level moves a force by a sixteenth of what two levels differ by: a level comes
+  // in 16 frames, some 70 ms at the budget, and goes in 64.
   static constexpr std::uint32_t kUp = 16, kDown = 4;
-  static constexpr double kRoom = 0.75;   ///< of the budget: below it samples come back; half of them more cost less than the rest
-  static constexpr double kWorth = 8;     ///< coarser samples are of use while they take that part of a frame
+  static constexpr double kRoom =
+      0.75;  ///< of the budget: below it samples come back; half of them more cost less than the rest
+  static constexpr double kWorth = 8;  ///< coarser samples are of use while they take that part of a frame
 
   double budget_us_;
   std::uint32_t coarser_ = 0, coarsest_ = 0;

@@ -8,8 +8,9 @@
 
 namespace palpate {
 
-/// Counts of non-negative integers in fixed memory (30 kB): exact below 128, else in buckets 1/64 of their value wide, so a
-/// percentile is within 1.6 %; the largest value is kept exactly. add() never allocates or branches on history.
+/// Counts of non-negative integers in fixed memory (30 kB): exact below 128, else in buckets 1/64 of their
+/// value wide, so a percentile is within 1.6 %; the largest value is kept exactly. add() never allocates or
+/// branches on history.
 class Histogram {
  public:
   void add(std::int64_t value) noexcept {
@@ -22,7 +23,8 @@ class Histogram {
   std::uint64_t total() const { return total_; }
   double max() const { return static_cast<double>(max_); }
 
-  /// Smallest recorded value that `share` of all values don't exceed (nearest rank), as its bucket's middle; 0 if empty.
+  /// Smallest recorded value that `share` of all values don't exceed (nearest rank), as its bucket's middle;
+  /// 0 if empty.
   double percentile(double share) const {
     if (total_ == 0) return 0;
     const auto rank = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_)));
@@ -35,8 +37,8 @@ class Histogram {
     return max();
   }
 
-  /// Calls `take(low, high, count)` for what is in [low, high), ascending, without empty ones: each value below 128 by itself or, `coarse`, in one; above in quarters of
-  /// an octave, or as kept.
+  /// Calls `take(low, high, count)` for what is in [low, high), ascending, without empty ones: each value
+  /// below 128 by itself or, `coarse`, in one; above in quarters of an octave, or as kept.
   template <class Take>
   void each(bool coarse, Take take) const {
     const std::size_t together = coarse ? kPerOctave / 4 : 1;
@@ -54,12 +56,13 @@ class Histogram {
 
   static std::size_t bucket(std::uint64_t v) noexcept {
     if (v < kExact) return static_cast<std::size_t>(v);
-    const auto shift = static_cast<std::size_t>(std::bit_width(v)) - 7;   // ≥ 1; v >> shift is in [64, 128)
+    const auto shift = static_cast<std::size_t>(std::bit_width(v)) - 7;  // ≥ 1; v >> shift is in [64, 128)
     return kExact + (shift - 1) * kPerOctave + static_cast<std::size_t>(v >> shift) - kPerOctave;
   }
   static double low(std::size_t i) {
     if (i < kExact) return static_cast<double>(i);
-    return std::ldexp(static_cast<double>((i - kExact) % kPerOctave + kPerOctave), static_cast<int>((i - kExact) / kPerOctave + 1));
+    return std::ldexp(static_cast<double>((i - kExact) % kPerOctave + kPerOctave),
+                      static_cast<int>((i - kExact) / kPerOctave + 1));
   }
   static double middle(std::size_t i) {
     if (i < kExact) return static_cast<double>(i);

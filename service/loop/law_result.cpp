@@ -46,14 +46,16 @@ void fill_law_result(const ContactResponse& response, bool field, double stiffne
     if (count < pushing.size() && glm::dot(area.force, area.normal) > 0) pushing[count++] = &area;
   out.areas = count;
 
-  // The largest keep a plane each. Equal forces stay in the order of their ids, so the choice is the same every time.
+  // The largest keep a plane each. Equal forces stay in the order of their ids, so the choice is the same
+  // every time.
   const std::uint32_t own = count <= kMaxLawPlanes ? count : kMaxLawPlanes - 1;
   if (own < count)
     std::sort(pushing.begin(), pushing.begin() + count, [](const AreaResponse* a, const AreaResponse* b) {
       const double force_a = glm::dot(a->force, a->normal), force_b = glm::dot(b->force, b->normal);
       return force_a != force_b ? force_a > force_b : a->id < b->id;
     });
-  for (std::uint32_t i = 0; i < own; ++i) out.planes[out.plane_count++] = plane_of(*pushing[i], response.gc, stiffness);
+  for (std::uint32_t i = 0; i < own; ++i)
+    out.planes[out.plane_count++] = plane_of(*pushing[i], response.gc, stiffness);
   if (own == count) return;
 
   // The rest act as one.
@@ -63,7 +65,7 @@ void fill_law_result(const ContactResponse& response, bool field, double stiffne
     torque += glm::cross(pushing[i]->point - response.gc, pushing[i]->force);
   }
   const double size = std::sqrt(glm::dot(force, force));
-  if (!(size > 1e-9)) return;   // N; a newton's billionth is nothing
+  if (!(size > 1e-9)) return;  // N; a newton's billionth is nothing
   ContactPlane rest{.normal = force / size, .lever = torque / size, .force = size, .stiffness = 0};
   for (std::uint32_t i = own; i < count; ++i) {
     const double along = glm::dot(rest.normal, pushing[i]->normal);

@@ -41,7 +41,8 @@ void PlanSwitch::run() {
 }
 
 void PlanSwitch::prepare(const PlanTarget& target) {
-  // What is ready and not taken yet is taken back. The worker that is just taking it needs a few instructions more.
+  // What is ready and not taken yet is taken back. The worker that is just taking it needs a few instructions
+  // more.
   for (int state = state_.load(std::memory_order_acquire);;) {
     if (state == kTaking) {
       std::this_thread::yield();
@@ -63,7 +64,9 @@ void PlanSwitch::prepare(const PlanTarget& target) {
   }
   if (!prepared) {
     const std::lock_guard lock(mutex_);
-    if (!stop_) notes_.push_back("the session kept its plan, for another could not be prepared: " + prepared.error().sentence);
+    if (!stop_)
+      notes_.push_back("the session kept its plan, for another could not be prepared: " +
+                       prepared.error().sentence);
     state_.store(kIdle, std::memory_order_release);
     return;
   }

@@ -14,11 +14,13 @@ namespace {
 struct Motion {
   Vec3 moved, turned;
   Motion(const PlaneSet& set, const Vec3& gc, const Quat& rotation)
-      : moved(gc - set.gc), turned(rotation_vector(rotation * glm::conjugate(set.rotation))) {}   // the short way
+      : moved(gc - set.gc),
+        turned(rotation_vector(rotation * glm::conjugate(set.rotation))) {}  // the short way
 };
 
 double force_at(const ContactPlane& plane, const Motion& motion, bool grows) {
-  const double out = glm::dot(plane.normal, motion.moved) + glm::dot(plane.lever, motion.turned);   // n_cᵀ J ΔX
+  const double out =
+      glm::dot(plane.normal, motion.moved) + glm::dot(plane.lever, motion.turned);  // n_cᵀ J ΔX
   const double force = std::max(0.0, plane.force - plane.stiffness * out);
   return grows ? force : std::min(force, plane.force);
 }
@@ -28,13 +30,17 @@ double unlikeness(const ContactPlane& a, const ContactPlane& b) {
   const Vec3 turn = a.normal - b.normal, lever = (a.lever - b.lever) / 0.1;
   return glm::dot(turn, turn) + glm::dot(lever, lever);
 }
-constexpr double kAlike = 1e-4;   ///< a hundredth of a radian, or a millimetre of lever (chosen)
+constexpr double kAlike = 1e-4;  ///< a hundredth of a radian, or a millimetre of lever (chosen)
 
 ContactPlane merged(const ContactPlane& a, const ContactPlane& b) {
   const Vec3 force = a.force * a.normal + b.force * b.normal;
   const double size = length(force);
-  if (!(size > 1e-9 * (a.force + b.force))) return a.force >= b.force ? a : b;   // they cancel: a couple at most is lost
-  ContactPlane sum{.normal = force / size, .lever = (a.force * a.lever + b.force * b.lever) / size, .force = size, .stiffness = 0};
+  if (!(size > 1e-9 * (a.force + b.force)))
+    return a.force >= b.force ? a : b;  // they cancel: a couple at most is lost
+  ContactPlane sum{.normal = force / size,
+                   .lever = (a.force * a.lever + b.force * b.lever) / size,
+                   .force = size,
+                   .stiffness = 0};
   for (const ContactPlane* one : {&a, &b}) {
     const double along = glm::dot(sum.normal, one->normal);
     sum.stiffness += one->stiffness * along * along;
@@ -48,7 +54,7 @@ std::uint32_t most_alike(const PlaneSet& set, const ContactPlane& plane, double&
   least = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < set.plane_count; ++i) {
     const double turn = set.planes[i].normal.x - plane.normal.x;
-    if (turn * turn >= least) continue;   // a part of it is too much already
+    if (turn * turn >= least) continue;  // a part of it is too much already
     if (const double unlike = unlikeness(set.planes[i], plane); unlike < least) least = unlike, nearest = i;
   }
   return nearest;
@@ -88,7 +94,8 @@ Wrench pushed(const PlaneSet& set, const Vec3& gc, const Quat& rotation, bool gr
   return sum;
 }
 
-void add_pushed(Wrench& push, StiffnessMatrix& slope, const PlaneSet& set, double share, const Vec3& gc, const Quat& rotation, bool grows) {
+void add_pushed(Wrench& push, StiffnessMatrix& slope, const PlaneSet& set, double share, const Vec3& gc,
+                const Quat& rotation, bool grows) {
   if (set.plane_count == 0 || !(share > 0)) return;
   const Motion motion(set, gc, rotation);
   Wrench sum;
@@ -98,8 +105,9 @@ void add_pushed(Wrench& push, StiffnessMatrix& slope, const PlaneSet& set, doubl
     if (!(force > 0)) continue;
     sum.force += force * plane.normal;
     sum.torque += force * plane.lever;
-    if (!grows && force >= plane.force) continue;   // held at its bound, it doesn't give way
-    const std::array<double, 6> along{plane.normal.x, plane.normal.y, plane.normal.z, plane.lever.x, plane.lever.y, plane.lever.z};
+    if (!grows && force >= plane.force) continue;  // held at its bound, it doesn't give way
+    const std::array<double, 6> along{plane.normal.x, plane.normal.y, plane.normal.z,
+                                      plane.lever.x,  plane.lever.y,  plane.lever.z};
     for (std::size_t row = 0; row < 6; ++row) {
       const double gives = share * plane.stiffness * along[row];
       for (std::size_t column = 0; column <= row; ++column) slope[row][column] += gives * along[column];
@@ -124,7 +132,8 @@ bool sound(const PlaneSet& set) {
   if (set.plane_count > kMaxLawPlanes || !sound(Pose{set.gc, set.rotation})) return false;
   for (std::uint32_t i = 0; i < set.plane_count; ++i) {
     const ContactPlane& plane = set.planes[i];
-    if (!finite(plane.normal) || !finite(plane.lever) || !std::isfinite(plane.force) || !(plane.stiffness >= 0 && std::isfinite(plane.stiffness)))
+    if (!finite(plane.normal) || !finite(plane.lever) || !std::isfinite(plane.force) ||
+        !(plane.stiffness >= 0 && std::isfinite(plane.stiffness)))
       return false;
   }
   return true;

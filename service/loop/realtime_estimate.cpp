@@ -18,7 +18,8 @@ void RealtimeEstimate::ask(std::int64_t pose, double at_ms) noexcept {
 void RealtimeEstimate::tick(std::int64_t tick) noexcept {
   const auto now_ms = static_cast<double>(tick);
   bool fresh = false;
-  // Between two ticks the worker ends at most the query that was under way and one for a pose that had come meanwhile.
+  // Between two ticks the worker ends at most the query that was under way and one for a pose that had come
+  // meanwhile.
   while (asked_ && answered_ms_ <= now_ms) {
     asked_ = false;
     fresh = true;

@@ -25,7 +25,7 @@ class Row {
   template <class Number>
   void put(Number value) {
     if (length_ > 0) text_[length_++] = ',';
-    if constexpr (std::is_floating_point_v<Number>) value += 0.0;   // "-0" would only puzzle the reader
+    if constexpr (std::is_floating_point_v<Number>) value += 0.0;  // "-0" would only puzzle the reader
     const auto end = std::to_chars(text_ + length_, text_ + sizeof text_ - 2, value);
     length_ = static_cast<std::size_t>(end.ptr - text_);
   }
@@ -78,7 +78,9 @@ class OutputFile {
   }
 
  private:
-  Error failed() const { return {ErrorCode::kInternal, "writing '" + path_ + "' failed: " + std::strerror(errno)}; }
+  Error failed() const {
+    return {ErrorCode::kInternal, "writing '" + path_ + "' failed: " + std::strerror(errno)};
+  }
 
   std::string path_;
   std::FILE* file_ = nullptr;
@@ -89,7 +91,7 @@ class OutputFile {
 struct Recorder::Files {
   OutputFile trace, frames;
   std::uint64_t frames_written = 0;
-  std::string line;   ///< reused
+  std::string line;  ///< reused
 };
 
 Recorder::Recorder() : files_(std::make_unique<Files>()) {}
@@ -103,7 +105,8 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& directory)
   const std::filesystem::path root(directory);
   if (auto opened = recorder->files_->trace.open(root / "trace.csv"); !opened) return opened.error();
   if (auto opened = recorder->files_->frames.open(root / "frames.jsonl"); !opened) return opened.error();
-  if (auto wrote = recorder->files_->trace.write(kTraceHeader, sizeof kTraceHeader - 1); !wrote) return wrote.error();
+  if (auto wrote = recorder->files_->trace.write(kTraceHeader, sizeof kTraceHeader - 1); !wrote)
+    return wrote.error();
   return recorder;
 }
 
@@ -128,7 +131,11 @@ Result<void> Recorder::on_tick(const TickRecord& tick) {
 
 Result<void> Recorder::on_frame(const FrameRecord& frame) {
   files_->line.clear();
-  const QueryLine line{.number = files_->frames_written++, .total_us = frame.total_us, .batch = {}, .tick = frame.tick, .heights = true};
+  const QueryLine line{.number = files_->frames_written++,
+                       .total_us = frame.total_us,
+                       .batch = {},
+                       .tick = frame.tick,
+                       .heights = true};
   append_query_line(line, frame.contacts, frame.response, files_->line);
   return files_->frames.write(files_->line.data(), files_->line.size());
 }

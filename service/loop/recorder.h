@@ -6,9 +6,10 @@
 
 namespace palpate {
 
-/// Leaves trace.csv and frames.jsonl (query lines, `pose` counts the frames) in a directory. Numbers are printed as the shortest text that reads back to
-/// the same double, so equal runs give equal bytes. Files are whole once finish() has succeeded.
-/// Used by one thread; allocates and writes, so it stands behind the queues of a session, never in its loops.
+/// Leaves trace.csv and frames.jsonl (query lines, `pose` counts the frames) in a directory. Numbers are
+/// printed as the shortest text that reads back to the same double, so equal runs give equal bytes. Files are
+/// whole once finish() has succeeded. Used by one thread; allocates and writes, so it stands behind the
+/// queues of a session, never in its loops.
 class Recorder : public RunObserver {
  public:
   /// Makes the directory if it is missing and opens both files, replacing older ones.

@@ -24,9 +24,9 @@
 namespace palpate {
 namespace {
 
-constexpr int kMaxVirtualDelay = 1000;        ///< ticks; a result a second old is no use to anybody (chosen)
-constexpr double kMaxFadeMs = 60'000;         ///< chosen
-constexpr std::size_t kTickQueue = 16384;     ///< 16 s of ticks until a stalled disk costs a row (chosen)
+constexpr int kMaxVirtualDelay = 1000;     ///< ticks; a result a second old is no use to anybody (chosen)
+constexpr double kMaxFadeMs = 60'000;      ///< chosen
+constexpr std::size_t kTickQueue = 16384;  ///< 16 s of ticks until a stalled disk costs a row (chosen)
 constexpr std::uint64_t kForever = std::numeric_limits<std::uint64_t>::max();
 
 std::string number(double value) {
@@ -42,34 +42,46 @@ Result<void> check(const Scene& scene, const SessionOptions& options) {
   };
   const ControlSettings& control = scene.control;
   const double stiffness = scene.response.stiffness_n_per_m;
-  if (!std::isfinite(stiffness) || stiffness < 0) return wrong("response.stiffness", stiffness, "a finite number of N/m from 0");
+  if (!std::isfinite(stiffness) || stiffness < 0)
+    return wrong("response.stiffness", stiffness, "a finite number of N/m from 0");
   if (control.transitions && (*control.transitions < 1 || *control.transitions > kMaxTransitions))
-    return wrong("control.transitions", *control.transitions, "1 to " + std::to_string(kMaxTransitions) + " ticks, or auto");
+    return wrong("control.transitions", *control.transitions,
+                 "1 to " + std::to_string(kMaxTransitions) + " ticks, or auto");
   if (control.virtual_delay_ticks < 1 || control.virtual_delay_ticks > kMaxVirtualDelay)
-    return wrong("control.virtual_delay_ticks", control.virtual_delay_ticks, "1 to " + std::to_string(kMaxVirtualDelay));
-  if (!(control.watchdog_ms >= 0 && control.watchdog_ms <= kMaxFadeMs)) return wrong("control.watchdog_ms", control.watchdog_ms, "0 to 60000");
-  if (!(control.fade_in_ms >= 0 && control.fade_in_ms <= kMaxFadeMs)) return wrong("control.fade_in_ms", control.fade_in_ms, "0 to 60000");
+    return wrong("control.virtual_delay_ticks", control.virtual_delay_ticks,
+                 "1 to " + std::to_string(kMaxVirtualDelay));
+  if (!(control.watchdog_ms >= 0 && control.watchdog_ms <= kMaxFadeMs))
+    return wrong("control.watchdog_ms", control.watchdog_ms, "0 to 60000");
+  if (!(control.fade_in_ms >= 0 && control.fade_in_ms <= kMaxFadeMs))
+    return wrong("control.fade_in_ms", control.fade_in_ms, "0 to 60000");
   if (!(control.change_n_per_s >= 0 && std::isfinite(control.change_n_per_s)))
     return wrong("control.change_n_per_s", control.change_n_per_s, "a finite number of N/s from 0");
-  if (!(control.slew_ms >= 0 && control.slew_ms <= kMaxFadeMs)) return wrong("control.slew_ms", control.slew_ms, "0 to 60000");
-  for (const auto& [name, spring] : {std::pair{"control.coupling_n_per_m", control.coupling_n_per_m}, {"control.coupling_nm_per_rad", control.coupling_nm_per_rad}}) {
+  if (!(control.slew_ms >= 0 && control.slew_ms <= kMaxFadeMs))
+    return wrong("control.slew_ms", control.slew_ms, "0 to 60000");
+  for (const auto& [name, spring] : {std::pair{"control.coupling_n_per_m", control.coupling_n_per_m},
+                                     {"control.coupling_nm_per_rad", control.coupling_nm_per_rad}}) {
     const double value = spring.value_or(0);
     if (!(value >= 0 && std::isfinite(value))) return wrong(name, value, "a finite number from 0");
-    if (value > 0 && control.law == ForceLaw::kPrinted) return wrong(name, value, "0 with law printed: the coupling needs the planes of law corrected");
+    if (value > 0 && control.law == ForceLaw::kPrinted)
+      return wrong(name, value, "0 with law printed: the coupling needs the planes of law corrected");
   }
-  if (options.duration_s && !(*options.duration_s > 0 && *options.duration_s <= 1e9)) return bad_value("the duration is " + number(*options.duration_s) + " s, allowed is more than 0 to 1e9");
+  if (options.duration_s && !(*options.duration_s > 0 && *options.duration_s <= 1e9))
+    return bad_value("the duration is " + number(*options.duration_s) + " s, allowed is more than 0 to 1e9");
   return {};
 }
 
 /// How many ticks a run takes. The last point of the device's own motion, and its stage, are part of it.
 std::uint64_t tick_count(const HapticDevice& device, const SessionOptions& options) {
-  const auto ticks = [](double seconds) { return static_cast<std::uint64_t>(std::max(std::llround(seconds / kTickSeconds), 1LL)); };
+  const auto ticks = [](double seconds) {
+    return static_cast<std::uint64_t>(std::max(std::llround(seconds / kTickSeconds), 1LL));
+  };
   if (options.duration_s) return ticks(*options.duration_s);
   if (device.motion_s() > 0) return ticks(device.motion_s()) + 1;
   return options.pace == Pace::kAsap ? ticks(1) : kForever;
 }
 
-/// An observer behind a guard: null is fine, what it throws becomes an error, and after an error it is left alone.
+/// An observer behind a guard: null is fine, what it throws becomes an error, and after an error it is left
+/// alone.
 class GuardedObserver {
  public:
   explicit GuardedObserver(RunObserver* observer) : observer_(observer) {}
@@ -106,18 +118,23 @@ int watchdog_ticks(const Scene& scene) { return in_ticks(scene.control.watchdog_
 
 /// From where on a frame is slow: while one of that length is under way, the watchdog runs out.
 double slow_us(const Scene& scene) {
-  return watchdog_ticks(scene) > 0 ? 1e6 * kTickSeconds * watchdog_ticks(scene) : std::numeric_limits<double>::infinity();
+  return watchdog_ticks(scene) > 0 ? 1e6 * kTickSeconds * watchdog_ticks(scene)
+                                   : std::numeric_limits<double>::infinity();
 }
 
 /// Everything that both paces use.
 struct Run {
-  Run(const LoadedScene& loaded, CollisionBackend& backend, SafeDevice& safe, const SessionOptions& session_options, RunObserver* run_observer)
+  Run(const LoadedScene& loaded, CollisionBackend& backend, SafeDevice& safe,
+      const SessionOptions& session_options, RunObserver* run_observer)
       : scene(loaded.scene),
         options(session_options),
         device(safe),
-        frame(loaded.geometry, backend, loaded.scene.response.profile, loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans, loaded.scene.start_contacts,
-              slow_us(loaded.scene), session_options.pace == Pace::kRealtime ? loaded.scene.response.budget_us : 0),
-        tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m, couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
+        frame(loaded.geometry, backend, loaded.scene.response.profile,
+              loaded.scene.response.stiffness_n_per_m, has_torques(safe), session_options.plans,
+              loaded.scene.start_contacts, slow_us(loaded.scene),
+              session_options.pace == Pace::kRealtime ? loaded.scene.response.budget_us : 0),
+        tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m,
+             couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
              loaded.scene.response.profile == Profile::kRefined),
         observer(run_observer),
         estimate(watchdog_ticks(loaded.scene)),
@@ -140,7 +157,7 @@ struct Run {
   CollisionFrame frame;
   ControlTick tick;
   GuardedObserver observer;
-  RealtimeEstimate estimate;   ///< of virtual time
+  RealtimeEstimate estimate;  ///< of virtual time
   std::uint64_t ticks;
   LoopTiming timing;
   std::uint64_t dropped_ticks = 0, dropped_frames = 0;
@@ -154,7 +171,8 @@ class Changes {
   explicit Changes(const SessionOptions& options) : options_(options) {}
   template <class Take>
   void up_to(std::int64_t tick, Take&& take) {
-    for (; options_.plans && next_ < options_.changes.size() && options_.changes[next_].tick <= tick; ++next_) take(*options_.plans, options_.changes[next_].target);
+    for (; options_.plans && next_ < options_.changes.size() && options_.changes[next_].tick <= tick; ++next_)
+      take(*options_.plans, options_.changes[next_].target);
   }
 
  private:
@@ -209,10 +227,14 @@ void run_realtime(Run& run) {
   std::thread loop([&] {
     const ForHand for_hand;
     granted = make_realtime();
-    const TickSink sink = [](void* queue, const TickRecord& record) noexcept { return static_cast<TickQueue*>(queue)->push(record); };
-    run.dropped_ticks = run_realtime_loop(run.tick, run.device, worker, run.ticks, signals, run.timing, sink, records.get());
+    const TickSink sink = [](void* queue, const TickRecord& record) noexcept {
+      return static_cast<TickQueue*>(queue)->push(record);
+    };
+    run.dropped_ticks =
+        run_realtime_loop(run.tick, run.device, worker, run.ticks, signals, run.timing, sink, records.get());
   });
-  if (run.options.give_way) set_nice(kNiceConnections);   // the other two have been made: a thread begins at its maker's level
+  if (run.options.give_way)
+    set_nice(kNiceConnections);  // the other two have been made: a thread begins at its maker's level
 
   const auto drain = [&] {
     records->consume_all([&](const TickRecord& record) {
@@ -229,8 +251,8 @@ void run_realtime(Run& run) {
     drain();
     std::this_thread::sleep_for(std::chrono::milliseconds(3));
   }
-  loop.join();      // the device is at zero force and closed
-  worker.stop();    // may take as long as a query
+  loop.join();    // the device is at zero force and closed
+  worker.stop();  // may take as long as a query
   drain();
   if (granted.locked) munlockall();
   run.realtime_note = granted.refused;
@@ -239,12 +261,15 @@ void run_realtime(Run& run) {
 }
 
 Percentiles percentiles(const Histogram& histogram, double unit) {
-  return {histogram.percentile(0.5) / unit, histogram.percentile(0.99) / unit, histogram.percentile(0.999) / unit, histogram.max() / unit};
+  return {histogram.percentile(0.5) / unit, histogram.percentile(0.99) / unit,
+          histogram.percentile(0.999) / unit, histogram.max() / unit};
 }
 
 std::vector<HistogramBin> bins(const Histogram& histogram, bool coarse, double unit) {
   std::vector<HistogramBin> out;
-  histogram.each(coarse, [&](double low, double high, std::uint64_t count) { out.push_back({low / unit, high / unit, count}); });
+  histogram.each(coarse, [&](double low, double high, std::uint64_t count) {
+    out.push_back({low / unit, high / unit, count});
+  });
   return out;
 }
 
@@ -252,27 +277,37 @@ std::vector<HistogramBin> bins(const Histogram& histogram, bool coarse, double u
 std::optional<Error> failure_of(const Run& run) {
   if (run.error) return Error{run.error->code, run.error->sentence + "; the run has ended with zero force"};
   if (run.device.faulted())
-    return Error{ErrorCode::kInternal, "haptic device '" + run.device.name() + "': " + run.device.fault() + "; the run has ended with zero force"};
+    return Error{ErrorCode::kInternal, "haptic device '" + run.device.name() + "': " + run.device.fault() +
+                                           "; the run has ended with zero force"};
   return run.observer.error();
 }
 
-/// The simulated hand is a mass before a spring: held against a contact as stiff as K it swings, which is no fault of the response. Empty: another device, no force, or well damped.
+/// The simulated hand is a mass before a spring: held against a contact as stiff as K it swings, which is no
+/// fault of the response. Empty: another device, no force, or well damped.
 std::string swing_of_the_hand(const Scene& scene, double force_max_N) {
   const DeviceSettings& device = scene.device;
   if (device.driver != "simulated" || device.path.empty() || force_max_N <= 0) return {};
-  const double mass = device.mass_kg + device.hand_mass_kg, damping = device.damping_n_s_per_m + device.hand_damping_n_s_per_m;
+  const double mass = device.mass_kg + device.hand_mass_kg,
+               damping = device.damping_n_s_per_m + device.hand_damping_n_s_per_m;
   const double stiffness = scene.response.stiffness_n_per_m + device.hand_stiffness_n_per_m;
-  constexpr double kDamped = 0.4;   // of critical damping: a step overshoots by a quarter (chosen)
+  constexpr double kDamped = 0.4;  // of critical damping: a step overshoots by a quarter (chosen)
   if (damping > kDamped * 2 * std::sqrt(mass * stiffness)) return {};
   const double hertz = std::sqrt(stiffness / mass) / (2 * 3.14159265358979323846);
-  return "the simulated hand, " + number(std::round(100 * mass) / 100) + " kg with its device, swings when it meets a contact, at up to " + number(std::round(10 * hertz) / 10) +
+  return "the simulated hand, " + number(std::round(100 * mass) / 100) +
+         " kg with its device, swings when it meets a contact, at up to " +
+         number(std::round(10 * hertz) / 10) +
          " Hz: such swings of the force after a first touch are the hand's";
 }
 
-std::string ticks_text(double ticks) { return number(std::round(ticks)) + (std::round(ticks) == 1 ? " tick" : " ticks"); }
-std::string position_text(const Pose& pose) { return number(pose.position.x) + " " + number(pose.position.y) + " " + number(pose.position.z) + " m"; }
+std::string ticks_text(double ticks) {
+  return number(std::round(ticks)) + (std::round(ticks) == 1 ? " tick" : " ticks");
+}
+std::string position_text(const Pose& pose) {
+  return number(pose.position.x) + " " + number(pose.position.y) + " " + number(pose.position.z) + " m";
+}
 
-/// What a run in virtual time shows is what a hand would have felt only where the machine would have brought results as early.
+/// What a run in virtual time shows is what a hand would have felt only where the machine would have brought
+/// results as early.
 std::optional<RealtimeOutlook> outlook(const Run& run, const SessionSummary& summary) {
   const bool virtual_time = run.options.pace == Pace::kAsap;
   // A run that ended before a result was due says nothing of the machine.
@@ -282,25 +317,33 @@ std::optional<RealtimeOutlook> outlook(const Run& run, const SessionSummary& sum
   out.result_age_ticks = virtual_time ? percentiles(run.estimate.result_age(), 1) : summary.result_age_ticks;
   out.watchdog_ticks = virtual_time ? run.estimate.watchdog_ticks() : summary.watchdog_ticks;
   out.kept_up = any && out.watchdog_ticks == 0;
-  const std::string could = virtual_time ? (out.kept_up ? "this machine would have kept up" : "this machine could not have kept up")
-                                         : (out.kept_up ? "this machine kept up" : "this machine did not keep up");
+  const std::string could =
+      virtual_time ? (out.kept_up ? "this machine would have kept up" : "this machine could not have kept up")
+                   : (out.kept_up ? "this machine kept up" : "this machine did not keep up");
   const bool older = out.result_age_ticks.p99 > summary.result_age_ticks.p99;
   out.sentence = could + (out.kept_up && older ? ", with older results than this run's: " : ": ");
   if (!any) {
-    out.sentence += std::string("no result ") + (virtual_time ? "would have come in " : "came in ") + ticks_text(static_cast<double>(run.tick.ticks()));
+    out.sentence += std::string("no result ") + (virtual_time ? "would have come in " : "came in ") +
+                    ticks_text(static_cast<double>(run.tick.ticks()));
     return out;
   }
   if (out.watchdog_ticks > 0)
-    out.sentence += std::string("the watchdog ") + (virtual_time ? "would have faded" : "faded") + " the force out in " + std::to_string(out.watchdog_ticks) + " of " +
+    out.sentence += std::string("the watchdog ") + (virtual_time ? "would have faded" : "faded") +
+                    " the force out in " + std::to_string(out.watchdog_ticks) + " of " +
                     std::to_string(run.tick.ticks()) + " ticks, ";
-  out.sentence += std::string("results ") + (virtual_time ? "would have been " : "were ") + ticks_text(out.result_age_ticks.p50) + " old, " +
-                  number(std::round(out.result_age_ticks.p99)) + " at p99, " + number(std::round(out.result_age_ticks.max)) + " at most";
-  if (virtual_time) out.sentence += " (in this run " + number(std::round(summary.result_age_ticks.p50)) + ", " + number(std::round(summary.result_age_ticks.p99)) + ", " +
-                                    number(std::round(summary.result_age_ticks.max)) + ")";
+  out.sentence += std::string("results ") + (virtual_time ? "would have been " : "were ") +
+                  ticks_text(out.result_age_ticks.p50) + " old, " +
+                  number(std::round(out.result_age_ticks.p99)) + " at p99, " +
+                  number(std::round(out.result_age_ticks.max)) + " at most";
+  if (virtual_time)
+    out.sentence += " (in this run " + number(std::round(summary.result_age_ticks.p50)) + ", " +
+                    number(std::round(summary.result_age_ticks.p99)) + ", " +
+                    number(std::round(summary.result_age_ticks.max)) + ")";
   return out;
 }
 
-SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend, const HapticDevice& device) {
+SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBackend& backend,
+                         const HapticDevice& device) {
   SessionSummary out;
   out.static_triangles = scene.geometry.mockup.triangles.size();
   out.tool_triangles = scene.geometry.tool.triangles.size();
@@ -335,49 +378,71 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.stopped = run.timing.stopped;
   out.plan_changes = run.frame.plan_changes();
   out.ignored_patches_first = run.frame.ignored_at_first();
-  if (run.frame.frames() > 0) out.ignored_patches_end = run.frame.ignored() ? run.frame.ignored()->patches.size() : 0;
+  if (run.frame.frames() > 0)
+    out.ignored_patches_end = run.frame.ignored() ? run.frame.ignored()->patches.size() : 0;
   out.failure = failure_of(run);
 
   const auto note = [&](std::string text) { out.notes.push_back(std::move(text)); };
   if (const SlowFrame& slowest = run.frame.slowest(); run.frame.slow_frames() > 0)
-    note(std::to_string(run.frame.slow_frames()) + " of " + std::to_string(out.frames) + " frames took longer than the watchdog's " + number(run.scene.control.watchdog_ms) +
-         " ms; the slowest, " + number(std::round(slowest.us / 100) / 10) + " ms at tick " + std::to_string(slowest.sample.tick) + " with the tool at " + position_text(slowest.sample.pose) +
-         (*slowest.stage ? std::string(", was ") + number(std::round(slowest.stage_us / 100) / 10) + " ms in stage " + slowest.stage : std::string()));
+    note(std::to_string(run.frame.slow_frames()) + " of " + std::to_string(out.frames) +
+         " frames took longer than the watchdog's " + number(run.scene.control.watchdog_ms) +
+         " ms; the slowest, " + number(std::round(slowest.us / 100) / 10) + " ms at tick " +
+         std::to_string(slowest.sample.tick) + " with the tool at " + position_text(slowest.sample.pose) +
+         (*slowest.stage ? std::string(", was ") + number(std::round(slowest.stage_us / 100) / 10) +
+                               " ms in stage " + slowest.stage
+                         : std::string()));
   if (out.coarse_frames > 0)
-    note(std::to_string(out.coarse_frames) + " of " + std::to_string(out.frames) + " frames were sampled coarser than their contact asks for, at 1/" +
-         number(std::round(10 / out.coarsest_share) / 10) + " of the samples at the least, to take no longer than response.budget_us, " + number(run.scene.response.budget_us) + " us");
+    note(std::to_string(out.coarse_frames) + " of " + std::to_string(out.frames) +
+         " frames were sampled coarser than their contact asks for, at 1/" +
+         number(std::round(10 / out.coarsest_share) / 10) +
+         " of the samples at the least, to take no longer than response.budget_us, " +
+         number(run.scene.response.budget_us) + " us");
   if (out.no_direction_frames > 0) {
-    note(std::to_string(out.no_direction_frames) + (out.no_direction_frames > 1 ? " frames were" : " frame was") +
-         " in contact with nothing that says which way, and gave no force of it; the first at tick " + std::to_string(out.no_direction_tick) + ", the tool at " + position_text(out.no_direction_pose));
+    note(std::to_string(out.no_direction_frames) +
+         (out.no_direction_frames > 1 ? " frames were" : " frame was") +
+         " in contact with nothing that says which way, and gave no force of it; the first at tick " +
+         std::to_string(out.no_direction_tick) + ", the tool at " + position_text(out.no_direction_pose));
   }
   if (run.scene.start_contacts == StartContacts::kIgnoreInitial) {
     if (run.scene.response.profile == Profile::kPaper)
       note("\"start\": \"ignore_initial\" is for profile refined; in paper contacts of the start push");
     else if (out.ignored_patches_first > 0)
-      note("contacts of the start were left out on " + std::to_string(out.ignored_patches_first) + (out.ignored_patches_first > 1 ? " faces" : " face") + " of the mock-up; " +
-           (out.ignored_patches_end > 0 ? "on " + std::to_string(out.ignored_patches_end) + " they had not opened by the end" : "all had opened by the end"));
+      note("contacts of the start were left out on " + std::to_string(out.ignored_patches_first) +
+           (out.ignored_patches_first > 1 ? " faces" : " face") + " of the mock-up; " +
+           (out.ignored_patches_end > 0
+                ? "on " + std::to_string(out.ignored_patches_end) + " they had not opened by the end"
+                : "all had opened by the end"));
   }
-  if (std::string swing = swing_of_the_hand(run.scene, out.force_max_N); !swing.empty()) note(std::move(swing));
+  if (std::string swing = swing_of_the_hand(run.scene, out.force_max_N); !swing.empty())
+    note(std::move(swing));
   if (!run.realtime_note.empty()) note(run.realtime_note);
   for (std::string& sentence : backend.take_notes()) note(std::move(sentence));
   if (run.options.plans)
     for (std::string& sentence : run.options.plans->take_notes()) note(std::move(sentence));
-  if (out.plan_changes > 0) note("the session went over to another plan " + std::to_string(out.plan_changes) + (out.plan_changes > 1 ? " times" : " time"));
+  if (out.plan_changes > 0)
+    note("the session went over to another plan " + std::to_string(out.plan_changes) +
+         (out.plan_changes > 1 ? " times" : " time"));
   if (out.watchdog_ticks > 0)
-    note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " + std::to_string(out.watchdog_ticks) +
-         " ticks: the watchdog faded the force out");
+    note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " +
+         std::to_string(out.watchdog_ticks) + " ticks: the watchdog faded the force out");
   if (const auto* told = dynamic_cast<const DeviceNotes*>(&device))
     for (std::string& sentence : told->notes()) note(std::move(sentence));
   if (run.tick.unready_ticks() > 0)
-    note("the haptic device was not ready (unplugged, loading, homing) in " + std::to_string(run.tick.unready_ticks()) + " ticks, which had no force");
-  if (out.missed_ticks > 0) note(std::to_string(out.missed_ticks) + " ticks were missed: the loop's thread did not get the processor in time");
+    note("the haptic device was not ready (unplugged, loading, homing) in " +
+         std::to_string(run.tick.unready_ticks()) + " ticks, which had no force");
+  if (out.missed_ticks > 0)
+    note(std::to_string(out.missed_ticks) +
+         " ticks were missed: the loop's thread did not get the processor in time");
   if (run.frame.truncated_frames() > 0)
-    note(std::to_string(run.frame.truncated_frames()) + " frames gave no force because a capacity was too small: " + run.frame.truncated_capacity());
+    note(std::to_string(run.frame.truncated_frames()) +
+         " frames gave no force because a capacity was too small: " + run.frame.truncated_capacity());
   if (run.frame.merged_frames() > 0)
-    note(std::to_string(run.frame.merged_frames()) + " frames had more than " + std::to_string(kMaxLawPlanes) +
-         " areas with force: the smallest were extrapolated as one");
-  if (out.dropped_ticks > 0) note(std::to_string(out.dropped_ticks) + " ticks are missing from the recording: it fell behind");
-  if (out.dropped_frames > 0) note(std::to_string(out.dropped_frames) + " frames are missing from the recording: it fell behind");
+    note(std::to_string(run.frame.merged_frames()) + " frames had more than " +
+         std::to_string(kMaxLawPlanes) + " areas with force: the smallest were extrapolated as one");
+  if (out.dropped_ticks > 0)
+    note(std::to_string(out.dropped_ticks) + " ticks are missing from the recording: it fell behind");
+  if (out.dropped_frames > 0)
+    note(std::to_string(out.dropped_frames) + " frames are missing from the recording: it fell behind");
   return out;
 }
 
@@ -405,7 +470,7 @@ Result<SessionSummary> run_session(const LoadedScene& scene, CollisionBackend& b
     } else {
       run_realtime(*run);
     }
-  } catch (const std::exception& error) {   // no memory, no thread
+  } catch (const std::exception& error) {  // no memory, no thread
     return Error{ErrorCode::kInternal, std::string("the session can't run: ") + error.what()};
   }
   safe.close();

@@ -31,8 +31,10 @@ bool solve(StiffnessMatrix a, Vec6& x) {
   return true;
 }
 
-/// What is out of balance with the tool `apart` from the device, and how that gives way; an axis without a spring is rigid and takes no part.
-void balance(const CouplingSettings& settings, const Feel& feel, const LawPose& device, const Vec6& apart, Vec6& rest, StiffnessMatrix& slope) {
+/// What is out of balance with the tool `apart` from the device, and how that gives way; an axis without a
+/// spring is rigid and takes no part.
+void balance(const CouplingSettings& settings, const Feel& feel, const LawPose& device, const Vec6& apart,
+             Vec6& rest, StiffnessMatrix& slope) {
   Wrench push;
   feel(apart_from(device, apart, settings), push, slope);
   rest = {push.force.x, push.force.y, push.force.z, push.torque.x, push.torque.y, push.torque.z};
@@ -54,7 +56,8 @@ void balance(const CouplingSettings& settings, const Feel& feel, const LawPose& 
 LawPose apart_from(const LawPose& device, const Vec6& apart, const CouplingSettings& spring) {
   LawPose pose = device;
   pose.gc += Vec3(apart[0], apart[1], apart[2]);
-  if (spring.stiffness_nm_per_rad > 0) pose.rotation = glm::normalize(rotation_by(Vec3(apart[3], apart[4], apart[5])) * device.rotation);
+  if (spring.stiffness_nm_per_rad > 0)
+    pose.rotation = glm::normalize(rotation_by(Vec3(apart[3], apart[4], apart[5])) * device.rotation);
   return pose;
 }
 
@@ -70,10 +73,11 @@ Vec6 spring_balance(const CouplingSettings& spring, const LawPose& device, Vec6 
   for (int evaluations = 1; evaluations < kMostBalanceEvaluations;) {
     Vec6 step = rest;
     if (!solve(slope, step)) break;
-    const double descent = product(step, rest);   // twice the energy that the step hopes for, J
+    const double descent = product(step, rest);  // twice the energy that the step hopes for, J
     if (!(descent > kEnoughBalanceJ)) break;
-    // Along the step what is left of the rest falls steadily, from `descent` through 0 at the lowest energy. Where it is below 0 at the step's end, some plane began to push on
-    // the way: then as far as it is above 0, and near it.
+    // Along the step what is left of the rest falls steadily, from `descent` through 0 at the lowest energy.
+    // Where it is below 0 at the step's end, some plane began to push on the way: then as far as it is above
+    // 0, and near it.
     const auto left_at = [&](double share) {
       for (std::size_t axis = 0; axis < 6; ++axis) next[axis] = apart[axis] + share * step[axis];
       balance(spring, feel, device, next, rest, slope);
@@ -81,9 +85,10 @@ Vec6 spring_balance(const CouplingSettings& spring, const LawPose& device, Vec6 
       return product(step, rest);
     };
     double low = 0, low_left = descent, high = 1, high_left = left_at(1);
-    if (high_left < -0.01 * descent) {   // a hundredth: more than rounding, too little to climb again
+    if (high_left < -0.01 * descent) {  // a hundredth: more than rounding, too little to climb again
       while (evaluations < kMostBalanceEvaluations && !(low > 0 && low_left < 0.3 * descent)) {
-        const double middle = low + (high - low) * std::clamp(low_left / (low_left - high_left), 0.1, 0.9), left = left_at(middle);
+        const double middle = low + (high - low) * std::clamp(low_left / (low_left - high_left), 0.1, 0.9),
+                     left = left_at(middle);
         (left >= 0 ? low : high) = middle;
         (left >= 0 ? low_left : high_left) = left;
       }

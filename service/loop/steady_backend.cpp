@@ -9,19 +9,23 @@ namespace palpate {
 SteadyBackend::SteadyBackend(std::unique_ptr<CollisionBackend> first, Make make_spare)
     : first_(std::move(first)), make_spare_(std::move(make_spare)) {}
 
-Result<void> SteadyBackend::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+Result<void> SteadyBackend::prepare(const SceneGeometry& geometry, const Plan& plan,
+                                    const Progress& progress) {
   geometry_ = &geometry;
   plan_ = plan;
-  first_ready_ = spare_ready_ = by_spare_ = false;   // what has been prepared is another scene
+  first_ready_ = spare_ready_ = by_spare_ = false;  // what has been prepared is another scene
   full_.clear();
   if (!first_) return prepare_spare(progress);
   bool cancelled = false;
-  const Progress watched = [&](const char* what, double done) { return !(cancelled = cancelled || (progress && !progress(what, done))); };
+  const Progress watched = [&](const char* what, double done) {
+    return !(cancelled = cancelled || (progress && !progress(what, done)));
+  };
   const Result<void> prepared = first_->prepare(geometry, plan, watched);
   first_ready_ = static_cast<bool>(prepared);
   if (prepared || cancelled || !make_spare_) return prepared;
   note("the scene can't be prepared on " + first_->device() + ": " + prepared.error().sentence);
-  if (prepared.error().code != ErrorCode::kBadValue) first_.reset();   // a scene that it can't take says nothing of the next
+  if (prepared.error().code != ErrorCode::kBadValue)
+    first_.reset();  // a scene that it can't take says nothing of the next
   return prepare_spare(progress);
 }
 
@@ -52,13 +56,16 @@ Result<void> SteadyBackend::prepare_spare(const Progress& progress) {
 
 Result<void> SteadyBackend::ask_first(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   for (;;) {
-    if (auto answered = first_->query(pose, ignored, out); !answered || !out.truncated || out.truncated_capacity == full_) return answered;
+    if (auto answered = first_->query(pose, ignored, out);
+        !answered || !out.truncated || out.truncated_capacity == full_)
+      return answered;
     if (auto enlarged = first_->enlarge(); !enlarged) {
       full_ = out.truncated_capacity;
       note(enlarged.error().sentence);
       return {};
     }
-    note("a frame had too little room for " + std::string(out.truncated_capacity) + ": it was enlarged and the frame asked again");
+    note("a frame had too little room for " + std::string(out.truncated_capacity) +
+         ": it was enlarged and the frame asked again");
   }
 }
 
@@ -97,9 +104,11 @@ class WatchedQuery final : public PoseQuery {
 }  // namespace
 
 Result<void> SteadyBackend::share(std::size_t count, const PoseWork& work) {
-  if (!first_ready_) return spare_ready_ ? spare_->share(count, work) : CollisionBackend::share(count, work);   // piece by piece
+  if (!first_ready_)
+    return spare_ready_ ? spare_->share(count, work)
+                        : CollisionBackend::share(count, work);  // piece by piece
   // What goes wrong goes wrong again, and is dealt with, piece by piece.
-  std::vector<char> again(count, 1);   // a byte each, for several threads
+  std::vector<char> again(count, 1);  // a byte each, for several threads
   (void)first_->share(count, [&](PoseQuery& asked, std::size_t i) {
     WatchedQuery watched(asked);
     auto done = work(watched, i);
@@ -113,7 +122,9 @@ Result<void> SteadyBackend::share(std::size_t count, const PoseWork& work) {
 }
 
 Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
-  if (!first_ready_) return spare_ready_ ? spare_->query_batch(poses, out) : CollisionBackend::query_batch(poses, out);   // pose by pose
+  if (!first_ready_)
+    return spare_ready_ ? spare_->query_batch(poses, out)
+                        : CollisionBackend::query_batch(poses, out);  // pose by pose
   // Whatever is wrong with the batch shows again, and is dealt with, pose by pose.
   const Result<void> answered = first_->query_batch(poses, out);
   for (std::size_t i = 0; i < poses.size(); ++i)
@@ -129,7 +140,8 @@ Result<void> SteadyBackend::ask_either(Ask ask) {
     measured_by_ = first_->name();
     const Result<void> answered = ask(*first_);
     if (answered || !make_spare_) return answered;
-    if (answered.error().code != ErrorCode::kUsage) first_failed(answered.error());   // kUsage: it never answers that, and goes on with the rest
+    if (answered.error().code != ErrorCode::kUsage)
+      first_failed(answered.error());  // kUsage: it never answers that, and goes on with the rest
   }
   if (!spare_ready_)
     if (auto prepared = prepare_spare([](const char*, double) { return true; }); !prepared) return prepared;
@@ -144,7 +156,8 @@ Result<void> SteadyBackend::touches(std::span<const LatticePose> poses, std::spa
     if (first_->touches(poses, bits)) return {};
   }
   const Result<void> answered = CollisionBackend::touches(poses, bits);
-  if (spare_ready_ && measured_by_ != spare_->name()) measured_by_ += (measured_by_.empty() ? "" : " or ") + spare_->name();
+  if (spare_ready_ && measured_by_ != spare_->name())
+    measured_by_ += (measured_by_.empty() ? "" : " or ") + spare_->name();
   return answered;
 }
 
@@ -152,7 +165,8 @@ Result<void> SteadyBackend::clearance(const LatticePose& pose, std::int32_t with
   return ask_either([&](CollisionBackend& by) { return by.clearance(pose, within, out); });
 }
 
-Result<void> SteadyBackend::free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out) {
+Result<void> SteadyBackend::free_time(const LatticePose& pose, const Twist& twist, double longest,
+                                      FreeTime& out) {
   return ask_either([&](CollisionBackend& by) { return by.free_time(pose, twist, longest, out); });
 }
 
@@ -176,7 +190,8 @@ std::vector<std::string> SteadyBackend::take_notes() {
 }
 
 void SteadyBackend::note(std::string sentence) {
-  if (std::find(notes_.begin(), notes_.end(), sentence) == notes_.end()) notes_.push_back(std::move(sentence));
+  if (std::find(notes_.begin(), notes_.end(), sentence) == notes_.end())
+    notes_.push_back(std::move(sentence));
 }
 
 }  // namespace palpate

@@ -43,7 +43,7 @@ class Places {
       return;
     }
     for_hand_.insert(this_thread());
-    if (rooms_ > 0) ::sched_setaffinity(0, sizeof all_, &all_);   // who made the thread was moved already
+    if (rooms_ > 0) ::sched_setaffinity(0, sizeof all_, &all_);  // who made the thread was moved already
     moved_.erase(this_thread());
   }
 
@@ -64,13 +64,16 @@ class Places {
     const std::lock_guard lock(mutex_);
     if (wanted) {
       if (rooms_++ > 0) return;
-      // A thread's own mask counts, not the process's: a program may have been given its processors by taskset or a control group.
+      // A thread's own mask counts, not the process's: a program may have been given its processors by
+      // taskset or a control group.
       processor_ = ::sched_getaffinity(0, sizeof all_, &all_) == 0 ? loop_processor() : -1;
       if (processor_ < 0) return;
-      std::erase_if(for_hand_, [now = threads()](pid_t thread) { return !now.contains(thread); });   // a driver's, gone with its device
-      // Once more for threads that were made meanwhile by ones not moved yet; from then on each inherits its maker's place.
-      for (int i = 0; i < 2; ++i)
-        each_thread([this](pid_t thread) { move_off(thread); });
+      std::erase_if(for_hand_, [now = threads()](pid_t thread) {
+        return !now.contains(thread);
+      });  // a driver's, gone with its device
+      // Once more for threads that were made meanwhile by ones not moved yet; from then on each inherits its
+      // maker's place.
+      for (int i = 0; i < 2; ++i) each_thread([this](pid_t thread) { move_off(thread); });
       return;
     }
     if (--rooms_ > 0 || processor_ < 0) return;
@@ -80,7 +83,8 @@ class Places {
       cpu_set_t may{};
       if (const auto before = moved_.find(thread); before != moved_.end())
         ::sched_setaffinity(thread, sizeof before->second, &before->second);
-      else if (::sched_getaffinity(thread, sizeof may, &may) == 0 && CPU_EQUAL(&may, &rest))   // made by one that was moved
+      else if (::sched_getaffinity(thread, sizeof may, &may) == 0 &&
+               CPU_EQUAL(&may, &rest))  // made by one that was moved
         ::sched_setaffinity(thread, sizeof all_, &all_);
     });
     moved_.clear();
@@ -89,9 +93,10 @@ class Places {
  private:
   void move_off(pid_t thread) {
     cpu_set_t may{};
-    if (processor_ < 0 || for_hand_.contains(thread) || ::sched_getaffinity(thread, sizeof may, &may) != 0) return;
+    if (processor_ < 0 || for_hand_.contains(thread) || ::sched_getaffinity(thread, sizeof may, &may) != 0)
+      return;
     const auto loops = static_cast<std::size_t>(processor_);
-    if (!CPU_ISSET(loops, &may) || CPU_COUNT(&may) < 2) return;   // nowhere else to go
+    if (!CPU_ISSET(loops, &may) || CPU_COUNT(&may) < 2) return;  // nowhere else to go
     moved_.try_emplace(thread, may);
     CPU_CLR(loops, &may);
     ::sched_setaffinity(thread, sizeof may, &may);
@@ -102,15 +107,16 @@ class Places {
     DIR* const threads = ::opendir("/proc/self/task");
     if (!threads) return;
     while (const dirent* entry = ::readdir(threads))
-      if (const long thread = std::strtol(entry->d_name, nullptr, 10); thread > 0) act(static_cast<pid_t>(thread));
+      if (const long thread = std::strtol(entry->d_name, nullptr, 10); thread > 0)
+        act(static_cast<pid_t>(thread));
     ::closedir(threads);
   }
 
   std::mutex mutex_;
   int rooms_ = 0, processor_ = -1;
-  cpu_set_t all_{};                     ///< what the thread that made the first room may run on
+  cpu_set_t all_{};  ///< what the thread that made the first room may run on
   std::set<pid_t> for_hand_;
-  std::map<pid_t, cpu_set_t> moved_;    ///< and where it might run before
+  std::map<pid_t, cpu_set_t> moved_;  ///< and where it might run before
 };
 
 }  // namespace
@@ -119,7 +125,7 @@ void set_nice(int level) noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t
 
 void set_slice(int microseconds) noexcept {
   SchedulingAttributes wanted;
-  wanted.nice = ::getpriority(PRIO_PROCESS, static_cast<id_t>(this_thread()));   // stays
+  wanted.nice = ::getpriority(PRIO_PROCESS, static_cast<id_t>(this_thread()));  // stays
   wanted.runtime_ns = static_cast<std::uint64_t>(microseconds) * 1000;
   ::syscall(SYS_sched_setattr, 0, &wanted, 0);
 }
@@ -137,7 +143,7 @@ int loop_processor() noexcept {
 ForHand::ForHand() noexcept {
   try {
     Places::instance().for_hand(true);
-  } catch (...) {   // no memory: it runs where it is
+  } catch (...) {  // no memory: it runs where it is
   }
 }
 ForHand::~ForHand() { Places::instance().for_hand(false); }
@@ -145,7 +151,7 @@ MakesForHand::MakesForHand() : before_(Places::threads()) {}
 MakesForHand::~MakesForHand() {
   try {
     Places::instance().rest_for_hand(before_);
-  } catch (...) {   // no memory: they are moved as all others are
+  } catch (...) {  // no memory: they are moved as all others are
   }
 }
 LoopRoom::LoopRoom() { Places::instance().room(true); }

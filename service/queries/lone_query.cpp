@@ -67,7 +67,7 @@ class Anderson {
     for (std::size_t i = 0; i < kept; ++i) trace += a[i][i];
     if (!(trace > 0)) return image;
     for (std::size_t i = 0; i < kept; ++i) a[i][i] += 1e-10 * trace;
-    for (std::size_t i = 0; i < kept; ++i)   // symmetric and positive: no pivots
+    for (std::size_t i = 0; i < kept; ++i)  // symmetric and positive: no pivots
       for (std::size_t j = i + 1; j < kept; ++j) {
         const double share = a[j][i] / a[i][i];
         for (std::size_t k = i; k < kept; ++k) a[j][k] -= share * a[i][k];
@@ -94,7 +94,9 @@ class Anderson {
 }  // namespace
 
 LoneQuery::LoneQuery(const SceneGeometry& geometry, double stiffness)
-    : geometry_(geometry), stiffness_(stiffness), spring_{stiffness, stiffness * geometry.tool_gyration_m * geometry.tool_gyration_m} {}
+    : geometry_(geometry),
+      stiffness_(stiffness),
+      spring_{stiffness, stiffness * geometry.tool_gyration_m * geometry.tool_gyration_m} {}
 
 Result<void> LoneQuery::evaluate(PoseQuery& backend, const Ignored* ignored, const LawPose& tool) {
   const Pose pose{tool.gc - tool.rotation * geometry_.tool_gc_m, tool.rotation};
@@ -120,9 +122,12 @@ Vec6 LoneQuery::pull(const Wrench& push, const Vec6& apart) const {
 }
 
 /// T: where the tool would be if the field were its planes at `apart`.
-Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const { return spring_balance(spring_, device, apart, PlaneFeel(planes_)); }
+Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const {
+  return spring_balance(spring_, device, apart, PlaneFeel(planes_));
+}
 
-Result<void> LoneQuery::feel(PoseQuery& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response) {
+Result<void> LoneQuery::feel(PoseQuery& backend, const Ignored* ignored, const Pose& pose,
+                             ContactResponse& response) {
   Result<Felt> felt = ask(backend, ignored, pose, response);
   if (!felt) return felt.error();
   if (!response.contact_points) felt->wrench.torque = Vec3(0);
@@ -131,7 +136,8 @@ Result<void> LoneQuery::feel(PoseQuery& backend, const Ignored* ignored, const P
   return {};
 }
 
-Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose) {
+Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose,
+                            const ContactResponse& at_pose) {
   Felt out;
   out.tool = pose;
   out.evaluations = 1;
@@ -142,10 +148,12 @@ Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Po
   planes_.rotation = device.rotation;
 
   const Metric metric{geometry_.tool_gyration_m};
-  constexpr double kEnough = 1e-8, kEnoughShare = 1e-6;   // m, and of the way: 20 µN at 2 kN/m (chosen)
-  constexpr int kMostTries = 10;                          // places along one step (chosen: a stiff wall is found to a thousandth of the step)
-  constexpr double kLevel = 0.1;                          // of the slope where a step begins: lower it need not get (chosen; Wolfe's second condition)
-  constexpr double kNear = 1e-2;                          // of the way: from here on planes lead on by themselves (chosen)
+  constexpr double kEnough = 1e-8, kEnoughShare = 1e-6;  // m, and of the way: 20 µN at 2 kN/m (chosen)
+  constexpr int kMostTries =
+      10;  // places along one step (chosen: a stiff wall is found to a thousandth of the step)
+  constexpr double kLevel =
+      0.1;  // of the slope where a step begins: lower it need not get (chosen; Wolfe's second condition)
+  constexpr double kNear = 1e-2;  // of the way: from here on planes lead on by themselves (chosen)
   Anderson anderson(metric);
   Vec6 apart{}, rest = pull(at_pose.wrench, apart), image = next(device, apart), best = image;
   double left = metric.length(plus(image, -1, apart)), least = left;
@@ -154,27 +162,35 @@ Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Po
     const Vec6 way = plus(image, -1, apart);
     Vec6 step = plus(anderson.next(apart, image), -1, apart);
     if (!(metric.product(rest, step) > 0)) step = way;
-    // `rest` is minus the slope of E + ½ spring. A step is taken that leads to half as much left or goes on downhill; else the lowest place is looked for along it
-    // (regula falsi, Illinois): planes that are left too far are forgotten, and a step may go right through a wall.
-    double slope_here = metric.product(rest, step), low = 0, low_slope = slope_here, high = 0, high_slope = 0, share = 1;
+    // `rest` is minus the slope of E + ½ spring. A step is taken that leads to half as much left or goes on
+    // downhill; else the lowest place is looked for along it (regula falsi, Illinois): planes that are left
+    // too far are forgotten, and a step may go right through a wall.
+    double slope_here = metric.product(rest, step), low = 0, low_slope = slope_here, high = 0, high_slope = 0,
+           share = 1;
     for (int tried = 1; out.evaluations < kMostEvaluations; ++tried) {
       const Vec6 there = plus(apart, share, step);
-      if (auto done = evaluate(backend, ignored, apart_from(device, there, spring_)); !done) return done.error();
+      if (auto done = evaluate(backend, ignored, apart_from(device, there, spring_)); !done)
+        return done.error();
       ++out.evaluations;
       const Vec6 rest_there = pull(response_.wrench, there), image_there = next(device, there);
-      const double left_there = metric.length(plus(image_there, -1, there)), slope = metric.product(rest_there, step);
+      const double left_there = metric.length(plus(image_there, -1, there)),
+                   slope = metric.product(rest_there, step);
       if (left_there < least) {
         least = left_there;
         best = image_there;
       }
-      if (left_there <= (tried == 1 ? 0.5 : 0.8) * left || (slope >= 0 && high == 0) || std::fabs(slope) <= kLevel * slope_here || tried == kMostTries || out.evaluations == kMostEvaluations) {
+      if (left_there <= (tried == 1 ? 0.5 : 0.8) * left || (slope >= 0 && high == 0) ||
+          std::fabs(slope) <= kLevel * slope_here || tried == kMostTries ||
+          out.evaluations == kMostEvaluations) {
         apart = there;
         rest = rest_there;
         image = image_there;
         left = left_there;
         break;
       }
-      if (tried == 1 && left < kNear * metric.length(image)) {   // what planes alone say, for Anderson's method has been misled
+      if (tried == 1 &&
+          left <
+              kNear * metric.length(image)) {  // what planes alone say, for Anderson's method has been misled
         anderson.forget();
         step = way;
         low_slope = slope_here = metric.product(rest, step);

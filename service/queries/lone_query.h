@@ -6,24 +6,31 @@
 
 namespace palpate {
 
-/// `refined`: force and torque of a lone pose. The tool hangs on the device by a spring of stiffness K and Kρ² (ρ: its radius of gyration), and is where spring and field
-/// balance: F = −∇ min_y [E(y) + ½ |x − y|²], the gradient of the field's Moreau envelope. It is conservative as the field is, and no contact, however large, is stiffer
-/// than the spring. In a session the control law does the same tick by tick (service/loop/virtual_coupling.h).
+/// `refined`: force and torque of a lone pose. The tool hangs on the device by a spring of stiffness K and
+/// Kρ² (ρ: its radius of gyration), and is where spring and field balance: F = −∇ min_y [E(y) + ½ |x − y|²],
+/// the gradient of the field's Moreau envelope. It is conservative as the field is, and no contact, however
+/// large, is stiffer than the spring. In a session the control law does the same tick by tick
+/// (service/loop/virtual_coupling.h).
 ///
-/// The field's planes at a pose give the next one, as in the law; Anderson's method makes up for what planes leave out. From the pose asked for on, so of
-/// several balances it finds the one that a hand at rest there would. One thread; allocates only as its answers grow.
+/// The field's planes at a pose give the next one, as in the law; Anderson's method makes up for what planes
+/// leave out. From the pose asked for on, so of several balances it finds the one that a hand at rest there
+/// would. One thread; allocates only as its answers grow.
 class LoneQuery {
  public:
-  static constexpr int kMostEvaluations = 60;      ///< from 2 for a flat contact to 20 for a pose far deeper than a hand gets (measured; the rest is room)
+  static constexpr int kMostEvaluations = 60;  ///< from 2 for a flat contact to 20 for a pose far deeper than
+                                               ///< a hand gets (measured; the rest is room)
 
   /// `geometry` outlives this. `stiffness` K in N/m.
   LoneQuery(const SceneGeometry& geometry, double stiffness);
 
-  /// Puts what would be felt into `response`, which is what respond() said at `pose`: `felt`, and the flag `unsettled`. Error: the back end failed.
+  /// Puts what would be felt into `response`, which is what respond() said at `pose`: `felt`, and the flag
+  /// `unsettled`. Error: the back end failed.
   Result<void> feel(PoseQuery& backend, const Ignored* ignored, const Pose& pose, ContactResponse& response);
 
-  /// `at_pose`: what respond() says at `pose`. Without contact there, or with K = 0, there is nothing to ask. `ignored` as for CollisionBackend::query. Error: the back end failed.
-  Result<Felt> ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose, const ContactResponse& at_pose);
+  /// `at_pose`: what respond() says at `pose`. Without contact there, or with K = 0, there is nothing to ask.
+  /// `ignored` as for CollisionBackend::query. Error: the back end failed.
+  Result<Felt> ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose,
+                   const ContactResponse& at_pose);
 
   CouplingSettings spring() const { return spring_; }
 

@@ -23,17 +23,21 @@ std::string part_of(const MeshReport& report, std::uint32_t triangle) {
   return "";
 }
 
-Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backend, const std::vector<Pose>& poses, const TouchRule& rule, std::optional<double> within_m, const Progress& progress) {
+Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backend,
+                              const std::vector<Pose>& poses, const TouchRule& rule,
+                              std::optional<double> within_m, const Progress& progress) {
   if (poses.empty()) return bad_value("the path has no pose, so nothing was examined");
   const SceneGeometry& geometry = scene.geometry;
   const double step = geometry.lattice.step_m;
-  const std::int32_t within = within_m ? static_cast<std::int32_t>(std::min(*within_m / step, 0x1p30)) : INT32_MAX - 2;
+  const std::int32_t within =
+      within_m ? static_cast<std::int32_t>(std::min(*within_m / step, 0x1p30)) : INT32_MAX - 2;
   const TouchedParts named(geometry);
   PathReport out;
   out.rule = rule;
   Contacts contacts;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!progress("poses", static_cast<double>(i) / static_cast<double>(poses.size()))) return Error{ErrorCode::kInternal, "interrupted"};
+    if (!progress("poses", static_cast<double>(i) / static_cast<double>(poses.size())))
+      return Error{ErrorCode::kInternal, "interrupted"};
     PathMoment moment;
     moment.pose = poses[i];
     const auto lattice = to_lattice(poses[i], geometry);
@@ -42,9 +46,12 @@ Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backen
     ++out.evaluations;
     if (moment.clearance.kind == Clearance::Kind::kTouching) {
       if (auto done = backend.query(*lattice, nullptr, contacts); !done) return done.error();
-      if (contacts.truncated) return Error{ErrorCode::kInternal, std::string("a frame had too little room for ") + contacts.truncated_capacity};
+      if (contacts.truncated)
+        return Error{ErrorCode::kInternal,
+                     std::string("a frame had too little room for ") + contacts.truncated_capacity};
       moment.depth_m = contacts.field.max_depth * step;
-      moment.touches = rule.tolerance == 0 || contacts.field.max_depth > static_cast<std::uint32_t>(rule.tolerance);
+      moment.touches =
+          rule.tolerance == 0 || contacts.field.max_depth > static_cast<std::uint32_t>(rule.tolerance);
       if (contacts.field.max_depth > 0) {
         moment.static_part = part_of(geometry.mockup_report, contacts.field.deepest_static);
         moment.tool_part = part_of(geometry.tool_report, contacts.field.deepest_mobile);
@@ -52,10 +59,13 @@ Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backen
         moment.static_part = part_of(geometry.mockup_report, contacts.cst.front());
         moment.tool_part = part_of(geometry.tool_report, contacts.cmt.front());
       }
-      const std::uint32_t place = contacts.field.max_depth > 0 ? contacts.field.deepest_mobile : !contacts.cmt.empty() ? contacts.cmt.front() : kNoTriangle;
+      const std::uint32_t place = contacts.field.max_depth > 0 ? contacts.field.deepest_mobile
+                                  : !contacts.cmt.empty()      ? contacts.cmt.front()
+                                                               : kNoTriangle;
       if (place != kNoTriangle) {
         const LatticeMesh& tool = geometry.tool;
-        const Vec3 a(transform(*lattice, tool.corner(place, 0))), b(transform(*lattice, tool.corner(place, 1))), c(transform(*lattice, tool.corner(place, 2)));
+        const Vec3 a(transform(*lattice, tool.corner(place, 0))),
+            b(transform(*lattice, tool.corner(place, 1))), c(transform(*lattice, tool.corner(place, 2)));
         moment.where = geometry.lattice.origin_m + step / 3 * (a + b + c);
         moment.facing = glm::cross(b - a, c - a);
       }
@@ -72,7 +82,8 @@ Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backen
     if (i == 0) {
       if (moment.touches) moment.first_contact = 0;
     } else {
-      const Vec3 tool_from = poses[i - 1].rotation * geometry.tool_centre_m + poses[i - 1].position, tool_to = poses[i].rotation * geometry.tool_centre_m + poses[i].position;
+      const Vec3 tool_from = poses[i - 1].rotation * geometry.tool_centre_m + poses[i - 1].position,
+                 tool_to = poses[i].rotation * geometry.tool_centre_m + poses[i].position;
       moment.travel_m = out.moments.back().travel_m + glm::length(tool_to - tool_from);
       const auto contact = first_contact(backend, geometry, poses[i - 1], poses[i], rule);
       if (!contact) return contact.error();

@@ -110,7 +110,8 @@ class Writer {
 /// Clocks tell no less than a nanosecond; more digits would be noise of the arithmetic.
 double to_nanoseconds(double us) { return std::round(us * 1000) / 1000; }
 
-void write_area(Writer& json, const QueryLine& line, const ContactArea& area, const AreaResponse& response, bool points) {
+void write_area(Writer& json, const QueryLine& line, const ContactArea& area, const AreaResponse& response,
+                bool points) {
   json.open('{');
   json.key("id");
   json.integer(area.id);
@@ -140,7 +141,8 @@ void write_area(Writer& json, const QueryLine& line, const ContactArea& area, co
 
 }  // namespace
 
-void append_query_line(const QueryLine& line, const Contacts& contacts, const ContactResponse& response, std::string& out) {
+void append_query_line(const QueryLine& line, const Contacts& contacts, const ContactResponse& response,
+                       std::string& out) {
   Writer json(out);
   json.open('{');
   json.key("number");
@@ -169,7 +171,8 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   json.open('[');
   // A truncated frame has no response at all.
   for (std::size_t i = 0; i < contacts.areas.size(); ++i)
-    write_area(json, line, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{}, response.contact_points);
+    write_area(json, line, contacts.areas[i], i < response.areas.size() ? response.areas[i] : AreaResponse{},
+               response.contact_points);
   json.close(']');
   json.vector("force", response.told().force);
   json.vector_or_null("torque", response.told().torque, response.contact_points);

@@ -13,7 +13,8 @@ class TouchedParts {
  public:
   explicit TouchedParts(const SceneGeometry& geometry);
 
-  /// Paths of the parts whose triangles are in contact: of CST and the areas, of CMT and the areas; each once, in the order of the scene.
+  /// Paths of the parts whose triangles are in contact: of CST and the areas, of CMT and the areas; each
+  /// once, in the order of the scene.
   std::vector<std::string> statics(const Contacts& contacts) const;
   std::vector<std::string> mobiles(const Contacts& contacts) const;
 

@@ -6,7 +6,9 @@
 
 namespace palpate {
 
-/// A path report as one self-contained page: verdict, clearance and depth along the way, sections through the closest moments.
-std::string path_page(const LoadedScene& scene, const PathReport& report, const std::string& path_file, const std::string& engine);
+/// A path report as one self-contained page: verdict, clearance and depth along the way, sections through the
+/// closest moments.
+std::string path_page(const LoadedScene& scene, const PathReport& report, const std::string& path_file,
+                      const std::string& engine);
 
 }  // namespace palpate

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "service/cli/numbers.h"
+#include "service/loop/virtual_coupling.h"
 #include "service/report/report_assets.h"
 #include "service/report/run_summary.h"
-#include "service/loop/virtual_coupling.h"
 
 namespace palpate {
 namespace {
@@ -34,19 +34,25 @@ Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
   Json rows = Json::array();
   const auto row = [&](const char* name, const std::string& value) { rows.push_back({name, value}); };
   row("scene", scene.file);
-  row("pace", facts.pace == "asap" ? fmt::format("asap: virtual time, results {} ticks old", scene.control.virtual_delay_ticks) : "realtime");
+  row("pace", facts.pace == "asap"
+                  ? fmt::format("asap: virtual time, results {} ticks old", scene.control.virtual_delay_ticks)
+                  : "realtime");
   row("profile", scene.response.profile == Profile::kPaper ? "paper" : "refined");
   row("stiffness K", fmt::format("{:g} N/m", scene.response.stiffness_n_per_m));
   row("smooth angle", fmt::format("{:g}°", scene.response.smooth_angle_deg));
   row("lattice step", fmt::format("{:.4g} nm", step * 1e9));
-  row("voxel", fmt::format("{}{}", millimetres(step * geometry.mockup_grid.size), scene.response.voxel_size_m ? "" : " (auto)"));
-  row("sample spacing", fmt::format("{}{}", millimetres(step * geometry.sample_spacing), scene.response.sample_spacing_m ? "" : " (auto)"));
+  row("voxel", fmt::format("{}{}", millimetres(step * geometry.mockup_grid.size),
+                           scene.response.voxel_size_m ? "" : " (auto)"));
+  row("sample spacing", fmt::format("{}{}", millimetres(step * geometry.sample_spacing),
+                                    scene.response.sample_spacing_m ? "" : " (auto)"));
   row("control law", scene.control.law == ForceLaw::kPrinted ? "printed" : "corrected");
   row("transitions n", scene.control.transitions ? fmt::format("{}", *scene.control.transitions) : "auto");
   const Couplings couplings = couplings_of(scene, geometry.tool_gyration_m);
-  const CouplingSettings& coupling = scene.response.profile == Profile::kPaper ? couplings.areas : couplings.field;
+  const CouplingSettings& coupling =
+      scene.response.profile == Profile::kPaper ? couplings.areas : couplings.field;
   if (coupling.on() && scene.control.law == ForceLaw::kCorrected)
-    row("virtual coupling", fmt::format("{:.3g} N/m, {:.3g} N·m/rad", coupling.stiffness_n_per_m, coupling.stiffness_nm_per_rad));
+    row("virtual coupling",
+        fmt::format("{:.3g} N/m, {:.3g} N·m/rad", coupling.stiffness_n_per_m, coupling.stiffness_nm_per_rad));
   row("fade-in", fmt::format("{:g} ms", scene.control.fade_in_ms));
   row("watchdog", fmt::format("{:g} ms", scene.control.watchdog_ms));
   row("device limits", fmt::format("{:g} N, {:g} N·m", scene.device.max_force_n, scene.device.max_torque_nm));
@@ -56,16 +62,19 @@ Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
 
 /// In a script element `</` would end it early; in a JSON string the slash may be escaped.
 std::string script_safe(std::string json) {
-  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.insert(at + 1, "\\");
+  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3)
+    json.insert(at + 1, "\\");
   return json;
 }
 
 }  // namespace
 
-std::string report_page(const SessionSummary& summary, const LoadedScene& loaded, const ReportFacts& facts, const ReportSeries& series) {
-  const std::string subtitle =
-      fmt::format("{:.1f} s in {} with the {} device; contact found by the engine {} on {}", static_cast<double>(summary.ticks) * 1e-3,
-                  facts.pace == "asap" ? "virtual time" : "real time", summary.haptic_device, summary.backend, summary.device);
+std::string report_page(const SessionSummary& summary, const LoadedScene& loaded, const ReportFacts& facts,
+                        const ReportSeries& series) {
+  const std::string subtitle = fmt::format(
+      "{:.1f} s in {} with the {} device; contact found by the engine {} on {}",
+      static_cast<double>(summary.ticks) * 1e-3, facts.pace == "asap" ? "virtual time" : "real time",
+      summary.haptic_device, summary.backend, summary.device);
   std::string data = "{\"name\":" + dump(scene_name(loaded.scene.file));
   data += ",\"subtitle\":" + dump(subtitle);
   data += ",\"notes\":" + dump(summary.notes);

@@ -5,7 +5,7 @@
 namespace palpate::assets {
 
 extern const std::string_view report_html, report_css, report_js;
-extern const std::string_view bench_html, bench_js;   ///< uses report_css
-extern const std::string_view chart_js;   ///< Chart.js as Debian packages it, MIT licence, notice inside
+extern const std::string_view bench_html, bench_js;  ///< uses report_css
+extern const std::string_view chart_js;  ///< Chart.js as Debian packages it, MIT licence, notice inside
 
 }  // namespace palpate::assets

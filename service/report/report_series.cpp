@@ -84,7 +84,7 @@ void Highlight::push(const TickRecord& tick) {
 }
 
 std::vector<TickRecord> Highlight::ticks() const {
-  if (until_complete_ > 0) return {recent_.begin(), recent_.end()};   // the run ended soon after
+  if (until_complete_ > 0) return {recent_.begin(), recent_.end()};  // the run ended soon after
   return best_;
 }
 
@@ -97,7 +97,8 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
     curves_[fmt::format("sent_torque_{}", axis)].push(tick.time_s, tick.sent.torque[i]);
   }
   highlight_.push(tick);
-  if (sections_.empty() || sections_.back().stage != tick.stage) sections_.push_back({tick.stage, tick.time_s, tick.time_s});
+  if (sections_.empty() || sections_.back().stage != tick.stage)
+    sections_.push_back({tick.stage, tick.time_s, tick.time_s});
   sections_.back().end_s = tick.time_s + kTickSeconds;
 
   if (figures_.empty()) figures_[tick.stage] = early_;
@@ -111,14 +112,17 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
 Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
   const double time_s = static_cast<double>(frame.tick) * kTickSeconds;
   const Contacts& contacts = frame.contacts;
-  const auto count = [&](const char* name, std::size_t n) { curves_[name].push(time_s, static_cast<double>(n)); };
+  const auto count = [&](const char* name, std::size_t n) {
+    curves_[name].push(time_s, static_cast<double>(n));
+  };
   count("cst", contacts.cst.size());
   count("bst", contacts.bst.size());
   count("est", contacts.est.size());
   count("cmt", contacts.cmt.size());
   count("bmt", contacts.bmt.size());
   count("imt", contacts.imt.size());
-  const auto with_force = std::count_if(frame.response.areas.begin(), frame.response.areas.end(), [](const AreaResponse& area) { return area.force != Vec3(0); });
+  const auto with_force = std::count_if(frame.response.areas.begin(), frame.response.areas.end(),
+                                        [](const AreaResponse& area) { return area.force != Vec3(0); });
   count("areas", static_cast<std::size_t>(with_force));
   curves_["frame_us"].push(time_s, frame.total_us);
   for (const Contacts::StageTime& time : contacts.times) {
@@ -126,14 +130,20 @@ Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
     if (is_new) time_stages_.emplace_back(time.stage);
     curve->second.push(time_s, time.us);
   }
-  for (auto& [stage, curve] : stage_us_)   // no time spent is a time, too: a curve must not run straight on to the stage's next turn
-    if (std::none_of(contacts.times.begin(), contacts.times.end(), [&](const Contacts::StageTime& time) { return time.stage == stage; })) curve.push(time_s, 0);
+  for (auto& [stage, curve] :
+       stage_us_)  // no time spent is a time, too: a curve must not run straight on to the stage's next turn
+    if (std::none_of(contacts.times.begin(), contacts.times.end(),
+                     [&](const Contacts::StageTime& time) { return time.stage == stage; }))
+      curve.push(time_s, 0);
 
-  // A frame belongs to the stage of its tick, whose record may still be on its way: the newest stage stands in, the first one for now.
+  // A frame belongs to the stage of its tick, whose record may still be on its way: the newest stage stands
+  // in, the first one for now.
   StageFigures& figures = sections_.empty() ? early_ : figures_[sections_.back().stage];
   ++figures.frames;
   figures.areas_max = std::max(figures.areas_max, static_cast<std::size_t>(with_force));
-  figures.triangles_max = std::max(figures.triangles_max, contacts.cst.size() + contacts.bst.size() + contacts.est.size() + contacts.cmt.size() + contacts.bmt.size() + contacts.imt.size());
+  figures.triangles_max =
+      std::max(figures.triangles_max, contacts.cst.size() + contacts.bst.size() + contacts.est.size() +
+                                          contacts.cmt.size() + contacts.bmt.size() + contacts.imt.size());
   figures.frame_us_sum += frame.total_us;
   figures.frame_us_max = std::max(figures.frame_us_max, frame.total_us);
   return {};
@@ -164,13 +174,17 @@ std::string ReportSeries::json(const std::vector<std::string>& stage_names) cons
     fmt::format_to(std::back_inserter(out), "[{:.7g}", tick.time_s);
     for (const Wrench* wrench : {&tick.uncontrolled, &tick.sent})
       for (const Vec3* v : {&wrench->force, &wrench->torque})
-        for (int i = 0; i < 3; ++i) fmt::format_to(std::back_inserter(out), ",{:.6g}", std::isfinite((*v)[i]) ? (*v)[i] : 0.0);
+        for (int i = 0; i < 3; ++i)
+          fmt::format_to(std::back_inserter(out), ",{:.6g}", std::isfinite((*v)[i]) ? (*v)[i] : 0.0);
     out.push_back(']');
   }
   out += "],\"stages\":";
   nlohmann::json stages = nlohmann::json::array();
   for (const Section& section : sections_)
-    stages.push_back({{"stage", section.stage}, {"name", section.stage > 0 ? stage_text(section.stage, stage_names) : ""}, {"begin", section.begin_s}, {"end", section.end_s}});
+    stages.push_back({{"stage", section.stage},
+                      {"name", section.stage > 0 ? stage_text(section.stage, stage_names) : ""},
+                      {"begin", section.begin_s},
+                      {"end", section.end_s}});
   out += stages.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   out += ",\"stage_figures\":";
   nlohmann::json rows = nlohmann::json::array();
@@ -182,7 +196,8 @@ std::string ReportSeries::json(const std::vector<std::string>& stage_names) cons
                     {"torque_max", figures.torque_max_nm},
                     {"areas_max", figures.areas_max},
                     {"triangles_max", figures.triangles_max},
-                    {"frame_us_mean", figures.frames > 0 ? figures.frame_us_sum / static_cast<double>(figures.frames) : 0.0},
+                    {"frame_us_mean",
+                     figures.frames > 0 ? figures.frame_us_sum / static_cast<double>(figures.frames) : 0.0},
                     {"frame_us_max", figures.frame_us_max}});
   out += rows.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return out;

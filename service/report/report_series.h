@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// A long curve in bounded memory: while it fits every point is kept; then neighbouring points share a bin that keeps its
-/// smallest, largest and mean value, so no peak is lost. x must ascend.
+/// A long curve in bounded memory: while it fits every point is kept; then neighbouring points share a bin
+/// that keeps its smallest, largest and mean value, so no peak is lost. x must ascend.
 class Envelope {
  public:
   void push(double x, double y);
@@ -21,7 +21,7 @@ class Envelope {
   void append_means(std::string& out) const;
 
  private:
-  static constexpr std::size_t kBins = 800;   ///< about a bin a pixel of a wide screen (chosen)
+  static constexpr std::size_t kBins = 800;  ///< about a bin a pixel of a wide screen (chosen)
 
   struct Bin {
     double first_x = 0, min_x = 0, max_x = 0, min = 0, max = 0, sum = 0;
@@ -41,18 +41,18 @@ class Highlight {
   std::vector<TickRecord> ticks() const;
 
  private:
-  static constexpr std::size_t kTicks = 200;   ///< the chapter's Fig. 13 shows frames 3450–3650
+  static constexpr std::size_t kTicks = 200;  ///< the chapter's Fig. 13 shows frames 3450–3650
 
   std::deque<TickRecord> recent_;
   std::vector<TickRecord> best_;
-  double strongest_ = 0;                       ///< N, largest response force so far
-  std::size_t until_complete_ = 0;             ///< ticks still wanted after the strongest one; 0: nothing pending
+  double strongest_ = 0;            ///< N, largest response force so far
+  std::size_t until_complete_ = 0;  ///< ticks still wanted after the strongest one; 0: nothing pending
 };
 
 /// What the report says of one stage of the path.
 struct StageFigures {
   std::int64_t ticks = 0, frames = 0;
-  double force_max_n = 0, torque_max_nm = 0;   ///< of the response
+  double force_max_n = 0, torque_max_nm = 0;  ///< of the response
   std::size_t areas_max = 0, triangles_max = 0;
   double frame_us_sum = 0, frame_us_max = 0;
 };
@@ -63,7 +63,8 @@ class ReportSeries : public RunObserver {
   Result<void> on_tick(const TickRecord& tick) override;
   Result<void> on_frame(const FrameRecord& frame) override;
 
-  /// The members "curves", "highlight", "stages" and "stage_figures" of the report's data, without braces around.
+  /// The members "curves", "highlight", "stages" and "stage_figures" of the report's data, without braces
+  /// around.
   std::string json(const std::vector<std::string>& stage_names) const;
 
  private:
@@ -71,12 +72,12 @@ class ReportSeries : public RunObserver {
     std::int32_t stage;
     double begin_s, end_s;
   };
-  std::map<std::string, Envelope> curves_;       ///< by name: "response_force_x", "cst", "frame_us", …
-  std::vector<std::string> time_stages_;         ///< in the order of a frame
-  std::map<std::string, Envelope> stage_us_;     ///< by the back end's name of the stage
+  std::map<std::string, Envelope> curves_;    ///< by name: "response_force_x", "cst", "frame_us", …
+  std::vector<std::string> time_stages_;      ///< in the order of a frame
+  std::map<std::string, Envelope> stage_us_;  ///< by the back end's name of the stage
   std::vector<Section> sections_;
   std::map<std::int32_t, StageFigures> figures_;
-  StageFigures early_;                           ///< of frames before the first tick
+  StageFigures early_;  ///< of frames before the first tick
   Highlight highlight_;
 };
 

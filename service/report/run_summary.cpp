@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <string_view>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "service/cli/numbers.h"
 
@@ -13,7 +13,9 @@ namespace palpate {
 
 std::string summary_json(const SessionSummary& summary) {
   using Json = nlohmann::ordered_json;
-  const auto percentiles = [](const Percentiles& p) { return Json{{"p50", p.p50}, {"p99", p.p99}, {"max", p.max}}; };
+  const auto percentiles = [](const Percentiles& p) {
+    return Json{{"p50", p.p50}, {"p99", p.p99}, {"max", p.max}};
+  };
   const Percentiles& late = summary.lateness_us;
   const auto histogram = [](const std::vector<HistogramBin>& bins) {
     Json out = Json::array();
@@ -23,35 +25,43 @@ std::string summary_json(const SessionSummary& summary) {
   Json json = Json::object();
   if (summary.realtime) {
     const RealtimeOutlook& real = *summary.realtime;
-    json["real_time"] = {{"kept_up", real.kept_up}, {"result_age_ticks", percentiles(real.result_age_ticks)}, {"watchdog_ticks", real.watchdog_ticks}, {"sentence", real.sentence}};
+    json["real_time"] = {{"kept_up", real.kept_up},
+                         {"result_age_ticks", percentiles(real.result_age_ticks)},
+                         {"watchdog_ticks", real.watchdog_ticks},
+                         {"sentence", real.sentence}};
   }
-  json.update({{"static_triangles", summary.static_triangles},
-                     {"tool_triangles", summary.tool_triangles},
-                     {"backend", summary.backend},
-                     {"device", summary.device},
-                     {"profile", summary.profile},
-                     {"law", summary.law},
-                     {"ticks", summary.ticks},
-                     {"missed_ticks", summary.missed_ticks},
-                     {"lateness_us", {{"p50", late.p50}, {"p99", late.p99}, {"p999", late.p999}, {"max", late.max}}},
-                     {"result_age_ticks", percentiles(summary.result_age_ticks)},
-                     {"frame_us", percentiles(summary.frame_us)},
-                     {"stages_reached", summary.stages_reached},
-                     {"areas_max", summary.areas_max},
-                     {"force_max_N", summary.force_max_N},
-                     {"torque_max_Nm", summary.torque_max_Nm}});
+  json.update(
+      {{"static_triangles", summary.static_triangles},
+       {"tool_triangles", summary.tool_triangles},
+       {"backend", summary.backend},
+       {"device", summary.device},
+       {"profile", summary.profile},
+       {"law", summary.law},
+       {"ticks", summary.ticks},
+       {"missed_ticks", summary.missed_ticks},
+       {"lateness_us", {{"p50", late.p50}, {"p99", late.p99}, {"p999", late.p999}, {"max", late.max}}},
+       {"result_age_ticks", percentiles(summary.result_age_ticks)},
+       {"frame_us", percentiles(summary.frame_us)},
+       {"stages_reached", summary.stages_reached},
+       {"areas_max", summary.areas_max},
+       {"force_max_N", summary.force_max_N},
+       {"torque_max_Nm", summary.torque_max_Nm}});
   json["lateness_histogram_us"] = histogram(summary.lateness_bins_us);
   json["result_age_histogram_ticks"] = histogram(summary.result_age_bins_ticks);
-  if (summary.ignored_patches_first > 0) json["ignored_patches"] = {{"first", summary.ignored_patches_first}, {"end", summary.ignored_patches_end}};
+  if (summary.ignored_patches_first > 0)
+    json["ignored_patches"] = {{"first", summary.ignored_patches_first},
+                               {"end", summary.ignored_patches_end}};
   json["coarse_frames"] = summary.coarse_frames;
   if (summary.coarse_frames > 0) json["coarsest_share"] = summary.coarsest_share;
   json["no_direction_frames"] = summary.no_direction_frames;
   if (summary.no_direction_frames > 0) {
     const Vec3& p = summary.no_direction_pose.position;
     const Quat& q = summary.no_direction_pose.rotation;
-    json["no_direction_first"] = {{"tick", summary.no_direction_tick}, {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}}};
+    json["no_direction_first"] = {{"tick", summary.no_direction_tick},
+                                  {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}}};
   }
-  if (!summary.static_parts.empty()) json["parts"] = {{"static", summary.static_parts}, {"tool", summary.tool_parts}};
+  if (!summary.static_parts.empty())
+    json["parts"] = {{"static", summary.static_parts}, {"tool", summary.tool_parts}};
   if (!summary.notes.empty()) json["notes"] = summary.notes;
   if (summary.failure) json["failure"] = summary.failure->sentence;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -66,10 +76,12 @@ std::string scene_name(const std::string& file) {
 
 std::string stage_text(int stage, const std::vector<std::string>& stage_names) {
   const bool named = stage >= 1 && static_cast<std::size_t>(stage) <= stage_names.size();
-  return named ? fmt::format("{} {}", stage, stage_names[static_cast<std::size_t>(stage) - 1]) : fmt::format("{}", stage);
+  return named ? fmt::format("{} {}", stage, stage_names[static_cast<std::size_t>(stage) - 1])
+               : fmt::format("{}", stage);
 }
 
-std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSummary& summary, const std::vector<std::string>& stage_names) {
+std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSummary& summary,
+                                                               const std::vector<std::string>& stage_names) {
   std::vector<std::pair<std::string, std::string>> lines;
   const auto line = [&](const char* name, std::string value) { lines.emplace_back(name, std::move(value)); };
   if (summary.realtime) line("real time", summary.realtime->sentence);
@@ -78,20 +90,27 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
   line("back end", fmt::format("{}, {}", summary.backend, summary.device));
   line("haptic device", summary.haptic_device);
   line("method", fmt::format("profile {}, law {}", summary.profile, summary.law));
-  line("ticks", fmt::format("{} of 1 ms, {} missed", count_text(summary.ticks), count_text(summary.missed_ticks)));
+  line("ticks",
+       fmt::format("{} of 1 ms, {} missed", count_text(summary.ticks), count_text(summary.missed_ticks)));
   if (summary.lateness_us.max > 0)
-    line("lateness", fmt::format("{:.0f} µs median, {:.0f} µs p99, {:.0f} µs at most", summary.lateness_us.p50, summary.lateness_us.p99,
-                                 summary.lateness_us.max));
-  line("result age", fmt::format("{:.0f} ticks median, {:.0f} p99, {:.0f} at most", summary.result_age_ticks.p50, summary.result_age_ticks.p99, summary.result_age_ticks.max));
-  line("frames", fmt::format("{}: {:.3g} ms median, {:.3g} ms p99, {:.3g} ms at most", count_text(summary.frames), summary.frame_us.p50 / 1000,
-                             summary.frame_us.p99 / 1000, summary.frame_us.max / 1000));
+    line("lateness", fmt::format("{:.0f} µs median, {:.0f} µs p99, {:.0f} µs at most",
+                                 summary.lateness_us.p50, summary.lateness_us.p99, summary.lateness_us.max));
+  line("result age",
+       fmt::format("{:.0f} ticks median, {:.0f} p99, {:.0f} at most", summary.result_age_ticks.p50,
+                   summary.result_age_ticks.p99, summary.result_age_ticks.max));
+  line("frames",
+       fmt::format("{}: {:.3g} ms median, {:.3g} ms p99, {:.3g} ms at most", count_text(summary.frames),
+                   summary.frame_us.p50 / 1000, summary.frame_us.p99 / 1000, summary.frame_us.max / 1000));
   std::string stages;
-  for (const int stage : summary.stages_reached) stages += (stages.empty() ? "" : stage_names.empty() ? ", " : "; ") + stage_text(stage, stage_names);
+  for (const int stage : summary.stages_reached)
+    stages += (stages.empty() ? "" : stage_names.empty() ? ", " : "; ") + stage_text(stage, stage_names);
   if (!stages.empty()) line("stages", stages);
-  constexpr std::size_t kToldParts = 5;   // chosen
+  constexpr std::size_t kToldParts = 5;  // chosen
   std::string touched;
-  for (std::size_t i = 0; i < std::min(kToldParts, summary.static_parts.size()); ++i) touched += (touched.empty() ? "" : ", ") + summary.static_parts[i];
-  if (summary.static_parts.size() > kToldParts) touched += fmt::format(" and {} more parts", summary.static_parts.size() - kToldParts);
+  for (std::size_t i = 0; i < std::min(kToldParts, summary.static_parts.size()); ++i)
+    touched += (touched.empty() ? "" : ", ") + summary.static_parts[i];
+  if (summary.static_parts.size() > kToldParts)
+    touched += fmt::format(" and {} more parts", summary.static_parts.size() - kToldParts);
   if (!touched.empty()) line("touched", touched);
   line("areas", fmt::format("{} at once at most", summary.areas_max));
   line("force", fmt::format("{:.3g} N at most", summary.force_max_N));
@@ -105,7 +124,8 @@ std::string summary_text(const SessionSummary& summary, const std::vector<std::s
     // The stages, one below the other.
     std::string lines = value;
     if (std::string_view(name) == "stages")
-      for (std::size_t at = 0; (at = lines.find("; ", at)) != std::string::npos;) lines.replace(at, 2, "\n" + std::string(15, ' '));
+      for (std::size_t at = 0; (at = lines.find("; ", at)) != std::string::npos;)
+        lines.replace(at, 2, "\n" + std::string(15, ' '));
     text += fmt::format("{:<14} {}\n", name, lines);
   }
   return text;

@@ -7,12 +7,13 @@
 
 namespace palpate {
 
-/// summary.json: the contract's fields in its order; then `notes`, sentences on what went on, and `failure`, why the run ended before its
-/// time, where there are any.
+/// summary.json: the contract's fields in its order; then `notes`, sentences on what went on, and `failure`,
+/// why the run ended before its time, where there are any.
 std::string summary_json(const SessionSummary& summary);
 
 /// The same for a person, as pairs of name and value. `stage_names`: stage i is stage_names[i − 1].
-std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSummary& summary, const std::vector<std::string>& stage_names);
+std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSummary& summary,
+                                                               const std::vector<std::string>& stage_names);
 
 /// summary_lines in columns.
 std::string summary_text(const SessionSummary& summary, const std::vector<std::string>& stage_names);

@@ -12,8 +12,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kWidth = 460, kHeight = 340;   // of the picture, its own units
-constexpr std::size_t kMostLines = 20'000;      // of a body (chosen: a megabyte)
+constexpr double kWidth = 460, kHeight = 340;  // of the picture, its own units
+constexpr std::size_t kMostLines = 20'000;     // of a body (chosen: a megabyte)
 
 struct Line {
   double x[2], y[2];
@@ -35,12 +35,15 @@ std::optional<Line> cut(const Vec3 corners[3], const SectionView& view, const Ve
     ++ends;
   }
   if (ends < 2) return std::nullopt;
-  if (std::max(line.x[0], line.x[1]) < 0 || std::min(line.x[0], line.x[1]) > kWidth || std::max(line.y[0], line.y[1]) < 0 || std::min(line.y[0], line.y[1]) > kHeight) return std::nullopt;
+  if (std::max(line.x[0], line.x[1]) < 0 || std::min(line.x[0], line.x[1]) > kWidth ||
+      std::max(line.y[0], line.y[1]) < 0 || std::min(line.y[0], line.y[1]) > kHeight)
+    return std::nullopt;
   return line;
 }
 
 template <class Corner>
-std::string outline(std::size_t triangles, const char* colour, const SectionView& view, const Corner& corner) {
+std::string outline(std::size_t triangles, const char* colour, const SectionView& view,
+                    const Corner& corner) {
   const Vec3 normal = glm::cross(view.right, view.up);
   std::string path;
   std::size_t lines = 0;
@@ -51,12 +54,19 @@ std::string outline(std::size_t triangles, const char* colour, const SectionView
     ++lines;
     path += fmt::format("M{:.2f} {:.2f}L{:.2f} {:.2f}", line->x[0], line->y[0], line->x[1], line->y[1]);
   }
-  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linecap=\"round\"/>", path, colour);
+  return fmt::format(
+      "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linecap=\"round\"/>", path,
+      colour);
 }
 
 std::string text_of(const std::string& text) {
   std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+  for (const char c : text)
+    out += c == '<'   ? "&lt;"
+           : c == '>' ? "&gt;"
+           : c == '&' ? "&amp;"
+           : c == '"' ? "&quot;"
+                      : std::string(1, c);
   return out;
 }
 
@@ -88,21 +98,35 @@ SectionView section_through(const Vec3& middle, const Vec3& apart, double width_
 }
 
 std::string section_svg(const SceneGeometry& geometry, const LatticePose& pose, const SectionView& view) {
-  const auto world = [&](const Int3& p) { return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p); };
-  std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http:{}\">", kWidth, kHeight, "//www.w3.org/2000/svg");
-  out += outline(geometry.mockup.triangles.size(), "var(--cst, #c2453f)", view, [&](std::uint32_t t, int k) { return world(geometry.mockup.corner(t, k)); });
-  out += outline(geometry.tool.triangles.size(), "var(--cmt, #2f6fd6)", view, [&](std::uint32_t t, int k) { return world(transform(pose, geometry.tool.corner(t, k))); });
+  const auto world = [&](const Int3& p) {
+    return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p);
+  };
+  std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http:{}\">", kWidth, kHeight,
+                                "//www.w3.org/2000/svg");
+  out += outline(geometry.mockup.triangles.size(), "var(--cst, #c2453f)", view,
+                 [&](std::uint32_t t, int k) { return world(geometry.mockup.corner(t, k)); });
+  out += outline(geometry.tool.triangles.size(), "var(--cmt, #2f6fd6)", view,
+                 [&](std::uint32_t t, int k) { return world(transform(pose, geometry.tool.corner(t, k))); });
   const double scale = kWidth / view.width_m;
   const auto x_of = [&](const Vec3& p) { return kWidth / 2 + scale * glm::dot(p - view.middle, view.right); };
   const auto y_of = [&](const Vec3& p) { return kHeight / 2 - scale * glm::dot(p - view.middle, view.up); };
   if (view.gap)
-    out += fmt::format("<line x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" stroke=\"currentColor\" stroke-width=\"1.2\" stroke-dasharray=\"3 2\"/>", x_of(view.on_static), y_of(view.on_static),
-                       x_of(view.on_mobile), y_of(view.on_mobile));
-  out += fmt::format("<circle cx=\"{0}\" cy=\"{1}\" r=\"7\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1\"/>", kWidth / 2, kHeight / 2);
-  out += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"13\" fill=\"currentColor\" paint-order=\"stroke\" stroke=\"var(--card, #fff)\" stroke-width=\"3\">{}</text>", kWidth / 2 + 12, kHeight / 2 - 10, text_of(view.label));
+    out += fmt::format(
+        "<line x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" stroke=\"currentColor\" "
+        "stroke-width=\"1.2\" stroke-dasharray=\"3 2\"/>",
+        x_of(view.on_static), y_of(view.on_static), x_of(view.on_mobile), y_of(view.on_mobile));
+  out += fmt::format(
+      "<circle cx=\"{0}\" cy=\"{1}\" r=\"7\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1\"/>",
+      kWidth / 2, kHeight / 2);
+  out += fmt::format(
+      "<text x=\"{}\" y=\"{}\" font-size=\"13\" fill=\"currentColor\" paint-order=\"stroke\" "
+      "stroke=\"var(--card, #fff)\" stroke-width=\"3\">{}</text>",
+      kWidth / 2 + 12, kHeight / 2 - 10, text_of(view.label));
   const double bar = bar_length(view.width_m);
-  out += fmt::format("<path d=\"M12 {0}h{1:.2f}m0 -4v8M12 {2}v8\" fill=\"none\" stroke=\"currentColor\"/><text x=\"12\" y=\"{3}\" font-size=\"12\" fill=\"currentColor\">{4}</text>", kHeight - 14, scale * bar,
-                     kHeight - 18, kHeight - 22, length_text(bar));
+  out += fmt::format(
+      "<path d=\"M12 {0}h{1:.2f}m0 -4v8M12 {2}v8\" fill=\"none\" stroke=\"currentColor\"/><text x=\"12\" "
+      "y=\"{3}\" font-size=\"12\" fill=\"currentColor\">{4}</text>",
+      kHeight - 14, scale * bar, kHeight - 18, kHeight - 22, length_text(bar));
   return out + "</svg>";
 }
 

@@ -4,11 +4,11 @@
 
 #include "service/cli/cli.h"
 #include "service/server/http/limits.h"
-#include "service/server/metrics.h"
 #include "service/server/http/router.h"
+#include "service/server/metrics.h"
+#include "service/server/queries/worker_pool.h"
 #include "service/server/scenes/scene_store.h"
 #include "service/server/sessions/session_host.h"
-#include "service/server/queries/worker_pool.h"
 
 namespace palpate {
 
@@ -21,7 +21,7 @@ struct InfoSources {
   SessionHost& sessions;
   WorkerPool& workers;
   const std::atomic<bool>& stopping;
-  std::string backend;   ///< as SceneOptions::backend
+  std::string backend;  ///< as SceneOptions::backend
 };
 
 /// /healthz, /readyz, /metrics, /openapi.json, /v1/info, /v1/devices and the viewer's files at /.

@@ -19,7 +19,9 @@ std::string sentence_of(const char* event, const nlohmann::ordered_json& fields)
   std::string name = event, told;
   std::replace(name.begin(), name.end(), '_', ' ');
   for (const auto& [key, value] : fields.items()) {
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    const std::string text = value.is_string()
+                                 ? value.get<std::string>()
+                                 : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     if (!text.empty()) told += (told.empty() ? ": " : ", ") + key + " " + one_line(text);
   }
   return "palpate: " + name + told + "\n";
@@ -42,9 +44,11 @@ void Log::write(const char* level, const char* event, const nlohmann::ordered_js
   }
   const auto now = std::chrono::time_point_cast<std::chrono::milliseconds>(std::chrono::system_clock::now());
   const auto ms = now.time_since_epoch().count() % 1000;
-  nlohmann::ordered_json line = {{"time", fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), ms)},
-                                 {"level", level},
-                                 {"event", event}};
+  nlohmann::ordered_json line = {
+      {"time", fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z",
+                           fmt::gmtime(std::chrono::system_clock::to_time_t(now)), ms)},
+      {"level", level},
+      {"event", event}};
   line.update(fields);
   const std::string text = line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   const std::lock_guard lock(mutex_);

@@ -8,7 +8,8 @@ namespace palpate {
 /// Lines on standard error, each written whole. Any thread but a loop's.
 class Log {
  public:
-  /// kJson: an object a line, {"time","level","event",…}, for programs that keep logs. kPlain: sentences, without one for each request, for a terminal.
+  /// kJson: an object a line, {"time","level","event",…}, for programs that keep logs. kPlain: sentences,
+  /// without one for each request, for a terminal.
   enum class Form { kJson, kPlain };
   /// `quiet`: warnings alone.
   explicit Log(Form form = Form::kJson, bool quiet = false) : form_(form), quiet_(quiet) {}

@@ -3,6 +3,6 @@
 
 namespace palpate::assets {
 
-extern const std::string_view openapi_json;   ///< service/server/openapi.json
+extern const std::string_view openapi_json;  ///< service/server/openapi.json
 
 }  // namespace palpate::assets

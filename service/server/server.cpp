@@ -12,36 +12,39 @@
 #include <thread>
 
 #include "service/cli/console.h"
-#include "service/server/queries/batch_queue.h"
-#include "service/server/scenes/drawing_routes.h"
 #include "service/server/info_routes.h"
+#include "service/server/queries/batch_queue.h"
 #include "service/server/queries/query_route.h"
-#include "service/server/sessions/remote_loops.h"
-#include "service/server/sessions/run_routes.h"
+#include "service/server/queries/worker_pool.h"
+#include "service/server/scenes/drawing_routes.h"
 #include "service/server/scenes/scene_routes.h"
 #include "service/server/scenes/scene_store.h"
+#include "service/server/sessions/remote_loops.h"
+#include "service/server/sessions/run_routes.h"
 #include "service/server/sessions/session_host.h"
-#include "service/server/queries/worker_pool.h"
 
 namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kGrace = 5;            ///< s for answers under way and farewells; chosen
-constexpr std::size_t kShortestToken = 16;   ///< characters; chosen
+constexpr double kGrace = 5;                ///< s for answers under way and farewells; chosen
+constexpr std::size_t kShortestToken = 16;  ///< characters; chosen
 constexpr int kWorkers = 2;
 
 /// "127.0.0.1:8090", "[::1]:8090".
 Result<ListenOptions> parse_listen(const std::string& text) {
   const auto colon = text.rfind(':');
   ListenOptions out;
-  if (colon == std::string::npos || colon == 0) return bad_value("--listen '" + text + "' is no ADDRESS:PORT");
+  if (colon == std::string::npos || colon == 0)
+    return bad_value("--listen '" + text + "' is no ADDRESS:PORT");
   out.address = text.substr(0, colon);
-  if (out.address.front() == '[' && out.address.back() == ']') out.address = out.address.substr(1, out.address.size() - 2);
+  if (out.address.front() == '[' && out.address.back() == ']')
+    out.address = out.address.substr(1, out.address.size() - 2);
   if (out.address == "localhost") out.address = "127.0.0.1";
   const auto [stop, error] = std::from_chars(text.data() + colon + 1, text.data() + text.size(), out.port);
-  if (error != std::errc() || stop != text.data() + text.size()) return bad_value("--listen '" + text + "': the port is no number from 0 to 65535");
+  if (error != std::errc() || stop != text.data() + text.size())
+    return bad_value("--listen '" + text + "': the port is no number from 0 to 65535");
   return out;
 }
 
@@ -51,10 +54,14 @@ Result<std::string> read_token(const std::string& path) {
   std::string token;
   if (!in || !std::getline(in, token)) return bad_value("--token-file " + path + ": the file can't be read");
   while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) token.pop_back();
-  if (token.size() < kShortestToken) return bad_value("--token-file " + path + ": the token has " + std::to_string(token.size()) + " characters, at least 16 are wanted");
+  if (token.size() < kShortestToken)
+    return bad_value("--token-file " + path + ": the token has " + std::to_string(token.size()) +
+                     " characters, at least 16 are wanted");
   for (const char c : token)
-    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.' || c == '~'))
-      return bad_value("--token-file " + path + ": the token has a character that is no letter, digit, '-', '_', '.' or '~'");
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+          c == '_' || c == '.' || c == '~'))
+      return bad_value("--token-file " + path +
+                       ": the token has a character that is no letter, digit, '-', '_', '.' or '~'");
   return token;
 }
 
@@ -65,8 +72,11 @@ class Spool {
     auto spool = std::unique_ptr<Spool>(new Spool);
     std::error_code error;
     if (!wanted.empty()) fs::create_directories(wanted, error);
-    std::string pattern = (wanted.empty() ? fs::temp_directory_path(error) : fs::path(wanted)) / "palpate-uploads-XXXXXX";
-    if (error || !::mkdtemp(pattern.data())) return bad_value("--spool " + (wanted.empty() ? pattern : wanted) + ": no folder for uploads can be made there");
+    std::string pattern =
+        (wanted.empty() ? fs::temp_directory_path(error) : fs::path(wanted)) / "palpate-uploads-XXXXXX";
+    if (error || !::mkdtemp(pattern.data()))
+      return bad_value("--spool " + (wanted.empty() ? pattern : wanted) +
+                       ": no folder for uploads can be made there");
     spool->path_ = fs::canonical(pattern, error);
     return spool;
   }
@@ -81,11 +91,13 @@ class Spool {
   fs::path path_;
 };
 
-AccessRules access_rules(const ListenOptions& listen, const std::vector<std::string>& hosts, std::string token) {
+AccessRules access_rules(const ListenOptions& listen, const std::vector<std::string>& hosts,
+                         std::string token) {
   AccessRules rules;
   rules.token = std::move(token);
   rules.hosts = {"localhost", "127.0.0.1", "[::1]"};
-  rules.hosts.push_back(listen.address.find(':') == std::string::npos ? listen.address : "[" + listen.address + "]");
+  rules.hosts.push_back(listen.address.find(':') == std::string::npos ? listen.address
+                                                                      : "[" + listen.address + "]");
   for (const std::string& host : hosts) rules.hosts.push_back(host_name(host));
   return rules;
 }
@@ -97,23 +109,28 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   if (!listen) return listen.error();
   listen->certificate = options.certificate;
   listen->key = options.key;
-  if (options.certificate.empty() != options.key.empty()) return Error{ErrorCode::kUsage, "--tls-certificate and --tls-key go together"};
+  if (options.certificate.empty() != options.key.empty())
+    return Error{ErrorCode::kUsage, "--tls-certificate and --tls-key go together"};
   if (!is_loopback(listen->address) && (options.token_file.empty() || options.certificate.empty()))
-    return Error{ErrorCode::kUsage, "--listen " + options.listen + " is beyond this machine: that needs --token-file, --tls-certificate and --tls-key"};
+    return Error{ErrorCode::kUsage,
+                 "--listen " + options.listen +
+                     " is beyond this machine: that needs --token-file, --tls-certificate and --tls-key"};
   Result<std::string> token = read_token(options.token_file);
   if (!token) return token.error();
   std::error_code error;
   fs::path root;
   if (!options.root.empty()) {
     root = fs::canonical(options.root, error);
-    if (error || !fs::is_directory(root, error)) return bad_value("--root " + options.root + ": there is no such folder");
+    if (error || !fs::is_directory(root, error))
+      return bad_value("--root " + options.root + ": there is no such folder");
   }
   auto spool = Spool::open(options.spool);
   if (!spool) return spool.error();
   catch_interrupts();
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);
-  // Back ends are made while threads run, and a driver reads this when its first device is looked for (GpuOptions::inline_execution).
+  // Back ends are made while threads run, and a driver reads this when its first device is looked for
+  // (GpuOptions::inline_execution).
   ::setenv("LP_NUM_THREADS", "0", 0);
 
   // In the order in which they may refer to each other; destroyed from the last to the first.
@@ -130,7 +147,14 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   SessionHost sessions(parts, store, limits, metrics, log, root);
   WorkerPool workers(kWorkers);
   std::atomic<bool> stopping{false};
-  add_info_routes(router, {.parts = parts, .limits = limits, .metrics = metrics, .store = store, .sessions = sessions, .workers = workers, .stopping = stopping, .backend = options.backend});
+  add_info_routes(router, {.parts = parts,
+                           .limits = limits,
+                           .metrics = metrics,
+                           .store = store,
+                           .sessions = sessions,
+                           .workers = workers,
+                           .stopping = stopping,
+                           .backend = options.backend});
   add_scene_routes(router, store, workers, metrics, limits, root, (*spool)->path());
   add_query_route(router, store, batches, workers, limits);
   add_session_routes(router, sessions, workers, limits);
@@ -139,15 +163,22 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   add_run_routes(router, workers, root);
 
   if (auto started = listener.start(*listen); !started) return started;
-  const std::string shown = (listen->address.find(':') == std::string::npos ? listen->address : "[" + listen->address + "]") + ":" + std::to_string(listener.port());
+  const std::string shown =
+      (listen->address.find(':') == std::string::npos ? listen->address : "[" + listen->address + "]") + ":" +
+      std::to_string(listener.port());
   const std::string url = (options.certificate.empty() ? "http://" : "https://") + shown + "/";
-  log.info("listening", {{"address", shown}, {"tls", !options.certificate.empty()}, {"token", !rules.token.empty()}, {"root", root.string()}, {"url", url}});
-  if (plain && !Console::quiet()) Console().note("the viewer is at " + url + " for a browser; Ctrl-C ends the server");
+  log.info("listening", {{"address", shown},
+                         {"tls", !options.certificate.empty()},
+                         {"token", !rules.token.empty()},
+                         {"root", root.string()},
+                         {"url", url}});
+  if (plain && !Console::quiet())
+    Console().note("the viewer is at " + url + " for a browser; Ctrl-C ends the server");
   while (!interrupted()) ::poll(nullptr, 0, 50);
 
   log.info("stopping", nlohmann::ordered_json::object());
   stopping = true;
-  sessions.stop_all();   // zero force before anything else
+  sessions.stop_all();  // zero force before anything else
   store.cancel();
   listener.stop(kGrace);
   log.info("stopped", nlohmann::ordered_json::object());

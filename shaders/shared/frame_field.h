@@ -1,7 +1,8 @@
-// What the response half of a frame keeps and leaves in profile `refined`: the pressure field. docs/EXACTNESS.md section 8.
+// What the response half of a frame keeps and leaves in profile `refined`: the pressure field.
+// docs/EXACTNESS.md section 8.
 //
-// Sums are of 64-bit words that many workgroups add to, in any order: FieldWork and CarrierWork are arrays of words to the shaders, by the
-// numbers below, and structs to the host.
+// Sums are of 64-bit words that many workgroups add to, in any order: FieldWork and CarrierWork are arrays of
+// words to the shaders, by the numbers below, and structs to the host.
 #ifndef PALPATE_SHARED_FRAME_FIELD_H
 #define PALPATE_SHARED_FRAME_FIELD_H
 #include "shaders/shared/base.h"
@@ -9,45 +10,52 @@
 
 PALPATE_SHARED_BEGIN
 
-// ---- bindings and lists --------------------------------------------------------------------------------------------------
+// ---- bindings and lists
+// --------------------------------------------------------------------------------------------------
 
-PALPATE_CONSTANT int32_t kBindFieldWork = 96;         // int64_t[kFieldWords]: FieldWork
-PALPATE_CONSTANT int32_t kBindCarrierWork = 97;       // int64_t[kCarrierWords · C_s], by slot: CarrierWork
-PALPATE_CONSTANT int32_t kBindFieldTiles = 98;        // kListFieldTiles: FieldTile
-PALPATE_CONSTANT int32_t kBindMockupPoints = 99;      // kListMockupPoints: FieldPoint, extra samples of C_s
-PALPATE_CONSTANT int32_t kBindToolPoints = 100;       // kListToolPoints: FieldPoint, samples of C_m in V_bnd or V_int voxels of the mock-up, and its extra ones
-PALPATE_CONSTANT int32_t kBindIgnored = 101;          // a bit a patch; mapped
-PALPATE_CONSTANT int32_t kBindIgnoredState = 102;     // a bit a patch: it is in the list; 0 between frames
-PALPATE_CONSTANT int32_t kBindResultIgnored = 103;    // kListIgnored: uint32_t patches in which something would push; mapped
-PALPATE_CONSTANT int32_t kBindResultField = 104;      // FieldWork, one; mapped, read by the host
-PALPATE_CONSTANT int32_t kBindResultCarriers = 105;   // CarrierWork[C_s], by slot; mapped
-PALPATE_CONSTANT int32_t kBindMockupLevels = 106;     // a uint32_t a triangle: 1 + place of its side's levels, or 0; then kSideLevelWords a place: the coarsest level, factors (Q30)
-PALPATE_CONSTANT int32_t kBindToolLevels = 107;       // likewise
+PALPATE_CONSTANT int32_t kBindFieldWork = 96;      // int64_t[kFieldWords]: FieldWork
+PALPATE_CONSTANT int32_t kBindCarrierWork = 97;    // int64_t[kCarrierWords · C_s], by slot: CarrierWork
+PALPATE_CONSTANT int32_t kBindFieldTiles = 98;     // kListFieldTiles: FieldTile
+PALPATE_CONSTANT int32_t kBindMockupPoints = 99;   // kListMockupPoints: FieldPoint, extra samples of C_s
+PALPATE_CONSTANT int32_t kBindToolPoints = 100;    // kListToolPoints: FieldPoint, samples of C_m in V_bnd or
+                                                   // V_int voxels of the mock-up, and its extra ones
+PALPATE_CONSTANT int32_t kBindIgnored = 101;       // a bit a patch; mapped
+PALPATE_CONSTANT int32_t kBindIgnoredState = 102;  // a bit a patch: it is in the list; 0 between frames
+PALPATE_CONSTANT int32_t kBindResultIgnored =
+    103;  // kListIgnored: uint32_t patches in which something would push; mapped
+PALPATE_CONSTANT int32_t kBindResultField = 104;     // FieldWork, one; mapped, read by the host
+PALPATE_CONSTANT int32_t kBindResultCarriers = 105;  // CarrierWork[C_s], by slot; mapped
+PALPATE_CONSTANT int32_t kBindMockupLevels =
+    106;  // a uint32_t a triangle: 1 + place of its side's levels, or 0; then kSideLevelWords a place: the
+          // coarsest level, factors (Q30)
+PALPATE_CONSTANT int32_t kBindToolLevels = 107;  // likewise
 
-PALPATE_CONSTANT uint32_t kMostSampleLevel = 4u;      // kSampleLevels of model/lattice/lattice_mesh.h
+PALPATE_CONSTANT uint32_t kMostSampleLevel = 4u;  // kSampleLevels of model/lattice/lattice_mesh.h
 PALPATE_CONSTANT uint32_t kSideLevelWords = 1u + kMostSampleLevel;
 
 PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
 PALPATE_CONSTANT uint32_t kListMockupPoints = 17u;
 PALPATE_CONSTANT uint32_t kListToolPoints = 18u;
 
-PALPATE_CONSTANT int32_t kFieldTile = 8;              // grid points along an edge of a tile of tool samples: one workgroup
-PALPATE_CONSTANT int32_t kDepthSlack = 16;            // steps by which a distance may be off, and more (section 4)
+PALPATE_CONSTANT int32_t kFieldTile =
+    8;  // grid points along an edge of a tile of tool samples: one workgroup
+PALPATE_CONSTANT int32_t kDepthSlack = 16;  // steps by which a distance may be off, and more (section 4)
 
-// ---- structs -------------------------------------------------------------------------------------------------------------
+// ---- structs
+// -------------------------------------------------------------------------------------------------------------
 
 // ExtraSample of model/lattice/lattice_mesh.h.
 struct ExtraSample {
   uint32_t triangle;
   ivec3 point;
-  uint32_t weights[kMostSampleLevel + 1u];   // by level, Q30, of 2^level s²
+  uint32_t weights[kMostSampleLevel + 1u];  // by level, Q30, of 2^level s²
 };
 
 // A sample that pushes if it lies inside the other body.
 struct FieldPoint {
-  ivec3 point;               // world lattice
-  uint32_t triangle;         // its own
-  uint32_t weight;           // Q24
+  ivec3 point;        // world lattice
+  uint32_t triangle;  // its own
+  uint32_t weight;    // Q24
 };
 
 // kFieldTile² points of a tool triangle's sample grid, beginning at grid point (first_u, first_v)·spacing.
@@ -73,11 +81,11 @@ PALPATE_ASSERT_SIZE(FieldBinWork, 8 * kFieldBinWords);
 
 struct FieldWork {
   FieldBinWork bins[kFieldBinCount];
-  int64_t deepest_static;    // the largest φ · 2^32 + (2^32 − 1 − static id); 0: nothing pushes
-  int64_t deepest_mobile;    // likewise of the mobile ids
-  int64_t sheet;             // not 0: a sheet's sample pushed, or one of a tool without inside
+  int64_t deepest_static;  // the largest φ · 2^32 + (2^32 − 1 − static id); 0: nothing pushes
+  int64_t deepest_mobile;  // likewise of the mobile ids
+  int64_t sheet;           // not 0: a sheet's sample pushed, or one of a tool without inside
 };
-PALPATE_CONSTANT uint32_t kWordDeepest = kFieldBinCount * kFieldBinWords;   // static, then mobile
+PALPATE_CONSTANT uint32_t kWordDeepest = kFieldBinCount * kFieldBinWords;  // static, then mobile
 PALPATE_CONSTANT uint32_t kWordSheet = kWordDeepest + 2u;
 PALPATE_CONSTANT uint32_t kFieldWords = kWordSheet + 1u;
 PALPATE_ASSERT_SIZE(FieldWork, 8 * kFieldWords);
@@ -93,7 +101,7 @@ struct CarrierWork {
   int64_t moment_high[3];
   int64_t max_depth;
 };
-PALPATE_CONSTANT uint32_t kCarrierSumWords = 15u;      // all but the last, which is no sum
+PALPATE_CONSTANT uint32_t kCarrierSumWords = 15u;  // all but the last, which is no sum
 PALPATE_CONSTANT uint32_t kWordCarrierDepth = kCarrierSumWords;
 PALPATE_CONSTANT uint32_t kCarrierWords = 16u;
 PALPATE_ASSERT_SIZE(CarrierWork, 8 * kCarrierWords);

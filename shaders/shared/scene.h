@@ -14,7 +14,8 @@ PALPATE_CONSTANT uint32_t kVoxelExternal = 0u;
 PALPATE_CONSTANT uint32_t kVoxelBoundary = 1u;
 PALPATE_CONSTANT uint32_t kVoxelInternal = 2u;
 
-// triangle_info[]: bits 0–7 are TriangleFlag of model/lattice/lattice_mesh.h, bits 8–9 the sample axis; bit 10: it has extra samples.
+// triangle_info[]: bits 0–7 are TriangleFlag of model/lattice/lattice_mesh.h, bits 8–9 the sample axis; bit
+// 10: it has extra samples.
 PALPATE_CONSTANT uint32_t kInfoCollapsed = 1u;
 PALPATE_CONSTANT uint32_t kInfoSheet = 2u;
 PALPATE_CONSTANT uint32_t kInfoAxisShift = 8u;
@@ -37,12 +38,12 @@ struct GridConstants {
 };
 PALPATE_ASSERT_SIZE(GridConstants, 40);
 
-// A brick of 8³ voxels that is not all of one class but boundary. Voxel (x,y,z) in it is bit x + 8y + 64z: word
-// bit >> 5, bit & 31.
+// A brick of 8³ voxels that is not all of one class but boundary. Voxel (x,y,z) in it is bit x + 8y + 64z:
+// word bit >> 5, bit & 31.
 struct Brick {
-  uint32_t boundary[16];     // set: V_bnd
-  uint32_t internal_[16];    // set: V_int; never both
-  uint32_t first[16];        // compact index of the word's first boundary voxel
+  uint32_t boundary[16];   // set: V_bnd
+  uint32_t internal_[16];  // set: V_int; never both
+  uint32_t first[16];      // compact index of the word's first boundary voxel
 };
 PALPATE_ASSERT_SIZE(Brick, 192);
 
@@ -50,9 +51,9 @@ PALPATE_ASSERT_SIZE(Brick, 192);
 struct BodyConstants {
   uint32_t vertices;
   uint32_t triangles;
-  uint32_t closed;           // 1: every edge's signed incidence is 0
-  uint32_t has_internal;     // 1: the partition has V_int voxels
-  GridConstants grid;        // all 0 when there is no partition (the tool's in `paper`)
+  uint32_t closed;        // 1: every edge's signed incidence is 0
+  uint32_t has_internal;  // 1: the partition has V_int voxels
+  GridConstants grid;     // all 0 when there is no partition (the tool's in `paper`)
 };
 PALPATE_ASSERT_SIZE(BodyConstants, 56);
 
@@ -60,15 +61,15 @@ PALPATE_ASSERT_SIZE(BodyConstants, 56);
 struct SceneConstants {
   BodyConstants mockup;
   BodyConstants tool;
-  int32_t tool_radius;       // steps
-  int32_t lever_shift;       // of it (model/contact/field.h)
-  int32_t sample_spacing;    // steps
-  uint32_t refined;          // 1: profile `refined`, 0: `paper`
-  uint32_t mockup_extras;    // extra samples; refined
+  int32_t tool_radius;     // steps
+  int32_t lever_shift;     // of it (model/contact/field.h)
+  int32_t sample_spacing;  // steps
+  uint32_t refined;        // 1: profile `refined`, 0: `paper`
+  uint32_t mockup_extras;  // extra samples; refined
   uint32_t tool_extras;
-  int32_t tool_sample_spacing;   // steps
-  uint32_t contact_samples;  // of a body, that say what a contact pushes with; 0: all
-  GridConstants fine;        // a second, finer partition of a closed tool, or its own: early answers for samples
+  int32_t tool_sample_spacing;  // steps
+  uint32_t contact_samples;     // of a body, that say what a contact pushes with; 0: all
+  GridConstants fine;  // a second, finer partition of a closed tool, or its own: early answers for samples
 };
 PALPATE_ASSERT_SIZE(SceneConstants, 184);
 PALPATE_ASSERT_OFFSET(SceneConstants, tool_radius, 112);

@@ -12,17 +12,17 @@
 #include <thread>
 
 #include "compute/gpu/gpu_backend.h"
-#include "compute/scene/exact.h"
-#include "compute/scene/estimate.h"
+#include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/native/native_backend.h"
 #include "compute/native/prepare/sample_lists.h"
 #include "compute/native/prepare/scene.h"
-#include "compute/gpu/prepare/prepared_scene.h"
-#include "cpu_ref/ref_backend.h"
+#include "compute/scene/estimate.h"
+#include "compute/scene/exact.h"
 #include "compute/scene/search_tables.h"
+#include "cpu_ref/ref_backend.h"
+#include "model/files/path_file.h"
 #include "model/generate.h"
 #include "model/scene/geometry_build.h"
-#include "model/files/path_file.h"
 #include "shaders/shared/frame.h"
 #include "tests/compute/partition_equality.h"
 #include "tests/equivalence/contacts_difference.h"
@@ -45,7 +45,8 @@ Subject subject(const char* name, std::uint64_t triangles, std::size_t count) {
   EXPECT_TRUE(geometry);
   out.geometry = std::move(*geometry);
   for (std::size_t i = 0; i < count; ++i)
-    out.poses.push_back(*to_lattice(path_pose(scene->path[i * scene->path.size() / count], scene->guide), out.geometry));
+    out.poses.push_back(
+        *to_lattice(path_pose(scene->path[i * scene->path.size() / count], scene->guide), out.geometry));
   return out;
 }
 
@@ -87,7 +88,9 @@ class Batch : public testing::TestWithParam<bool> {
     return options;
   }
 };
-INSTANTIATE_TEST_SUITE_P(HostOrOwn, Batch, testing::Bool(), [](const auto& own) { return own.param ? std::string("own_memory") : std::string("host_memory"); });
+INSTANTIATE_TEST_SUITE_P(HostOrOwn, Batch, testing::Bool(), [](const auto& own) {
+  return own.param ? std::string("own_memory") : std::string("host_memory");
+});
 
 TEST_P(Batch, IsTheBitsOfSingleQueries) {
   const Subject scene = subject("disassembly", 8000, 300);
@@ -140,8 +143,12 @@ TEST_P(Batch, OfEverySizeIsTheBitsOfSingleQueries) {
 TEST_P(Batch, AnOverflowThatNoRoomMendsHarmsNoOtherPose) {
   Mesh posts;
   for (int i = -8; i <= 8; ++i)
-    for (int j = -8; j <= 8; ++j) solids::append(posts, solids::box(Vec3(i, j, 0) * 0.003, Vec3(i, j, 0) * 0.003 + Vec3(0.001, 0.001, 0.003)), "post");
-  const auto scene = make_fault_scene("posts", posts, solids::box(Vec3(-0.04, -0.04, 0), Vec3(0.04, 0.04, 0.004)), Vec3(0, 0, 0.0025));
+    for (int j = -8; j <= 8; ++j)
+      solids::append(posts,
+                     solids::box(Vec3(i, j, 0) * 0.003, Vec3(i, j, 0) * 0.003 + Vec3(0.001, 0.001, 0.003)),
+                     "post");
+  const auto scene = make_fault_scene(
+      "posts", posts, solids::box(Vec3(-0.04, -0.04, 0), Vec3(0.04, 0.04, 0.004)), Vec3(0, 0, 0.0025));
   Plan paper;
   paper.profile = Profile::kPaper;
   auto made = make_gpu_backend(options_here());
@@ -151,7 +158,9 @@ TEST_P(Batch, AnOverflowThatNoRoomMendsHarmsNoOtherPose) {
   std::vector<LatticePose> poses;
   constexpr std::size_t kWhole = 70;
   for (std::size_t i = 0; i < 200; ++i)
-    poses.push_back(at(*scene, i == kWhole ? Vec3(0, 0, 0.0025) : Vec3(0.055 + 0.00002 * static_cast<double>(i), 0, 0.0025)));   // a corner of the plate on a few posts
+    poses.push_back(at(*scene, i == kWhole ? Vec3(0, 0, 0.0025)
+                                           : Vec3(0.055 + 0.00002 * static_cast<double>(i), 0,
+                                                  0.0025)));  // a corner of the plate on a few posts
   std::vector<Contacts> batch(poses.size()), expected(poses.size());
   for (int round = 0; round < 2; ++round) {
     ASSERT_TRUE((*made)->query_batch(poses, batch));
@@ -228,7 +237,8 @@ Mesh soup(std::size_t triangles) {
     const Vec3 at(place(random), place(random), place(random));
     const double size = std::pow(10, power(random)), thin = i % 3 == 0 ? 0.001 : 1;
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    const Vec3 along(place(random), place(random), place(random)), across(place(random), place(random), place(random));
+    const Vec3 along(place(random), place(random), place(random)),
+        across(place(random), place(random), place(random));
     mesh.vertices.insert(mesh.vertices.end(), {at, at + size * along, at + size * thin * across});
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
@@ -236,8 +246,8 @@ Mesh soup(std::size_t triangles) {
   return mesh;
 }
 
-/// Whether every voxel's points are the 1024ths that hold its triangles' first corners, each once and with all that begin there, and then their samples,
-/// one by one, with axis and entry.
+/// Whether every voxel's points are the 1024ths that hold its triangles' first corners, each once and with
+/// all that begin there, and then their samples, one by one, with axis and entry.
 testing::AssertionResult points_are_right(const SceneGeometry& geometry, const native::Scene& scene) {
   const PartitionView lists = scene.mockup;
   const gpu::GridConstants& grid_of_voxels = lists.grid;
@@ -245,22 +255,29 @@ testing::AssertionResult points_are_right(const SceneGeometry& geometry, const n
   std::vector<std::uint32_t> expected;
   std::vector<std::uint16_t> entries, owners;
   std::vector<HostSamples::Begin> begins{{0, 0, 0}};
-  std::uint32_t number = 0;   // of the next sample
+  std::uint32_t number = 0;  // of the next sample
   for (std::size_t voxel = 0; voxel < lists.boundary_place.size(); ++voxel) {
-    const Int3 low = grid_of_voxels.origin + grid_of_voxels.size * lists.boundary_voxel(static_cast<std::uint32_t>(voxel)), high = low + (grid_of_voxels.size - 1);
+    const Int3 low = grid_of_voxels.origin +
+                     grid_of_voxels.size * lists.boundary_voxel(static_cast<std::uint32_t>(voxel)),
+               high = low + (grid_of_voxels.size - 1);
     const HostSamples::Voxel grid(low, geometry.sample_spacing);
     const auto put = [&](const Int3& point, std::size_t entry, std::uint32_t axis) {
-      const auto part = [&](int k) { return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / grid_of_voxels.size)); };   // exact: below 2^39
+      const auto part = [&](int k) {
+        return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / grid_of_voxels.size));
+      };  // exact: below 2^39
       expected.push_back(part(0) | part(1) << 10 | part(2) << 20 | axis << 30);
       entries.push_back(static_cast<std::uint16_t>(entry));
     };
     const auto for_triangles = [&](auto&& take) {
       for (std::uint32_t e = lists.list_begin[voxel]; e < lists.list_begin[voxel + 1]; ++e)
-        take(e, exact::Corners{geometry.mockup.corner(lists.list_triangles[e], 0), geometry.mockup.corner(lists.list_triangles[e], 1), geometry.mockup.corner(lists.list_triangles[e], 2)});
+        take(e, exact::Corners{geometry.mockup.corner(lists.list_triangles[e], 0),
+                               geometry.mockup.corner(lists.list_triangles[e], 1),
+                               geometry.mockup.corner(lists.list_triangles[e], 2)});
     };
-    std::map<std::uint32_t, std::vector<std::uint32_t>> corners;   // entries by vertex
+    std::map<std::uint32_t, std::vector<std::uint32_t>> corners;  // entries by vertex
     for_triangles([&](std::uint32_t e, const exact::Corners& t) {
-      if (t[0] == glm::clamp(t[0], low, high)) corners[geometry.mockup.triangles[lists.list_triangles[e]][0]].push_back(e - lists.list_begin[voxel]);
+      if (t[0] == glm::clamp(t[0], low, high))
+        corners[geometry.mockup.triangles[lists.list_triangles[e]][0]].push_back(e - lists.list_begin[voxel]);
     });
     const std::size_t first_owner = owners.size();
     for (const auto& [vertex, its] : corners) {
@@ -270,39 +287,52 @@ testing::AssertionResult points_are_right(const SceneGeometry& geometry, const n
     bool same = true;
     for_triangles([&](std::uint32_t e, const exact::Corners& t) {
       const std::uint8_t axis = geometry.mockup.sample_axis[lists.list_triangles[e]];
-      exact::for_samples(t, axis, geometry.sample_spacing, low, high, [&](const Int3& point, std::int64_t, std::int64_t) {
-        put(point, e - lists.list_begin[voxel], axis);
-        same = same && number < samples.count() && samples.sample(grid, axis, number) == point;
-        ++number;
-      });
+      exact::for_samples(
+          t, axis, geometry.sample_spacing, low, high, [&](const Int3& point, std::int64_t, std::int64_t) {
+            put(point, e - lists.list_begin[voxel], axis);
+            same = same && number < samples.count() && samples.sample(grid, axis, number) == point;
+            ++number;
+          });
     });
     if (!same) return testing::AssertionFailure() << "samples of voxel " << voxel << " differ";
-    begins.push_back({static_cast<std::uint32_t>(expected.size()), number, static_cast<std::uint32_t>(owners.size())});
+    begins.push_back(
+        {static_cast<std::uint32_t>(expected.size()), number, static_cast<std::uint32_t>(owners.size())});
   }
   if (samples.begin != begins) return testing::AssertionFailure() << "begins differ";
   if (samples.entries != entries) return testing::AssertionFailure() << "entries differ";
   if (samples.owners != owners) return testing::AssertionFailure() << "owners differ";
-  if (samples.points.size() != expected.size() + HostSamples::kPointsAtOnce - 1 || !std::equal(expected.begin(), expected.end(), samples.points.begin()))
+  if (samples.points.size() != expected.size() + HostSamples::kPointsAtOnce - 1 ||
+      !std::equal(expected.begin(), expected.end(), samples.points.begin()))
     return testing::AssertionFailure() << "points differ";
   return testing::AssertionSuccess();
 }
 
-/// Whether every listed triangle's box, as far as it lies in its voxel, is rounded down to 256ths of the voxel.
+/// Whether every listed triangle's box, as far as it lies in its voxel, is rounded down to 256ths of the
+/// voxel.
 testing::AssertionResult boxes_are_right(const SceneGeometry& geometry, const native::Scene& scene) {
   const PartitionView lists = scene.mockup;
   const gpu::GridConstants& grid_of_voxels = lists.grid;
   const std::vector<std::uint8_t>& boxes = scene.search->boxes;
-  if (boxes.size() != 6 * lists.list_triangles.size() + SearchTables::kBoxesAtOnce) return testing::AssertionFailure() << boxes.size() << " bytes of boxes";
+  if (boxes.size() != 6 * lists.list_triangles.size() + SearchTables::kBoxesAtOnce)
+    return testing::AssertionFailure() << boxes.size() << " bytes of boxes";
   for (std::size_t voxel = 0; voxel < lists.boundary_place.size(); ++voxel) {
-    const Int3 low = grid_of_voxels.origin + grid_of_voxels.size * lists.boundary_voxel(static_cast<std::uint32_t>(voxel));
+    const Int3 low =
+        grid_of_voxels.origin + grid_of_voxels.size * lists.boundary_voxel(static_cast<std::uint32_t>(voxel));
     const std::size_t count = lists.list_begin[voxel + 1] - lists.list_begin[voxel];
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < 6; ++k) {
         const int axis = static_cast<int>(k % 3);
-        const auto corner = [&](int c) { return geometry.mockup.corner(lists.list_triangles[lists.list_begin[voxel] + i], c)[axis]; };
-        const std::int32_t end = k < 3 ? std::min({corner(0), corner(1), corner(2)}) : std::max({corner(0), corner(1), corner(2)});
-        const double part = 256.0 * std::clamp(end - low[axis], 0, grid_of_voxels.size - 1) / grid_of_voxels.size, found = boxes[6 * lists.list_begin[voxel] + k * count + i];
-        if (found > part + 1e-9 || found < part - 1 - 1e-9) return testing::AssertionFailure() << "voxel " << voxel << ", entry " << i << ", end " << k << ": " << found << ", " << part;
+        const auto corner = [&](int c) {
+          return geometry.mockup.corner(lists.list_triangles[lists.list_begin[voxel] + i], c)[axis];
+        };
+        const std::int32_t end =
+            k < 3 ? std::min({corner(0), corner(1), corner(2)}) : std::max({corner(0), corner(1), corner(2)});
+        const double part = 256.0 * std::clamp(end - low[axis], 0, grid_of_voxels.size - 1) /
+                            grid_of_voxels.size,
+                     found = boxes[6 * lists.list_begin[voxel] + k * count + i];
+        if (found > part + 1e-9 || found < part - 1 - 1e-9)
+          return testing::AssertionFailure()
+                 << "voxel " << voxel << ", entry " << i << ", end " << k << ": " << found << ", " << part;
       }
   }
   return testing::AssertionSuccess();
@@ -326,7 +356,10 @@ std::vector<std::array<std::int32_t, 6>> parts_of(const SceneGeometry& geometry)
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.collapsed(t)) continue;
     const Int3 first = mesh.corner(t, 0);
-    auto& box = boxes.try_emplace(label[mesh.triangles[t][0]], std::array{first.x, first.y, first.z, first.x, first.y, first.z}).first->second;
+    auto& box = boxes
+                    .try_emplace(label[mesh.triangles[t][0]],
+                                 std::array{first.x, first.y, first.z, first.x, first.y, first.z})
+                    .first->second;
     for (int corner = 0; corner < 3; ++corner)
       for (int k = 0; k < 3; ++k) {
         auto &low = box[static_cast<std::size_t>(k)], &high = box[static_cast<std::size_t>(k) + 3];
@@ -337,7 +370,9 @@ std::vector<std::array<std::int32_t, 6>> parts_of(const SceneGeometry& geometry)
   std::vector<std::array<std::int32_t, 6>> out;
   const auto most = 2 * std::int64_t{geometry.tool_radius} + 2 * gpu::kCloseSteps;
   for (const auto& [root, box] : boxes)
-    if (std::int64_t{box[3]} - box[0] <= most && std::int64_t{box[4]} - box[1] <= most && std::int64_t{box[5]} - box[2] <= most) out.push_back(box);
+    if (std::int64_t{box[3]} - box[0] <= most && std::int64_t{box[4]} - box[1] <= most &&
+        std::int64_t{box[5]} - box[2] <= most)
+      out.push_back(box);
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -347,12 +382,15 @@ TEST(Preparation, ListsTheSameSamplesInBothEnginesAndRightTablesForTheSearch) {
     const char* name;
     Mesh mesh;
     double voxel_m, spacing_m;
-    bool wide;   ///< heights in a voxel of more than 2^20 steps
+    bool wide;  ///< heights in a voxel of more than 2^20 steps
   };
-  const auto contacts = generate_scene("contacts", 8000, 1000), disassembly = generate_scene("disassembly", 4000, 1000);
+  const auto contacts = generate_scene("contacts", 8000, 1000),
+             disassembly = generate_scene("disassembly", 4000, 1000);
   ASSERT_TRUE(contacts && disassembly);
-  for (const Mockup& mockup : {Mockup{"contacts", contacts->mockup, 0, 0, true}, Mockup{"disassembly", disassembly->mockup, 0, 0, true},
-                               Mockup{"soup", soup(500), 0.003, 0.0011, false}, Mockup{"soup, large voxels", soup(2000), 0.25, 0.0091, true}}) {
+  for (const Mockup& mockup : {Mockup{"contacts", contacts->mockup, 0, 0, true},
+                               Mockup{"disassembly", disassembly->mockup, 0, 0, true},
+                               Mockup{"soup", soup(500), 0.003, 0.0011, false},
+                               Mockup{"soup, large voxels", soup(2000), 0.25, 0.0091, true}}) {
     SCOPED_TRACE(mockup.name);
     GeometrySettings settings;
     if (mockup.voxel_m > 0) settings.voxel_size_m = mockup.voxel_m;
@@ -380,7 +418,9 @@ TEST(Preparation, ListsTheSameSamplesInBothEnginesAndRightTablesForTheSearch) {
     EXPECT_FALSE(SearchTables::make(*geometry, native->mockup, [] { return false; })) << "cancelled";
     const auto listing = [&](std::uint64_t most_bytes, bool go_on) {
       EntrySamples out;
-      return native::list_samples(geometry->mockup, native->mockup, geometry->sample_spacing, most_bytes, [&](double) { return go_on; }, out);
+      return native::list_samples(
+          geometry->mockup, native->mockup, geometry->sample_spacing, most_bytes,
+          [&](double) { return go_on; }, out);
     };
     EXPECT_EQ(listing(std::uint64_t{1} << 30, true), Listing::kDone);
     EXPECT_EQ(listing(4000, true), Listing::kTooMany);
@@ -394,7 +434,7 @@ TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
   mesh.triangles = {{0, 1, 2}};
   mesh.sample_axis = {2};
   for (const std::uint32_t entries : {HostSamples::kLongestList, HostSamples::kLongestList + 1}) {
-    Partition lists;   // one voxel of one brick; the triangle again and again
+    Partition lists;  // one voxel of one brick; the triangle again and again
     lists.grid.origin = Int3(0);
     lists.grid.size = 100;
     lists.grid.bricks = Int3(1);
@@ -413,33 +453,39 @@ TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
     if (outcome != Listing::kDone) continue;
     EXPECT_EQ(samples.entries.front(), 0);
     EXPECT_EQ(samples.entries.back(), HostSamples::kLongestList - 1);
-    EXPECT_EQ(samples.owners.size(), HostSamples::kLongestList);   // of one corner
+    EXPECT_EQ(samples.owners.size(), HostSamples::kLongestList);  // of one corner
     EXPECT_EQ(samples.owners.back(), HostSamples::kLongestList - 1);
-    EXPECT_EQ(samples.count(), 4 * HostSamples::kLongestList);   // of cells (1, 0), (0, 1), (2, 0) and (0, 2)
+    EXPECT_EQ(samples.count(), 4 * HostSamples::kLongestList);  // of cells (1, 0), (0, 1), (2, 0) and (0, 2)
   }
 }
 
 TEST(Preparation, TakesNoMoreThanForetoldAndNotFarLess) {
-  for (const auto& [name, triangles] : {std::pair{"disassembly", 1000}, {"contacts", 25'000}, {"disassembly", 100'000}, {"disassembly", 300'000}}) {
+  for (const auto& [name, triangles] : {std::pair{"disassembly", 1000},
+                                        {"contacts", 25'000},
+                                        {"disassembly", 100'000},
+                                        {"disassembly", 300'000}}) {
     const Subject scene = subject(name, static_cast<std::uint64_t>(triangles), 1);
     auto device = VulkanDevice::create({});
     ASSERT_TRUE(device);
     const auto prepared = prepare_scene(**device, scene.geometry, Plan{}, {});
     ASSERT_TRUE(prepared) << prepared.error().sentence;
-    const std::uint64_t foretold = estimate_preparation(scene.geometry, Plan{}), taken = (*device)->most_allocated;
+    const std::uint64_t foretold = estimate_preparation(scene.geometry, Plan{}),
+                        taken = (*device)->most_allocated;
     EXPECT_LE(taken, foretold) << name << " " << triangles;
     EXPECT_GE(4 * taken + (std::uint64_t{256} << 20), foretold) << name << " " << triangles;
-    std::printf("%s %d: taken %.1f MiB, foretold %.1f MiB\n", name, triangles, static_cast<double>(taken) / 1048576, static_cast<double>(foretold) / 1048576);
+    std::printf("%s %d: taken %.1f MiB, foretold %.1f MiB\n", name, triangles,
+                static_cast<double>(taken) / 1048576, static_cast<double>(foretold) / 1048576);
   }
 }
 
 TEST(Preparation, IsRefusedInASentenceBeforeItTakesWhatIsNotThere) {
   Subject scene = subject("disassembly", 4000, 1);
-  scene.geometry.mockup_grid.size = 1;   // lists without end
+  scene.geometry.mockup_grid.size = 1;  // lists without end
   const auto backend = make_gpu_backend({});
   ASSERT_TRUE(backend);
   bool begun = false;
-  const auto refused = (*backend)->prepare(scene.geometry, Plan{}, [&](const char*, double) { return begun = true; });
+  const auto refused =
+      (*backend)->prepare(scene.geometry, Plan{}, [&](const char*, double) { return begun = true; });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kBadValue);
   EXPECT_NE(refused.error().sentence.find("MiB of memory of"), std::string::npos) << refused.error().sentence;
@@ -451,7 +497,8 @@ TEST(Preparation, EndsSoonAfterItIsCancelled) {
   const auto backend = make_gpu_backend({});
   ASSERT_TRUE(backend);
   int asked = 0;
-  const auto cancelled = (*backend)->prepare(scene.geometry, Plan{}, [&](const char*, double) { return ++asked < 10; });
+  const auto cancelled =
+      (*backend)->prepare(scene.geometry, Plan{}, [&](const char*, double) { return ++asked < 10; });
   ASSERT_FALSE(cancelled);
   EXPECT_EQ(cancelled.error().sentence, "preparation was cancelled");
   EXPECT_EQ(asked, 10) << "nobody is asked again";

@@ -18,12 +18,15 @@ namespace {
 /// Voxels of a made-up partition: bricks of all three kinds.
 struct Voxels {
   Int3 bricks{0};
-  std::vector<bool> set, within;   ///< not V_ext; V_int
+  std::vector<bool> set, within;  ///< not V_ext; V_int
   BrickBits bits, internal;
 
   bool at(const Int3& v) const { return set[place(v)]; }
-  std::size_t place(const Int3& v) const { return static_cast<std::size_t>(v.x + 8 * bricks.x * (v.y + 8 * bricks.y * v.z)); }
-  Voxels(const Int3& size, unsigned seed) : bricks(size), set(512 * static_cast<std::size_t>(size.x * size.y * size.z)), within(set.size()) {
+  std::size_t place(const Int3& v) const {
+    return static_cast<std::size_t>(v.x + 8 * bricks.x * (v.y + 8 * bricks.y * v.z));
+  }
+  Voxels(const Int3& size, unsigned seed)
+      : bricks(size), set(512 * static_cast<std::size_t>(size.x * size.y * size.z)), within(set.size()) {
     std::mt19937 random(seed);
     std::vector<std::uint32_t> slots;
     std::vector<gpu::Brick> mixed;
@@ -32,7 +35,9 @@ struct Voxels {
       for (b.y = 0; b.y < size.y; ++b.y)
         for (b.x = 0; b.x < size.x; ++b.x) {
           const auto kind = random() % 4;
-          slots.push_back(kind == 0 ? gpu::kBrickInternal : kind == 1 ? gpu::kBrickExternal : static_cast<std::uint32_t>(mixed.size()));
+          slots.push_back(kind == 0   ? gpu::kBrickInternal
+                          : kind == 1 ? gpu::kBrickExternal
+                                      : static_cast<std::uint32_t>(mixed.size()));
           if (kind >= 2) mixed.emplace_back();
           for (std::uint32_t bit = 0; bit < 512; ++bit) {
             bool in = kind == 0, inside = in;
@@ -42,7 +47,8 @@ struct Voxels {
               auto& words = inside ? mixed.back().internal_ : mixed.back().boundary;
               words[bit >> 5] |= 1u << (bit & 31);
             }
-            const Int3 v = 8 * b + Int3(static_cast<int>(bit & 7), static_cast<int>(bit >> 3 & 7), static_cast<int>(bit >> 6));
+            const Int3 v = 8 * b + Int3(static_cast<int>(bit & 7), static_cast<int>(bit >> 3 & 7),
+                                        static_cast<int>(bit >> 6));
             set[place(v)] = in;
             within[place(v)] = inside;
           }
@@ -73,11 +79,12 @@ TEST(BrickBits, FindsTheBricksOfEveryRange) {
   std::size_t none = 0;
   for (int i = 0; i < 20'000; ++i) {
     BrickBits::Range range{};
-    const int most = i % 2 == 0 ? 4 : 32;   // half of them within a brick or two
+    const int most = i % 2 == 0 ? 4 : 32;  // half of them within a brick or two
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t end = 8 * voxels.bricks[static_cast<int>(k)];
       range.first[k] = static_cast<std::int32_t>(random() % static_cast<unsigned>(end));
-      range.last[k] = std::min(end - 1, range.first[k] + static_cast<std::int32_t>(random() % static_cast<unsigned>(most)));
+      range.last[k] = std::min(
+          end - 1, range.first[k] + static_cast<std::int32_t>(random() % static_cast<unsigned>(most)));
     }
     std::set<std::tuple<int, int, int>> expected, found;
     Int3 v;
@@ -108,19 +115,24 @@ TEST(BrickBits, TheCoarserLevelHasABitForEachBrickWithAVoxel) {
     for (std::int32_t y = 0; y < 16; ++y)
       for (std::int32_t x = 0; x < 16; ++x) {
         const bool within = x < 11 && y < 9;
-        const bool any = within && voxels.bits.for_bricks({{8 * x, 8 * y, 8 * z}, {8 * x + 7, 8 * y + 7, 8 * z + 7}}, [](int, int, int) { return true; });
-        ASSERT_EQ(coarser.at(coarser.number(x >> 3, y >> 3, z >> 3), static_cast<std::uint32_t>((x & 7) | (y & 7) << 3 | (z & 7) << 6)), any);
+        const bool any =
+            within && voxels.bits.for_bricks({{8 * x, 8 * y, 8 * z}, {8 * x + 7, 8 * y + 7, 8 * z + 7}},
+                                             [](int, int, int) { return true; });
+        ASSERT_EQ(coarser.at(coarser.number(x >> 3, y >> 3, z >> 3),
+                             static_cast<std::uint32_t>((x & 7) | (y & 7) << 3 | (z & 7) << 6)),
+                  any);
       }
 }
 
-/// The answer is that of the smallest cube of 1, 2, 4 or 8 voxels that holds the range, voxel by voxel; beyond the grid there is nothing.
+/// The answer is that of the smallest cube of 1, 2, 4 or 8 voxels that holds the range, voxel by voxel;
+/// beyond the grid there is nothing.
 TEST(OccupiedCubes, AnswerForTheSmallestCubeFromTheFirstVoxelOn) {
   const Voxels voxels({4, 3, 2}, 5);
   OccupiedCubes cubes;
   cubes.make(voxels.bits);
   const Int3 end = 8 * voxels.bricks;
   std::mt19937 random(6);
-  std::array<std::size_t, 5> yes{}, no{};   // by cube
+  std::array<std::size_t, 5> yes{}, no{};  // by cube
   for (int round = 0; round < 4'000; ++round) {
     EightRanges ranges{};
     unsigned expected = 0;
@@ -149,7 +161,8 @@ TEST(OccupiedCubes, AnswerForTheSmallestCubeFromTheFirstVoxelOn) {
     ASSERT_EQ(cubes.near(ranges), expected) << "round " << round;
   }
   for (std::size_t level = 0; level < 4; ++level) EXPECT_GT(yes[level], 300u) << level;
-  for (std::size_t level = 0; level < 3; ++level) EXPECT_GT(no[level], 300u) << level;   // in cubes of 8 there is nearly always something
+  for (std::size_t level = 0; level < 3; ++level)
+    EXPECT_GT(no[level], 300u) << level;  // in cubes of 8 there is nearly always something
 }
 
 }  // namespace

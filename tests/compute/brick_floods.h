@@ -9,7 +9,8 @@ namespace palpate {
 /// The voxels of a brick; set: boundary; bit x + 8y + 64z.
 using BrickVoxels = std::bitset<512>;
 
-/// Component of each voxel that is not boundary, numbered in the order of their first voxels, by depth-first search; −1 for boundary.
+/// Component of each voxel that is not boundary, numbered in the order of their first voxels, by depth-first
+/// search; −1 for boundary.
 inline std::array<int, 512> components_of(const BrickVoxels& boundary, int& count) {
   std::array<int, 512> component;
   component.fill(-1);
@@ -26,7 +27,8 @@ inline std::array<int, 512> components_of(const BrickVoxels& boundary, int& coun
           const int along = (at >> (3 * axis) & 7) + step;
           if (along < 0 || along > 7) continue;
           const int next = at + step * (1 << (3 * axis));
-          if (boundary[static_cast<std::size_t>(next)] || component[static_cast<std::size_t>(next)] >= 0) continue;
+          if (boundary[static_cast<std::size_t>(next)] || component[static_cast<std::size_t>(next)] >= 0)
+            continue;
           component[static_cast<std::size_t>(next)] = count;
           open.push_back(next);
         }

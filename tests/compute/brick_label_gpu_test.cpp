@@ -13,7 +13,7 @@ using BrickLabel = GpuTest;
 using Voxels = BrickVoxels;
 
 TEST_F(BrickLabel, EqualsADepthFirstSearch) {
-  std::vector<Voxels> cases(2);   // all open; and all boundary:
+  std::vector<Voxels> cases(2);  // all open; and all boundary:
   cases[1].set();
   Voxels chequered, snake;
   for (std::size_t v = 0; v < 512; ++v) {
@@ -41,7 +41,8 @@ TEST_F(BrickLabel, EqualsADepthFirstSearch) {
   const Progress silent;
   PrepareSteps steps(device(), silent);
   const auto count = static_cast<std::uint32_t>(cases.size());
-  const VulkanBuffer in = steps.filled("bricks", bricks), labels = steps.buffer("labels", std::uint64_t{count} * 128),
+  const VulkanBuffer in = steps.filled("bricks", bricks),
+                     labels = steps.buffer("labels", std::uint64_t{count} * 128),
                      counts = steps.buffer("counts", count);
   steps.fill(labels, 0);
   steps.run_items(spirv::brick_label, {}, {in, labels, counts}, count, count);

@@ -22,12 +22,16 @@ struct Case {
 /// Triangles that lie anywhere and are needles now and then; none is a sheet.
 LatticeMesh soup(std::size_t count, std::int32_t reach, std::int32_t size, unsigned seed) {
   std::mt19937 random(seed);
-  const auto within = [&](std::int32_t most) { return std::uniform_int_distribution<std::int32_t>(-most, most)(random); };
+  const auto within = [&](std::int32_t most) {
+    return std::uniform_int_distribution<std::int32_t>(-most, most)(random);
+  };
   std::vector<cpu_ref::Triangle> triangles;
   while (triangles.size() < count) {
     const Int3 a(within(reach), within(reach), within(reach)), way(within(size), within(size), within(size));
     const bool needle = triangles.size() % 3 == 0;
-    triangles.emplace_back(a, a + way, needle ? a + way / 2 + Int3(within(2), within(2), within(2)) : a + Int3(within(size), within(size), within(size)));
+    triangles.emplace_back(a, a + way,
+                           needle ? a + way / 2 + Int3(within(2), within(2), within(2))
+                                  : a + Int3(within(size), within(size), within(size)));
   }
   LatticeMesh mesh = cpu_ref::lattice_mesh_of(triangles);
   for (auto& flags : mesh.flags) flags &= static_cast<std::uint8_t>(~kTriangleSheet);
@@ -36,9 +40,11 @@ LatticeMesh soup(std::size_t count, std::int32_t reach, std::int32_t size, unsig
 
 std::vector<Case> cases() {
   std::vector<Case> out;
-  out.push_back({"box", cpu_ref::lattice_mesh_of(cpu_ref::lattice_box(Int3(-1000, -500, -2000), Int3(1000, 700, 90)))});
+  out.push_back(
+      {"box", cpu_ref::lattice_mesh_of(cpu_ref::lattice_box(Int3(-1000, -500, -2000), Int3(1000, 700, 90)))});
   out.push_back({"sphere", cpu_ref::lattice_mesh_of(cpu_ref::lattice_sphere(1 << 20, 40, 30))});
-  out.push_back({"as large as the lattice", cpu_ref::lattice_mesh_of(cpu_ref::lattice_sphere((1 << 28) - 1, 12, 9))});
+  out.push_back(
+      {"as large as the lattice", cpu_ref::lattice_mesh_of(cpu_ref::lattice_sphere((1 << 28) - 1, 12, 9))});
   out.push_back({"one triangle", soup(1, 1000, 1000, 1)});
   out.push_back({"eight", soup(8, 1000, 1000, 2)});
   out.push_back({"nine", soup(9, 1000, 1000, 3)});
@@ -87,13 +93,14 @@ TEST(TriangleTree, HoldsEveryTriangleThatBoundsASolidOnceAndItsBoxesHoldThem) {
           double at = 0, length = 0, across = 0;
           for (std::size_t k = 0; k < 3; ++k) {
             const double axis = boxes.axis[a][k][i];
-            at += axis * (double(c.mesh.corner(tree.order[place], corner)[static_cast<int>(k)]) - boxes.corner[k][i]);
+            at += axis * (double(c.mesh.corner(tree.order[place], corner)[static_cast<int>(k)]) -
+                          boxes.corner[k][i]);
             length += axis * axis;
             across += axis * boxes.axis[(a + 1) % 3][k][i];
           }
           ASSERT_LE(boxes.low[a][i], at);
           ASSERT_GE(boxes.high[a][i], at);
-          ASSERT_NEAR(length, 1, 0x1p-22);   // each component is rounded by 2^-25 at most
+          ASSERT_NEAR(length, 1, 0x1p-22);  // each component is rounded by 2^-25 at most
           ASSERT_NEAR(across, 0, 0x1p-22);
         }
   }
@@ -116,17 +123,26 @@ TEST(DepthSearch, SaysWhatAskingEveryTriangleSays) {
     const TriangleTree tree = TriangleTree::make(c.mesh, [] { return true; });
     DepthSearch search(c.mesh, tree);
     std::mt19937 random(11);
-    const auto any = [&](std::uint32_t below) { return std::uniform_int_distribution<std::uint32_t>(0, below - 1)(random); };
+    const auto any = [&](std::uint32_t below) {
+      return std::uniform_int_distribution<std::uint32_t>(0, below - 1)(random);
+    };
     const auto triangles = static_cast<std::uint32_t>(tree.order.size());
     std::uint32_t last = DepthSearch::kNobody;
     for (int i = 0; i < 1000; ++i) {
       // On corners, sides and triangles, near them, and anywhere.
       const std::uint32_t id = tree.order[any(triangles)];
       const Int3 a = c.mesh.corner(id, 0), b = c.mesh.corner(id, 1), d = c.mesh.corner(id, 2);
-      Int3 point = i % 5 == 0 ? a : i % 5 == 1 ? a / 2 + b / 2 : i % 5 == 2 ? a / 3 + b / 3 + d / 3 : i % 5 == 3 ? a + (b - a) / 4 * 5 : Int3(0);
+      Int3 point = i % 5 == 0   ? a
+                   : i % 5 == 1 ? a / 2 + b / 2
+                   : i % 5 == 2 ? a / 3 + b / 3 + d / 3
+                   : i % 5 == 3 ? a + (b - a) / 4 * 5
+                                : Int3(0);
       const std::int32_t off = std::int32_t{1} << any(29);
       for (int k = 0; k < 3; ++k)
-        point[k] = std::clamp(point[k] + (i % 2 == 0 ? std::uniform_int_distribution<std::int32_t>(-off, off)(random) : static_cast<std::int32_t>(any(5)) - 2), -(1 << 29), 1 << 29);
+        point[k] =
+            std::clamp(point[k] + (i % 2 == 0 ? std::uniform_int_distribution<std::int32_t>(-off, off)(random)
+                                              : static_cast<std::int32_t>(any(5)) - 2),
+                       -(1 << 29), 1 << 29);
       const std::uint32_t guess = i % 3 == 0 ? DepthSearch::kNobody : i % 3 == 1 ? any(triangles) : last;
       const DepthSearch::Depth found = search.below(point, guess), wanted = of_all(c.mesh, point);
       ASSERT_EQ(found.steps, wanted.steps) << point.x << " " << point.y << " " << point.z;

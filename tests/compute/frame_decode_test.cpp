@@ -21,8 +21,13 @@ struct Output {
     result->areas[0].id = 10;
     result->areas[1].id = 1000;
     for (std::uint32_t i = 0; i < small; ++i) statics.push_back({10 + i, gpu::kStaticHit, 0, 0});
-    for (std::uint32_t i = 0; i < large; ++i) statics.push_back({1000 + i, i % 2 == 0 ? gpu::kStaticListed : gpu::kStaticSampled, 1, i < large / 2 ? 3u : 4u});
-    for (std::uint32_t i = 0; i < 100; ++i) mobiles.push_back({i, i % 3 == 0 ? gpu::kMobileHit : i % 3 == 1 ? gpu::kMobileInternal : gpu::kMobileBoundary});
+    for (std::uint32_t i = 0; i < large; ++i)
+      statics.push_back(
+          {1000 + i, i % 2 == 0 ? gpu::kStaticListed : gpu::kStaticSampled, 1, i < large / 2 ? 3u : 4u});
+    for (std::uint32_t i = 0; i < 100; ++i)
+      mobiles.push_back({i, i % 3 == 0   ? gpu::kMobileHit
+                            : i % 3 == 1 ? gpu::kMobileInternal
+                                         : gpu::kMobileBoundary});
     for (std::uint32_t i = 0; i < 100; ++i) members.push_back({i % 2, i});
     result->static_count = static_cast<std::uint32_t>(statics.size());
     result->mobile_count = result->member_count = 100;
@@ -44,7 +49,9 @@ struct Output {
 
 void expect_right(const Contacts& contacts) {
   ASSERT_EQ(contacts.areas.size(), 2u);
-  for (const auto* ids : {&contacts.cst, &contacts.bst, &contacts.est, &contacts.cmt, &contacts.imt, &contacts.bmt}) EXPECT_TRUE(std::is_sorted(ids->begin(), ids->end()));
+  for (const auto* ids :
+       {&contacts.cst, &contacts.bst, &contacts.est, &contacts.cmt, &contacts.imt, &contacts.bmt})
+    EXPECT_TRUE(std::is_sorted(ids->begin(), ids->end()));
   EXPECT_EQ(contacts.cst, (std::vector<std::uint32_t>{10, 11, 12}));
   EXPECT_EQ(contacts.bst.size(), 2500u);
   EXPECT_EQ(contacts.bst.front(), 1000u);
@@ -78,15 +85,17 @@ TEST(FrameDecoder, OrdersWhatADeviceLeavesInAnyOrder) {
   expect_right(contacts);
 }
 
-// A frame that is like the one before finds room where it needs it, area by area: memory that was swapped between a small and a large area would grow
-// again and again, and pages that are new take longer than all else.
+// A frame that is like the one before finds room where it needs it, area by area: memory that was swapped
+// between a small and a large area would grow again and again, and pages that are new take longer than all
+// else.
 TEST(FrameDecoder, AllocatesNothingForTheSameContactAgain) {
   for (const bool shuffled : {false, true}) {
     Output output;
     if (shuffled) output.shuffle();
     FrameDecoder decoder;
     Contacts contacts;
-    for (const Output& before : {Output(3, 8), Output(3, 8)}) decoder.decode(before.lists(), contacts);   // tables that have nothing to do with the contact's size
+    for (const Output& before : {Output(3, 8), Output(3, 8)})
+      decoder.decode(before.lists(), contacts);  // tables that have nothing to do with the contact's size
     decoder.decode(output.lists(), contacts);
     for (int frame = 0; frame < 3; ++frame) {
       const std::size_t before = allocations_of_this_thread();

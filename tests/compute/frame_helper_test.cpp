@@ -13,11 +13,12 @@
 namespace palpate {
 namespace {
 
-/// Rounds of all sizes, one right after the other: each part once, in one of the lanes, and what it left is there afterwards.
+/// Rounds of all sizes, one right after the other: each part once, in one of the lanes, and what it left is
+/// there afterwards.
 TEST(FrameHelper, DoesEachPartOnce) {
   const auto helper = FrameHelper::make();
   ASSERT_EQ(helper == nullptr, std::thread::hardware_concurrency() < 2);
-  std::vector<std::uint32_t> times(300);   // each part its own word, no atomics: a thread sanitizer looks on
+  std::vector<std::uint32_t> times(300);  // each part its own word, no atomics: a thread sanitizer looks on
   std::array<std::uint64_t, FrameHelper::kLanes> sums{};
   for (std::uint32_t round = 0; round < 3000; ++round) {
     const std::uint32_t parts = round * 7 % 300;
@@ -27,14 +28,15 @@ TEST(FrameHelper, DoesEachPartOnce) {
       ++times[part];
       sums[static_cast<std::size_t>(lane)] += part;
     });
-    for (std::uint32_t i = 0; i < times.size(); ++i) ASSERT_EQ(times[i], i < parts ? 1u : 0u) << "part " << i << " of " << parts << " in round " << round;
+    for (std::uint32_t i = 0; i < times.size(); ++i)
+      ASSERT_EQ(times[i], i < parts ? 1u : 0u) << "part " << i << " of " << parts << " in round " << round;
     ASSERT_EQ(sums[0] + sums[1], std::uint64_t{parts} * (parts - (parts > 0 ? 1 : 0)) / 2);
   }
 }
 
 TEST(FrameHelper, BothThreadsTakePart) {
   const auto helper = FrameHelper::make();
-  if (!helper) return;   // one processor: DoesEachPartOnce has said so
+  if (!helper) return;  // one processor: DoesEachPartOnce has said so
   // Each part waits for the other: alone this would never end.
   std::atomic<int> begun{0};
   std::array<std::atomic<int>, FrameHelper::kLanes> by{};
@@ -49,9 +51,9 @@ TEST(FrameHelper, BothThreadsTakePart) {
 
 TEST(FrameHelper, ComesOutOfItsSleep) {
   const auto helper = FrameHelper::make();
-  if (!helper) return;   // one processor: DoesEachPartOnce has said so
+  if (!helper) return;  // one processor: DoesEachPartOnce has said so
   for (int round = 0; round < 5; ++round) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));   // far longer than it looks out for work
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // far longer than it looks out for work
     std::atomic<int> begun{0};
     helper->share(2, [&](std::uint32_t, int) {
       ++begun;
@@ -61,10 +63,11 @@ TEST(FrameHelper, ComesOutOfItsSleep) {
   }
 }
 
-/// No memory in either thread is the asker's to hear, after the other has ended, and the next round is none the worse.
+/// No memory in either thread is the asker's to hear, after the other has ended, and the next round is none
+/// the worse.
 TEST(FrameHelper, ThrowsOnWhatAPartThrew) {
   const auto helper = FrameHelper::make();
-  if (!helper) return;   // one processor: DoesEachPartOnce has said so
+  if (!helper) return;  // one processor: DoesEachPartOnce has said so
   for (const int failing : {0, 1}) {
     std::atomic<int> begun{0};
     EXPECT_THROW(helper->share(2,

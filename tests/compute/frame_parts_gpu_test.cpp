@@ -21,7 +21,8 @@ TEST_F(FrameParts, PosesMovePointsThereAndBack) {
     LatticePose pose;
     pose.translation = c.translation;
     for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 3; ++k) pose.rotation_q30[r][k] = c.rotates != 0 ? c.rotation_q30[3 * r + k] : r == k ? 1 << 30 : 0;
+      for (int k = 0; k < 3; ++k)
+        pose.rotation_q30[r][k] = c.rotates != 0 ? c.rotation_q30[3 * r + k] : r == k ? 1 << 30 : 0;
     ASSERT_EQ(answers[i].world, transform(pose, c.point));
     const Long3 d = Long3(c.point) - Long3(c.translation);
     for (int k = 0; k < 3; ++k) {
@@ -33,7 +34,7 @@ TEST_F(FrameParts, PosesMovePointsThereAndBack) {
 }
 
 TEST_F(FrameParts, AllOutsideAGridIsExternalAndBricksAreLookedUp) {
-  using namespace gpu;   // what the probe's macros name
+  using namespace gpu;  // what the probe's macros name
   const auto cases = probe_cases::partitions();
   const auto answers = run_probe<PartitionAnswer>(spirv::probe_partition, cases);
   std::size_t of_class[3] = {};
@@ -50,7 +51,8 @@ TEST_F(FrameParts, AllOutsideAGridIsExternalAndBricksAreLookedUp) {
     }
     if (within) {
       const Int3 brick = c.voxel / 8, in = c.voxel % 8;
-      const auto number = static_cast<std::uint32_t>(brick.x + c.grid.bricks.x * (brick.y + c.grid.bricks.y * brick.z));
+      const auto number =
+          static_cast<std::uint32_t>(brick.x + c.grid.bricks.x * (brick.y + c.grid.bricks.y * brick.z));
       const auto bit = static_cast<std::uint32_t>(in.x + 8 * in.y + 64 * in.z), word = bit / 32;
       const std::uint32_t slot = PALPATE_PROBE_SLOT(number);
       const std::uint32_t below = (1u << bit % 32) - 1;
@@ -58,7 +60,8 @@ TEST_F(FrameParts, AllOutsideAGridIsExternalAndBricksAreLookedUp) {
         expected = kVoxelInternal;
       } else if (slot != kBrickExternal && (PALPATE_PROBE_BOUNDARY(slot, word) >> bit % 32 & 1u) != 0) {
         expected = kVoxelBoundary;
-        boundary = PALPATE_PROBE_FIRST(slot, word) + static_cast<std::uint32_t>(std::popcount(PALPATE_PROBE_BOUNDARY(slot, word) & below));
+        boundary = PALPATE_PROBE_FIRST(slot, word) +
+                   static_cast<std::uint32_t>(std::popcount(PALPATE_PROBE_BOUNDARY(slot, word) & below));
       } else if (slot != kBrickExternal && (PALPATE_PROBE_INTERNAL(slot, word) >> bit % 32 & 1u) != 0) {
         expected = kVoxelInternal;
       }
@@ -79,7 +82,7 @@ TEST_F(FrameParts, WorkgroupsAreSpreadOverRowsThatDevicesTake) {
     ASSERT_LE(x, gpu::kMaxGroupsX);
     ASSERT_EQ(z, 1u);
     ASSERT_GE(std::uint64_t{x} * y, cases[i]);
-    ASSERT_LT(cases[i] == 0 ? 0 : std::uint64_t{x} * (y - 1), std::max(cases[i], 1u));   // no row too many
+    ASSERT_LT(cases[i] == 0 ? 0 : std::uint64_t{x} * (y - 1), std::max(cases[i], 1u));  // no row too many
   }
 }
 

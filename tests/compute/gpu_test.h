@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/buffer.h"
+#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/device.h"
 #include "compute/vulkan/pipeline.h"
 
@@ -36,8 +36,8 @@ class GpuTest : public testing::Test {
   static VulkanDevice& device() { return *device_; }
 
  private:
-  static void run_probe_bytes(const ShaderCode& code, const void* in, std::size_t in_bytes, void* out, std::size_t out_bytes,
-                              std::size_t count) {
+  static void run_probe_bytes(const ShaderCode& code, const void* in, std::size_t in_bytes, void* out,
+                              std::size_t out_bytes, std::size_t count) {
     auto pipeline = ComputePipeline::create(*device_, code, 2, 4);
     ASSERT_TRUE(pipeline) << pipeline.error().sentence;
     auto from = VulkanBuffer::create(*device_, "probe input", in_bytes, BufferKind::kUpload);

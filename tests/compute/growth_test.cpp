@@ -1,4 +1,5 @@
-// No stage of a frame grows as a product of two sizes of a contact: one of twice the size costs about twice as much. Told by what stages look at, for time is noise.
+// No stage of a frame grows as a product of two sizes of a contact: one of twice the size costs about twice
+// as much. Told by what stages look at, for time is noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,10 +13,12 @@
 namespace palpate {
 namespace {
 
-/// What doubling a contact may cost (its rim and what a tree has above its leaves grow less, what is shared out unevenly a little more).
+/// What doubling a contact may cost (its rim and what a tree has above its leaves grow less, what is shared
+/// out unevenly a little more).
 constexpr double kMost = 2.3;
 
-std::map<std::string, double> looks(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings, const Pose& pose) {
+std::map<std::string, double> looks(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings,
+                                    const Pose& pose) {
   std::map<std::string, double> out;
   auto geometry = build_geometry(mockup, tool, settings);
   EXPECT_TRUE(geometry) << geometry.error().sentence;
@@ -25,28 +28,33 @@ std::map<std::string, double> looks(const Mesh& mockup, const Mesh& tool, const 
   const auto place = to_lattice(pose, *geometry);
   EXPECT_TRUE(place);
   Contacts contacts;
-  for (int round = 0; round < 2; ++round) {   // the second knows what the first found
+  for (int round = 0; round < 2; ++round) {  // the second knows what the first found
     const auto answered = backend->query(*place, nullptr, contacts);
     EXPECT_TRUE(answered) << answered.error().sentence;
   }
   EXPECT_TRUE(contacts.contact);
-  for (const Contacts::StageTime& stage : contacts.times) out[stage.stage] += static_cast<double>(stage.looks);
+  for (const Contacts::StageTime& stage : contacts.times)
+    out[stage.stage] += static_cast<double>(stage.looks);
   return out;
 }
 
 /// A board whose face is pressed `depth_m` into a larger one, `length_m` of it, in triangles of `cell_m`.
-std::map<std::string, double> pressed(double length_m, double depth_m, double cell_m, bool open, double voxel_m) {
+std::map<std::string, double> pressed(double length_m, double depth_m, double cell_m, bool open,
+                                      double voxel_m) {
   const auto cells = [&](double size) { return static_cast<int>(std::lround(size / cell_m)); };
   const Mesh table = solids::box(Vec3(0), Vec3(0.2, 0.1, 0.02), Int3(cells(0.2), cells(0.1), cells(0.02)));
-  Mesh board = solids::box(Vec3(0), Vec3(length_m, 0.03, 0.01), Int3(cells(length_m), cells(0.03), cells(0.01)));
+  Mesh board =
+      solids::box(Vec3(0), Vec3(length_m, 0.03, 0.01), Int3(cells(length_m), cells(0.03), cells(0.01)));
   if (open) board.triangles.pop_back();
   GeometrySettings settings;
   settings.voxel_size_m = voxel_m;
-  settings.contact_samples = 0;   // all of them: fewer would hide the growth
-  return looks(table, board, settings, {Vec3(0.0313, 0.0317, 0.02 - depth_m), glm::normalize(Quat(1, 0.0003, 0.0004, 0.01))});
+  settings.contact_samples = 0;  // all of them: fewer would hide the growth
+  return looks(table, board, settings,
+               {Vec3(0.0313, 0.0317, 0.02 - depth_m), glm::normalize(Quat(1, 0.0003, 0.0004, 0.01))});
 }
 
-void expect_growth(const std::map<std::string, double>& small, const std::map<std::string, double>& large, double least) {
+void expect_growth(const std::map<std::string, double>& small, const std::map<std::string, double>& large,
+                   double least) {
   for (const char* stage : {"cull", "sets", "field"}) {
     ASSERT_TRUE(small.contains(stage) && large.contains(stage)) << stage;
     const double ratio = large.at(stage) / small.at(stage);
@@ -58,13 +66,17 @@ void expect_growth(const std::map<std::string, double>& small, const std::map<st
 
 TEST(Growth, AContactOfTwiceTheAreaIsAtMostALittleMoreThanTwiceTheWork) {
   for (const double depth : {0.0005, 0.004})
-    for (const bool open : {false, true}) expect_growth(pressed(0.05, depth, 0.001, open, 0.003), pressed(0.1, depth, 0.001, open, 0.003), 1.5);
+    for (const bool open : {false, true})
+      expect_growth(pressed(0.05, depth, 0.001, open, 0.003), pressed(0.1, depth, 0.001, open, 0.003), 1.5);
 }
 
-// Twice the triangles of both bodies on the same area, and voxels as many triangles wide as before, as a scene that names no size gets them: with the old ones each would list twice
-// as many for twice as many.
+// Twice the triangles of both bodies on the same area, and voxels as many triangles wide as before, as a
+// scene that names no size gets them: with the old ones each would list twice as many for twice as many.
 TEST(Growth, BodiesInTwiceTheTrianglesAreAtMostALittleMoreThanTwiceTheWork) {
-  for (const bool open : {false, true}) expect_growth(pressed(0.06, 0.002, 0.001, open, 0.003), pressed(0.06, 0.002, 0.001 / std::sqrt(2), open, 0.003 / std::sqrt(2)), 1.2);   // voxels at the rim list few
+  for (const bool open : {false, true})
+    expect_growth(pressed(0.06, 0.002, 0.001, open, 0.003),
+                  pressed(0.06, 0.002, 0.001 / std::sqrt(2), open, 0.003 / std::sqrt(2)),
+                  1.2);  // voxels at the rim list few
 }
 
 // A ball wholly inside another: nothing touches, all samples of the ball count.
@@ -73,9 +85,14 @@ TEST(Growth, ASwallowedToolOfTwiceTheAreaIsAtMostALittleMoreThanTwiceTheWork) {
   GeometrySettings settings;
   settings.voxel_size_m = 0.004;
   settings.contact_samples = 0;
-  const auto swallowed = [&](double radius_m, std::uint64_t triangles) { return looks(block, solids::sphere_of(radius_m, triangles), settings, {Vec3(0.01, 0.02, 0.003), Quat(1, 0, 0, 0)}); };
+  const auto swallowed = [&](double radius_m, std::uint64_t triangles) {
+    return looks(block, solids::sphere_of(radius_m, triangles), settings,
+                 {Vec3(0.01, 0.02, 0.003), Quat(1, 0, 0, 0)});
+  };
   const auto small = swallowed(0.02, 4'000), large = swallowed(0.02 * std::sqrt(2), 8'000);
-  for (const char* stage : {"sets", "field"}) EXPECT_LT(large.at(stage) / small.at(stage), kMost) << stage << ": " << small.at(stage) << " and " << large.at(stage);
+  for (const char* stage : {"sets", "field"})
+    EXPECT_LT(large.at(stage) / small.at(stage), kMost)
+        << stage << ": " << small.at(stage) << " and " << large.at(stage);
   EXPECT_GT(small.at("field"), 1000);
 }
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "compute/search/listed_boxes.h"
 #include "compute/scene/search_tables.h"
+#include "compute/search/listed_boxes.h"
 #include "compute/search/turned_boxes.h"
 #include "tests/compute/geometry_cases.h"
 
@@ -30,7 +30,8 @@ std::vector<PairFilter::Verdict> judge(const std::vector<Pair>& pairs) {
   std::vector<PairFilter::Verdict> out;
   for (std::size_t begin = 0; begin < pairs.size(); begin += PairFilter::kLanes) {
     const std::size_t count = std::min(PairFilter::kLanes, pairs.size() - begin);
-    for (std::size_t lane = 0; lane < count; ++lane) filter.put(lane, pairs[begin + lane].s, pairs[begin + lane].t);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      filter.put(lane, pairs[begin + lane].s, pairs[begin + lane].t);
     filter.judge(verdicts);
     out.insert(out.end(), verdicts.begin(), verdicts.begin() + static_cast<std::ptrdiff_t>(count));
   }
@@ -44,7 +45,9 @@ std::array<std::size_t, 3> count_right(const std::vector<Pair>& pairs) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     ++count[verdicts[i]];
     if (verdicts[i] == PairFilter::kUnknown) continue;
-    EXPECT_EQ(verdicts[i] == PairFilter::kMeet, exact::triangles_meet(pairs[i].s, pairs[i].t, exact::raw_normal(pairs[i].t))) << "pair " << i;
+    EXPECT_EQ(verdicts[i] == PairFilter::kMeet,
+              exact::triangles_meet(pairs[i].s, pairs[i].t, exact::raw_normal(pairs[i].t)))
+        << "pair " << i;
   }
   return count;
 }
@@ -72,15 +75,18 @@ TEST(PairFilter, DecidesNearlyAllOfGeneralPosition) {
   for (int i = 0; i < 4'000; ++i) {
     Corners c[2];
     for (Corners& corners : c)
-      for (Int3& corner : corners) corner = Int3(points.within(1 << 28), points.within(1 << 28), points.within(1 << 28));
+      for (Int3& corner : corners)
+        corner = Int3(points.within(1 << 28), points.within(1 << 28), points.within(1 << 28));
     pairs.push_back({c[0], c[1]});
   }
   const auto verdicts = judge(pairs);
-  // Fifteen signs a pair are 60,000, each unknown in some 2^-16 of its range: about one, and not every sign decides. Triangles that are thin by chance: a few more.
+  // Fifteen signs a pair are 60,000, each unknown in some 2^-16 of its range: about one, and not every sign
+  // decides. Triangles that are thin by chance: a few more.
   EXPECT_LE(std::count(verdicts.begin(), verdicts.end(), PairFilter::kUnknown), 4);
 }
 
-/// A triangle, and itself moved off its plane so that each of its corners has `low` + p (p + 1) `high` as the sixfold volume with it, p = 2^20.
+/// A triangle, and itself moved off its plane so that each of its corners has `low` + p (p + 1) `high` as the
+/// sixfold volume with it, p = 2^20.
 Pair lifted(std::int32_t low, std::int32_t high) {
   constexpr std::int32_t p = 1 << 20;
   // The normal is (p + 1, −p (p + 1), p).
@@ -91,32 +97,42 @@ Pair lifted(std::int32_t low, std::int32_t high) {
 }
 
 TEST(PairFilter, SaysNothingWithinItsBound) {
-  // Of both triangles and their sides the largest component is 2^20 and a little, so the bound is 2^-17 · 2^60 · 2 and a little: 16 times 2^40.
+  // Of both triangles and their sides the largest component is 2^20 and a little, so the bound is 2^-17 ·
+  // 2^60 · 2 and a little: 16 times 2^40.
   constexpr std::int64_t kHigh = (std::int64_t{1} << 20) * ((1 << 20) + 1);
-  for (const auto& [low, high] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {1 << 15, 0}, {0, 1}, {0, -1}, {0, 15}, {0, -15}}) {
+  for (const auto& [low, high] :
+       {std::pair{0, 0}, {1, 0}, {-1, 0}, {1 << 15, 0}, {0, 1}, {0, -1}, {0, 15}, {0, -15}}) {
     const Pair pair = lifted(low, high);
     const auto n = exact::raw_normal(pair.t);
     for (const Int3& corner : pair.s) ASSERT_EQ(exact::dot(n, corner - pair.t[0]), low + high * kHigh);
     EXPECT_EQ(judge({pair})[0], PairFilter::kUnknown) << low << " " << high;
     EXPECT_EQ(exact::triangles_meet(pair.s, pair.t, n), low == 0 && high == 0) << low << " " << high;
   }
-  for (const std::int32_t high : {17, -17, 1 << 10}) EXPECT_EQ(judge({lifted(0, high)})[0], PairFilter::kApart) << high;
+  for (const std::int32_t high : {17, -17, 1 << 10})
+    EXPECT_EQ(judge({lifted(0, high)})[0], PairFilter::kApart) << high;
 }
 
-/// Signs that are known are right also where one triangle is far smaller than the other, or far from its first corner.
+/// Signs that are known are right also where one triangle is far smaller than the other, or far from its
+/// first corner.
 TEST(PairFilter, NeverSaysWhatIsNotSoOfTrianglesOfAllSizes) {
   std::mt19937_64 random(5);
-  const auto within = [&](std::int32_t most) { return static_cast<std::int32_t>(random() % (2 * static_cast<std::uint64_t>(most) + 1)) - most; };
+  const auto within = [&](std::int32_t most) {
+    return static_cast<std::int32_t>(random() % (2 * static_cast<std::uint64_t>(most) + 1)) - most;
+  };
   std::vector<Pair> pairs;
   for (int i = 0; i < 60'000; ++i) {
     const std::int32_t large = 1 << random() % 28, small = 1 << random() % 12;
     Corners t, s;
     for (Int3& corner : t) corner = Int3(within(large), within(large), within(large));
     // Somewhere near t's plane, edges or corners: whole eighths of its sides, and a little beside.
-    const std::int64_t u = static_cast<std::int64_t>(random() % 9), v = static_cast<std::int64_t>(random() % 9);
+    const std::int64_t u = static_cast<std::int64_t>(random() % 9),
+                       v = static_cast<std::int64_t>(random() % 9);
     Int3 near;
-    for (int k = 0; k < 3; ++k) near[k] = static_cast<std::int32_t>(t[0][k] + (u * (t[1][k] - t[0][k]) + v * (t[2][k] - t[0][k])) / 8);
-    for (Int3& corner : s) corner = glm::clamp(near + Int3(within(small), within(small), within(small)), Int3(-(1 << 28)), Int3(1 << 28));
+    for (int k = 0; k < 3; ++k)
+      near[k] = static_cast<std::int32_t>(t[0][k] + (u * (t[1][k] - t[0][k]) + v * (t[2][k] - t[0][k])) / 8);
+    for (Int3& corner : s)
+      corner = glm::clamp(near + Int3(within(small), within(small), within(small)), Int3(-(1 << 28)),
+                          Int3(1 << 28));
     if (exact::raw_normal(s) == exact::Normal{} || exact::raw_normal(t) == exact::Normal{}) continue;
     pairs.push_back(i % 2 == 0 ? Pair{s, t} : Pair{t, s});
   }
@@ -129,8 +145,10 @@ TEST(PairFilter, ReachesTheEndsOfTheLattice) {
   constexpr std::int32_t end = 1 << 28;
   const Corners t{Int3(-end, -end, 0), Int3(end, -end, 0), Int3(0, end, 0)};
   EXPECT_EQ(judge({{{Int3(0, 0, -end), Int3(1, 0, end), Int3(0, 1, end)}, t}})[0], PairFilter::kMeet);
-  EXPECT_EQ(judge({{{Int3(end, end, -end), Int3(end, end, end), Int3(end - 1, end, end)}, t}})[0], PairFilter::kApart);
-  EXPECT_EQ(judge({{{Int3(-end, -end, 0), Int3(-end, -end, end), Int3(-end, end, end)}, t}})[0], PairFilter::kUnknown);   // they share a corner
+  EXPECT_EQ(judge({{{Int3(end, end, -end), Int3(end, end, end), Int3(end - 1, end, end)}, t}})[0],
+            PairFilter::kApart);
+  EXPECT_EQ(judge({{{Int3(-end, -end, 0), Int3(-end, -end, end), Int3(-end, end, end)}, t}})[0],
+            PairFilter::kUnknown);  // they share a corner
 }
 
 /// A voxel's boxes as SearchTables has them, and a triangle's look at them.
@@ -139,9 +157,11 @@ struct BoxCase {
   std::vector<std::uint8_t> rows;
   ListLook look{};
 
-  BoxCase(std::mt19937& random, std::size_t count, int side) : boxes(count), rows(6 * count + SearchTables::kBoxesAtOnce) {
+  BoxCase(std::mt19937& random, std::size_t count, int side)
+      : boxes(count), rows(6 * count + SearchTables::kBoxesAtOnce) {
     const auto up_to = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most + 1)); };
-    for (std::uint8_t& byte : rows) byte = static_cast<std::uint8_t>(random());   // what lies behind must not matter
+    for (std::uint8_t& byte : rows)
+      byte = static_cast<std::uint8_t>(random());  // what lies behind must not matter
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < 3; ++k) {
         const int low = up_to(255);
@@ -152,7 +172,8 @@ struct BoxCase {
       }
     double size = 0;
     std::array<double, 3> normal{};
-    for (double& n : normal) size += std::abs(n = up_to(9) == 0 ? 0 : std::uniform_real_distribution<double>(-1, 1)(random));
+    for (double& n : normal)
+      size += std::abs(n = up_to(9) == 0 ? 0 : std::uniform_real_distribution<double>(-1, 1)(random));
     for (std::size_t k = 0; k < 3; ++k) {
       look.facing[k] = size > 0 ? static_cast<float>(2 * normal[k] / size) : k == 0 ? 2.0F : 0.0F;
       look.box[k] = up_to(600) - 300;
@@ -161,10 +182,13 @@ struct BoxCase {
     look.plane = std::uniform_real_distribution<float>(-600, 600)(random);
     look.slack = std::uniform_real_distribution<float>(1, 40)(random);
   }
-  /// A box that reaches into the voxel's last part may go on beyond the voxel, and one out of the voxel has been cut off: so do the triangle's ends.
+  /// A box that reaches into the voxel's last part may go on beyond the voxel, and one out of the voxel has
+  /// been cut off: so do the triangle's ends.
   bool boxes_meet(std::size_t i) const {
     for (std::size_t k = 0; k < 3; ++k)
-      if (boxes[i][k] > std::clamp(look.box[k + 3], 0, kVoxelParts - 1) || boxes[i][k + 3] < std::clamp(look.box[k], 0, kVoxelParts - 1)) return false;
+      if (boxes[i][k] > std::clamp(look.box[k + 3], 0, kVoxelParts - 1) ||
+          boxes[i][k + 3] < std::clamp(look.box[k], 0, kVoxelParts - 1))
+        return false;
     return true;
   }
   /// By how much box i is clear of the plane, beyond the slack; below 0: not clear. Half parts.
@@ -179,9 +203,10 @@ struct BoxCase {
 };
 
 TEST(ListedBoxes, AreThoseThatMeetTheTriangleBoxAndItsPlane) {
-  constexpr double kRounding = 0x1p-10;   // six sums and products below 2^11 half parts in single precision, off by 2^-13 each at most
+  constexpr double kRounding =
+      0x1p-10;  // six sums and products below 2^11 half parts in single precision, off by 2^-13 each at most
   std::mt19937 random(4);
-  std::array<std::size_t, 4> count{};   // boxes apart, off the plane, met, unsure
+  std::array<std::size_t, 4> count{};  // boxes apart, off the plane, met, unsure
   for (int round = 0; round < 16'000; ++round) {
     const std::size_t boxes = round % 8 == 0 ? kMostBoxes : 1 + random() % kMostBoxes;
     const BoxCase c(random, boxes, round % 3 == 0 ? 255 : 20);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "compute/native/narrow_phase/cell_memo.h"
-#include "compute/vulkan/compilers.h"
 #include "compute/native/narrow_phase/id_marks.h"
+#include "compute/vulkan/compilers.h"
 
 namespace palpate {
 namespace {
@@ -26,16 +26,19 @@ TEST(IdMarks, AnswersAsASortedMapDoes) {
   for (const std::uint32_t ids : {1u, 63u, 64u, 65u, 4096u, 4097u, 100'000u}) {
     IdMarks marks;
     marks.resize(ids);
-    for (const std::uint32_t times : {0u, 1u, 10u, 1000u}) {   // one frame after the other
+    for (const std::uint32_t times : {0u, 1u, 10u, 1000u}) {  // one frame after the other
       marks.clear();
       std::map<std::uint32_t, std::uint32_t> expected;
       for (std::uint32_t i = 0; i < times; ++i) {
-        const auto near = static_cast<std::uint32_t>(random() % ids), id = i % 4 == 0 ? near : static_cast<std::uint32_t>(near % 97 % ids), mark = 1u << random() % 3;
+        const auto near = static_cast<std::uint32_t>(random() % ids),
+                   id = i % 4 == 0 ? near : static_cast<std::uint32_t>(near % 97 % ids),
+                   mark = 1u << random() % 3;
         marks.add(id, mark);
         expected[id] |= mark;
       }
       ASSERT_EQ(marks.count(), expected.size());
-      ASSERT_EQ(numbered(marks), (std::vector<std::pair<std::uint32_t, std::uint32_t>>(expected.begin(), expected.end())));
+      ASSERT_EQ(numbered(marks),
+                (std::vector<std::pair<std::uint32_t, std::uint32_t>>(expected.begin(), expected.end())));
       std::uint32_t place = 0;
       for (std::uint32_t id = 0; id < ids; ++id) {
         const auto at = expected.find(id);
@@ -57,11 +60,12 @@ TEST(IdMarks, HasRoomForTheLastIdAlone) {
 
 TEST(CellMemo, NeverTellsAnAnswerOfAnotherCell) {
   std::mt19937_64 random(1);
-  CellMemo memo(1000);   // fewer entries than cells: answers displace each other
+  CellMemo memo(1000);  // fewer entries than cells: answers displace each other
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> truth;
   std::size_t found = 0;
   for (int i = 0; i < 100'000; ++i) {
-    const std::pair cell(static_cast<std::uint32_t>(random() % 1000), static_cast<std::uint32_t>(random() % 8) * ((1u << CellMemo::kMostPlanes) / 8));
+    const std::pair cell(static_cast<std::uint32_t>(random() % 1000),
+                         static_cast<std::uint32_t>(random() % 8) * ((1u << CellMemo::kMostPlanes) / 8));
     const bool answer = truth.try_emplace(cell, random() % 2 != 0).first->second;
     if (const std::optional<bool> kept = memo.find(cell.first, cell.second)) {
       ASSERT_EQ(*kept, answer);
@@ -91,7 +95,7 @@ TEST(Compilers, WhatIsHeldWaitsUntilItIsToBegin) {
     EXPECT_EQ(done, 0);
     compilers.begin();
     compilers.begin();
-    compilers.add([&] { ++done; });   // what follows is not held
+    compilers.add([&] { ++done; });  // what follows is not held
     for (int i = 0; i < 1000 && done < 21; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_EQ(done, 21);
     compilers.hold();

@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::int32_t kVoxel = 1 << 14;   // steps
+constexpr std::int32_t kVoxel = 1 << 14;  // steps
 
 struct Case {
   std::string name;
@@ -50,26 +50,37 @@ TEST(InsideCells, SayWhatCrossingsSayWhereTheySayAnything) {
     SCOPED_TRACE(c.name);
     const LatticeMesh mesh = cpu_ref::lattice_mesh_of(c.triangles);
     ASSERT_FALSE(mesh.closed);
-    const auto made = native::make_partition(mesh, make_grid(mesh.box_min, mesh.box_max, kVoxel), 3, "body", [] { return true; });
+    const auto made = native::make_partition(mesh, make_grid(mesh.box_min, mesh.box_max, kVoxel), 3, "body",
+                                             [] { return true; });
     ASSERT_TRUE(made);
     const PartitionView view(*made);
     const HostPartition partition(view);
     const std::vector<std::uint8_t> boxes = SearchTables::boxes_of(mesh, view);
     InsideSearch plain(mesh, partition, boxes);
     int asked = 0, known = 0, inside = 0;
-    const InsideCells cells(mesh, view, boxes, [&](const Int3& point, const Int3&, std::uint32_t) { return plain.inside(point); });
+    const InsideCells cells(mesh, view, boxes, [&](const Int3& point, const Int3&, std::uint32_t) {
+      return plain.inside(point);
+    });
     std::mt19937 random(5);
-    const auto within = [&](std::int32_t low, std::int32_t high) { return std::uniform_int_distribution<std::int32_t>(low, high)(random); };
+    const auto within = [&](std::int32_t low, std::int32_t high) {
+      return std::uniform_int_distribution<std::int32_t>(low, high)(random);
+    };
     for (int i = 0; i < 200'000; ++i) {
       // Anywhere in a voxel; on and beside a triangle; on and beside the borders of cells.
-      const Int3 voxel = view.boundary_voxel(static_cast<std::uint32_t>(within(0, static_cast<std::int32_t>(made->grid.boundary_voxels) - 1)));
+      const Int3 voxel = view.boundary_voxel(
+          static_cast<std::uint32_t>(within(0, static_cast<std::int32_t>(made->grid.boundary_voxels) - 1)));
       const Int3 low = made->grid.origin + kVoxel * voxel;
-      const auto id = static_cast<std::uint32_t>(within(0, static_cast<std::int32_t>(mesh.triangles.size()) - 1));
+      const auto id =
+          static_cast<std::uint32_t>(within(0, static_cast<std::int32_t>(mesh.triangles.size()) - 1));
       Int3 point;
-      for (int k = 0; k < 3; ++k) point[k] = i % 3 == 0 ? within(low[k], low[k] + kVoxel - 1) : i % 3 == 1 ? low[k] + kVoxel / 8 * within(0, 8) + within(-2, 2) : 0;
+      for (int k = 0; k < 3; ++k)
+        point[k] = i % 3 == 0   ? within(low[k], low[k] + kVoxel - 1)
+                   : i % 3 == 1 ? low[k] + kVoxel / 8 * within(0, 8) + within(-2, 2)
+                                : 0;
       if (i % 3 == 2) {
         const Int3 a = mesh.corner(id, 0), b = mesh.corner(id, 1), d = mesh.corner(id, 2);
-        point = a + (b - a) / 16 * within(0, 8) + (d - a) / 16 * within(0, 8) + Int3(within(-5, 5), within(-5, 5), within(-5, 5));
+        point = a + (b - a) / 16 * within(0, 8) + (d - a) / 16 * within(0, 8) +
+                Int3(within(-5, 5), within(-5, 5), within(-5, 5));
       }
       const Int3 at = partition.voxel_of(point);
       const std::uint32_t boundary = partition.at(at).boundary;

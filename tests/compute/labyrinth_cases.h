@@ -8,29 +8,37 @@
 #include "tests/compute/brick_floods.h"
 #include "tests/compute/module_run.h"
 
-/// Runs of the modules that number bricks, join what is not boundary and count its votes, on made-up labyrinths. Unlike a mesh's, they reach the
-/// grid's border anywhere, and have bricks that are V_int before they are classified: the modules' rules, and nothing that prepared scenes
-/// happen to have in common. In each, buffers go on behind `count`, and so do invocations.
+/// Runs of the modules that number bricks, join what is not boundary and count its votes, on made-up
+/// labyrinths. Unlike a mesh's, they reach the grid's border anywhere, and have bricks that are V_int before
+/// they are classified: the modules' rules, and nothing that prepared scenes happen to have in common. In
+/// each, buffers go on behind `count`, and so do invocations.
 namespace palpate::labyrinth_cases {
 
 inline constexpr std::uint32_t kUntouched = 0xA5A5A5A5u;
-inline constexpr std::uint32_t kMore = 70;   ///< invocations beyond the last
+inline constexpr std::uint32_t kMore = 70;  ///< invocations beyond the last
 
 /// Some bricks, and all that preparation knows of them on its way.
 struct Labyrinth {
-  Int3 n{0};                             ///< bricks along each axis
-  Words slot, mixed;                     ///< brick_slot[]; numbers of the mixed ones
-  std::vector<gpu::Brick> bricks;        ///< boundary[] and first[]
+  Int3 n{0};                       ///< bricks along each axis
+  Words slot, mixed;               ///< brick_slot[]; numbers of the mixed ones
+  std::vector<gpu::Brick> bricks;  ///< boundary[] and first[]
   std::uint32_t boundary_voxels = 0;
-  Words first{0}, labels;                ///< component_first[], labels[]
-  Words root;                            ///< of every node
+  Words first{0}, labels;  ///< component_first[], labels[]
+  Words root;              ///< of every node
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(slot.size()); }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(bricks.size()); }
   std::uint32_t nodes() const { return static_cast<std::uint32_t>(1 + slot.size() + first.back()); }
-  std::uint32_t number(const Int3& brick) const { return static_cast<std::uint32_t>(brick.x + n.x * (brick.y + n.y * brick.z)); }
-  Int3 brick(std::uint32_t number) const { const int b = static_cast<int>(number); return {b % n.x, b / n.x % n.y, b / (n.x * n.y)}; }
-  bool boundary(std::uint32_t s, unsigned bit) const { return (bricks[s].boundary[bit >> 5] >> (bit & 31) & 1) != 0; }
+  std::uint32_t number(const Int3& brick) const {
+    return static_cast<std::uint32_t>(brick.x + n.x * (brick.y + n.y * brick.z));
+  }
+  Int3 brick(std::uint32_t number) const {
+    const int b = static_cast<int>(number);
+    return {b % n.x, b / n.x % n.y, b / (n.x * n.y)};
+  }
+  bool boundary(std::uint32_t s, unsigned bit) const {
+    return (bricks[s].boundary[bit >> 5] >> (bit & 31) & 1) != 0;
+  }
   /// Node of a voxel of the grid; kNoVoxel for a boundary voxel.
   std::uint32_t node(const Int3& voxel) const {
     const std::uint32_t b = number(voxel / 8), s = slot[b];
@@ -38,7 +46,8 @@ struct Labyrinth {
     const auto bit = static_cast<unsigned>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
     if (boundary(s, bit)) return gpu::kNoVoxel;
     std::uint32_t component = 0;
-    for (unsigned plane = 0; plane < 8; ++plane) component |= (labels[s * 128 + plane * 16 + (bit >> 5)] >> (bit & 31) & 1) << plane;
+    for (unsigned plane = 0; plane < 8; ++plane)
+      component |= (labels[s * 128 + plane * 16 + (bit >> 5)] >> (bit & 31) & 1) << plane;
     return 1 + count() + first[s] + component;
   }
 };
@@ -74,7 +83,8 @@ inline void join_faces(const Labyrinth& l, std::uint32_t item, Sets& sets) {
       Int3 voxel = brick * 8;
       voxel[u] += i;
       voxel[v] += j;
-      if (const std::uint32_t node = l.node(voxel); brick[axis] == 0 && node != gpu::kNoVoxel) sets.join(node, 0);
+      if (const std::uint32_t node = l.node(voxel); brick[axis] == 0 && node != gpu::kNoVoxel)
+        sets.join(node, 0);
       voxel[axis] += 7;
       const std::uint32_t node = l.node(voxel);
       voxel[axis] += 1;
@@ -83,7 +93,8 @@ inline void join_faces(const Labyrinth& l, std::uint32_t item, Sets& sets) {
     }
 }
 
-/// `uniform`: per cent of the bricks that are. Mixed ones have any share of boundary voxels, all of them too. `shut`: those at the border have nothing else.
+/// `uniform`: per cent of the bricks that are. Mixed ones have any share of boundary voxels, all of them too.
+/// `shut`: those at the border have nothing else.
 inline Labyrinth labyrinth(Numbers& random, Int3 n, unsigned uniform, bool shut = false) {
   Labyrinth l;
   l.n = n;
@@ -109,7 +120,8 @@ inline Labyrinth labyrinth(Numbers& random, Int3 n, unsigned uniform, bool shut 
     l.labels.resize(l.labels.size() + 128, 0);
     for (unsigned bit = 0; bit < 512; ++bit)
       for (unsigned plane = 0; plane < 8; ++plane)
-        if (component[bit] >= 0 && (component[bit] >> plane & 1) != 0) l.labels[l.bricks.size() * 128 + plane * 16 + (bit >> 5)] |= 1u << (bit & 31);
+        if (component[bit] >= 0 && (component[bit] >> plane & 1) != 0)
+          l.labels[l.bricks.size() * 128 + plane * 16 + (bit >> 5)] |= 1u << (bit & 31);
     l.first.push_back(l.first.back() + static_cast<std::uint32_t>(components));
     l.slot.push_back(l.slots());
     l.mixed.push_back(static_cast<std::uint32_t>(b));
@@ -131,14 +143,17 @@ inline const std::vector<Labyrinth>& labyrinths() {
       const Int3 n{along(), along(), along()};
       made.push_back(labyrinth(random, n, 15 + 5 * static_cast<unsigned>(i)));
     }
-    for (const Int3& n : {Int3(9, 5, 5), Int3(5, 9, 5), Int3(5, 5, 9)})   // with rows of uniform bricks that are shut in
+    for (const Int3& n :
+         {Int3(9, 5, 5), Int3(5, 9, 5), Int3(5, 5, 9)})  // with rows of uniform bricks that are shut in
       made.push_back(labyrinth(random, n, 45, true));
     return made;
   }();
   return all;
 }
 
-inline gpu::GridPush grid_of(const Labyrinth& l, std::uint32_t count, std::uint32_t axis = 0) { return {{0, 0, 0}, 16, l.n, count, axis}; }
+inline gpu::GridPush grid_of(const Labyrinth& l, std::uint32_t count, std::uint32_t axis = 0) {
+  return {{0, 0, 0}, 16, l.n, count, axis};
+}
 
 /// Not all of them: what is behind is left alone.
 inline std::uint32_t most_of(std::uint32_t all) { return all - all / 5; }
@@ -151,19 +166,32 @@ inline std::vector<ModuleRun> numbering() {
     Words cells(3 * l.slots()), sums(l.count() + 1, 0);
     for (std::uint32_t& cell : cells) cell = static_cast<std::uint32_t>(random() % l.count());
     runs.push_back({"brick_mark", {cells, Words(l.count(), 0)}, {l.slots()}, l.slots() + kMore});
-    for (std::uint32_t b = 0; b < l.count(); ++b) sums[b + 1] = sums[b] + (l.slot[b] < gpu::kBrickInternal ? 1 : 0);
-    runs.push_back({"brick_assign", {sums, Words(l.count(), kUntouched), Words(l.slots() + 1, kUntouched)}, {most_of(l.count())}, l.count() + kMore});
+    for (std::uint32_t b = 0; b < l.count(); ++b)
+      sums[b + 1] = sums[b] + (l.slot[b] < gpu::kBrickInternal ? 1 : 0);
+    runs.push_back({"brick_assign",
+                    {sums, Words(l.count(), kUntouched), Words(l.slots() + 1, kUntouched)},
+                    {most_of(l.count())},
+                    l.count() + kMore});
     std::vector<gpu::Brick> bricks = l.bricks;
     for (gpu::Brick& brick : bricks)
       for (std::uint32_t& word : brick.internal_) word = random();
-    runs.push_back({"brick_count", {words_of(bricks), Words(l.slots(), kUntouched)}, {most_of(l.slots())}, l.slots() + kMore});
+    runs.push_back({"brick_count",
+                    {words_of(bricks), Words(l.slots(), kUntouched)},
+                    {most_of(l.slots())},
+                    l.slots() + kMore});
     Words begins;
     for (gpu::Brick& brick : bricks) {
       begins.push_back(brick.first[0]);
       for (std::uint32_t& first : brick.first) first = kUntouched;
     }
-    runs.push_back({"brick_number", {words_of(bricks), begins, Words(l.boundary_voxels, kUntouched)}, {most_of(l.slots())}, l.slots() + kMore});
-    runs.push_back({"brick_label", {words_of(bricks), Words(l.labels.size(), 0), Words(l.slots(), kUntouched)}, {most_of(l.slots())}, l.slots() + kMore});
+    runs.push_back({"brick_number",
+                    {words_of(bricks), begins, Words(l.boundary_voxels, kUntouched)},
+                    {most_of(l.slots())},
+                    l.slots() + kMore});
+    runs.push_back({"brick_label",
+                    {words_of(bricks), Words(l.labels.size(), 0), Words(l.slots(), kUntouched)},
+                    {most_of(l.slots())},
+                    l.slots() + kMore});
   }
   return runs;
 }
@@ -180,8 +208,8 @@ inline Words parents_of_rows(const Labyrinth& l, std::uint32_t rows) {
   return sets.roots();
 }
 
-/// Node i hangs under node i + 1, up to the last. Parents of a labyrinth are smaller than their children, so that a pass shortens long ways before
-/// it walks them: only on this one its limit shows, whatever the order.
+/// Node i hangs under node i + 1, up to the last. Parents of a labyrinth are smaller than their children, so
+/// that a pass shortens long ways before it walks them: only on this one its limit shows, whatever the order.
 inline Words chain_up(std::uint32_t nodes) {
   Words parent(nodes);
   for (std::uint32_t i = 0; i < nodes; ++i) parent[i] = std::min(i + 1, nodes - 1);
@@ -204,10 +232,16 @@ inline std::vector<ModuleRun> joins() {
       runs.push_back({"row_init", {l.slot, alone.parent}, push_of(grid_of(l, count)), rows + kMore});
     }
     for (const std::uint32_t count : {items, most_of(items), items / 2})
-      runs.push_back({"component_join", {l.slot, words_of(l.bricks), l.first, l.labels, parents_of_rows(l, rows), {0}},
-                      push_of(grid_of(l, count)), items + kMore, {}, 1, 4});
+      runs.push_back({"component_join",
+                      {l.slot, words_of(l.bricks), l.first, l.labels, parents_of_rows(l, rows), {0}},
+                      push_of(grid_of(l, count)),
+                      items + kMore,
+                      {},
+                      1,
+                      4});
   }
-  // Two bricks side by side along y, in the middle, all others full; one hangs under more nodes than a walk follows.
+  // Two bricks side by side along y, in the middle, all others full; one hangs under more nodes than a walk
+  // follows.
   Labyrinth l;
   l.n = {3, 4, 60};
   l.slot.assign(static_cast<std::size_t>(l.n.x * l.n.y * l.n.z), 0);
@@ -219,7 +253,13 @@ inline std::vector<ModuleRun> joins() {
   l.slot[a] = l.slot[b] = gpu::kBrickExternal;
   Words parent(l.nodes());
   for (std::uint32_t i = 1; i < parent.size(); ++i) parent[i] = i <= 1 + a ? i - 1 : i;
-  runs.push_back({"component_join", {l.slot, words_of(l.bricks), l.first, l.labels, parent, {0}}, push_of(grid_of(l, 3 * l.count())), 3 * l.count(), {}, 1, 4});
+  runs.push_back({"component_join",
+                  {l.slot, words_of(l.bricks), l.first, l.labels, parent, {0}},
+                  push_of(grid_of(l, 3 * l.count())),
+                  3 * l.count(),
+                  {},
+                  1,
+                  4});
   return runs;
 }
 
@@ -227,9 +267,13 @@ inline std::vector<ModuleRun> votes() {
   Numbers random(34);
   std::vector<ModuleRun> runs;
   for (const Labyrinth& l : labyrinths()) {
-    Words some = l.root;   // of each brick some components reach the border, some don't
-    for (std::uint32_t& root : some) root = static_cast<std::uint32_t>(random() % 3 == 0 ? random() % some.size() : 0);
-    runs.push_back({"brick_enclosed", {l.first, some, Words(l.slots(), kUntouched)}, push_of(gpu::EnclosedPush{most_of(l.slots()), l.count()}), l.slots() + kMore});
+    Words some = l.root;  // of each brick some components reach the border, some don't
+    for (std::uint32_t& root : some)
+      root = static_cast<std::uint32_t>(random() % 3 == 0 ? random() % some.size() : 0);
+    runs.push_back({"brick_enclosed",
+                    {l.first, some, Words(l.slots(), kUntouched)},
+                    push_of(gpu::EnclosedPush{most_of(l.slots()), l.count()}),
+                    l.slots() + kMore});
     Words enclosed(l.slots(), 0);
     for (std::uint32_t s = 0; s < l.slots(); ++s)
       for (std::uint32_t c = l.first[s]; c < l.first[s + 1]; ++c)
@@ -240,26 +284,36 @@ inline std::vector<ModuleRun> votes() {
       const int u = static_cast<int>(axis + 1) % 3, v = static_cast<int>(axis + 2) % 3;
       const auto rows = static_cast<std::uint32_t>(l.n[u] * l.n[v]);
       Words head(rows, gpu::kNoVoxel), link(l.slots(), gpu::kNoVoxel);
-      for (std::uint32_t s = 0; s < l.slots(); ++s) {   // ascending, so along any axis too: each goes before those met
+      for (std::uint32_t s = 0; s < l.slots();
+           ++s) {  // ascending, so along any axis too: each goes before those met
         const Int3 at = l.brick(l.mixed[s]);
         std::uint32_t& first = head[static_cast<std::size_t>(at[u] + l.n[u] * at[v])];
         link[s] = first;
         first = s;
       }
-      runs.push_back({"row_link", {l.slot, Words(rows, kUntouched), Words(l.slots(), kUntouched)}, push_of(grid_of(l, most_of(rows), axis)), rows + kMore});
+      runs.push_back({"row_link",
+                      {l.slot, Words(rows, kUntouched), Words(l.slots(), kUntouched)},
+                      push_of(grid_of(l, most_of(rows), axis)),
+                      rows + kMore});
       const struct {
         gpu::GridPush grid;
         std::uint32_t first_crossing;
       } push{grid_of(l, most_of(64 * rows), axis), axis * l.boundary_voxels};
       std::vector<std::int64_t> before(l.nodes());
       for (std::int64_t& count : before) count = static_cast<std::int64_t>(random() % 100) - 50;
-      runs.push_back({"vote_sweep", {l.mixed, words_of(l.bricks), l.first, l.labels, l.root, words_of(crossings), words_of(before), head, link, enclosed},
-                      push_of(push), 64 * rows + kMore});
+      runs.push_back({"vote_sweep",
+                      {l.mixed, words_of(l.bricks), l.first, l.labels, l.root, words_of(crossings),
+                       words_of(before), head, link, enclosed},
+                      push_of(push),
+                      64 * rows + kMore});
     }
     for (const int most : {0, 2}) {
       std::vector<std::int64_t> counted(l.nodes());
       for (std::int64_t& count : counted) count = static_cast<std::int64_t>(random() % 4) - 4 + most;
-      runs.push_back({"brick_classify", {l.slot, words_of(l.bricks), l.first, l.labels, some, words_of(counted), {0}}, {most_of(l.count())}, l.count() + kMore});
+      runs.push_back({"brick_classify",
+                      {l.slot, words_of(l.bricks), l.first, l.labels, some, words_of(counted), {0}},
+                      {most_of(l.count())},
+                      l.count() + kMore});
     }
   }
   return runs;

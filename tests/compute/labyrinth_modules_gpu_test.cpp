@@ -23,7 +23,9 @@ TEST_F(LabyrinthModules, MarkedBricksGetSlotsInOrder) {
   });
 }
 
-bool bit_of(const std::uint32_t (&words)[16], unsigned bit) { return (words[bit >> 5] >> (bit & 31) & 1) != 0; }
+bool bit_of(const std::uint32_t (&words)[16], unsigned bit) {
+  return (words[bit >> 5] >> (bit & 31) & 1) != 0;
+}
 
 TEST_F(LabyrinthModules, BoundaryVoxelsAreCounted) {
   each("brick_count", spirv::brick_count, [](const ModuleRun& run, std::vector<Words>& want, auto&) {
@@ -60,7 +62,8 @@ TEST_F(LabyrinthModules, VoxelsOfABrickAreLabelled) {
       want[2][s] = static_cast<std::uint32_t>(count);
       for (unsigned bit = 0; bit < 512; ++bit)
         for (unsigned plane = 0; plane < 8; ++plane)
-          if (component[bit] >= 0 && (component[bit] >> plane & 1) != 0) want[1][s * 128 + plane * 16 + bit / 32] |= 1u << bit % 32;
+          if (component[bit] >= 0 && (component[bit] >> plane & 1) != 0)
+            want[1][s * 128 + plane * 16 + bit / 32] |= 1u << bit % 32;
     }
   });
 }
@@ -68,7 +71,10 @@ TEST_F(LabyrinthModules, VoxelsOfABrickAreLabelled) {
 TEST_F(LabyrinthModules, ARowsRunsOfUniformBricksGetOneParent) {
   each("row_init", spirv::row_init, [](const ModuleRun& run, std::vector<Words>& want, auto&) {
     const auto push = push_as<gpu::GridPush>(run);
-    const auto uniform = [&](std::uint32_t row, int x) { return run.buffers[0][row * static_cast<std::uint32_t>(push.bricks.x) + static_cast<std::uint32_t>(x)] >= gpu::kBrickInternal; };
+    const auto uniform = [&](std::uint32_t row, int x) {
+      return run.buffers[0][row * static_cast<std::uint32_t>(push.bricks.x) +
+                            static_cast<std::uint32_t>(x)] >= gpu::kBrickInternal;
+    };
     for (std::uint32_t row = 0; row < push.count; ++row)
       for (int x = 0; x < push.bricks.x; ++x) {
         if (!uniform(row, x)) continue;
@@ -76,7 +82,8 @@ TEST_F(LabyrinthModules, ARowsRunsOfUniformBricksGetOneParent) {
         while (first > 0 && uniform(row, first - 1)) --first;
         while (end < push.bricks.x && uniform(row, end)) ++end;
         const std::uint32_t node = 1 + row * static_cast<std::uint32_t>(push.bricks.x);
-        want[1][node + static_cast<std::uint32_t>(x)] = first == 0 || end == push.bricks.x ? 0 : node + static_cast<std::uint32_t>(first);
+        want[1][node + static_cast<std::uint32_t>(x)] =
+            first == 0 || end == push.bricks.x ? 0 : node + static_cast<std::uint32_t>(first);
       }
   });
 }
@@ -90,7 +97,8 @@ TEST_F(LabyrinthModules, ANodeGetsItsRootUnlessTheWayIsTooLong) {
         continue;
       }
       std::uint32_t root = node, steps = 0;
-      for (; parent[root] != root && steps < gpu::kFindSteps + 1; ++steps) root = parent[root];   // the first step is no look-up
+      for (; parent[root] != root && steps < gpu::kFindSteps + 1; ++steps)
+        root = parent[root];  // the first step is no look-up
       want[0][node] = std::min(parent[node], root);
       if (steps == gpu::kFindSteps + 1) want[1][0] = 1;
     }
@@ -98,7 +106,8 @@ TEST_F(LabyrinthModules, ANodeGetsItsRootUnlessTheWayIsTooLong) {
 }
 
 /// A labyrinth as the modules see it.
-Labyrinth labyrinth_of(const gpu::GridPush& push, const Words& slot, const Words& bricks, const Words& first, const Words& labels) {
+Labyrinth labyrinth_of(const gpu::GridPush& push, const Words& slot, const Words& bricks, const Words& first,
+                       const Words& labels) {
   Labyrinth l;
   l.n = push.bricks;
   l.slot = slot;
@@ -114,7 +123,7 @@ TEST_F(LabyrinthModules, WhatMeetsAtFacesOrLiesAtTheBorderIsJoined) {
     const Labyrinth l = labyrinth_of(push, run.buffers[0], run.buffers[1], run.buffers[2], run.buffers[3]);
     labyrinth_cases::Sets sets(0);
     sets.parent = run.buffers[4];
-    for (std::uint32_t node = 0; node < sets.parent.size(); ++node) {   // a way of which halves are too long
+    for (std::uint32_t node = 0; node < sets.parent.size(); ++node) {  // a way of which halves are too long
       std::uint32_t steps = 0;
       for (std::uint32_t at = node; sets.parent[at] != at; at = sets.parent[at]) ++steps;
       if (steps > 2 * gpu::kFindSteps) want[5][0] = 1;
@@ -129,7 +138,10 @@ TEST_F(LabyrinthModules, BricksWithAComponentOffTheBorderAreTold) {
     const auto push = push_as<gpu::EnclosedPush>(run);
     for (std::uint32_t s = 0; s < push.count; ++s) {
       const auto nodes = run.buffers[1].begin() + 1 + push.bricks;
-      want[2][s] = std::all_of(nodes + run.buffers[0][s], nodes + run.buffers[0][s + 1], [](std::uint32_t parent) { return parent == 0; }) ? 0 : 1;
+      want[2][s] = std::all_of(nodes + run.buffers[0][s], nodes + run.buffers[0][s + 1],
+                               [](std::uint32_t parent) { return parent == 0; })
+                       ? 0
+                       : 1;
     }
   });
 }
@@ -139,23 +151,25 @@ TEST_F(LabyrinthModules, MixedBricksOfARowAreLinkedFromTheFarEnd) {
     const auto push = push_as<gpu::GridPush>(run);
     const int axis = static_cast<int>(push.axis), u = (axis + 1) % 3, v = (axis + 2) % 3;
     for (int row = 0; row < static_cast<int>(push.count); ++row) {
-      Words mixed;   // from the near end
+      Words mixed;  // from the near end
       for (int k = 0; k < push.bricks[axis]; ++k) {
         Int3 at;
         at[axis] = k;
         at[u] = row % push.bricks[u];
         at[v] = row / push.bricks[u];
-        const std::uint32_t slot = run.buffers[0][static_cast<std::size_t>(at.x + push.bricks.x * (at.y + push.bricks.y * at.z))];
+        const std::uint32_t slot =
+            run.buffers[0][static_cast<std::size_t>(at.x + push.bricks.x * (at.y + push.bricks.y * at.z))];
         if (slot < gpu::kBrickInternal) mixed.push_back(slot);
       }
       want[1][static_cast<std::size_t>(row)] = mixed.empty() ? gpu::kNoVoxel : mixed.back();
-      for (std::size_t i = 0; i < mixed.size(); ++i) want[2][mixed[i]] = i == 0 ? gpu::kNoVoxel : mixed[i - 1];
+      for (std::size_t i = 0; i < mixed.size(); ++i)
+        want[2][mixed[i]] = i == 0 ? gpu::kNoVoxel : mixed[i - 1];
     }
   });
 }
 
 TEST_F(LabyrinthModules, EveryEnclosedVoxelVotesByItsWinding) {
-  std::size_t rows_shut_in = 0;   // voxels of uniform bricks with a vote
+  std::size_t rows_shut_in = 0;  // voxels of uniform bricks with a vote
   each("vote_sweep", spirv::vote_sweep, [&](const ModuleRun& run, std::vector<Words>& want, auto&) {
     struct Push {
       gpu::GridPush grid;
@@ -183,7 +197,8 @@ TEST_F(LabyrinthModules, EveryEnclosedVoxelVotesByItsWinding) {
         const gpu::Brick& brick = l.bricks[slot[l.number(at / 8)]];
         const auto bit = static_cast<unsigned>((at.x & 7) | (at.y & 7) << 3 | (at.z & 7) << 6);
         std::uint32_t number = brick.first[bit / 32];
-        for (unsigned before = bit / 32 * 32; before < bit; ++before) number += bit_of(brick.boundary, before) ? 1u : 0u;
+        for (unsigned before = bit / 32 * 32; before < bit; ++before)
+          number += bit_of(brick.boundary, before) ? 1u : 0u;
         winding += crossings[first_crossing + number];
       }
     }
@@ -197,7 +212,9 @@ TEST_F(LabyrinthModules, AComponentOffTheBorderWithMoreVotesForIsInternal) {
     const std::uint32_t count = run.push[0];
     auto bricks = values_of<gpu::Brick>(run.buffers[1]);
     const auto votes = values_of<std::int64_t>(run.buffers[5]);
-    const auto internal = [&](std::uint32_t node) { return run.buffers[4][node] != 0 && votes[run.buffers[4][node]] > 0; };
+    const auto internal = [&](std::uint32_t node) {
+      return run.buffers[4][node] != 0 && votes[run.buffers[4][node]] > 0;
+    };
     for (std::uint32_t b = 0; b < count; ++b) {
       const std::uint32_t slot = run.buffers[0][b];
       if (slot >= gpu::kBrickInternal) {
@@ -208,7 +225,8 @@ TEST_F(LabyrinthModules, AComponentOffTheBorderWithMoreVotesForIsInternal) {
       for (unsigned bit = 0; bit < 512; ++bit) {
         if (bit_of(bricks[slot].boundary, bit)) continue;
         std::uint32_t component = 0;
-        for (unsigned plane = 0; plane < 8; ++plane) component |= (run.buffers[3][slot * 128 + plane * 16 + bit / 32] >> bit % 32 & 1) << plane;
+        for (unsigned plane = 0; plane < 8; ++plane)
+          component |= (run.buffers[3][slot * 128 + plane * 16 + bit / 32] >> bit % 32 & 1) << plane;
         if (!internal(1 + count + run.buffers[2][slot] + component)) continue;
         bricks[slot].internal_[bit / 32] |= 1u << bit % 32;
         want[6][0] = 1;

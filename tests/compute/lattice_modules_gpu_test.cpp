@@ -11,8 +11,11 @@ using LatticeModules = ModuleTest;
 /// The triangles of a run whose first two buffers are vertices and corners.
 class Soup {
  public:
-  explicit Soup(const ModuleRun& run) : vertices_(values_of<Int3>(run.buffers[0])), corners_(values_of<gpu::uvec3>(run.buffers[1])) {}
-  cpu_ref::Triangle operator[](std::uint32_t t) const { return {vertices_[corners_[t].x], vertices_[corners_[t].y], vertices_[corners_[t].z]}; }
+  explicit Soup(const ModuleRun& run)
+      : vertices_(values_of<Int3>(run.buffers[0])), corners_(values_of<gpu::uvec3>(run.buffers[1])) {}
+  cpu_ref::Triangle operator[](std::uint32_t t) const {
+    return {vertices_[corners_[t].x], vertices_[corners_[t].y], vertices_[corners_[t].z]};
+  }
   const gpu::uvec3& corners(std::uint32_t t) const { return corners_[t]; }
 
  private:
@@ -54,7 +57,8 @@ TEST_F(LatticeModules, CellsThatATriangleTouchesAreFound) {
         for (int k = 0; k < 3; ++k) {
           std::int64_t along = 0;
           for (int b = 0; b < push.bricks[k]; ++b) {
-            const std::int32_t low = push.origin[k] + b * push.brick_side - push.growth, high = push.origin[k] + (b + 1) * push.brick_side + push.growth;
+            const std::int32_t low = push.origin[k] + b * push.brick_side - push.growth,
+                               high = push.origin[k] + (b + 1) * push.brick_side + push.growth;
             along += triangle.box().min[k] <= high && triangle.box().max[k] >= low ? 1 : 0;
           }
           bricks *= along;
@@ -68,11 +72,13 @@ TEST_F(LatticeModules, CellsThatATriangleTouchesAreFound) {
       std::uint32_t found = 0;
       for_each_cell(push.cells, [&](const Int3& cell) {
         if (items && cell / 8 != cell_of(run.buffers[4][i], push.parents)) return;
-        const Int3 low = push.origin + cell * push.side, high = glm::min(low + push.side, push.origin + push.bricks * push.brick_side);
+        const Int3 low = push.origin + cell * push.side,
+                   high = glm::min(low + push.side, push.origin + push.bricks * push.brick_side);
         if (!cpu_ref::triangle_meets_box(triangle, cube(low, high, push.growth))) return;
         if (push.emit != 0) {
           want[6][run.buffers[5][i] + found] = t;
-          want[7][run.buffers[5][i] + found] = static_cast<std::uint32_t>(cell.x + push.cells.x * (cell.y + push.cells.y * cell.z));
+          want[7][run.buffers[5][i] + found] =
+              static_cast<std::uint32_t>(cell.x + push.cells.x * (cell.y + push.cells.y * cell.z));
         }
         ++found;
       });
@@ -97,7 +103,7 @@ TEST_F(LatticeModules, VoxelsThatATriangleTouchesAreMarkedAndListed) {
         if (push.emit == 0) {
           bricks[slot].boundary[bit / 32] |= 1u << bit % 32;
         } else {
-          const std::uint32_t number = slot * 512 + bit;   // all are boundary
+          const std::uint32_t number = slot * 512 + bit;  // all are boundary
           want[7][push.out_base + run.buffers[6][i] + found] = t;
           want[8][push.out_base + run.buffers[6][i] + found] = number;
           ++want[9][number];
@@ -114,7 +120,8 @@ TEST_F(LatticeModules, VoxelsThatATriangleTouchesAreMarkedAndListed) {
 template <class Grid>
 Int3 low_of(const Grid& grid, const Words& places, const Words& mixed, std::uint32_t voxel) {
   const std::uint32_t place = places[voxel];
-  return grid.origin + grid.size * (8 * cell_of(mixed[place / 512], grid.bricks) + cell_of(place % 512, Int3(8)));
+  return grid.origin +
+         grid.size * (8 * cell_of(mixed[place / 512], grid.bricks) + cell_of(place % 512, Int3(8)));
 }
 
 TEST_F(LatticeModules, LinesThroughCentresCrossAsTheReferencesRaysDo) {
@@ -137,7 +144,8 @@ TEST_F(LatticeModules, LinesThroughCentresCrossAsTheReferencesRaysDo) {
         const int facing = cpu_ref::line_passes(centre, along, triangle);
         if (facing == 0) continue;
         // It crosses at centre + s · along with s = side / N_k, in [−size/2, size/2)?
-        const cpu_ref::Int128 side = -triangle.side(centre) * facing, half = cpu_ref::Int128{triangle.normal[k]} * facing * (grid.size / 2);
+        const cpu_ref::Int128 side = -triangle.side(centre) * facing,
+                              half = cpu_ref::Int128{triangle.normal[k]} * facing * (grid.size / 2);
         if (side < -half || side >= half) continue;
         want[6][voxels * axis + voxel] += static_cast<std::uint32_t>(facing);
         ++crossed;
@@ -155,14 +163,20 @@ TEST_F(LatticeModules, SamplesOfAVoxelAreTheReferences) {
     for (std::uint32_t i = push.first; i < push.first + push.count; ++i) {
       const std::uint32_t t = run.buffers[4][i];
       const cpu_ref::Triangle triangle = soup[t];
-      const int k = static_cast<int>(run.buffers[2][t] >> gpu::kInfoAxisShift & 3), u = (k + 1) % 3, v = (k + 2) % 3;
-      const Int3 low = low_of(push, run.buffers[5], run.buffers[6], run.buffers[3][i]), last = low + (push.size - 1);
-      const auto cell = [&](std::int32_t place) { return cpu_ref::floor_divide(std::int64_t{place}, std::int64_t{push.spacing}); };
+      const int k = static_cast<int>(run.buffers[2][t] >> gpu::kInfoAxisShift & 3), u = (k + 1) % 3,
+                v = (k + 2) % 3;
+      const Int3 low = low_of(push, run.buffers[5], run.buffers[6], run.buffers[3][i]),
+                 last = low + (push.size - 1);
+      const auto cell = [&](std::int32_t place) {
+        return cpu_ref::floor_divide(std::int64_t{place}, std::int64_t{push.spacing});
+      };
       std::uint32_t count = 0;
       for (std::int64_t j = cell(low[v]); j <= cell(last[v]); ++j)
         for (std::int64_t i_u = cell(low[u]); i_u <= cell(last[u]); ++i_u) {
           const auto [g_u, g_v] = cpu_ref::sample_of({i_u, j}, push.spacing);
-          if (g_u < low[u] || g_u > last[u] || g_v < low[v] || g_v > last[v] || !cpu_ref::projection_holds(triangle, k, g_u, g_v)) continue;
+          if (g_u < low[u] || g_u > last[u] || g_v < low[v] || g_v > last[v] ||
+              !cpu_ref::projection_holds(triangle, k, g_u, g_v))
+            continue;
           const std::int32_t height = cpu_ref::raised(triangle, k, g_u, g_v)[k] - low[k];
           if (height < 0 || height >= push.size) continue;
           if (run.constants[0] != 0) {
@@ -183,9 +197,11 @@ TEST_F(LatticeModules, SamplesOfAVoxelAreTheReferences) {
         continue;
       }
       bool corner = true;
-      for (int axis = 0; axis < 3; ++axis) corner = corner && triangle[0][axis] >= low[axis] && triangle[0][axis] <= last[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        corner = corner && triangle[0][axis] >= low[axis] && triangle[0][axis] <= last[axis];
       corners += corner ? 1 : 0;
-      want[7][i] += (corner ? gpu::kSampleCorner : 0) + (static_cast<std::uint32_t>(k) << gpu::kSampleAxisShift);
+      want[7][i] +=
+          (corner ? gpu::kSampleCorner : 0) + (static_cast<std::uint32_t>(k) << gpu::kSampleAxisShift);
     }
   });
   EXPECT_GT(samples, 1000u);

@@ -23,13 +23,15 @@ TEST_F(ListModules, ANumberBecomesTheSumOfThoseBeforeIt) {
   each("scan_apply", spirv::scan_apply, [](const ModuleRun& run, std::vector<Words>& want, auto&) {
     for (std::uint32_t i = 0; i < run.push[0]; ++i) {
       std::uint64_t sum = run.push[1] != 0 ? run.buffers[1][i / gpu::kScanChunk] : 0;
-      for (std::uint32_t before = i / gpu::kScanChunk * gpu::kScanChunk; before < i; ++before) sum += run.buffers[0][before];
+      for (std::uint32_t before = i / gpu::kScanChunk * gpu::kScanChunk; before < i; ++before)
+        sum += run.buffers[0][before];
       want[0][i] = static_cast<std::uint32_t>(std::min(sum, kMost));
     }
   });
 }
 
-/// Writes the first `count` of `from` to where they are in order among the `run` entries from each run-th of a list on.
+/// Writes the first `count` of `from` to where they are in order among the `run` entries from each run-th of
+/// a list on.
 void place(const Words& begin, const Words& from, std::uint32_t run, std::uint32_t count, Words& to) {
   for (std::size_t list = 0; list + 1 < begin.size(); ++list)
     for (std::uint32_t first = begin[list]; first < begin[list + 1]; first += run) {
@@ -37,7 +39,8 @@ void place(const Words& begin, const Words& from, std::uint32_t run, std::uint32
       Words sorted(from.begin() + first, from.begin() + end);
       std::sort(sorted.begin(), sorted.end());
       for (std::uint32_t entry = first; entry < std::min(end, count); ++entry)
-        to[first + static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), from[entry]) - sorted.begin())] = from[entry];
+        to[first + static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), from[entry]) -
+                                            sorted.begin())] = from[entry];
     }
 }
 
@@ -46,7 +49,8 @@ TEST_F(ListModules, ChunksOfListsAreSortedAndTheLongestListIsTold) {
     const Words& begin = run.buffers[1];
     place(begin, run.buffers[2], gpu::kRankSpan, run.push[0], want[3]);
     for (std::size_t list = 0; list + 1 < begin.size(); ++list)
-      if (const std::uint32_t length = begin[list + 1] - begin[list]; length > gpu::kRankSpan) want[4][0] = std::max(want[4][0], length);
+      if (const std::uint32_t length = begin[list + 1] - begin[list]; length > gpu::kRankSpan)
+        want[4][0] = std::max(want[4][0], length);
   });
 }
 
@@ -57,15 +61,17 @@ TEST_F(ListModules, NeighbouringRunsAreMerged) {
 }
 
 TEST_F(ListModules, PairsGoToTheirVoxelsInAnyOrder) {
-  each("pair_scatter", spirv::pair_scatter, [](const ModuleRun& run, std::vector<Words>& want, std::vector<Words>& got) {
-    for (std::uint32_t pair = 0; pair < run.push[0]; ++pair) {
-      const std::uint32_t entry = want[2][run.buffers[1][pair]]++;
-      want[3][entry] = run.buffers[0][pair];
-      want[4][entry] = run.buffers[1][pair];
-    }
-    for (auto* buffers : {&want, &got})
-      for (std::size_t v = 0; v < run.buffers[2].size(); ++v) std::sort((*buffers)[3].begin() + run.buffers[2][v], (*buffers)[3].begin() + want[2][v]);
-  });
+  each("pair_scatter", spirv::pair_scatter,
+       [](const ModuleRun& run, std::vector<Words>& want, std::vector<Words>& got) {
+         for (std::uint32_t pair = 0; pair < run.push[0]; ++pair) {
+           const std::uint32_t entry = want[2][run.buffers[1][pair]]++;
+           want[3][entry] = run.buffers[0][pair];
+           want[4][entry] = run.buffers[1][pair];
+         }
+         for (auto* buffers : {&want, &got})
+           for (std::size_t v = 0; v < run.buffers[2].size(); ++v)
+             std::sort((*buffers)[3].begin() + run.buffers[2][v], (*buffers)[3].begin() + want[2][v]);
+       });
 }
 
 }  // namespace

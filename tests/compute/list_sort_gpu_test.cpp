@@ -12,7 +12,8 @@ using ListSort = GpuTest;
 TEST_F(ListSort, SortsListsOfEveryLengthFromAnyOrder) {
   std::mt19937 random{11};
   std::vector<std::uint32_t> begin{0}, lists, entry_voxel, want;
-  for (const std::uint32_t length : {1u, 2u, 255u, 256u, 257u, 511u, 512u, 513u, 1u, 3000u, 768u, 1025u, 5u}) {
+  for (const std::uint32_t length :
+       {1u, 2u, 255u, 256u, 257u, 511u, 512u, 513u, 1u, 3000u, 768u, 1025u, 5u}) {
     std::vector<std::uint32_t> ids(length);
     std::uint32_t id = 0;
     for (auto& i : ids) i = id += 1 + static_cast<std::uint32_t>(random() % 3);
@@ -61,7 +62,8 @@ TEST_F(ListSort, ATotalBeyond32BitsIsRefused) {
   const VulkanBuffer buffer = steps.filled("values", std::vector<std::uint32_t>(1001, 1u << 23));
   EXPECT_EQ(steps.scan("pairs", buffer, 1000), 0u);
   ASSERT_FALSE(steps.ok());
-  EXPECT_NE(steps.error().sentence.find("more than 4294967294 pairs"), std::string::npos) << steps.error().sentence;
+  EXPECT_NE(steps.error().sentence.find("more than 4294967294 pairs"), std::string::npos)
+      << steps.error().sentence;
 }
 
 }  // namespace

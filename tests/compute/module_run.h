@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/buffer.h"
+#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/device.h"
 #include "compute/vulkan/pipeline.h"
 
@@ -57,11 +57,12 @@ struct ModuleRun {
   std::string module;          ///< "row_init"
   std::vector<Words> buffers;  ///< contents before, bindings 0, 1, …
   Words push;
-  std::uint32_t items = 0;     ///< at least so many invocations are run, in whole workgroups
-  Words constants = {};        ///< ids 0, 1, …
-  std::uint32_t rows = 1;      ///< of workgroups: over two axes, as where one is too short
-  int forest = -1;             ///< binding of parents: which node is hung under which is nobody's business, each one's root is
-  int pairs = -1;              ///< binding of pairs in no order
+  std::uint32_t items = 0;  ///< at least so many invocations are run, in whole workgroups
+  Words constants = {};     ///< ids 0, 1, …
+  std::uint32_t rows = 1;   ///< of workgroups: over two axes, as where one is too short
+  int forest =
+      -1;  ///< binding of parents: which node is hung under which is nobody's business, each one's root is
+  int pairs = -1;  ///< binding of pairs in no order
 };
 
 /// Buffers with what is free to differ taken out.
@@ -70,7 +71,8 @@ inline std::vector<Words> settled(const ModuleRun& run, std::vector<Words> after
     Words& parent = after[static_cast<std::size_t>(run.forest)];
     Words roots = parent;
     for (std::uint32_t& root : roots)
-      for (std::size_t k = 0; k < parent.size() && root < parent.size() && parent[root] != root; ++k) root = parent[root];
+      for (std::size_t k = 0; k < parent.size() && root < parent.size() && parent[root] != root; ++k)
+        root = parent[root];
     parent = roots;
   }
   if (run.pairs >= 0) {
@@ -83,9 +85,11 @@ inline std::vector<Words> settled(const ModuleRun& run, std::vector<Words> after
 }
 
 /// The contents of all buffers after the run, settled.
-inline Result<std::vector<Words>> run_module(VulkanDevice& device, const ShaderCode& code, const ModuleRun& run) {
+inline Result<std::vector<Words>> run_module(VulkanDevice& device, const ShaderCode& code,
+                                             const ModuleRun& run) {
   std::vector<SpecConstant> constants;
-  for (const std::uint32_t value : run.constants) constants.push_back({static_cast<std::uint32_t>(constants.size()), value});
+  for (const std::uint32_t value : run.constants)
+    constants.push_back({static_cast<std::uint32_t>(constants.size()), value});
   const auto pipeline = ComputePipeline::create(device, code, static_cast<std::uint32_t>(run.buffers.size()),
                                                 static_cast<std::uint32_t>(run.push.size() * 4), constants);
   if (!pipeline) return pipeline.error();
@@ -103,7 +107,8 @@ inline Result<std::vector<Words>> run_module(VulkanDevice& device, const ShaderC
   if (!recorder) return recorder.error();
   recorder->begin();
   const std::uint32_t groups = (run.items + gpu::kItemGroup - 1) / gpu::kItemGroup;
-  recorder->dispatch_raw(*pipeline, views, run.push.data(), static_cast<std::uint32_t>(run.push.size() * 4), (groups + run.rows - 1) / run.rows, run.rows, 1);
+  recorder->dispatch_raw(*pipeline, views, run.push.data(), static_cast<std::uint32_t>(run.push.size() * 4),
+                         (groups + run.rows - 1) / run.rows, run.rows, 1);
   if (auto r = recorder->submit_and_wait(); !r) return r.error();
   std::vector<Words> after = run.buffers;
   for (std::size_t i = 0; i < after.size(); ++i)

@@ -7,11 +7,12 @@
 
 namespace palpate {
 
-/// Each run of a module held against a definition of what it does, buffer by buffer: also what it leaves alone.
+/// Each run of a module held against a definition of what it does, buffer by buffer: also what it leaves
+/// alone.
 class ModuleTest : public GpuTest {
  protected:
-  /// Calls define(run, want, got) for every run of a module: `want`, the buffers before, becomes what they should be after; what is
-  /// free to differ may be taken out of both. Everything else must then be equal.
+  /// Calls define(run, want, got) for every run of a module: `want`, the buffers before, becomes what they
+  /// should be after; what is free to differ may be taken out of both. Everything else must then be equal.
   template <class Define>
   void each(const char* module, const ShaderCode& code, const Define& define) {
     static const auto all = module_runs();
@@ -25,7 +26,8 @@ class ModuleTest : public GpuTest {
       want = settled(runs[i], std::move(want));
       for (std::size_t b = 0; b < want.size(); ++b) {
         const auto [w, g] = std::mismatch(want[b].begin(), want[b].end(), (*got)[b].begin());
-        EXPECT_TRUE(w == want[b].end()) << "binding " << b << ", word " << w - want[b].begin() << ": " << *g << ", not " << *w;
+        EXPECT_TRUE(w == want[b].end())
+            << "binding " << b << ", word " << w - want[b].begin() << ": " << *g << ", not " << *w;
       }
     }
   }

@@ -22,9 +22,12 @@ inline void expect_equal(const Partition& a, const Partition& b, const std::stri
   ASSERT_EQ(a.bricks.size(), b.bricks.size()) << body;
   for (std::size_t i = 0; i < a.bricks.size(); ++i)
     for (std::size_t word = 0; word < 16; ++word) {
-      ASSERT_EQ(a.bricks[i].boundary[word], b.bricks[i].boundary[word]) << body << ", brick " << i << ", word " << word;
-      ASSERT_EQ(a.bricks[i].internal_[word], b.bricks[i].internal_[word]) << body << ", brick " << i << ", word " << word;
-      ASSERT_EQ(a.bricks[i].first[word], b.bricks[i].first[word]) << body << ", brick " << i << ", word " << word;
+      ASSERT_EQ(a.bricks[i].boundary[word], b.bricks[i].boundary[word])
+          << body << ", brick " << i << ", word " << word;
+      ASSERT_EQ(a.bricks[i].internal_[word], b.bricks[i].internal_[word])
+          << body << ", brick " << i << ", word " << word;
+      ASSERT_EQ(a.bricks[i].first[word], b.bricks[i].first[word])
+          << body << ", brick " << i << ", word " << word;
     }
 }
 

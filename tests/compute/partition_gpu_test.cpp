@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "compute/gpu/gpu_backend.h"
+#include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/native/native_backend.h"
 #include "compute/native/prepare/scene.h"
-#include "compute/gpu/prepare/prepared_scene.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
 #include "model/scene/geometry_build.h"
@@ -54,11 +54,12 @@ class Partition : public GpuTest {
   }
 
   SceneGeometry geometry_;
-  VoxelPartition partition_;        ///< the mock-up's
+  VoxelPartition partition_;  ///< the mock-up's
   VoxelPartition tool_partition_;
 
  private:
-  void compare(const PreparedScene& scene, const native::Scene& native, const CollisionBackend& ref, bool tool) {
+  void compare(const PreparedScene& scene, const native::Scene& native, const CollisionBackend& ref,
+               bool tool) {
     const char* body = tool ? "tool" : "mock-up";
     const auto on_device = read_partition(device(), (tool ? scene.tool : scene.mockup).partition);
     ASSERT_TRUE(on_device) << on_device.error().sentence;
@@ -75,7 +76,8 @@ class Partition : public GpuTest {
 };
 
 TEST_F(Partition, OfABoxHasTheVoxelsThatItsFacesTouch) {
-  // 0.125 and 1/64 are whole numbers of lattice steps: faces lie on faces of voxels and touch those on both sides.
+  // 0.125 and 1/64 are whole numbers of lattice steps: faces lie on faces of voxels and touch those on both
+  // sides.
   prepare(solids::box(Vec3(-0.125), Vec3(0.125)), 1.0 / 64);
   const std::uint64_t outer = 18 * 18 * 18, inner = 14 * 14 * 14;
   EXPECT_EQ(count(VoxelClass::kInternal), inner);
@@ -145,9 +147,10 @@ TEST_F(Partition, OfAnOpenBodyIsVotedInThreeDirections) {
 }
 
 TEST_F(Partition, OfAnOpenBodyDecidesARayThroughACornerByThePerturbedPoint) {
-  // A cube round one voxel, its faces cut so that the ray from the voxel's centre along each axis leaves through a corner
-  // of six triangles. The face of the next axis has a clear hole there, so two of three ballots hang on this one: of the
-  // six, the one that the perturbed ray meets must be missing to make the voxel external.
+  // A cube round one voxel, its faces cut so that the ray from the voxel's centre along each axis leaves
+  // through a corner of six triangles. The face of the next axis has a clear hole there, so two of three
+  // ballots hang on this one: of the six, the one that the perturbed ray meets must be missing to make the
+  // voxel external.
   constexpr double kV = 1.0 / 64;
   const Vec3 centre(kV / 2);
   const Mesh cube = solids::box(centre - kV, centre + kV, Int3(4));
@@ -185,7 +188,9 @@ TEST_F(Partition, OfLargeTrianglesAmongSmallOnes) {
   // Boxes of twelve triangles over 20 bricks an axis, turned so that nothing is parallel to the grid.
   Mesh mesh;
   const Quat turn = glm::normalize(Quat(0.9, 0.2, -0.3, 0.25));
-  solids::append(mesh, solids::moved(solids::box(Vec3(-0.4, -0.3, -0.2), Vec3(0.4, 0.3, 0.2)), Pose{Vec3(0), turn}), "block");
+  solids::append(mesh,
+                 solids::moved(solids::box(Vec3(-0.4, -0.3, -0.2), Vec3(0.4, 0.3, 0.2)), Pose{Vec3(0), turn}),
+                 "block");
   solids::append(mesh, solids::sphere(0.45, 40, 20), "ball");
   prepare(mesh, 0.006);
   EXPECT_GT(partition_.grid.bricks.x, 16);
@@ -195,7 +200,9 @@ TEST_F(Partition, SortsListsOfAnyLength) {
   // A ball of 6,000 triangles in a voxel or eight, beside a block that makes the grid.
   Mesh mesh;
   solids::append(mesh, solids::box(Vec3(-0.3), Vec3(0.3)), "block");
-  solids::append(mesh, solids::moved(solids::sphere_of(0.02, 6000), Pose{Vec3(0.41, 0.02, 0.01), Quat(1, 0, 0, 0)}), "bead");
+  solids::append(mesh,
+                 solids::moved(solids::sphere_of(0.02, 6000), Pose{Vec3(0.41, 0.02, 0.01), Quat(1, 0, 0, 0)}),
+                 "bead");
   prepare(mesh, 0.1);
   std::uint64_t longest = 0;
   for (std::size_t i = 0; i + 1 < partition_.list_begin.size(); ++i)
@@ -205,7 +212,8 @@ TEST_F(Partition, SortsListsOfAnyLength) {
 
 TEST_F(Partition, OfAToolIsGrownByThreeSteps) {
   prepare(solids::box(Vec3(-0.3), Vec3(0.3)), 0.01, solids::torus(0.08, 0.03, 40, 20));
-  EXPECT_GT(std::count(tool_partition_.classes.begin(), tool_partition_.classes.end(), VoxelClass::kInternal), 0);
+  EXPECT_GT(std::count(tool_partition_.classes.begin(), tool_partition_.classes.end(), VoxelClass::kInternal),
+            0);
 }
 
 /// Both engines.
@@ -223,7 +231,8 @@ TEST(Preparation, CanBeCancelled) {
   ASSERT_TRUE(geometry);
   for (const auto& engine : engines())
     for (const double at : {0.0, 0.35, 0.7, 1.0}) {
-      auto done = engine->prepare(*geometry, Plan{}, [at](const char*, double progress) { return progress < at; });
+      auto done =
+          engine->prepare(*geometry, Plan{}, [at](const char*, double progress) { return progress < at; });
       ASSERT_FALSE(done) << engine->name() << " at " << at;
       EXPECT_EQ(done.error().sentence, "preparation was cancelled") << engine->name();
     }
@@ -231,13 +240,15 @@ TEST(Preparation, CanBeCancelled) {
 
 TEST(Preparation, RefusesAGridThatDoesNotFit) {
   GeometrySettings settings;
-  settings.voxel_size_m = 2e-5;   // 50,000 voxels along the wire
-  auto geometry = build_geometry(solids::box(Vec3(-0.5, 0, 0), Vec3(0.5, 1e-5, 1e-5)), solids::box(Vec3(-1e-4), Vec3(1e-4)), settings);
+  settings.voxel_size_m = 2e-5;  // 50,000 voxels along the wire
+  auto geometry = build_geometry(solids::box(Vec3(-0.5, 0, 0), Vec3(0.5, 1e-5, 1e-5)),
+                                 solids::box(Vec3(-1e-4), Vec3(1e-4)), settings);
   ASSERT_TRUE(geometry) << geometry.error().sentence;
   for (const auto& engine : engines()) {
     auto done = engine->prepare(*geometry, Plan{}, {});
     ASSERT_FALSE(done) << engine->name();
-    EXPECT_NE(done.error().sentence.find("choose a larger voxel"), std::string::npos) << done.error().sentence;
+    EXPECT_NE(done.error().sentence.find("choose a larger voxel"), std::string::npos)
+        << done.error().sentence;
   }
 }
 

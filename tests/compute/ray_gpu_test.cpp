@@ -17,8 +17,8 @@ struct BigPoint {
   Big x, y, z;
 };
 
-/// ε is taken as 2^-200: smaller than any quotient of the integers here (below 2^130), so its powers decide ties as an infinitesimal would.
-/// Points are scaled by ε^-3 to stay whole.
+/// ε is taken as 2^-200: smaller than any quotient of the integers here (below 2^130), so its powers decide
+/// ties as an infinitesimal would. Points are scaled by ε^-3 to stay whole.
 constexpr unsigned kEpsilonBits = 200;
 
 BigPoint scaled(const Int3& p) {
@@ -32,12 +32,15 @@ BigPoint perturbed(const Int3& p) {
   return out;
 }
 BigPoint minus(const BigPoint& a, const BigPoint& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-BigPoint cross(const BigPoint& a, const BigPoint& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+BigPoint cross(const BigPoint& a, const BigPoint& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 Big dot(const BigPoint& a, const BigPoint& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Crossing of the perturbed ray, by the definition: the perturbed point, no tie rules.
 int crossing_sign(const Int3& point, const Int3& direction, const Int3 (&corner)[3]) {
-  const BigPoint p = perturbed(point), d = scaled(direction), a = scaled(corner[0]), b = scaled(corner[1]), c = scaled(corner[2]);
+  const BigPoint p = perturbed(point), d = scaled(direction), a = scaled(corner[0]), b = scaled(corner[1]),
+                 c = scaled(corner[2]);
   const BigPoint n = cross(minus(b, a), minus(c, a));
   const int facing = dot(d, n).sign();
   if (facing == 0) return 0;
@@ -65,7 +68,7 @@ TEST_F(Rays, CrossWhereThePerturbedRayDoes) {
     SCOPED_TRACE(i);
     const int expected = crossing_sign(c.point, c.direction, c.corner);
     ASSERT_EQ(answers[i].crossing_sign, expected);
-    ASSERT_EQ(answers[i].culled, 0);   // a cheap test that lets go what is crossed
+    ASSERT_EQ(answers[i].culled, 0);  // a cheap test that lets go what is crossed
     if (expected == 0) continue;
     ASSERT_EQ(Big(answers[i].height), height(c.point, c.direction, c.corner));
     ++crossings;
@@ -74,7 +77,8 @@ TEST_F(Rays, CrossWhereThePerturbedRayDoes) {
 }
 
 TEST_F(Rays, ThroughEdgesAndCornersCrossAClosedSurfaceEvenly) {
-  // An octahedron, and rays from its corners, its edges' middles and points in line with both: signs add up to 0 outside, 1 inside.
+  // An octahedron, and rays from its corners, its edges' middles and points in line with both: signs add up
+  // to 0 outside, 1 inside.
   const Int3 ends[6] = {{8, 0, 0}, {-8, 0, 0}, {0, 8, 0}, {0, -8, 0}, {0, 0, 8}, {0, 0, -8}};
   std::vector<gpu::RayCase> cases;
   constexpr int kReach = 10;
@@ -98,19 +102,22 @@ TEST_F(Rays, ThroughEdgesAndCornersCrossAClosedSurfaceEvenly) {
     for (std::size_t face = 0; face < 8; ++face) along += answers[i + face].crossing_sign;
     const Int3 p = cases[i].point;
     const int norm = std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
-    ASSERT_GE(along, norm < 8 ? 1 : 0) << p.x << ' ' << p.y << ' ' << p.z;   // on the surface: either
+    ASSERT_GE(along, norm < 8 ? 1 : 0) << p.x << ' ' << p.y << ' ' << p.z;  // on the surface: either
     ASSERT_LE(along, norm > 8 ? 0 : 1) << p.x << ' ' << p.y << ' ' << p.z;
   }
 }
 
 /// Crossing of the segment whose ends are moved alike, by the definition.
 int segment_sign(const gpu::RayCase& c) {
-  const BigPoint p = perturbed(c.point), q = perturbed(c.direction), a = scaled(c.corner[0]), b = scaled(c.corner[1]), d = minus(q, p);
+  const BigPoint p = perturbed(c.point), q = perturbed(c.direction), a = scaled(c.corner[0]),
+                 b = scaled(c.corner[1]), d = minus(q, p);
   const BigPoint n = cross(minus(b, a), minus(scaled(c.corner[2]), a));
   const int facing = dot(minus(a, p), n).sign();
   if (dot(minus(a, q), n).sign() == facing) return 0;
   for (int e = 0; e < 3; ++e)
-    if (dot(d, cross(minus(scaled(c.corner[e]), p), minus(scaled(c.corner[(e + 1) % 3]), p))).sign() != facing) return 0;
+    if (dot(d, cross(minus(scaled(c.corner[e]), p), minus(scaled(c.corner[(e + 1) % 3]), p))).sign() !=
+        facing)
+      return 0;
   return facing;
 }
 
@@ -122,7 +129,9 @@ TEST_F(Rays, SegmentsCrossWhereTheirPerturbedEndsSay) {
     SCOPED_TRACE(i);
     const int sign = segment_sign(cases[i]);
     ASSERT_EQ(answers[i], sign);
-    ASSERT_EQ(exact::segment_crossing(cases[i].point, cases[i].direction, {cases[i].corner[0], cases[i].corner[1], cases[i].corner[2]}), sign);
+    ASSERT_EQ(exact::segment_crossing(cases[i].point, cases[i].direction,
+                                      {cases[i].corner[0], cases[i].corner[1], cases[i].corner[2]}),
+              sign);
     crossings += sign != 0 ? 1u : 0u;
   }
   EXPECT_GT(crossings, cases.size() / 50);

@@ -11,15 +11,18 @@ namespace {
 using Big = boost::multiprecision::cpp_int;
 using Samples = GpuTest;
 
-constexpr unsigned kEpsilonBits = 200;   // as in ray_gpu_test.cpp
+constexpr unsigned kEpsilonBits = 200;  // as in ray_gpu_test.cpp
 
-/// Whether the perturbed grid point lies inside the projected triangle: three sides of the moved point, no tie rules.
+/// Whether the perturbed grid point lies inside the projected triangle: three sides of the moved point, no
+/// tie rules.
 bool inside(const gpu::SampleCase& c, int facing) {
   const int u = (c.axis + 1) % 3, v = (c.axis + 2) % 3;
-  const Big gu = (Big(c.u) << (2 * kEpsilonBits)) + (Big(1) << kEpsilonBits), gv = (Big(c.v) << (2 * kEpsilonBits)) + 1;
+  const Big gu = (Big(c.u) << (2 * kEpsilonBits)) + (Big(1) << kEpsilonBits),
+            gv = (Big(c.v) << (2 * kEpsilonBits)) + 1;
   for (int e = 0; e < 3; ++e) {
     const Int3 &p = c.corner[e], &q = c.corner[(e + 1) % 3];
-    const Big side = Big(q[u] - p[u]) * (gv - (Big(p[v]) << (2 * kEpsilonBits))) - Big(q[v] - p[v]) * (gu - (Big(p[u]) << (2 * kEpsilonBits)));
+    const Big side = Big(q[u] - p[u]) * (gv - (Big(p[v]) << (2 * kEpsilonBits))) -
+                     Big(q[v] - p[v]) * (gu - (Big(p[u]) << (2 * kEpsilonBits)));
     if (side.sign() != facing) return false;
   }
   return true;
@@ -57,7 +60,9 @@ TEST_F(Samples, LieOnTheTriangleAsTheExactQuotientSays) {
   EXPECT_GT(found, cases.size() / 10);
 }
 
-int floor_of(std::int64_t a, std::int64_t b) { return static_cast<int>(a >= 0 ? a / b : -((-a + b - 1) / b)); }
+int floor_of(std::int64_t a, std::int64_t b) {
+  return static_cast<int>(a >= 0 ? a / b : -((-a + b - 1) / b));
+}
 
 TEST_F(Samples, LieInTheCellsThatIntegersSay) {
   const auto cases = probe_cases::cells();
@@ -70,7 +75,8 @@ TEST_F(Samples, LieInTheCellsThatIntegersSay) {
       const int cell = std::clamp(floor_of(c.d[k], c.side), -1, c.n[k]);
       ASSERT_EQ(answers[i].along[k], cell);
       ASSERT_EQ(answers[i].last[k], floor_of(c.d[k], c.side));
-      ASSERT_EQ(answers[i].first[k], floor_of(std::int64_t{c.d[k]} - 1, c.side));   // cells are closed: a face touches both
+      ASSERT_EQ(answers[i].first[k],
+                floor_of(std::int64_t{c.d[k]} - 1, c.side));  // cells are closed: a face touches both
       if (std::int64_t{c.n.x} * c.n.y * c.n.z < std::int64_t{1} << 32) {
         ASSERT_EQ(answers[i].back[k], std::clamp(cell, 0, c.n[k] - 1));
       }

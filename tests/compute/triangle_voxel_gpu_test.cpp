@@ -21,7 +21,8 @@ TEST_F(TriangleVoxel, AgreesWithClippingEdgesInFractions) {
     const bool want = cpu_ref::triangle_meets_box(cpu_ref::Triangle(c.a, c.b, c.c), box);
     ASSERT_EQ(answers[i] != 0, want) << "case " << i;
     const exact::Corners corners{c.a, c.b, c.c};
-    ASSERT_EQ(exact::triangle_touches_cube(corners, exact::box_of(corners), c.lo, c.hi.x - c.lo.x), want) << "case " << i;
+    ASSERT_EQ(exact::triangle_touches_cube(corners, exact::box_of(corners), c.lo, c.hi.x - c.lo.x), want)
+        << "case " << i;
     touching += want;
   }
   // Both answers were asked for often enough to mean something.

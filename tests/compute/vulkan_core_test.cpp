@@ -27,7 +27,8 @@ class VulkanCore : public GpuTest {
   }
 };
 
-// On a device with memory of its own: all who read a buffer have one copy, and one that is longer than it is made anew.
+// On a device with memory of its own: all who read a buffer have one copy, and one that is longer than it is
+// made anew.
 TEST(HostCopy, IsOneForAllWhoReadABuffer) {
   DeviceOptions options;
   options.own_memory = true;
@@ -103,7 +104,7 @@ TEST_F(VulkanCore, AForgottenBarrierFailsTheCall) {
   commands.fill(b, 0);
   commands.barrier();
   commands.dispatch_items(add, {a, b}, 64u, 64);
-  commands.dispatch_items(add, {b, a}, 64u, 64);   // reads what the first one writes
+  commands.dispatch_items(add, {b, a}, 64u, 64);  // reads what the first one writes
   const auto done = commands.submit_and_wait();
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().sentence.find("SYNC-HAZARD"), std::string::npos) << done.error().sentence;
@@ -112,7 +113,8 @@ TEST_F(VulkanCore, AForgottenBarrierFailsTheCall) {
 
 TEST_F(VulkanCore, ABufferBeyondWhatAShaderMaySeeIsRefusedInOneSentence) {
   const std::uint64_t before = device().allocated;
-  auto made = VulkanBuffer::create(device(), "voxels' lists", device().limits().storage_range + 4, BufferKind::kDevice);
+  auto made = VulkanBuffer::create(device(), "voxels' lists", device().limits().storage_range + 4,
+                                   BufferKind::kDevice);
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::kBadValue);
   EXPECT_EQ(made.error().sentence.rfind("voxels' lists need ", 0), 0u) << made.error().sentence;
@@ -158,7 +160,8 @@ TEST_F(VulkanCore, AShaderThatWritesOneEntryBehindAGuardedBufferIsFound) {
   ASSERT_TRUE(commands.submit_and_wait());
   const auto checked = device().check_guards();
   ASSERT_FALSE(checked);
-  EXPECT_EQ(checked.error().sentence, "a buffer's guard is broken: test numbers (400 bytes): something wrote 0 bytes behind its end");
+  EXPECT_EQ(checked.error().sentence,
+            "a buffer's guard is broken: test numbers (400 bytes): something wrote 0 bytes behind its end");
 }
 
 TEST_F(VulkanCore, AHostThatWritesBeforeAGuardedBufferIsFoundWhenItDies) {
@@ -166,11 +169,12 @@ TEST_F(VulkanCore, AHostThatWritesBeforeAGuardedBufferIsFoundWhenItDies) {
   {
     auto made = VulkanBuffer::create(device(), "answers", 64, BufferKind::kReadback);
     ASSERT_TRUE(made) << made.error().sentence;
-    const_cast<char*>(made->as<char>())[-4] = 0;   // the only way to write it: by mistake
+    const_cast<char*>(made->as<char>())[-4] = 0;  // the only way to write it: by mistake
   }
   const auto checked = device().check_guards();
   ASSERT_FALSE(checked);
-  EXPECT_EQ(checked.error().sentence, "a buffer's guard is broken: answers (64 bytes): something wrote 4 bytes before its start");
+  EXPECT_EQ(checked.error().sentence,
+            "a buffer's guard is broken: answers (64 bytes): something wrote 4 bytes before its start");
 }
 
 TEST_F(VulkanCore, WhatTheHostGivesADeviceItCanNotReadInPlace) {
@@ -180,7 +184,7 @@ TEST_F(VulkanCore, WhatTheHostGivesADeviceItCanNotReadInPlace) {
   const std::uint32_t word = 0xCAFEu;
   EXPECT_TRUE(given->write(8, &word, sizeof word));
   std::uint32_t read = 0;
-  ASSERT_TRUE(download(device(), *given, 8, &read, sizeof read));   // by a copy of the device's
+  ASSERT_TRUE(download(device(), *given, 8, &read, sizeof read));  // by a copy of the device's
   EXPECT_EQ(read, word);
 }
 

@@ -4,18 +4,20 @@
 #include <memory>
 #include <string>
 
-#include "model/scene/geometry_build.h"
-#include "model/lattice/pose.h"
 #include "model/contact/response.h"
+#include "model/lattice/pose.h"
+#include "model/scene/geometry_build.h"
 #include "tests/cpu_ref/bench_backend.h"
 
 namespace palpate {
 
-/// A mock-up and a tool, prepared by the reference (tests/equivalence: by both back ends); what tests ask poses of. Metres, newtons.
+/// A mock-up and a tool, prepared by the reference (tests/equivalence: by both back ends); what tests ask
+/// poses of. Metres, newtons.
 struct BenchScene {
-  static constexpr double kStiffness = 2000;   // N/m, the default of a scene
+  static constexpr double kStiffness = 2000;  // N/m, the default of a scene
 
-  BenchScene(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings = {}, Profile profile = Profile::kRefined) {
+  BenchScene(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings = {},
+             Profile profile = Profile::kRefined) {
     Result<SceneGeometry> built = build_geometry(mockup, tool, settings);
     if (!built) throw std::runtime_error(built.error().sentence);
     geometry = std::make_unique<SceneGeometry>(std::move(*built));
@@ -34,8 +36,8 @@ struct BenchScene {
   }
   const ContactResponse& ask(const Vec3& position) { return ask(Pose{position, Quat(1, 0, 0, 0)}); }
 
-  double voxel() const { return geometry->mockup_grid.size * geometry->lattice.step_m; }     ///< m
-  double spacing() const { return geometry->sample_spacing * geometry->lattice.step_m; }     ///< m
+  double voxel() const { return geometry->mockup_grid.size * geometry->lattice.step_m; }  ///< m
+  double spacing() const { return geometry->sample_spacing * geometry->lattice.step_m; }  ///< m
 
   std::unique_ptr<SceneGeometry> geometry;
   Plan plan;

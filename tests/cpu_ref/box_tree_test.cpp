@@ -42,7 +42,8 @@ TEST(BoxTree, BoxesThatTouchAtTheLatticesReachAreAPair) {
   // Steps of one at 2^28 are far below single precision.
   BoxTree a, b;
   a.build({Box{Int3(kLatticeReach - 101), Int3(kLatticeReach - 51)}});
-  b.build({Box{Int3(kLatticeReach - 51), Int3(kLatticeReach)}, Box{Int3(kLatticeReach - 50), Int3(kLatticeReach)}});
+  b.build({Box{Int3(kLatticeReach - 51), Int3(kLatticeReach)},
+           Box{Int3(kLatticeReach - 50), Int3(kLatticeReach)}});
   std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
   BoxTree::meeting_pairs(a, b, found);
   EXPECT_EQ(found, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 0}}));
@@ -60,17 +61,20 @@ TEST(BoxTree, RaysFindEveryBoxTheyPass) {
     Int3 to;
     for (int k = 0; k < 3; ++k) {
       const std::int64_t side = boxes[target].max[k] - boxes[target].min[k];
-      to[k] = boxes[target].min[k] + static_cast<int>(side * (i % 2 ? thousand(random) : 1000 * (thousand(random) % 2)) / 1000);
+      to[k] = boxes[target].min[k] +
+              static_cast<int>(side * (i % 2 ? thousand(random) : 1000 * (thousand(random) % 2)) / 1000);
     }
     Int3 from(draw(random), draw(random), draw(random));
-    if (i % 5 == 0) from = Int3(from.x, to.y, to.z);   // along an axis
+    if (i % 5 == 0) from = Int3(from.x, to.y, to.z);  // along an axis
     if (from == to) continue;
     std::vector<std::uint32_t> found;
     tree.along_ray(from, to - from, found);
     std::sort(found.begin(), found.end());
     for (std::uint32_t b = 0; b < boxes.size(); ++b)
-      if (segment_meets_box(from, to, boxes[b])) { ASSERT_TRUE(std::binary_search(found.begin(), found.end(), b)) << i; }
-    ASSERT_LT(found.size(), boxes.size() / 4);   // and yet most boxes are left out
+      if (segment_meets_box(from, to, boxes[b])) {
+        ASSERT_TRUE(std::binary_search(found.begin(), found.end(), b)) << i;
+      }
+    ASSERT_LT(found.size(), boxes.size() / 4);  // and yet most boxes are left out
   }
 }
 

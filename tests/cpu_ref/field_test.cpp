@@ -30,30 +30,34 @@ Mesh square_hole(double half) {
   Mesh mesh;
   for (const double z : {-h, h})
     for (const double r : {half, a})
-      for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) mesh.vertices.emplace_back(r * x, r * y, z);
+      for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+        mesh.vertices.emplace_back(r * x, r * y, z);
   const auto quad = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r, std::uint32_t s) {
     mesh.triangles.push_back({p, q, r});
     mesh.triangles.push_back({p, r, s});
   };
-  for (std::uint32_t i = 0; i < 4; ++i) {   // 0…3 inner and 4…7 outer corners below, 8…15 above
+  for (std::uint32_t i = 0; i < 4; ++i) {  // 0…3 inner and 4…7 outer corners below, 8…15 above
     const std::uint32_t j = (i + 1) % 4;
-    quad(i, j, 8 + j, 8 + i);               // the hole's wall, seen from its axis … turned below
+    quad(i, j, 8 + j, 8 + i);  // the hole's wall, seen from its axis … turned below
     quad(4 + i, 4 + j, 12 + j, 12 + i);
     quad(8 + i, 8 + j, 12 + j, 12 + i);
     quad(4 + i, 4 + j, j, i);
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (t % 8 < 2 || t % 8 == 4 || t % 8 == 5 || t % 8 >= 6) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    if (t % 8 < 2 || t % 8 == 4 || t % 8 == 5 || t % 8 >= 6)
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   mesh.parts = {{"hole", 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
   return mesh;
 }
 
 TEST(Field, OfAFlatContactIsModulusTimesAreaTimesDepth) {
-  BenchScene scene(block(), solids::box(Vec3(-10, -8, -5) * kMm, Vec3(10, 8, 5) * kMm, Int3(1)), voxels_of(2 * kMm));
+  BenchScene scene(block(), solids::box(Vec3(-10, -8, -5) * kMm, Vec3(10, 8, 5) * kMm, Int3(1)),
+                   voxels_of(2 * kMm));
   for (const double d : {0.01, 0.1, 0.4}) {
     const ContactResponse& answer = scene.ask(Vec3(0.123, 0.321, 5 - d) * kMm);
     const double expected = modulus(scene) * 20 * kMm * 16 * kMm * d * kMm;
-    // Samples are 0.5 mm apart, so a side has one more or less of 32; within d of a side the side is nearer than the bottom.
+    // Samples are 0.5 mm apart, so a side has one more or less of 32; within d of a side the side is nearer
+    // than the bottom.
     EXPECT_NEAR(answer.wrench.force.z / expected, 1, 0.06) << d;
     EXPECT_LT(angle_deg(answer.wrench.force, Vec3(0, 0, 1)), 0.5) << d;
   }
@@ -65,17 +69,22 @@ TEST(Field, OfASphereInAPlaneIsTheIntegralOverTheCap) {
   for (const double h : {0.5 * kMm, 1 * kMm, 3 * kMm}) {
     // Depth below the sphere over the disc, and below the plane over the cap seen from above; half of each.
     const double a2 = 2 * r * h - h * h;
-    const double in_sphere = kPi * (r * a2 - 2.0 / 3 * (r * r * r - std::pow(r - h, 3))), in_plane = kPi * h * h * (3 * r - h) / 3;
+    const double in_sphere = kPi * (r * a2 - 2.0 / 3 * (r * r * r - std::pow(r - h, 3))),
+                 in_plane = kPi * h * h * (3 * r - h) / 3;
     const ContactResponse& answer = scene.ask(Vec3(1.7 * kMm, -2.3 * kMm, r - h));
-    EXPECT_NEAR(answer.wrench.force.z / (modulus(scene) * 0.5 * (in_sphere + in_plane)), 1, 0.03) << h;   // some 60 to 1,000 samples a body
+    EXPECT_NEAR(answer.wrench.force.z / (modulus(scene) * 0.5 * (in_sphere + in_plane)), 1, 0.03)
+        << h;  // some 60 to 1,000 samples a body
     EXPECT_LT(angle_deg(answer.wrench.force, Vec3(0, 0, 1)), 1) << h;
   }
 }
 
 TEST(Field, OfASquarePegCentredInATightHoleCancels) {
-  BenchScene scene(square_hole(10 * kMm), solids::box(Vec3(-10.1, -10.1, -30) * kMm, Vec3(10.1, 10.1, 30) * kMm, Int3(1)), voxels_of(2 * kMm));
+  BenchScene scene(square_hole(10 * kMm),
+                   solids::box(Vec3(-10.1, -10.1, -30) * kMm, Vec3(10.1, 10.1, 30) * kMm, Int3(1)),
+                   voxels_of(2 * kMm));
   ASSERT_TRUE(scene.geometry->mockup.closed);
-  const double unit = modulus(scene) * 4 * 20 * kMm * 30 * kMm * 0.1 * kMm;   // what its walls push with, all together
+  const double unit =
+      modulus(scene) * 4 * 20 * kMm * 30 * kMm * 0.1 * kMm;  // what its walls push with, all together
   const ContactResponse centred = scene.ask(Vec3(0));
   EXPECT_TRUE(centred.contact);
   EXPECT_LT(glm::length(centred.wrench.force), 0.01 * unit);
@@ -109,12 +118,13 @@ TEST(Field, IsTheGradientOfAnEnergy) {
     place_before = place;
   }
   EXPECT_GT(size, 0);
-  EXPECT_LT(std::fabs(work), 0.03 * size);   // the limit for closed loops
+  EXPECT_LT(std::fabs(work), 0.03 * size);  // the limit for closed loops
 }
 
 TEST(Field, PushesAThinNeedleAlongItsAxis) {
   // Its tip of 0.6 mm is thinner than samples are apart: extra samples stand for it.
-  BenchScene scene(block(), solids::box(Vec3(-0.3, -0.3, -20) * kMm, Vec3(0.3, 0.3, 20) * kMm, Int3(1)), voxels_of(4 * kMm));
+  BenchScene scene(block(), solids::box(Vec3(-0.3, -0.3, -20) * kMm, Vec3(0.3, 0.3, 20) * kMm, Int3(1)),
+                   voxels_of(4 * kMm));
   const ContactResponse& answer = scene.ask(Vec3(3.1, 2.2, 20 - 2) * kMm);
   EXPECT_TRUE(answer.contact);
   EXPECT_GT(answer.wrench.force.z, 0);
@@ -144,7 +154,8 @@ TEST(Field, OfASwallowedToolPointsTheNearestWayOut) {
 }
 
 TEST(Field, LeavesIgnoredPatchesOutAndNamesThem) {
-  BenchScene scene(block(), solids::box(Vec3(-5, -5, -5) * kMm, Vec3(5, 5, 5) * kMm, Int3(1)), voxels_of(2 * kMm));
+  BenchScene scene(block(), solids::box(Vec3(-5, -5, -5) * kMm, Vec3(5, 5, 5) * kMm, Int3(1)),
+                   voxels_of(2 * kMm));
   const ContactResponse felt = scene.ask(Vec3(0, 0, 4.5) * kMm);
   ASSERT_GT(felt.wrench.force.z, 0);
   Ignored all;

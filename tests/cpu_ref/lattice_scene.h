@@ -38,7 +38,8 @@ inline LatticeMesh lattice_mesh_of(const std::vector<Triangle>& triangles) {
 }
 
 /// Mock-up and tool on the lattice, tool frame = world frame at the identity pose.
-inline SceneGeometry scene_of(const std::vector<Triangle>& mockup, const std::vector<Triangle>& tool, int voxel, int spacing) {
+inline SceneGeometry scene_of(const std::vector<Triangle>& mockup, const std::vector<Triangle>& tool,
+                              int voxel, int spacing) {
   SceneGeometry scene;
   scene.lattice.step_m = 1;
   scene.mockup = lattice_mesh_of(mockup);

@@ -37,7 +37,8 @@ inline std::vector<Triangle> lattice_octahedron(int r) {
     for (const int y : {-r, r})
       for (const int z : {-r, r}) {
         const Int3 a(x, 0, 0), b(0, y, 0), c(0, 0, z);
-        const bool even = (x < 0) == ((y < 0) == (z < 0));   // an odd number of mirrorings turns the triangle round
+        const bool even =
+            (x < 0) == ((y < 0) == (z < 0));  // an odd number of mirrorings turns the triangle round
         result.push_back(even ? Triangle(a, c, b) : Triangle(a, b, c));
       }
   for (Triangle& t : result)
@@ -47,7 +48,8 @@ inline std::vector<Triangle> lattice_octahedron(int r) {
 
 inline std::vector<Triangle> lattice_sphere(int radius, int segments, int rings) {
   const auto point = [&](int segment, int ring) {
-    const double pi = 3.14159265358979323846, theta = pi * ring / rings, phi = 2 * pi * (segment % segments) / segments;
+    const double pi = 3.14159265358979323846, theta = pi * ring / rings,
+                 phi = 2 * pi * (segment % segments) / segments;
     if (ring == 0 || ring == rings) return Int3(0, 0, ring == 0 ? radius : -radius);
     return Int3(static_cast<int>(std::lround(radius * std::sin(theta) * std::cos(phi))),
                 static_cast<int>(std::lround(radius * std::sin(theta) * std::sin(phi))),
@@ -56,7 +58,8 @@ inline std::vector<Triangle> lattice_sphere(int radius, int segments, int rings)
   std::vector<Triangle> result;
   for (int ring = 0; ring < rings; ++ring)
     for (int segment = 0; segment < segments; ++segment) {
-      const Int3 a = point(segment, ring), b = point(segment, ring + 1), c = point(segment + 1, ring + 1), d = point(segment + 1, ring);
+      const Int3 a = point(segment, ring), b = point(segment, ring + 1), c = point(segment + 1, ring + 1),
+                 d = point(segment + 1, ring);
       if (ring + 1 < rings) result.emplace_back(a, b, c);
       if (ring > 0) result.emplace_back(a, c, d);
     }

@@ -38,7 +38,8 @@ void expect_as_defined(const LatticeMesh& mesh, const Partition& partition, int 
     ASSERT_EQ(partition.number(voxel), v);
     std::vector<std::uint32_t> listed;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      if (!mesh.collapsed(t) && triangle_meets_box(triangle_of(mesh, t), voxel_box(partition.grid, voxel, voxel + Int3(1), grow)))
+      if (!mesh.collapsed(t) &&
+          triangle_meets_box(triangle_of(mesh, t), voxel_box(partition.grid, voxel, voxel + Int3(1), grow)))
         listed.push_back(t);
     const auto found = partition.listed(v);
     ASSERT_TRUE(std::equal(listed.begin(), listed.end(), found.begin(), found.end()));
@@ -50,7 +51,8 @@ void expect_as_defined(const LatticeMesh& mesh, const Partition& partition, int 
   for (const std::uint64_t v : border) ASSERT_NE(expected[v], VoxelClass::kBoundary);
   std::vector<std::uint64_t> open = border;
   for (const std::uint64_t v : open) expected[v] = VoxelClass::kExternal;
-  const auto spread = [&](std::vector<std::uint64_t> from, VoxelClass to, std::vector<std::uint64_t>& reached) {
+  const auto spread = [&](std::vector<std::uint64_t> from, VoxelClass to,
+                          std::vector<std::uint64_t>& reached) {
     while (!from.empty()) {
       const Int3 voxel = partition.voxel(from.back());
       reached.push_back(from.back());
@@ -82,7 +84,9 @@ void expect_as_defined(const LatticeMesh& mesh, const Partition& partition, int 
         int winding = 0;
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
           if (!mesh.collapsed(t))
-            if (const auto crossing = ray_crosses(partition.centre(partition.voxel(c)), direction, triangle_of(mesh, t))) winding += crossing->sign;
+            if (const auto crossing =
+                    ray_crosses(partition.centre(partition.voxel(c)), direction, triangle_of(mesh, t)))
+              winding += crossing->sign;
         ++(winding == 0 ? zero : other);
       }
     for (const std::uint64_t c : component) expected[c] = static_cast<VoxelClass>(other > zero ? 32 : 33);
@@ -98,7 +102,8 @@ TEST(Partition, ABoxHasAnInside) {
   const Partition partition = partition_of(mesh, 8);
   EXPECT_EQ(partition.class_of(Int3(0)), VoxelClass::kInternal);
   EXPECT_EQ(partition.class_of(Int3(39, 0, 0)), VoxelClass::kBoundary);
-  EXPECT_EQ(partition.class_of(Int3(40, 0, 0)), VoxelClass::kBoundary);   // the face is on the border of two voxels
+  EXPECT_EQ(partition.class_of(Int3(40, 0, 0)),
+            VoxelClass::kBoundary);  // the face is on the border of two voxels
   EXPECT_EQ(partition.class_of(Int3(48, 0, 0)), VoxelClass::kExternal);
   EXPECT_EQ(partition.class_of(Int3(100000, 0, 0)), VoxelClass::kExternal);
   expect_as_defined(mesh, partition, 0);
@@ -110,7 +115,8 @@ TEST(Partition, GrownCubesTouchThreeStepsFurther) {
 }
 
 TEST(Partition, ACavityIsOutside) {
-  const LatticeMesh mesh = lattice_mesh_of(together({lattice_box(Int3(-60), Int3(60)), inside_out(lattice_box(Int3(-24), Int3(24)))}));
+  const LatticeMesh mesh = lattice_mesh_of(
+      together({lattice_box(Int3(-60), Int3(60)), inside_out(lattice_box(Int3(-24), Int3(24)))}));
   ASSERT_TRUE(mesh.closed);
   const Partition partition = partition_of(mesh, 8);
   EXPECT_EQ(partition.class_of(Int3(0)), VoxelClass::kExternal);
@@ -119,14 +125,16 @@ TEST(Partition, ACavityIsOutside) {
 }
 
 TEST(Partition, ASolidInsideASolidIsInside) {
-  const LatticeMesh mesh = lattice_mesh_of(together({lattice_box(Int3(-60), Int3(60)), lattice_box(Int3(-24), Int3(24))}));
+  const LatticeMesh mesh =
+      lattice_mesh_of(together({lattice_box(Int3(-60), Int3(60)), lattice_box(Int3(-24), Int3(24))}));
   const Partition partition = partition_of(mesh, 8);
-  EXPECT_EQ(partition.class_of(Int3(0)), VoxelClass::kInternal);   // winding 2: parity would say outside
+  EXPECT_EQ(partition.class_of(Int3(0)), VoxelClass::kInternal);  // winding 2: parity would say outside
   EXPECT_EQ(partition.class_of(Int3(44, 0, 0)), VoxelClass::kInternal);
 }
 
 TEST(Partition, OverlappingPartsAreOneInside) {
-  const LatticeMesh mesh = lattice_mesh_of(together({lattice_box(Int3(-60, -40, -40), Int3(20, 40, 40)), lattice_box(Int3(-20, -36, -36), Int3(60, 36, 36))}));
+  const LatticeMesh mesh = lattice_mesh_of(together({lattice_box(Int3(-60, -40, -40), Int3(20, 40, 40)),
+                                                     lattice_box(Int3(-20, -36, -36), Int3(60, 36, 36))}));
   const Partition partition = partition_of(mesh, 8);
   EXPECT_EQ(partition.class_of(Int3(0)), VoxelClass::kInternal);
   EXPECT_EQ(partition.class_of(Int3(-44, 0, 0)), VoxelClass::kInternal);
@@ -163,7 +171,10 @@ TEST(Partition, RandomSoupsAreAsDefined) {
   std::uniform_int_distribution<int> draw(-36, 36);
   for (int i = 0; i < 6; ++i) {
     std::vector<Triangle> soup;
-    for (int t = 0; t < 60; ++t) soup.emplace_back(Int3(draw(random), draw(random), draw(random)), Int3(draw(random), draw(random), draw(random)), Int3(draw(random), draw(random), draw(random)));
+    for (int t = 0; t < 60; ++t)
+      soup.emplace_back(Int3(draw(random), draw(random), draw(random)),
+                        Int3(draw(random), draw(random), draw(random)),
+                        Int3(draw(random), draw(random), draw(random)));
     const LatticeMesh mesh = lattice_mesh_of(soup);
     expect_as_defined(mesh, partition_of(mesh, 8), 0);
   }
@@ -200,7 +211,8 @@ TEST(Partition, BricksWithoutSurfaceAreKeptWhole) {
 }
 
 TEST(Partition, AnOpenBoxWithWholeBricksInsideVotesByEveryVoxel) {
-  // The lid is drawn in by 3 steps on two sides, and lower than the rim by 5: rays along +z miss it near the rim.
+  // The lid is drawn in by 3 steps on two sides, and lower than the rim by 5: rays along +z miss it near the
+  // rim.
   std::vector<Triangle> box = lattice_box(Int3(-150), Int3(150));
   for (Triangle& t : box) {
     if (t[0].z != 150 || t[1].z != 150 || t[2].z != 150) continue;
@@ -217,11 +229,13 @@ TEST(Partition, AnOpenBoxWithWholeBricksInsideVotesByEveryVoxel) {
 
 TEST(Partition, CanBeCancelled) {
   const LatticeMesh mesh = lattice_mesh_of(lattice_box(Int3(-40), Int3(40)));
-  EXPECT_FALSE(make_partition(mesh, make_grid(mesh.box_min, mesh.box_max, 8), 0, [](const char*, double) { return false; }));
+  EXPECT_FALSE(make_partition(mesh, make_grid(mesh.box_min, mesh.box_max, 8), 0,
+                              [](const char*, double) { return false; }));
 }
 
 TEST(NearestExternal, IsTheNearestOfAllAndTheSmallestNumberOfATie) {
-  const LatticeMesh mesh = lattice_mesh_of(together({lattice_box(Int3(-60), Int3(60)), inside_out(lattice_box(Int3(-24, -20, -20), Int3(24, 20, 20)))}));
+  const LatticeMesh mesh = lattice_mesh_of(together(
+      {lattice_box(Int3(-60), Int3(60)), inside_out(lattice_box(Int3(-24, -20, -20), Int3(24, 20, 20)))}));
   const Partition partition = partition_of(mesh, 8);
   std::mt19937 random(29);
   std::uniform_int_distribution<int> draw(-150, 150);
@@ -232,7 +246,8 @@ TEST(NearestExternal, IsTheNearestOfAllAndTheSmallestNumberOfATie) {
     for (std::uint64_t v = 0; v < voxel_count(partition); ++v) {
       if (partition.classes.at(partition.voxel(v)) != VoxelClass::kExternal) continue;
       const Int3 away = 2 * (partition.centre(partition.voxel(v)) - p);
-      const std::int64_t distance = std::int64_t{away.x} * away.x + std::int64_t{away.y} * away.y + std::int64_t{away.z} * away.z;
+      const std::int64_t distance =
+          std::int64_t{away.x} * away.x + std::int64_t{away.y} * away.y + std::int64_t{away.z} * away.z;
       if (nearest < 0 || distance < nearest) {
         nearest = distance;
         expected = away / 2;

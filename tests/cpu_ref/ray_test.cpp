@@ -28,7 +28,8 @@ bool in_half_open_box(const Int3& p, int half) {
 TEST(RayCrosses, WindingsOfABoxAreThoseOfTheHalfOpenBoxEverywhere) {
   // Every point of a grid that holds all corners, edges, faces and diagonals of the box and of its triangles.
   const std::vector<Triangle> box = lattice_box(Int3(-2), Int3(2));
-  const std::vector<Int3> directions{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {1, 1, 0}, {1, -1, 1}, {2, 1, -1}, {0, -1, 2}, {1, 1, 1}};
+  const std::vector<Int3> directions{{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {-1, 0, 0}, {1, 1, 0},
+                                     {1, -1, 1}, {2, 1, -1}, {0, -1, 2}, {1, 1, 1}};
   for (int x = -4; x <= 4; ++x)
     for (int y = -4; y <= 4; ++y)
       for (int z = -4; z <= 4; ++z)
@@ -39,15 +40,21 @@ TEST(RayCrosses, WindingsOfABoxAreThoseOfTheHalfOpenBoxEverywhere) {
 
 TEST(RayCrosses, AnOctahedronsWindingsAgreeInEveryDirection) {
   const std::vector<Triangle> octahedron = lattice_octahedron(4);
-  const std::vector<Int3> directions{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 1}, {-2, 1, -1}, {1, 1, 1}, {-1, -1, 0}};
+  const std::vector<Int3> directions{{1, 0, 0},  {0, 1, 0},   {0, 0, 1}, {1, 1, 0},
+                                     {1, -1, 1}, {-2, 1, -1}, {1, 1, 1}, {-1, -1, 0}};
   for (int x = -5; x <= 5; ++x)
     for (int y = -5; y <= 5; ++y)
       for (int z = -5; z <= 5; ++z) {
         const int size = std::abs(x) + std::abs(y) + std::abs(z);
         const int first = winding(octahedron, Int3(x, y, z), directions[0]);
-        if (size < 4) { ASSERT_EQ(first, 1); }
-        if (size > 4) { ASSERT_EQ(first, 0); }
-        for (const Int3& direction : directions) ASSERT_EQ(winding(octahedron, Int3(x, y, z), direction), first);
+        if (size < 4) {
+          ASSERT_EQ(first, 1);
+        }
+        if (size > 4) {
+          ASSERT_EQ(first, 0);
+        }
+        for (const Int3& direction : directions)
+          ASSERT_EQ(winding(octahedron, Int3(x, y, z), direction), first);
       }
 }
 
@@ -62,8 +69,12 @@ TEST(RayCrosses, RandomPointsOfASphereAreInsideWhenTheAnalyticSphereSaysSo) {
     const double r = glm::length(Vec3(p)) / radius;
     const Int3 direction(draw(random), draw(random), draw(random));
     const int w = winding(sphere, p, direction);
-    if (r < 0.95) { ASSERT_EQ(w, 1); }
-    if (r > 1.000001) { ASSERT_EQ(w, 0); }
+    if (r < 0.95) {
+      ASSERT_EQ(w, 1);
+    }
+    if (r > 1.000001) {
+      ASSERT_EQ(w, 0);
+    }
     ASSERT_EQ(winding(sphere, p, Int3(1, 0, 0)), w);
   }
 }
@@ -78,7 +89,7 @@ TEST(RayCrosses, AVertexSharedByManyIsPassedOnce) {
 }
 
 TEST(RayCrosses, SignTellsEnteringFromLeaving) {
-  const Triangle up(Int3(-9, -9, 5), Int3(9, -9, 5), Int3(0, 9, 5));   // N towards +z
+  const Triangle up(Int3(-9, -9, 5), Int3(9, -9, 5), Int3(0, 9, 5));  // N towards +z
   const auto leaving = ray_crosses(Int3(0), Int3(0, 0, 1), up);
   ASSERT_TRUE(leaving);
   EXPECT_EQ(leaving->sign, 1);
@@ -89,7 +100,8 @@ TEST(RayCrosses, SignTellsEnteringFromLeaving) {
 }
 
 TEST(RayCrosses, AStartInThePlaneIsAheadOnOneSideOnly) {
-  // N = (0, 0, +): the perturbed point is above the plane, so that a ray upwards misses and one downwards crosses.
+  // N = (0, 0, +): the perturbed point is above the plane, so that a ray upwards misses and one downwards
+  // crosses.
   const Triangle up(Int3(-9, -9, 0), Int3(9, -9, 0), Int3(0, 9, 0));
   EXPECT_FALSE(ray_crosses(Int3(0), Int3(0, 0, 1), up));
   const auto down = ray_crosses_at(Int3(0), Int3(0, 0, -(1 << 28)), up);
@@ -98,11 +110,11 @@ TEST(RayCrosses, AStartInThePlaneIsAheadOnOneSideOnly) {
 }
 
 TEST(RayCrosses, HeightsAreRoundedDown) {
-  const int d = 3 << 27;   // a direction of 1.5 · 2^28
+  const int d = 3 << 27;  // a direction of 1.5 · 2^28
   const Triangle up(Int3(-900, -900, 1000), Int3(900, -900, 1000), Int3(0, 900, 1000));
   const auto crossing = ray_crosses_at(Int3(0), Int3(0, 0, d), up);
   ASSERT_TRUE(crossing);
-  EXPECT_EQ(crossing->height, 2666u);   // 1000 · 2^30 / d = 2666.67
+  EXPECT_EQ(crossing->height, 2666u);  // 1000 · 2^30 / d = 2666.67
 }
 
 TEST(RayCrosses, TheLongestRayOfTheLatticeFits) {

@@ -30,8 +30,10 @@ TEST(TriangleMeetsBox, AnEdgeThroughACornerTouches) {
 
 TEST(TriangleMeetsBox, AFaceThroughACornerAloneTouches) {
   // The plane x + y + z = 24 has only (8, 8, 8) in common with the cube.
-  EXPECT_TRUE(triangle_meets_box(Triangle(Int3(104, -40, -40), Int3(-40, 104, -40), Int3(-40, -40, 104)), kCube));
-  EXPECT_FALSE(triangle_meets_box(Triangle(Int3(105, -40, -40), Int3(-40, 105, -40), Int3(-40, -40, 105)), kCube));
+  EXPECT_TRUE(
+      triangle_meets_box(Triangle(Int3(104, -40, -40), Int3(-40, 104, -40), Int3(-40, -40, 104)), kCube));
+  EXPECT_FALSE(
+      triangle_meets_box(Triangle(Int3(105, -40, -40), Int3(-40, 105, -40), Int3(-40, -40, 105)), kCube));
 }
 
 TEST(TriangleMeetsBox, AWideFaceThroughTheMiddleTouchesThoughNoEdgeDoes) {
@@ -49,12 +51,14 @@ TEST(TriangleMeetsBox, AnOverlapOfBoxesAloneIsNoTouch) {
 
 TEST(TriangleMeetsBox, HoldsAtTheLatticesReach) {
   const int far = kLatticeReach;
-  const Triangle wide(Int3(-far, -far, -far), Int3(far, -far, far), Int3(-far, far, far));   // x + y − z = −far
+  const Triangle wide(Int3(-far, -far, -far), Int3(far, -far, far),
+                      Int3(-far, far, far));  // x + y − z = −far
   const auto cube_at = [](const Int3& p) { return Box{p, p + Int3(8)}; };
   const int x = -far / 3, y = -far / 5, z = x + y + far;
   EXPECT_TRUE(triangle_meets_box(wide, cube_at(Int3(x, y, z))));
-  EXPECT_TRUE(triangle_meets_box(wide, cube_at(Int3(x - 8, y - 8, z))));    // its far corner in x and y is on the plane
-  EXPECT_FALSE(triangle_meets_box(wide, cube_at(Int3(x - 9, y - 8, z))));   // and now a step short of it
+  EXPECT_TRUE(
+      triangle_meets_box(wide, cube_at(Int3(x - 8, y - 8, z))));  // its far corner in x and y is on the plane
+  EXPECT_FALSE(triangle_meets_box(wide, cube_at(Int3(x - 9, y - 8, z))));  // and now a step short of it
 }
 
 /// Clips a polygon in floating point: a second way, good when the answer is not close.
@@ -81,12 +85,17 @@ TEST(TriangleMeetsBox, AgreesWithClippingWhereverThatIsClear) {
   int met = 0, missed = 0;
   for (int i = 0; i < 100000; ++i) {
     const int reach = i % 3 == 0 ? 20 : i % 3 == 1 ? 60 : 400;
-    const Triangle triangle(Int3(draw(reach), draw(reach), draw(reach)), Int3(draw(reach), draw(reach), draw(reach)),
+    const Triangle triangle(Int3(draw(reach), draw(reach), draw(reach)),
+                            Int3(draw(reach), draw(reach), draw(reach)),
                             Int3(draw(reach), draw(reach), draw(reach)));
     if (triangle.collapsed()) continue;
     const bool answer = triangle_meets_box(triangle, kCube);
-    if (meets_clearly(triangle, kCube, -1e-6)) { ASSERT_TRUE(answer) << i; }   // 1e-6: far above rounding of 1e-13
-    if (!meets_clearly(triangle, kCube, 1e-6)) { ASSERT_FALSE(answer) << i; }
+    if (meets_clearly(triangle, kCube, -1e-6)) {
+      ASSERT_TRUE(answer) << i;
+    }  // 1e-6: far above rounding of 1e-13
+    if (!meets_clearly(triangle, kCube, 1e-6)) {
+      ASSERT_FALSE(answer) << i;
+    }
     ++(answer ? met : missed);
   }
   EXPECT_GT(met, 5000);
@@ -102,7 +111,8 @@ TEST(TouchedVoxels, HalvingFindsWhatAskingEveryVoxelFinds) {
   const auto draw = [&] { return std::uniform_int_distribution<int>(-120, 120)(random); };
   for (const int grow : {0, 3})
     for (int i = 0; i < 40; ++i) {
-      const Triangle triangle(Int3(draw(), draw(), draw()), Int3(draw(), draw(), draw()), Int3(draw(), draw(), draw()));
+      const Triangle triangle(Int3(draw(), draw(), draw()), Int3(draw(), draw(), draw()),
+                              Int3(draw(), draw(), draw()));
       if (triangle.collapsed()) continue;
       std::set<std::tuple<int, int, int>> found, expected;
       for_each_touched_voxel(
@@ -111,7 +121,8 @@ TEST(TouchedVoxels, HalvingFindsWhatAskingEveryVoxelFinds) {
       for (int z = 0; z < 24; ++z)
         for (int y = 0; y < 24; ++y)
           for (int x = 0; x < 24; ++x)
-            if (triangle_meets_box(triangle, voxel_box(grid, Int3(x, y, z), Int3(x, y, z) + Int3(1), grow))) expected.emplace(x, y, z);
+            if (triangle_meets_box(triangle, voxel_box(grid, Int3(x, y, z), Int3(x, y, z) + Int3(1), grow)))
+              expected.emplace(x, y, z);
       ASSERT_EQ(found, expected);
     }
 }

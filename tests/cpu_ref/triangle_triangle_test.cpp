@@ -10,7 +10,7 @@
 namespace palpate::cpu_ref {
 namespace {
 
-constexpr int kFar = kLatticeReach;   // 2^28
+constexpr int kFar = kLatticeReach;  // 2^28
 
 /// Asks in every order of corners, both ways round: the answer can't depend on it.
 ::testing::AssertionResult meet(const Triangle& s, const Triangle& t, bool expected) {
@@ -58,15 +58,20 @@ TEST(TrianglesIntersect, AnEdgeLyingInAFaceTouches) {
 }
 
 TEST(TrianglesIntersect, CoplanarTrianglesMeetAsInThePlane) {
-  EXPECT_TRUE(meet(kFloor, kFloor, true));                                                               // identical
-  EXPECT_TRUE(meet(kFloor, Triangle(Int3(10, 10, 0), Int3(20, 10, 0), Int3(10, 20, 0)), true));           // inside
-  EXPECT_TRUE(meet(kFloor, Triangle(Int3(-90, -90, 0), Int3(900, -90, 0), Int3(-90, 900, 0)), true));     // around
-  EXPECT_TRUE(meet(kFloor, Triangle(Int3(50, -50, 0), Int3(60, 200, 0), Int3(70, 200, 0)), true));        // across
-  EXPECT_TRUE(meet(kFloor, Triangle(Int3(100, 0, 0), Int3(200, 0, 0), Int3(200, 50, 0)), true));          // corner to corner
-  EXPECT_TRUE(meet(kFloor, Triangle(Int3(101, 0, 0), Int3(200, 0, 0), Int3(200, 50, 0)), false));         // a step apart
-  EXPECT_TRUE(meet(kFloor, Triangle(Int3(20, 0, 0), Int3(60, 0, 0), Int3(40, -9, 0)), true));             // along an edge
+  EXPECT_TRUE(meet(kFloor, kFloor, true));                                                       // identical
+  EXPECT_TRUE(meet(kFloor, Triangle(Int3(10, 10, 0), Int3(20, 10, 0), Int3(10, 20, 0)), true));  // inside
+  EXPECT_TRUE(
+      meet(kFloor, Triangle(Int3(-90, -90, 0), Int3(900, -90, 0), Int3(-90, 900, 0)), true));       // around
+  EXPECT_TRUE(meet(kFloor, Triangle(Int3(50, -50, 0), Int3(60, 200, 0), Int3(70, 200, 0)), true));  // across
+  EXPECT_TRUE(
+      meet(kFloor, Triangle(Int3(100, 0, 0), Int3(200, 0, 0), Int3(200, 50, 0)), true));  // corner to corner
+  EXPECT_TRUE(
+      meet(kFloor, Triangle(Int3(101, 0, 0), Int3(200, 0, 0), Int3(200, 50, 0)), false));  // a step apart
+  EXPECT_TRUE(
+      meet(kFloor, Triangle(Int3(20, 0, 0), Int3(60, 0, 0), Int3(40, -9, 0)), true));  // along an edge
   EXPECT_TRUE(meet(kFloor, Triangle(Int3(20, -1, 0), Int3(60, -1, 0), Int3(40, -9, 0)), false));
-  EXPECT_TRUE(meet(kFloor, Triangle(Int3(51, 50, 0), Int3(90, 90, 0), Int3(60, 90, 0)), false));          // past the slope
+  EXPECT_TRUE(
+      meet(kFloor, Triangle(Int3(51, 50, 0), Int3(90, 90, 0), Int3(60, 90, 0)), false));  // past the slope
 }
 
 TEST(TrianglesIntersect, ParallelPlanesAStepApartDoNotMeet) {
@@ -78,25 +83,39 @@ TEST(TrianglesIntersect, HoldsAtTheLatticesReach) {
   EXPECT_TRUE(meet(wide, wide, true));
   // The plane of `wide` is x + y − z = −kFar. One step off it a parallel triangle does not touch.
   const auto on_plane = [](int x, int y, int off) { return Int3(x, y, x + y + kFar + off); };
-  EXPECT_TRUE(meet(wide, Triangle(on_plane(-kFar / 2, -kFar / 3, 0), on_plane(-5, -kFar / 2, 0), on_plane(-kFar / 2, -7, 0)), true));
-  EXPECT_TRUE(meet(wide, Triangle(on_plane(-kFar / 2, -kFar / 3, 1), on_plane(-5, -kFar / 2, 1), on_plane(-kFar / 2, -7, 1)), false));
-  EXPECT_TRUE(meet(wide, Triangle(on_plane(-kFar / 2, -kFar / 3, -1), on_plane(-5, -kFar / 2, 1), on_plane(-kFar / 2, -7, 1)), true));
+  EXPECT_TRUE(meet(
+      wide,
+      Triangle(on_plane(-kFar / 2, -kFar / 3, 0), on_plane(-5, -kFar / 2, 0), on_plane(-kFar / 2, -7, 0)),
+      true));
+  EXPECT_TRUE(meet(
+      wide,
+      Triangle(on_plane(-kFar / 2, -kFar / 3, 1), on_plane(-5, -kFar / 2, 1), on_plane(-kFar / 2, -7, 1)),
+      false));
+  EXPECT_TRUE(meet(
+      wide,
+      Triangle(on_plane(-kFar / 2, -kFar / 3, -1), on_plane(-5, -kFar / 2, 1), on_plane(-kFar / 2, -7, 1)),
+      true));
 }
 
 TEST(TrianglesIntersect, TheHypotenuseOfALatticeWideTriangleIsExact) {
-  const Triangle wide(Int3(-kFar, -kFar, 0), Int3(kFar, -kFar, 0), Int3(-kFar, kFar, 0));   // hypotenuse x + y = 0
-  EXPECT_TRUE(meet(wide, Triangle(Int3(12345, -12345, -9), Int3(12345, -12345, 9), Int3(kFar, kFar, 0)), true));
-  EXPECT_TRUE(meet(wide, Triangle(Int3(12345, -12344, -9), Int3(12345, -12344, 9), Int3(kFar, kFar, 0)), false));
+  const Triangle wide(Int3(-kFar, -kFar, 0), Int3(kFar, -kFar, 0),
+                      Int3(-kFar, kFar, 0));  // hypotenuse x + y = 0
+  EXPECT_TRUE(
+      meet(wide, Triangle(Int3(12345, -12345, -9), Int3(12345, -12345, 9), Int3(kFar, kFar, 0)), true));
+  EXPECT_TRUE(
+      meet(wide, Triangle(Int3(12345, -12344, -9), Int3(12345, -12344, 9), Int3(kFar, kFar, 0)), false));
 }
 
-/// Both triangles share a rational point by construction: a convex combination of corners with equal weights sums to it.
+/// Both triangles share a rational point by construction: a convex combination of corners with equal weights
+/// sums to it.
 TEST(TrianglesIntersect, TrianglesBuiltRoundACommonPointMeet) {
   std::mt19937 random(7);
   const auto draw = [&](int reach) { return std::uniform_int_distribution<int>(-reach, reach)(random); };
   for (int i = 0; i < 20000; ++i) {
     const int reach = i % 2 ? 8 : kFar / 8;
     const Int3 common(draw(reach), draw(reach), draw(reach));
-    // Each has `common` as the middle of one corner and a point between the two others: c = (a + (b + d)/2)/2.
+    // Each has `common` as the middle of one corner and a point between the two others: c = (a + (b +
+    // d)/2)/2.
     const auto around = [&] {
       const Int3 b(draw(reach), draw(reach), draw(reach)), a(draw(reach), draw(reach), draw(reach));
       return Triangle(a, b, 4 * common - 2 * a - b);

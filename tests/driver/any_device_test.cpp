@@ -1,4 +1,5 @@
-// The safety wrapper's promises, kept for every device that palpate drives: what reaches the device is looked at between the two.
+// The safety wrapper's promises, kept for every device that palpate drives: what reaches the device is looked
+// at between the two.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -38,7 +39,9 @@ class Spy final : public HapticDevice {
     if (overruled) sample.state = *overruled;
     return sample;
   }
-  Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override { return device_->exertable(wrench, gc); }
+  Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override {
+    return device_->exertable(wrench, gc);
+  }
   void write(const Wrench& wrench, const Vec3& gc) noexcept override {
     last = wrench;
     device_->write(wrench, gc);
@@ -65,10 +68,12 @@ class AnyDevice : public testing::TestWithParam<const char*> {
     }
     if (name == "spacemouse") {
       mouse_ = std::make_unique<fake::DescriptorFront>(
-          fake::DeviceCalls{[](std::uint8_t, std::uint16_t) { return true; }, [](std::span<const std::uint8_t>) {},
-                            [] { return std::vector<std::uint8_t>{}; }, [] { return false; }},
+          fake::DeviceCalls{[](std::uint8_t, std::uint16_t) { return true; },
+                            [](std::span<const std::uint8_t>) {}, [] { return std::vector<std::uint8_t>{}; },
+                            [] { return false; }},
           fake::hid_descriptors(0x256f, 0xc62e));
-      made = spacemouse::make_spacemouse({}, Pose{}, [this] { return UsbPort::open_descriptor(mouse_->descriptor(), 0); });
+      made = spacemouse::make_spacemouse(
+          {}, Pose{}, [this] { return UsbPort::open_descriptor(mouse_->descriptor(), 0); });
     }
     if (name == "replay") {
       const std::string file = testing::TempDir() + "any_device_" + std::to_string(::getpid()) + ".csv";
@@ -115,8 +120,9 @@ TEST_P(AnyDevice, NothingBeyondItsLimitsOrAxesReachesIt) {
   double strongest = 0;
   for (int i = 0; i < 2000; ++i) {
     const double size = std::pow(10.0, decades(random));
-    tick(safe, {size * Vec3(normal(random), normal(random), normal(random)), size * Vec3(normal(random), normal(random), normal(random))});
-    if (safe.faulted()) break;   // a size beyond the largest double is no force
+    tick(safe, {size * Vec3(normal(random), normal(random), normal(random)),
+                size * Vec3(normal(random), normal(random), normal(random))});
+    if (safe.faulted()) break;  // a size beyond the largest double is no force
     strongest = std::max(strongest, length(spy_->last.force));
     ASSERT_LE(length(spy_->last.force), can.max_force_n * (1 + 1e-12));
     ASSERT_LE(length(spy_->last.torque), can.max_torque_nm * (1 + 1e-12));
@@ -143,7 +149,8 @@ TEST_P(AnyDevice, WithoutFreshResultsItsForceEndsWithinTheWatchdogAndItsFade) {
 }
 
 TEST_P(AnyDevice, InAnyStateButReadyAndAfterAnyErrorItGetsZero) {
-  for (const DeviceState state : {DeviceState::kClosed, DeviceState::kOpening, DeviceState::kLoading, DeviceState::kHoming, DeviceState::kFault}) {
+  for (const DeviceState state : {DeviceState::kClosed, DeviceState::kOpening, DeviceState::kLoading,
+                                  DeviceState::kHoming, DeviceState::kFault}) {
     SafeDevice safe(*spy_, kSettings);
     ASSERT_TRUE(safe.open());
     until_ready(safe);
@@ -172,7 +179,8 @@ TEST_P(AnyDevice, ItIsLeftAtZeroWhateverEndsTheWrapper) {
   }
   EXPECT_TRUE(spy_->closed_at_zero);
   if (falcon_) {
-    EXPECT_EQ(falcon_->locked([&] { return falcon_->model.motors(); }), falcon::MotorCounts{}) << "as its motors saw it";
+    EXPECT_EQ(falcon_->locked([&] { return falcon_->model.motors(); }), falcon::MotorCounts{})
+        << "as its motors saw it";
   }
 }
 

@@ -18,7 +18,9 @@ std::vector<Packet> fed(PacketStream& stream, const std::vector<std::uint8_t>& b
   return packets;
 }
 
-void append(std::vector<std::uint8_t>& bytes, const Packet& packet) { bytes.insert(bytes.end(), packet.begin(), packet.end()); }
+void append(std::vector<std::uint8_t>& bytes, const Packet& packet) {
+  bytes.insert(bytes.end(), packet.begin(), packet.end());
+}
 
 TEST(FalconPacket, IsSpelledAsTheDeviceSpellsIt) {
   // 0x1234 travels as 4 3 2 1, −1 as F F F F, each plus 0x41; homing and the green LED are 1 | 2.
@@ -40,7 +42,7 @@ TEST(FalconPacket, ReportsComeBackWhole) {
 
 TEST(FalconPacket, MotorCountsKeepTheirDirectionAtTheLimit) {
   const MotorCounts counts = limited({-40950, 20475, 4095});
-  EXPECT_EQ(counts, (MotorCounts{-4095, 2048, 410}));   // 2047.5 and 409.5 round away from zero
+  EXPECT_EQ(counts, (MotorCounts{-4095, 2048, 410}));  // 2047.5 and 409.5 round away from zero
   EXPECT_EQ(limited({1e300, 0, -1e300}), (MotorCounts{4095, 0, -4095}));
   EXPECT_EQ(limited({std::nan(""), 5, 5}), (MotorCounts{0, 0, 0}));
   EXPECT_EQ(limited({INFINITY, 5, 5}), (MotorCounts{0, 0, 0}));
@@ -71,15 +73,18 @@ TEST(FalconPacket, SplitAndMergedPacketsAreFound) {
   append(both, b);
   for (std::size_t cut = 0; cut <= both.size(); ++cut) {
     PacketStream stream;
-    std::vector<Packet> packets = fed(stream, {both.begin(), both.begin() + static_cast<std::ptrdiff_t>(cut)});
-    for (const Packet& later : fed(stream, {both.begin() + static_cast<std::ptrdiff_t>(cut), both.end()})) packets.push_back(later);
+    std::vector<Packet> packets =
+        fed(stream, {both.begin(), both.begin() + static_cast<std::ptrdiff_t>(cut)});
+    for (const Packet& later : fed(stream, {both.begin() + static_cast<std::ptrdiff_t>(cut), both.end()}))
+      packets.push_back(later);
     EXPECT_EQ(packets, (std::vector<Packet>{a, b}));
   }
 }
 
 TEST(FalconPacket, AnyDamageIsOverAfterTheNextWholePacket) {
-  // A sound stream in which a burst of random bytes stands between two packets: the second packet after the burst is
-  // always found, and the first too unless the burst's last bytes began a packet that swallows nothing of it ('<' restarts).
+  // A sound stream in which a burst of random bytes stands between two packets: the second packet after the
+  // burst is always found, and the first too unless the burst's last bytes began a packet that swallows
+  // nothing of it ('<' restarts).
   std::mt19937 random(7);
   std::uniform_int_distribution<int> byte(0, 255), size(1, 64);
   for (int round = 0; round < 20000; ++round) {
@@ -118,7 +123,7 @@ TEST(FalconReportFilter, HomingNeedsThreeAgreeingReports) {
   filter.take(homed, 1);
   filter.take(homed, 1);
   EXPECT_FALSE(filter.homed());
-  filter.take(not_yet, 1);   // a doubt starts the count anew
+  filter.take(not_yet, 1);  // a doubt starts the count anew
   filter.take(homed, 1);
   filter.take(homed, 1);
   EXPECT_FALSE(filter.homed());
@@ -138,7 +143,8 @@ TEST(FalconReportFilter, AnEncoderThatOutrunsAnyHandIsRejected) {
   EXPECT_FALSE(filter.take(report(100 + 2 * kLargestEncoderStep + 1), 1));
   EXPECT_EQ(filter.encoders()[0], 100 + kLargestEncoderStep);
   EXPECT_EQ(filter.jumps(), 1U);
-  EXPECT_TRUE(filter.take(report(100 + 2 * kLargestEncoderStep + 1), 2)) << "in twice the time it may go twice as far";
+  EXPECT_TRUE(filter.take(report(100 + 2 * kLargestEncoderStep + 1), 2))
+      << "in twice the time it may go twice as far";
   EXPECT_FALSE(filter.lost());
 }
 

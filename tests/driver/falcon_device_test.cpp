@@ -65,7 +65,8 @@ TEST(Falcon, IsLoadedHomedAndExertsForce) {
   EXPECT_NEAR(motors[1], motors[0], 1);
   EXPECT_NEAR(motors[2], motors[0], 1);
   device.close();
-  EXPECT_EQ(table.front->locked([&] { return table.model.motors(); }), (MotorCounts{0, 0, 0})) << "closing ends force";
+  EXPECT_EQ(table.front->locked([&] { return table.model.motors(); }), (MotorCounts{0, 0, 0}))
+      << "closing ends force";
 }
 
 /// Pushes along z for a while and says what arrived at the motors last.
@@ -166,7 +167,8 @@ TEST(Falcon, ASilentLoopLosesItsForce) {
   ASSERT_TRUE((*made)->open());
   ASSERT_TRUE(reaches(**made, DeviceState::kReady));
   ASSERT_NE(pushed(**made, table), kNone);
-  // The control loop stops calling. The bound is the link's 20 ms; the wait is longer only for a busy machine's sake.
+  // The control loop stops calling. The bound is the link's 20 ms; the wait is longer only for a busy
+  // machine's sake.
   std::this_thread::sleep_for(500ms);
   EXPECT_EQ(table.front->locked([&] { return table.model.motors(); }), kNone);
 }
@@ -180,7 +182,8 @@ TEST(Falcon, EncodersThatJumpEndForce) {
   ASSERT_TRUE((*made)->open());
   ASSERT_TRUE(reaches(**made, DeviceState::kReady));
   const auto end = std::chrono::steady_clock::now() + 20s;
-  while ((*made)->read().state != DeviceState::kFault && std::chrono::steady_clock::now() < end) pushed(**made, table, 1);
+  while ((*made)->read().state != DeviceState::kFault && std::chrono::steady_clock::now() < end)
+    pushed(**made, table, 1);
   EXPECT_EQ((*made)->read().state, DeviceState::kFault);
   EXPECT_EQ(pushed(**made, table), kNone);
 }
@@ -234,7 +237,8 @@ TEST(Falcon, WhatHappenedOnTheBusIsToldAfterwards) {
   ASSERT_EQ(told->notes().size(), 1u);
   EXPECT_NE(told->notes()[0].find("; 2 bus errors"), std::string::npos) << told->notes()[0];
   EXPECT_EQ(told->notes()[0].find(" 0 more were malformed"), std::string::npos) << told->notes()[0];
-  EXPECT_EQ(told->notes()[0].find(" 0 came late"), std::string::npos) << "a broken report is no answer: " << told->notes()[0];
+  EXPECT_EQ(told->notes()[0].find(" 0 came late"), std::string::npos)
+      << "a broken report is no answer: " << told->notes()[0];
 }
 
 TEST(Falcon, ShortReportsAreSurvived) { stays_usable({.short_every = 3}); }
@@ -266,7 +270,8 @@ TEST(Falcon, ASilentDeviceIsBroughtUpAnew) {
   ASSERT_TRUE((*made)->open());
   ASSERT_TRUE(reaches(**made, DeviceState::kReady));
   const auto end = std::chrono::steady_clock::now() + 20s;
-  while ((*made)->read().state == DeviceState::kReady && std::chrono::steady_clock::now() < end) pushed(**made, table, 1);
+  while ((*made)->read().state == DeviceState::kReady && std::chrono::steady_clock::now() < end)
+    pushed(**made, table, 1);
   EXPECT_NE((*made)->read().state, DeviceState::kReady);
   EXPECT_EQ(pushed(**made, table), kNone);
 }

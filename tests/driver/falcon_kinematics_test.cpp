@@ -22,8 +22,9 @@ TEST(FalconKinematics, FourPublishedPositionsComeOut) {
     Encoders encoders;
     Vec3 mm;
   };
-  for (const Case& c : {Case{{0, 0, 0}, {0, 0, 134.6024}}, Case{{500, 500, 500}, {0, 0, 156.8605}},
-                        Case{{-500, -500, -500}, {0, 0, 110.7545}}, Case{{661, 731, 766}, {0.1628, 4.3707, 164.9907}}}) {
+  for (const Case& c :
+       {Case{{0, 0, 0}, {0, 0, 134.6024}}, Case{{500, 500, 500}, {0, 0, 156.8605}},
+        Case{{-500, -500, -500}, {0, 0, 110.7545}}, Case{{661, 731, 766}, {0.1628, 4.3707, 164.9907}}}) {
     const auto position = position_of_angles(angles_of_encoders(c.encoders), kCentre);
     ASSERT_TRUE(position);
     // They are printed with four decimals of a millimetre.
@@ -43,7 +44,7 @@ TEST(FalconKinematics, ForwardAndInverseCancelOverTheWorkspace) {
     const auto angles = angles_of_position(wanted);
     if (!angles) continue;
     ++reached;
-    const auto found = position_of_angles(*angles, kCentre);   // the farthest start there is
+    const auto found = position_of_angles(*angles, kCentre);  // the farthest start there is
     ASSERT_TRUE(found) << wanted.x << ' ' << wanted.y << ' ' << wanted.z;
     worst = std::max(worst, glm::length(*found - wanted));
   }
@@ -55,7 +56,8 @@ TEST(FalconKinematics, AnglesOfTheWorkspaceArePossibleAndAWholeTurnMoreIsNot) {
   std::mt19937_64 random(3);
   double least = 10, largest = -10;
   for (int i = 0; i < 100'000; ++i) {
-    const auto angles = angles_of_position(random_position(random) * Vec3(0.8, 0.8, 1));   // 80 mm wide: more than the device's 75 mm
+    const auto angles = angles_of_position(random_position(random) *
+                                           Vec3(0.8, 0.8, 1));  // 80 mm wide: more than the device's 75 mm
     if (!angles) continue;
     for (const double angle : *angles) least = std::min(least, angle), largest = std::max(largest, angle);
     EXPECT_TRUE(possible(*angles));
@@ -68,8 +70,8 @@ TEST(FalconKinematics, AnglesOfTheWorkspaceArePossibleAndAWholeTurnMoreIsNot) {
 }
 
 TEST(FalconKinematics, PowerAtTheMotorsIsPowerAtTheGrip) {
-  // τ·dθ = F·dx for a small step; both sides' step by central differences of the inverse, which leaves an error of the
-  // order (h/size)² ≈ 1e-10 of the power.
+  // τ·dθ = F·dx for a small step; both sides' step by central differences of the inverse, which leaves an
+  // error of the order (h/size)² ≈ 1e-10 of the power.
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
   constexpr double h = 1e-6;

@@ -21,7 +21,8 @@ class FakeDevice : public HapticDevice {
   const char* guidance() const noexcept override { return says; }
   void write(const Wrench& wrench, const Vec3&) noexcept override { last = wrench, ++writes; }
 
-  DeviceCapabilities can{.actuated = {true, true, true, true, true, true}, .max_force_n = 10, .max_torque_nm = 1};
+  DeviceCapabilities can{
+      .actuated = {true, true, true, true, true, true}, .max_force_n = 10, .max_torque_nm = 1};
   Pose pose;
   DeviceState state = DeviceState::kReady;
   Wrench last{Vec3(99), Vec3(99)}, closed_after{Vec3(99), Vec3(99)};
@@ -57,7 +58,8 @@ TEST(SafeDevice, ShortensToTheLimitsKeepingDirection) {
   EXPECT_NEAR(length(device.last.torque - Vec3(0, 0.6, 0.8)), 0, 1e-15);
   EXPECT_EQ(safe.saturated_ticks(), 1u);
   tick(safe, {Vec3(1e308, 1e308, 0), Vec3(0)});
-  EXPECT_NEAR(length(device.last.force), 10, 1e-9) << "a length beyond the largest double is no way round the limit";
+  EXPECT_NEAR(length(device.last.force), 10, 1e-9)
+      << "a length beyond the largest double is no way round the limit";
 }
 
 TEST(SafeDevice, SendsOnlyActuatedAxesAndLeavesTheirLimitToThem) {
@@ -96,7 +98,7 @@ TEST(SafeDevice, SendsZeroUntilTheDeviceIsReadyAndFadesInAfterwards) {
   }
   tick(safe, kPush);
   EXPECT_EQ(device.last.force, kPush.force);
-  device.state = DeviceState::kHoming;   // homed anew: zero at once, then from the start
+  device.state = DeviceState::kHoming;  // homed anew: zero at once, then from the start
   tick(safe, kPush);
   EXPECT_EQ(device.last.force, Vec3(0));
   device.state = DeviceState::kReady;
@@ -181,7 +183,7 @@ TEST(SafeDevice, FadesToZeroWithoutFreshResultsAndBackInWithThem) {
   EXPECT_EQ(safe.gain(), 1);
   double before = 1;
   const auto stale = [&] { safe.read(), safe.write(kPush, Vec3(0)); };
-  for (int i = 0; i < 4; ++i) stale();   // the last fresh() still covers 5 writes, one is used
+  for (int i = 0; i < 4; ++i) stale();  // the last fresh() still covers 5 writes, one is used
   EXPECT_EQ(safe.gain(), 1);
   for (int i = 0; i < 4; ++i) {
     stale();
@@ -263,11 +265,12 @@ TEST(SafeDevice, IsAtZeroAtOnceWhateverTheSlewLimit) {
   SafeDevice safe(device, slow);
   ASSERT_TRUE(safe.open());
   for (int i = 0; i < 500; ++i) tick(safe, kPush);
-  for (int i = 0; i < 8; ++i) safe.read(), safe.write(kPush, Vec3(0));   // no fresh result
+  for (int i = 0; i < 8; ++i) safe.read(), safe.write(kPush, Vec3(0));  // no fresh result
   EXPECT_EQ(device.last.force, Vec3(0)) << "the watchdog's fade is not held up";
 }
 
-/// A hand of 0.2 kg on a wall that makes energy: it pushes back harder on the way out than on the way in. Returns the wall's work, J.
+/// A hand of 0.2 kg on a wall that makes energy: it pushes back harder on the way out than on the way in.
+/// Returns the wall's work, J.
 double work_of_an_active_wall(bool passivity) {
   FakeDevice device;
   device.can.max_force_n = 100;
@@ -279,7 +282,7 @@ double work_of_an_active_wall(bool passivity) {
     safe.read();
     safe.write({Vec3(0, 0, x < 0 ? (v > 0 ? -520 : -500) * x : 0), Vec3(0)}, device.pose.position);
     const double push = device.last.force.z;
-    const double next = x + v * 1e-3 + 0.5 * (push - 1) / 0.2 * 1e-6;   // the hand presses with 1 N
+    const double next = x + v * 1e-3 + 0.5 * (push - 1) / 0.2 * 1e-6;  // the hand presses with 1 N
     work += push * (next - x);
     v += (push - 1) / 0.2 * 1e-3;
     x = next;
@@ -296,7 +299,7 @@ TEST(SafeDevice, LeavesAPassiveWallAloneWhenPassivityIsOn) {
   FakeDevice device;
   SafeDevice safe(device, {.fade_in_ticks = 0, .watchdog_ticks = 0, .passivity = true});
   ASSERT_TRUE(safe.open());
-  for (int i = 0; i < 300; ++i) {   // a damper: takes energy only
+  for (int i = 0; i < 300; ++i) {  // a damper: takes energy only
     device.pose.position.z = 1e-3 * std::sin(0.05 * i);
     tick(safe, {Vec3(0, 0, -0.05 * std::cos(0.05 * i)), Vec3(0)});
     ASSERT_EQ(device.last.force.z, -0.05 * std::cos(0.05 * i)) << i;

@@ -21,7 +21,8 @@ using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
 
-std::unique_ptr<HapticDevice> make(const DeviceSettings& settings, const Pose& start = {}, const Vec3& gc = Vec3(0)) {
+std::unique_ptr<HapticDevice> make(const DeviceSettings& settings, const Pose& start = {},
+                                   const Vec3& gc = Vec3(0)) {
   auto made = make_simulated_device(settings, start, gc);
   if (!made) {
     ADD_FAILURE() << made.error().sentence;
@@ -31,9 +32,7 @@ std::unique_ptr<HapticDevice> make(const DeviceSettings& settings, const Pose& s
   return std::move(made).value();
 }
 
-Vec3 gc_of(const Pose& pose, const Vec3& gc) {
-  return pose.position + pose.rotation * gc;
-}
+Vec3 gc_of(const Pose& pose, const Vec3& gc) { return pose.position + pose.rotation * gc; }
 
 /// Writes the same wrench for `ticks` ticks, about the present gc, and gives the last pose.
 Pose press(HapticDevice& device, const Wrench& wrench, int ticks, const Vec3& gc = Vec3(0)) {
@@ -51,7 +50,8 @@ std::vector<GuidePoint> quarter_circle() {
   std::vector<GuidePoint> guide;
   for (int i = 0; i <= 200; ++i) {
     const double angle = kPi / 2 * i / 200;
-    guide.push_back({kRadius * angle, {kRadius * Vec3(std::sin(angle), 0, 1 - std::cos(angle)), rotation_by({0, -angle, 0})}});
+    guide.push_back({kRadius * angle,
+                     {kRadius * Vec3(std::sin(angle), 0, 1 - std::cos(angle)), rotation_by({0, -angle, 0})}});
   }
   return guide;
 }
@@ -78,11 +78,11 @@ TEST(MassSpring, FallsUnderAConstantForceWithoutASpring) {
   const MassSpring mass(0.5, 0, 0, 1e-3);
   double y = 0, velocity = 0;
   for (int i = 0; i < 2000; ++i) mass.step(y, velocity, 1.0);
-  EXPECT_NEAR(y, 4.0, 1e-9);   // F t² / 2m = 1·4/1
+  EXPECT_NEAR(y, 4.0, 1e-9);  // F t² / 2m = 1·4/1
 }
 
 TEST(MassSpring, StaysBoundedWhenTheSpringIsFarStifferThanTheTick) {
-  const MassSpring stiff(0.01, 0.1, 1e9, 1e-3);   // ω T = 316, any explicit scheme explodes
+  const MassSpring stiff(0.01, 0.1, 1e9, 1e-3);  // ω T = 316, any explicit scheme explodes
   double y = 1, velocity = 0, largest = 0;
   for (int i = 0; i < 10000; ++i) {
     stiff.step(y, velocity, 0.0);
@@ -94,7 +94,8 @@ TEST(MassSpring, StaysBoundedWhenTheSpringIsFarStifferThanTheTick) {
 TEST(Path, InterpolatesLinearlyAndTheShortWayRound) {
   std::vector<PathPoint> path(2);
   path[0].stage = 1;
-  path[1].time_s = 2, path[1].pose = {Vec3(4, 0, 0), -rotation_by({0, 0, kPi / 2})}, path[1].stage = 2;   // −q turns alike
+  path[1].time_s = 2, path[1].pose = {Vec3(4, 0, 0), -rotation_by({0, 0, kPi / 2})},
+  path[1].stage = 2;  // −q turns alike
   const PathPoint middle = path_at(path, 1);
   EXPECT_DOUBLE_EQ(middle.pose.position.x, 2);
   EXPECT_NEAR(rotation_vector(middle.pose.rotation).z, kPi / 4, 1e-14);
@@ -144,7 +145,8 @@ TEST(SimulatedDevice, TakesTheTorqueAboutWhateverPointItIsGiven) {
     b->write(moved(about_gc, gc, other), other);
   }
   EXPECT_LT(length(a->read().pose.position - b->read().pose.position), 1e-14);
-  EXPECT_LT(length(rotation_vector(a->read().pose.rotation * glm::conjugate(b->read().pose.rotation))), 1e-13);
+  EXPECT_LT(length(rotation_vector(a->read().pose.rotation * glm::conjugate(b->read().pose.rotation))),
+            1e-13);
 }
 
 TEST(SimulatedDevice, ShortensForceAndTorqueToItsLimitsKeepingDirection) {
@@ -187,13 +189,15 @@ TEST(SimulatedDevice, MovesAlongItsGuideUnderTheForceAlongItAlone) {
     pose = device->read().pose;
   }
   const double angle = std::atan2(pose.position.x, 0.5 - pose.position.z);
-  EXPECT_NEAR(0.5 * angle, 0.4 + 0.01, 1e-4) << "1.35 N / 135 N/m = 10 mm of travel; force direction fixed, guide bends";
+  EXPECT_NEAR(0.5 * angle, 0.4 + 0.01, 1e-4)
+      << "1.35 N / 135 N/m = 10 mm of travel; force direction fixed, guide bends";
 }
 
 TEST(SimulatedDevice, IsPushedAlongABendByATorqueAboutItsAxis) {
-  // The frame turns by −1/radius = −2 rad per metre about y, so −0.5 N·m about y pushes with 1 N along the guide.
+  // The frame turns by −1/radius = −2 rad per metre about y, so −0.5 N·m about y pushes with 1 N along the
+  // guide.
   DeviceSettings settings = guided();
-  settings.hand_angular_stiffness_nm = 1e4;   // the hand holds the tool's rotation relative to the frame
+  settings.hand_angular_stiffness_nm = 1e4;  // the hand holds the tool's rotation relative to the frame
   auto device = make(settings);
   const Pose pose = press(*device, {Vec3(0), Vec3(0, -0.5, 0)}, 6000);
   const double angle = std::atan2(pose.position.x, 0.5 - pose.position.z);
@@ -214,8 +218,8 @@ TEST(SimulatedDevice, ExertsOnItsGuideAWrenchOfTheSameWork) {
     const Wrench whole{any(), any()};
     const Wrench part = device->exertable(whole, gc);
     const double speed = normal(random);
-    const Vec3 rate = any() + speed * at.turning;                       // of the tool, world
-    const Vec3 velocity = speed * at.tangent + glm::cross(rate, gc - pose.position);   // of gc
+    const Vec3 rate = any() + speed * at.turning;                                     // of the tool, world
+    const Vec3 velocity = speed * at.tangent + glm::cross(rate, gc - pose.position);  // of gc
     EXPECT_NEAR(glm::dot(part.force, velocity) + glm::dot(part.torque, rate),
                 glm::dot(whole.force, velocity) + glm::dot(whole.torque, rate), 1e-12);
     EXPECT_LT(length(glm::cross(part.force, at.tangent)), 1e-12) << "force along the guide only";
@@ -231,7 +235,7 @@ TEST(SimulatedDevice, StopsHardAtTheEndOfItsGuide) {
     pose = device->read().pose;
     device->write({Vec3(0, 0, 15), Vec3(0)}, pose.position);
   }
-  EXPECT_NEAR(pose.position.x, 0.5, 1e-9);   // the quarter circle's end
+  EXPECT_NEAR(pose.position.x, 0.5, 1e-9);  // the quarter circle's end
   EXPECT_NEAR(pose.position.z, 0.5, 1e-9);
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
-constexpr double kFullSpeed = 0.1 * 1e-3;   // m a tick, RateSettings
+constexpr double kFullSpeed = 0.1 * 1e-3;  // m a tick, RateSettings
 
 Bytes axes_report(std::uint8_t number, const std::vector<int>& values) {
   Bytes bytes{number};
@@ -38,17 +38,18 @@ class Table {
     const std::lock_guard lock(mutex_);
     if (front) drawer_.push_back(std::move(front));
     front = std::make_unique<fake::DescriptorFront>(
-        fake::DeviceCalls{[](std::uint8_t, std::uint16_t) { return true; }, [](std::span<const std::uint8_t>) {},
-                          [this] {
-                            if (reports_.empty()) return Bytes{};
-                            Bytes report = reports_.front();
-                            reports_.pop_front();
-                            return report;
-                          },
-                          [this] { return !reports_.empty(); },
-                          [this](std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) {
-                            if (request == 9 && value == 0x0204) light.assign(data.begin(), data.end());
-                          }},
+        fake::DeviceCalls{
+            [](std::uint8_t, std::uint16_t) { return true; }, [](std::span<const std::uint8_t>) {},
+            [this] {
+              if (reports_.empty()) return Bytes{};
+              Bytes report = reports_.front();
+              reports_.pop_front();
+              return report;
+            },
+            [this] { return !reports_.empty(); },
+            [this](std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) {
+              if (request == 9 && value == 0x0204) light.assign(data.begin(), data.end());
+            }},
         fake::hid_descriptors(id_.vendor, id_.product));
     plugged_ = true;
   }
@@ -111,12 +112,13 @@ TEST(SpaceMouse, EveryModelSteersInBothFormsOfReport) {
     auto device = make_spacemouse({}, Pose{}, table.opener());
     ASSERT_TRUE(device->open());
     EXPECT_EQ(table.front->locked([&] { return table.light; }), (Bytes{4, 1})) << "the ring is lit";
-    push(table, *device, {axes_report(1, {350, 0, -350}), axes_report(2, {0, 0, 350})}, 1);   // older: two reports
+    push(table, *device, {axes_report(1, {350, 0, -350}), axes_report(2, {0, 0, 350})},
+         1);  // older: two reports
     EXPECT_NEAR(glm::length(step_of(*device) - Vec3(kFullSpeed, 0, -kFullSpeed)), 0, 1e-15);
     const Quat before = device->read().pose.rotation, after = device->read().pose.rotation;
     const Quat turn = after * glm::conjugate(before);
     EXPECT_NEAR(2 * std::atan2(turn.z, turn.w), 1e-3, 1e-9) << "1 rad/s about z";
-    push(table, *device, {axes_report(1, {0, 350, 0, 0, 0, 0})}, 2);                         // newer: one
+    push(table, *device, {axes_report(1, {0, 350, 0, 0, 0, 0})}, 2);  // newer: one
     EXPECT_NEAR(glm::length(step_of(*device) - Vec3(0, kFullSpeed, 0)), 0, 1e-15);
     push(table, *device, {axes_report(1, {0, 0, 0, 0, 0, 0})}, 3);
     EXPECT_EQ(step_of(*device), Vec3(0));
@@ -127,7 +129,7 @@ TEST(SpaceMouse, ScaleAxesAndClutchOfTheWorkspaceHold) {
   Table table;
   SpaceMouseSettings settings;
   settings.workspace.scale = 0.5;
-  settings.workspace.axes = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};   // world x is the cap's z
+  settings.workspace.axes = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};  // world x is the cap's z
   settings.workspace.clutch_buttons = 4;
   auto device = make_spacemouse(settings, Pose{}, table.opener());
   ASSERT_TRUE(device->open());
@@ -169,7 +171,10 @@ TEST(SpaceMouse, StallsAndBabbleAreSurvivedAndEndlessOnesMeanItIsGone) {
 }
 
 TEST(SpaceMouse, OneInUseIsRefusedAndNoThreadIsLeft) {
-  const auto threads = [] { return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator()); };
+  const auto threads = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/task"),
+                         std::filesystem::directory_iterator());
+  };
   const auto before = threads();
   {
     Table table;

@@ -53,7 +53,8 @@ TEST(SpaceMouseReport, ButtonsAreBits) {
 TEST(SpaceMouseReport, WhatIsNoReportChangesNothing) {
   spacemouse::Cap cap;
   ASSERT_TRUE(spacemouse::take(report(1, {9, 9, 9}), cap));
-  for (const std::vector<std::uint8_t>& bytes : {std::vector<std::uint8_t>{}, {1}, {1, 2, 3, 4, 5, 6}, {2, 0}, {17, 1, 1, 1, 1, 1, 1}, {3}})
+  for (const std::vector<std::uint8_t>& bytes :
+       {std::vector<std::uint8_t>{}, {1}, {1, 2, 3, 4, 5, 6}, {2, 0}, {17, 1, 1, 1, 1, 1, 1}, {3}})
     EXPECT_FALSE(spacemouse::take(bytes, cap));
   EXPECT_EQ(cap.axes, (std::array<std::int16_t, 6>{9, 9, 9, 0, 0, 0}));
 }
@@ -63,8 +64,9 @@ TEST(RateControl, RestsInTheDeadZoneAndNeverOutrunsItsLimits) {
   for (int i = 0; i < 1000; ++i) rate.step({0.08, -0.08, NAN, 0.05, 0, INFINITY * 0});
   EXPECT_EQ(rate.pose().position, Vec3(0));
   EXPECT_EQ(rate.pose().rotation, Quat(1, 0, 0, 0));
-  for (int i = 0; i < 1000; ++i) rate.step({5, 0, 0, 0, 0, 1});   // more than full deflection is full deflection
-  EXPECT_NEAR(rate.pose().position.x, 0.1, 1e-12);               // 0.1 m/s for a second
+  for (int i = 0; i < 1000; ++i)
+    rate.step({5, 0, 0, 0, 0, 1});                  // more than full deflection is full deflection
+  EXPECT_NEAR(rate.pose().position.x, 0.1, 1e-12);  // 0.1 m/s for a second
   // 1 rad in a second, each step short by (0.5 mrad)³·2/3.
   EXPECT_NEAR(2 * std::atan2(rate.pose().rotation.z, rate.pose().rotation.w), 1.0, 1e-7);
   EXPECT_NEAR(glm::length(rate.pose().rotation), 1, 1e-15);
@@ -73,7 +75,7 @@ TEST(RateControl, RestsInTheDeadZoneAndNeverOutrunsItsLimits) {
 TEST(Workspace, TheToolStartsWhereTheSceneSaysAndFollowsScaledAndTurned) {
   WorkspaceSettings settings;
   settings.scale = 2;
-  settings.axes = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};   // device z is world x, x is y, y is z
+  settings.axes = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};  // device z is world x, x is y, y is z
   Pose start;
   start.position = Vec3(1, 2, 3);
   Workspace workspace(settings, start);
@@ -92,7 +94,7 @@ TEST(Workspace, TheClutchLetsTheHandBeginAnew) {
   EXPECT_EQ(workspace.position({0, 0, 0}, 4), Vec3(1, 0, 0));
   EXPECT_EQ(workspace.position({-1, 0, 0}, 4), Vec3(1, 0, 0));
   EXPECT_EQ(workspace.position({0, 0, 0}, 0), Vec3(2, 0, 0));
-  workspace.release();   // homed anew: the device's zero may be anywhere
+  workspace.release();  // homed anew: the device's zero may be anywhere
   EXPECT_EQ(workspace.position({7, 7, 7}, 0), Vec3(2, 0, 0));
 }
 
@@ -104,7 +106,8 @@ TEST(Workspace, AnOffsetPutsTheMiddleOfTheDeviceThere) {
   Workspace workspace(settings, Pose{});
   EXPECT_EQ(workspace.position({0.5, 0, 0}, 0), Vec3(11, 0, 0));
   EXPECT_EQ(workspace.position({0, 0, 0}, 1), Vec3(11, 0, 0));
-  EXPECT_EQ(workspace.position({0.5, 0, 0}, 0), Vec3(12, 0, 0)) << "the clutch takes the hand elsewhere all the same";
+  EXPECT_EQ(workspace.position({0.5, 0, 0}, 0), Vec3(12, 0, 0))
+      << "the clutch takes the hand elsewhere all the same";
   workspace.release();
   EXPECT_EQ(workspace.position({0.5, 0, 0}, 0), Vec3(11, 0, 0)) << "homed anew: back to what the scene says";
 }

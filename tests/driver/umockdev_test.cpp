@@ -46,7 +46,8 @@ std::string text_of(const fs::path& file) {
 /// The program, started; its output goes to files.
 class Program {
  public:
-  Program(const fs::path& folder, const std::vector<std::string>& arguments, bool as_nobody = false, const std::string& terminal = {})
+  Program(const fs::path& folder, const std::vector<std::string>& arguments, bool as_nobody = false,
+          const std::string& terminal = {})
       : out_(folder / "stdout"), err_(folder / "stderr") {
     std::vector<std::string> words{PALPATE_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -109,7 +110,8 @@ class OnTheBus : public testing::Test {
             [&model] { return model.in(); }, [&model] { return model.has_bytes(); }};
   }
   void plug_falcon(fake::FalconModel& model) {
-    front_ = std::make_unique<fake::TestbedFront>(bed_, calls(model), fake::bulk_pair_descriptors(0x0403, 0xcb48), address_++);
+    front_ = std::make_unique<fake::TestbedFront>(bed_, calls(model),
+                                                  fake::bulk_pair_descriptors(0x0403, 0xcb48), address_++);
   }
   std::string firmware() {
     const fs::path file = folder_ / "firmware.bin";
@@ -125,7 +127,7 @@ class OnTheBus : public testing::Test {
   }
   template <class Condition>
   bool comes(Program& program, Condition condition) {
-    for (int i = 0; i < 6000 && program.alive(); ++i) {   // a minute: only a hang takes so long
+    for (int i = 0; i < 6000 && program.alive(); ++i) {  // a minute: only a hang takes so long
       if (front_->locked(condition)) return true;
       std::this_thread::sleep_for(10ms);
     }
@@ -139,7 +141,8 @@ class OnTheBus : public testing::Test {
       const auto angles = falcon::angles_of_position(falcon::kCentre + Vec3(0, 0, way_m_));
       falcon::Encoders counts{};
       if (angles)
-        for (std::size_t i = 0; i < 3; ++i) counts[i] = static_cast<std::int16_t>(std::lround(falcon::counts_of_angle((*angles)[i])));
+        for (std::size_t i = 0; i < 3; ++i)
+          counts[i] = static_cast<std::int16_t>(std::lround(falcon::counts_of_angle((*angles)[i])));
       return counts;
     };
   }
@@ -149,7 +152,7 @@ class OnTheBus : public testing::Test {
   std::unique_ptr<fake::TestbedFront> front_;
   fs::path folder_;
   int address_ = 4;
-  int forces_homed_ = 0, forces_unhomed_ = 0;   // commands with force, by whether the model was homed
+  int forces_homed_ = 0, forces_unhomed_ = 0;  // commands with force, by whether the model was homed
 };
 
 TEST_F(OnTheBus, NothingIsPluggedIn) { EXPECT_THAT(devices(), HasSubstr("not usable  not plugged in")); }
@@ -157,7 +160,8 @@ TEST_F(OnTheBus, NothingIsPluggedIn) { EXPECT_THAT(devices(), HasSubstr("not usa
 TEST_F(OnTheBus, AFalconWithoutItsFirmwareSaysSo) {
   fake::FalconModel model;
   plug_falcon(model);
-  EXPECT_THAT(devices(), HasSubstr("Novint Falcon, 3 forces; firmware missing: name your file with --firmware"));
+  EXPECT_THAT(devices(),
+              HasSubstr("Novint Falcon, 3 forces; firmware missing: name your file with --firmware"));
 }
 
 TEST_F(OnTheBus, AFalconThatRunsSaysSo) {
@@ -177,36 +181,43 @@ TEST_F(OnTheBus, ADeviceInUseSaysSo) {
 TEST_F(OnTheBus, WithoutPermissionTheRuleToAddIsNamed) {
   fake::FalconModel model({}, true);
   plug_falcon(model);
-  fs::permissions(bed_.root(), fs::perms::all);   // the hot-plug messages' sockets come to lie there
+  fs::permissions(bed_.root(), fs::perms::all);  // the hot-plug messages' sockets come to lie there
   // The emulation's own sockets stay open to all: what is to be refused is the device.
   for (const auto& entry : fs::recursive_directory_iterator(bed_.root()))
     if (entry.is_socket()) fs::permissions(entry.path(), fs::perms::all);
   ASSERT_EQ(::chmod((bed_.root() + front_->node()).c_str(), ::getuid() == 0 ? 0600 : 0), 0);
-  EXPECT_THAT(devices(true), HasSubstr("not usable  USB device 0403:cb48 may not be opened by this user: install 70-palpate.rules"));
+  EXPECT_THAT(
+      devices(true),
+      HasSubstr("not usable  USB device 0403:cb48 may not be opened by this user: install 70-palpate.rules"));
 }
 
 TEST_F(OnTheBus, ASpaceMouseThatTheKernelHasIsTakenOver) {
   const UsbId id = spacemouse::kModels.front();
-  fake::DeviceCalls quiet{[](std::uint8_t, std::uint16_t) { return true; }, [](std::span<const std::uint8_t>) {},
-                          [] { return std::vector<std::uint8_t>{}; }, [] { return false; }};
-  front_ = std::make_unique<fake::TestbedFront>(bed_, quiet, fake::hid_descriptors(id.vendor, id.product), address_++);
+  fake::DeviceCalls quiet{[](std::uint8_t, std::uint16_t) { return true; },
+                          [](std::span<const std::uint8_t>) {}, [] { return std::vector<std::uint8_t>{}; },
+                          [] { return false; }};
+  front_ = std::make_unique<fake::TestbedFront>(bed_, quiet, fake::hid_descriptors(id.vendor, id.product),
+                                                address_++);
   front_->faults.kernel_driver = true;
   EXPECT_THAT(devices(), HasSubstr("the kernel's own driver has it now, palpate takes it over for a run"));
   EXPECT_TRUE(front_->faults.kernel_driver) << "a list leaves it where it is";
 }
 
 TEST_F(OnTheBus, EveryModelOfTheSpaceMouseIsFoundAndNoOrdinaryMouseOfItsMaker) {
-  fake::DeviceCalls quiet{[](std::uint8_t, std::uint16_t) { return true; }, [](std::span<const std::uint8_t>) {},
-                          [] { return std::vector<std::uint8_t>{}; }, [] { return false; }};
+  fake::DeviceCalls quiet{[](std::uint8_t, std::uint16_t) { return true; },
+                          [](std::span<const std::uint8_t>) {}, [] { return std::vector<std::uint8_t>{}; },
+                          [] { return false; }};
   const auto found = [&](UsbId id) {
-    front_ = std::make_unique<fake::TestbedFront>(bed_, quiet, fake::hid_descriptors(id.vendor, id.product), address_++);
+    front_ = std::make_unique<fake::TestbedFront>(bed_, quiet, fake::hid_descriptors(id.vendor, id.product),
+                                                  address_++);
     const auto list = list_usb_devices(spacemouse::kModels);
     EXPECT_TRUE(list) << list.error().sentence;
     return list && list->size() == 1 && list->front().usable && list->front().id == id;
   };
   for (const UsbId id : spacemouse::kModels) EXPECT_TRUE(found(id)) << std::hex << id.product;
   for (std::uint16_t product = 0xc650; product <= 0xc658; ++product) {
-    if (std::find(spacemouse::kModels.begin(), spacemouse::kModels.end(), UsbId{0x256f, product}) == spacemouse::kModels.end()) {
+    if (std::find(spacemouse::kModels.begin(), spacemouse::kModels.end(), UsbId{0x256f, product}) ==
+        spacemouse::kModels.end()) {
       EXPECT_FALSE(found({0x256f, product})) << std::hex << product;
     }
   }
@@ -214,7 +225,7 @@ TEST_F(OnTheBus, EveryModelOfTheSpaceMouseIsFoundAndNoOrdinaryMouseOfItsMaker) {
 
 TEST_F(OnTheBus, OnATerminalTheLiveLineSaysWhatToDo) {
   fake::FalconModel model({}, true);
-  model.homes_after = 1'000'000;   // nobody homes it
+  model.homes_after = 1'000'000;  // nobody homes it
   plug_falcon(model);
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(terminal, 0);
@@ -223,17 +234,23 @@ TEST_F(OnTheBus, OnATerminalTheLiveLineSaysWhatToDo) {
   ::ioctl(terminal, TIOCSWINSZ, &size);
   const std::string shown_on = ::ptsname(terminal);
   ::setenv("TERM", "xterm", 1);
-  Program program(folder_, {"run", PALPATE_SCENE, "--device", "falcon", "--backend", "cpu", "--out", folder_ / "run"}, false, shown_on);
+  Program program(folder_,
+                  {"run", PALPATE_SCENE, "--device", "falcon", "--backend", "cpu", "--out", folder_ / "run"},
+                  false, shown_on);
   ::fcntl(terminal, F_SETFL, O_NONBLOCK);
   std::string shown;
-  for (int i = 0; i < 6000 && program.alive() && shown.find("home the Falcon: pull the grip") == std::string::npos; ++i) {
+  for (int i = 0;
+       i < 6000 && program.alive() && shown.find("home the Falcon: pull the grip") == std::string::npos;
+       ++i) {
     char bytes[4096];
-    for (ssize_t n; (n = ::read(terminal, bytes, sizeof bytes)) > 0;) shown.append(bytes, static_cast<std::size_t>(n));
+    for (ssize_t n; (n = ::read(terminal, bytes, sizeof bytes)) > 0;)
+      shown.append(bytes, static_cast<std::size_t>(n));
     std::this_thread::sleep_for(10ms);
   }
-  EXPECT_THAT(shown, HasSubstr(" s  home the Falcon: pull the grip all the way out, then push it all the way in"));
+  EXPECT_THAT(shown,
+              HasSubstr(" s  home the Falcon: pull the grip all the way out, then push it all the way in"));
   program.interrupt();
-  for (int i = 0; i < 3000 && program.alive(); ++i) {   // a full terminal would hold it up
+  for (int i = 0; i < 3000 && program.alive(); ++i) {  // a full terminal would hold it up
     char bytes[4096];
     while (::read(terminal, bytes, sizeof bytes) > 0) {
     }
@@ -246,7 +263,8 @@ TEST_F(OnTheBus, OnATerminalTheLiveLineSaysWhatToDo) {
 
 /// Columns of trace.csv.
 struct Ticks {
-  std::vector<double> z, force, response;   ///< force: the length of what was sent, response: of what the back end found
+  std::vector<double> z, force,
+      response;  ///< force: the length of what was sent, response: of what the back end found
 };
 
 Ticks ticks_of(const fs::path& trace) {
@@ -266,28 +284,33 @@ Ticks ticks_of(const fs::path& trace) {
   return ticks;
 }
 
-// The whole way of a person with a Falcon: firmware, homing, contact; the plug comes out while the clamp presses on the pipe and goes in again.
+// The whole way of a person with a Falcon: firmware, homing, contact; the plug comes out while the clamp
+// presses on the pipe and goes in again.
 TEST_F(OnTheBus, TheChaptersSceneIsFeltLostAndFeltAgain) {
   fake::FalconModel model;
   model.firmware_size = kFirmwareBytes;
   model.homes_after = 200;
-  hold(model);   // then 12 mm further out: there the clamp meets the pipe
+  hold(model);  // then 12 mm further out: there the clamp meets the pipe
   plug_falcon(model);
-  Program program(folder_, {"run", PALPATE_SCENE, "--device", "falcon", "--firmware", firmware(), "--backend", "cpu", "--out", folder_ / "run"});
+  Program program(folder_, {"run", PALPATE_SCENE, "--device", "falcon", "--firmware", firmware(), "--backend",
+                            "cpu", "--out", folder_ / "run"});
   ASSERT_TRUE(comes(program, [&] { return model.homed(); })) << program.err();
   EXPECT_EQ(model.loads(), 1);
   front_->locked([&] { return wanted_m_ = 0.012; });
-  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone && way_m_ > 0.0119; })) << "no contact force: " << program.err();
+  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone && way_m_ > 0.0119; }))
+      << "no contact force: " << program.err();
   const int reports = front_->locked([&] { return model.reports(); });
-  ASSERT_TRUE(comes(program, [&] { return model.reports() > reports + 500; }));   // faded in
+  ASSERT_TRUE(comes(program, [&] { return model.reports() > reports + 500; }));  // faded in
 
   front_->unplug();
   std::this_thread::sleep_for(500ms);
-  // It hears of the loss by the first transfer that fails, so at most a packet that was being sent still had force; the next control tick has none.
+  // It hears of the loss by the first transfer that fails, so at most a packet that was being sent still had
+  // force; the next control tick has none.
   int too_late = 0;
   for (const auto& bytes : front_->sent_too_late()) {
     ASSERT_EQ(bytes.size(), falcon::kPacketBytes);
-    const auto command = falcon::decode_command(std::span<const std::uint8_t, falcon::kPacketBytes>(bytes.data(), falcon::kPacketBytes));
+    const auto command = falcon::decode_command(
+        std::span<const std::uint8_t, falcon::kPacketBytes>(bytes.data(), falcon::kPacketBytes));
     ASSERT_TRUE(command);
     too_late += command->motors != kNone;
   }
@@ -298,7 +321,8 @@ TEST_F(OnTheBus, TheChaptersSceneIsFeltLostAndFeltAgain) {
   forces_homed_ = forces_unhomed_ = 0;
   plug_falcon(model);
   ASSERT_TRUE(comes(program, [&] { return model.homed(); })) << program.err();
-  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone; })) << "force does not come back: " << program.err();
+  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone; }))
+      << "force does not come back: " << program.err();
   EXPECT_EQ(model.loads(), 2);
   EXPECT_EQ(forces_unhomed_, 0) << "force before homing";
 
@@ -322,13 +346,17 @@ TEST_F(OnTheBus, TheChaptersSceneIsFeltLostAndFeltAgain) {
     longest = std::max(longest, quiet);
   }
   EXPECT_GT(longest, 400u) << "ticks without force while the plug was out";
-  // On a busy machine results come too late and the watchdog takes most of the force away; what was found is what it is.
-  EXPECT_GT(*std::max_element(ticks.response.begin(), ticks.response.end()), 2.0) << "N; the scene says 2.75 at 10 mm";
-  EXPECT_LE(*std::max_element(ticks.force.begin(), ticks.force.end()), 8.0 + 1e-9) << "the device's rating, N";
+  // On a busy machine results come too late and the watchdog takes most of the force away; what was found is
+  // what it is.
+  EXPECT_GT(*std::max_element(ticks.response.begin(), ticks.response.end()), 2.0)
+      << "N; the scene says 2.75 at 10 mm";
+  EXPECT_LE(*std::max_element(ticks.force.begin(), ticks.force.end()), 8.0 + 1e-9)
+      << "the device's rating, N";
 
   // What was recorded from it can be done again without it: the same places at the same times, to the bit.
-  Program again(folder_, {"run", PALPATE_SCENE, "--device", "replay:" + (folder_ / "run" / "trace.csv").string(), "--pace", "asap", "--duration", "0.2",
-                          "--backend", "cpu", "--out", folder_ / "again"});
+  Program again(folder_,
+                {"run", PALPATE_SCENE, "--device", "replay:" + (folder_ / "run" / "trace.csv").string(),
+                 "--pace", "asap", "--duration", "0.2", "--backend", "cpu", "--out", folder_ / "again"});
   ASSERT_EQ(again.code(), 0) << again.err();
   const std::vector<double> replayed = ticks_of(folder_ / "again" / "trace.csv").z;
   ASSERT_EQ(replayed.size(), 200u);
@@ -338,22 +366,29 @@ TEST_F(OnTheBus, TheChaptersSceneIsFeltLostAndFeltAgain) {
 /// What follows `before` in `text`, up to `end`; empty: it is not there yet.
 std::string between(const std::string& text, const std::string& before, char end) {
   const auto at = text.find(before);
-  return at == std::string::npos ? "" : text.substr(at + before.size(), text.find(end, at + before.size()) - at - before.size());
+  return at == std::string::npos
+             ? ""
+             : text.substr(at + before.size(), text.find(end, at + before.size()) - at - before.size());
 }
 
 /// A server's whole answer on this machine.
-std::string ask(const std::string& port, const std::string& method, const std::string& path, const std::string& body = "") {
+std::string ask(const std::string& port, const std::string& method, const std::string& path,
+                const std::string& body = "") {
   const int link = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(port)));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   std::string answer;
-  const std::string request = method + " " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\nContent-Length: " +
+  const std::string request = method + " " + path +
+                              " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: "
+                              "application/json\r\nContent-Length: " +
                               std::to_string(body.size()) + "\r\n\r\n" + body;
-  if (::connect(link, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 && ::send(link, request.data(), request.size(), MSG_NOSIGNAL) > 0) {
+  if (::connect(link, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      ::send(link, request.data(), request.size(), MSG_NOSIGNAL) > 0) {
     char piece[4096];
-    for (ssize_t got = 0; (got = ::recv(link, piece, sizeof piece, 0)) > 0;) answer.append(piece, static_cast<std::size_t>(got));
+    for (ssize_t got = 0; (got = ::recv(link, piece, sizeof piece, 0)) > 0;)
+      answer.append(piece, static_cast<std::size_t>(got));
   }
   ::close(link);
   return answer;
@@ -366,21 +401,32 @@ TEST_F(OnTheBus, AServerThatIsToldToStopSendsZeroFirst) {
   hold(model);
   plug_falcon(model);
   const fs::path scene = PALPATE_SCENE;
-  Program program(folder_, {"serve", "--listen", "127.0.0.1:0", "--root", scene.parent_path(), "--backend", "cpu"});
+  Program program(folder_,
+                  {"serve", "--listen", "127.0.0.1:0", "--root", scene.parent_path(), "--backend", "cpu"});
   std::string port;
-  ASSERT_TRUE(comes(program, [&] { return !(port = between(program.err(), R"("address":"127.0.0.1:)", '"')).empty(); })) << program.err();
-  const std::string id = between(ask(port, "POST", "/v1/scenes", "{\"path\":\"" + scene.filename().string() + "\"}"), "\"id\":\"", '"');
-  ASSERT_TRUE(comes(program, [&] { return between(ask(port, "GET", "/v1/scenes/" + id + "?wait=10"), "\"state\":\"", '"') == "ready"; })) << program.err();
-  const std::string session = ask(port, "POST", "/v1/sessions", "{\"scene\":\"" + id + R"(","device":"falcon"})");
+  ASSERT_TRUE(comes(program, [&] {
+    return !(port = between(program.err(), R"("address":"127.0.0.1:)", '"')).empty();
+  })) << program.err();
+  const std::string id = between(
+      ask(port, "POST", "/v1/scenes", "{\"path\":\"" + scene.filename().string() + "\"}"), "\"id\":\"", '"');
+  ASSERT_TRUE(comes(program, [&] {
+    return between(ask(port, "GET", "/v1/scenes/" + id + "?wait=10"), "\"state\":\"", '"') == "ready";
+  })) << program.err();
+  const std::string session =
+      ask(port, "POST", "/v1/sessions", "{\"scene\":\"" + id + R"(","device":"falcon"})");
   ASSERT_THAT(session, HasSubstr(R"("state":"running")"));
   ASSERT_TRUE(comes(program, [&] { return model.homed(); })) << program.err();
   front_->locked([&] { return wanted_m_ = 0.012; });
-  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone && way_m_ > 0.0119; })) << "no contact force: " << program.err();
+  ASSERT_TRUE(comes(program, [&] { return model.motors() != kNone && way_m_ > 0.0119; }))
+      << "no contact force: " << program.err();
   EXPECT_EQ(forces_unhomed_, 0) << "force before homing";
 
   program.terminate();
   // What tells the world that the session is over comes after the zero, not before.
-  ASSERT_TRUE(comes(program, [&] { return program.err().find("\"event\":\"session_over\"") != std::string::npos; }) || program.code() == 0) << program.err();
+  ASSERT_TRUE(
+      comes(program, [&] { return program.err().find("\"event\":\"session_over\"") != std::string::npos; }) ||
+      program.code() == 0)
+      << program.err();
   const int forces = front_->locked([&] { return forces_homed_; });
   EXPECT_EQ(front_->locked([&] { return model.motors(); }), kNone);
   EXPECT_EQ(program.code(), 0) << program.err();

@@ -15,9 +15,10 @@ TEST(ChartSvg, DrawsWhatTheoryExpectsDashedInTheInkOfWhatItIsOf) {
   BenchChart chart;
   chart.title = "K < all & more";
   chart.log_x = chart.log_y = true;
-  chart.series = {{"law", {1, 10}, {100, 50}}, {"law, theory", {1, 10}, {110, 55}, true}, {"other", {1, 10}, {7, 8}}};
+  chart.series = {
+      {"law", {1, 10}, {100, 50}}, {"law, theory", {1, 10}, {110, 55}, true}, {"other", {1, 10}, {7, 8}}};
   const std::string picture = chart_svg(chart);
-  EXPECT_EQ(count(picture, "<circle"), 4u);   // theory has no dots
+  EXPECT_EQ(count(picture, "<circle"), 4u);  // theory has no dots
   EXPECT_EQ(count(picture, "stroke-dasharray"), 1u);
   EXPECT_EQ(count(picture, "stroke=\"#4269d0\""), 2u);
   EXPECT_NE(picture.find("K &lt; all &amp; more"), std::string::npos);
@@ -29,8 +30,9 @@ TEST(ChartSvg, AMapHasACellAValueAndDarkensWithIt) {
   chart.labels = {"1", "2", "5"};
   chart.series = {{"n 1", {}, {10, 100, 1000}}, {"n 2", {}, {20, 200, 0}}};
   const std::string picture = chart_svg(chart);
-  EXPECT_EQ(count(picture, "<rect"), 1u + 6u);   // the ground and the cells
-  for (const char* value : {">10<", ">100<", ">1000<", ">20<", ">200<", ">0<", ">n 1<", ">n 2<", ">5<"}) EXPECT_NE(picture.find(value), std::string::npos) << value;
+  EXPECT_EQ(count(picture, "<rect"), 1u + 6u);  // the ground and the cells
+  for (const char* value : {">10<", ">100<", ">1000<", ">20<", ">200<", ">0<", ">n 1<", ">n 2<", ">5<"})
+    EXPECT_NE(picture.find(value), std::string::npos) << value;
   EXPECT_EQ(count(picture, "rgb(255,247,203)"), 2u) << "the least value and none";
   EXPECT_EQ(count(picture, "rgb(37,52,148)"), 1u) << "the largest";
   chart.map_low = 1000, chart.map_high = 1e6;

@@ -1,5 +1,6 @@
-// Holds answers of a server against the schemas of its own openapi.json. Reads one JSON object, {"openapi": …, "answers": [{"schema": "Scene",
-// "answer": …}, …]}, from standard input; exit 1 with a sentence for each that does not fit.
+// Holds answers of a server against the schemas of its own openapi.json. Reads one JSON object, {"openapi":
+// …, "answers": [{"schema": "Scene", "answer": …}, …]}, from standard input; exit 1 with a sentence for each
+// that does not fit.
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -19,13 +20,15 @@ int main() {
       std::printf("there is no schema %s\n", name.c_str());
       return 1;
     }
-    const json root = {{"allOf", json::array({{{"$ref", "#/components/schemas/" + name}}})}, {"components", input.at("openapi").at("components")}};
+    const json root = {{"allOf", json::array({{{"$ref", "#/components/schemas/" + name}}})},
+                       {"components", input.at("openapi").at("components")}};
     valijson::Schema schema;
     valijson::SchemaParser parser;
     parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(root), schema);
     valijson::Validator validator(valijson::Validator::kStrongTypes);
     valijson::ValidationResults results;
-    if (validator.validate(schema, valijson::adapters::NlohmannJsonAdapter(item.at("answer")), &results)) continue;
+    if (validator.validate(schema, valijson::adapters::NlohmannJsonAdapter(item.at("answer")), &results))
+      continue;
     ++wrong;
     std::printf("%s does not fit: %s\n", name.c_str(), item.at("answer").dump().substr(0, 2000).c_str());
     valijson::ValidationResults::Error error;

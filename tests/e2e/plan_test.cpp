@@ -27,8 +27,8 @@ PlanFacts poor_facts() {
 TEST(Plan, NamesTheThirteenStagesInTheOrderOfAFrame) {
   std::vector<std::string> names;
   for (const PlanStage& line : decide_plan({}).stages) names.push_back(line.stage);
-  EXPECT_THAT(names, testing::ElementsAre("transform", "cull", "pairs", "imt", "bmt", "bst", "est", "areas", "zones", "rays",
-                                          "contact_point", "torque", "telemetry"));
+  EXPECT_THAT(names, testing::ElementsAre("transform", "cull", "pairs", "imt", "bmt", "bst", "est", "areas",
+                                          "zones", "rays", "contact_point", "torque", "telemetry"));
 }
 
 TEST(Plan, EveryStageHasAReason) {
@@ -89,7 +89,7 @@ TEST(Plan, TheWholePlanKeepsAllAndSaysWhatItCouldSpare) {
 TEST(Plan, ASessionsFactsComeFromItsDeviceAndPath) {
   Scene scene;
   SceneGeometry geometry;
-  geometry.mockup.neighbours = {3, 5, 7};   // lowest bit set: all smooth
+  geometry.mockup.neighbours = {3, 5, 7};  // lowest bit set: all smooth
   scene.device.actuated = {true, true, true, false, false, false};
   EXPECT_FALSE(session_facts(scene, geometry, false).tool_rotates);
   EXPECT_FALSE(session_facts(scene, geometry, false).torque_wanted);

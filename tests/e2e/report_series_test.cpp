@@ -47,7 +47,7 @@ TEST(Envelope, KeepsEveryLonePeakAndDipOfALongCurve) {
 
 TEST(Envelope, MeansKeepTheSum) {
   Envelope envelope;
-  for (int i = 0; i < 1600; ++i) envelope.push(i, i % 2);   // two points a bin
+  for (int i = 0; i < 1600; ++i) envelope.push(i, i % 2);  // two points a bin
   std::string text;
   envelope.append_means(text);
   for (const auto& point : nlohmann::json::parse(text)) EXPECT_EQ(point[1], 0.5);
@@ -62,7 +62,8 @@ TickRecord tick_with_force(int tick, double force) {
 
 TEST(Highlight, LiesRoundTheStrongestContact) {
   Highlight highlight;
-  for (int i = 0; i < 5000; ++i) highlight.push(tick_with_force(i, i == 900 ? 3 : i == 3000 ? 7 : i == 4500 ? 5 : 0));
+  for (int i = 0; i < 5000; ++i)
+    highlight.push(tick_with_force(i, i == 900 ? 3 : i == 3000 ? 7 : i == 4500 ? 5 : 0));
   const auto ticks = highlight.ticks();
   ASSERT_EQ(ticks.size(), 200u);
   EXPECT_LT(ticks.front().tick, 3000);

@@ -4,7 +4,8 @@ namespace palpate::equivalence {
 
 std::vector<Case> all_cases() {
   std::vector<Case> all;
-  for (auto* family : {&solid_cases, &chapter_cases, &touch_cases, &topology_cases, &rule_cases, &limit_cases, &fit_cases}) {
+  for (auto* family :
+       {&solid_cases, &chapter_cases, &touch_cases, &topology_cases, &rule_cases, &limit_cases, &fit_cases}) {
     auto cases = (*family)();
     all.insert(all.end(), std::make_move_iterator(cases.begin()), std::make_move_iterator(cases.end()));
   }

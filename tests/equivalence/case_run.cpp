@@ -12,7 +12,7 @@
 namespace palpate::equivalence {
 namespace {
 
-constexpr double kStiffness = 2000;   ///< N/m; any would do
+constexpr double kStiffness = 2000;  ///< N/m; any would do
 
 std::string text_of(const LatticePose& pose) {
   std::string text = "rotation_q30";
@@ -34,7 +34,9 @@ std::string first_difference(const Pairs& a, const Pairs& b) {
   if (a == b) return "";
   std::size_t i = 0;
   while (i < a.size() && i < b.size() && a[i] == b[i]) ++i;
-  const auto text = [i](const Pairs& list) { return i < list.size() ? std::to_string(list[i].first) + " " + std::to_string(list[i].second) : "none"; };
+  const auto text = [i](const Pairs& list) {
+    return i < list.size() ? std::to_string(list[i].first) + " " + std::to_string(list[i].second) : "none";
+  };
   return "pairs[" + std::to_string(i) + "]: " + text(a) + ", " + text(b);
 }
 
@@ -52,7 +54,8 @@ std::string first_difference(const Answer& a, const Answer& b) {
 /// One case being run.
 class Runner {
  public:
-  Runner(const Case& c, const Backends& backends, const RunSettings& settings) : case_(c), backends_(backends), settings_(settings) {}
+  Runner(const Case& c, const Backends& backends, const RunSettings& settings)
+      : case_(c), backends_(backends), settings_(settings) {}
 
   CaseRun run() {
     const auto start = std::chrono::steady_clock::now();
@@ -98,9 +101,11 @@ class Runner {
           first = std::move(*partition);
           add(out_.hashes, *first);
           if (!tool && scene.known_class)
-            if (const std::string wrong = judge_classes(*first, scene.known_class); !wrong.empty()) differs(wrong);
+            if (const std::string wrong = judge_classes(*first, scene.known_class); !wrong.empty())
+              differs(wrong);
         } else if (const std::string difference = first_difference(*first, *partition); !difference.empty()) {
-          differs(std::string(tool ? "tool's" : "mock-up's") + " partition: " + difference + " (" + backends_[0]->name() + ", " + backend->name() + ")");
+          differs(std::string(tool ? "tool's" : "mock-up's") + " partition: " + difference + " (" +
+                  backends_[0]->name() + ", " + backend->name() + ")");
         }
       }
     }
@@ -114,7 +119,8 @@ class Runner {
     // Every second patch of the mock-up, where a case leaves contacts out.
     Ignored ignored;
     if (case_.ignoring)
-      for (std::uint32_t patch = 0; patch < geometry.mockup.patch_count; patch += 2) ignored.patches.push_back(patch);
+      for (std::uint32_t patch = 0; patch < geometry.mockup.patch_count; patch += 2)
+        ignored.patches.push_back(patch);
     LatticePose pose;
     for (std::uint64_t i = first; i < settings_.first + count; ++i) {
       Random random(settings_.seed, i);
@@ -131,7 +137,8 @@ class Runner {
   }
 
   /// One pose, every back end. False: no more.
-  bool ask(const SceneGeometry& geometry, const LatticePose& pose, const Ignored* ignored, const Known& known) {
+  bool ask(const SceneGeometry& geometry, const LatticePose& pose, const Ignored* ignored,
+           const Known& known) {
     if (!query(*backends_[0], geometry, pose, ignored, answer_)) return false;
     if (!counted_) return true;
     count(geometry, pose, known);
@@ -143,16 +150,19 @@ class Runner {
       if (!query(*backends_[b], geometry, pose, ignored, other_)) return false;
       compare(first_difference(answer_, other_), backends_[0]->name() + ", " + backends_[b]->name());
     }
-    compare(first_difference(known, answer_.contacts, answer_.pairs), backends_[0]->name() + ", known beforehand");
+    compare(first_difference(known, answer_.contacts, answer_.pairs),
+            backends_[0]->name() + ", known beforehand");
     return out_.findings.size() < static_cast<std::size_t>(settings_.most_differences);
   }
 
-  bool query(CollisionBackend& backend, const SceneGeometry& geometry, const LatticePose& pose, const Ignored* ignored, Answer& answer) {
+  bool query(CollisionBackend& backend, const SceneGeometry& geometry, const LatticePose& pose,
+             const Ignored* ignored, Answer& answer) {
     if (const auto asked = backend.query(pose, ignored, answer.contacts); !asked) {
       differs(backend.name() + " failed: " + asked.error().sentence + "; " + where_);
       return false;
     }
-    // More areas than a frame may have is an answer that both give. Any other capacity is a limit of one back end.
+    // More areas than a frame may have is an answer that both give. Any other capacity is a limit of one back
+    // end.
     if (answer.contacts.truncated && std::strcmp(answer.contacts.truncated_capacity, "areas") != 0) {
       not_supported(backend.name() + " ran out of " + answer.contacts.truncated_capacity + "; " + where_);
       return false;
@@ -229,6 +239,8 @@ class Runner {
 
 }  // namespace
 
-CaseRun run_case(const Case& c, const Backends& backends, const RunSettings& settings) { return Runner(c, backends, settings).run(); }
+CaseRun run_case(const Case& c, const Backends& backends, const RunSettings& settings) {
+  return Runner(c, backends, settings).run();
+}
 
 }  // namespace palpate::equivalence

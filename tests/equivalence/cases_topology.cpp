@@ -1,4 +1,5 @@
-// Surfaces that are not a tidy solid's, made of boxes along the axes, so that the class of every voxel can be written down.
+// Surfaces that are not a tidy solid's, made of boxes along the axes, so that the class of every voxel can be
+// written down.
 #include "model/generate/turn.h"
 #include "tests/equivalence/case.h"
 #include "tests/equivalence/lattice_shapes.h"
@@ -13,10 +14,10 @@ constexpr std::int32_t kVoxel = 64;
 /// A mock-up, its parts, and what is known of it.
 struct Body {
   Triangles triangles;
-  std::vector<std::size_t> parts;                      ///< where each begins; empty: one
-  std::optional<RectangleWorld> classes;               ///< what the class of every voxel follows from
-  std::optional<std::size_t> areas;                    ///< of the tool sunk into the table
-  bool table = true;                                   ///< has the face z = 512 for |x|, |y| ≤ 128, nothing above it, and an inside below
+  std::vector<std::size_t> parts;         ///< where each begins; empty: one
+  std::optional<RectangleWorld> classes;  ///< what the class of every voxel follows from
+  std::optional<std::size_t> areas;       ///< of the tool sunk into the table
+  bool table = true;  ///< has the face z = 512 for |x|, |y| ≤ 128, nothing above it, and an inside below
 };
 
 Body of_boxes(std::initializer_list<WeightedBox> boxes, bool apart = false) {
@@ -55,14 +56,14 @@ Body overlapping() { return of_boxes({kBlock, {Int3(0, -700, -600), Int3(700, 0,
 
 Body flipped_shell() {
   Body body = of_boxes({kBlock});
-  body.triangles = flipped(body.triangles);   // import turns it round
+  body.triangles = flipped(body.triangles);  // import turns it round
   return body;
 }
 
 /// Without its bottom the inside is the outside.
 Body open_box() {
   Body body = of_boxes({kBlock});
-  body.triangles.erase(body.triangles.begin() + 8, body.triangles.begin() + 10);   // face 4: lower z
+  body.triangles.erase(body.triangles.begin() + 8, body.triangles.begin() + 10);  // face 4: lower z
   body.classes->open(4);
   body.table = false;
   return body;
@@ -76,11 +77,13 @@ Body missing_triangle() {
   return body;
 }
 
-/// The top is a fan round its middle with a corner in the middle of one of its sides that the side's wall does not have.
+/// The top is a fan round its middle with a corner in the middle of one of its sides that the side's wall
+/// does not have.
 Body t_junction() {
   Body body = of_boxes({kBlock});
   body.triangles.resize(10);
-  const Int3 ring[5] = {{-512, -512, 512}, {512, -512, 512}, {512, 100, 512}, {512, 512, 512}, {-512, 512, 512}};
+  const Int3 ring[5] = {
+      {-512, -512, 512}, {512, -512, 512}, {512, 100, 512}, {512, 512, 512}, {-512, 512, 512}};
   for (int i = 0; i < 5; ++i) body.triangles.push_back({Int3(7, 3, 512), ring[i], ring[(i + 1) % 5]});
   body.areas = 1;
   return body;
@@ -111,14 +114,16 @@ Body duplicates(bool apart) {
 }
 Body duplicate_triangle() {
   Body body = of_boxes({kBlock});
-  body.triangles.push_back(body.triangles[10]);   // of the top
+  body.triangles.push_back(body.triangles[10]);  // of the top
   return body;
 }
 
 /// Two blocks side by side with `gap` steps between them (negative: an overlap), the tool on both.
 Body two_blocks(std::int32_t gap) {
-  Body body = of_boxes({{Int3(-512, -512, -512), Int3(0, 512, 512), 1}, {Int3(gap, -512, -512), Int3(600, 512, 512), 1}}, true);
-  body.areas = gap == 0 ? 1 : 2;   // faces side by side share an edge; faces that overlap do not
+  Body body = of_boxes(
+      {{Int3(-512, -512, -512), Int3(0, 512, 512), 1}, {Int3(gap, -512, -512), Int3(600, 512, 512), 1}},
+      true);
+  body.areas = gap == 0 ? 1 : 2;  // faces side by side share an edge; faces that overlap do not
   return body;
 }
 
@@ -127,8 +132,9 @@ Body one_sided() {
   const std::int32_t r = 512;
   const Int3 e[6] = {{r, 0, 0}, {-r, 0, 0}, {0, r, 0}, {0, -r, 0}, {0, 0, r}, {0, 0, -r}};
   Body body;
-  body.triangles = {{e[0], e[2], e[4]}, {e[0], e[3], e[5]}, {e[1], e[2], e[5]}, {e[1], e[3], e[4]}, {e[0], e[2], e[1]}, {e[0], e[1], e[3]},
-                    {e[0], e[4], e[1]}, {e[0], e[1], e[5]}, {e[2], e[4], e[3]}, {e[2], e[3], e[5]}};
+  body.triangles = {{e[0], e[2], e[4]}, {e[0], e[3], e[5]}, {e[1], e[2], e[5]}, {e[1], e[3], e[4]},
+                    {e[0], e[2], e[1]}, {e[0], e[1], e[3]}, {e[0], e[4], e[1]}, {e[0], e[1], e[5]},
+                    {e[2], e[4], e[3]}, {e[2], e[3], e[5]}};
   body.table = false;
   return body;
 }
@@ -137,14 +143,18 @@ Body one_sided() {
 Body klein_bottle() {
   constexpr int kAround = 20, kAcross = 10;
   const auto at = [](int i, int j) {
-    if (i == kAround) i = 0, j = kAcross - j;   // half a turn: the far end is joined upside down
-    const Turn u = turn_by(i / double{kAround}), half = turn_by(i / (2.0 * kAround)), v = turn_by(j / double{kAcross}), vv = turn_by(2 * j / double{kAcross});
-    const double across = half.cos * v.sin - half.sin * vv.sin, along = half.sin * v.sin + half.cos * vv.sin, radius = 600 + 250 * across;
+    if (i == kAround) i = 0, j = kAcross - j;  // half a turn: the far end is joined upside down
+    const Turn u = turn_by(i / double{kAround}), half = turn_by(i / (2.0 * kAround)),
+               v = turn_by(j / double{kAcross}), vv = turn_by(2 * j / double{kAcross});
+    const double across = half.cos * v.sin - half.sin * vv.sin, along = half.sin * v.sin + half.cos * vv.sin,
+                 radius = 600 + 250 * across;
     return Int3(glm::round(Vec3(radius * u.cos, radius * u.sin, 250 * along)));
   };
   Body body;
   for (int i = 0; i < kAround; ++i)
-    for (int j = 0; j < kAcross; ++j) append(body.triangles, {{at(i, j), at(i + 1, j), at(i + 1, j + 1)}, {at(i, j), at(i + 1, j + 1), at(i, j + 1)}});
+    for (int j = 0; j < kAcross; ++j)
+      append(body.triangles,
+             {{at(i, j), at(i + 1, j), at(i + 1, j + 1)}, {at(i, j), at(i + 1, j + 1), at(i, j + 1)}});
   body.table = false;
   return body;
 }
@@ -152,13 +162,19 @@ Body klein_bottle() {
 /// The tool: a block of four voxels a side, its origin in the middle of its bottom.
 Triangles tool_block() { return box_of(Int3(-128, -128, 0), Int3(128, 128, 256)); }
 
-/// Over the table by a step, on it, sunk into it; else anywhere on the surface, turned by quarters or not at all known.
+/// Over the table by a step, on it, sunk into it; else anywhere on the surface, turned by quarters or not at
+/// all known.
 LatticePose table_pose(const SceneGeometry& geometry, const Body& body, Random& random, Known& known) {
   const std::uint64_t way = random.below(6);
-  if (!body.table || way > 2) return way % 2 == 0 ? aligned_touching_pose(geometry, random) : random_touching_pose(geometry, 0.5, random);
+  if (!body.table || way > 2)
+    return way % 2 == 0 ? aligned_touching_pose(geometry, random)
+                        : random_touching_pose(geometry, 0.5, random);
   LatticePose pose;
   for (int k = 0; k < 3; ++k) pose.rotation_q30[k][k] = 1 << 30;
-  pose.translation = {random.between(-120, 120), random.between(-120, 120), 512 + (way == 0 ? 1 : way == 1 ? 0 : -random.between(1, 60))};
+  pose.translation = {random.between(-120, 120), random.between(-120, 120),
+                      512 + (way == 0   ? 1
+                             : way == 1 ? 0
+                                        : -random.between(1, 60))};
   known.contact = way != 0;
   if (way == 0) {
     known.pairs.emplace();
@@ -182,8 +198,13 @@ Case topology(const char* name, const char* about, std::function<Body()> body) {
     if (!geometry) return geometry.error();
     TestScene scene;
     scene.geometry = std::move(*geometry);
-    scene.pose = [made](const SceneGeometry& g, Random& r, Known& known) { return table_pose(g, made, r, known); };
-    if (made.classes) scene.known_class = [world = *made.classes](const Int3& lower) { return world.class_of(lower, kVoxel); };
+    scene.pose = [made](const SceneGeometry& g, Random& r, Known& known) {
+      return table_pose(g, made, r, known);
+    };
+    if (made.classes)
+      scene.known_class = [world = *made.classes](const Int3& lower) {
+        return world.class_of(lower, kVoxel);
+      };
     return scene;
   };
   return c;
@@ -195,11 +216,12 @@ Case killer(Case c) {
 
 /// A bead wholly within the tool: no pair, all of it in EST, one area.
 Case swallowed_bead() {
-  Case c = topology("bead_in_tool", "a small box wholly within the tool: no pair, EST is all of it, one area", [] {
-    Body body = of_boxes({{Int3(-40, -50, -60), Int3(50, 40, 30), 1}});
-    body.table = false;
-    return body;
-  });
+  Case c =
+      topology("bead_in_tool", "a small box wholly within the tool: no pair, EST is all of it, one area", [] {
+        Body body = of_boxes({{Int3(-40, -50, -60), Int3(50, 40, 30), 1}});
+        body.table = false;
+        return body;
+      });
   const auto make = c.make;
   c.make = [make](std::uint64_t seed) {
     auto scene = make(seed);
@@ -231,14 +253,19 @@ std::vector<Case> topology_cases() {
       topology("missing_triangle", "nor has one that lacks a single large triangle", missing_triangle),
       killer(topology("t_junction", "closed although a corner lies on an edge; still one area", t_junction)),
       topology("edge_of_four", "two boxes that share one edge", edge_of_four),
-      killer(topology("edge_of_three", "a fin on a box's edge: open, and yet with an inside, by vote", edge_of_three)),
+      killer(topology("edge_of_three", "a fin on a box's edge: open, and yet with an inside, by vote",
+                      edge_of_three)),
       topology("zero_thickness", "front and back in one plane: closed, and without inside", zero_thickness),
       topology("duplicate_parts", "a closed part given twice: winding 2", [] { return duplicates(true); }),
-      topology("duplicate_faces", "all faces twice in one part: four triangles on every edge", [] { return duplicates(false); }),
-      topology("duplicate_triangle", "one triangle twice: open, and yet with an inside, by vote", duplicate_triangle),
-      topology("gap_of_one_step", "two blocks a step apart: two areas under one tool", [] { return two_blocks(1); }),
+      topology("duplicate_faces", "all faces twice in one part: four triangles on every edge",
+               [] { return duplicates(false); }),
+      topology("duplicate_triangle", "one triangle twice: open, and yet with an inside, by vote",
+               duplicate_triangle),
+      topology("gap_of_one_step", "two blocks a step apart: two areas under one tool",
+               [] { return two_blocks(1); }),
       topology("no_gap", "two blocks side by side: one area", [] { return two_blocks(0); }),
-      killer(topology("overlap_of_one_step", "two blocks that overlap by a step: two areas", [] { return two_blocks(-1); })),
+      killer(topology("overlap_of_one_step", "two blocks that overlap by a step: two areas",
+                      [] { return two_blocks(-1); })),
       topology("one_sided", "the tetrahemihexahedron: closed, not orientable", one_sided),
       killer(topology("klein_bottle", "closed, not orientable, through itself", klein_bottle)),
       swallowed_bead(),

@@ -1,5 +1,5 @@
-// One tool triangle brought to static triangles so that it is known beforehand which of them it meets, a lattice step before, at and
-// after the touch (touch_stations.h).
+// One tool triangle brought to static triangles so that it is known beforehand which of them it meets, a
+// lattice step before, at and after the touch (touch_stations.h).
 #include "tests/equivalence/case.h"
 #include "tests/equivalence/lattice_shapes.h"
 #include "tests/equivalence/touch_stations.h"
@@ -11,7 +11,9 @@ namespace {
 
 using Shape = std::function<TouchShape(Random&)>;
 
-Int3 any(Random& r, std::int32_t eighths) { return 8 * Int3(r.between(-eighths, eighths), r.between(-eighths, eighths), r.between(-eighths, eighths)); }
+Int3 any(Random& r, std::int32_t eighths) {
+  return 8 * Int3(r.between(-eighths, eighths), r.between(-eighths, eighths), r.between(-eighths, eighths));
+}
 
 bool spans_space(const TouchShape& s) {
   return cpu_ref::dot(cpu_ref::cross(Long3(s.p), Long3(s.q)), Long3(s.w)) != 0;
@@ -27,13 +29,14 @@ Shape within(std::int32_t eighths) {
   };
 }
 
-/// 2^23 steps long or more and some 8 steps wide: aspect above 5·10^5, mostly above 10^6. `middle`: where along the long edge the
-/// third corner lies; 0: a needle, else a cap.
+/// 2^23 steps long or more and some 8 steps wide: aspect above 5·10^5, mostly above 10^6. `middle`: where
+/// along the long edge the third corner lies; 0: a needle, else a cap.
 Shape slender(int middle) {
   return [=](Random& r) {
     TouchShape s;
     do s = {any(r, 1), any(r, 1), any(r, 1)};
-    while (!spans_space({s.p + Int3(1 << 23, 0, 0), s.q, s.w}) || cpu_ref::cross(Long3(1, 0, 0), Long3(s.q)) == Long3(0));
+    while (!spans_space({s.p + Int3(1 << 23, 0, 0), s.q, s.w}) ||
+           cpu_ref::cross(Long3(1, 0, 0), Long3(s.q)) == Long3(0));
     s.p.x += 8 * r.between(1 << 20, (1 << 20) + (1 << 18));
     s.q.x += s.p.x / 64 * 8 * middle;
     return s;
@@ -55,7 +58,9 @@ Case touch(const char* name, const char* about, Shape shape, TouchLayout layout)
     if (!geometry) return geometry.error();
     TestScene scene;
     scene.geometry = std::move(*geometry);
-    scene.pose = [stations = made.stations](const SceneGeometry&, Random& r, Known& known) { return station_pose(stations, r, known); };
+    scene.pose = [stations = made.stations](const SceneGeometry&, Random& r, Known& known) {
+      return station_pose(stations, r, known);
+    };
     return scene;
   };
   return c;
@@ -69,7 +74,9 @@ Case killer(Case c) {
 }  // namespace
 
 std::vector<Case> touch_cases() {
-  const char* kinds = "corner, edge or face against corner, edge or face, coplanar and identical, and a step before and after";
+  const char* kinds =
+      "corner, edge or face against corner, edge or face, coplanar and identical, and a step before and "
+      "after";
   const Case small = touch("touch_small", kinds, within(2), {.count = 16});
   return {
       killer(small),
@@ -81,12 +88,17 @@ std::vector<Case> touch_cases() {
               return TouchShape{s.p * 16, s.q * 16, s.w * 16};
             },
             {.count = 8, .voxel = 32}),
-      killer(touch("touch_needles", "the same with needles of aspect 10^6", slender(0), {.count = 16, .slender = true, .voxel = 1 << 23})),
-      touch("touch_caps", "the same with caps of aspect 10^6", slender(3), {.count = 16, .slender = true, .voxel = 1 << 23}),
-      killer(touch("touch_high_corner", "the same within a few voxels of (2^28, 2^28, 2^28)", within(6), {.count = 8, .corner = 1})),
-      touch("touch_low_corner", "the same within a few voxels of (-2^28, -2^28, -2^28)", within(6), {.count = 8, .corner = -1}),
-      touch("touch_whole_lattice", "one touch of triangles that span the lattice: the largest numbers there are",
-            within(1 << 21), {.count = 1, .voxel = 1 << 22}),
+      killer(touch("touch_needles", "the same with needles of aspect 10^6", slender(0),
+                   {.count = 16, .slender = true, .voxel = 1 << 23})),
+      touch("touch_caps", "the same with caps of aspect 10^6", slender(3),
+            {.count = 16, .slender = true, .voxel = 1 << 23}),
+      killer(touch("touch_high_corner", "the same within a few voxels of (2^28, 2^28, 2^28)", within(6),
+                   {.count = 8, .corner = 1})),
+      touch("touch_low_corner", "the same within a few voxels of (-2^28, -2^28, -2^28)", within(6),
+            {.count = 8, .corner = -1}),
+      touch("touch_whole_lattice",
+            "one touch of triangles that span the lattice: the largest numbers there are", within(1 << 21),
+            {.count = 1, .voxel = 1 << 22}),
   };
 }
 

@@ -24,7 +24,8 @@ class Finder {
   void list(const std::string& name, const std::vector<T>& a, const std::vector<T>& b) {
     if (a == b) return;
     field(name + ".size", a.size(), b.size());
-    for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) field(name + "[" + std::to_string(i) + "]", a[i], b[i]);
+    for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
+      field(name + "[" + std::to_string(i) + "]", a[i], b[i]);
   }
   const std::string& found() const { return found_; }
 
@@ -39,7 +40,8 @@ class Finder {
   std::string found_;
 };
 
-void compare_sums(Finder& find, const std::string& name, const std::array<WideSum, 3>& a, const std::array<WideSum, 3>& b) {
+void compare_sums(Finder& find, const std::string& name, const std::array<WideSum, 3>& a,
+                  const std::array<WideSum, 3>& b) {
   for (std::size_t k = 0; k < 3; ++k) {
     find.field(name + ".low", a[k].low, b[k].low);
     find.field(name + ".high", a[k].high, b[k].high);
@@ -63,8 +65,10 @@ void compare_fields(Finder& find, const FieldSums& a, const FieldSums& b) {
     compare_sums(find, name + ".push", a.bins[i].push, b.bins[i].push);
     compare_sums(find, name + ".turn", a.bins[i].turn, b.bins[i].turn);
     find.field(name + ".give", a.bins[i].give, b.bins[i].give);
-    for (std::size_t k = 0; k < 3; ++k) find.field(name + ".give_at", a.bins[i].give_at[k], b.bins[i].give_at[k]);
-    for (std::size_t k = 0; k < 6; ++k) find.field(name + ".give_spread", a.bins[i].give_spread[k], b.bins[i].give_spread[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      find.field(name + ".give_at", a.bins[i].give_at[k], b.bins[i].give_at[k]);
+    for (std::size_t k = 0; k < 6; ++k)
+      find.field(name + ".give_spread", a.bins[i].give_spread[k], b.bins[i].give_spread[k]);
   }
   find.field("field.max_depth", a.max_depth, b.max_depth);
   find.field("field.deepest_static", a.deepest_static, b.deepest_static);
@@ -107,7 +111,8 @@ std::string first_difference(const Contacts& a, const Contacts& b) {
   compare_fields(find, a.field, b.field);
   find.list("ignored_touched", a.ignored_touched, b.ignored_touched);
   find.field("carriers.size", a.carriers.size(), b.carriers.size());
-  for (std::size_t i = 0; i < a.carriers.size() && i < b.carriers.size(); ++i) compare_carriers(find, "carriers[" + std::to_string(i) + "]", a.carriers[i], b.carriers[i]);
+  for (std::size_t i = 0; i < a.carriers.size() && i < b.carriers.size(); ++i)
+    compare_carriers(find, "carriers[" + std::to_string(i) + "]", a.carriers[i], b.carriers[i]);
   find.field("areas.size", a.areas.size(), b.areas.size());
   for (std::size_t i = 0; i < a.areas.size() && i < b.areas.size(); ++i)
     compare_areas(find, "areas[" + std::to_string(i) + "]", a.areas[i], b.areas[i]);

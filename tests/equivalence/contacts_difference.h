@@ -6,7 +6,8 @@
 
 namespace palpate {
 
-/// The first field in which two answers differ, with both values: "areas[2].rays: 17, 18". Empty when all but times are equal.
+/// The first field in which two answers differ, with both values: "areas[2].rays: 17, 18". Empty when all but
+/// times are equal.
 std::string first_difference(const Contacts& a, const Contacts& b);
 
 /// The same for two partitions: "classes[1208]: 1, 2".

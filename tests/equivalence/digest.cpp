@@ -54,7 +54,9 @@ void add(CaseHashes& hashes, const Contacts& contacts) {
   sets.add(contacts.truncated);
   for (const char* c = contacts.truncated_capacity; *c != 0; ++c) sets.add(static_cast<unsigned char>(*c));
   sets.add(contacts.pairs);
-  for (const auto* set : {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est}) add(sets, *set);
+  for (const auto* set :
+       {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est})
+    add(sets, *set);
   sets.add(contacts.flags);
 
   Digest &areas = hashes.areas, &sums = hashes.sums;
@@ -83,7 +85,9 @@ void add(CaseHashes& hashes, const Contacts& contacts) {
     for (const std::int64_t sum : bin.give_at) add(sums, sum);
     for (const std::int64_t sum : bin.give_spread) add(sums, sum);
   }
-  for (const std::uint32_t word : {contacts.field.max_depth, contacts.field.deepest_static, contacts.field.deepest_mobile}) sums.add(word);
+  for (const std::uint32_t word :
+       {contacts.field.max_depth, contacts.field.deepest_static, contacts.field.deepest_mobile})
+    sums.add(word);
   sums.add(contacts.carriers.size());
   for (const CarrierSums& carrier : contacts.carriers) add(sums, carrier);
   add(sums, contacts.ignored_touched);

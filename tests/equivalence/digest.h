@@ -23,11 +23,12 @@ class Digest {
 
 /// What one case answered, folded. Apart, so that a difference says where to look.
 struct CaseHashes {
-  Digest preparation;   ///< grids, class of every voxel, list of every boundary voxel; mock-up and (`refined`) tool
-  Digest sets;          ///< contact, truncation, count of pairs, CST … EST, frame flags
-  Digest areas;         ///< areas, zones, flags
-  Digest sums;          ///< directions, rays, heights, the field and what carries it
-  Digest response;      ///< bits of d, n_c, cp, F and T, of areas and in sum, and of the law's planes
+  Digest preparation;  ///< grids, class of every voxel, list of every boundary voxel; mock-up and (`refined`)
+                       ///< tool
+  Digest sets;         ///< contact, truncation, count of pairs, CST … EST, frame flags
+  Digest areas;        ///< areas, zones, flags
+  Digest sums;         ///< directions, rays, heights, the field and what carries it
+  Digest response;     ///< bits of d, n_c, cp, F and T, of areas and in sum, and of the law's planes
 };
 
 void add(CaseHashes& hashes, const VoxelPartition& partition);

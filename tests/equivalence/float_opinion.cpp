@@ -18,7 +18,9 @@ struct Float3 {
 };
 Float3 operator-(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 float dot(const Float3& a, const Float3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Float3 cross(const Float3& a, const Float3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Float3 cross(const Float3& a, const Float3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 Float3 size(const Float3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
 
 using FloatTriangle = std::array<Float3, 3>;
@@ -27,12 +29,14 @@ using FloatTriangle = std::array<Float3, 3>;
 FloatTriangle in_floats(const Triangle& t) {
   FloatTriangle out;
   for (int k = 0; k < 3; ++k)
-    out[static_cast<std::size_t>(k)] = {static_cast<float>(t[k].x), static_cast<float>(t[k].y), static_cast<float>(t[k].z)};
+    out[static_cast<std::size_t>(k)] = {static_cast<float>(t[k].x), static_cast<float>(t[k].y),
+                                        static_cast<float>(t[k].z)};
   return out;
 }
 
-/// (b − a) · ((c − a) × (d − a)) in single precision, and a bound on the error made: coordinates were rounded (2^-24 each), and some
-/// seven roundings follow; 16 · 2^-24 of the determinant's permanent, plus the coordinates' share, covers both.
+/// (b − a) · ((c − a) × (d − a)) in single precision, and a bound on the error made: coordinates were rounded
+/// (2^-24 each), and some seven roundings follow; 16 · 2^-24 of the determinant's permanent, plus the
+/// coordinates' share, covers both.
 struct Side {
   float value;
   bool certain;
@@ -41,8 +45,11 @@ Side side(const Float3& a, const Float3& b, const Float3& c, const Float3& d) {
   const Float3 u = b - a, v = c - a, w = d - a;
   const float value = dot(u, cross(v, w));
   const Float3 p = size(u), q = size(v), r = size(w);
-  const float permanent = p.x * (q.y * r.z + q.z * r.y) + p.y * (q.z * r.x + q.x * r.z) + p.z * (q.x * r.y + q.y * r.x);
-  const auto largest = [](const Float3& e) { return std::max({std::fabs(e.x), std::fabs(e.y), std::fabs(e.z)}); };
+  const float permanent =
+      p.x * (q.y * r.z + q.z * r.y) + p.y * (q.z * r.x + q.x * r.z) + p.z * (q.x * r.y + q.y * r.x);
+  const auto largest = [](const Float3& e) {
+    return std::max({std::fabs(e.x), std::fabs(e.y), std::fabs(e.z)});
+  };
   const float coordinate = std::max(std::max(largest(a), largest(b)), std::max(largest(c), largest(d)));
   const float edge = std::max(largest(p), std::max(largest(q), largest(r)));
   const float error = 0x1p-24f * (16 * permanent + 36 * coordinate * edge * edge);
@@ -55,7 +62,8 @@ int sign(float v) { return (v > 0) - (v < 0); }
 bool edge_meets(const Float3& p, const Float3& q, const FloatTriangle& t) {
   const int sp = sign(side(t[0], t[1], t[2], p).value), sq = sign(side(t[0], t[1], t[2], q).value);
   if (sp * sq > 0 || (sp == 0 && sq == 0)) return false;
-  const int s0 = sign(side(p, q, t[0], t[1]).value), s1 = sign(side(p, q, t[1], t[2]).value), s2 = sign(side(p, q, t[2], t[0]).value);
+  const int s0 = sign(side(p, q, t[0], t[1]).value), s1 = sign(side(p, q, t[1], t[2]).value),
+            s2 = sign(side(p, q, t[2], t[0]).value);
   return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
 }
 
@@ -73,7 +81,8 @@ bool certain(const FloatTriangle& s, const FloatTriangle& t) {
 
 }  // namespace
 
-void judge_in_floats(const SceneGeometry& geometry, const LatticePose& pose, const Contacts& contacts, FloatOpinion& into) {
+void judge_in_floats(const SceneGeometry& geometry, const LatticePose& pose, const Contacts& contacts,
+                     FloatOpinion& into) {
   std::vector<Triangle> statics, mobiles;
   for (const auto* set : {&contacts.cst, &contacts.bst})
     for (const std::uint32_t id : *set) statics.push_back(cpu_ref::triangle_of(geometry.mockup, id));

@@ -11,11 +11,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<const char*, std::string StoredHashes::*>, 5> kParts = {{{"preparation", &StoredHashes::preparation},
-                                                                                        {"sets", &StoredHashes::sets},
-                                                                                        {"areas", &StoredHashes::areas},
-                                                                                        {"sums", &StoredHashes::sums},
-                                                                                        {"response", &StoredHashes::response}}};
+constexpr std::array<std::pair<const char*, std::string StoredHashes::*>, 5> kParts = {
+    {{"preparation", &StoredHashes::preparation},
+     {"sets", &StoredHashes::sets},
+     {"areas", &StoredHashes::areas},
+     {"sums", &StoredHashes::sums},
+     {"response", &StoredHashes::response}}};
 
 std::string text_of(const Digest& digest) {
   char text[17];
@@ -26,7 +27,12 @@ std::string text_of(const Digest& digest) {
 }  // namespace
 
 StoredHashes stored(const CaseHashes& hashes, int poses) {
-  return {poses, text_of(hashes.preparation), text_of(hashes.sets), text_of(hashes.areas), text_of(hashes.sums), text_of(hashes.response)};
+  return {poses,
+          text_of(hashes.preparation),
+          text_of(hashes.sets),
+          text_of(hashes.areas),
+          text_of(hashes.sums),
+          text_of(hashes.response)};
 }
 
 std::string differing_parts(const StoredHashes& a, const StoredHashes& b) {

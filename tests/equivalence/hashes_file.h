@@ -8,7 +8,8 @@
 
 namespace palpate::equivalence {
 
-/// What is kept of a case's answers: how many poses of seed 1, and a hash of each part as 16 hexadecimal digits.
+/// What is kept of a case's answers: how many poses of seed 1, and a hash of each part as 16 hexadecimal
+/// digits.
 struct StoredHashes {
   int poses = 0;
   std::string preparation, sets, areas, sums, response;
@@ -20,7 +21,7 @@ StoredHashes stored(const CaseHashes& hashes, int poses);
 std::string differing_parts(const StoredHashes& a, const StoredHashes& b);
 
 struct HashesFile {
-  std::string reason;                          ///< why they were last written anew
+  std::string reason;  ///< why they were last written anew
   std::map<std::string, StoredHashes> cases;
 };
 

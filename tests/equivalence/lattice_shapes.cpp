@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/mesh/patches.h"
 #include "model/lattice/lattice_build.h"
+#include "model/mesh/patches.h"
 #include "model/mesh/smooth_angle.h"
 
 namespace palpate::equivalence {
@@ -18,25 +18,29 @@ Mesh mesh_of(const Triangles& triangles, const std::vector<std::size_t>& parts) 
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
   for (std::size_t p = 0; p < std::max<std::size_t>(parts.size(), 1); ++p) {
-    const std::size_t begin = parts.empty() ? 0 : parts[p], end = p + 1 < parts.size() ? parts[p + 1] : triangles.size();
-    mesh.parts.push_back({std::to_string(p), static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)});
+    const std::size_t begin = parts.empty() ? 0 : parts[p],
+                      end = p + 1 < parts.size() ? parts[p + 1] : triangles.size();
+    mesh.parts.push_back(
+        {std::to_string(p), static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)});
   }
   return mesh;
 }
 
 }  // namespace
 
-Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& tool, std::int32_t voxel, std::int32_t spacing,
-                                    const std::vector<std::size_t>& parts) {
+Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& tool, std::int32_t voxel,
+                                    std::int32_t spacing, const std::vector<std::size_t>& parts) {
   SceneGeometry scene;
   scene.lattice.step_m = 1;
   const auto angle = make_smooth_angle(30);
   if (!angle) return angle.error();
   scene.smooth_angle = *angle;
-  auto mockup_mesh = build_lattice_mesh(mesh_of(mockup, parts), scene.lattice, scene.smooth_angle, scene.mockup_report);
+  auto mockup_mesh =
+      build_lattice_mesh(mesh_of(mockup, parts), scene.lattice, scene.smooth_angle, scene.mockup_report);
   if (!mockup_mesh) return mockup_mesh.error();
   scene.mockup = std::move(*mockup_mesh);
-  auto tool_mesh = build_lattice_mesh(mesh_of(tool, {}), scene.lattice, scene.smooth_angle, scene.tool_report);
+  auto tool_mesh =
+      build_lattice_mesh(mesh_of(tool, {}), scene.lattice, scene.smooth_angle, scene.tool_report);
   if (!tool_mesh) return tool_mesh.error();
   scene.tool = std::move(*tool_mesh);
   scene.mockup_surface = measure(scene.mockup);
@@ -44,7 +48,7 @@ Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& to
   scene.mockup_grid = make_grid(scene.mockup.box_min, scene.mockup.box_max, voxel);
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;
-  scene.contact_samples = 12;   // few, so that many contacts are sampled coarsely
+  scene.contact_samples = 12;  // few, so that many contacts are sampled coarsely
   scene.tool_sample_spacing = 2 * scene.sample_spacing;
   weigh_for_field(scene.sample_spacing, scene.mockup);
   weigh_for_field(scene.tool_sample_spacing, scene.tool);
@@ -68,7 +72,8 @@ Triangles box_of(const Int3& min, const Int3& max) {
         p[v] = high_v ? max[v] : min[v];
         return p;
       };
-      const Int3 a = corner(false, false), b = corner(true, false), c = corner(true, true), d = corner(false, true);
+      const Int3 a = corner(false, false), b = corner(true, false), c = corner(true, true),
+                 d = corner(false, true);
       if (upper)
         append(out, {{a, b, c}, {a, c, d}});
       else

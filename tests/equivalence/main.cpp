@@ -21,7 +21,8 @@ constexpr int kAllEqual = 0, kSomeDiffer = 1, kBadUsage = 2, kSomeNotSupported =
 
 struct Options {
   std::vector<std::string> names, families;
-  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false, floats = false, guards = false, own_memory = false;
+  bool list = false, killer = false, stop = false, times = false, validation = false, twice = false,
+       floats = false, guards = false, own_memory = false;
   std::string backend = "all", device, check, write, reason;
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> poses, pose;
@@ -32,19 +33,23 @@ struct Options {
 
 std::vector<Case> chosen(const Options& options) {
   std::vector<Case> cases = all_cases();
-  if (options.backend == "cpu") std::erase_if(cases, [](const Case& c) { return c.profile != Profile::kRefined; });   // all that it knows
+  if (options.backend == "cpu")
+    std::erase_if(cases, [](const Case& c) { return c.profile != Profile::kRefined; });  // all that it knows
   const auto among = [](const std::vector<std::string>& list, const std::string& word) {
     return list.empty() || std::find(list.begin(), list.end(), word) != list.end();
   };
-  std::erase_if(cases, [&](const Case& c) { return !among(options.names, c.name) || !among(options.families, c.family) || (options.killer && !c.killer); });
+  std::erase_if(cases, [&](const Case& c) {
+    return !among(options.names, c.name) || !among(options.families, c.family) ||
+           (options.killer && !c.killer);
+  });
   return cases;
 }
 
 void list(const std::vector<Case>& cases) {
   for (const Case& c : cases)
     std::printf("%-28s %-9s %3d poses%s%s%s%s\n    %s\n", c.name.c_str(), c.family.c_str(), c.poses,
-                c.profile == Profile::kPaper ? ", paper" : "", c.ignoring ? ", ignoring" : "", c.killer ? ", killer" : "",
-                c.degenerate ? ", degenerate" : "", c.about.c_str());
+                c.profile == Profile::kPaper ? ", paper" : "", c.ignoring ? ", ignoring" : "",
+                c.killer ? ", killer" : "", c.degenerate ? ", degenerate" : "", c.about.c_str());
 }
 
 using Engines = std::vector<std::unique_ptr<CollisionBackend>>;
@@ -87,7 +92,8 @@ void print_times(CaseRun& run) {
 
 /// Everything that came of all cases together.
 struct Totals {
-  std::uint64_t cases = 0, equal = 0, differ = 0, not_supported = 0, poses = 0, degenerate_poses = 0, contacts = 0, with_pairs = 0, known = 0;
+  std::uint64_t cases = 0, equal = 0, differ = 0, not_supported = 0, poses = 0, degenerate_poses = 0,
+                contacts = 0, with_pairs = 0, known = 0;
   FloatOpinion floats;
   double seconds = 0;
   std::uint32_t flags = 0;
@@ -115,9 +121,12 @@ struct Totals {
 using Count = unsigned long long;
 
 void print(const Case& c, CaseRun& run, const Options& options, std::uint64_t seed) {
-  const char* outcome = run.outcome == Outcome::kEqual ? "equal" : run.outcome == Outcome::kDiffers ? "DIFFERS" : "NOT SUPPORTED";
-  std::printf("%-28s %-13s seed %llu: %llu poses, %llu touch, %llu with pairs, %llu areas, %.2f s\n", c.name.c_str(), outcome,
-              Count{seed}, Count{run.poses}, Count{run.contacts}, Count{run.with_pairs}, Count{run.areas}, run.seconds);
+  const char* outcome = run.outcome == Outcome::kEqual     ? "equal"
+                        : run.outcome == Outcome::kDiffers ? "DIFFERS"
+                                                           : "NOT SUPPORTED";
+  std::printf("%-28s %-13s seed %llu: %llu poses, %llu touch, %llu with pairs, %llu areas, %.2f s\n",
+              c.name.c_str(), outcome, Count{seed}, Count{run.poses}, Count{run.contacts},
+              Count{run.with_pairs}, Count{run.areas}, run.seconds);
   for (const std::string& finding : run.findings) std::printf("    %s\n", finding.c_str());
   if (options.times) print_times(run);
 }
@@ -126,21 +135,30 @@ void print(const Case& c, CaseRun& run, const Options& options, std::uint64_t se
 void print_repeat(const Case& c, const CaseRun& run, const Options& options, std::uint64_t seed) {
   const std::string text = run.findings.empty() ? "" : run.findings.front();
   const auto at = text.find("pose ");
-  const std::string pose = at == std::string::npos ? "" : " --pose " + std::to_string(std::stoull(text.substr(at + 5)));
-  const std::string flags = std::string(options.guards ? " --guards" : "") + (options.own_memory ? " --own-memory" : "") + (options.validation ? " --validation" : "") +
-                            (options.twice || options.campaign > 0 ? " --twice" : "") + (options.backend == "cpu" || options.backend == "ref" ? " --backend " + options.backend : "");
-  std::printf("    repeat: equivalence --case %s --seed %llu%s%s\n", c.name.c_str(), Count{seed}, pose.c_str(), flags.c_str());
+  const std::string pose =
+      at == std::string::npos ? "" : " --pose " + std::to_string(std::stoull(text.substr(at + 5)));
+  const std::string flags =
+      std::string(options.guards ? " --guards" : "") + (options.own_memory ? " --own-memory" : "") +
+      (options.validation ? " --validation" : "") +
+      (options.twice || options.campaign > 0 ? " --twice" : "") +
+      (options.backend == "cpu" || options.backend == "ref" ? " --backend " + options.backend : "");
+  std::printf("    repeat: equivalence --case %s --seed %llu%s%s\n", c.name.c_str(), Count{seed},
+              pose.c_str(), flags.c_str());
 }
 
 void print(const Totals& t, const Options& options) {
-  std::printf("%llu runs: %llu equal, %llu differ, %llu not supported; %llu poses (%llu degenerate), %llu touch, %llu with pairs, "
-              "%llu with an answer known beforehand; %.1f s\n",
-              Count{t.cases}, Count{t.equal}, Count{t.differ}, Count{t.not_supported}, Count{t.poses}, Count{t.degenerate_poses},
-              Count{t.contacts}, Count{t.with_pairs}, Count{t.known}, t.seconds);
+  std::printf(
+      "%llu runs: %llu equal, %llu differ, %llu not supported; %llu poses (%llu degenerate), %llu touch, "
+      "%llu with pairs, "
+      "%llu with an answer known beforehand; %.1f s\n",
+      Count{t.cases}, Count{t.equal}, Count{t.differ}, Count{t.not_supported}, Count{t.poses},
+      Count{t.degenerate_poses}, Count{t.contacts}, Count{t.with_pairs}, Count{t.known}, t.seconds);
   if (options.floats)
-    std::printf("single precision: %llu pairs of boxes met; %llu ambiguous, in %llu poses; %llu judged wrongly, in %llu poses\n",
-                Count{t.floats.pairs}, Count{t.floats.ambiguous}, Count{t.floats.ambiguous_poses}, Count{t.floats.wrong},
-                Count{t.floats.wrong_poses});
+    std::printf(
+        "single precision: %llu pairs of boxes met; %llu ambiguous, in %llu poses; %llu judged wrongly, in "
+        "%llu poses\n",
+        Count{t.floats.pairs}, Count{t.floats.ambiguous}, Count{t.floats.ambiguous_poses},
+        Count{t.floats.wrong}, Count{t.floats.wrong_poses});
 }
 
 /// Poses that came to each rule, and the rules that no pose came to.
@@ -151,7 +169,8 @@ void print_rules(const Totals& t) {
   for (const bool met : {true, false}) {
     if (!met) std::printf("\nflags not met:");
     for (std::size_t i = 0; i < flag_names.size(); ++i)
-      if (((t.flags >> i & 1u) != 0) == met) std::printf(" %.*s", static_cast<int>(flag_names[i].size()), flag_names[i].data());
+      if (((t.flags >> i & 1u) != 0) == met)
+        std::printf(" %.*s", static_cast<int>(flag_names[i].size()), flag_names[i].data());
   }
   std::printf("\n");
 }
@@ -187,9 +206,11 @@ int run_cases(const std::vector<Case>& cases, const Engines& engines, const Opti
       const auto known = file.cases.find(c.name);
       const std::string parts = known == file.cases.end() ? "" : differing_parts(known->second, hashes);
       if (known == file.cases.end() || known->second.poses != hashes.poses)
-        run.findings.push_back(options.check + " does not have this case with " + std::to_string(hashes.poses) + " poses");
+        run.findings.push_back(options.check + " does not have this case with " +
+                               std::to_string(hashes.poses) + " poses");
       else if (!parts.empty())
-        run.findings.push_back(backends[0]->name() + ": other hashes than in " + options.check + ": " + parts);
+        run.findings.push_back(backends[0]->name() + ": other hashes than in " + options.check + ": " +
+                               parts);
       if (!run.findings.empty()) run.outcome = Outcome::kDiffers;
     }
     file.cases[c.name] = hashes;
@@ -202,8 +223,11 @@ int run_cases(const std::vector<Case>& cases, const Engines& engines, const Opti
   print_rules(totals);
   if (!options.write.empty() && exit_code(totals) == kAllEqual) {
     file.reason = options.reason;
-    if (options.names.empty() && options.families.empty() && !options.killer && options.backend != "cpu")   // cases that are no more go
-      std::erase_if(file.cases, [&](const auto& entry) { return std::none_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == entry.first; }); });
+    if (options.names.empty() && options.families.empty() && !options.killer &&
+        options.backend != "cpu")  // cases that are no more go
+      std::erase_if(file.cases, [&](const auto& entry) {
+        return std::none_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == entry.first; });
+      });
     if (const auto written = write_hashes(options.write, file); !written) {
       std::cerr << written.error().sentence << "\n";
       return kBadUsage;
@@ -212,14 +236,16 @@ int run_cases(const std::vector<Case>& cases, const Engines& engines, const Opti
   return exit_code(totals);
 }
 
-/// Many poses, shared among the cases by their cost; a new scene, where it depends on the seed, every so many poses.
+/// Many poses, shared among the cases by their cost; a new scene, where it depends on the seed, every so many
+/// poses.
 int run_campaign(const std::vector<Case>& cases, const Engines& engines, const Options& options) {
   double shares = 0;
   for (const Case& c : cases) shares += c.share;
   Totals totals;
   for (const Case& c : cases) {
     Totals of_case;
-    const auto wanted = static_cast<std::uint64_t>(static_cast<double>(options.campaign) * c.share / shares) + 1;
+    const auto wanted =
+        static_cast<std::uint64_t>(static_cast<double>(options.campaign) * c.share / shares) + 1;
     for (std::uint64_t done = 0, seed = options.seed; done < wanted; done += c.scene_poses, ++seed) {
       RunSettings settings;
       settings.seed = seed;
@@ -245,12 +271,17 @@ int run_campaign(const std::vector<Case>& cases, const Engines& engines, const O
 
 int run(int argc, char** argv) {
   Options o;
-  CLI::App app("Compares the engines bit by bit, and each of them with stored hashes and with what is known beforehand.", "equivalence");
+  CLI::App app(
+      "Compares the engines bit by bit, and each of them with stored hashes and with what is known "
+      "beforehand.",
+      "equivalence");
   app.add_option("--case", o.names, "these cases alone");
-  app.add_option("--family", o.families, "these families alone: solids, chapter, touch, topology, rules, fits");
+  app.add_option("--family", o.families,
+                 "these families alone: solids, chapter, touch, topology, rules, fits");
   app.add_flag("--killer", o.killer, "the few cases that together reach every rule, in seconds");
   app.add_flag("--list", o.list, "list the chosen cases and stop");
-  app.add_option("--backend", o.backend, "who answers: gpu, cpu, ref, or all, compared")->check(CLI::IsMember({"gpu", "cpu", "ref", "all"}));
+  app.add_option("--backend", o.backend, "who answers: gpu, cpu, ref, or all, compared")
+      ->check(CLI::IsMember({"gpu", "cpu", "ref", "all"}));
   app.add_option("--device", o.device, "part of the Vulkan device's name");
   app.add_option("--seed", o.seed, "seed of scenes and poses")->capture_default_str();
   app.add_option("--poses", o.poses, "poses a case");
@@ -263,9 +294,12 @@ int run(int argc, char** argv) {
   app.add_flag("--floats", o.floats, "count what single precision would have judged otherwise");
   app.add_flag("--times", o.times, "print the median time of every stage");
   app.add_flag("--validation", o.validation, "with Vulkan's validation layer and its synchronisation checks");
-  app.add_flag("--own-memory", o.own_memory, "the host's own processor, or an integrated GPU, is taken for a GPU with memory of its own");
-  app.add_flag("--guards", o.guards, "with guard bytes round every buffer of the device, checked after every scene and pose");
-  app.add_option("--campaign", o.campaign, "this many poses over all cases, with changing seeds, everything asked twice");
+  app.add_flag("--own-memory", o.own_memory,
+               "the host's own processor, or an integrated GPU, is taken for a GPU with memory of its own");
+  app.add_flag("--guards", o.guards,
+               "with guard bytes round every buffer of the device, checked after every scene and pose");
+  app.add_option("--campaign", o.campaign,
+                 "this many poses over all cases, with changing seeds, everything asked twice");
   CLI11_PARSE(app, argc, argv);
 
   const std::vector<Case> cases = chosen(o);
@@ -278,7 +312,8 @@ int run(int argc, char** argv) {
     return kAllEqual;
   }
   if ((!o.check.empty() || !o.write.empty()) && !o.default_poses()) {
-    std::cerr << "hashes are those of seed 1 and each case's own number of poses: --check and --write go without --seed, --poses, --pose and --campaign\n";
+    std::cerr << "hashes are those of seed 1 and each case's own number of poses: --check and --write go "
+                 "without --seed, --poses, --pose and --campaign\n";
     return kBadUsage;
   }
   auto engines = make_engines(o);
@@ -286,7 +321,8 @@ int run(int argc, char** argv) {
     std::cerr << "not supported: " << engines.error().sentence << "\n";
     return kSomeNotSupported;
   }
-  for (const auto& backend : *engines) std::printf("%s: %s\n", backend->name().c_str(), backend->device().c_str());
+  for (const auto& backend : *engines)
+    std::printf("%s: %s\n", backend->name().c_str(), backend->device().c_str());
   return o.campaign > 0 ? run_campaign(cases, *engines, o) : run_cases(cases, *engines, o);
 }
 

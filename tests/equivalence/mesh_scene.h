@@ -1,8 +1,8 @@
 #pragma once
 #include <functional>
 
-#include "model/scene/geometry_build.h"
 #include "model/mesh/mesh.h"
+#include "model/scene/geometry_build.h"
 #include "tests/equivalence/case.h"
 
 namespace palpate::equivalence {

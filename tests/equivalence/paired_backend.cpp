@@ -1,4 +1,5 @@
-// All engines behind one interface: what scenes with known answers are asked of the reference is asked of the others as well.
+// All engines behind one interface: what scenes with known answers are asked of the reference is asked of the
+// others as well.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -12,7 +13,8 @@
 namespace palpate {
 namespace {
 
-/// Answers with the device's contacts; a difference from the reference's, or from the native engine's in `refined`, is a test failure.
+/// Answers with the device's contacts; a difference from the reference's, or from the native engine's in
+/// `refined`, is a test failure.
 class PairedBackend final : public CollisionBackend {
  public:
   PairedBackend() : reference_(make_ref_backend()), native_(make_native_backend()) {

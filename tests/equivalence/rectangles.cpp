@@ -31,7 +31,8 @@ VoxelClass RectangleWorld::class_of(const Int3& lower, std::int32_t size) const 
     bool meets = true;
     for (int k = 0; k < 3; ++k) meets = meets && lower[k] <= face.max[k] && upper[k] >= face.min[k];
     // The half with y ≥ x of a square: the cube's point of least x and most y within the square decides.
-    if (meets && face.half) meets = std::min(upper.y, face.max.y) - face.min.y >= std::max(lower.x, face.min.x) - face.min.x;
+    if (meets && face.half)
+      meets = std::min(upper.y, face.max.y) - face.min.y >= std::max(lower.x, face.min.x) - face.min.x;
     if (meets) return VoxelClass::kBoundary;
   }
   int winding = 0;

@@ -24,7 +24,9 @@ inline LatticePose unturned(const Int3& translation) {
   return pose;
 }
 
-inline Int3 any(Random& random, std::int32_t reach) { return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)}; }
+inline Int3 any(Random& random, std::int32_t reach) {
+  return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
+}
 
 /// One side (2·axis + upper) of a box.
 inline Triangles side_of(const Int3& min, const Int3& max, std::size_t side) {
@@ -38,7 +40,8 @@ inline Triangles together(std::initializer_list<Triangles> parts) {
   return all;
 }
 
-inline Case rule(const char* name, const char* about, Triangles mockup, Triangles tool, PoseOf pose, std::optional<RectangleWorld> classes = {}, std::int32_t spacing = kVoxel / 2) {
+inline Case rule(const char* name, const char* about, Triangles mockup, Triangles tool, PoseOf pose,
+                 std::optional<RectangleWorld> classes = {}, std::int32_t spacing = kVoxel / 2) {
   Case c;
   c.name = name;
   c.family = "rules";
@@ -53,7 +56,8 @@ inline Case rule(const char* name, const char* about, Triangles mockup, Triangle
     TestScene scene;
     scene.geometry = std::move(*geometry);
     scene.pose = pose;
-    if (classes) scene.known_class = [world = *classes](const Int3& lower) { return world.class_of(lower, kVoxel); };
+    if (classes)
+      scene.known_class = [world = *classes](const Int3& lower) { return world.class_of(lower, kVoxel); };
     return scene;
   };
   return c;

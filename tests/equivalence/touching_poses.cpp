@@ -28,7 +28,8 @@ Int3 point_on(const LatticeMesh& mesh, std::uint32_t id, Random& random) {
 /// Even over all rotations: a point of the ball of four dimensions, pushed out to its surface.
 Quat any_rotation(Random& random) {
   for (;;) {
-    const double w = random.unit() * 2 - 1, x = random.unit() * 2 - 1, y = random.unit() * 2 - 1, z = random.unit() * 2 - 1;
+    const double w = random.unit() * 2 - 1, x = random.unit() * 2 - 1, y = random.unit() * 2 - 1,
+                 z = random.unit() * 2 - 1;
     const double square = w * w + x * x + y * y + z * z;
     if (square <= 1 && square > 0.01) return Quat(w, x, y, z) * (1 / std::sqrt(square));
   }
@@ -47,7 +48,8 @@ LatticePose quarter_turns(Random& random) {
   // A permutation of the axes with signs, turned into a rotation by the last sign.
   const int first = random.between(0, 2), second = (first + random.between(1, 2)) % 3;
   const int third = 3 - first - second;
-  const std::int32_t one = 1 << 30, s0 = random.below(2) != 0 ? one : -one, s1 = random.below(2) != 0 ? one : -one;
+  const std::int32_t one = 1 << 30, s0 = random.below(2) != 0 ? one : -one,
+                     s1 = random.below(2) != 0 ? one : -one;
   const bool even = (second - first + 3) % 3 == 1;
   pose.rotation_q30[0][first] = s0;
   pose.rotation_q30[1][second] = s1;
@@ -63,16 +65,20 @@ LatticePose random_touching_pose(const SceneGeometry& geometry, double reach, Ra
   pose.beyond_lattice = false;
   const Int3 tool_point = point_on(geometry.tool, any_triangle(geometry.tool, random), random);
   Int3 mockup_point = point_on(geometry.mockup, any_triangle(geometry.mockup, random), random);
-  for (int k = 0; k < 3; ++k) mockup_point[k] += static_cast<std::int32_t>(std::nearbyint(random.bell() * reach * geometry.mockup_grid.size));
+  for (int k = 0; k < 3; ++k)
+    mockup_point[k] +=
+        static_cast<std::int32_t>(std::nearbyint(random.bell() * reach * geometry.mockup_grid.size));
   bring(pose, tool_point, mockup_point);
   return pose;
 }
 
 LatticePose aligned_touching_pose(const SceneGeometry& geometry, Random& random) {
   LatticePose pose = quarter_turns(random);
-  const std::uint32_t tool_id = any_triangle(geometry.tool, random), mockup_id = any_triangle(geometry.mockup, random);
+  const std::uint32_t tool_id = any_triangle(geometry.tool, random),
+                      mockup_id = any_triangle(geometry.mockup, random);
   const Int3 v = geometry.tool.corner(tool_id, random.between(0, 2));
-  Int3 p = random.below(2) != 0 ? geometry.mockup.corner(mockup_id, random.between(0, 2)) : point_on(geometry.mockup, mockup_id, random);
+  Int3 p = random.below(2) != 0 ? geometry.mockup.corner(mockup_id, random.between(0, 2))
+                                : point_on(geometry.mockup, mockup_id, random);
   if (random.below(4) == 0) p[random.between(0, 2)] += random.between(-1, 1);
   if (random.below(4) == 0) p[random.between(0, 2)] += geometry.mockup_grid.size / 2;
   bring(pose, v, p);

@@ -5,12 +5,12 @@
 
 namespace palpate::equivalence {
 
-/// A pose, any rotation, that brings a point of the tool's surface to within about `reach` voxels of one of the mock-up's: most are
-/// in contact. Lattice poses that the host could have made.
+/// A pose, any rotation, that brings a point of the tool's surface to within about `reach` voxels of one of
+/// the mock-up's: most are in contact. Lattice poses that the host could have made.
 LatticePose random_touching_pose(const SceneGeometry& geometry, double reach, Random& random);
 
-/// A pose with a rotation by quarter turns that puts a vertex of the tool exactly on a vertex, an edge or a face of the mock-up, or one
-/// step beside it: points on edges, edges in faces, faces on faces.
+/// A pose with a rotation by quarter turns that puts a vertex of the tool exactly on a vertex, an edge or a
+/// face of the mock-up, or one step beside it: points on edges, edges in faces, faces on faces.
 LatticePose aligned_touching_pose(const SceneGeometry& geometry, Random& random);
 
 /// One of the 24 rotations by quarter turns; translation 0.

@@ -1,5 +1,5 @@
-// Scenes of extreme scale, place and size. Both back ends, bit by bit; and where a scene is another one enlarged by a power of two or put
-// elsewhere, the same integers as that one.
+// Scenes of extreme scale, place and size. Both back ends, bit by bit; and where a scene is another one
+// enlarged by a power of two or put elsewhere, the same integers as that one.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -7,10 +7,10 @@
 #include "compute/gpu/gpu_backend.h"
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
-#include "model/generate/solids.h"
-#include "model/scene/geometry_build.h"
-#include "model/lattice/pose.h"
 #include "model/contact/response.h"
+#include "model/generate/solids.h"
+#include "model/lattice/pose.h"
+#include "model/scene/geometry_build.h"
 #include "tests/equivalence/contacts_difference.h"
 
 namespace palpate {
@@ -28,7 +28,8 @@ struct Asked {
   ContactResponse response;
 };
 
-std::unique_ptr<Asked> ask(const Mesh& mockup, const Mesh& tool, const Vec3& position, const GeometrySettings& settings = {}) {
+std::unique_ptr<Asked> ask(const Mesh& mockup, const Mesh& tool, const Vec3& position,
+                           const GeometrySettings& settings = {}) {
   auto geometry = build_geometry(mockup, tool, settings);
   if (!geometry) throw std::runtime_error(geometry.error().sentence);
   auto out = std::make_unique<Asked>(Asked{std::move(*geometry), {}, {}});
@@ -40,8 +41,13 @@ std::unique_ptr<Asked> ask(const Mesh& mockup, const Mesh& tool, const Vec3& pos
   const LatticePose pose = *to_lattice(Pose{position, Quat(1, 0, 0, 0)}, out->geometry);
   Contacts reference, by_native;
   for (CollisionBackend* backend : {gpu->get(), native.get(), ref.get()}) {
-    if (auto prepared = backend->prepare(out->geometry, {}, {}); !prepared) throw std::runtime_error(prepared.error().sentence);
-    if (auto answered = backend->query(pose, nullptr, backend == ref.get() ? reference : backend == native.get() ? by_native : out->contacts); !answered)
+    if (auto prepared = backend->prepare(out->geometry, {}, {}); !prepared)
+      throw std::runtime_error(prepared.error().sentence);
+    if (auto answered = backend->query(pose, nullptr,
+                                       backend == ref.get()      ? reference
+                                       : backend == native.get() ? by_native
+                                                                 : out->contacts);
+        !answered)
       throw std::runtime_error(answered.error().sentence);
   }
   EXPECT_EQ(first_difference(out->contacts, reference), "") << "(gpu, ref)";
@@ -50,7 +56,8 @@ std::unique_ptr<Asked> ask(const Mesh& mockup, const Mesh& tool, const Vec3& pos
   return out;
 }
 
-/// Coordinates that are whole multiples of 2^-24 m, so that enlarging by powers of two and moving to 10^6 m round nothing.
+/// Coordinates that are whole multiples of 2^-24 m, so that enlarging by powers of two and moving to 10^6 m
+/// round nothing.
 Mesh coarse(Mesh mesh, double scale, const Vec3& offset = Vec3(0)) {
   for (Vec3& v : mesh.vertices)
     for (int k = 0; k < 3; ++k) v[k] = std::nearbyint(v[k] * 0x1p24) * 0x1p-24 * scale + offset[k];
@@ -59,7 +66,7 @@ Mesh coarse(Mesh mesh, double scale, const Vec3& offset = Vec3(0)) {
 
 Mesh block() { return solids::box(Vec3(-0.5, -0.5, -0.25), Vec3(0.5, 0.5, 0), Int3(24, 24, 6)); }
 Mesh ball() { return solids::sphere(0.125, 24, 12); }
-const Vec3 kTouching(0.375, 0.4375, 0.09375);   // 31 mm deep, near an edge
+const Vec3 kTouching(0.375, 0.4375, 0.09375);  // 31 mm deep, near an edge
 
 void expect_same_integers(const Asked& a, const Asked& b, double scale) {
   EXPECT_EQ(first_difference(a.contacts, b.contacts), "");
@@ -76,7 +83,7 @@ TEST(Scale, FromAMillimetreToTenKilometresTheAnswerIsTheSameEnlarged) {
   const auto base = ask(coarse(block(), 1), coarse(ball(), 1), kTouching);
   ASSERT_FALSE(base->contacts.cst.empty());
   ASSERT_FALSE(base->contacts.est.empty());
-  for (const int exponent : {-10, 13}) {   // 0.98 mm, 8.2 km
+  for (const int exponent : {-10, 13}) {  // 0.98 mm, 8.2 km
     const double scale = std::ldexp(1.0, exponent);
     const auto scaled = ask(coarse(block(), scale), coarse(ball(), scale), kTouching * scale);
     expect_same_integers(*scaled, *base, scale);
@@ -88,14 +95,16 @@ TEST(Scale, AMillionMetresFromTheOriginTheAnswerIsTheSame) {
   const auto base = ask(coarse(block(), 1), coarse(ball(), 1), kTouching);
   const auto moved = ask(coarse(block(), 1, away), coarse(ball(), 1), kTouching + away);
   expect_same_integers(*moved, *base, 1);
-  // The contact point in world metres, to what a double resolves out there: 1e6 · 2^-52, times a few operations.
+  // The contact point in world metres, to what a double resolves out there: 1e6 · 2^-52, times a few
+  // operations.
   for (std::size_t i = 0; i < base->response.areas.size(); ++i)
     EXPECT_LT(glm::length(moved->response.areas[i].point - away - base->response.areas[i].point), 1e-9);
 }
 
 TEST(Scale, AToolThousandTimesTheMockUpFindsItInside) {
   // A cube of 1 mm within a block of 1 m, away from its walls: no crossing, all of the cube inside the tool.
-  const auto asked = ask(solids::box(Vec3(-0.0005), Vec3(0.0005)), solids::box(Vec3(-0.5), Vec3(0.5)), Vec3(0.1, 0.05, 0.025));
+  const auto asked = ask(solids::box(Vec3(-0.0005), Vec3(0.0005)), solids::box(Vec3(-0.5), Vec3(0.5)),
+                         Vec3(0.1, 0.05, 0.025));
   EXPECT_TRUE(asked->contacts.contact);
   EXPECT_THAT(asked->contacts.cst, IsEmpty());
   EXPECT_EQ(asked->contacts.est.size(), 12u);
@@ -127,8 +136,10 @@ TEST(OneTriangle, AgainstABallIsFeltFromTheSideItFaces) {
   EXPECT_THAT(above->contacts.cst, ElementsAre(0u));
   ASSERT_EQ(above->response.areas.size(), 1u);
   EXPECT_GT(above->response.wrench.force.z, 0);
-  // A sheet is pushed the way out of the ball: straight up where it is symmetric about the ball's axis, which a triangle is not quite.
-  EXPECT_LT(std::hypot(above->response.wrench.force.x, above->response.wrench.force.y), 0.01 * above->response.wrench.force.z);
+  // A sheet is pushed the way out of the ball: straight up where it is symmetric about the ball's axis, which
+  // a triangle is not quite.
+  EXPECT_LT(std::hypot(above->response.wrench.force.x, above->response.wrench.force.y),
+            0.01 * above->response.wrench.force.z);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Every list and table of a frame, made far too small: the answer says which, nothing is silently cut, and with more room it is the
-// reference's.
+// Every list and table of a frame, made far too small: the answer says which, nothing is silently cut, and
+// with more room it is the reference's.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 std::unique_ptr<CollisionBackend> gpu(const std::map<std::string, std::uint32_t>& first_capacity) {
   GpuOptions options;
   options.validation = true;
-  options.guard_buffers = true;            // a write behind a list that is full is an error
+  options.guard_buffers = true;  // a write behind a list that is full is an error
   options.first_capacity = first_capacity;
   auto made = make_gpu_backend(options);
   if (!made) throw std::runtime_error(made.error().sentence);
@@ -32,19 +32,21 @@ struct Small {
 void PrintTo(const Small& small, std::ostream* out) { *out << small.list; }
 
 class Capacity : public testing::TestWithParam<Small> {};
-INSTANTIATE_TEST_SUITE_P(Each, Capacity,
-                         testing::Values(Small{"voxels to touch", ball_on_edge}, Small{"touched voxels", ball_on_edge},
-                                         Small{"lists of touched voxels", ball_on_edge},
-                                         Small{"pairs to test", ball_on_edge}, Small{"pairs", ball_on_edge},
-                                         Small{"contact triangles of the mock-up", ball_on_edge}, Small{"contact triangles of the tool", ball_on_edge},
-                                         Small{"samples found inside", ball_on_edge}, Small{"samples near the tool's surface", ball_on_edge},
-                                         Small{"samples", ball_on_edge}, Small{"tiles of tool samples", ball_on_edge}, Small{"samples of the tool", ball_on_edge}),
-                         [](const auto& tested) {
-                           std::string name = tested.param.list;
-                           std::erase_if(name, [](char c) { return c == '\'' || c == '-'; });
-                           std::replace(name.begin(), name.end(), ' ', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Each, Capacity,
+    testing::Values(Small{"voxels to touch", ball_on_edge}, Small{"touched voxels", ball_on_edge},
+                    Small{"lists of touched voxels", ball_on_edge}, Small{"pairs to test", ball_on_edge},
+                    Small{"pairs", ball_on_edge}, Small{"contact triangles of the mock-up", ball_on_edge},
+                    Small{"contact triangles of the tool", ball_on_edge},
+                    Small{"samples found inside", ball_on_edge},
+                    Small{"samples near the tool's surface", ball_on_edge}, Small{"samples", ball_on_edge},
+                    Small{"tiles of tool samples", ball_on_edge}, Small{"samples of the tool", ball_on_edge}),
+    [](const auto& tested) {
+      std::string name = tested.param.list;
+      std::erase_if(name, [](char c) { return c == '\'' || c == '-'; });
+      std::replace(name.begin(), name.end(), ' ', '_');
+      return name;
+    });
 
 TEST_P(Capacity, TooSmallIsToldByNameAndGrowsToTheReferencesAnswer) {
   const auto scene = GetParam().scene();
@@ -82,10 +84,12 @@ TEST_P(Capacity, TooSmallIsToldByNameAndGrowsToTheReferencesAnswer) {
 /// What the reference's answer needs of the lists whose counts it tells.
 std::map<std::string, std::uint32_t> exact_needs(const Contacts& expected) {
   std::set<std::uint32_t> statics;
-  for (const auto* ids : {&expected.cst, &expected.bst, &expected.est}) statics.insert(ids->begin(), ids->end());
+  for (const auto* ids : {&expected.cst, &expected.bst, &expected.est})
+    statics.insert(ids->begin(), ids->end());
   return {{"pairs", static_cast<std::uint32_t>(expected.pairs)},
           {"contact triangles of the mock-up", static_cast<std::uint32_t>(statics.size())},
-          {"contact triangles of the tool", static_cast<std::uint32_t>(expected.cmt.size() + expected.bmt.size() + expected.imt.size())}};
+          {"contact triangles of the tool",
+           static_cast<std::uint32_t>(expected.cmt.size() + expected.bmt.size() + expected.imt.size())}};
 }
 
 TEST(ExactRoom, IsEnoughAndOneLessIsNot) {
@@ -109,7 +113,8 @@ TEST(ExactRoom, IsEnoughAndOneLessIsNot) {
     }
 }
 
-// All of them at once: whatever overflows first hides the rest, and each enlargement brings the next to light.
+// All of them at once: whatever overflows first hides the rest, and each enlargement brings the next to
+// light.
 TEST(AllLists, TooSmallAtOnceGrowToTheReferencesAnswer) {
   std::map<std::string, std::uint32_t> ones;
   for (std::uint32_t list = 0; list_name(list) != nullptr; ++list)
@@ -131,12 +136,17 @@ TEST(AllLists, TooSmallAtOnceGrowToTheReferencesAnswer) {
   }
 }
 
-// 17 x 17 posts of 1 mm, 3 mm apart, and a plate on all of them: in `paper` more areas than a frame has, on either back end.
+// 17 x 17 posts of 1 mm, 3 mm apart, and a plate on all of them: in `paper` more areas than a frame has, on
+// either back end.
 TEST(Areas, BeyondTheMostThereCanBeAreTruncatedAndRefusedWithTheLimit) {
   Mesh posts;
   for (int i = -8; i <= 8; ++i)
-    for (int j = -8; j <= 8; ++j) solids::append(posts, solids::box(Vec3(i, j, 0) * 0.003, Vec3(i, j, 0) * 0.003 + Vec3(0.001, 0.001, 0.003)), "post");
-  const auto scene = make_fault_scene("posts", posts, solids::box(Vec3(-0.04, -0.04, 0), Vec3(0.04, 0.04, 0.004)), Vec3(0, 0, 0.0025));
+    for (int j = -8; j <= 8; ++j)
+      solids::append(posts,
+                     solids::box(Vec3(i, j, 0) * 0.003, Vec3(i, j, 0) * 0.003 + Vec3(0.001, 0.001, 0.003)),
+                     "post");
+  const auto scene = make_fault_scene(
+      "posts", posts, solids::box(Vec3(-0.04, -0.04, 0), Vec3(0.04, 0.04, 0.004)), Vec3(0, 0, 0.0025));
   EXPECT_FALSE(scene->expected.truncated) << "the field has no areas to run out of";
   Plan paper;
   paper.profile = Profile::kPaper;

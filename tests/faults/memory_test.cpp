@@ -47,8 +47,9 @@ TEST_F(DeviceFaults, OutOfMemoryAtAnyBufferIsOneSentenceWithBytesNeededAndThere)
     if (done) continue;
     ++refusals;
     EXPECT_EQ(prepared.error().code, ErrorCode::kInternal);
-    EXPECT_THAT(prepared.error().sentence, AllOf(HasSubstr(" need "), HasSubstr(" MiB beside "), HasSubstr("in use"), HasSubstr("of memory"),
-                                                 HasSubstr("out of device memory")));
+    EXPECT_THAT(prepared.error().sentence,
+                AllOf(HasSubstr(" need "), HasSubstr(" MiB beside "), HasSubstr("in use"),
+                      HasSubstr("of memory"), HasSubstr("out of device memory")));
     EXPECT_FALSE(backend->query(scene->pose, nullptr, out)) << "what isn't prepared doesn't answer";
   }
   EXPECT_GT(refusals, 10);
@@ -97,7 +98,7 @@ TEST_F(DeviceFaults, ALostDeviceIsAnErrorOfPreparationAndOfAQuery) {
 
 TEST_F(DeviceFaults, APoseThatCannotTouchIsAnsweredWithoutTheDevice) {
   ASSERT_EQ(prepare_sentence(), "");
-  fail(Call::kSubmit);   // whatever is submitted fails
+  fail(Call::kSubmit);  // whatever is submitted fails
   for (const Vec3 far : {Vec3(0, 0, 0.05), Vec3(3, 0, 0), Vec3(0, -1e6, 0)}) {
     const auto answered = backend->query(at(*scene, far), nullptr, out);
     ASSERT_TRUE(answered) << answered.error().sentence;

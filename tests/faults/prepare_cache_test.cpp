@@ -20,7 +20,8 @@ class PrepareCache : public testing::TestWithParam<const char*> {
     cache = std::make_shared<DiskCache>(DiskCache::Settings{folder.path("cache"), std::uint64_t{1} << 30, 0});
     auto made = native() ? make_native_backend(cache) : gpu();
     prepared = false;
-    const auto done = made->prepare(scene.geometry, plan, [&](const char*, double) { return prepared = true; });
+    const auto done =
+        made->prepare(scene.geometry, plan, [&](const char*, double) { return prepared = true; });
     EXPECT_TRUE(done) << (done ? "" : done.error().sentence);
     return made;
   }
@@ -44,7 +45,8 @@ class PrepareCache : public testing::TestWithParam<const char*> {
     return std::move(*made);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, PrepareCache, testing::Values("gpu", "cpu"), [](const auto& engine) { return std::string(engine.param); });
+INSTANTIATE_TEST_SUITE_P(Engines, PrepareCache, testing::Values("gpu", "cpu"),
+                         [](const auto& engine) { return std::string(engine.param); });
 
 /// All that the two say of the scene and of its pose.
 void expect_same(CollisionBackend& a, CollisionBackend& b, const FaultScene& scene, bool refined) {
@@ -85,7 +87,7 @@ TEST_P(PrepareCache, ASecondStartPreparesNothingAndAnswersTheSame) {
         EXPECT_EQ(first_difference(answer, scene->expected), "");
       }
     }
-  EXPECT_EQ(files().size(), native() ? 3u : 6u);   // no scene or profile stands in for another
+  EXPECT_EQ(files().size(), native() ? 3u : 6u);  // no scene or profile stands in for another
 }
 
 TEST_P(PrepareCache, ADamagedEntryIsMadeAnewAndSaid) {

@@ -1,4 +1,5 @@
-// The device side of failures on the Vulkan device: a session on the simulated haptic device, which must see zero force in time.
+// The device side of failures on the Vulkan device: a session on the simulated haptic device, which must see
+// zero force in time.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -16,7 +17,8 @@ using testing::Contains;
 using testing::HasSubstr;
 using Call = GpuFault::Call;
 
-constexpr int kWatchdogTicks = 20, kFadeTicks = 20;   // the defaults of a scene, and SafetySettings::fade_out_ticks
+constexpr int kWatchdogTicks = 20,
+              kFadeTicks = 20;  // the defaults of a scene, and SafetySettings::fade_out_ticks
 
 /// The simulated device, counting what reaches it.
 class CountingDevice final : public HapticDevice {
@@ -45,9 +47,9 @@ class CountingDevice final : public HapticDevice {
   Vec3 last{9};
   bool closed_at_zero = false;
   std::atomic<bool> failed = false;
-  int enough = 1 << 30;         ///< ticks with a force after `failed`, which end the run
+  int enough = 1 << 30;  ///< ticks with a force after `failed`, which end the run
   std::atomic<bool> stop = false;
-  std::atomic<int> pushes_before = 0, pushes_after = 0;   ///< ticks with a force, before and after `failed`
+  std::atomic<int> pushes_before = 0, pushes_after = 0;  ///< ticks with a force, before and after `failed`
 
  private:
   std::unique_ptr<HapticDevice> device_;
@@ -63,9 +65,11 @@ class LosingBackend final : public CollisionBackend {
     if (!made) throw std::runtime_error(made.error().sentence);
     gpu_ = std::move(*made);
   }
-  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override { return gpu_->prepare(geometry, plan, progress); }
+  Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
+    return gpu_->prepare(geometry, plan, progress);
+  }
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
-    if (healthy_-- <= 0) {   // a pose that touches nothing submits nothing and loses nothing
+    if (healthy_-- <= 0) {  // a pose that touches nothing submits nothing and loses nothing
       fault_->call = Call::kSubmit;
       auto lost = gpu_->query(pose, ignored, out);
       if (!lost) device_.failed = true;
@@ -99,7 +103,9 @@ LoadedScene pressed() {
 
 class LostInMidRun : public testing::TestWithParam<Pace> {};
 INSTANTIATE_TEST_SUITE_P(BothPaces, LostInMidRun, testing::Values(Pace::kRealtime, Pace::kAsap),
-                         [](const auto& tested) { return tested.param == Pace::kAsap ? "asap" : "realtime"; });
+                         [](const auto& tested) {
+                           return tested.param == Pace::kAsap ? "asap" : "realtime";
+                         });
 
 TEST_P(LostInMidRun, WithoutASpareTheRunEndsWithZeroForceAndTheSummarySaysWhy) {
   const LoadedScene scene = pressed();
@@ -109,7 +115,8 @@ TEST_P(LostInMidRun, WithoutASpareTheRunEndsWithZeroForceAndTheSummarySaysWhy) {
   const auto summary = run_session(scene, backend, device, {.pace = GetParam(), .duration_s = 60}, nullptr);
   ASSERT_TRUE(summary) << summary.error().sentence;
   ASSERT_TRUE(summary->failure);
-  EXPECT_THAT(summary->failure->sentence, HasSubstr("the device was lost; the run has ended with zero force"));
+  EXPECT_THAT(summary->failure->sentence,
+              HasSubstr("the device was lost; the run has ended with zero force"));
   EXPECT_EQ(summary->backend, "gpu");
   EXPECT_LT(summary->ticks, 60'000u);
   EXPECT_GT(device.pushes_before, 0);
@@ -122,8 +129,9 @@ TEST_P(LostInMidRun, WithASpareTheNativeEngineGoesOnAndTheSummarySaysSo) {
   CountingDevice device(scene);
   SteadyBackend backend(std::make_unique<LosingBackend>(30, device), [] { return make_native_backend(); });
   ASSERT_TRUE(backend.prepare(scene.geometry, {}, {}));
-  device.enough = 2 * (kWatchdogTicks + kFadeTicks);   // more than was on its way when the device was lost
-  const auto summary = run_session(scene, backend, device, {.pace = GetParam(), .duration_s = 120, .stop = &device.stop}, nullptr);
+  device.enough = 2 * (kWatchdogTicks + kFadeTicks);  // more than was on its way when the device was lost
+  const auto summary = run_session(scene, backend, device,
+                                   {.pace = GetParam(), .duration_s = 120, .stop = &device.stop}, nullptr);
   ASSERT_TRUE(summary) << summary.error().sentence;
   EXPECT_FALSE(summary->failure);
   EXPECT_EQ(summary->backend, "cpu");
@@ -150,12 +158,16 @@ TEST(TooSmallInMidRun, GrowsAndGivesTheSameForcesAsEnoughRoom) {
     SteadyBackend backend(std::move(*gpu), nullptr);
     ASSERT_TRUE(backend.prepare(scene.geometry, {}, {}));
     CountingDevice device(scene);
-    const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap, .duration_s = 0.1}, small ? &grown : &roomy);
+    const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap, .duration_s = 0.1},
+                                     small ? &grown : &roomy);
     ASSERT_TRUE(summary);
     EXPECT_FALSE(summary->failure);
-    for (const char* name : {"pairs"})   // of several at once the first is named
+    for (const char* name : {"pairs"})  // of several at once the first is named
       EXPECT_EQ(std::any_of(summary->notes.begin(), summary->notes.end(),
-                            [&](const std::string& note) { return note.find("too little room for " + std::string(name) + ":") != std::string::npos; }),
+                            [&](const std::string& note) {
+                              return note.find("too little room for " + std::string(name) + ":") !=
+                                     std::string::npos;
+                            }),
                 small)
           << name;
   }

@@ -1,5 +1,6 @@
-// However a run goes wrong, the device itself sees the force end in time. It counts: writes on the simulated device, whose bound holds on the busiest machine, for the
-// watchdog counts the same writes; and packets behind the real libusb on a model of the Falcon.
+// However a run goes wrong, the device itself sees the force end in time. It counts: writes on the simulated
+// device, whose bound holds on the busiest machine, for the watchdog counts the same writes; and packets
+// behind the real libusb on a model of the Falcon.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -21,18 +22,24 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kWatchdogTicks = 20;                      // a scene's default
-const int kFadeTicks = SafetySettings{}.fade_out_ticks;   // the watchdog's own
+constexpr int kWatchdogTicks = 20;                       // a scene's default
+const int kFadeTicks = SafetySettings{}.fade_out_ticks;  // the watchdog's own
 
 enum class Loss { kDevice, kInterrupt, kTerminate, kException, kStall };
-constexpr Loss kLosses[] = {Loss::kDevice, Loss::kInterrupt, Loss::kTerminate, Loss::kException, Loss::kStall};
+constexpr Loss kLosses[] = {Loss::kDevice, Loss::kInterrupt, Loss::kTerminate, Loss::kException,
+                            Loss::kStall};
 const char* name_of(Loss loss) {
   switch (loss) {
-    case Loss::kDevice: return "compute_device_lost";
-    case Loss::kInterrupt: return "sigint";
-    case Loss::kTerminate: return "sigterm";
-    case Loss::kException: return "exception_in_the_worker";
-    case Loss::kStall: return "stalled_worker";
+    case Loss::kDevice:
+      return "compute_device_lost";
+    case Loss::kInterrupt:
+      return "sigint";
+    case Loss::kTerminate:
+      return "sigterm";
+    case Loss::kException:
+      return "exception_in_the_worker";
+    case Loss::kStall:
+      return "stalled_worker";
   }
   return "";
 }
@@ -46,9 +53,9 @@ struct Trial {
     catch_interrupts();
   }
   const Loss loss;
-  std::atomic<bool> now{false};       ///< it is to go wrong
-  std::atomic<bool> wrong{false};     ///< it has
-  std::atomic<bool> over{false};      ///< the run has ended: a stalled worker may go on
+  std::atomic<bool> now{false};    ///< it is to go wrong
+  std::atomic<bool> wrong{false};  ///< it has
+  std::atomic<bool> over{false};   ///< the run has ended: a stalled worker may go on
   int number() const { return loss == Loss::kInterrupt ? SIGINT : SIGTERM; }
   bool signals() const { return loss == Loss::kInterrupt || loss == Loss::kTerminate; }
 };
@@ -69,15 +76,17 @@ HalfSpace failing(Trial& trial) {
 
 LoadedScene pressed() {
   LoadedScene scene = half_space_scene();
-  scene.scene.start.position.z = -0.005;   // 5 N
+  scene.scene.start.position.z = -0.005;  // 5 N
   scene.scene.control.watchdog_ms = kWatchdogTicks;
   return scene;
 }
 
 class ZeroInTime : public testing::TestWithParam<Loss> {};
-INSTANTIATE_TEST_SUITE_P(Each, ZeroInTime, testing::ValuesIn(kLosses), [](const auto& tested) { return std::string(name_of(tested.param)); });
+INSTANTIATE_TEST_SUITE_P(Each, ZeroInTime, testing::ValuesIn(kLosses),
+                         [](const auto& tested) { return std::string(name_of(tested.param)); });
 
-/// The simulated device; sets the trial off after a hundred writes with force, and counts those that come afterwards.
+/// The simulated device; sets the trial off after a hundred writes with force, and counts those that come
+/// afterwards.
 class CountingDevice final : public HapticDevice {
  public:
   CountingDevice(const LoadedScene& scene, Trial& trial) : trial_(trial) {
@@ -122,13 +131,15 @@ TEST_P(ZeroInTime, OnTheSimulatedDeviceInItsOwnTicks) {
   CountingDevice device(scene, trial);
   HalfSpace backend = failing(trial);
   // A stall ends nothing: the loop goes on without force, for a second.
-  const auto summary = run_session(scene, backend, device, {.duration_s = trial.loss == Loss::kStall ? 1.5 : 60.0, .stop = &interrupt_flag()}, nullptr);
+  const auto summary = run_session(
+      scene, backend, device,
+      {.duration_s = trial.loss == Loss::kStall ? 1.5 : 60.0, .stop = &interrupt_flag()}, nullptr);
   ASSERT_TRUE(summary) << summary.error().sentence;
   std::printf("%s: %d ticks with force afterwards\n", name_of(GetParam()), device.pushes_after);
   ASSERT_TRUE(trial.wrong);
   EXPECT_GE(device.pushes, 100);
-  // The loop looks at signals and failures before every tick. A failure is written down by the worker after it happened, which may be
-  // any number of ticks later; the watchdog is the last to act.
+  // The loop looks at signals and failures before every tick. A failure is written down by the worker after
+  // it happened, which may be any number of ticks later; the watchdog is the last to act.
   EXPECT_LE(device.pushes_after, trial.signals() ? 0 : kWatchdogTicks + kFadeTicks);
   EXPECT_TRUE(device.closed_at_zero);
   EXPECT_EQ(summary->stopped, trial.signals());
@@ -137,16 +148,17 @@ TEST_P(ZeroInTime, OnTheSimulatedDeviceInItsOwnTicks) {
 
 TEST_P(ZeroInTime, OnAFalconInPacketsOnTheBus) {
   LoadedScene scene = pressed();
-  scene.scene.start.position.z = -0.002;   // 2 N: within what the model's motors give
+  scene.scene.start.position.z = -0.002;  // 2 N: within what the model's motors give
   Trial trial(GetParam());
-  fake::FalconTable table({}, true);   // its firmware runs
+  fake::FalconTable table({}, true);  // its firmware runs
   int pushes = 0, pushes_after = 0;
   std::atomic<bool> counting{true};
   std::chrono::steady_clock::time_point began{}, ended{};
-  table.model.encoders = [&](int) {   // at every command, with the bus shut
+  table.model.encoders = [&](int) {  // at every command, with the bus shut
     if (table.model.motors() != falcon::MotorCounts{}) {
       if (trial.wrong && counting) {
-        if (pushes_after++ == 0 && began == std::chrono::steady_clock::time_point{}) began = std::chrono::steady_clock::now();
+        if (pushes_after++ == 0 && began == std::chrono::steady_clock::time_point{})
+          began = std::chrono::steady_clock::now();
         ended = std::chrono::steady_clock::now();
       }
       if (++pushes == 200) {
@@ -160,23 +172,30 @@ TEST_P(ZeroInTime, OnAFalconInPacketsOnTheBus) {
   auto made = falcon::make_falcon({}, scene.scene.start, table.opener());
   ASSERT_TRUE(made) << made.error().sentence;
   HalfSpace backend = failing(trial);
-  std::thread watch([&] {   // a stalled worker goes on once the motors have been still for half a second: then force may come back
+  std::thread watch([&] {  // a stalled worker goes on once the motors have been still for half a second: then
+                           // force may come back
     for (int still = 0; trial.loss == Loss::kStall && still < 100;) {
       std::this_thread::sleep_for(5ms);
-      still = trial.wrong && table.locked([&] { return table.model.motors() == falcon::MotorCounts{}; }) ? still + 1 : 0;
+      still = trial.wrong && table.locked([&] { return table.model.motors() == falcon::MotorCounts{}; })
+                  ? still + 1
+                  : 0;
     }
     counting = false;
     trial.over = true;
   });
-  const auto summary = run_session(scene, backend, **made, {.duration_s = trial.loss == Loss::kStall ? 3.0 : 60.0, .stop = &interrupt_flag()}, nullptr);
+  const auto summary = run_session(
+      scene, backend, **made,
+      {.duration_s = trial.loss == Loss::kStall ? 3.0 : 60.0, .stop = &interrupt_flag()}, nullptr);
   watch.join();
   ASSERT_TRUE(summary) << summary.error().sentence;
   const double ms = pushes_after > 0 ? std::chrono::duration<double, std::milli>(ended - began).count() : 0;
-  std::printf("%s: %d packets with force afterwards, the last after %.1f ms\n", name_of(GetParam()), pushes_after, ms);
+  std::printf("%s: %d packets with force afterwards, the last after %.1f ms\n", name_of(GetParam()),
+              pushes_after, ms);
   ASSERT_TRUE(trial.wrong);
   EXPECT_GE(pushes, 200) << "no force to take away";
   EXPECT_EQ(table.locked([&] { return table.model.motors(); }), (falcon::MotorCounts{}));
-  // Watchdog and fade, a packet or two a millisecond; and a second more, for a machine that lets this process wait that long while the bus goes on.
+  // Watchdog and fade, a packet or two a millisecond; and a second more, for a machine that lets this process
+  // wait that long while the bus goes on.
   EXPECT_LE(pushes_after, 2 * (kWatchdogTicks + kFadeTicks) + 1000);
 }
 

@@ -1,4 +1,5 @@
-// What a force must be where parts fit: its way, no net force where sides cancel, couples that right, no steps, no work from round trips (docs/ACCURACY.md).
+// What a force must be where parts fit: its way, no net force where sides cancel, couples that right, no
+// steps, no work from round trips (docs/ACCURACY.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,19 +17,26 @@ bool all() { return std::getenv("PALPATE_ALL_FORCES") != nullptr; }
 
 /// Cases that each rest on something else, for every change.
 bool is_quick(const std::string& name) {
-  for (const char* one : {"peg of 24 sides tilted, play 0.3 mm", "peg of 96 sides off centre askew, play 0.05 mm", "peg of 24 sides round its hole, play 0.3 mm", "press fit of 48 sides",
-                          "square peg yawed", "key yawed in its keyway", "tongue between walls", "gears of 20 and 12 teeth", "bracket, leg at 0.1 mm, voxels of 1 mm", "box off a table",
-                          "plate on to 2 pads", "thin tool on a thick block", "pin on a plate", "sheet from below", "open box from outside"})
+  for (const char* one :
+       {"peg of 24 sides tilted, play 0.3 mm", "peg of 96 sides off centre askew, play 0.05 mm",
+        "peg of 24 sides round its hole, play 0.3 mm", "press fit of 48 sides", "square peg yawed",
+        "key yawed in its keyway", "tongue between walls", "gears of 20 and 12 teeth",
+        "bracket, leg at 0.1 mm, voxels of 1 mm", "box off a table", "plate on to 2 pads",
+        "thin tool on a thick block", "pin on a plate", "sheet from below", "open box from outside"})
     if (name == one) return true;
   return false;
 }
 
-/// What falls short (docs/ACCURACY.md): contacts of few samples have a rough derivative, and where stiff ones lean on a soft spring, a thousandth of the force is a tenth of how it
-/// gives way across; strips much narrower than a cell lose work. `palpate bench force` reports all of it.
+/// What falls short (docs/ACCURACY.md): contacts of few samples have a rough derivative, and where stiff ones
+/// lean on a soft spring, a thousandth of the force is a tenth of how it gives way across; strips much
+/// narrower than a cell lose work. `palpate bench force` reports all of it.
 bool falls_short(const std::string& name, double voxels, const std::string& sentence) {
-  const auto any_of = [&](std::initializer_list<const char*> starts) { return std::any_of(starts.begin(), starts.end(), [&](const char* one) { return name.starts_with(one); }); };
+  const auto any_of = [&](std::initializer_list<const char*> starts) {
+    return std::any_of(starts.begin(), starts.end(), [&](const char* one) { return name.starts_with(one); });
+  };
   if (sentence.starts_with("∂F is"))
-    return any_of({"sphere over an edge", "plate of", "pin on a plate", "plate on a pin", "needle", "tool wholly swallowed", "peg of 240 sides tilted, play 3 mm"}) ||
+    return any_of({"sphere over an edge", "plate of", "pin on a plate", "plate on a pin", "needle",
+                   "tool wholly swallowed", "peg of 240 sides tilted, play 3 mm"}) ||
            (voxels != 1 && any_of({"peg of", "shaft in two bearings", "gears", "sheet", "open box"}));
   return name == "box off a table" && voxels >= 1 && sentence.ends_with("of the work is lost round the loop");
 }
@@ -44,9 +52,12 @@ TEST_P(Forces, AreAsThePartsSay) {
     ASSERT_TRUE(figures) << figures.error().sentence;
     EXPECT_GT(figures->touching, 0u);
     for (const std::string& sentence : figures->broken)
-      if (!falls_short(subject.name, voxels, sentence)) ADD_FAILURE() << subject.name << ", voxels × " << voxels << ": " << sentence;
+      if (!falls_short(subject.name, voxels, sentence))
+        ADD_FAILURE() << subject.name << ", voxels × " << voxels << ": " << sentence;
     if (subject.name == "box off a table") {
-      EXPECT_LT(figures->loop_share, 0.1);   // a strip of 0.3 mm under cells of 0.4 to 1 mm; on a square grid all of it would be lost
+      EXPECT_LT(
+          figures->loop_share,
+          0.1);  // a strip of 0.3 mm under cells of 0.4 to 1 mm; on a square grid all of it would be lost
     }
   }
 }
@@ -60,7 +71,8 @@ std::string test_name(const testing::TestParamInfo<ForceCaseMaker>& info) {
 INSTANTIATE_TEST_SUITE_P(Cases, Forces, testing::ValuesIn(force_cases()), test_name);
 
 TEST(ForceJudge, SeesAStepAndALossThatAreThere) {
-  // A tool pushed through a thin plate lets go in a step: the judge must see it once the case no longer says so.
+  // A tool pushed through a thin plate lets go in a step: the judge must see it once the case no longer says
+  // so.
   const auto backend = make_native_backend();
   for (const ForceCaseMaker& maker : force_cases()) {
     if (maker.name != "plate of 0.4 mm pierced") continue;

@@ -1,4 +1,5 @@
-// Formats that nothing of ours checks before assimp (3MF, FBX), through palpate-import: whatever happens to it, a sound mesh or one sentence.
+// Formats that nothing of ours checks before assimp (3MF, FBX), through palpate-import: whatever happens to
+// it, a sound mesh or one sentence.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +19,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (mesh)
     PALPATE_PROMISE(!mesh->triangles.empty());
   else
-    PALPATE_PROMISE(mesh.error().code == ErrorCode::kBadValue && mesh.error().sentence.find(path) != std::string::npos);
+    PALPATE_PROMISE(mesh.error().code == ErrorCode::kBadValue &&
+                    mesh.error().sentence.find(path) != std::string::npos);
   return 0;
 }

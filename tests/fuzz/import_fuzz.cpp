@@ -1,5 +1,6 @@
-// The whole import in one process, assimp included, of the formats that we check before: a sound mesh or one sentence. The format is told from
-// the first bytes, so that the corpus holds files as they are. Others crash assimp at once; see contained_fuzz.cpp.
+// The whole import in one process, assimp included, of the formats that we check before: a sound mesh or one
+// sentence. The format is told from the first bytes, so that the corpus holds files as they are. Others crash
+// assimp at once; see contained_fuzz.cpp.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -49,11 +50,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ImportReport report;
   const Result<Mesh> mesh = read_mesh(path, 0.001, report);
   if (!mesh) {
-    PALPATE_PROMISE(mesh.error().code == ErrorCode::kBadValue && mesh.error().sentence.find(path) != std::string::npos);
+    PALPATE_PROMISE(mesh.error().code == ErrorCode::kBadValue &&
+                    mesh.error().sentence.find(path) != std::string::npos);
     return 0;
   }
   PALPATE_PROMISE(!mesh->triangles.empty() && !mesh->parts.empty());
   for (const auto& triangle : mesh->triangles)
-    for (const std::uint32_t vertex : triangle) PALPATE_PROMISE(vertex < mesh->vertices.size() && std::isfinite(mesh->vertices[vertex].x));
+    for (const std::uint32_t vertex : triangle)
+      PALPATE_PROMISE(vertex < mesh->vertices.size() && std::isfinite(mesh->vertices[vertex].x));
   return 0;
 }

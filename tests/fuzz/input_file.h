@@ -20,7 +20,7 @@ class InputFile {
 
  private:
   int file_;
-  std::string path_;   ///< /proc/self/fd/N
+  std::string path_;  ///< /proc/self/fd/N
 };
 
 }  // namespace palpate

@@ -1,4 +1,5 @@
-// What palpate-import hands back, were it to go mad: a sound mesh, or an error; and a sound mesh can be sent again.
+// What palpate-import hands back, were it to go mad: a sound mesh, or an error; and a sound mesh can be sent
+// again.
 #include <cmath>
 
 #include "model/import/mesh_parcel.h"
@@ -21,6 +22,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   PALPATE_PROMISE(write_parcel(again.descriptor(), mesh, report));
   ImportReport second;
   const Result<Mesh> same = read_parcel(again.descriptor(), second);
-  PALPATE_PROMISE(same && same->triangles == mesh->triangles && same->vertices == mesh->vertices && second.notes == report.notes);
+  PALPATE_PROMISE(same && same->triangles == mesh->triangles && same->vertices == mesh->vertices &&
+                  second.notes == report.notes);
   return 0;
 }

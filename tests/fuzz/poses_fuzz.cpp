@@ -1,4 +1,5 @@
-// Poses, the hand's path and a guide (CSV), and the pose of a command line: finite numbers and unit rotations, or one sentence.
+// Poses, the hand's path and a guide (CSV), and the pose of a command line: finite numbers and unit
+// rotations, or one sentence.
 #include <cmath>
 
 #include "model/files/path_file.h"
@@ -18,7 +19,8 @@ void expect_sound(const Pose& pose) {
 template <class T>
 void expect_sentence(const Result<T>& result) {
   PALPATE_PROMISE(result.error().code == ErrorCode::kBadValue && !result.error().sentence.empty());
-  for (const char c : result.error().sentence) PALPATE_PROMISE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);   // a terminal shows it
+  for (const char c : result.error().sentence)
+    PALPATE_PROMISE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);  // a terminal shows it
 }
 
 }  // namespace
@@ -36,8 +38,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         expect_sound((*path)[i].pose);
         PALPATE_PROMISE(i == 0 || (*path)[i].time_s > (*path)[i - 1].time_s);
       }
-      file.write(reinterpret_cast<const std::uint8_t*>(path_text(*path, guided).data()), path_text(*path, guided).size());
-      PALPATE_PROMISE(read_path(file.path(), guided));   // what is written can be read
+      file.write(reinterpret_cast<const std::uint8_t*>(path_text(*path, guided).data()),
+                 path_text(*path, guided).size());
+      PALPATE_PROMISE(read_path(file.path(), guided));  // what is written can be read
       file.write(data, size);
     } else {
       expect_sentence(path);

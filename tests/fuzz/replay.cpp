@@ -1,5 +1,5 @@
-// Runs a fuzz target without libFuzzer: on every file of its corpus, then on seeded mutations of them, the same ones every time.
-// usage: TARGET CORPUS_FOLDER MUTATIONS        every file, and MUTATIONS of them in all
+// Runs a fuzz target without libFuzzer: on every file of its corpus, then on seeded mutations of them, the
+// same ones every time. usage: TARGET CORPUS_FOLDER MUTATIONS        every file, and MUTATIONS of them in all
 //        TARGET FILE                           that file alone
 #include <sys/resource.h>
 #include <unistd.h>
@@ -26,7 +26,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr unsigned kSecondsAnInput = 20;   ///< a hang is a failure; the slowest input takes a tenth of a second
+constexpr unsigned kSecondsAnInput =
+    20;  ///< a hang is a failure; the slowest input takes a tenth of a second
 constexpr std::size_t kLargest = 1 << 16;
 
 // For the handler alone: which input is running.
@@ -54,24 +55,48 @@ Bytes bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// One to eight small changes: a bit, a byte, a count, a word, a piece taken out, doubled or borrowed from another file.
+/// One to eight small changes: a bit, a byte, a count, a word, a piece taken out, doubled or borrowed from
+/// another file.
 Bytes mutated(Bytes input, const Bytes& other, std::mt19937_64& random) {
-  static const std::array<std::string, 12> words{"-1", "0", "1e999", "nan", "-0", "4294967295", "353535235358", "0.5", "\"", "\n", ",", "#"};
-  static const std::array<std::uint32_t, 8> counts{0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0xfffffffe, 0x10000, 0x40000000};
-  const auto below = [&](std::size_t n) { return n == 0 ? std::size_t{0} : static_cast<std::size_t>(random() % n); };
+  static const std::array<std::string, 12> words{"-1",           "0",   "1e999", "nan", "-0", "4294967295",
+                                                 "353535235358", "0.5", "\"",    "\n",  ",",  "#"};
+  static const std::array<std::uint32_t, 8> counts{0,          1,          0x7fffffff, 0x80000000,
+                                                   0xffffffff, 0xfffffffe, 0x10000,    0x40000000};
+  const auto below = [&](std::size_t n) {
+    return n == 0 ? std::size_t{0} : static_cast<std::size_t>(random() % n);
+  };
   for (std::size_t change = 0, changes = 1 + below(8); change < changes; ++change) {
-    const std::size_t at = below(input.size() + 1), room = input.size() - at, length = 1 + below(std::min<std::size_t>(room, 32));
+    const std::size_t at = below(input.size() + 1), room = input.size() - at,
+                      length = 1 + below(std::min<std::size_t>(room, 32));
     const auto here = input.begin() + static_cast<std::ptrdiff_t>(at);
     switch (below(7)) {
-      case 0: if (room > 0) *here ^= static_cast<std::uint8_t>(1u << below(8)); break;
-      case 1: if (room > 0) *here = static_cast<std::uint8_t>(random()); break;
-      case 2: if (room >= 4) std::memcpy(&*here, &counts[below(counts.size())], 4); break;
-      case 3: { const std::string& word = words[below(words.size())]; input.insert(here, word.begin(), word.end()); break; }
-      case 4: if (room >= length) input.erase(here, here + static_cast<std::ptrdiff_t>(length)); break;
-      case 5: if (room >= length) { const Bytes piece(here, here + static_cast<std::ptrdiff_t>(length)); input.insert(here, piece.begin(), piece.end()); } break;
+      case 0:
+        if (room > 0) *here ^= static_cast<std::uint8_t>(1u << below(8));
+        break;
+      case 1:
+        if (room > 0) *here = static_cast<std::uint8_t>(random());
+        break;
+      case 2:
+        if (room >= 4) std::memcpy(&*here, &counts[below(counts.size())], 4);
+        break;
+      case 3: {
+        const std::string& word = words[below(words.size())];
+        input.insert(here, word.begin(), word.end());
+        break;
+      }
+      case 4:
+        if (room >= length) input.erase(here, here + static_cast<std::ptrdiff_t>(length));
+        break;
+      case 5:
+        if (room >= length) {
+          const Bytes piece(here, here + static_cast<std::ptrdiff_t>(length));
+          input.insert(here, piece.begin(), piece.end());
+        }
+        break;
       default: {
         const std::size_t from = below(other.size()), size = std::min(other.size() - from, length);
-        input.insert(here, other.begin() + static_cast<std::ptrdiff_t>(from), other.begin() + static_cast<std::ptrdiff_t>(from + size));
+        input.insert(here, other.begin() + static_cast<std::ptrdiff_t>(from),
+                     other.begin() + static_cast<std::ptrdiff_t>(from + size));
       }
     }
   }
@@ -105,9 +130,10 @@ int main(int argc, char** argv) {
   }
   const std::uint64_t mutations = std::strtoull(argv[2], nullptr, 10);
   for (std::uint64_t i = 0; i < mutations; ++i) {
-    std::mt19937_64 random(i);   // each by its own seed, so that any can be repeated alone
+    std::mt19937_64 random(i);  // each by its own seed, so that any can be repeated alone
     const std::size_t file = i % files.size();
-    run(mutated(corpus[file], corpus[static_cast<std::size_t>(random() % corpus.size())], random), files[file].string() + ", mutation " + std::to_string(i));
+    run(mutated(corpus[file], corpus[static_cast<std::size_t>(random() % corpus.size())], random),
+        files[file].string() + ", mutation " + std::to_string(i));
   }
   std::printf("%zu files, %llu mutations\n", files.size(), static_cast<unsigned long long>(mutations));
   return 0;

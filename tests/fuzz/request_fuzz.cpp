@@ -1,14 +1,15 @@
-// What strangers send to `palpate serve`, past the HTTP itself: targets, forms, JSON, poses, ids, hosts. The first byte says how the rest is cut.
+// What strangers send to `palpate serve`, past the HTTP itself: targets, forms, JSON, poses, ids, hosts. The
+// first byte says how the rest is cut.
 #include <cmath>
 #include <string>
 
 #include "service/server/http/auth.h"
-#include "service/server/scenes/drawing.h"
 #include "service/server/http/http_message.h"
 #include "service/server/http/json_input.h"
 #include "service/server/http/multipart.h"
-#include "service/server/queries/pose_body.h"
 #include "service/server/http/safe_path.h"
+#include "service/server/queries/pose_body.h"
+#include "service/server/scenes/drawing.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {
@@ -17,7 +18,8 @@ using namespace palpate;
 
 void expect_told(const Problem& problem) {
   PALPATE_PROMISE(problem.status >= 400 && problem.status < 600 && !problem.detail.empty());
-  for (const char c : problem.detail) PALPATE_PROMISE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);   // a log and a terminal show it
+  for (const char c : problem.detail)
+    PALPATE_PROMISE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);  // a log and a terminal show it
   PALPATE_PROMISE(nlohmann::json::accept(problem.json()));
 }
 
@@ -59,8 +61,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
 
   HttpRequest request;
   if (decode_target(text, request)) {
-    for (const std::string& segment : request.segments) PALPATE_PROMISE(segment.find('\0') == std::string::npos);
-    for (const auto& [name, value] : request.query) PALPATE_PROMISE(name.find('\0') == std::string::npos && value.find('\0') == std::string::npos);
+    for (const std::string& segment : request.segments)
+      PALPATE_PROMISE(segment.find('\0') == std::string::npos);
+    for (const auto& [name, value] : request.query)
+      PALPATE_PROMISE(name.find('\0') == std::string::npos && value.find('\0') == std::string::npos);
   }
 
   // However the form is cut into pieces, it reads the same.
@@ -80,18 +84,20 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     }
     const auto& list = std::get<std::vector<Pose>>(poses);
     PALPATE_PROMISE(!list.empty() && list.size() <= limits.poses);
-    for (const Pose& pose : list) PALPATE_PROMISE(std::isfinite(pose.position.x) && std::abs(glm::length(pose.rotation) - 1) < 2e-3);
+    for (const Pose& pose : list)
+      PALPATE_PROMISE(std::isfinite(pose.position.x) && std::abs(glm::length(pose.rotation) - 1) < 2e-3);
   }
 
   if (const auto ids = parse_ids(text, 1000, 500)) {
     PALPATE_PROMISE(ids->size() <= 500);
     for (const std::uint32_t id : *ids) PALPATE_PROMISE(id < 1000);
   }
-  if (plain_name(text)) PALPATE_PROMISE(text.find('/') == std::string::npos && text != "." && text != ".." && text.size() <= 100);
+  if (plain_name(text))
+    PALPATE_PROMISE(text.find('/') == std::string::npos && text != "." && text != ".." && text.size() <= 100);
 
   const AccessRules rules{{"localhost", "127.0.0.1", "[::1]"}, "the-right-token-0123"};
   const AccessFields as_host{text, {}, "Bearer the-right-token-0123", {}};
-  if (!refuse_access(rules, as_host, false)) {   // what passes is one of ours and a port
+  if (!refuse_access(rules, as_host, false)) {  // what passes is one of ours and a port
     const std::string name = host_name(text);
     PALPATE_PROMISE(name == "localhost" || name == "127.0.0.1" || name == "[::1]");
     PALPATE_PROMISE(text.find_first_of("@/\\ ") == std::string::npos);

@@ -14,7 +14,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     PALPATE_PROMISE(scene->control.watchdog_ms >= 0);
   } else {
     PALPATE_PROMISE(scene.error().code == palpate::ErrorCode::kBadValue && !scene.error().sentence.empty());
-    for (const char c : scene.error().sentence) PALPATE_PROMISE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);   // a terminal shows it
+    for (const char c : scene.error().sentence)
+      PALPATE_PROMISE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);  // a terminal shows it
   }
   return 0;
 }

@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 const fs::path kRoot = PALPATE_SOURCE_DIR;
 
 struct Include {
-  std::string file;   // relative to the root
-  std::string target; // as written
+  std::string file;    // relative to the root
+  std::string target;  // as written
   bool quoted;
 };
 
@@ -42,18 +42,27 @@ bool starts_with_any(const std::string& text, const std::vector<std::string>& pr
   return false;
 }
 
-// Which of our folders each folder may include. shaders/code.h is what the build makes of the shaders, generated/ of assets.
+// Which of our folders each folder may include. shaders/code.h is what the build makes of the shaders,
+// generated/ of assets.
 const std::map<std::string, std::vector<std::string>> kAllowed = {
     {"model", {"model/"}},
     {"shaders", {"shaders/"}},
     {"compute/scene", {"compute/scene/", "model/", "shaders/shared/"}},
     {"compute/search", {"compute/search/", "compute/scene/", "model/", "shaders/shared/"}},
-    {"compute/vulkan", {"compute/vulkan/", "model/address_space.h", "model/result.h", "shaders/shared/base.h", "shaders/shared/shader_code.h"}},   // no word of collision
-    {"compute/gpu", {"compute/gpu/", "compute/vulkan/", "compute/search/", "compute/scene/", "model/", "shaders/shared/", "shaders/code.h"}},
-    {"compute/native", {"compute/native/", "compute/search/", "compute/scene/", "model/", "shaders/shared/"}},   // engines do not name each other
+    {"compute/vulkan",
+     {"compute/vulkan/", "model/address_space.h", "model/result.h", "shaders/shared/base.h",
+      "shaders/shared/shader_code.h"}},  // no word of collision
+    {"compute/gpu",
+     {"compute/gpu/", "compute/vulkan/", "compute/search/", "compute/scene/", "model/", "shaders/shared/",
+      "shaders/code.h"}},
+    {"compute/native",
+     {"compute/native/", "compute/search/", "compute/scene/", "model/",
+      "shaders/shared/"}},  // engines do not name each other
     {"cpu_ref", {"cpu_ref/", "model/"}},
     {"driver", {"driver/", "model/"}},
-    {"service", {"service/", "model/", "driver/device_notes.h", "driver/haptic_device.h", "driver/limits.h", "driver/mass_spring.h", "driver/safe_device.h", "generated/"}},
+    {"service",
+     {"service/", "model/", "driver/device_notes.h", "driver/haptic_device.h", "driver/limits.h",
+      "driver/mass_spring.h", "driver/safe_device.h", "generated/"}},
 };
 
 TEST(IncludeGraph, EveryFolderIncludesOnlyWhatItMay) {
@@ -74,7 +83,9 @@ TEST(IncludeGraph, TheWalkSeesTheTree) {
 TEST(IncludeGraph, EveryFolderOfComputeIsAnArrowsEnd) {
   // A new folder, or a file beside them, would escape the first test.
   for (const auto& entry : fs::directory_iterator(kRoot / "compute"))
-    EXPECT_TRUE(entry.path().filename() == "CMakeLists.txt" || kAllowed.contains("compute/" + entry.path().filename().string())) << entry.path();
+    EXPECT_TRUE(entry.path().filename() == "CMakeLists.txt" ||
+                kAllowed.contains("compute/" + entry.path().filename().string()))
+        << entry.path();
 }
 
 TEST(IncludeGraph, NothingIncludesTestsOrBench) {
@@ -84,8 +95,11 @@ TEST(IncludeGraph, NothingIncludesTestsOrBench) {
 }
 
 TEST(IncludeGraph, ALibraryStaysInTheFolderThatUsesIt) {
-  const std::map<std::string, std::vector<std::string>> only_in = {
-      {"vulkan/", {"compute/vulkan"}}, {"embree3/", {"cpu_ref"}}, {"libusb", {"driver"}}, {"assimp/", {"model"}}, {"CLI/", {"service"}}};
+  const std::map<std::string, std::vector<std::string>> only_in = {{"vulkan/", {"compute/vulkan"}},
+                                                                   {"embree3/", {"cpu_ref"}},
+                                                                   {"libusb", {"driver"}},
+                                                                   {"assimp/", {"model"}},
+                                                                   {"CLI/", {"service"}}};
   for (const auto& [folder, allowed] : kAllowed)
     for (const auto& include : includes_below(folder))
       for (const auto& [prefix, homes] : only_in)
@@ -96,39 +110,51 @@ TEST(IncludeGraph, ALibraryStaysInTheFolderThatUsesIt) {
 
 TEST(IncludeGraph, PublicHeadersNameNoLibraryButGlm) {
   // What `cmake --install` hands out must compile without Vulkan, Embree, assimp or JSON headers.
-  for (const std::string file : {"compute/gpu/gpu_backend.h", "compute/vulkan/options.h", "compute/native/native_backend.h", "cpu_ref/ref_backend.h", "driver/haptic_device.h"})
+  for (const std::string file :
+       {"compute/gpu/gpu_backend.h", "compute/vulkan/options.h", "compute/native/native_backend.h",
+        "cpu_ref/ref_backend.h", "driver/haptic_device.h"})
     for (const auto& include : includes_below(fs::path(file).parent_path().string()))
       if (include.file == file && !include.quoted) {
-        EXPECT_EQ(include.target.find_first_of("/."), std::string::npos) << file << " includes " << include.target;
+        EXPECT_EQ(include.target.find_first_of("/."), std::string::npos)
+            << file << " includes " << include.target;
       }
 }
 
 /// Types defined in named namespaces of our folders, with where.
 std::map<std::string, std::vector<std::string>> types_by_name() {
-  static const std::regex space(R"(^namespace ([\w:]+) \{)"), anonymous(R"(^namespace \{)"), end(R"(^\}  // namespace(.*))"), type(R"(^(?:struct|class|enum(?: class)?) (\w+)(?: final)?(?: : [^;]*)? \{)");
+  static const std::regex space(R"(^namespace ([\w:]+) \{)"), anonymous(R"(^namespace \{)"),
+      end(R"(^\}  // namespace(.*))"),
+      type(R"(^(?:struct|class|enum(?: class)?) (\w+)(?: final)?(?: : [^;]*)? \{)");
   std::map<std::string, std::vector<std::string>> found;
   for (const auto& [folder, allowed] : kAllowed)
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
-      if (folder == "shaders" || (entry.path().extension() != ".h" && entry.path().extension() != ".cpp")) continue;
+      if (folder == "shaders" || (entry.path().extension() != ".h" && entry.path().extension() != ".cpp"))
+        continue;
       std::ifstream in(entry.path());
       std::string name;
       int hidden = 0;
       for (std::string line; std::getline(in, line);) {
         std::smatch match;
-        if (std::regex_search(line, match, anonymous)) ++hidden;
-        else if (std::regex_search(line, match, space)) name = match[1];
-        else if (std::regex_search(line, match, end) && match[1].length() == 0 && hidden > 0) --hidden;
-        else if (hidden == 0 && !name.empty() && std::regex_search(line, match, type)) found[name + "::" + match.str(1)].push_back(entry.path().string());
+        if (std::regex_search(line, match, anonymous))
+          ++hidden;
+        else if (std::regex_search(line, match, space))
+          name = match[1];
+        else if (std::regex_search(line, match, end) && match[1].length() == 0 && hidden > 0)
+          --hidden;
+        else if (hidden == 0 && !name.empty() && std::regex_search(line, match, type))
+          found[name + "::" + match.str(1)].push_back(entry.path().string());
       }
     }
   return found;
 }
 
 TEST(OneDefinition, NoTwoTypesShareAName) {
-  // Two structs palpate::PreparedScene, one of compute/ and one of service/, once destroyed each other: linkers merge what is named alike.
+  // Two structs palpate::PreparedScene, one of compute/ and one of service/, once destroyed each other:
+  // linkers merge what is named alike.
   const auto types = types_by_name();
-  EXPECT_GT(types.size(), 100u);   // the scan sees the tree
-  for (const auto& [name, places] : types) EXPECT_EQ(places.size(), 1u) << name << " is defined in " << places.front() << " and " << places.back();
+  EXPECT_GT(types.size(), 100u);  // the scan sees the tree
+  for (const auto& [name, places] : types)
+    EXPECT_EQ(places.size(), 1u) << name << " is defined in " << places.front() << " and " << places.back();
 }
 
 }  // namespace

@@ -39,9 +39,9 @@
 
 #include "cpu_ref/ref_backend.h"
 #include "model/cache/geometry_cache.h"
-#include "model/scene/geometry_build.h"
-#include "model/mesh/mesh_import.h"
 #include "model/contact/response.h"
+#include "model/mesh/mesh_import.h"
+#include "model/scene/geometry_build.h"
 #include "model/scene/scene_file.h"
 #include "tests/model/temporary_folder.h"
 

@@ -25,7 +25,9 @@ ContentKey key_of(std::string_view text) {
 
 class Cache : public testing::Test {
  protected:
-  DiskCache::Settings settings(std::uint64_t max_bytes = 1 << 20) const { return {folder.path("cache"), max_bytes, 0}; }
+  DiskCache::Settings settings(std::uint64_t max_bytes = 1 << 20) const {
+    return {folder.path("cache"), max_bytes, 0};
+  }
   std::vector<fs::path> files() const {
     std::vector<fs::path> out;
     if (fs::exists(folder.path("cache")))
@@ -67,7 +69,8 @@ TEST_F(Cache, AnyFlippedBitAnyCutAndAnyAdditionCountsAsDamaged) {
     const std::string answer = found(cache, key_of("a"));
     const auto notes = cache.take_notes();
     EXPECT_EQ(notes.size(), answer == "(none)" ? 1u : 0u);
-    for (const auto& note : notes) EXPECT_THAT(note, testing::AllOf(HasSubstr(path.string()), HasSubstr("damaged")));
+    for (const auto& note : notes)
+      EXPECT_THAT(note, testing::AllOf(HasSubstr(path.string()), HasSubstr("damaged")));
     return answer;
   };
   ASSERT_EQ(judged(whole), payload);
@@ -76,7 +79,8 @@ TEST_F(Cache, AnyFlippedBitAnyCutAndAnyAdditionCountsAsDamaged) {
     damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
     EXPECT_EQ(judged(damaged), "(none)") << "bit " << bit;
   }
-  for (std::size_t length = 0; length < whole.size(); ++length) EXPECT_EQ(judged(whole.substr(0, length)), "(none)") << "cut to " << length;
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_EQ(judged(whole.substr(0, length)), "(none)") << "cut to " << length;
   EXPECT_EQ(judged(whole + "x"), "(none)");
   // It is gone, not found damaged again and again; and can be made anew.
   EXPECT_THAT(files(), IsEmpty());
@@ -85,15 +89,16 @@ TEST_F(Cache, AnyFlippedBitAnyCutAndAnyAdditionCountsAsDamaged) {
 }
 
 TEST_F(Cache, WhatWasUsedLongestAgoMakesRoom) {
-  DiskCache cache(settings(3500));   // three entries of 1064 bytes
+  DiskCache cache(settings(3500));  // three entries of 1064 bytes
   const std::string payload(1000, 'x');
   const auto age = [&](const char* name, int hours) {
     for (const fs::path& path : files())
-      if (path.string().find(key_of(name).hex()) != std::string::npos) fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(hours));
+      if (path.string().find(key_of(name).hex()) != std::string::npos)
+        fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(hours));
   };
   for (const char* name : {"a", "b", "c"}) cache.keep("kind", key_of(name), {payload}, 1);
   age("a", 3), age("b", 2), age("c", 1);
-  EXPECT_EQ(found(cache, key_of("a")), payload);   // used just now
+  EXPECT_EQ(found(cache, key_of("a")), payload);  // used just now
   cache.keep("kind", key_of("d"), {payload}, 1);
   EXPECT_EQ(found(cache, key_of("a")), payload);
   EXPECT_EQ(found(cache, key_of("b")), "(none)");
@@ -128,7 +133,7 @@ TEST_F(Cache, AHalfWrittenFileIsNeverReadAndGoesAfterADay) {
   const std::string torn = files().at(0).string() + ".1234.0";
   std::ofstream(torn) << "half";
   cache.keep("kind", key_of("b"), {"x"}, 1);
-  EXPECT_TRUE(fs::exists(torn));   // perhaps somebody still writes it
+  EXPECT_TRUE(fs::exists(torn));  // perhaps somebody still writes it
   fs::last_write_time(torn, fs::file_time_type::clock::now() - std::chrono::hours(25));
   cache.keep("kind", key_of("c"), {"x"}, 1);
   EXPECT_FALSE(fs::exists(torn));
@@ -160,7 +165,8 @@ TEST_F(Cache, TheFolderIsItsOwnersAlone) {
 
 TEST(CacheFolder, TheEnvironmentSaysWhereItIs) {
   const auto usual = [](const char* own, const char* xdg, const char* home) {
-    for (const auto& [name, value] : {std::pair{"PALPATE_CACHE", own}, {"XDG_CACHE_HOME", xdg}, {"HOME", home}})
+    for (const auto& [name, value] :
+         {std::pair{"PALPATE_CACHE", own}, {"XDG_CACHE_HOME", xdg}, {"HOME", home}})
       value ? ::setenv(name, value, 1) : ::unsetenv(name);
     return DiskCache::usual_folder();
   };
@@ -193,8 +199,11 @@ TEST(Archive, ReadsBackWhatWasWrittenAndNothingFromACutOne) {
     return std::tuple(reader.complete(), seven, text, numbers_back, names_back);
   };
   EXPECT_EQ(read(bytes), std::tuple(true, 7, "text", numbers, names));
-  for (const char* before : {"1", "22", "4444"}) EXPECT_EQ(read(std::string_view(before + bytes).substr(std::strlen(before))), std::tuple(true, 7, "text", numbers, names));   // lists that lie anywhere
-  for (std::size_t length = 0; length < bytes.size(); ++length) EXPECT_FALSE(std::get<0>(read(bytes.substr(0, length)))) << length;
+  for (const char* before : {"1", "22", "4444"})
+    EXPECT_EQ(read(std::string_view(before + bytes).substr(std::strlen(before))),
+              std::tuple(true, 7, "text", numbers, names));  // lists that lie anywhere
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_FALSE(std::get<0>(read(bytes.substr(0, length)))) << length;
   EXPECT_FALSE(std::get<0>(read(bytes + "x")));
   // A length that no file could hold allocates nothing.
   std::string greedy = bytes;

@@ -34,12 +34,15 @@ namespace {
 [[noreturn]] void leave_one_behind() {
   if (::fork() == 0)
     for (;;) ::pause();
-  std::abort();   // not SIGSEGV, which a sanitizer turns into an exit code
+  std::abort();  // not SIGSEGV, which a sanitizer turns into an exit code
 }
 
 /// Each step for a time that who asks can't miss; back once, which counts for nothing.
 [[noreturn]] void take_steps(const TellHowFar& tell) {
-  constexpr HowFar kSteps[] = {{ImportStage::kRead, 0.9}, {ImportStage::kShapes, 0.2}, {ImportStage::kRead, 0.5}, {ImportStage::kTriangles, 0.5}};
+  constexpr HowFar kSteps[] = {{ImportStage::kRead, 0.9},
+                               {ImportStage::kShapes, 0.2},
+                               {ImportStage::kRead, 0.5},
+                               {ImportStage::kTriangles, 0.5}};
   for (const HowFar& step : kSteps) {
     tell(step);
     ::usleep(400'000);
@@ -58,13 +61,16 @@ namespace {
 
 }  // namespace
 
-Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report, const std::string& /*folder*/, const Tessellation&, const TellHowFar& tell, bool /*colours*/) {
+Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& report,
+                       const std::string& /*folder*/, const Tessellation&, const TellHowFar& tell,
+                       bool /*colours*/) {
   std::string word;
   std::ifstream(path) >> word;
   if (word == "crash") std::raise(SIGSEGV);
   if (word == "abort") std::fputs("first line\nfree(): invalid \x1b[31mpointer\n", stderr), std::abort();
   if (word == "hang") burn();
-  if (word == "sleep") for (;;) ::pause();
+  if (word == "sleep")
+    for (;;) ::pause();
   if (word == "greed") greed();
   if (word == "chatter") chatter();
   if (word == "fork") leave_one_behind();
@@ -77,7 +83,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   }
   if (word == "steps") take_steps(tell);
   if (word == "nonsteps") {
-    const char nonsense[] = "far\xff\xff\xff\xff\xff";   // stage 255, 4295 times done
+    const char nonsense[] = "far\xff\xff\xff\xff\xff";  // stage 255, 4295 times done
     if (::pwrite(kParcelDescriptor, nonsense, 8, 0) == 8)
       for (;;) ::pause();
   }

@@ -58,7 +58,7 @@ TEST_P(Generators, MeetTheCountsWithClosedOutwardSolids) {
   for (const Mesh* mesh : {&scene->mockup, &scene->tool}) {
     std::size_t covered = 0;
     EXPECT_EQ(solids::open_edges(*mesh), 0u);
-    if (mesh->parts.size() * mesh->vertices.size() < 5'000'000)   // the small ones solid by solid
+    if (mesh->parts.size() * mesh->vertices.size() < 5'000'000)  // the small ones solid by solid
       for (const MeshPart& part : mesh->parts) {
         EXPECT_EQ(solids::open_edges(part_of(*mesh, part)), 0u) << part.path;
         EXPECT_GT(solids::volume(part_of(*mesh, part)), 0) << part.path;
@@ -71,14 +71,15 @@ TEST_P(Generators, MeetTheCountsWithClosedOutwardSolids) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scales, Generators,
-                         testing::Values(Counts{"contacts", 1'000, 1'000}, Counts{"contacts", 25'000, 1'500},
-                                         Counts{"contacts", 1'000'000, 20'000}, Counts{"disassembly", 1'000, 1'000},
-                                         Counts{"disassembly", 3'000, 5'000}, Counts{"disassembly", 100'000, 2'000},
-                                         Counts{"disassembly", 500'000, 50'000}),
-                         [](const auto& test_case) {
-                           return std::string(test_case.param.name) + "_" + std::to_string(test_case.param.triangles);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Scales, Generators,
+    testing::Values(Counts{"contacts", 1'000, 1'000}, Counts{"contacts", 25'000, 1'500},
+                    Counts{"contacts", 1'000'000, 20'000}, Counts{"disassembly", 1'000, 1'000},
+                    Counts{"disassembly", 3'000, 5'000}, Counts{"disassembly", 100'000, 2'000},
+                    Counts{"disassembly", 500'000, 50'000}),
+    [](const auto& test_case) {
+      return std::string(test_case.param.name) + "_" + std::to_string(test_case.param.triangles);
+    });
 
 TEST(Generate, ZeroTrianglesMeansTheChaptersCounts) {
   const auto contacts = generate_scene("contacts", 0, 0);
@@ -92,9 +93,10 @@ TEST(Generate, ZeroTrianglesMeansTheChaptersCounts) {
 }
 
 TEST(Generate, TheBytesAreTheSameEveryTimeAndOnEveryMachine) {
-  // What came out when the scenes were last changed on purpose. Another value on another machine or compiler means that
-  // something in there is not sums, products and square roots.
-  const std::map<std::string, std::uint64_t> expected{{"contacts", 11619419401641174096ull}, {"disassembly", 12623155971331352674ull}};
+  // What came out when the scenes were last changed on purpose. Another value on another machine or compiler
+  // means that something in there is not sums, products and square roots.
+  const std::map<std::string, std::uint64_t> expected{{"contacts", 11619419401641174096ull},
+                                                      {"disassembly", 12623155971331352674ull}};
   for (const std::string& name : generator_names()) {
     const auto once = generate_scene(name, 0, 0), again = generate_scene(name, 0, 0);
     ASSERT_TRUE(once && again);
@@ -143,7 +145,8 @@ double play(const GeneratedScene& scene, const GuidePoint& at) {
 TEST(Generate, TheClampGoesRoundEveryBendWithoutTouchingThePipeWhenCentred) {
   const auto scene = generate_scene("disassembly", 0, 0);
   ASSERT_TRUE(scene);
-  for (std::size_t i = 5; i < scene->guide.size(); i += 10) EXPECT_GT(play(*scene, scene->guide[i]), 0.005) << i;
+  for (std::size_t i = 5; i < scene->guide.size(); i += 10)
+    EXPECT_GT(play(*scene, scene->guide[i]), 0.005) << i;
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What the importer's process may do to us: nothing. Its stand-in (faulty_reader.cpp) does what a file tells it.
+// What the importer's process may do to us: nothing. Its stand-in (faulty_reader.cpp) does what a file tells
+// it.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,14 +23,16 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr ImportLimits kLimits{.memory_bytes = 400u << 20, .seconds = 20}, kShort{.memory_bytes = 400u << 20, .seconds = 0.5};
+constexpr ImportLimits kLimits{.memory_bytes = 400u << 20, .seconds = 20},
+    kShort{.memory_bytes = 400u << 20, .seconds = 0.5};
 
 class ImportChild : public testing::Test {
  protected:
   ImportChild() : parcel_(::memfd_create("parcel", MFD_CLOEXEC)) {}
   ~ImportChild() override { ::close(parcel_); }
 
-  ChildEnd run(const std::string& word, const ImportLimits& limits = kLimits, const ImportProgress& progress = {}) {
+  ChildEnd run(const std::string& word, const ImportLimits& limits = kLimits,
+               const ImportProgress& progress = {}) {
     file_ = folder_.write("mesh.stl", word);
     const auto end = run_import_child(PALPATE_IMPORT_FAULTY, file_, 0.25, limits, parcel_, progress);
     EXPECT_TRUE(end) << end.error().sentence;
@@ -39,7 +42,8 @@ class ImportChild : public testing::Test {
 
   /// Waits until so many are running; a killed process takes its time to go, up to 10 s on a busy machine.
   int wait_for(int count) const {
-    for (int i = 0; i < 1000 && running() != count; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (int i = 0; i < 1000 && running() != count; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return running();
   }
 
@@ -48,11 +52,13 @@ class ImportChild : public testing::Test {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
       char text[4096];
-      std::FILE* file = std::fopen((entry.path() / "cmdline").c_str(), "r");   // not a stream, which throws when the process goes meanwhile
+      std::FILE* file = std::fopen((entry.path() / "cmdline").c_str(),
+                                   "r");  // not a stream, which throws when the process goes meanwhile
       if (!file) continue;
       const std::string arguments(text, std::fread(text, 1, sizeof text, file));
       std::fclose(file);
-      count += arguments.find("import-faulty") != std::string::npos && arguments.find(file_) != std::string::npos;
+      count +=
+          arguments.find("import-faulty") != std::string::npos && arguments.find(file_) != std::string::npos;
     }
     return count;
   }
@@ -85,11 +91,13 @@ TEST_F(ImportChild, ACrashIsToldWithItsSignalAndLastWords) {
   EXPECT_EQ(end.last_words, "free(): invalid ?[31mpointer") << "without what a terminal would obey";
 }
 
-TEST_F(ImportChild, ABusyHangEndsWithItsProcessorTime) { EXPECT_EQ(run("hang", kShort).how, ChildEnd::kOutOfTime); }
+TEST_F(ImportChild, ABusyHangEndsWithItsProcessorTime) {
+  EXPECT_EQ(run("hang", kShort).how, ChildEnd::kOutOfTime);
+}
 
 TEST_F(ImportChild, AnIdleHangEndsByTheClock) { EXPECT_EQ(run("sleep", kShort).how, ChildEnd::kOutOfTime); }
 
-#ifndef PALPATE_SANITIZED   // sanitizers reserve terabytes of address space, so there it has no limit
+#ifndef PALPATE_SANITIZED  // sanitizers reserve terabytes of address space, so there it has no limit
 TEST_F(ImportChild, GreedEndsAtTheLimitOfMemory) { EXPECT_EQ(run("greed").how, ChildEnd::kOutOfMemory); }
 #endif
 
@@ -102,7 +110,7 @@ TEST_F(ImportChild, EndlessWordsNeitherFillMemoryNorHang) {
 TEST_F(ImportChild, WhatItStartedIsGoneToo) { EXPECT_EQ(run("fork").how, ChildEnd::kCrashed); }
 
 TEST_F(ImportChild, ItInheritsNoDescriptor) {
-  const int open_to_children = ::open("/dev/null", O_RDONLY);   // on purpose without close-on-exec
+  const int open_to_children = ::open("/dev/null", O_RDONLY);  // on purpose without close-on-exec
   EXPECT_EQ(run("descriptors").last_words, "open: 0 1 2 3");
   ::close(open_to_children);
 }
@@ -133,7 +141,7 @@ TEST_F(ImportChild, HowFarItIsGetsThrough) {
     EXPECT_GE(done, last);
     last = done;
     if (whats.empty() || whats.back() != what) whats.emplace_back(what);
-    return done < 0.8;   // it stays at half of its last stage
+    return done < 0.8;  // it stays at half of its last stage
   });
   EXPECT_EQ(end.how, ChildEnd::kStopped);
   EXPECT_NEAR(last, (2 + 0.5) / 3, 1e-5);
@@ -163,9 +171,10 @@ TEST_F(ImportChild, ItWorksWhereSignalsOfChildrenAreIgnored) {
 
 TEST_F(ImportChild, ItDiesWithTheOneWhoAsked) {
   file_ = folder_.write("mesh.stl", "sleep");
-  const pid_t asker = ::fork();   // this test has one thread
+  const pid_t asker = ::fork();  // this test has one thread
   if (asker == 0) {
-    (void)run_import_child(PALPATE_IMPORT_FAULTY, file_, 1, {.memory_bytes = 400u << 20, .seconds = 100}, parcel_, {});
+    (void)run_import_child(PALPATE_IMPORT_FAULTY, file_, 1, {.memory_bytes = 400u << 20, .seconds = 100},
+                           parcel_, {});
     ::_exit(0);
   }
   EXPECT_EQ(wait_for(1), 1);
@@ -177,15 +186,16 @@ TEST_F(ImportChild, ItDiesWithTheOneWhoAsked) {
 // The one who asked may be gone before the child has said that it wants to go with it.
 TEST_F(ImportChild, ItDoesNotBeginForOneWhoIsGone) {
   file_ = folder_.write("mesh.stl", "sleep");
-  const std::string nobody = std::to_string(::getppid());   // somebody, but not its parent
+  const std::string nobody = std::to_string(::getppid());  // somebody, but not its parent
   const pid_t child = ::fork();
   if (child == 0) {
-    ::execl(PALPATE_IMPORT_FAULTY, PALPATE_IMPORT_FAULTY, file_.c_str(), "0x1p+0", "419430400", "100", ".", nobody.c_str(), "0", "15", "", "1", nullptr);
+    ::execl(PALPATE_IMPORT_FAULTY, PALPATE_IMPORT_FAULTY, file_.c_str(), "0x1p+0", "419430400", "100", ".",
+            nobody.c_str(), "0", "15", "", "1", nullptr);
     ::_exit(127);
   }
   int status = -1;
   pid_t ended = 0;
-  for (int i = 0; i < 1000 && ended == 0; ++i) {   // 10 s on a busy machine
+  for (int i = 0; i < 1000 && ended == 0; ++i) {  // 10 s on a busy machine
     ended = ::waitpid(child, &status, WNOHANG);
     if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "model/generate/solids.h"
-#include "model/scene/geometry_build.h"
 #include "model/lattice/voxel_size.h"
+#include "model/scene/geometry_build.h"
 
 namespace palpate {
 namespace {
@@ -17,13 +17,15 @@ Mesh triangle(const Vec3& a, const Vec3& b, const Vec3& c) { return {{a, b, c}, 
 std::int64_t reach_of(const VoxelGrid& grid) {
   std::int64_t reach = 0;
   for (int k = 0; k < 3; ++k)
-    reach = std::max({reach, -std::int64_t{grid.origin[k]}, grid.origin[k] + std::int64_t{grid.size} * 8 * grid.bricks[k]});
+    reach = std::max({reach, -std::int64_t{grid.origin[k]},
+                      grid.origin[k] + std::int64_t{grid.size} * 8 * grid.bricks[k]});
   return reach;
 }
 
 TEST(Lattice, StepIsThePowerOfTwoThatJustFits) {
   for (const double size : {1e-4, 0.1, 3.0, 40.0, 26000.0}) {
-    const Mesh mockup = solids::box(Vec3(-size / 2), Vec3(size / 2)), tool = solids::box(Vec3(0), Vec3(size / 10));
+    const Mesh mockup = solids::box(Vec3(-size / 2), Vec3(size / 2)),
+               tool = solids::box(Vec3(0), Vec3(size / 10));
     const auto built = build_geometry(mockup, tool, {});
     ASSERT_TRUE(built) << built.error().sentence;
     int exponent = 0;
@@ -55,13 +57,14 @@ TEST(Lattice, ToolEqualToTheMockupSnapsToTheSamePoints) {
 
 TEST(Lattice, PointsSnapToTheNearest) {
   const Mesh mesh = solids::sphere(0.7, 20, 12);
-  const Lattice lattice{0x1p-10, Vec3(0)};   // a coarse one, about a millimetre
+  const Lattice lattice{0x1p-10, Vec3(0)};  // a coarse one, about a millimetre
   MeshReport report;
   const auto built = build_lattice_mesh(mesh, lattice, {}, report);
   ASSERT_TRUE(built);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const Vec3 off = lattice.step_m * Vec3(built->corner(t, k)) - mesh.vertices[mesh.triangles[t][static_cast<std::size_t>(k)]];
+      const Vec3 off = lattice.step_m * Vec3(built->corner(t, k)) -
+                       mesh.vertices[mesh.triangles[t][static_cast<std::size_t>(k)]];
       for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(off[axis]), 0.5 * lattice.step_m);
     }
 }
@@ -87,7 +90,8 @@ TEST(Weld, CollapsedTrianglesKeepTheirNumber) {
   Mesh mesh = solids::box(Vec3(0), Vec3(1));
   mesh.triangles.insert(mesh.triangles.begin() + 3, {0, 1, 1});
   mesh.vertices.push_back(mesh.vertices[0] * 0.5 + mesh.vertices[1] * 0.5);
-  mesh.triangles.push_back({0, 1, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});   // three points on a line
+  mesh.triangles.push_back(
+      {0, 1, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});  // three points on a line
   MeshReport report;
   const auto built = build_lattice_mesh(mesh, choose_lattice(mesh, {}).value(), {}, report);
   ASSERT_TRUE(built);
@@ -101,13 +105,13 @@ TEST(Weld, CollapsedTrianglesKeepTheirNumber) {
 }
 
 TEST(Normals, WeightIsTheInverseOfTheDominantComponent) {
-  const Mesh mesh = triangle({0, 0, 0}, {1, 0, 1}, {0, 1, 0});   // normal (−1, 0, 1): a tie between x and z
+  const Mesh mesh = triangle({0, 0, 0}, {1, 0, 1}, {0, 1, 0});  // normal (−1, 0, 1): a tie between x and z
   MeshReport report;
   const auto built = build_lattice_mesh(mesh, choose_lattice(mesh, {}).value(), {}, report);
   ASSERT_TRUE(built);
   EXPECT_EQ(built->sample_axis[0], 0);
   EXPECT_EQ(built->sample_weight_q30[0], static_cast<std::uint32_t>(std::nearbyint(std::sqrt(2.0) * 0x1p30)));
-  EXPECT_EQ(built->unit_normal_q30[0], Int3(-759250125, 0, 759250125));   // 2^30 / √2, rounded
+  EXPECT_EQ(built->unit_normal_q30[0], Int3(-759250125, 0, 759250125));  // 2^30 / √2, rounded
 }
 
 TEST(Grid, LeavesTwoVoxelsBelowAndThreeAbove) {
@@ -147,33 +151,39 @@ TEST(VoxelSize, SettingsBeyondTheLimitsAreRefused) {
   EXPECT_THAT(refused(0.01, std::nan("")), HasSubstr("sample_spacing is nan m"));
 }
 
-// Two bodies 100 m apart and a tool of 16 cm: the least of the cost was a voxel of which 70,160 lay along an axis.
+// Two bodies 100 m apart and a tool of 16 cm: the least of the cost was a voxel of which 70,160 lay along an
+// axis.
 TEST(VoxelSize, AutoIsUsableByEveryBackEnd) {
   Mesh mockup = solids::box(Vec3(0), Vec3(0.1));
   const Mesh far = solids::box(Vec3(100, 0, 0), Vec3(100.1, 0.1, 0.1)), tool = solids::sphere(0.08, 40, 20);
   const auto vertices = static_cast<std::uint32_t>(mockup.vertices.size());
-  for (const auto& [a, b, c] : far.triangles) mockup.triangles.push_back({a + vertices, b + vertices, c + vertices});
+  for (const auto& [a, b, c] : far.triangles)
+    mockup.triangles.push_back({a + vertices, b + vertices, c + vertices});
   mockup.vertices.insert(mockup.vertices.end(), far.vertices.begin(), far.vertices.end());
   mockup.parts = {{"both", 0, static_cast<std::uint32_t>(mockup.triangles.size())}};
   const auto built = build_geometry(mockup, tool, {});
   ASSERT_TRUE(built) << built.error().sentence;
   EXPECT_LE(built->mockup_grid.bricks.x, kMaxAutoBricksAlong);
-  EXPECT_GE(built->mockup_grid.bricks.x, kMaxAutoBricksAlong / 2);   // no larger than need be
+  EXPECT_GE(built->mockup_grid.bricks.x, kMaxAutoBricksAlong / 2);  // no larger than need be
 }
 
 TEST(VoxelSize, ALargeVoxelStillFitsTheLattice) {
-  const auto built = build_geometry(solids::box(Vec3(0), Vec3(1)), solids::sphere(0.05), {.voxel_size_m = 1.0});
+  const auto built =
+      build_geometry(solids::box(Vec3(0), Vec3(1)), solids::sphere(0.05), {.voxel_size_m = 1.0});
   ASSERT_TRUE(built) << built.error().sentence;
   EXPECT_NEAR(built->mockup_grid.size * built->lattice.step_m, 1.0, 2 * built->lattice.step_m);
   EXPECT_LE(reach_of(built->mockup_grid) + 2 * std::int64_t{built->tool_radius}, kLatticeReach);
 }
 
 TEST(VoxelSize, ATinyToolInAVastMockupStillFitsTheLattice) {
-  // Memory wants voxels of centimetres, a 24th of the tool is 42 µm: the lattice must make room for the former. Many sheets make
-  // the area, and so the voxels, large; the sizes are chosen so that the first lattice just fits.
+  // Memory wants voxels of centimetres, a 24th of the tool is 42 µm: the lattice must make room for the
+  // former. Many sheets make the area, and so the voxels, large; the sizes are chosen so that the first
+  // lattice just fits.
   for (const double size : {1.0, 1.2, 1.4, 1.6, 1.8, 1.99}) {
     Mesh mockup;
-    for (int i = 0; i < 400; ++i) solids::append(mockup, solids::box(Vec3(0, 0, size * i / 400), Vec3(size, size, size * (i + 0.5) / 400)), "plate");
+    for (int i = 0; i < 400; ++i)
+      solids::append(
+          mockup, solids::box(Vec3(0, 0, size * i / 400), Vec3(size, size, size * (i + 0.5) / 400)), "plate");
     const auto built = build_geometry(mockup, solids::sphere(0.0005), {});
     ASSERT_TRUE(built) << built.error().sentence;
     EXPECT_GT(built->mockup_grid.size * built->lattice.step_m, 0.001);
@@ -207,7 +217,8 @@ TEST(CentreOfMass, OfTheVolumeWhenClosedElseOfTheArea) {
   const Mesh box = solids::box(Vec3(5), Vec3(5.2, 5.4, 5.6));
   const auto closed = build_geometry(mockup, box, {});
   ASSERT_TRUE(closed);
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(closed->tool_gc_m[k], (box.vertices[0] + Vec3(0.1, 0.2, 0.3))[k], 2 * closed->lattice.step_m);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(closed->tool_gc_m[k], (box.vertices[0] + Vec3(0.1, 0.2, 0.3))[k], 2 * closed->lattice.step_m);
   Mesh open = box;
   open.triangles.resize(10);
   open.parts[0].triangle_count = 10;

@@ -1,4 +1,5 @@
-// Patches are about the faces that a CAD file knows, and no face is too small or too thin for the pressure field.
+// Patches are about the faces that a CAD file knows, and no face is too small or too thin for the pressure
+// field.
 #include "model/mesh/patches.h"
 
 #include <gtest/gtest.h>
@@ -14,16 +15,16 @@
 #include "cpu_ref/exact.h"
 #include "cpu_ref/samples.h"
 #include "model/generate/solids.h"
-#include "model/scene/geometry_build.h"
-#include "model/mesh/mass.h"
 #include "model/lattice/triangle.h"
+#include "model/mesh/mass.h"
+#include "model/scene/geometry_build.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kStep = 0x1p-20;                       // m, about a micrometre
-constexpr std::int32_t kSpacing = 1468;                 // 1.4 mm
-constexpr double kSquare = double{kSpacing} * kSpacing; // steps²
+constexpr double kStep = 0x1p-20;                        // m, about a micrometre
+constexpr std::int32_t kSpacing = 1468;                  // 1.4 mm
+constexpr double kSquare = double{kSpacing} * kSpacing;  // steps²
 
 LatticeMesh build(const Mesh& mesh, const Vec3& origin_m = Vec3(0), std::int32_t spacing = kSpacing) {
   MeshReport report;
@@ -33,14 +34,18 @@ LatticeMesh build(const Mesh& mesh, const Vec3& origin_m = Vec3(0), std::int32_t
   return std::move(*built);
 }
 
-double area_of(const LatticeMesh& mesh, std::uint32_t triangle) { return glm::length(Vec3(raw_normal(mesh, triangle))) / 2; }
-Vec3 normal_of(const LatticeMesh& mesh, std::uint32_t triangle) { return Vec3(mesh.unit_normal_q30[triangle]) * 0x1p-30; }
+double area_of(const LatticeMesh& mesh, std::uint32_t triangle) {
+  return glm::length(Vec3(raw_normal(mesh, triangle))) / 2;
+}
+Vec3 normal_of(const LatticeMesh& mesh, std::uint32_t triangle) {
+  return Vec3(mesh.unit_normal_q30[triangle]) * 0x1p-30;
+}
 
 /// What the field sees of the surface, s² w.
 struct Seen {
   double area = 0;
-  Vec3 normal{0};   ///< Σ s² w n̂: 0 for a closed surface
-  double patch_worst = 0;   ///< largest difference from a patch's area
+  Vec3 normal{0};          ///< Σ s² w n̂: 0 for a closed surface
+  double patch_worst = 0;  ///< largest difference from a patch's area
 };
 Seen seen(const LatticeMesh& mesh, std::int32_t spacing = kSpacing) {
   Seen out;
@@ -57,20 +62,23 @@ Seen seen(const LatticeMesh& mesh, std::int32_t spacing = kSpacing) {
     add(t, count_samples(mesh, t, spacing)[0] * mesh.field_weight_q30[t]);
   }
   for (const ExtraSample& extra : mesh.extra_samples) add(extra.triangle, extra.weight_q30);
-  for (std::size_t p = 0; p < true_area.size(); ++p) out.patch_worst = std::max(out.patch_worst, std::abs(patch_area[p] - true_area[p]));
+  for (std::size_t p = 0; p < true_area.size(); ++p)
+    out.patch_worst = std::max(out.patch_worst, std::abs(patch_area[p] - true_area[p]));
   return out;
 }
 
 /// A needle along −z with a flat end, its tip at z = 0.
 Mesh needle(double tip_radius, double radius, double length) {
-  return solids::revolve({{tip_radius, 0}, {radius, length / 4}, {radius, length}}, 24, solids::Ends::kPoints);
+  return solids::revolve({{tip_radius, 0}, {radius, length / 4}, {radius, length}}, 24,
+                         solids::Ends::kPoints);
 }
 
 TEST(Patches, ACubeHasSixAndACylinderThree) {
   const LatticeMesh cube = build(solids::box(Vec3(0), Vec3(0.02), Int3(3)));
   EXPECT_EQ(cube.patch_count, 6u);
   EXPECT_EQ(build(solids::cylinder(0.01, 0.03, 48, 2)).patch_count, 3u);
-  EXPECT_EQ(build(solids::cylinder(0.01, 0.03, 8)).patch_count, 10u);   // 45° from side to side: no longer round
+  EXPECT_EQ(build(solids::cylinder(0.01, 0.03, 8)).patch_count,
+            10u);  // 45° from side to side: no longer round
   EXPECT_EQ(build(solids::sphere(0.01)).patch_count, 1u);
   for (std::uint32_t t = 0; t < cube.triangles.size(); ++t)
     for (std::uint32_t other = 0; other < t; ++other)
@@ -99,7 +107,7 @@ TEST(Patches, AreNumberedByTheirSmallestTriangleAndLeaveCollapsedOnesOut) {
 TEST(Patches, EndWhereAPartEnds) {
   Mesh two;
   solids::append(two, solids::box(Vec3(0), Vec3(0.02)), "left");
-  solids::append(two, solids::box(Vec3(0.02, 0, 0), Vec3(0.04, 0.02, 0.02)), "right");   // flush with it
+  solids::append(two, solids::box(Vec3(0.02, 0, 0), Vec3(0.04, 0.02, 0.02)), "right");  // flush with it
   EXPECT_EQ(build(two).patch_count, 12u);
   two.parts = {{"both", 0, 24}};
   EXPECT_LT(build(two).patch_count, 12u);
@@ -113,7 +121,8 @@ TEST(FieldWeights, CountTheSamplesThatTheReferenceVisitsLevelByLevel) {
       // Few coordinates, many of them on the grid: ties of every kind.
       std::uniform_int_distribution<std::int32_t> coordinate(-24, 24);
       LatticeMesh mesh;
-      for (int k = 0; k < 3; ++k) mesh.vertices.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+      for (int k = 0; k < 3; ++k)
+        mesh.vertices.emplace_back(coordinate(random), coordinate(random), coordinate(random));
       mesh.triangles = {{0, 1, 2}};
       const Long3 raw = raw_normal(mesh.vertices[0], mesh.vertices[1], mesh.vertices[2]);
       mesh.flags = {static_cast<std::uint8_t>(raw == Long3(0) ? kTriangleCollapsed : 0)};
@@ -124,9 +133,12 @@ TEST(FieldWeights, CountTheSamplesThatTheReferenceVisitsLevelByLevel) {
       everywhere.max = Int3(100);
       std::array<double, kSampleLevels + 1> visited{};
       cpu_ref::for_each_sample(mesh, 0, spacing, everywhere, [&](const Int3& p) {
-        const auto cell = [&](int k) { return static_cast<std::int64_t>(std::floor(static_cast<double>(p[k]) / spacing)); };
+        const auto cell = [&](int k) {
+          return static_cast<std::int64_t>(std::floor(static_cast<double>(p[k]) / spacing));
+        };
         const int axis = mesh.sample_axis[0];
-        for (int level = cpu_ref::level_of({cell((axis + 1) % 3), cell((axis + 2) % 3)}); level >= 0; --level) visited[static_cast<std::size_t>(level)] += 1;
+        for (int level = cpu_ref::level_of({cell((axis + 1) % 3), cell((axis + 2) % 3)}); level >= 0; --level)
+          visited[static_cast<std::size_t>(level)] += 1;
       });
       ASSERT_EQ(count_samples(mesh, 0, spacing), visited) << spacing << " " << i;
       total += visited[0];
@@ -135,7 +147,8 @@ TEST(FieldWeights, CountTheSamplesThatTheReferenceVisitsLevelByLevel) {
   EXPECT_GT(total, 100000);
 }
 
-// Of a triangle of 2^22 cells the samples are not counted one by one; its border is 10^4 cells long, so that is right to a 400th.
+// Of a triangle of 2^22 cells the samples are not counted one by one; its border is 10^4 cells long, so that
+// is right to a 400th.
 TEST(FieldWeights, CountTheSamplesOfAVastTriangleByItsArea) {
   LatticeMesh mesh;
   mesh.vertices = {Int3(0), Int3(0, 2048 * 64, 0), Int3(0, 0, 2048 * 64)};
@@ -144,7 +157,8 @@ TEST(FieldWeights, CountTheSamplesOfAVastTriangleByItsArea) {
   mesh.sample_axis = {0};
   mesh.unit_normal_q30 = {Int3(1 << 30, 0, 0)};
   const auto counted = count_samples(mesh, 0, 64);
-  for (int level = 0; level <= kSampleLevels; ++level) EXPECT_EQ(counted[static_cast<std::size_t>(level)], std::ldexp(2048.0 * 2048 / 2, -level));
+  for (int level = 0; level <= kSampleLevels; ++level)
+    EXPECT_EQ(counted[static_cast<std::size_t>(level)], std::ldexp(2048.0 * 2048 / 2, -level));
   double visited = 0;
   cpu_ref::Box everywhere;
   everywhere.min = Int3(-1);
@@ -153,8 +167,10 @@ TEST(FieldWeights, CountTheSamplesOfAVastTriangleByItsArea) {
   EXPECT_NEAR(visited, counted[0], counted[0] / 400);
 }
 
-/// The largest and the smallest number of samples that lie in a strip of `width` × `length` steps along an axis, wherever it begins.
-std::pair<double, double> in_strips(std::int32_t width, std::int32_t length, bool along_u, int level, std::int32_t spacing) {
+/// The largest and the smallest number of samples that lie in a strip of `width` × `length` steps along an
+/// axis, wherever it begins.
+std::pair<double, double> in_strips(std::int32_t width, std::int32_t length, bool along_u, int level,
+                                    std::int32_t spacing) {
   std::vector<Int3> all;
   cpu_ref::Box everywhere;
   everywhere.min = Int3(-(1 << 22));
@@ -167,7 +183,9 @@ std::pair<double, double> in_strips(std::int32_t width, std::int32_t length, boo
   mesh.sample_axis = {0};
   mesh.unit_normal_q30 = {Int3(1 << 30, 0, 0)};
   cpu_ref::for_each_sample(mesh, 0, spacing, everywhere, [&](const Int3& p) {
-    if (cpu_ref::level_of({cpu_ref::floor_divide(std::int64_t{p.y}, std::int64_t{spacing}), cpu_ref::floor_divide(std::int64_t{p.z}, std::int64_t{spacing})}) >= level) all.push_back(p);
+    if (cpu_ref::level_of({cpu_ref::floor_divide(std::int64_t{p.y}, std::int64_t{spacing}),
+                           cpu_ref::floor_divide(std::int64_t{p.z}, std::int64_t{spacing})}) >= level)
+      all.push_back(p);
   });
   std::pair<double, double> out{0, 1e9};
   for (std::int32_t from = -length; from < length; from += width / 5 + 1) {
@@ -182,13 +200,15 @@ std::pair<double, double> in_strips(std::int32_t width, std::int32_t length, boo
   return out;
 }
 
-// A strip of a fifth of a cell, 40 cells long, should hold 8 samples at level 0, where a square grid has 40 or none. Of n multiples of the golden ratio in a row an interval's share is off
-// by less than 3 (its discrepancy: 1 + log n / log of the ratio, over 3, rounded up): 5 to 11. Coarser levels choose among few places in a block, and are asked for some and no more than three times their share (chosen).
+// A strip of a fifth of a cell, 40 cells long, should hold 8 samples at level 0, where a square grid has 40
+// or none. Of n multiples of the golden ratio in a row an interval's share is off by less than 3 (its
+// discrepancy: 1 + log n / log of the ratio, over 3, rounded up): 5 to 11. Coarser levels choose among few
+// places in a block, and are asked for some and no more than three times their share (chosen).
 TEST(SampleGrid, AStripAlongAnAxisHoldsItsShareOfSamplesAtEveryLevel) {
   constexpr std::int32_t kCell = 1000;
   for (const bool along_u : {false, true})
     for (int level = 0; level <= kSampleLevels; ++level) {
-      const std::int32_t cell = kCell << level / 2;   // of the level's own; on a chessboard half as many
+      const std::int32_t cell = kCell << level / 2;  // of the level's own; on a chessboard half as many
       const double share = level % 2 == 0 ? 8 : 4;
       const auto [most, least] = in_strips(cell / 5, 40 * cell, along_u, level, kCell);
       EXPECT_LE(most, level == 0 ? 11 : 3 * share) << level;
@@ -210,7 +230,7 @@ TEST(FieldWeights, ANeedlesTipHasExtraSamplesOfItsArea) {
     double felt = 0;
     for (const ExtraSample& extra : mesh.extra_samples)
       if (mesh.patch[extra.triangle] == tip) felt += extra.weight_q30 * 0x1p-30 * kSquare;
-    EXPECT_NEAR(felt, area, 0.05);   // of up to 24 weights, each half a Q30 of s²
+    EXPECT_NEAR(felt, area, 0.05);  // of up to 24 weights, each half a Q30 of s²
   }
 }
 
@@ -229,7 +249,8 @@ TEST(FieldWeights, EveryPatchOfASmallBodyIsSeenAsLargeAsItIs) {
   }
 }
 
-// A side's weights make up for what its border adds or takes: of 5,000 samples, 4 × 70 at the border, a hundredth at most.
+// A side's weights make up for what its border adds or takes: of 5,000 samples, 4 × 70 at the border, a
+// hundredth at most.
 TEST(FieldWeights, OfLargeFacesAreNearlyTheGrids) {
   const LatticeMesh box = build(solids::box(Vec3(0.001), Vec3(0.1), Int3(2)));
   for (std::uint32_t t = 0; t < box.triangles.size(); ++t)
@@ -237,8 +258,9 @@ TEST(FieldWeights, OfLargeFacesAreNearlyTheGrids) {
   EXPECT_TRUE(box.extra_samples.empty());
 }
 
-// The push of a pressure that is the same everywhere, nothing all in all. A side, a quarter of the mantle, is off by a sixteenth of its area at
-// most; three sides look the way of an axis at least in part, and a shadow is 1/π of the mantle: 3/64 π = 15 % of it.
+// The push of a pressure that is the same everywhere, nothing all in all. A side, a quarter of the mantle, is
+// off by a sixteenth of its area at most; three sides look the way of an axis at least in part, and a shadow
+// is 1/π of the mantle: 3/64 π = 15 % of it.
 TEST(FieldWeights, OfAThinPinCancel) {
   for (int i = 0; i < 20; ++i) {
     const LatticeMesh pin = build(solids::cylinder(0.0005, 0.05), {0.00131 * i, 0.00117 * i, 0.00071 * i});
@@ -252,11 +274,13 @@ TEST(FieldWeights, OfAThinPinCancel) {
       const Vec3 n = normal_of(pin, t);
       for (int k = 0; k < 3; ++k) away[2 * k + (n[k] > 0)] += kSquare * 0x1p-30 * weight * std::abs(n[k]);
     };
-    for (std::uint32_t t = 0; t < pin.triangles.size(); ++t) add(t, count_samples(pin, t, kSpacing)[0] * pin.field_weight_q30[t]);
+    for (std::uint32_t t = 0; t < pin.triangles.size(); ++t)
+      add(t, count_samples(pin, t, kSpacing)[0] * pin.field_weight_q30[t]);
     for (const ExtraSample& extra : pin.extra_samples) add(extra.triangle, extra.weight_q30);
     const double shadow = 0.001 * 0.05 / kStep / kStep, end = shadow / 0.05 * 0.001 * 0.7854;
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(away[k], shadow, 0.15 * shadow) << i << " " << k;
-    for (int k = 4; k < 6; ++k) EXPECT_NEAR(away[k], end, 0.01 * end) << i << " " << k;   // 48 sides: 0.3 % less than a circle
+    for (int k = 4; k < 6; ++k)
+      EXPECT_NEAR(away[k], end, 0.01 * end) << i << " " << k;  // 48 sides: 0.3 % less than a circle
   }
 }
 
@@ -266,7 +290,7 @@ TEST(FieldWeights, TheEdgeOfAThinSheetIsSeenAllAlong) {
     const Vec3 at(0.00131 * i, 0.00117 * i, 0.00071 * i);
     const LatticeMesh sheet = build(solids::box(at, at + Vec3(0.4, 0.2, 0.0008)));
     const Seen whole = seen(sheet);
-    EXPECT_LT(glm::length(whole.normal), 0.002 * measure(sheet).area);   // the large faces see the same grid
+    EXPECT_LT(glm::length(whole.normal), 0.002 * measure(sheet).area);  // the large faces see the same grid
     for (const double side : {-1, 1}) {
       std::vector<double> along;
       for (const ExtraSample& extra : sheet.extra_samples)
@@ -285,7 +309,8 @@ TEST(FieldWeights, TheEdgeOfAThinSheetIsSeenAllAlong) {
 TEST(ExtraSamples, LieOnTheirTrianglesAndAscend) {
   std::size_t count = 0;
   for (int i = 0; i < 10; ++i) {
-    Mesh turned = solids::moved(needle(0.0003, 0.0006, 0.05), {Vec3(0.00131 * i, 0, 0), glm::normalize(Quat(1, 0.1 * i, 0.3, -0.2))});
+    Mesh turned = solids::moved(needle(0.0003, 0.0006, 0.05),
+                                {Vec3(0.00131 * i, 0, 0), glm::normalize(Quat(1, 0.1 * i, 0.3, -0.2))});
     const LatticeMesh mesh = build(turned);
     count += mesh.extra_samples.size();
     std::uint32_t before = 0;
@@ -293,9 +318,11 @@ TEST(ExtraSamples, LieOnTheirTrianglesAndAscend) {
       EXPECT_GE(extra.triangle, before);
       EXPECT_GT(extra.weight_q30, 0u);
       before = extra.triangle;
-      const Vec3 a(mesh.corner(extra.triangle, 0)), b(mesh.corner(extra.triangle, 1)), c(mesh.corner(extra.triangle, 2)), p(extra.point);
+      const Vec3 a(mesh.corner(extra.triangle, 0)), b(mesh.corner(extra.triangle, 1)),
+          c(mesh.corner(extra.triangle, 2)), p(extra.point);
       const Vec3 n = glm::normalize(glm::cross(b - a, c - a));
-      EXPECT_LT(std::abs(glm::dot(n, p - a)), std::sqrt(3.0));   // each component is rounded down by less than a step
+      EXPECT_LT(std::abs(glm::dot(n, p - a)),
+                std::sqrt(3.0));  // each component is rounded down by less than a step
       for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
         EXPECT_GT(glm::dot(glm::cross(n, glm::normalize(to - from)), p - from), -std::sqrt(3.0));
     }
@@ -306,11 +333,15 @@ TEST(ExtraSamples, LieOnTheirTrianglesAndAscend) {
 // A fine comb: 0.3 mm teeth under samples 1.4 mm apart.
 TEST(ExtraSamples, OfCoarserLevelsAreFewerAndStandForTheSameAreaPatchByPatch) {
   Mesh comb = needle(0.0003, 0.0006, 0.05);
-  for (int i = 1; i < 8; ++i) solids::append(comb, solids::moved(needle(0.0003, 0.0006, 0.05), {Vec3(0.002 * i, 0, 0), Quat(1, 0, 0, 0)}), "tooth");
+  for (int i = 1; i < 8; ++i)
+    solids::append(comb,
+                   solids::moved(needle(0.0003, 0.0006, 0.05), {Vec3(0.002 * i, 0, 0), Quat(1, 0, 0, 0)}),
+                   "tooth");
   const LatticeMesh mesh = build(comb);
   ASSERT_GT(mesh.extra_samples.size(), 200u);
   std::vector<double> area(mesh.patch_count, 0);
-  for (const ExtraSample& extra : mesh.extra_samples) area[mesh.patch[extra.triangle]] += extra.weight_q30 * 0x1p-30;
+  for (const ExtraSample& extra : mesh.extra_samples)
+    area[mesh.patch[extra.triangle]] += extra.weight_q30 * 0x1p-30;
   std::size_t before = mesh.extra_samples.size();
   for (int level = 1; level <= kSampleLevels; ++level) {
     std::vector<double> coarse(mesh.patch_count, 0);
@@ -320,7 +351,9 @@ TEST(ExtraSamples, OfCoarserLevelsAreFewerAndStandForTheSameAreaPatchByPatch) {
       coarse[mesh.patch[extra.triangle]] += std::ldexp(weight, level - 30);
       count += weight != 0 ? 1 : 0;
     }
-    for (std::size_t p = 0; p < area.size(); ++p) EXPECT_NEAR(coarse[p], area[p], std::ldexp(static_cast<double>(before), level - 31)) << "level " << level << ", patch " << p;   // each rounded by half a Q30
+    for (std::size_t p = 0; p < area.size(); ++p)
+      EXPECT_NEAR(coarse[p], area[p], std::ldexp(static_cast<double>(before), level - 31))
+          << "level " << level << ", patch " << p;  // each rounded by half a Q30
     EXPECT_LE(count, before);
     before = count;
   }
@@ -328,18 +361,25 @@ TEST(ExtraSamples, OfCoarserLevelsAreFewerAndStandForTheSameAreaPatchByPatch) {
 }
 
 TEST(ExtraSamples, OfOneLevelLieInTheCubesOfThoseTheyStandFor) {
-  const LatticeMesh mesh = build(solids::moved(needle(0.0003, 0.0006, 0.05), {Vec3(0.0007, 0.0003, 0), glm::normalize(Quat(1, 0.3, 0.2, -0.1))}));
+  const LatticeMesh mesh = build(solids::moved(
+      needle(0.0003, 0.0006, 0.05), {Vec3(0.0007, 0.0003, 0), glm::normalize(Quat(1, 0.3, 0.2, -0.1))}));
   std::vector<Int3> corner(mesh.patch_count, Int3(std::numeric_limits<std::int32_t>::max()));
-  for (const ExtraSample& one : mesh.extra_samples) corner[mesh.patch[one.triangle]] = glm::min(corner[mesh.patch[one.triangle]], one.point);
+  for (const ExtraSample& one : mesh.extra_samples)
+    corner[mesh.patch[one.triangle]] = glm::min(corner[mesh.patch[one.triangle]], one.point);
   for (int level = 1; level <= kSampleLevels; ++level) {
     const int edge = kSpacing << level / 2;
     for (const ExtraSample& one : mesh.extra_samples) {
       bool stood_for = false;
       for (const ExtraSample& other : mesh.extra_samples) {
-        if (other.coarse_q30[static_cast<std::size_t>(level - 1)] == 0 || mesh.patch[other.triangle] != mesh.patch[one.triangle]) continue;
+        if (other.coarse_q30[static_cast<std::size_t>(level - 1)] == 0 ||
+            mesh.patch[other.triangle] != mesh.patch[one.triangle])
+          continue;
         bool same = true;
-        for (int k = 0; k < 3; ++k) same = same && (one.point - corner[mesh.patch[one.triangle]])[k] / edge == (other.point - corner[mesh.patch[one.triangle]])[k] / edge;
-        stood_for = stood_for || (same && glm::dot(normal_of(mesh, one.triangle), normal_of(mesh, other.triangle)) > 0);
+        for (int k = 0; k < 3; ++k)
+          same = same && (one.point - corner[mesh.patch[one.triangle]])[k] / edge ==
+                             (other.point - corner[mesh.patch[one.triangle]])[k] / edge;
+        stood_for = stood_for ||
+                    (same && glm::dot(normal_of(mesh, one.triangle), normal_of(mesh, other.triangle)) > 0);
       }
       EXPECT_TRUE(stood_for) << "level " << level;
     }
@@ -352,9 +392,10 @@ TEST(Gyration, OfABoxAboutItsMiddleAndAboutACorner) {
   const double a = 0x1p14;
   EXPECT_NEAR(gyration_radius(cube, Vec3(0)), a * std::sqrt(5.0 / 3), 1e-9 * a);
   EXPECT_NEAR(gyration_radius(cube, Vec3(a)), a * std::sqrt(5.0 / 3 + 3), 1e-9 * a);
-  const auto geometry = build_geometry(solids::box(Vec3(0), Vec3(1)), solids::box(Vec3(0), Vec3(0.08, 0.02, 0.04)), {});
+  const auto geometry =
+      build_geometry(solids::box(Vec3(0), Vec3(1)), solids::box(Vec3(0), Vec3(0.08, 0.02, 0.04)), {});
   ASSERT_TRUE(geometry);
-  EXPECT_NEAR(geometry->reference_area_m2, 1e-4, 1e-7);   // (80 mm / 8)², the box in steps
+  EXPECT_NEAR(geometry->reference_area_m2, 1e-4, 1e-7);  // (80 mm / 8)², the box in steps
   const double areas[3] = {0.02 * 0.04, 0.04 * 0.08, 0.08 * 0.02}, sides[3] = {0.08, 0.02, 0.04};
   double moment = 0, area = 0;
   for (int k = 0; k < 3; ++k)

@@ -34,7 +34,8 @@ TEST(PoseRounding, QuaternionAndItsNegativeAreTheSamePose) {
   const SceneGeometry geometry = scene();
   for (int i = 0; i < 100; ++i) {
     const Quat q = random_rotation(random);
-    const LatticePose a = to_lattice({Vec3(0.1), q}, geometry).value(), b = to_lattice({Vec3(0.1), -q}, geometry).value();
+    const LatticePose a = to_lattice({Vec3(0.1), q}, geometry).value(),
+                      b = to_lattice({Vec3(0.1), -q}, geometry).value();
     EXPECT_TRUE(std::equal(&a.rotation_q30[0][0], &a.rotation_q30[0][0] + 9, &b.rotation_q30[0][0]));
     EXPECT_EQ(a.translation, b.translation);
   }
@@ -55,7 +56,8 @@ TEST(PoseRounding, EntriesStayWithinOneAndVerticesWithinTwoSteps) {
     for (const Int3& v : geometry.tool.vertices) {
       const Vec3 there = geometry.lattice.origin_m + h * Vec3(transform(pose, v));
       const Vec3 truth = position + q * (geometry.tool_centre_m + h * Vec3(v));
-      // Half a step from the translation, half from the shift, 0.22 from the matrix, a component; doubles at 7 m: 1e-15 m.
+      // Half a step from the translation, half from the shift, 0.22 from the matrix, a component; doubles at
+      // 7 m: 1e-15 m.
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(there[k], truth[k], 1.25 * h);
     }
   }
@@ -78,8 +80,9 @@ TEST(PoseRounding, SlightlyLongQuaternionsAreNormalised) {
 TEST(Pose, NotFiniteOrNotUnitIsOneSentence) {
   const SceneGeometry geometry = scene();
   const double nan = std::nan("");
-  for (const Pose& bad : {Pose{{nan, 0, 0}, Quat(1, 0, 0, 0)}, Pose{{0, HUGE_VAL, 0}, Quat(1, 0, 0, 0)}, Pose{Vec3(0), Quat(nan, 0, 0, 0)},
-                          Pose{Vec3(0), Quat(0, 0, 0, 0)}, Pose{Vec3(0), Quat(1, 0.1, 0, 0)}, Pose{Vec3(0), Quat(1e200, 0, 0, 0)}}) {
+  for (const Pose& bad : {Pose{{nan, 0, 0}, Quat(1, 0, 0, 0)}, Pose{{0, HUGE_VAL, 0}, Quat(1, 0, 0, 0)},
+                          Pose{Vec3(0), Quat(nan, 0, 0, 0)}, Pose{Vec3(0), Quat(0, 0, 0, 0)},
+                          Pose{Vec3(0), Quat(1, 0.1, 0, 0)}, Pose{Vec3(0), Quat(1e200, 0, 0, 0)}}) {
     const auto result = to_lattice(bad, geometry);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::kBadValue);
@@ -101,11 +104,13 @@ TEST(Pose, IsFreeFromWhereTheToolsSphereMissesTheGrid) {
   const VoxelGrid& grid = geometry.mockup_grid;
   const Int3 top = grid.origin + grid.size * grid.voxels();
   for (const int steps : {-1, 0, 1, 2}) {
-    const Vec3 at = geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(0, 0, top.z + geometry.tool_radius + steps);
+    const Vec3 at = geometry.lattice.origin_m +
+                    geometry.lattice.step_m * Vec3(0, 0, top.z + geometry.tool_radius + steps);
     EXPECT_EQ(to_lattice({at, Quat(1, 0, 0, 0)}, geometry)->beyond_lattice, steps > 0) << steps;
   }
   // Off a corner the sphere counts, not its box.
-  const Vec3 corner = geometry.lattice.origin_m + geometry.lattice.step_m * (Vec3(top) + 0.7 * geometry.tool_radius);
+  const Vec3 corner =
+      geometry.lattice.origin_m + geometry.lattice.step_m * (Vec3(top) + 0.7 * geometry.tool_radius);
   EXPECT_TRUE(to_lattice({corner, Quat(1, 0, 0, 0)}, geometry)->beyond_lattice);
 }
 
@@ -115,7 +120,9 @@ TEST(Pose, WithinTheLatticeEveryVertexIsWithinReach) {
   std::uniform_real_distribution<double> place(-1.2, 1.2);
   int within = 0, beyond = 0;
   for (int i = 0; i < 2000; ++i) {
-    const LatticePose pose = to_lattice({{place(random), place(random), place(random)}, random_rotation(random)}, geometry).value();
+    const LatticePose pose =
+        to_lattice({{place(random), place(random), place(random)}, random_rotation(random)}, geometry)
+            .value();
     if (pose.beyond_lattice) {
       ++beyond;
       continue;

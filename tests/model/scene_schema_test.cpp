@@ -1,4 +1,5 @@
-// scenes/scene.schema.json and the reader of scene files must know the same keys, and every scene of ours must keep to both.
+// scenes/scene.schema.json and the reader of scene files must know the same keys, and every scene of ours
+// must keep to both.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,8 +58,9 @@ TEST_F(Schema, EveryKeyIsDescribed) {
   for (const auto& [object, keys] : scene_keys()) {
     const json& described = object == "scene" ? text_ : text_.at("definitions").at(object);
     for (const auto& [key, value] : described.at("properties").items()) {
-      const bool elsewhere = value.contains("$ref") &&
-                             text_.at("definitions").at(value.at("$ref").get<std::string>().substr(14)).contains("description");
+      const bool elsewhere =
+          value.contains("$ref") &&
+          text_.at("definitions").at(value.at("$ref").get<std::string>().substr(14)).contains("description");
       EXPECT_TRUE(elsewhere || value.contains("description")) << object << "/" << key;
     }
   }
@@ -77,16 +79,19 @@ TEST_F(Schema, EverySceneOfOursKeepsToItAndIsRead) {
 }
 
 TEST_F(Schema, RefusesWhatTheReaderRefuses) {
-  const json good = json::parse(R"({"static": [{"mesh": "a.stl"}], "tool": {"mesh": "b.stl", "centre_of_mass": "auto"}})");
+  const json good =
+      json::parse(R"({"static": [{"mesh": "a.stl"}], "tool": {"mesh": "b.stl", "centre_of_mass": "auto"}})");
   EXPECT_TRUE(accepts(good));
-  for (const char* patch : {R"({"tool": {"mas": 1}})", R"({"tool": {"mass": 0}})", R"({"tool": {"mass": "1"}})",
-                            R"({"tool": {"units": "m", "scale": 1}})", R"({"tool": {"units": "ft"}})",
-                            R"({"tool": {"generate": {"name": "contacts"}}})", R"({"tool": null})", R"({"static": []})",
-                            R"({"static": [{"mesh": "a.stl", "rotation": [0, 0, 1]}]})", R"({"response": {"stiffness": -1}})",
-                            R"({"response": {"voxel_size": 0}})", R"({"response": {"profile": "exact"}})",
-                            R"({"control": {"transitions": 0}})", R"({"device": {"guide": "g.csv"}})",
-                            R"({"device": {"actuated": ["rx"]}})", R"({"device": {"workspace": {"axes": ["x", "y"]}}})",
-                            R"({"device": {"workspace": {"scale": 0}}})", R"({"device": {"workspace": {"clutch_button": 0}}})", R"({"device": {"hand": {"mass": -1}}})"}) {
+  for (const char* patch :
+       {R"({"tool": {"mas": 1}})", R"({"tool": {"mass": 0}})", R"({"tool": {"mass": "1"}})",
+        R"({"tool": {"units": "m", "scale": 1}})", R"({"tool": {"units": "ft"}})",
+        R"({"tool": {"generate": {"name": "contacts"}}})", R"({"tool": null})", R"({"static": []})",
+        R"({"static": [{"mesh": "a.stl", "rotation": [0, 0, 1]}]})", R"({"response": {"stiffness": -1}})",
+        R"({"response": {"voxel_size": 0}})", R"({"response": {"profile": "exact"}})",
+        R"({"control": {"transitions": 0}})", R"({"device": {"guide": "g.csv"}})",
+        R"({"device": {"actuated": ["rx"]}})", R"({"device": {"workspace": {"axes": ["x", "y"]}}})",
+        R"({"device": {"workspace": {"scale": 0}}})", R"({"device": {"workspace": {"clutch_button": 0}}})",
+        R"({"device": {"hand": {"mass": -1}}})"}) {
     json bad = good;
     bad.merge_patch(json::parse(patch));
     EXPECT_FALSE(accepts(bad)) << patch;

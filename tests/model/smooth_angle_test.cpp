@@ -26,14 +26,14 @@ TEST(SmoothAngle, RightAngleAndBeyondAreNeverSmooth) {
   EXPECT_FALSE(smooth({1, 0, 0}, {-1, 1, 0}, degrees(90)));
   EXPECT_FALSE(smooth({1, 0, 0}, {-1, 0, 0}, degrees(30)));
   const std::int64_t big = std::int64_t{1} << 59;
-  EXPECT_TRUE(smooth({big, 1, 0}, {0, 1, 0}, degrees(90)));    // 1 in 2^59 below a right angle
+  EXPECT_TRUE(smooth({big, 1, 0}, {0, 1, 0}, degrees(90)));  // 1 in 2^59 below a right angle
   EXPECT_FALSE(smooth({big, -1, 0}, {0, 1, 0}, degrees(90)));
 }
 
 TEST(SmoothAngle, OtherExactTies) {
   EXPECT_FALSE(smooth({1, 0, 0}, {1, 1, 0}, degrees(45)));
   EXPECT_FALSE(smooth({1, 1, 0}, {1, 0, 1}, degrees(60)));
-  EXPECT_FALSE(smooth({1, 2, 3}, {2, 4, 6}, degrees(0)));   // nothing is below an angle of zero
+  EXPECT_FALSE(smooth({1, 2, 3}, {2, 4, 6}, degrees(0)));  // nothing is below an angle of zero
   EXPECT_TRUE(smooth({1, 2, 3}, {2, 4, 6}, degrees(1)));
 }
 

@@ -14,8 +14,9 @@ struct SolidCase {
   const char* name;
   std::function<Mesh()> make;
   std::size_t triangles;
-  double volume;      ///< m³, of the smooth solid
-  double tolerance;   ///< relative: what an inscribed polygon of that many sides lacks (derived: about 6.6 / n² and twice that)
+  double volume;     ///< m³, of the smooth solid
+  double tolerance;  ///< relative: what an inscribed polygon of that many sides lacks (derived: about 6.6 /
+                     ///< n² and twice that)
 };
 
 class Solids : public testing::TestWithParam<SolidCase> {};
@@ -31,13 +32,24 @@ TEST_P(Solids, AreClosedOrientedOutwardAndOfTheVolumeAndCountPromised) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, Solids,
-    testing::Values(
-        SolidCase{"box", [] { return solids::box({-1, -2, -3}, {1, 2, 3}); }, 12, 48, 1e-12},
-        SolidCase{"cells", [] { return solids::box({0, 0, 0}, {0.1, 0.2, 0.3}, {2, 3, 5}); }, 4 * (6 + 15 + 10), 0.006, 1e-12},
-        SolidCase{"sphere", [] { return solids::sphere(0.02, 48, 24); }, 2 * 48 * 23, 4.0 / 3 * kPi * 8e-6, 0.02},
-        SolidCase{"cylinder", [] { return solids::cylinder(0.5, 2, 64, 3, 2); }, 2 * 64 * 6, kPi * 0.25 * 2, 0.002},
-        SolidCase{"ring", [] { return solids::ring(0.5, 1, 0.1, 64); }, 8 * 64, kPi * 0.75 * 0.1, 0.002},
-        SolidCase{"torus", [] { return solids::torus(1, 0.25, 64, 32); }, 2 * 64 * 32, 2 * kPi * kPi * 0.0625, 0.01}),
+    testing::Values(SolidCase{"box",
+                              [] {
+                                return solids::box({-1, -2, -3}, {1, 2, 3});
+                              },
+                              12, 48, 1e-12},
+                    SolidCase{"cells",
+                              [] {
+                                return solids::box({0, 0, 0}, {0.1, 0.2, 0.3}, {2, 3, 5});
+                              },
+                              4 * (6 + 15 + 10), 0.006, 1e-12},
+                    SolidCase{"sphere", [] { return solids::sphere(0.02, 48, 24); }, 2 * 48 * 23,
+                              4.0 / 3 * kPi * 8e-6, 0.02},
+                    SolidCase{"cylinder", [] { return solids::cylinder(0.5, 2, 64, 3, 2); }, 2 * 64 * 6,
+                              kPi * 0.25 * 2, 0.002},
+                    SolidCase{"ring", [] { return solids::ring(0.5, 1, 0.1, 64); }, 8 * 64, kPi * 0.75 * 0.1,
+                              0.002},
+                    SolidCase{"torus", [] { return solids::torus(1, 0.25, 64, 32); }, 2 * 64 * 32,
+                              2 * kPi* kPi * 0.0625, 0.01}),
     [](const auto& test_case) { return std::string(test_case.param.name); });
 
 TEST(SolidsHelpers, ATriangleLeftOutIsSeenAsThreeOpenEdges) {
@@ -52,13 +64,14 @@ TEST(SolidsHelpers, TurnedInsideOutHasTheNegativeVolume) {
 
 TEST(SolidsHelpers, SphereOfMeetsTheCountWithinFourPercent) {
   for (const double n : {1e3, 1e4, 1e5})
-    EXPECT_NEAR(static_cast<double>(solids::sphere_of(1, static_cast<std::uint64_t>(n)).triangles.size()), n, 0.04 * n);
+    EXPECT_NEAR(static_cast<double>(solids::sphere_of(1, static_cast<std::uint64_t>(n)).triangles.size()), n,
+                0.04 * n);
 }
 
 TEST(Turn, AgreesWithTheLibraryAndIsExactAtQuarters) {
   for (int i = -1000; i <= 1000; ++i) {
     const Turn t = turn_by(i / 137.0);
-    EXPECT_NEAR(t.cos, std::cos(2 * kPi * (i / 137.0)), 2e-14);   // the library's argument is rounded at 2π·7
+    EXPECT_NEAR(t.cos, std::cos(2 * kPi * (i / 137.0)), 2e-14);  // the library's argument is rounded at 2π·7
     EXPECT_NEAR(t.sin, std::sin(2 * kPi * (i / 137.0)), 2e-14);
   }
   EXPECT_EQ(turn_by(0.25).cos, 0);

@@ -14,13 +14,30 @@ using Limit = Limits::Limit;
 
 const std::vector<Limit>& limits() {
   static const std::vector<Limit> all = {
-      {"", "kMaxGroupsX", 3, {"groups_for("}, {"ball_on_block", "ball_on_block_paper", "needle_of_pieces", "folds_in_a_row", "open_ball", "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
+      {"",
+       "kMaxGroupsX",
+       3,
+       {"groups_for("},
+       {"ball_on_block", "ball_on_block_paper", "needle_of_pieces", "folds_in_a_row", "open_ball",
+        "box_swallowed_held", "swallowed_at_ties", "bead_in_the_middle_held"}},
       {"shaders/frame/voxel_touch.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_on_block_paper"}},
       {"shaders/response/points_sum.comp", "kLoopBudget", 0, {}, {"ball_on_block_paper", "two_sheets_paper"}},
       {"shaders/response/points_sum.comp", "kLoopBudget", 3, {}, {"ball_on_block_paper", "two_sheets_paper"}},
       {"shaders/frame/sample_scan.comp", "", 0, {}, {"sheet_tool", "ball_on_block"}, "samples", true},
-      {"shaders/frame/sample_scan.comp", "", 0, {}, {"ball_on_block"}, "samples near the tool's surface", true},
-      {"shaders/frame/sample_scan.comp", "", 0, {}, {"between_the_samples"}, "samples near the tool's surface", true},
+      {"shaders/frame/sample_scan.comp",
+       "",
+       0,
+       {},
+       {"ball_on_block"},
+       "samples near the tool's surface",
+       true},
+      {"shaders/frame/sample_scan.comp",
+       "",
+       0,
+       {},
+       {"between_the_samples"},
+       "samples near the tool's surface",
+       true},
       {"shaders/field/field_members.comp", "kLoopBudget", 0, {}, {"ball_on_block", "ball_over_bead"}},
       {"shaders/field/field_members.comp", "", 0, {}, {"needle"}, "extra samples"},
       {"shaders/field/field_points.comp", "", 0, {}, {"ball_on_block"}, "samples of the tool"},
@@ -30,7 +47,7 @@ const std::vector<Limit>& limits() {
 }
 
 constexpr std::uint32_t kFullTable = 64, kMost = 30000;
-constexpr double kNoHurry = 600;   // seconds: what the unchanged modules take is nobody's fault
+constexpr double kNoHurry = 600;  // seconds: what the unchanged modules take is nobody's fault
 
 }  // namespace
 
@@ -40,7 +57,8 @@ const std::string& Limits::original(const std::string& name) {
   return code;
 }
 
-std::vector<Limits::Module> Limits::with(const Limit& limit, std::uint32_t value, const std::vector<std::string>& names) {
+std::vector<Limits::Module> Limits::with(const Limit& limit, std::uint32_t value,
+                                         const std::vector<std::string>& names) {
   std::vector<Module> out;
   if (*limit.constant == 0) return out;
   const SmallConstant constant{limit.constant, value};
@@ -57,12 +75,15 @@ std::vector<std::string> Limits::having(const std::vector<const char*>& words) {
     for (const char* folder : {"shaders/frame", "shaders/response", "shaders/field"})
       for (const auto& entry : std::filesystem::directory_iterator(root_ + "/" + folder)) {
         std::ifstream file(entry.path());
-        texts_[std::string(folder) + "/" + entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+        texts_[std::string(folder) + "/" + entry.path().filename().string()] = {
+            std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
       }
   }
   std::vector<std::string> out;
   for (const auto& [name, text] : texts_)
-    if (std::any_of(words.begin(), words.end(), [&, &of = text](const char* word) { return of.find(word) != std::string::npos; })) out.push_back(name);
+    if (std::any_of(words.begin(), words.end(),
+                    [&, &of = text](const char* word) { return of.find(word) != std::string::npos; }))
+      out.push_back(name);
   return out;
 }
 
@@ -83,15 +104,19 @@ Limits::Told Limits::tell(const Limit& limit, std::uint32_t value, std::size_t o
   return all;
 }
 
-std::vector<Limits::Told> Limits::known(const Limit& limit, std::uint32_t value, const std::vector<Module>& modules, const std::vector<std::size_t>& of) {
-  std::string key = std::string(limit.constant) + "|" + limit.list + (limit.unlisted ? "|unlisted " : "| ") + std::to_string(value);
+std::vector<Limits::Told> Limits::known(const Limit& limit, std::uint32_t value,
+                                        const std::vector<Module>& modules,
+                                        const std::vector<std::size_t>& of) {
+  std::string key = std::string(limit.constant) + "|" + limit.list + (limit.unlisted ? "|unlisted " : "| ") +
+                    std::to_string(value);
   for (const Module& m : modules) key += " " + m.name;
   std::vector<Told> out;
   bool swapped = false;
   for (const std::size_t c : of) {
     auto [at, fresh] = known_.try_emplace(key + " " + oracle_.name(c));
     if (fresh) {
-      if (const std::string failure = std::exchange(swapped, true) ? "" : swap(modules); !failure.empty()) throw std::runtime_error(failure);
+      if (const std::string failure = std::exchange(swapped, true) ? "" : swap(modules); !failure.empty())
+        throw std::runtime_error(failure);
       at->second = tell(limit, value, c);
     }
     out.push_back(at->second);
@@ -104,18 +129,21 @@ std::uint32_t Limits::smallest(const Limit& limit, const std::vector<std::string
     const Told told = known(limit, value, with(limit, value, names), {of})[0];
     return std::all_of(told.begin(), told.end(), [](const std::string& t) { return t.empty(); });
   };
-  std::uint32_t low = 1, high = 1;   // the smallest is within [low, high]
+  std::uint32_t low = 1, high = 1;  // the smallest is within [low, high]
   while (high < kMost && !enough(high)) low = high + 1, high *= 2;
   while (low < high) {
     const std::uint32_t middle = low + (high - low) / 2;
-    if (enough(middle)) high = middle;
-    else low = middle + 1;
+    if (enough(middle))
+      high = middle;
+    else
+      low = middle + 1;
   }
   return high;
 }
 
-std::string Limits::ask(const Limit& limit, std::uint32_t value, const TextChange& change, const std::vector<std::string>& modules,
-                        const std::vector<std::size_t>& of, std::size_t& at) {
+std::string Limits::ask(const Limit& limit, std::uint32_t value, const TextChange& change,
+                        const std::vector<std::string>& modules, const std::vector<std::size_t>& of,
+                        std::size_t& at) {
   std::vector<Module> all = with(limit, value, limit.words.empty() ? modules : having(limit.words));
   if (all.empty() && *limit.constant != 0) return {};
   const std::vector<Told> expected = known(limit, value, all, of);
@@ -130,14 +158,16 @@ std::string Limits::ask(const Limit& limit, std::uint32_t value, const TextChang
     at = of[i];
     oracle_.before_case(oracle_.seconds(at));
     if (tell(limit, value, at) != expected[i])
-      difference = std::string("what is told with ") + (*limit.constant != 0 ? limit.constant : limit.list) + " of " + std::to_string(value);
+      difference = std::string("what is told with ") + (*limit.constant != 0 ? limit.constant : limit.list) +
+                   " of " + std::to_string(value);
   }
   device_.restore();
   oracle_.before_case(kNoHurry);
   return difference;
 }
 
-std::string Limits::first_difference(const TextChange& change, const std::vector<std::string>& modules, std::size_t& of) {
+std::string Limits::first_difference(const TextChange& change, const std::vector<std::string>& modules,
+                                     std::size_t& of) {
   oracle_.before_case(kNoHurry);
   for (const Limit& limit : limits()) {
     // A change in shaders/lib is in too many modules at once; probes ask those that number workgroups.
@@ -146,14 +176,16 @@ std::string Limits::first_difference(const TextChange& change, const std::vector
     for (const char* name : limit.cases)
       if (const auto found = oracle_.find(name)) cases.push_back(*found);
     if (limit.value != 0) {
-      if (std::string difference = ask(limit, limit.value, change, modules, cases, of); !difference.empty()) return difference;
+      if (std::string difference = ask(limit, limit.value, change, modules, cases, of); !difference.empty())
+        return difference;
       continue;
     }
     for (const std::size_t c : cases) {
       const std::uint32_t enough = smallest(limit, modules, c);
       for (const std::uint32_t value : {enough, enough - 1})
         if (value != 0)
-          if (std::string difference = ask(limit, value, change, modules, {c}, of); !difference.empty()) return difference;
+          if (std::string difference = ask(limit, value, change, modules, {c}, of); !difference.empty())
+            return difference;
     }
   }
   device_.restore();

@@ -19,7 +19,8 @@ Result<std::vector<Words>> ModuleProbes::ask(const ModuleRun& run, const std::st
   return run_module(device_, {"a module", words.data(), code.size()}, run);
 }
 
-std::string ModuleProbes::difference(const std::string& name, const std::string& original, const std::string& mutant) {
+std::string ModuleProbes::difference(const std::string& name, const std::string& original,
+                                     const std::string& mutant) {
   std::vector<Run>& runs = runs_.at(name);
   for (Run& run : runs) {
     if (!run.known.empty()) continue;
@@ -35,12 +36,14 @@ std::string ModuleProbes::difference(const std::string& name, const std::string&
       break;
     }
     for (std::size_t b = 0; b < after->size(); ++b)
-      if ((*after)[b] != runs[i].known[b]) difference = "run " + std::to_string(i) + ", binding " + std::to_string(b);
+      if ((*after)[b] != runs[i].known[b])
+        difference = "run " + std::to_string(i) + ", binding " + std::to_string(b);
   }
   // Nobody asks the same mutant again.
   std::erase_if(device_.pipelines, [&](const auto& made) {
     const auto& key = made.first;
-    return key.size() >= mutant.size() / 4 && std::memcmp(key.data() + (key.size() - mutant.size() / 4), mutant.data(), mutant.size()) == 0;
+    return key.size() >= mutant.size() / 4 &&
+           std::memcmp(key.data() + (key.size() - mutant.size() / 4), mutant.data(), mutant.size()) == 0;
   });
   return difference;
 }

@@ -8,8 +8,8 @@
 
 namespace palpate::mutation {
 
-/// Preparation's modules by themselves, on made-up buffers (tests/compute/module_cases.h), asked of mutants. tests/compute holds the same
-/// runs against the definitions.
+/// Preparation's modules by themselves, on made-up buffers (tests/compute/module_cases.h), asked of mutants.
+/// tests/compute holds the same runs against the definitions.
 class ModuleProbes {
  public:
   /// `device` outlives this.
@@ -18,14 +18,14 @@ class ModuleProbes {
   /// Whether there is a run of this source file.
   bool has(const std::string& name) const { return runs_.contains(name); }
 
-  /// What differs between the buffers that a module leaves and those of its mutant, SPIR-V; empty: nothing. Throws std::runtime_error where the
-  /// unchanged module fails.
+  /// What differs between the buffers that a module leaves and those of its mutant, SPIR-V; empty: nothing.
+  /// Throws std::runtime_error where the unchanged module fails.
   std::string difference(const std::string& name, const std::string& original, const std::string& mutant);
 
  private:
   struct Run {
     ModuleRun run;
-    std::vector<Words> known;   ///< empty: not asked yet
+    std::vector<Words> known;  ///< empty: not asked yet
   };
   Result<std::vector<Words>> ask(const ModuleRun& run, const std::string& code);
 

@@ -9,7 +9,7 @@
 namespace palpate::mutation {
 namespace {
 
-using Words = std::vector<std::uint32_t>;   // of a module
+using Words = std::vector<std::uint32_t>;  // of a module
 
 Words words_of(const std::string& bytes) {
   Words words(bytes.size() / 4);
@@ -57,7 +57,8 @@ MutableDevice::MutableDevice() {
   device_ = std::move(*device);
 }
 
-/// Lists are as long as any small case needs, not as a frame makes them at first: half of a case's time went into filling their guards.
+/// Lists are as long as any small case needs, not as a frame makes them at first: half of a case's time went
+/// into filling their guards.
 Result<std::unique_ptr<Frame>> MutableDevice::make_frame(const SceneGeometry& geometry) {
   constexpr std::uint32_t kRoom = 1u << 14;
   std::map<std::string, std::uint32_t> room = first_capacity_;
@@ -65,7 +66,8 @@ Result<std::unique_ptr<Frame>> MutableDevice::make_frame(const SceneGeometry& ge
   return Frame::create(*device_, geometry, scene(), room);
 }
 
-Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
+Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& plan,
+                                    const Progress& progress) {
   frame_.reset();
   fresh_.reset();
   const auto found = kept_.find(&geometry);
@@ -80,13 +82,13 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
       made.samples = made.scene.samples;
       for (const bool tool : {false, true}) {
         const PartitionBuffers& of = tool ? made.scene.tool.partition : made.scene.mockup.partition;
-        if (!of.brick_slot) continue;   // `paper` has none of the tool
+        if (!of.brick_slot) continue;  // `paper` has none of the tool
         auto partition = read_partition(*device_, of);
         if (!partition) return partition.error();
         (tool ? made.tool : made.mockup) = dense(*partition);
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
-      for (const bool without : {true, false}) {   // so that the pipelines of all ways are there to be swapped
+      for (const bool without : {true, false}) {  // so that the pipelines of all ways are there to be swapped
         kept_of_->scene.samples = without ? nullptr : kept_of_->samples;
         if (auto other = make_frame(geometry); !other) return other.error();
       }
@@ -125,14 +127,17 @@ Result<void> MutableDevice::swap_all(const Words& before, const Words& after) {
   const Words bare = without_bindings(before);
   std::vector<Key> keys;
   for (const auto& [key, made] : device_->pipelines)
-    if (std::none_of(swapped_.begin(), swapped_.end(), [&](const auto& s) { return s.first == key; })) keys.push_back(key);
-  for (const Key& key : keys) {   // buffers, bytes of push constants, which are uniform, number of constants, (id, value) …, words of the module
+    if (std::none_of(swapped_.begin(), swapped_.end(), [&](const auto& s) { return s.first == key; }))
+      keys.push_back(key);
+  for (const Key& key : keys) {  // buffers, bytes of push constants, which are uniform, number of constants,
+                                 // (id, value) …, words of the module
     std::vector<SpecConstant> constants;
     for (std::size_t i = 0; i < key[3]; ++i) constants.push_back({key[4 + 2 * i], key[5 + 2 * i]});
     const Words code(key.begin() + 4 + 2 * static_cast<std::ptrdiff_t>(key[3]), key.end());
     if (code.size() != before.size() || without_bindings(code) != bare) continue;
     const Words changed = bound_alike(before, after, code);
-    const auto made = ComputePipeline::create(*device_, {"mutant", changed.data(), changed.size() * 4}, key[0], key[1], constants, key[2]);
+    const auto made = ComputePipeline::create(*device_, {"mutant", changed.data(), changed.size() * 4},
+                                              key[0], key[1], constants, key[2]);
     if (!made) return made.error();
     if (auto there = made->wait(); !there) return there.error();
     Key mutants_key(key.begin(), key.end() - static_cast<std::ptrdiff_t>(code.size()));
@@ -145,7 +150,8 @@ Result<void> MutableDevice::swap_all(const Words& before, const Words& after) {
 }
 
 void MutableDevice::restore() {
-  // What a mutant wrote round a frame's buffers goes with them; round a prepared scene's it stays, and is told again.
+  // What a mutant wrote round a frame's buffers goes with them; round a prepared scene's it stays, and is
+  // told again.
   if (!mutants_.empty() && !device_->guard_error.empty()) {
     frame_.reset();
     device_->guard_error.clear();

@@ -15,9 +15,9 @@
 
 namespace palpate::mutation {
 
-/// The Vulkan back end with its shaders in reach: a module that pipelines have been made of can be swapped for a mutant of it. Guards lie
-/// round every buffer; what is written there is an error. What has been prepared of a geometry by the unchanged modules is kept, for
-/// mutants that run in frames only.
+/// The Vulkan back end with its shaders in reach: a module that pipelines have been made of can be swapped
+/// for a mutant of it. Guards lie round every buffer; what is written there is an error. What has been
+/// prepared of a geometry by the unchanged modules is kept, for mutants that run in frames only.
 class MutableDevice final : public CollisionBackend {
  public:
   /// Throws std::runtime_error where there is no device.
@@ -31,10 +31,11 @@ class MutableDevice final : public CollisionBackend {
   std::string device() const override { return device_->name(); }
   std::uint64_t memory_bytes() const override { return 0; }
 
-  /// From the next prepare() on every pipeline of the module `original`, SPIR-V, is one of `mutant`. `prepares`: preparation runs it, so
-  /// that nothing kept will do. Error: the driver refuses it.
+  /// From the next prepare() on every pipeline of the module `original`, SPIR-V, is one of `mutant`.
+  /// `prepares`: preparation runs it, so that nothing kept will do. Error: the driver refuses it.
   Result<void> swap(const std::string& original, const std::string& mutant, bool prepares);
-  /// From the next prepare() on, whether frames work the mock-up's samples out, as where there is no room for their list.
+  /// From the next prepare() on, whether frames work the mock-up's samples out, as where there is no room for
+  /// their list.
   void without_samples(bool without) { without_samples_ = without; }
   /// From the next prepare() on, items that these lists hold (GpuOptions::first_capacity); empty: enough.
   void first_capacity(const std::map<std::string, std::uint32_t>& items) { first_capacity_ = items; }
@@ -48,7 +49,7 @@ class MutableDevice final : public CollisionBackend {
   Result<void> put_back();
 
  private:
-  using Key = std::vector<std::uint32_t>;   // of VulkanDevice::pipelines
+  using Key = std::vector<std::uint32_t>;  // of VulkanDevice::pipelines
   using Words = std::vector<std::uint32_t>;
 
   Result<void> swap_all(const Words& before, const Words& after);
@@ -57,21 +58,21 @@ class MutableDevice final : public CollisionBackend {
   struct Prepared {
     PreparedScene scene;
     VoxelPartition mockup, tool;
-    std::shared_ptr<const HostSamples> samples;   // the scene's, also while it goes without
+    std::shared_ptr<const HostSamples> samples;  // the scene's, also while it goes without
   };
   Result<std::unique_ptr<Frame>> make_frame(const SceneGeometry& geometry);
   const PreparedScene& scene() const { return fresh_ ? *fresh_ : kept_of_->scene; }
 
   std::unique_ptr<VulkanDevice> device_;
   std::map<const SceneGeometry*, Prepared> kept_;
-  Prepared* kept_of_ = nullptr;            // of the geometry prepared last, unless a mutant prepared it
-  std::optional<PreparedScene> fresh_;     // by a mutant
+  Prepared* kept_of_ = nullptr;         // of the geometry prepared last, unless a mutant prepared it
+  std::optional<PreparedScene> fresh_;  // by a mutant
   std::unique_ptr<Frame> frame_;
-  std::vector<std::pair<Words, Words>> mutants_;   // modules before and after
-  bool prepares_ = false, aside_ = false;          // a mutant does; all are set aside
+  std::vector<std::pair<Words, Words>> mutants_;  // modules before and after
+  bool prepares_ = false, aside_ = false;         // a mutant does; all are set aside
   bool without_samples_ = false;
   std::map<std::string, std::uint32_t> first_capacity_;
-  std::vector<std::pair<Key, std::shared_ptr<PendingPipeline>>> swapped_;   // what stood there
+  std::vector<std::pair<Key, std::shared_ptr<PendingPipeline>>> swapped_;  // what stood there
 };
 
 }  // namespace palpate::mutation

@@ -1,14 +1,18 @@
 // Judges mutants, one a line of standard input, one line of answer each.
 //   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
 //                         "host" NUMBER             of the host's exact code (model/)
-//   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT; modules that include it
+//   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT;
+//   modules that include it
 //                          in: "intact"             whether the unchanged program still answers as at first
-// With --killers behind these only the killer cases are asked, with --probes no case of shaders but the probes alone; names of cases after --without are not asked, nor is any probe then.
-//   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when it is.
-// Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the same),
-// not-asked (no case runs the module, or the sources are not those that this program was built of).
-// A mutant costs little: scenes, their answers and all pipelines but the mutant's are there already. The reference's mutants run in
-// children of this process; the device's run in it, for Vulkan does not survive a fork, and one that crashes or hangs ends the program.
+// With --killers behind these only the killer cases are asked, with --probes no case of shaders but the
+// probes alone; names of cases after --without are not asked, nor is any probe then.
+//   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when
+//   it is.
+// Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the
+// same), not-asked (no case runs the module, or the sources are not those that this program was built of). A
+// mutant costs little: scenes, their answers and all pipelines but the mutant's are there already. The
+// reference's mutants run in children of this process; the device's run in it, for Vulkan does not survive a
+// fork, and one that crashes or hangs ends the program.
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
@@ -41,7 +45,9 @@ namespace {
 double cpu_seconds(int who) {
   rusage used{};
   getrusage(who, &used);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
@@ -54,7 +60,7 @@ void answer(const char* outcome, double seconds, const std::string& where, std::
 
 // ---- the reference, in children
 
-constexpr std::size_t kProbe = SIZE_MAX;   ///< no case but a probe
+constexpr std::size_t kProbe = SIZE_MAX;  ///< no case but a probe
 
 /// What a child reports through its pipe.
 struct Report {
@@ -69,7 +75,8 @@ class ProbeAnswers {
     if (!ask) return;
     for (const Probe& probe : probes()) answers_.push_back(probe.second());
     for (const Probe& probe : host_probes()) host_.push_back(probe.second());
-    for (std::size_t c = 0; c < oracle.size(); ++c) ways_out_.push_back(probe_ways_out(oracle.geometry(c).mockup, oracle.geometry(c).mockup_grid));
+    for (std::size_t c = 0; c < oracle.size(); ++c)
+      ways_out_.push_back(probe_ways_out(oracle.geometry(c).mockup, oracle.geometry(c).mockup_grid));
   }
   /// The probe that says something else now; empty: none.
   std::string first_difference(bool host) const {
@@ -79,7 +86,8 @@ class ProbeAnswers {
     for (std::size_t i = 0; i < answers_.size(); ++i)
       if (probes()[i].second() != answers_[i]) return probes()[i].first;
     for (std::size_t c = 0; c < ways_out_.size(); ++c)
-      if (probe_ways_out(oracle_.geometry(c).mockup, oracle_.geometry(c).mockup_grid) != ways_out_[c]) return "ways_out of " + oracle_.name(c);
+      if (probe_ways_out(oracle_.geometry(c).mockup, oracle_.geometry(c).mockup_grid) != ways_out_[c])
+        return "ways_out of " + oracle_.name(c);
     return {};
   }
 
@@ -88,7 +96,8 @@ class ProbeAnswers {
   std::vector<std::uint64_t> answers_, host_, ways_out_;
 };
 
-[[noreturn]] void child(Oracle& oracle, const ProbeAnswers& probed, int mutant, bool host, int pipe_end, rlim_t seconds) {
+[[noreturn]] void child(Oracle& oracle, const ProbeAnswers& probed, int mutant, bool host, int pipe_end,
+                        rlim_t seconds) {
   const rlimit time{seconds, seconds + 1}, no_core{0, 0}, memory{rlim_t{4} << 30, rlim_t{4} << 30};
   setrlimit(RLIMIT_CPU, &time);
   setrlimit(RLIMIT_CORE, &no_core);
@@ -96,7 +105,8 @@ class ProbeAnswers {
   if (std::freopen("/dev/null", "w", stderr) == nullptr) std::_Exit(3);
   active = mutant;
   Report report;
-  std::string difference = host ? oracle.first_host_difference(report.at) : oracle.first_difference_now(report.at);
+  std::string difference =
+      host ? oracle.first_host_difference(report.at) : oracle.first_difference_now(report.at);
   if (difference.empty()) {
     report.at = kProbe;
     difference = probed.first_difference(host);
@@ -147,7 +157,14 @@ void limit_time(double seconds) {
 class ShaderJudge {
  public:
   ShaderJudge(Oracle& oracle, MutableDevice& device, std::string root, bool ask_probes, bool ask_cases)
-      : oracle_(oracle), device_(device), probes_(device.device()), modules_(device.device()), limits_(oracle, device, root), root_(std::move(root)), ask_probes_(ask_probes), ask_cases_(ask_cases) {}
+      : oracle_(oracle),
+        device_(device),
+        probes_(device.device()),
+        modules_(device.device()),
+        limits_(oracle, device, root),
+        root_(std::move(root)),
+        ask_probes_(ask_probes),
+        ask_cases_(ask_cases) {}
 
   void judge(const std::string& line) {
     std::istringstream fields(line);
@@ -163,21 +180,23 @@ class ShaderJudge {
 
     const double before = cpu_seconds(RUSAGE_SELF);
     const auto spent = [&] { return cpu_seconds(RUSAGE_SELF) - before; };
-    // A mutant of a file that many modules include is tried in a few of them first: caught there, it need not be compiled for all.
+    // A mutant of a file that many modules include is tried in a few of them first: caught there, it need not
+    // be compiled for all.
     constexpr int kFirst = 3;
     std::istringstream list(names);
     std::size_t at = 0;
     int changed = 0;
     std::string difference;
     bool probed = false;
-    bool unasked = false;   // swapped in since the oracle was asked last
-    std::vector<std::string> of_frames;   // changed modules that frames run
+    bool unasked = false;                // swapped in since the oracle was asked last
+    std::vector<std::string> of_frames;  // changed modules that frames run
     bool scans = false;
     const auto ask = [&] {
       difference = oracle_.first_difference_now(at);
       if (difference.empty() && !of_frames.empty()) {
         difference = oracle_.first_overflow_difference(at, [&](const char* name_of, std::uint32_t items) {
-          device_.first_capacity(*name_of != 0 ? std::map<std::string, std::uint32_t>{{name_of, items}} : std::map<std::string, std::uint32_t>{});
+          device_.first_capacity(*name_of != 0 ? std::map<std::string, std::uint32_t>{{name_of, items}}
+                                               : std::map<std::string, std::uint32_t>{});
         });
       }
       if (difference.empty() && scans) {
@@ -229,7 +248,8 @@ class ShaderJudge {
     }
     if (unasked && difference.empty()) ask();
     const std::size_t swapped = device_.swapped();
-    if (difference.empty() && swapped > 0 && !of_frames.empty()) difference = limits_.first_difference(change, of_frames, at);
+    if (difference.empty() && swapped > 0 && !of_frames.empty())
+      difference = limits_.first_difference(change, of_frames, at);
     device_.restore();
     limit_time(0);
     if (changed == 0) return answer("no-change", spent(), "", "");
@@ -246,12 +266,11 @@ class ShaderJudge {
     return code;
   }
 
-
   Oracle& oracle_;
   MutableDevice& device_;
   ShaderProbes probes_;
   ModuleProbes modules_;
-  static constexpr double kProbeSeconds = 20;   // a probe takes a tenth of one
+  static constexpr double kProbeSeconds = 20;  // a probe takes a tenth of one
 
   Limits limits_;
   std::string root_;
@@ -275,7 +294,7 @@ void judge_shaders(const std::string& root, bool killers, bool probes_alone, con
       if (auto r = device.put_back(); !r) throw std::runtime_error(r.error().sentence);
       return;
     }
-    limit_time(0);   // what the unchanged program takes is nobody's fault
+    limit_time(0);  // what the unchanged program takes is nobody's fault
     put_aside = std::exchange(active, 0);
     device.set_aside();
   });
@@ -304,7 +323,8 @@ void judge_reference(bool killers, const Words& without) {
   const double limit = 2 + 5 * (cpu_seconds(RUSAGE_SELF) - begin);
   std::size_t at = 0;
   if (const std::string difference = oracle.first_difference_now(at); !difference.empty())
-    throw std::runtime_error("the unchanged program differs from itself: " + oracle.name(at) + ", " + difference);
+    throw std::runtime_error("the unchanged program differs from itself: " + oracle.name(at) + ", " +
+                             difference);
   ready(oracle);
   for (std::string line; std::getline(std::cin, line);) {
     const bool host = line.starts_with("host ");

@@ -6,9 +6,9 @@
 
 #include <glm/glm.hpp>
 
-/// Every mutant of the reference in one program: sites.py writes a copy of the sources in which an operator such as
-/// `a < b` reads `a < Switch<17, '<', ...>{} < b`, which has the precedence and the association of the original. 
-/// `active` is the number of the one mutant that is on; 0: the program as it is.
+/// Every mutant of the reference in one program: sites.py writes a copy of the sources in which an operator
+/// such as `a < b` reads `a < Switch<17, '<', ...>{} < b`, which has the precedence and the association of
+/// the original. `active` is the number of the one mutant that is on; 0: the program as it is.
 namespace palpate::mutation {
 
 inline int active = 0;
@@ -27,14 +27,30 @@ template <Op op>
 struct Apply {
   template <class A, class B>
   static constexpr bool possible() {
-    if constexpr (op == Op::kLess) return requires(const A& a, const B& b) { a < b; };
-    if constexpr (op == Op::kLessEqual) return requires(const A& a, const B& b) { a <= b; };
-    if constexpr (op == Op::kGreater) return requires(const A& a, const B& b) { a > b; };
-    if constexpr (op == Op::kGreaterEqual) return requires(const A& a, const B& b) { a >= b; };
-    if constexpr (op == Op::kEqual) return requires(const A& a, const B& b) { a == b; };
-    if constexpr (op == Op::kNotEqual) return requires(const A& a, const B& b) { a != b; };
-    if constexpr (op == Op::kPlus) return requires(const A& a, const B& b) { a + b; };
-    if constexpr (op == Op::kMinus) return requires(const A& a, const B& b) { a - b; };
+    if constexpr (op == Op::kLess) return requires(const A& a, const B& b) {
+        a < b;
+      };
+    if constexpr (op == Op::kLessEqual) return requires(const A& a, const B& b) {
+        a <= b;
+      };
+    if constexpr (op == Op::kGreater) return requires(const A& a, const B& b) {
+        a > b;
+      };
+    if constexpr (op == Op::kGreaterEqual) return requires(const A& a, const B& b) {
+        a >= b;
+      };
+    if constexpr (op == Op::kEqual) return requires(const A& a, const B& b) {
+        a == b;
+      };
+    if constexpr (op == Op::kNotEqual) return requires(const A& a, const B& b) {
+        a != b;
+      };
+    if constexpr (op == Op::kPlus) return requires(const A& a, const B& b) {
+        a + b;
+      };
+    if constexpr (op == Op::kMinus) return requires(const A& a, const B& b) {
+        a - b;
+      };
   }
   template <class A, class B>
   static constexpr auto of(const A& a, const B& b) {
@@ -49,7 +65,8 @@ struct Apply {
   }
 };
 
-/// The left operand of `op`, on its way to the right one. Mutant `first` makes `op` to `one`, mutant first + 1 to `other`.
+/// The left operand of `op`, on its way to the right one. Mutant `first` makes `op` to `one`, mutant first +
+/// 1 to `other`.
 template <class A, int first, Op op, Op one, Op other>
 struct Left {
   const A& a;
@@ -77,14 +94,14 @@ struct Left {
 template <int first, Op op, Op one, Op other = one>
 struct Switch {};
 
-#define PALPATE_SWITCH_OPERATOR(sign)                                                \
-  template <class A, int first, Op op, Op one, Op other>                             \
-  constexpr auto operator sign(const A& a, Switch<first, op, one, other>) {          \
-    return Left<A, first, op, one, other>{a};                                        \
-  }                                                                                  \
-  template <class A, int first, Op op, Op one, Op other, class B>                    \
+#define PALPATE_SWITCH_OPERATOR(sign)                                                 \
+  template <class A, int first, Op op, Op one, Op other>                              \
+  constexpr auto operator sign(const A& a, Switch<first, op, one, other>) {           \
+    return Left<A, first, op, one, other>{a};                                         \
+  }                                                                                   \
+  template <class A, int first, Op op, Op one, Op other, class B>                     \
   constexpr auto operator sign(const Left<A, first, op, one, other>& a, const B& b) { \
-    return a.with(b);                                                                \
+    return a.with(b);                                                                 \
   }
 PALPATE_SWITCH_OPERATOR(<)
 PALPATE_SWITCH_OPERATOR(<=)
@@ -127,30 +144,41 @@ struct Added {
 };
 template <class A, class B, int id, bool plus>
 constexpr A& change(A& a, const Change<B, id, plus>& by) {
-  bool changed = false;   // a const one would be worked out at compile time, where no mutant is on
+  bool changed = false;  // a const one would be worked out at compile time, where no mutant is on
   if (!std::is_constant_evaluated()) changed = active == id;
-  if constexpr (requires { a += by.b; a -= by.b; }) {
+  if constexpr (requires {
+                  a += by.b;
+                  a -= by.b;
+                }) {
     if (plus != changed)
       a += by.b;
     else
       a -= by.b;
-  } else {   // text
+  } else {  // text
     if (changed) no_program();
     a += by.b;
   }
   return a;
 }
 template <class A, class B, int id, bool plus>
-constexpr A& operator+=(A& a, const Change<B, id, plus>& by) { return change(a, by); }
+constexpr A& operator+=(A& a, const Change<B, id, plus>& by) {
+  return change(a, by);
+}
 template <class A, class B, int id, bool plus>
-constexpr A& operator-=(A& a, const Change<B, id, plus>& by) { return change(a, by); }
+constexpr A& operator-=(A& a, const Change<B, id, plus>& by) {
+  return change(a, by);
+}
 template <glm::length_t n, class T, glm::qualifier q, class B, int id, bool plus>
-constexpr glm::vec<n, T, q>& operator+=(glm::vec<n, T, q>& a, const Change<B, id, plus>& by) { return change(a, by); }
+constexpr glm::vec<n, T, q>& operator+=(glm::vec<n, T, q>& a, const Change<B, id, plus>& by) {
+  return change(a, by);
+}
 template <glm::length_t n, class T, glm::qualifier q, class B, int id, bool plus>
-constexpr glm::vec<n, T, q>& operator-=(glm::vec<n, T, q>& a, const Change<B, id, plus>& by) { return change(a, by); }
+constexpr glm::vec<n, T, q>& operator-=(glm::vec<n, T, q>& a, const Change<B, id, plus>& by) {
+  return change(a, by);
+}
 
-/// `a && b` reads `a && (And<17>{} | b)`: the mutant takes b for true; `a || b` reads `a || (Or<17>{} & b)`: for false. (An operator
-/// that became the other one would evaluate b where it must not be.)
+/// `a && b` reads `a && (And<17>{} | b)`: the mutant takes b for true; `a || b` reads `a || (Or<17>{} & b)`:
+/// for false. (An operator that became the other one would evaluate b where it must not be.)
 template <int id>
 struct And {
   template <class B>

@@ -34,12 +34,12 @@ SECOND = ("logic", "not", "name")   # kinds that are judged when all others have
 FIRST = """cpu_ref/ model/ compute/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl shaders/lib/seam
 shaders/lib/edge_crossing shaders/lib/line_box shaders/lib/tool_ray shaders/lib/direction shaders/lib/pierce shaders/lib/area
 shaders/lib/height_sum shaders/lib/union_find shaders/lib/partition shaders/lib/cells shaders/lib/components shaders/lib/pose
-shaders/lib/voxel_range shaders/lib/ shaders/response/ shaders/brick shaders/component shaders/row shaders/vote shaders/seam
+shaders/lib/voxel_range shaders/lib/ shaders/response/ shaders/prepare/
 shaders/frame/ shaders/""".split()
 
 
 # The host's exact code, in the order of CMakeLists.txt.
-HOST = [f"model/{name}.cpp" for name in "boundary edges orientation response side_winding smooth_angle".split()]
+HOST = [f"model/{name}.cpp" for name in "mesh/boundary mesh/edges mesh/orientation contact/response mesh/side_winding mesh/smooth_angle".split()]
 
 # What the device's back end does on the host at a pose. Asked of the device's judge, in its process.
 

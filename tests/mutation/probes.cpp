@@ -11,9 +11,9 @@
 #include "cpu_ref/samples.h"
 #include "cpu_ref/triangle_cube.h"
 #include "cpu_ref/triangle_triangle.h"
-#include "model/scene/geometry_build.h"
 #include "model/contact/response.h"
 #include "model/mesh/smooth_angle.h"
+#include "model/scene/geometry_build.h"
 #include "tests/compute/geometry_cases.h"
 
 namespace palpate::mutation {
@@ -25,7 +25,8 @@ using namespace cpu_ref;
 class Sum {
  public:
   void add(std::int64_t answer) {
-    for (int byte = 0; byte < 8; ++byte) value_ = (value_ ^ static_cast<std::uint8_t>(answer >> (8 * byte))) * 0x100000001b3u;
+    for (int byte = 0; byte < 8; ++byte)
+      value_ = (value_ ^ static_cast<std::uint8_t>(answer >> (8 * byte))) * 0x100000001b3u;
   }
   void add(const Int3& p) {
     for (int k = 0; k < 3; ++k) add(p[k]);
@@ -49,7 +50,7 @@ std::uint64_t coplanar_segments() {
   for (int i = 0; i < 30000; ++i) {
     Int3 c[5];
     Triangle triangle;
-    const int axis = i % 3, lean = i % 2;   // half of the planes are askew
+    const int axis = i % 3, lean = i % 2;  // half of the planes are askew
     do {
       for (Int3& p : c) {
         p[(axis + 1) % 3] = points.within(2);
@@ -152,7 +153,8 @@ std::uint64_t samples() {
   for (int i = 0; i < 3000; ++i) {
     LatticeMesh mesh;
     do
-      mesh.vertices = {Int3(points.within(40), points.within(40), points.within(40)), Int3(points.within(40), points.within(40), points.within(40)),
+      mesh.vertices = {Int3(points.within(40), points.within(40), points.within(40)),
+                       Int3(points.within(40), points.within(40), points.within(40)),
                        Int3(points.within(40), points.within(40), points.within(40))};
     while (Triangle(mesh.vertices[0], mesh.vertices[1], mesh.vertices[2]).collapsed());
     mesh.triangles = {{0, 1, 2}};
@@ -198,12 +200,12 @@ std::uint64_t trees() {
         box.include(p);
         box.include(p + Int3(points.within(1 << 20), points.within(1 << 20), points.within(1 << 20)));
       }
-    boxes[7] = Box();   // empty: never found
+    boxes[7] = Box();  // empty: never found
     BoxTree tree, other;
     tree.build(boxes);
     other.build(others);
     for (Box query : others) {
-      query.min[i % 3] = -(1 << 28);   // long
+      query.min[i % 3] = -(1 << 28);  // long
       query.max[i % 3] = 1 << 28;
       std::vector<std::uint32_t> found;
       tree.meeting(query, found);
@@ -217,7 +219,8 @@ std::uint64_t trees() {
   return sum.value();
 }
 
-/// Normals at, just below and just above the angles that have an exact cosine, short and as long as they come.
+/// Normals at, just below and just above the angles that have an exact cosine, short and as long as they
+/// come.
 std::uint64_t smooth_angles() {
   Sum sum;
   for (const double degrees : {-1.0, -1e-9, 0.0, 20.0, 30.0, 45.0, 60.0, 89.9, 90.0, 90.001}) {
@@ -230,8 +233,8 @@ std::uint64_t smooth_angles() {
     for (int i = 0; i < 4000; ++i) {
       const int shift = i % 4 == 0 ? 0 : i % 4 == 1 ? 20 : 56;
       Long3 n[2];
-      for (Long3& v : n)
-        do v = Long3(points.within(3), points.within(3), points.within(3));
+      for (Long3& v : n) do
+          v = Long3(points.within(3), points.within(3), points.within(3));
         while (v == Long3(0));
       for (Long3& v : n)
         for (int k = 0; k < 3; ++k) v[k] = (v[k] << shift) + (i % 3 == 0 ? points.within(1) : 0);
@@ -241,14 +244,16 @@ std::uint64_t smooth_angles() {
   return sum.value();
 }
 
-/// Handfuls of triangles on a tiny grid: edges of one to four triangles, folds, repeated faces, collapsed ones, two parts.
+/// Handfuls of triangles on a tiny grid: edges of one to four triangles, folds, repeated faces, collapsed
+/// ones, two parts.
 std::uint64_t handfuls() {
   Sum sum;
   LatticePoints points(23);
   for (int i = 0; i < 1500; ++i) {
     Mesh mesh;
     const int reach = 1 + i % 2;
-    for (int v = 0; v < 7; ++v) mesh.vertices.emplace_back(Int3(points.within(reach), points.within(reach), points.within(reach)));
+    for (int v = 0; v < 7; ++v)
+      mesh.vertices.emplace_back(Int3(points.within(reach), points.within(reach), points.within(reach)));
     const std::uint32_t count = 4 + static_cast<std::uint32_t>(i % 9);
     for (std::uint32_t t = 0; t < count; ++t) {
       std::array<std::uint32_t, 3> corners{};
@@ -258,7 +263,8 @@ std::uint64_t handfuls() {
       if (i % 7 == 0 && t == 0) mesh.triangles.push_back(corners);
     }
     // A tetrahedron too, so that something has an inside.
-    mesh.vertices.insert(mesh.vertices.end(), {Vec3(-4, -3, -3), Vec3(5, -3, -3), Vec3(0, 5, -3), Vec3(0, 0, 6)});
+    mesh.vertices.insert(mesh.vertices.end(),
+                         {Vec3(-4, -3, -3), Vec3(5, -3, -3), Vec3(0, 5, -3), Vec3(0, 0, 6)});
     for (const auto& face : {std::array<std::uint32_t, 3>{7, 9, 8}, {7, 8, 10}, {8, 9, 10}, {9, 7, 10}})
       if (i % 3 != 0) mesh.triangles.push_back(face);
     const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -275,15 +281,18 @@ std::uint64_t handfuls() {
     for (const auto n : built->neighbours) sum.add(n);
     for (const auto n : built->neighbour_begin) sum.add(n);
     sum.add(built->closed);
-    for (const std::uint32_t n : {report.duplicate, report.open_edges, report.nonmanifold_edges, report.collapsed}) sum.add(n);
+    for (const std::uint32_t n :
+         {report.duplicate, report.open_edges, report.nonmanifold_edges, report.collapsed})
+      sum.add(n);
     sum.add(static_cast<std::int64_t>(report.largest_gap_m * 0x1p20));
-    for (const auto& part : report.parts) sum.add(part.closed + 2 * part.sheet + 4 * part.turned + 8 * part.orientable);
+    for (const auto& part : report.parts)
+      sum.add(part.closed + 2 * part.sheet + 4 * part.turned + 8 * part.orientable);
   }
   return sum.value();
 }
 
-/// Responses to answers made up of small numbers: areas with and without rays, direction and voxels, that pierce each other, and that
-/// were loud, silent or not there in the frame before.
+/// Responses to answers made up of small numbers: areas with and without rays, direction and voxels, that
+/// pierce each other, and that were loud, silent or not there in the frame before.
 std::uint64_t responses() {
   Sum sum;
   LatticePoints points(24);
@@ -343,7 +352,9 @@ std::uint64_t responses() {
     sum.add(response.flags);
     sum.add(response.contact);
     for (const AreaResponse& area : response.areas) {
-      for (const Vec3& v : {area.normal, area.point, area.force, area.torque, Vec3(area.depth, area.max_depth, area.slope)}) add(v);
+      for (const Vec3& v :
+           {area.normal, area.point, area.force, area.torque, Vec3(area.depth, area.max_depth, area.slope)})
+        add(v);
       sum.add(area.id);
       sum.add(area.flags);
     }
@@ -365,7 +376,8 @@ std::uint64_t floods() {
     // Walls of one voxel along the bricks' faces and through them, with a hole each; and whole bricks.
     for (int wall = 0; wall < 6; ++wall) {
       const int k = (i + wall) % 3, at = (points.within(3) + 3) * 4 % size[k];
-      const Int3 hole((points.within(100) + 100) % size.x, (points.within(100) + 100) % size.y, (points.within(100) + 100) % size.z);
+      const Int3 hole((points.within(100) + 100) % size.x, (points.within(100) + 100) % size.y,
+                      (points.within(100) + 100) % size.z);
       Int3 v;
       for (v.z = 0; v.z < size.z; ++v.z)
         for (v.y = 0; v.y < size.y; ++v.y)
@@ -376,7 +388,8 @@ std::uint64_t floods() {
     }
     const Int3 start(i % 2 * (size.x - 1), i / 2 % 2 * (size.y - 1), i / 4 % 2 * (size.z - 1));
     std::int64_t seen = 0;
-    if (inside(classes.at(start))) classes.flood(start, kTo, inside, [&](const Int3&, VoxelClass, int voxels) { seen += voxels; });
+    if (inside(classes.at(start)))
+      classes.flood(start, kTo, inside, [&](const Int3&, VoxelClass, int voxels) { seen += voxels; });
     sum.add(seen);
     Int3 v;
     for (v.z = 0; v.z < size.z; ++v.z)
@@ -389,16 +402,22 @@ std::uint64_t floods() {
 }  // namespace
 
 const std::vector<Probe>& probes() {
-  static const std::vector<Probe> all{
-      {"coplanar_segments", coplanar_segments}, {"segments_and_triangles", segments_and_triangles},
-      {"pairs_of_triangles", pairs_of_triangles}, {"boxes", boxes}, {"rays", rays}, {"projections", projections},
-      {"samples", samples}, {"directions", directions}, {"trees", trees},
-      {"floods", floods}};
+  static const std::vector<Probe> all{{"coplanar_segments", coplanar_segments},
+                                      {"segments_and_triangles", segments_and_triangles},
+                                      {"pairs_of_triangles", pairs_of_triangles},
+                                      {"boxes", boxes},
+                                      {"rays", rays},
+                                      {"projections", projections},
+                                      {"samples", samples},
+                                      {"directions", directions},
+                                      {"trees", trees},
+                                      {"floods", floods}};
   return all;
 }
 
 const std::vector<Probe>& host_probes() {
-  static const std::vector<Probe> all{{"smooth_angles", smooth_angles}, {"handfuls", handfuls}, {"responses", responses}};
+  static const std::vector<Probe> all{
+      {"smooth_angles", smooth_angles}, {"handfuls", handfuls}, {"responses", responses}};
   return all;
 }
 
@@ -411,11 +430,14 @@ std::uint64_t probe_ways_out(const LatticeMesh& mesh, const VoxelGrid& grid) {
   for (int i = 0; i < 400; ++i) {
     Int3 p;
     for (int k = 0; k < 3; ++k) {
-      const int reach = i % 8 == 0 ? size[k] : size[k] / (2 + i % 3);   // some off the grid, most near its middle
+      const int reach =
+          i % 8 == 0 ? size[k] : size[k] / (2 + i % 3);  // some off the grid, most near its middle
       p[k] = grid.origin[k] + size[k] / 2 + points.within(reach);
-      if (i % 4 == 1) p[k] -= (p[k] - grid.origin[k]) % grid.size;   // corners of voxels: as near to one as to another
-      if (i % 4 == 2 || (i % 4 == 3 && k != i / 4 % 3)) p[k] += grid.size / 2 - (p[k] - grid.origin[k]) % grid.size;   // centres
-      if (i % 4 == 3 && k == i / 4 % 3) p[k] -= (p[k] - grid.origin[k]) % grid.size;   // middles of faces
+      if (i % 4 == 1)
+        p[k] -= (p[k] - grid.origin[k]) % grid.size;  // corners of voxels: as near to one as to another
+      if (i % 4 == 2 || (i % 4 == 3 && k != i / 4 % 3))
+        p[k] += grid.size / 2 - (p[k] - grid.origin[k]) % grid.size;                  // centres
+      if (i % 4 == 3 && k == i / 4 % 3) p[k] -= (p[k] - grid.origin[k]) % grid.size;  // middles of faces
     }
     const Long3 out = partition->to_nearest_external(p);
     for (int k = 0; k < 3; ++k) sum.add(out[k]);

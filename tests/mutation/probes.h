@@ -8,9 +8,9 @@
 
 namespace palpate::mutation {
 
-/// The reference's parts asked directly, of the points of tests/compute/geometry_cases.h, which lie where points, edges and planes
-/// coincide: what each says, as a number that any other answer changes. tests/cpu_ref and tests/compute hold the same parts
-/// against the definitions.
+/// The reference's parts asked directly, of the points of tests/compute/geometry_cases.h, which lie where
+/// points, edges and planes coincide: what each says, as a number that any other answer changes.
+/// tests/cpu_ref and tests/compute hold the same parts against the definitions.
 using Probe = std::pair<const char*, std::uint64_t (*)()>;
 const std::vector<Probe>& probes();
 

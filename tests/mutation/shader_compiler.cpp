@@ -5,17 +5,19 @@
 #include <memory>
 #include <vector>
 
-#include <glslang/SPIRV/GlslangToSpv.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
 
 namespace palpate::mutation {
 namespace {
 
-std::string text_of(const std::string& root, const std::string& name, const TextChange* change, const SmallConstant* constant) {
+std::string text_of(const std::string& root, const std::string& name, const TextChange* change,
+                    const SmallConstant* constant) {
   std::ifstream file(root + "/" + name);
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (change != nullptr && change->file == name) text.replace(change->begin, change->end - change->begin, change->text);
+  if (change != nullptr && change->file == name)
+    text.replace(change->begin, change->end - change->begin, change->text);
   if (constant != nullptr) {
     const std::string before = constant->name + " = ";
     if (const std::size_t at = text.find(before); at != std::string::npos) {
@@ -29,7 +31,8 @@ std::string text_of(const std::string& root, const std::string& name, const Text
 /// All our includes are written from the root of the source tree.
 class FromRoot final : public glslang::TShader::Includer {
  public:
-  FromRoot(const std::string& root, const TextChange* change, const SmallConstant* constant) : root_(root), change_(change), constant_(constant) {}
+  FromRoot(const std::string& root, const TextChange* change, const SmallConstant* constant)
+      : root_(root), change_(change), constant_(constant) {}
   IncludeResult* includeLocal(const char* name, const char*, size_t) override {
     auto* text = new std::string(text_of(root_, name, change_, constant_));
     return new IncludeResult(root_ + "/" + name, text->data(), text->size(), text);
@@ -48,7 +51,8 @@ class FromRoot final : public glslang::TShader::Includer {
 
 }  // namespace
 
-std::optional<std::string> compile_shader(const std::string& root, const std::string& name, const TextChange* change, const SmallConstant* constant) {
+std::optional<std::string> compile_shader(const std::string& root, const std::string& name,
+                                          const TextChange* change, const SmallConstant* constant) {
   static const bool initialised = glslang::InitializeProcess();
   if (!initialised) return std::nullopt;
   const std::string text = text_of(root, name, change, constant);

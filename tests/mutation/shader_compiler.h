@@ -19,9 +19,11 @@ struct SmallConstant {
   std::uint32_t value = 0;
 };
 
-/// SPIR-V of a shader, given by its name from `root`, with or without a change in it or in what it includes, or another value of a constant there: word for word what
-/// glslangValidator makes of it in the build. In this process, because starting glslangValidator takes 20 times as long as a shader.
-/// Empty when it doesn't compile.
-std::optional<std::string> compile_shader(const std::string& root, const std::string& name, const TextChange* change, const SmallConstant* constant = nullptr);
+/// SPIR-V of a shader, given by its name from `root`, with or without a change in it or in what it includes,
+/// or another value of a constant there: word for word what glslangValidator makes of it in the build. In
+/// this process, because starting glslangValidator takes 20 times as long as a shader. Empty when it doesn't
+/// compile.
+std::optional<std::string> compile_shader(const std::string& root, const std::string& name,
+                                          const TextChange* change, const SmallConstant* constant = nullptr);
 
 }  // namespace palpate::mutation

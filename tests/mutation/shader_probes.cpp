@@ -3,8 +3,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/buffer.h"
+#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/pipeline.h"
 #include "tests/compute/probe_cases.h"
 
@@ -42,7 +42,8 @@ std::string ShaderProbes::run(const Probe& probe, const std::string& code, Bytes
   // Nobody asks the same mutant again.
   std::erase_if(device_.pipelines, [&](const auto& made) {
     const auto& key = made.first;
-    return key.size() >= words.size() && std::memcmp(key.data() + (key.size() - words.size()), words.data(), code.size()) == 0;
+    return key.size() >= words.size() &&
+           std::memcmp(key.data() + (key.size() - words.size()), words.data(), code.size()) == 0;
   });
   if (!pipeline) return pipeline.error().sentence;
   auto from = VulkanBuffer::create(device_, "probe input", probe.cases.size(), BufferKind::kUpload);
@@ -64,15 +65,18 @@ std::string ShaderProbes::run(const Probe& probe, const std::string& code, Bytes
   return {};
 }
 
-std::string ShaderProbes::difference(const std::string& name, const std::string& original, const std::string& mutant) {
+std::string ShaderProbes::difference(const std::string& name, const std::string& original,
+                                     const std::string& mutant) {
   Probe& probe = probes_.at(name);
   if (probe.known.empty())
-    if (const std::string failure = run(probe, original, probe.known); !failure.empty()) throw std::runtime_error(name + ": " + failure);
+    if (const std::string failure = run(probe, original, probe.known); !failure.empty())
+      throw std::runtime_error(name + ": " + failure);
   Bytes answers;
   if (std::string failure = run(probe, mutant, answers); !failure.empty()) return failure;
   const std::size_t each = probe.answer_bytes / probe.count;
   for (std::size_t i = 0; i < probe.count; ++i)
-    if (std::memcmp(answers.data() + i * each, probe.known.data() + i * each, each) != 0) return "case " + std::to_string(i);
+    if (std::memcmp(answers.data() + i * each, probe.known.data() + i * each, each) != 0)
+      return "case " + std::to_string(i);
   return {};
 }
 

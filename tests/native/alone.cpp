@@ -2,13 +2,14 @@
 #include <cstdio>
 
 #include "compute/native/native_backend.h"
+#include "model/contact/response.h"
 #include "model/generate/solids.h"
 #include "model/scene/geometry_build.h"
-#include "model/contact/response.h"
 
 int main() {
   using namespace palpate;
-  const auto geometry = build_geometry(solids::box(Vec3(-0.1, -0.1, -0.05), Vec3(0.1, 0.1, 0)), solids::sphere(0.02), {});
+  const auto geometry =
+      build_geometry(solids::box(Vec3(-0.1, -0.1, -0.05), Vec3(0.1, 0.1, 0)), solids::sphere(0.02), {});
   if (!geometry) return 1;
   const auto backend = make_native_backend();
   if (!backend->prepare(*geometry, Plan{}, {})) return 1;

@@ -24,11 +24,14 @@ SceneGeometry built(const Mesh& mockup, const Mesh& tool) {
   return std::move(*geometry);
 }
 
-LatticePose at(const SceneGeometry& geometry, const Vec3& position, const Quat& rotation = Quat(1, 0, 0, 0)) { return *to_lattice(Pose{position, rotation}, geometry); }
+LatticePose at(const SceneGeometry& geometry, const Vec3& position, const Quat& rotation = Quat(1, 0, 0, 0)) {
+  return *to_lattice(Pose{position, rotation}, geometry);
+}
 
 /// Two boards, a face of each of 7,200 triangles towards the other.
 SceneGeometry pressed_boards() {
-  return built(solids::box(Vec3(-0.06, -0.06, -0.01), Vec3(0.06, 0.06, 0), Int3(60, 60, 5)), solids::box(Vec3(-0.06, -0.06, 0), Vec3(0.06, 0.06, 0.01), Int3(60, 60, 5)));
+  return built(solids::box(Vec3(-0.06, -0.06, -0.01), Vec3(0.06, 0.06, 0), Int3(60, 60, 5)),
+               solids::box(Vec3(-0.06, -0.06, 0), Vec3(0.06, 0.06, 0.01), Int3(60, 60, 5)));
 }
 
 TEST(Native, MakesRoomForAContactLargerThanAllBeforeWithinTheQuery) {
@@ -36,7 +39,8 @@ TEST(Native, MakesRoomForAContactLargerThanAllBeforeWithinTheQuery) {
   const auto native = make_native_backend(), ref = make_ref_backend();
   ASSERT_TRUE(native->prepare(geometry, Plan{}, {}));
   ASSERT_TRUE(ref->prepare(geometry, Plan{}, {}));
-  const LatticePose pose = at(geometry, Vec3(0.0003, 0.0002, 0));   // faces in one plane: every triangle meets several
+  const LatticePose pose =
+      at(geometry, Vec3(0.0003, 0.0002, 0));  // faces in one plane: every triangle meets several
   Contacts found, expected;
   ASSERT_TRUE(native->query(pose, nullptr, found));
   ASSERT_TRUE(ref->query(pose, nullptr, expected));
@@ -49,11 +53,15 @@ TEST(Native, AllocatesNothingInAFrameOnceItHasSeenOneLikeIt) {
   const SceneGeometry geometry = pressed_boards();
   const auto native = make_native_backend();
   Plan plan;
-  plan.telemetry = false;   // as for a loop that nobody watches
+  plan.telemetry = false;  // as for a loop that nobody watches
   ASSERT_TRUE(native->prepare(geometry, plan, {}));
   Contacts out;
-  const auto ask = [&](int i) { return static_cast<bool>(native->query(at(geometry, Vec3(0.0001 * i, 0.0002, -0.0005 - 0.0001 * (i % 5))), nullptr, out)); };
-  // Which of the frame's threads has how much of it is chance, and each has room of its own: after a few rounds both have had as much as there is.
+  const auto ask = [&](int i) {
+    return static_cast<bool>(
+        native->query(at(geometry, Vec3(0.0001 * i, 0.0002, -0.0005 - 0.0001 * (i % 5))), nullptr, out));
+  };
+  // Which of the frame's threads has how much of it is chance, and each has room of its own: after a few
+  // rounds both have had as much as there is.
   std::size_t allocated = 1;
   for (int round = 0; round < 20 && allocated != 0; ++round) {
     const std::size_t before = allocations_of_this_thread();
@@ -64,7 +72,7 @@ TEST(Native, AllocatesNothingInAFrameOnceItHasSeenOneLikeIt) {
   EXPECT_TRUE(out.contact);
 }
 
-std::uint64_t status(const std::string& key) {   // of /proc/self/status, bytes
+std::uint64_t status(const std::string& key) {  // of /proc/self/status, bytes
   std::ifstream in("/proc/self/status");
   for (std::string line; std::getline(in, line);)
     if (line.starts_with(key)) return std::stoull(line.substr(key.size() + 1)) << 10;
@@ -82,7 +90,7 @@ TEST(Native, TakesNoMoreMemoryThanForetoldAndKeepsAtMostAHundredBytesATriangle) 
     const SceneGeometry geometry = built(scene->mockup, scene->tool);
     const auto native = make_native_backend();
     const std::uint64_t foretold = native->preparation_bytes(geometry, Plan{});
-    std::ofstream("/proc/self/clear_refs") << 5;   // the peak is of what follows
+    std::ofstream("/proc/self/clear_refs") << 5;  // the peak is of what follows
     const std::uint64_t before = status("VmRSS:");
     ASSERT_TRUE(native->prepare(geometry, Plan{}, {}));
     const std::uint64_t taken = status("VmHWM:") - before;
@@ -90,10 +98,12 @@ TEST(Native, TakesNoMoreMemoryThanForetoldAndKeepsAtMostAHundredBytesATriangle) 
     EXPECT_LE(native->memory_bytes(), foretold);
     kept[0] = std::exchange(kept[1], native->memory_bytes());
     of[0] = std::exchange(of[1], geometry.mockup.triangles.size());
-    std::printf("%llu triangles: %.1f MiB taken, %.1f foretold, %.1f kept\n", static_cast<unsigned long long>(triangles), static_cast<double>(taken) / 1048576,
-                static_cast<double>(foretold) / 1048576, static_cast<double>(native->memory_bytes()) / 1048576);
+    std::printf("%llu triangles: %.1f MiB taken, %.1f foretold, %.1f kept\n",
+                static_cast<unsigned long long>(triangles), static_cast<double>(taken) / 1048576,
+                static_cast<double>(foretold) / 1048576,
+                static_cast<double>(native->memory_bytes()) / 1048576);
   }
-  EXPECT_LE(kept[1] - kept[0], 100 * (of[1] - of[0]));   // what the tool takes is the same for both
+  EXPECT_LE(kept[1] - kept[0], 100 * (of[1] - of[0]));  // what the tool takes is the same for both
 }
 
 TEST(Native, RefusesWhatItDoesNotAnswer) {

@@ -11,9 +11,9 @@
 
 #include "compute/gpu/gpu_backend.h"
 #include "cpu_ref/ref_backend.h"
-#include "model/scene/geometry_build.h"
-#include "model/mesh/patches.h"
 #include "model/lattice/triangle.h"
+#include "model/mesh/patches.h"
+#include "model/scene/geometry_build.h"
 
 namespace palpate::properties {
 namespace {
@@ -57,7 +57,9 @@ void checked(const Result<void>& result) {
   if (!result) throw std::runtime_error(result.error().sentence);
 }
 
-std::uint32_t through(const std::vector<std::uint32_t>& map, std::uint32_t id) { return id < map.size() ? map[id] : id; }
+std::uint32_t through(const std::vector<std::uint32_t>& map, std::uint32_t id) {
+  return id < map.size() ? map[id] : id;
+}
 
 std::vector<std::uint32_t> through(const std::vector<std::uint32_t>& map, std::vector<std::uint32_t> ids) {
   for (std::uint32_t& id : ids) id = through(map, id);
@@ -75,12 +77,16 @@ std::string text_of(const ContactArea& area, Extent extent, const Mapping& mappi
   std::sort(zones.begin(), zones.end());
   std::string text = fmt::format("area {} zones {}", through(mapping.statics, area.static_ids), zones);
   if (extent != Extent::kAll) return text;
-  text += fmt::format(" mobile {} flags {:x} direction {} {} {} rays {} max {} heights {}", through(mapping.mobiles, area.mobile_ids), area.flags, area.direction.x,
+  text += fmt::format(" mobile {} flags {:x} direction {} {} {} rays {} max {} heights {}",
+                      through(mapping.mobiles, area.mobile_ids), area.flags, area.direction.x,
                       area.direction.y, area.direction.z, area.rays, area.max_height, area.height_sum);
-  text += fmt::format(" field {} {} {} {}", area.field.samples, area.field.max_depth, area.field.weight_sum, area.field.depth_sum);
+  text += fmt::format(" field {} {} {} {}", area.field.samples, area.field.max_depth, area.field.weight_sum,
+                      area.field.depth_sum);
   for (const auto* sums : {&area.field.push, &area.field.moment})
     for (const WideSum& sum : *sums) text += fmt::format(" {}", value_of(sum));
-  for (int k = 0; k < 3; ++k) text += fmt::format(" {}", area.voxel_sum[static_cast<std::size_t>(k)] + mapping.shift[k] * std::int64_t{area.voxel_count});
+  for (int k = 0; k < 3; ++k)
+    text += fmt::format(" {}", area.voxel_sum[static_cast<std::size_t>(k)] +
+                                   mapping.shift[k] * std::int64_t{area.voxel_count});
   return text + fmt::format(" voxels {}", area.voxel_count);
 }
 
@@ -105,7 +111,7 @@ std::vector<Answer> ask(const Question& question, const std::vector<LatticePose>
   geometry.mockup_grid = make_grid(geometry.mockup.box_min, geometry.mockup.box_max, question.voxel);
   geometry.tool_grid = make_grid(geometry.tool.box_min, geometry.tool.box_max, question.voxel);
   geometry.sample_spacing = question.spacing;
-  geometry.contact_samples = 12;   // few, so that many contacts are sampled coarsely
+  geometry.contact_samples = 12;  // few, so that many contacts are sampled coarsely
   geometry.tool_sample_spacing = 2 * geometry.sample_spacing;
   weigh_for_field(geometry.sample_spacing, geometry.mockup);
   weigh_for_field(geometry.tool_sample_spacing, geometry.tool);
@@ -113,7 +119,7 @@ std::vector<Answer> ask(const Question& question, const std::vector<LatticePose>
   geometry.tool_gyration_m = 1;
   double radius = 0;
   for (const Int3& v : geometry.tool.vertices) radius = std::max(radius, glm::length(Vec3(v)));
-  geometry.tool_radius = static_cast<std::int32_t>(std::ceil(radius)) + 3;   // as build_geometry does
+  geometry.tool_radius = static_cast<std::int32_t>(std::ceil(radius)) + 3;  // as build_geometry does
   Plan plan;
   plan.profile = question.profile;
   plan.est = question.profile == Profile::kRefined;
@@ -135,25 +141,27 @@ Answer ask(const Question& question) { return std::move(ask(question, {question.
 std::string text_of(const Answer& answer, Extent extent, const Mapping& mapping) {
   const Contacts& c = answer.contacts;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (const auto& [s, m] : answer.pairs) pairs.emplace_back(through(mapping.statics, s), through(mapping.mobiles, m));
+  for (const auto& [s, m] : answer.pairs)
+    pairs.emplace_back(through(mapping.statics, s), through(mapping.mobiles, m));
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   const auto statics = [&](const auto& ids) { return through(mapping.statics, ids); };
   const auto mobiles = [&](const auto& ids) { return through(mapping.mobiles, ids); };
   std::string text = fmt::format("pairs {}\ncst {}\ncmt {}\n", pairs, statics(c.cst), mobiles(c.cmt));
-  if (extent >= Extent::kVoxels) text += fmt::format("imt {}\nbmt {}\nbst {}\n", mobiles(c.imt), mobiles(c.bmt), statics(c.bst));
+  if (extent >= Extent::kVoxels)
+    text += fmt::format("imt {}\nbmt {}\nbst {}\n", mobiles(c.imt), mobiles(c.bmt), statics(c.bst));
   if (extent >= Extent::kSets) text += fmt::format("est {}\ncontact {}\n", statics(c.est), c.contact);
   if (extent < Extent::kAreas) return text;
   std::vector<std::string> areas;
   for (const ContactArea& area : c.areas) areas.push_back(text_of(area, extent, mapping));
   if (extent == Extent::kAreas) std::sort(areas.begin(), areas.end());
   text += fmt::format("{}\n", fmt::join(areas, "\n"));
-  if (extent == Extent::kAll)
-    text += fmt::format("flags {:x} {}\n", c.flags, text_of(c.field));
+  if (extent == Extent::kAll) text += fmt::format("flags {:x} {}\n", c.flags, text_of(c.field));
   return text;
 }
 
-std::vector<std::array<std::int32_t, 3>> voxels_of(const Answer& answer, VoxelClass wanted, const std::function<Int3(const Int3&)>& place) {
+std::vector<std::array<std::int32_t, 3>> voxels_of(const Answer& answer, VoxelClass wanted,
+                                                   const std::function<Int3(const Int3&)>& place) {
   const VoxelGrid& grid = answer.partition.grid;
   const Int3 n = grid.voxels();
   std::vector<std::array<std::int32_t, 3>> found;
@@ -173,17 +181,22 @@ std::vector<std::array<std::int32_t, 3>> voxels_of(const Answer& answer, VoxelCl
 
 Body mapped(const Body& body, const std::function<Int3(const Int3&)>& f, bool turned) {
   Body out;
-  for (const Corners& t : body) out.push_back(turned ? Corners{f(t[0]), f(t[2]), f(t[1])} : Corners{f(t[0]), f(t[1]), f(t[2])});
+  for (const Corners& t : body)
+    out.push_back(turned ? Corners{f(t[0]), f(t[2]), f(t[1])} : Corners{f(t[0]), f(t[1]), f(t[2])});
   return out;
 }
 
 Body moved(const Question& question) {
   Body out;
   for (const Corners& t : question.tool)
-    if (!collapsed(t)) out.push_back({transform(question.pose, t[0]), transform(question.pose, t[1]), transform(question.pose, t[2])});
+    if (!collapsed(t))
+      out.push_back(
+          {transform(question.pose, t[0]), transform(question.pose, t[1]), transform(question.pose, t[2])});
   return out;
 }
 
-bool collapsed(const Corners& triangle) { return raw_normal(triangle[0], triangle[1], triangle[2]) == Long3(0); }
+bool collapsed(const Corners& triangle) {
+  return raw_normal(triangle[0], triangle[1], triangle[2]) == Long3(0);
+}
 
 }  // namespace palpate::properties

@@ -1,5 +1,6 @@
-// What must hold of any answer, and how answers to two related questions are related. RC_PARAMS="seed=… max_success=…" overrides what
-// CMakeLists.txt sets; a failure prints its seed and the smallest question that still fails. Why each relation is exact is said at its test.
+// What must hold of any answer, and how answers to two related questions are related. RC_PARAMS="seed=…
+// max_success=…" overrides what CMakeLists.txt sets; a failure prints its seed and the smallest question that
+// still fails. Why each relation is exact is said at its test.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +13,8 @@
 namespace palpate::properties {
 namespace {
 
-/// At least this share of the questions must make contact, else a property is about nothing (measured: 0.92 to 0.98).
+/// At least this share of the questions must make contact, else a property is about nothing (measured: 0.92
+/// to 0.98).
 constexpr double kLeastContact = 0.8;
 
 /// Runs a property on random questions and counts how many of them touch.
@@ -37,7 +39,8 @@ int random_below(int end) { return *rc::gen::resize(rc::kNominalSize, rc::gen::i
 std::vector<std::uint32_t> any_order(std::size_t count) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
-  for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[static_cast<std::size_t>(random_below(static_cast<int>(i)))]);
+  for (std::size_t i = count; i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random_below(static_cast<int>(i)))]);
   return order;
 }
 
@@ -67,15 +70,18 @@ bool includes(const std::vector<std::uint32_t>& all, const std::vector<std::uint
 }
 
 bool same_wrench(const Answer& a, const Answer& b) {
-  return a.response.wrench.force == b.response.wrench.force && a.response.wrench.torque == b.response.wrench.torque;
+  return a.response.wrench.force == b.response.wrench.force &&
+         a.response.wrench.torque == b.response.wrench.torque;
 }
 
-// Grids of voxels are anchored at lattice 0: a shift by whole voxels takes them to themselves, and everything else is made of differences. Sums of points move by
-// their weight. Samples are moved within their cells by the cells' own numbers, so in `refined` what hangs on samples is another.
+// Grids of voxels are anchored at lattice 0: a shift by whole voxels takes them to themselves, and everything
+// else is made of differences. Sums of points move by their weight. Samples are moved within their cells by
+// the cells' own numbers, so in `refined` what hangs on samples is another.
 TEST(Moving, BothByWholeVoxelsMovesTheAnswerAlong) {
   check("moving both by whole voxels", solids(false), [](const Question& question, const Answer& answer) {
     Mapping mapping;
-    mapping.shift = question.voxel * Int3(random_below(41) - 20, random_below(41) - 20, random_below(41) - 20);
+    mapping.shift =
+        question.voxel * Int3(random_below(41) - 20, random_below(41) - 20, random_below(41) - 20);
     Question other = question;
     other.mockup = mapped(question.mockup, [&](const Int3& p) { return p + mapping.shift; });
     other.pose.translation += mapping.shift;
@@ -83,13 +89,15 @@ TEST(Moving, BothByWholeVoxelsMovesTheAnswerAlong) {
     const Extent extent = question.profile == Profile::kPaper ? Extent::kAll : Extent::kVoxels;
     RC_ASSERT(text_of(along, extent) == text_of(answer, extent, mapping));
     if (extent != Extent::kAll) return;
-    // Force is made of d and n_c, which are the same. cp is a quotient of rounded sums, off by 3 · 2^-53 of itself, within 1024 steps, in
-    // either answer; gc, the tool's lattice origin, is exact. A cross product takes two such products a component.
+    // Force is made of d and n_c, which are the same. cp is a quotient of rounded sums, off by 3 · 2^-53 of
+    // itself, within 1024 steps, in either answer; gc, the tool's lattice origin, is exact. A cross product
+    // takes two such products a component.
     RC_ASSERT(along.response.wrench.force == answer.response.wrench.force);
     double force = 0;
     for (const AreaResponse& area : answer.response.areas) force += glm::length(area.force);
     for (int k = 0; k < 3; ++k)
-      RC_ASSERT(std::abs(along.response.wrench.torque[k] - answer.response.wrench.torque[k]) <= 2 * 2 * 4 * 0x1p-53 * 1024 * force);
+      RC_ASSERT(std::abs(along.response.wrench.torque[k] - answer.response.wrench.torque[k]) <=
+                2 * 2 * 4 * 0x1p-53 * 1024 * force);
   });
 }
 
@@ -104,12 +112,14 @@ TEST(Moving, BothByAnyStepsKeepsThePairs) {
   });
 }
 
-/// Renames axes and turns some round. The tool is moved before, since a rotation's rounding is not the same both ways; then its grid is
-/// another, which no set below depends on.
+/// Renames axes and turns some round. The tool is moved before, since a rotation's rounding is not the same
+/// both ways; then its grid is another, which no set below depends on.
 struct AxisMap {
   std::array<int, 3> axis{0, 1, 2};
   Int3 sign{1};
-  Int3 operator()(const Int3& p) const { return Int3(sign[0] * p[axis[0]], sign[1] * p[axis[1]], sign[2] * p[axis[2]]); }
+  Int3 operator()(const Int3& p) const {
+    return Int3(sign[0] * p[axis[0]], sign[1] * p[axis[1]], sign[2] * p[axis[2]]);
+  }
   bool mirrors() const {
     const bool odd = (axis[1] - axis[0] + 3) % 3 == 2;
     return (sign.x * sign.y * sign.z < 0) != odd;
@@ -145,18 +155,21 @@ Mapping without_voids(const Question& question) {
   return mapping;
 }
 
-// Closed cubes of whole voxels go to such cubes. Inside is a matter of topology when the mock-up is closed: the ray's direction and the
-// perturbed point don't matter. Not the samples: their anchors are open towards one side, and their last coordinate is rounded down.
+// Closed cubes of whole voxels go to such cubes. Inside is a matter of topology when the mock-up is closed:
+// the ray's direction and the perturbed point don't matter. Not the samples: their anchors are open towards
+// one side, and their last coordinate is rounded down.
 TEST(Axes, RenamingAndMirroringKeepsPairsAndVoxelSets) {
   check("axes of solids", solids(false), [](const Question& question, const Answer& answer) {
     const AxisMap map = any_axis_map();
     const Answer seen = ask(seen_through(question, map));
     RC_ASSERT(text_of(seen, Extent::kVoxels) == text_of(answer, Extent::kVoxels, without_voids(question)));
-    for (const VoxelClass c : {VoxelClass::kBoundary, VoxelClass::kInternal}) RC_ASSERT(voxels_of(seen, c) == voxels_of(answer, c, map));
+    for (const VoxelClass c : {VoxelClass::kBoundary, VoxelClass::kInternal})
+      RC_ASSERT(voxels_of(seen, c) == voxels_of(answer, c, map));
   });
 }
 
-// An open soup's inside is a vote along +x, +y and +z and of the perturbed point: only pairs and V_bnd are compared.
+// An open soup's inside is a vote along +x, +y and +z and of the perturbed point: only pairs and V_bnd are
+// compared.
 TEST(Axes, RenamingAndMirroringASoupKeepsPairsAndBoundary) {
   check("axes of soups", soups(false), [](const Question& question, const Answer& answer) {
     const AxisMap map = any_axis_map();
@@ -166,21 +179,24 @@ TEST(Axes, RenamingAndMirroringASoupKeepsPairsAndBoundary) {
   });
 }
 
-// The tool's triangles are never numbered against each other in sets and areas; which corner comes first decides nothing for a solid: a triangle that
-// crosses nothing is wholly inside or wholly outside. (The field's extra samples stand on the triangle of the smallest id, of several alike.)
+// The tool's triangles are never numbered against each other in sets and areas; which corner comes first
+// decides nothing for a solid: a triangle that crosses nothing is wholly inside or wholly outside. (The
+// field's extra samples stand on the triangle of the smallest id, of several alike.)
 TEST(Order, OfToolTrianglesAndOfCornersIsOfNoConsequence) {
-  check("order of tool triangles and corners", solids(false), [](const Question& question, const Answer& answer) {
-    Mapping mapping;
-    mapping.mobiles = any_order(question.tool.size());
-    Question other = question;
-    other.tool = with_other_first_corners(in_order(question.tool, mapping.mobiles));
-    other.mockup = with_other_first_corners(question.mockup);
-    const Answer reordered = ask(other);
-    RC_ASSERT(text_of(reordered, Extent::kAreas, mapping) == text_of(answer, Extent::kAreas));
-  });
+  check("order of tool triangles and corners", solids(false),
+        [](const Question& question, const Answer& answer) {
+          Mapping mapping;
+          mapping.mobiles = any_order(question.tool.size());
+          Question other = question;
+          other.tool = with_other_first_corners(in_order(question.tool, mapping.mobiles));
+          other.mockup = with_other_first_corners(question.mockup);
+          const Answer reordered = ask(other);
+          RC_ASSERT(text_of(reordered, Extent::kAreas, mapping) == text_of(answer, Extent::kAreas));
+        });
 }
 
-// The smallest id decides ties between areas, so with the mock-up's triangles in another order sets, areas and zones are compared.
+// The smallest id decides ties between areas, so with the mock-up's triangles in another order sets, areas
+// and zones are compared.
 TEST(Order, OfMockupTrianglesKeepsSetsAndAreas) {
   check("order of mock-up triangles", solids(false), [](const Question& question, const Answer& answer) {
     Mapping mapping;
@@ -218,7 +234,8 @@ TEST(Roles, SwappedGiveTheSamePairs) {
   });
 }
 
-// Twice the lattice, voxels too. Quarter turns, since a rotation rounds on the lattice. Not the samples: floor(2x) is not 2 floor(x).
+// Twice the lattice, voxels too. Quarter turns, since a rotation rounds on the lattice. Not the samples:
+// floor(2x) is not 2 floor(x).
 TEST(Doubling, AllCoordinatesKeepsPairsVoxelsAndSets) {
   check("doubling", solids(true), [](const Question& question, const Answer& answer) {
     const auto twice = [](const Int3& p) { return 2 * p; };
@@ -230,11 +247,13 @@ TEST(Doubling, AllCoordinatesKeepsPairsVoxelsAndSets) {
     other.spacing *= 2;
     const Answer doubled = ask(other);
     RC_ASSERT(text_of(doubled, Extent::kVoxels) == text_of(answer, Extent::kVoxels));
-    for (const VoxelClass c : {VoxelClass::kBoundary, VoxelClass::kInternal}) RC_ASSERT(voxels_of(doubled, c) == voxels_of(answer, c, twice));
+    for (const VoxelClass c : {VoxelClass::kBoundary, VoxelClass::kInternal})
+      RC_ASSERT(voxels_of(doubled, c) == voxels_of(answer, c, twice));
   });
 }
 
-// The halves cover the triangle, and its samples are theirs: same plane, same axis, same unit normal; the perturbed point is in one of them.
+// The halves cover the triangle, and its samples are theirs: same plane, same axis, same unit normal; the
+// perturbed point is in one of them.
 TEST(Splitting, AnEdgeOfTheMockupKeepsWhatIsTouched) {
   check("splitting", solids(false), [](const Question& question, const Answer& answer) {
     // Both triangles on an edge that has a lattice point in its middle.
@@ -244,7 +263,7 @@ TEST(Splitting, AnEdgeOfTheMockupKeepsWhatIsTouched) {
     RC_PRE(middle * 2 == u + v);
     Question other = question;
     other.mockup.clear();
-    std::vector<std::uint32_t> whole;   // of each triangle of `other`
+    std::vector<std::uint32_t> whole;  // of each triangle of `other`
     for (std::uint32_t t = 0; t < question.mockup.size(); ++t) {
       const Corners& corners = question.mockup[t];
       std::size_t edge = 3;
@@ -269,7 +288,8 @@ TEST(Splitting, AnEdgeOfTheMockupKeepsWhatIsTouched) {
     RC_ASSERT(split.contacts.bmt == answer.contacts.bmt);
     RC_ASSERT(split.contacts.contact == answer.contacts.contact);
     RC_ASSERT(contact_statics(split, whole) == contact_statics(answer, {}));
-    for (const VoxelClass c : {VoxelClass::kBoundary, VoxelClass::kInternal}) RC_ASSERT(voxels_of(split, c) == voxels_of(answer, c));
+    for (const VoxelClass c : {VoxelClass::kBoundary, VoxelClass::kInternal})
+      RC_ASSERT(voxels_of(split, c) == voxels_of(answer, c));
   });
 }
 
@@ -277,8 +297,10 @@ TEST(Splitting, AnEdgeOfTheMockupKeepsWhatIsTouched) {
 TEST(FarGeometry, ChangesNothing) {
   check("far geometry", solids(false), [](const Question& question, const Answer& answer) {
     Question other = question;
-    const Int3 away((random_below(2) == 0 ? -1 : 1) * (400 + random_below(100)), random_below(201) - 100, random_below(201) - 100);
-    for (const Corners& t : mapped(question.tool, [&](const Int3& p) { return p + away; })) other.mockup.push_back(t);
+    const Int3 away((random_below(2) == 0 ? -1 : 1) * (400 + random_below(100)), random_below(201) - 100,
+                    random_below(201) - 100);
+    for (const Corners& t : mapped(question.tool, [&](const Int3& p) { return p + away; }))
+      other.mockup.push_back(t);
     const Answer with = ask(other);
     RC_ASSERT(text_of(with, Extent::kAll) == text_of(answer, Extent::kAll));
     RC_ASSERT(same_wrench(with, answer));
@@ -294,7 +316,8 @@ TEST(AddingATriangle, NeverRemovesABoundaryVoxelOrAContactTriangle) {
     const Answer grown = ask(other);
     RC_ASSERT(includes(grown.contacts.cst, answer.contacts.cst));
     RC_ASSERT(includes(grown.contacts.cmt, answer.contacts.cmt));
-    const auto before = voxels_of(answer, VoxelClass::kBoundary), after = voxels_of(grown, VoxelClass::kBoundary);
+    const auto before = voxels_of(answer, VoxelClass::kBoundary),
+               after = voxels_of(grown, VoxelClass::kBoundary);
     RC_ASSERT(std::includes(after.begin(), after.end(), before.begin(), before.end()));
     other = question;
     other.tool.push_back(question.mockup.front());
@@ -317,7 +340,8 @@ TEST(AskingAgain, GivesTheSame) {
   });
 }
 
-/// |v|² of v/|v|: three quotients, squares and a sum, each rounded: within 8 units of the last place of 1 (2^-53 each).
+/// |v|² of v/|v|: three quotients, squares and a sum, each rounded: within 8 units of the last place of 1
+/// (2^-53 each).
 constexpr double kUnit = 8 * 0x1p-53;
 
 void expect_sound(const Answer& answer) {
@@ -328,7 +352,7 @@ void expect_sound(const Answer& answer) {
     RC_ASSERT(response.wrench.force == Vec3(0));
     RC_ASSERT(response.wrench.torque == Vec3(0));
   }
-  const bool paper = answer.contacts.carriers.empty();   // in `refined` every area has some
+  const bool paper = answer.contacts.carriers.empty();  // in `refined` every area has some
   Vec3 force(0), torque(0);
   for (const AreaResponse& area : response.areas) {
     RC_ASSERT(area.depth >= 0 && std::isfinite(area.depth));
@@ -337,7 +361,9 @@ void expect_sound(const Answer& answer) {
     RC_ASSERT(!directed || std::abs(glm::dot(area.normal, area.normal) - 1) <= kUnit);
     if ((area.flags & kFlagNoDirection) != 0) RC_ASSERT(area.force == Vec3(0));
     if (!directed) RC_ASSERT(area.force == Vec3(0) && area.torque == Vec3(0));
-    if (paper) RC_ASSERT(area.force == kStiffness * area.depth * area.normal);   // eq. 3, the same products in the same order
+    if (paper)
+      RC_ASSERT(area.force ==
+                kStiffness * area.depth * area.normal);  // eq. 3, the same products in the same order
     for (int k = 0; k < 3; ++k) RC_ASSERT(std::isfinite(area.point[k]) && std::isfinite(area.torque[k]));
     force += area.force;
     torque += area.torque;
@@ -346,14 +372,17 @@ void expect_sound(const Answer& answer) {
     RC_ASSERT(response.wrench.force == force);
     RC_ASSERT(response.wrench.torque == torque);
   }
-  for (int k = 0; k < 3; ++k) RC_ASSERT(std::isfinite(response.wrench.force[k]) && std::isfinite(response.wrench.torque[k]));
+  for (int k = 0; k < 3; ++k)
+    RC_ASSERT(std::isfinite(response.wrench.force[k]) && std::isfinite(response.wrench.torque[k]));
 }
 
 TEST(AnyAnswer, OfSolidsIsSound) {
-  check("any answer of solids", solids(false), [](const Question&, const Answer& answer) { expect_sound(answer); });
+  check("any answer of solids", solids(false),
+        [](const Question&, const Answer& answer) { expect_sound(answer); });
 }
 TEST(AnyAnswer, OfSoupsIsSound) {
-  check("any answer of soups", soups(false), [](const Question&, const Answer& answer) { expect_sound(answer); });
+  check("any answer of soups", soups(false),
+        [](const Question&, const Answer& answer) { expect_sound(answer); });
 }
 
 // Free of contact by a gap of more than a voxel: nothing at all.
@@ -364,7 +393,8 @@ TEST(NoContact, IsExactlyNothing) {
     const Answer answer = ask(question);
     const Contacts& c = answer.contacts;
     RC_ASSERT(!c.contact && answer.pairs.empty() && c.areas.empty());
-    RC_ASSERT(c.cst.empty() && c.cmt.empty() && c.imt.empty() && c.bmt.empty() && c.bst.empty() && c.est.empty());
+    RC_ASSERT(c.cst.empty() && c.cmt.empty() && c.imt.empty() && c.bmt.empty() && c.bst.empty() &&
+              c.est.empty());
     expect_sound(answer);
   });
   EXPECT_TRUE(held);

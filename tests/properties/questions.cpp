@@ -9,28 +9,40 @@
 namespace palpate::properties {
 namespace {
 
-constexpr std::int32_t kReach = 24;   // of a soup's corners, steps: three voxels
+constexpr std::int32_t kReach = 24;  // of a soup's corners, steps: three voxels
 
 /// From first to last, all of them at any size: the library would begin with questions too small to touch.
-rc::Gen<std::int32_t> between(std::int32_t first, std::int32_t last) { return rc::gen::resize(rc::kNominalSize, rc::gen::inRange(first, last + 1)); }
+rc::Gen<std::int32_t> between(std::int32_t first, std::int32_t last) {
+  return rc::gen::resize(rc::kNominalSize, rc::gen::inRange(first, last + 1));
+}
 
 /// Multiples of 4, half a voxel, most of the time: so that things coincide.
 rc::Gen<std::int32_t> coordinate() {
-  return rc::gen::weightedOneOf<std::int32_t>({{3, rc::gen::map(between(-kReach / 4, kReach / 4), [](std::int32_t i) { return 4 * i; })},
-                                               {1, between(-kReach, kReach)}});
+  return rc::gen::weightedOneOf<std::int32_t>(
+      {{3, rc::gen::map(between(-kReach / 4, kReach / 4), [](std::int32_t i) { return 4 * i; })},
+       {1, between(-kReach, kReach)}});
 }
 
 rc::Gen<Int3> point() {
-  return rc::gen::apply([](std::int32_t x, std::int32_t y, std::int32_t z) { return Int3(x, y, z); }, coordinate(), coordinate(), coordinate());
+  return rc::gen::apply([](std::int32_t x, std::int32_t y, std::int32_t z) { return Int3(x, y, z); },
+                        coordinate(), coordinate(), coordinate());
 }
 
 rc::Gen<Corners> triangle() {
-  return rc::gen::apply([](const Int3& a, const Int3& b, const Int3& c) { return Corners{a, b, c}; }, point(), point(), point());
+  return rc::gen::apply(
+      [](const Int3& a, const Int3& b, const Int3& c) {
+        return Corners{a, b, c};
+      },
+      point(), point(), point());
 }
 
-bool has_area(const Body& body) { return std::any_of(body.begin(), body.end(), [](const Corners& t) { return !collapsed(t); }); }
+bool has_area(const Body& body) {
+  return std::any_of(body.begin(), body.end(), [](const Corners& t) { return !collapsed(t); });
+}
 
-rc::Gen<Body> soup() { return rc::gen::suchThat(rc::gen::resize(24, rc::gen::container<Body>(triangle())), has_area); }
+rc::Gen<Body> soup() {
+  return rc::gen::suchThat(rc::gen::resize(24, rc::gen::container<Body>(triangle())), has_area);
+}
 
 Body box(const Int3& low, const Int3& high) {
   Body out;
@@ -44,7 +56,8 @@ Body box(const Int3& low, const Int3& high) {
         p[v] = far_v ? high[v] : low[v];
         return p;
       };
-      const Int3 a = corner(false, false), b = corner(true, false), c = corner(true, true), d = corner(false, true);
+      const Int3 a = corner(false, false), b = corner(true, false), c = corner(true, true),
+                 d = corner(false, true);
       out.push_back(upper ? Corners{a, b, c} : Corners{a, c, b});
       out.push_back(upper ? Corners{a, c, d} : Corners{a, d, c});
     }
@@ -56,7 +69,8 @@ Body octahedron(const Int3& centre, std::int32_t radius) {
   for (const int x : {-1, 1})
     for (const int y : {-1, 1})
       for (const int z : {-1, 1}) {
-        const Int3 a = centre + Int3(x * radius, 0, 0), b = centre + Int3(0, y * radius, 0), c = centre + Int3(0, 0, z * radius);
+        const Int3 a = centre + Int3(x * radius, 0, 0), b = centre + Int3(0, y * radius, 0),
+                   c = centre + Int3(0, 0, z * radius);
         out.push_back(x * y * z > 0 ? Corners{a, b, c} : Corners{a, c, b});
       }
   return out;
@@ -65,7 +79,7 @@ Body octahedron(const Int3& centre, std::int32_t radius) {
 rc::Gen<Body> solid() {
   return rc::gen::apply(
       [](bool round, const Int3& anywhere, std::int32_t size, const Int3& longer) {
-        const Int3 centre = anywhere / 2;   // nearer than a soup's corners: solids touch less
+        const Int3 centre = anywhere / 2;  // nearer than a soup's corners: solids touch less
         if (round) return octahedron(centre, 2 * size);
         return box(centre - size, centre + size + glm::abs(longer) / 2);
       },
@@ -73,7 +87,8 @@ rc::Gen<Body> solid() {
 }
 
 rc::Gen<Body> some_solids() {
-  return rc::gen::map(rc::gen::suchThat(rc::gen::resize(4, rc::gen::container<std::vector<Body>>(solid())), [](const auto& all) { return !all.empty(); }),
+  return rc::gen::map(rc::gen::suchThat(rc::gen::resize(4, rc::gen::container<std::vector<Body>>(solid())),
+                                        [](const auto& all) { return !all.empty(); }),
                       [](const std::vector<Body>& all) {
                         Body out;
                         for (const Body& body : all) out.insert(out.end(), body.begin(), body.end());
@@ -109,7 +124,8 @@ rc::Gen<LatticePose> turn(bool quarter_turns) {
   const auto quarter = rc::gen::map(between(0, 23), quarter_turn);
   if (quarter_turns) return quarter;
   const auto part = between(-1000, 1000);
-  const auto any = rc::gen::apply([](int w, int x, int y, int z) { return any_turn(w * w + 1, x, y, z); }, between(0, 31), part, part, part);
+  const auto any = rc::gen::apply([](int w, int x, int y, int z) { return any_turn(w * w + 1, x, y, z); },
+                                  between(0, 31), part, part, part);
   return rc::gen::weightedOneOf<LatticePose>({{1, quarter}, {2, any}});
 }
 
@@ -119,7 +135,8 @@ rc::Gen<Question> questions(const rc::Gen<Body>& body, bool quarter_turns) {
         pose.translation = shift / 2;
         return Question{std::move(mockup), std::move(tool), pose, 8, 4, profile};
       },
-      body, body, turn(quarter_turns), point(), rc::gen::weightedElement<Profile>({{3, Profile::kRefined}, {1, Profile::kPaper}}));
+      body, body, turn(quarter_turns), point(),
+      rc::gen::weightedElement<Profile>({{3, Profile::kRefined}, {1, Profile::kPaper}}));
 }
 
 void show(const char* what, const Body& body, std::ostream& out) {
@@ -142,7 +159,8 @@ void showValue(const Question& question, std::ostream& out) {
   for (const auto& row : question.pose.rotation_q30)
     for (const std::int32_t entry : row) out << ' ' << entry;
   const Int3& t = question.pose.translation;
-  out << "\ntranslation: " << t.x << ' ' << t.y << ' ' << t.z << (question.profile == Profile::kPaper ? "\nprofile: paper\n" : "\nprofile: refined\n");
+  out << "\ntranslation: " << t.x << ' ' << t.y << ' ' << t.z
+      << (question.profile == Profile::kPaper ? "\nprofile: paper\n" : "\nprofile: refined\n");
 }
 
 }  // namespace palpate::properties

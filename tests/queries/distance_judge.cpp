@@ -1,6 +1,8 @@
-// Holds clearance() of the native engine against CGAL's exact kernel: no pair is nearer, the named pair is as near, and both witnesses lie on their triangles
-// but for rounding. CGAL finds the pairs whose boxes are near enough by itself.
-//   distance_judge --poses N [SCENE...]     without SCENE: the cases of tests/equivalence that together reach every rule
+// Holds clearance() of the native engine against CGAL's exact kernel: no pair is nearer, the named pair is as
+// near, and both witnesses lie on their triangles but for rounding. CGAL finds the pairs whose boxes are near
+// enough by itself.
+//   distance_judge --poses N [SCENE...]     without SCENE: the cases of tests/equivalence that together reach
+//   every rule
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 
@@ -22,7 +24,7 @@ using NearBox = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32
 Kernel::Point_3 point(const Int3& p) { return {p.x, p.y, p.z}; }
 
 struct Body {
-  std::vector<Kernel::Triangle_3> triangles;   // by id; of one that counts
+  std::vector<Kernel::Triangle_3> triangles;  // by id; of one that counts
   std::vector<NearBox> boxes;
 };
 
@@ -48,34 +50,46 @@ struct Counts {
 };
 
 /// What is wrong with an answer; empty: nothing.
-std::string judge(const SceneGeometry& geometry, Body& mockup, const LatticePose& pose, const Clearance& found, Counts& counts) {
-  Body tool = body_of(geometry.tool, found.steps + 1.0, [&](std::uint32_t t, int k) { return transform(pose, geometry.tool.corner(t, k)); });
-  const Kernel::FT least(static_cast<double>(found.steps) * found.steps), most(static_cast<double>(found.steps + 1) * (found.steps + 1));
+std::string judge(const SceneGeometry& geometry, Body& mockup, const LatticePose& pose,
+                  const Clearance& found, Counts& counts) {
+  Body tool = body_of(geometry.tool, found.steps + 1.0,
+                      [&](std::uint32_t t, int k) { return transform(pose, geometry.tool.corner(t, k)); });
+  const Kernel::FT least(static_cast<double>(found.steps) * found.steps),
+      most(static_cast<double>(found.steps + 1) * (found.steps + 1));
   std::string wrong;
   bool as_near = false;
   std::pair<std::uint32_t, std::uint32_t> first{kNoTriangle, kNoTriangle};
-  CGAL::box_intersection_d(mockup.boxes.begin(), mockup.boxes.end(), tool.boxes.begin(), tool.boxes.end(), [&](const NearBox& s, const NearBox& m) {
-    ++counts.pairs;
-    const Kernel::FT d = CGAL::squared_distance(mockup.triangles[s.info()], tool.triangles[m.info()]);
-    if (d < least) wrong = "triangles " + std::to_string(s.info()) + " and " + std::to_string(m.info()) + " are nearer";
-    if (d < most) {
-      as_near = true;
-      first = std::min(first, {s.info(), m.info()});
-    }
-  });
+  CGAL::box_intersection_d(mockup.boxes.begin(), mockup.boxes.end(), tool.boxes.begin(), tool.boxes.end(),
+                           [&](const NearBox& s, const NearBox& m) {
+                             ++counts.pairs;
+                             const Kernel::FT d =
+                                 CGAL::squared_distance(mockup.triangles[s.info()], tool.triangles[m.info()]);
+                             if (d < least)
+                               wrong = "triangles " + std::to_string(s.info()) + " and " +
+                                       std::to_string(m.info()) + " are nearer";
+                             if (d < most) {
+                               as_near = true;
+                               first = std::min(first, {s.info(), m.info()});
+                             }
+                           });
   if (!wrong.empty()) return wrong;
   if (!as_near) return "no pair is so near";
-  if (first != std::pair{found.static_id, found.mobile_id}) return "the pair named is not the first that is so near";
+  if (first != std::pair{found.static_id, found.mobile_id})
+    return "the pair named is not the first that is so near";
   const Kernel::FT rounding(0.75);
-  if (CGAL::squared_distance(point(found.on_static), mockup.triangles[found.static_id]) > rounding) return "the witness is off the mock-up";
-  if (CGAL::squared_distance(point(found.on_mobile), tool.triangles[found.mobile_id]) > rounding) return "the witness is off the tool";
+  if (CGAL::squared_distance(point(found.on_static), mockup.triangles[found.static_id]) > rounding)
+    return "the witness is off the mock-up";
+  if (CGAL::squared_distance(point(found.on_mobile), tool.triangles[found.mobile_id]) > rounding)
+    return "the witness is off the tool";
   return "";
 }
 
-void ask(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses, Counts& counts) {
+void ask(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
+         Counts& counts) {
   const auto native = make_native_backend();
   if (!native->prepare(geometry, Plan{}, [](const char*, double) { return true; })) return;
-  Body mockup = body_of(geometry.mockup, 0, [&](std::uint32_t t, int k) { return geometry.mockup.corner(t, k); });
+  Body mockup =
+      body_of(geometry.mockup, 0, [&](std::uint32_t t, int k) { return geometry.mockup.corner(t, k); });
   const std::uint64_t apart = counts.apart, wrong_before = counts.wrong;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Clearance found;
@@ -90,9 +104,12 @@ void ask(const std::string& name, const SceneGeometry& geometry, const std::vect
     if (found.kind != Clearance::Kind::kApart) continue;
     ++counts.apart;
     const std::string wrong = judge(geometry, mockup, poses[i], found, counts);
-    if (!wrong.empty() && ++counts.wrong - wrong_before <= 5) std::printf("%s, pose %zu: %s (%d steps)\n", name.c_str(), i, wrong.c_str(), found.steps);
+    if (!wrong.empty() && ++counts.wrong - wrong_before <= 5)
+      std::printf("%s, pose %zu: %s (%d steps)\n", name.c_str(), i, wrong.c_str(), found.steps);
   }
-  std::printf("%s: %zu poses, %llu apart, %llu wrong\n", name.c_str(), poses.size(), static_cast<unsigned long long>(counts.apart - apart), static_cast<unsigned long long>(counts.wrong - wrong_before));
+  std::printf("%s: %zu poses, %llu apart, %llu wrong\n", name.c_str(), poses.size(),
+              static_cast<unsigned long long>(counts.apart - apart),
+              static_cast<unsigned long long>(counts.wrong - wrong_before));
 }
 
 int run(int argc, char** argv) {
@@ -111,15 +128,21 @@ int run(int argc, char** argv) {
       std::fprintf(stderr, "%s\n", subject.error().sentence.c_str());
       return 1;
     }
-    ask(file, subject->geometry, subject->path.size() > 1 ? poses_along(*subject, poses, reach / 8, 3) : poses_near(subject->geometry, poses, reach, 3), counts);
+    ask(file, subject->geometry,
+        subject->path.size() > 1 ? poses_along(*subject, poses, reach / 8, 3)
+                                 : poses_near(subject->geometry, poses, reach, 3),
+        counts);
   }
   if (scenes.empty())
     for (const equivalence::Case& c : equivalence::all_cases()) {
       if (c.profile != Profile::kRefined || !c.killer) continue;
-      if (auto scene = c.make(1)) ask(c.name, scene->geometry, poses_near(scene->geometry, poses, reach, 3), counts);
+      if (auto scene = c.make(1))
+        ask(c.name, scene->geometry, poses_near(scene->geometry, poses, reach, 3), counts);
     }
-  std::printf("%llu poses, %llu touch, %llu apart; %llu pairs asked of CGAL; %llu wrong\n", static_cast<unsigned long long>(counts.poses), static_cast<unsigned long long>(counts.touching),
-              static_cast<unsigned long long>(counts.apart), static_cast<unsigned long long>(counts.pairs), static_cast<unsigned long long>(counts.wrong));
+  std::printf("%llu poses, %llu touch, %llu apart; %llu pairs asked of CGAL; %llu wrong\n",
+              static_cast<unsigned long long>(counts.poses), static_cast<unsigned long long>(counts.touching),
+              static_cast<unsigned long long>(counts.apart), static_cast<unsigned long long>(counts.pairs),
+              static_cast<unsigned long long>(counts.wrong));
   return counts.wrong == 0 && counts.apart > 0 ? 0 : 1;
 }
 

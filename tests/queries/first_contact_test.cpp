@@ -1,4 +1,5 @@
-// First contact against closed forms and dense sampling (docs/EXACTNESS.md, section 10): never late, early by no more than promised.
+// First contact against closed forms and dense sampling (docs/EXACTNESS.md, section 10): never late, early by
+// no more than promised.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,9 +10,9 @@
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
-#include "model/scene/geometry_build.h"
 #include "model/lattice/rotation.h"
 #include "model/lattice/screw.h"
+#include "model/scene/geometry_build.h"
 #include "service/queries/first_contact.h"
 #include "tests/equivalence/random.h"
 
@@ -42,12 +43,15 @@ struct Asked {
 Pose pose_at(const Vec3& position, const Quat& rotation = Quat(1, 0, 0, 0)) { return {position, rotation}; }
 
 TEST(Screw, EndsWhereItIsToldAndMovesAsItSays) {
-  const Asked asked(solids::box(Vec3(-0.1), Vec3(0.1)), solids::box(Vec3(0.01, 0.02, 0.03), Vec3(0.05, 0.04, 0.09)));
+  const Asked asked(solids::box(Vec3(-0.1), Vec3(0.1)),
+                    solids::box(Vec3(0.01, 0.02, 0.03), Vec3(0.05, 0.04, 0.09)));
   equivalence::Random random(7);
   for (int i = 0; i < 200; ++i) {
     const auto some = [&] { return 2 * random.unit() - 1; };
     const double turn = i % 4 == 0 ? 1e-9 : i % 4 == 1 ? 0 : 2;
-    const Pose from = pose_at(Vec3(some(), some(), some()), rotation_by(Vec3(some(), some(), some()))), to = pose_at(Vec3(some(), some(), some()), rotation_by(turn * Vec3(some(), some(), some())) * from.rotation);
+    const Pose from = pose_at(Vec3(some(), some(), some()), rotation_by(Vec3(some(), some(), some()))),
+               to = pose_at(Vec3(some(), some(), some()),
+                            rotation_by(turn * Vec3(some(), some(), some())) * from.rotation);
     const Screw screw(from, to, asked.geometry);
     const Vec3 p(0.3, -0.2, 0.1);
     const auto point = [&](const Pose& pose) { return pose.rotation * p + pose.position; };
@@ -57,20 +61,24 @@ TEST(Screw, EndsWhereItIsToldAndMovesAsItSays) {
     const double t = random.unit(), dt = 1e-5, step = asked.geometry.lattice.step_m;
     const Twist twist = screw.twist(t);
     const Vec3 origin = screw.at(t).rotation * asked.geometry.tool_centre_m + screw.at(t).position;
-    const Vec3 told = twist.velocity * step + twist.angle * glm::cross(twist.axis, point(screw.at(t)) - origin);
+    const Vec3 told =
+        twist.velocity * step + twist.angle * glm::cross(twist.axis, point(screw.at(t)) - origin);
     const Vec3 seen = (point(screw.at(t + dt)) - point(screw.at(t - dt))) / (2 * dt);
     EXPECT_LT(glm::length(told - seen), 1e-8) << i;
-    EXPECT_NEAR(glm::length(twist.velocity), glm::length(screw.twist(0).velocity), 1e-6 * glm::length(twist.velocity) + 1e-9);
+    EXPECT_NEAR(glm::length(twist.velocity), glm::length(screw.twist(0).velocity),
+                1e-6 * glm::length(twist.velocity) + 1e-9);
   }
 }
 
 TEST(FirstContact, OfASphereOnAPlaneIsWhereItsLowestCornerIs) {
   Asked asked(solids::box(Vec3(-0.2, -0.2, -0.05), Vec3(0.2, 0.2, 0)), solids::sphere(0.02));
   double lowest = 0;
-  for (const Int3& v : asked.geometry.tool.vertices) lowest = std::min(lowest, v.z * asked.geometry.lattice.step_m);
+  for (const Int3& v : asked.geometry.tool.vertices)
+    lowest = std::min(lowest, v.z * asked.geometry.lattice.step_m);
   const double early = TouchRule::of(asked.geometry, 0).early * asked.geometry.lattice.step_m;
-  for (const double start : {0.03, 0.1, 0.5, 2.0}) {   // from within the grid, and from beyond the lattice
-    const FirstContact found = asked.first(pose_at(Vec3(0.003, 0.001, start)), pose_at(Vec3(0.003, 0.001, -0.01)));
+  for (const double start : {0.03, 0.1, 0.5, 2.0}) {  // from within the grid, and from beyond the lattice
+    const FirstContact found =
+        asked.first(pose_at(Vec3(0.003, 0.001, start)), pose_at(Vec3(0.003, 0.001, -0.01)));
     ASSERT_EQ(found.kind, FirstContact::Kind::kContact);
     const double height = start + found.time * (-0.01 - start), touching = -lowest;
     EXPECT_GE(height, touching) << "late";
@@ -81,9 +89,11 @@ TEST(FirstContact, OfASphereOnAPlaneIsWhereItsLowestCornerIs) {
 
 TEST(FirstContact, OfABladeTurningIntoAWallIsWhereItsEdgeReachesIt) {
   // A blade 0.1 long turns about z; the wall is the plane y = 0.05: it is reached at 30°.
-  Asked asked(solids::box(Vec3(-0.2, 0.05, -0.05), Vec3(0.2, 0.1, 0.05)), solids::box(Vec3(0, -0.001, -0.01), Vec3(0.1, 0.001, 0.01)));
+  Asked asked(solids::box(Vec3(-0.2, 0.05, -0.05), Vec3(0.2, 0.1, 0.05)),
+              solids::box(Vec3(0, -0.001, -0.01), Vec3(0.1, 0.001, 0.01)));
   const double step = asked.geometry.lattice.step_m;
-  const FirstContact found = asked.first(pose_at(Vec3(0)), pose_at(Vec3(0), rotation_by(Vec3(0, 0, kPi / 2))));
+  const FirstContact found =
+      asked.first(pose_at(Vec3(0)), pose_at(Vec3(0), rotation_by(Vec3(0, 0, kPi / 2))));
   ASSERT_EQ(found.kind, FirstContact::Kind::kContact);
   const double angle = found.time * kPi / 2, height = 0.1 * std::sin(angle) + 0.001 * std::cos(angle);
   EXPECT_LE(height, 0.05 + 3 * step) << "late";
@@ -94,13 +104,16 @@ TEST(FirstContact, OfABallThatTurnsPastAWallIsNone) {
   // 0.6 mm beside the wall it goes along and turns by 170°; a millimetre nearer it meets the wall.
   Asked asked(solids::box(Vec3(-0.05, -0.05, -0.001), Vec3(-0.0051, 0.05, 0.001)), solids::sphere(0.0045));
   const Quat turned = rotation_by(Vec3(0, 0, 170 * kPi / 180));
-  EXPECT_EQ(asked.first(pose_at(Vec3(0, 0, -0.02)), pose_at(Vec3(0, 0, 0.02), turned)).kind, FirstContact::Kind::kNone);
-  EXPECT_EQ(asked.first(pose_at(Vec3(-0.001, 0, -0.02)), pose_at(Vec3(-0.001, 0, 0.02), turned)).kind, FirstContact::Kind::kContact);
+  EXPECT_EQ(asked.first(pose_at(Vec3(0, 0, -0.02)), pose_at(Vec3(0, 0, 0.02), turned)).kind,
+            FirstContact::Kind::kNone);
+  EXPECT_EQ(asked.first(pose_at(Vec3(-0.001, 0, -0.02)), pose_at(Vec3(-0.001, 0, 0.02), turned)).kind,
+            FirstContact::Kind::kContact);
 }
 
 TEST(FirstContact, OfWhatTouchesAtTheStartIsTheStart) {
   Asked asked(solids::box(Vec3(-0.1), Vec3(0.1)), solids::sphere(0.01));
-  const FirstContact inside = asked.first(pose_at(Vec3(0)), pose_at(Vec3(0, 0, 0.05)));   // contained, and meets nothing
+  const FirstContact inside =
+      asked.first(pose_at(Vec3(0)), pose_at(Vec3(0, 0, 0.05)));  // contained, and meets nothing
   EXPECT_EQ(inside.kind, FirstContact::Kind::kContact);
   EXPECT_EQ(inside.time, 0);
 }
@@ -114,7 +127,10 @@ TEST(FirstContact, IsNeverLateAgainstDenseSamplingAndEndsWhereSomethingIsNear) {
   for (int i = 0; i < 300; ++i) {
     Asked& asked = i % 2 == 0 ? on_ball : on_corner;
     const auto some = [&] { return 2 * random.unit() - 1; };
-    const Pose from = pose_at(0.09 * Vec3(some(), some(), some()), rotation_by(2.0 * Vec3(some(), some(), some()))), to = pose_at(0.09 * Vec3(some(), some(), some()), rotation_by(1.7 * Vec3(some(), some(), some())) * from.rotation);
+    const Pose from = pose_at(0.09 * Vec3(some(), some(), some()),
+                              rotation_by(2.0 * Vec3(some(), some(), some()))),
+               to = pose_at(0.09 * Vec3(some(), some(), some()),
+                            rotation_by(1.7 * Vec3(some(), some(), some())) * from.rotation);
     const FirstContact found = asked.first(from, to);
     ASSERT_NE(found.kind, FirstContact::Kind::kUndecided);
     if (found.time == 0) {
@@ -124,14 +140,17 @@ TEST(FirstContact, IsNeverLateAgainstDenseSamplingAndEndsWhereSomethingIsNear) {
     }
     const Screw screw(from, to, asked.geometry);
     const double until = found.kind == FirstContact::Kind::kNone ? 1 : found.time;
-    for (int k = 0; k < 400; ++k) ASSERT_FALSE(asked.touches(screw.at(until * k / 400.0))) << "late: motion " << i << ", sample " << k << " of 400 until " << until;
+    for (int k = 0; k < 400; ++k)
+      ASSERT_FALSE(asked.touches(screw.at(until * k / 400.0)))
+          << "late: motion " << i << ", sample " << k << " of 400 until " << until;
     if (found.kind == FirstContact::Kind::kNone) {
       ++clear;
       continue;
     }
     ++contacts;
     Clearance near;
-    ASSERT_TRUE(asked.native->clearance(*to_lattice(screw.at(found.time), asked.geometry), INT32_MAX - 2, near));
+    ASSERT_TRUE(
+        asked.native->clearance(*to_lattice(screw.at(found.time), asked.geometry), INT32_MAX - 2, near));
     if (near.kind == Clearance::Kind::kApart) {
       EXPECT_LE(near.steps, TouchRule::of(asked.geometry, 0).early) << "early: motion " << i;
     }
@@ -141,13 +160,15 @@ TEST(FirstContact, IsNeverLateAgainstDenseSamplingAndEndsWhereSomethingIsNear) {
 }
 
 TEST(FirstContact, OfTheReferenceKeepsTheSamePromise) {
-  const SceneGeometry geometry = std::move(*build_geometry(solids::box(Vec3(-0.1, -0.1, -0.02), Vec3(0.1, 0.1, 0)), solids::sphere(0.01), {}));
+  const SceneGeometry geometry = std::move(
+      *build_geometry(solids::box(Vec3(-0.1, -0.1, -0.02), Vec3(0.1, 0.1, 0)), solids::sphere(0.01), {}));
   const auto ref = make_ref_backend();
   ASSERT_TRUE(ref->prepare(geometry, Plan{}, [](const char*, double) { return true; }));
   double lowest = 0;
   for (const Int3& v : geometry.tool.vertices) lowest = std::min(lowest, v.z * geometry.lattice.step_m);
   const TouchRule rule = TouchRule::of(geometry, 0);
-  const auto found = first_contact(*ref, geometry, pose_at(Vec3(0, 0, 0.05)), pose_at(Vec3(0.01, 0, -0.01)), rule);
+  const auto found =
+      first_contact(*ref, geometry, pose_at(Vec3(0, 0, 0.05)), pose_at(Vec3(0.01, 0, -0.01)), rule);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->kind, FirstContact::Kind::kContact);
   const double height = 0.05 - 0.06 * found->time + lowest;
@@ -156,13 +177,17 @@ TEST(FirstContact, OfTheReferenceKeepsTheSamePromise) {
 }
 
 TEST(Tolerance, LetsAContactShallowerThanItPass) {
-  SceneGeometry geometry = std::move(*build_geometry(solids::box(Vec3(-0.05, -0.05, -0.02), Vec3(0.05, 0.05, 0), Int3(10, 10, 4)), solids::box(Vec3(-0.01, -0.01, 0), Vec3(0.01, 0.01, 0.02), Int3(4, 4, 4)), {}));
+  SceneGeometry geometry = std::move(
+      *build_geometry(solids::box(Vec3(-0.05, -0.05, -0.02), Vec3(0.05, 0.05, 0), Int3(10, 10, 4)),
+                      solids::box(Vec3(-0.01, -0.01, 0), Vec3(0.01, 0.01, 0.02), Int3(4, 4, 4)), {}));
   geometry.contact_samples = 0;
   const auto native = make_native_backend();
   ASSERT_TRUE(native->prepare(geometry, Plan{}, [](const char*, double) { return true; }));
   const TouchRule rule = TouchRule::of(geometry, 100e-6);
   const double step = geometry.lattice.step_m;
-  for (const auto& [depth, expected] : {std::pair{-10e-6, false}, std::pair{10e-6, false}, std::pair{95e-6, false}, std::pair{105e-6, true}, std::pair{1e-3, true}}) {
+  for (const auto& [depth, expected] :
+       {std::pair{-10e-6, false}, std::pair{10e-6, false}, std::pair{95e-6, false}, std::pair{105e-6, true},
+        std::pair{1e-3, true}}) {
     const auto touch = touch_at(*native, *to_lattice(pose_at(Vec3(0, 0, -depth)), geometry), rule);
     ASSERT_TRUE(touch);
     EXPECT_EQ(touch->touches, expected) << depth;
@@ -170,13 +195,16 @@ TEST(Tolerance, LetsAContactShallowerThanItPass) {
       EXPECT_NEAR(static_cast<double>(touch->depth) * step, depth, 4 * step);
     }
   }
-  const auto found = first_contact(*native, geometry, pose_at(Vec3(0, 0, 0.002)), pose_at(Vec3(0, 0, -0.002)), rule);
+  const auto found =
+      first_contact(*native, geometry, pose_at(Vec3(0, 0, 0.002)), pose_at(Vec3(0, 0, -0.002)), rule);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->kind, FirstContact::Kind::kContact);
   const double depth = 0.004 * found->time - 0.002;
   EXPECT_LE(depth, 100e-6 + 4 * step) << "late";
   EXPECT_GE(depth, 100e-6 - 2 * rule.early * step) << "too early";
-  EXPECT_EQ(first_contact(*native, geometry, pose_at(Vec3(0, 0, 0.002)), pose_at(Vec3(0, 0, -0.00009)), rule)->kind, FirstContact::Kind::kNone);
+  EXPECT_EQ(
+      first_contact(*native, geometry, pose_at(Vec3(0, 0, 0.002)), pose_at(Vec3(0, 0, -0.00009)), rule)->kind,
+      FirstContact::Kind::kNone);
 }
 
 }  // namespace

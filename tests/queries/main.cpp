@@ -1,11 +1,13 @@
-// Holds the planner's questions (docs/EXACTNESS.md, section 10) against whatever else can answer them. Exit code 1: something differs.
+// Holds the planner's questions (docs/EXACTNESS.md, section 10) against whatever else can answer them. Exit
+// code 1: something differs.
 //   queries any [SCENE] --poses N        touches() of cpu (and with --ref of ref) against the sets' contact
 //   queries distance [SCENE] --poses N   clearance() of cpu against that of ref
-//   queries motions [SCENE] --poses N    first_contact() of cpu on N screws against dense sampling of the same screw, and its time beside a frame's
+//   queries motions [SCENE] --poses N    first_contact() of cpu on N screws against dense sampling of the
+//   same screw, and its time beside a frame's
 // Without SCENE: every case of tests/equivalence in `refined`, N poses each.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -30,7 +32,7 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-bool alone = false;   // distances of cpu alone, for their time
+bool alone = false;  // distances of cpu alone, for their time
 
 struct Counts {
   std::uint64_t poses = 0, touching = 0, apart = 0, further = 0, differences = 0;
@@ -44,14 +46,21 @@ std::string text(const LatticePose& pose) {
   return out;
 }
 std::string text(const Clearance& c) {
-  std::string out = c.kind == Clearance::Kind::kTouching ? "touching" : c.kind == Clearance::Kind::kFurther ? "further" : "apart";
-  for (const std::int64_t v : {std::int64_t{c.steps}, std::int64_t{c.static_id}, std::int64_t{c.mobile_id}}) out += " " + std::to_string(v);
-  for (const Int3& p : {c.on_static, c.on_mobile}) out += " (" + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + ")";
+  std::string out = c.kind == Clearance::Kind::kTouching  ? "touching"
+                    : c.kind == Clearance::Kind::kFurther ? "further"
+                                                          : "apart";
+  for (const std::int64_t v : {std::int64_t{c.steps}, std::int64_t{c.static_id}, std::int64_t{c.mobile_id}})
+    out += " " + std::to_string(v);
+  for (const Int3& p : {c.on_static, c.on_mobile})
+    out += " (" + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + ")";
   return out;
 }
 
-void complain(const std::string& scene, std::size_t pose, const LatticePose& at, const std::string& a, const std::string& b, Counts& counts) {
-  if (++counts.differences <= 5) std::printf("%s, pose %zu [%s]: %s against %s\n", scene.c_str(), pose, text(at).c_str(), a.c_str(), b.c_str());
+void complain(const std::string& scene, std::size_t pose, const LatticePose& at, const std::string& a,
+              const std::string& b, Counts& counts) {
+  if (++counts.differences <= 5)
+    std::printf("%s, pose %zu [%s]: %s against %s\n", scene.c_str(), pose, text(at).c_str(), a.c_str(),
+                b.c_str());
 }
 
 bool failed(const Result<void>& done) {
@@ -59,16 +68,19 @@ bool failed(const Result<void>& done) {
   return !done;
 }
 
-void any(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses, Counts& counts) {
+void any(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
+         Counts& counts) {
   const auto native = make_native_backend();
   if (failed(native->prepare(geometry, Plan{}, [](const char*, double) { return true; }))) return;
   std::vector<std::uint8_t> bits(poses.size());
   const std::size_t warm = std::min<std::size_t>(poses.size(), 256);
-  if (failed(native->touches(std::span(poses).first(warm), std::span(bits).first(warm)))) ++counts.differences;
+  if (failed(native->touches(std::span(poses).first(warm), std::span(bits).first(warm))))
+    ++counts.differences;
   const double before = processor_seconds();
   const auto start = std::chrono::steady_clock::now();
   if (failed(native->touches(poses, bits))) ++counts.differences;
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), seconds = processor_seconds() - before;
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+               seconds = processor_seconds() - before;
   std::uint64_t touching = 0;
   constexpr std::size_t kAtOnce = 4096;
   std::vector<Contacts> contacts(std::min(kAtOnce, poses.size()));
@@ -76,45 +88,63 @@ void any(const std::string& name, const SceneGeometry& geometry, const std::vect
   for (std::size_t first = 0; first < poses.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, poses.size() - first);
     const double begun = processor_seconds();
-    if (failed(native->query_batch(std::span(poses).subspan(first, count), std::span(contacts).first(count)))) ++counts.differences;
+    if (failed(native->query_batch(std::span(poses).subspan(first, count), std::span(contacts).first(count))))
+      ++counts.differences;
     frames += processor_seconds() - begun;
     for (std::size_t i = 0; i < count; ++i) {
       touching += contacts[i].contact ? 1u : 0u;
-      if ((bits[first + i] != 0) != contacts[i].contact) complain(name, first + i, poses[first + i], bits[first + i] != 0 ? "touches" : "does not touch", contacts[i].contact ? "contact" : "none", counts);
+      if ((bits[first + i] != 0) != contacts[i].contact)
+        complain(name, first + i, poses[first + i], bits[first + i] != 0 ? "touches" : "does not touch",
+                 contacts[i].contact ? "contact" : "none", counts);
     }
   }
   counts.poses += poses.size();
   counts.touching += touching;
-  std::printf("%s: %zu poses, %llu touch; %.2f us of processor time a pose, %.2f as whole frames, %.0f poses/s on the clock\n", name.c_str(), poses.size(), static_cast<unsigned long long>(touching),
-              1e6 * seconds / static_cast<double>(poses.size()), 1e6 * frames / static_cast<double>(poses.size()), static_cast<double>(poses.size()) / wall);
+  std::printf(
+      "%s: %zu poses, %llu touch; %.2f us of processor time a pose, %.2f as whole frames, %.0f poses/s on "
+      "the clock\n",
+      name.c_str(), poses.size(), static_cast<unsigned long long>(touching),
+      1e6 * seconds / static_cast<double>(poses.size()), 1e6 * frames / static_cast<double>(poses.size()),
+      static_cast<double>(poses.size()) / wall);
 }
 
-void distance(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses, Counts& counts) {
+void distance(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
+              Counts& counts) {
   const auto native = make_native_backend(), ref = make_ref_backend();
   Clearance warm;
   for (CollisionBackend* backend : {native.get(), ref.get()})
-    if ((backend == ref.get() && alone) == false && failed(backend->prepare(geometry, Plan{}, [](const char*, double) { return true; }))) return;
-  if (failed(native->clearance(poses.front(), INT32_MAX - 2, warm))) return;   // trees are made
+    if ((backend == ref.get() && alone) == false &&
+        failed(backend->prepare(geometry, Plan{}, [](const char*, double) { return true; })))
+      return;
+  if (failed(native->clearance(poses.front(), INT32_MAX - 2, warm))) return;  // trees are made
   std::vector<double> us;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Clearance found, expected, within;
     const double before = processor_seconds();
     if (failed(native->clearance(poses[i], INT32_MAX - 2, found))) ++counts.differences;
     us.push_back(1e6 * (processor_seconds() - before));
-    if (alone) expected = found;
-    else if (failed(ref->clearance(poses[i], INT32_MAX - 2, expected))) ++counts.differences;
+    if (alone)
+      expected = found;
+    else if (failed(ref->clearance(poses[i], INT32_MAX - 2, expected)))
+      ++counts.differences;
     if (!(found == expected)) complain(name, i, poses[i], text(found), text(expected), counts);
     // The same with an end to the search just at it, and just before.
     if (expected.kind == Clearance::Kind::kApart && !alone) {
-      if (failed(native->clearance(poses[i], expected.steps, within)) || !(within == expected)) complain(name, i, poses[i], "within: " + text(within), text(expected), counts);
-      if (expected.steps > 0 && (failed(native->clearance(poses[i], expected.steps - 1, within)) || within.kind != Clearance::Kind::kFurther))
+      if (failed(native->clearance(poses[i], expected.steps, within)) || !(within == expected))
+        complain(name, i, poses[i], "within: " + text(within), text(expected), counts);
+      if (expected.steps > 0 && (failed(native->clearance(poses[i], expected.steps - 1, within)) ||
+                                 within.kind != Clearance::Kind::kFurther))
         complain(name, i, poses[i], "within a step less: " + text(within), "further", counts);
     }
     ++counts.poses;
-    (expected.kind == Clearance::Kind::kTouching ? counts.touching : expected.kind == Clearance::Kind::kApart ? counts.apart : counts.further) += 1u;
+    (expected.kind == Clearance::Kind::kTouching ? counts.touching
+     : expected.kind == Clearance::Kind::kApart  ? counts.apart
+                                                 : counts.further) += 1u;
   }
   std::sort(us.begin(), us.end());
-  if (!us.empty()) std::printf("%s: %zu poses, distance %.1f us p50, %.1f us p99\n", name.c_str(), us.size(), us[us.size() / 2], us[us.size() * 99 / 100]);
+  if (!us.empty())
+    std::printf("%s: %zu poses, distance %.1f us p50, %.1f us p99\n", name.c_str(), us.size(),
+                us[us.size() / 2], us[us.size() * 99 / 100]);
 }
 
 Pose pose_of(const LatticePose& at, const SceneGeometry& geometry) {
@@ -122,10 +152,13 @@ Pose pose_of(const LatticePose& at, const SceneGeometry& geometry) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) m[c][r] = at.rotation_q30[r][c] * 0x1p-30;
   const Quat q = glm::normalize(glm::quat_cast(m));
-  return {geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(at.translation) - q * geometry.tool_centre_m, q};
+  return {
+      geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(at.translation) - q * geometry.tool_centre_m,
+      q};
 }
 
-void motions(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses, Counts& counts) {
+void motions(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
+             Counts& counts) {
   constexpr int kSamples = 24;
   const auto native = make_native_backend();
   if (failed(native->prepare(geometry, Plan{}, [](const char*, double) { return true; }))) return;
@@ -141,8 +174,9 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (poses[i].beyond_lattice) continue;
     const Pose to = pose_of(poses[i], geometry);
-    const double reach = std::pow(10, 2 * random.unit() - 0.5);   // a third of a voxel to thirty
-    const Pose from{to.position + reach * voxel * Vec3(some(), some(), some()), glm::normalize(rotation_by(random.unit() * Vec3(some(), some(), some())) * to.rotation)};
+    const double reach = std::pow(10, 2 * random.unit() - 0.5);  // a third of a voxel to thirty
+    const Pose from{to.position + reach * voxel * Vec3(some(), some(), some()),
+                    glm::normalize(rotation_by(random.unit() * Vec3(some(), some(), some())) * to.rotation)};
     double before = processor_seconds();
     const auto found = first_contact(*native, geometry, from, to, rule);
     if (!found) {
@@ -158,19 +192,26 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
     const Screw screw(from, to, geometry);
     // Sparse all along, dense before the contact.
     for (int k = 0; k < kSamples; ++k)
-      samples[static_cast<std::size_t>(k)] = *to_lattice(screw.at(found->time * (k % 2 == 0 ? k / static_cast<double>(kSamples) : 1 - 0.02 * random.unit() * random.unit() / (1 + k))), geometry);
+      samples[static_cast<std::size_t>(k)] = *to_lattice(
+          screw.at(found->time * (k % 2 == 0 ? k / static_cast<double>(kSamples)
+                                             : 1 - 0.02 * random.unit() * random.unit() / (1 + k))),
+          geometry);
     if (failed(native->touches(samples, bits))) ++counts.differences;
     bool met = false;
     for (std::size_t k = 0; k < samples.size() && !met; ++k) {
       if (bits[k] == 0) continue;
-      met = geometry.mockup.closed && geometry.tool.closed;   // of an open body what gets in through the opening meets nothing
+      met = geometry.mockup.closed &&
+            geometry.tool.closed;  // of an open body what gets in through the opening meets nothing
       if (!met && failed(native->query(samples[k], nullptr, contacts))) ++counts.differences;
       met = met || contacts.pairs != 0;
     }
     if (met && ++late <= 5) std::printf("%s: motion %zu is late\n", name.c_str(), i);
     Clearance near;
     const LatticePose end = *to_lattice(screw.at(found->time), geometry);
-    if (found->kind == FirstContact::Kind::kContact && (failed(native->clearance(end, rule.early, near)) || (near.kind == Clearance::Kind::kFurther && ++early <= 5))) std::printf("%s: motion %zu is early\n", name.c_str(), i);
+    if (found->kind == FirstContact::Kind::kContact &&
+        (failed(native->clearance(end, rule.early, near)) ||
+         (near.kind == Clearance::Kind::kFurther && ++early <= 5)))
+      std::printf("%s: motion %zu is early\n", name.c_str(), i);
     before = processor_seconds();
     if (failed(native->query(end, nullptr, contacts))) ++counts.differences;
     frame_us.push_back(1e6 * (processor_seconds() - before));
@@ -181,8 +222,12 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
     std::sort(v.begin(), v.end());
     return v[static_cast<std::size_t>(share * static_cast<double>(v.size() - 1))];
   };
-  std::printf("%s: %zu motions, %llu late, %llu early, %llu undecided; %.1f us p50, %.1f p99, %g evaluations p50, %g p99; a frame at its end %.1f us p50\n", name.c_str(), us.size(), static_cast<unsigned long long>(late),
-              static_cast<unsigned long long>(early), static_cast<unsigned long long>(undecided), middle(us, 0.5), middle(us, 0.99), middle(evaluations, 0.5), middle(evaluations, 0.99), middle(frame_us, 0.5));
+  std::printf(
+      "%s: %zu motions, %llu late, %llu early, %llu undecided; %.1f us p50, %.1f p99, %g evaluations p50, %g "
+      "p99; a frame at its end %.1f us p50\n",
+      name.c_str(), us.size(), static_cast<unsigned long long>(late), static_cast<unsigned long long>(early),
+      static_cast<unsigned long long>(undecided), middle(us, 0.5), middle(us, 0.99), middle(evaluations, 0.5),
+      middle(evaluations, 0.99), middle(frame_us, 0.5));
 }
 
 int run(int argc, char** argv) {
@@ -219,7 +264,9 @@ int run(int argc, char** argv) {
       subject->path = std::move(*read);
     }
     path = path || !pull.empty();
-    ask(file, subject->geometry, path ? poses_along(*subject, poses, reach, seed) : poses_near(subject->geometry, poses, reach, seed), counts);
+    ask(file, subject->geometry,
+        path ? poses_along(*subject, poses, reach, seed) : poses_near(subject->geometry, poses, reach, seed),
+        counts);
   } else {
     for (const equivalence::Case& c : equivalence::all_cases()) {
       if (c.profile != Profile::kRefined || (killer && !c.killer)) continue;
@@ -235,8 +282,10 @@ int run(int argc, char** argv) {
       ask(c.name, scene->geometry, asked, counts);
     }
   }
-  std::printf("%llu poses (%llu touch, %llu apart, %llu further), %llu differ\n", static_cast<unsigned long long>(counts.poses), static_cast<unsigned long long>(counts.touching),
-              static_cast<unsigned long long>(counts.apart), static_cast<unsigned long long>(counts.further), static_cast<unsigned long long>(counts.differences));
+  std::printf("%llu poses (%llu touch, %llu apart, %llu further), %llu differ\n",
+              static_cast<unsigned long long>(counts.poses), static_cast<unsigned long long>(counts.touching),
+              static_cast<unsigned long long>(counts.apart), static_cast<unsigned long long>(counts.further),
+              static_cast<unsigned long long>(counts.differences));
   return counts.differences == 0 && counts.poses > 0 ? 0 : 1;
 }
 

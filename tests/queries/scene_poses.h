@@ -13,16 +13,20 @@ namespace palpate::queries {
 struct Subject {
   std::string name;
   SceneGeometry geometry;
-  std::vector<Pose> path;   ///< of its device; may be empty
+  std::vector<Pose> path;  ///< of its device; may be empty
 };
 
 /// Of a scene file, in `refined`.
 Result<Subject> subject_of_file(const std::string& path);
 
-/// `count` poses: chains of eight, each a little further than the one before, that begin within `reach` voxels of the surface.
-std::vector<LatticePose> poses_near(const SceneGeometry& geometry, std::size_t count, double reach, std::uint64_t seed);
+/// `count` poses: chains of eight, each a little further than the one before, that begin within `reach`
+/// voxels of the surface.
+std::vector<LatticePose> poses_near(const SceneGeometry& geometry, std::size_t count, double reach,
+                                    std::uint64_t seed);
 
-/// `count` poses evenly along a path, each moved by up to `reach` voxels an axis and turned by up to `reach` hundredths.
-std::vector<LatticePose> poses_along(const Subject& subject, std::size_t count, double reach, std::uint64_t seed);
+/// `count` poses evenly along a path, each moved by up to `reach` voxels an axis and turned by up to `reach`
+/// hundredths.
+std::vector<LatticePose> poses_along(const Subject& subject, std::size_t count, double reach,
+                                     std::uint64_t seed);
 
 }  // namespace palpate::queries

@@ -19,7 +19,8 @@ std::string read_file(const std::filesystem::path& path) {
 template <class Item>
 std::vector<Item> read_items(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
-  if (bytes.size() % sizeof(Item) != 0) throw std::runtime_error(path.string() + ": its length is no multiple of an entry's");
+  if (bytes.size() % sizeof(Item) != 0)
+    throw std::runtime_error(path.string() + ": its length is no multiple of an entry's");
   std::vector<Item> items(bytes.size() / sizeof(Item));
   if (!items.empty()) std::memcpy(static_cast<void*>(items.data()), bytes.data(), bytes.size());
   return items;

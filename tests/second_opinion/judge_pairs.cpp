@@ -10,7 +10,8 @@
 namespace second_opinion {
 namespace {
 
-// Lattice points are doubles without rounding, so this kernel's predicates are exact; what has to be constructed is done by the other.
+// Lattice points are doubles without rounding, so this kernel's predicates are exact; what has to be
+// constructed is done by the other.
 using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Constructions = CGAL::Exact_predicates_exact_constructions_kernel;
 using Box = CGAL::Box_intersection_d::Box_with_info_d<int, 3, std::uint32_t>;
@@ -56,14 +57,18 @@ PairJudge::PairJudge(const std::vector<Triangle>& statics, const std::vector<Tri
     : statics_(statics), static_void_(voids(statics)), tool_void_(voids(tool)) {}
 
 Pairs PairJudge::pairs(const std::vector<Triangle>& moved) const {
-  if (moved.size() != tool_void_.size()) throw std::runtime_error("a pose has another number of tool triangles than the first");
+  if (moved.size() != tool_void_.size())
+    throw std::runtime_error("a pose has another number of tool triangles than the first");
   std::vector<bool> left_out = voids(moved);
   for (std::size_t m = 0; m < moved.size(); ++m) left_out[m] = left_out[m] || tool_void_[m];
   std::vector<Box> static_boxes = boxes_of(statics_, static_void_), mobile_boxes = boxes_of(moved, left_out);
   Pairs found;
-  CGAL::box_intersection_d(static_boxes.begin(), static_boxes.end(), mobile_boxes.begin(), mobile_boxes.end(), [&](const Box& s, const Box& m) {
-    if (CGAL::do_intersect(exact<Predicates>(statics_[s.info()]), exact<Predicates>(moved[m.info()]))) found.emplace_back(s.info(), m.info());
-  });
+  CGAL::box_intersection_d(
+      static_boxes.begin(), static_boxes.end(), mobile_boxes.begin(), mobile_boxes.end(),
+      [&](const Box& s, const Box& m) {
+        if (CGAL::do_intersect(exact<Predicates>(statics_[s.info()]), exact<Predicates>(moved[m.info()])))
+          found.emplace_back(s.info(), m.info());
+      });
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -74,8 +79,10 @@ Meeting PairJudge::meeting(const Triangle& s, const Triangle& m) const {
   if (!common) throw std::runtime_error("CGAL finds that two triangles intersect, but no intersection");
   if (const auto* segment = boost::get<Constructions::Segment_3>(&*common)) {
     const auto middle = CGAL::midpoint(segment->source(), segment->target());
-    const bool coplanar = CGAL::coplanar(a[0], a[1], a[2], b[0]) && CGAL::coplanar(a[0], a[1], a[2], b[1]) && CGAL::coplanar(a[0], a[1], a[2], b[2]);
-    return !coplanar && strictly_inside(a, middle) && strictly_inside(b, middle) ? Meeting::kCross : Meeting::kTouch;
+    const bool coplanar = CGAL::coplanar(a[0], a[1], a[2], b[0]) && CGAL::coplanar(a[0], a[1], a[2], b[1]) &&
+                          CGAL::coplanar(a[0], a[1], a[2], b[2]);
+    return !coplanar && strictly_inside(a, middle) && strictly_inside(b, middle) ? Meeting::kCross
+                                                                                 : Meeting::kTouch;
   }
   return boost::get<Constructions::Point_3>(&*common) ? Meeting::kTouch : Meeting::kOverlap;
 }

@@ -10,8 +10,8 @@
 // What the tests of the force law share.
 namespace palpate {
 
-inline constexpr double kK = 2000;     // N/m
-inline constexpr double kRate = 100;   // N/s
+inline constexpr double kK = 2000;    // N/m
+inline constexpr double kRate = 100;  // N/s
 inline constexpr LawKind kH = LawKind::kHold, kP = LawKind::kPrinted, kC = LawKind::kCorrected;
 
 /// A wall at x = 0 whose outside is +x, met by a point tool at gc = (x, 0, 0).
@@ -40,10 +40,12 @@ inline ForceLawSettings steady(int transitions) {
   return settings;
 }
 
-// The highest stable stiffness of the design's table; measured there by pole analysis, here by bisection of runs.
+// The highest stable stiffness of the design's table; measured there by pole analysis, here by bisection of
+// runs.
 
 /// The design's yardstick: 0.5 kg, 1 N·s/m, pressed so deep into a linear wall that nothing is clamped.
-inline AxisLoop pressed(const ForceLawSettings& settings, int delay, double stiffness, double ratio = 1, double depth = 1) {
+inline AxisLoop pressed(const ForceLawSettings& settings, int delay, double stiffness, double ratio = 1,
+                        double depth = 1) {
   AxisLoop loop;
   loop.law = settings;
   loop.law.stiffness_n_per_m = stiffness;
@@ -54,10 +56,14 @@ inline AxisLoop pressed(const ForceLawSettings& settings, int delay, double stif
 }
 
 // 20 pm: at 2000 N the rounding of the force alone moves the mass by less.
-inline bool stable(const AxisLoop& loop, int ticks = 20000) { return AxisLoop::stable(loop.run(ticks), 2e-11); }
+inline bool stable(const AxisLoop& loop, int ticks = 20000) {
+  return AxisLoop::stable(loop.run(ticks), 2e-11);
+}
 
-inline double critical_stiffness(const ForceLawSettings& settings, int delay, double ratio = 1, double depth = 1) {
-  return highest_stable(20, 8000, [&](double k) { return stable(pressed(settings, delay, k, ratio, depth)); });
+inline double critical_stiffness(const ForceLawSettings& settings, int delay, double ratio = 1,
+                                 double depth = 1) {
+  return highest_stable(20, 8000,
+                        [&](double k) { return stable(pressed(settings, delay, k, ratio, depth)); });
 }
 
 }  // namespace palpate

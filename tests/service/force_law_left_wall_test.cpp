@@ -19,7 +19,8 @@ AxisLoop drop(double stiffness, int delay) {
 TEST(LeftWall, LetsABounceDieOutAtTheStiffnessThatIsStableInContact) {
   for (const int delay : {1, 2, 5, 10}) {
     const AxisLoop::Outcome outcome = drop(1900, delay).run(20000);
-    EXPECT_TRUE(AxisLoop::stable(outcome, 1e-6)) << delay << ": " << outcome.early << " " << outcome.late << " m";
+    EXPECT_TRUE(AxisLoop::stable(outcome, 1e-6))
+        << delay << ": " << outcome.early << " " << outcome.late << " m";
     EXPECT_GE(outcome.least_force_n, 0);
   }
 }

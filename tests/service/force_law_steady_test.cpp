@@ -13,14 +13,17 @@ namespace palpate {
 namespace {
 
 TEST(SteadyForce, NeverChangesByMoreInATickThanTheHandsWayAndTheRateAllowWhateverResultsCome) {
-  // In a tick: (κ + 2K) times the way of the contact points, plus 0.1 N. κ sums over a result's planes; levers reach 0.1 m.
+  // In a tick: (κ + 2K) times the way of the contact points, plus 0.1 N. κ sums over a result's planes;
+  // levers reach 0.1 m.
   std::mt19937 random(17);
   std::uniform_real_distribution<double> unit(0, 1);
-  const auto vector = [&](double reach) { return reach * Vec3(2 * unit(random) - 1, 2 * unit(random) - 1, 2 * unit(random) - 1); };
+  const auto vector = [&](double reach) {
+    return reach * Vec3(2 * unit(random) - 1, 2 * unit(random) - 1, 2 * unit(random) - 1);
+  };
   double largest_jump = 0;
   for (int run = 0; run < 60; ++run) {
     ForceLawState state(steady(run % 8));
-    const double speed = run % 3 == 0 ? 0 : 1e-3 * unit(random);   // m a tick
+    const double speed = run % 3 == 0 ? 0 : 1e-3 * unit(random);  // m a tick
     LawPose pose;
     Vec3 before(0), told(0);
     for (int i = 0; i < 600; ++i) {
@@ -32,7 +35,8 @@ TEST(SteadyForce, NeverChangesByMoreInATickThanTheHandsWayAndTheRateAllowWhateve
       result.rotation = pose.rotation;
       result.plane_count = static_cast<std::uint32_t>(5 * unit(random));
       for (std::uint32_t p = 0; p < result.plane_count; ++p)
-        result.planes[p] = {glm::normalize(vector(1) + Vec3(0, 0, 1.1)), vector(0.05), 30 * unit(random), 500 + 1500 * unit(random)};
+        result.planes[p] = {glm::normalize(vector(1) + Vec3(0, 0, 1.1)), vector(0.05), 30 * unit(random),
+                            500 + 1500 * unit(random)};
       const bool comes = unit(random) < 0.3;
       if (comes) {
         const Vec3 now = pushed(result, pose.gc, pose.rotation).force;
@@ -58,7 +62,10 @@ TEST(SteadyForce, GoesOverToAnotherSetOfAreasAtTheRateWhileTheHandRests) {
   double before = 0;
   for (int i = 0; i < 800; ++i) {
     two.tick = one.tick = i;
-    const double force = state.step(at(i, -5e-3), i % 3 != 0 ? nullptr : i < 300 || i >= 500 ? &two : &one).force.x;
+    const double force = state.step(at(i, -5e-3), i % 3 != 0            ? nullptr
+                                                  : i < 300 || i >= 500 ? &two
+                                                                        : &one)
+                             .force.x;
     EXPECT_LE(std::abs(force - before), 0.1 + 1e-9) << i;
     if (i == 299 || i == 799) {
       EXPECT_NEAR(force, 20, 1e-9);
@@ -72,7 +79,8 @@ TEST(SteadyForce, GoesOverToAnotherSetOfAreasAtTheRateWhileTheHandRests) {
 }
 
 TEST(SteadyForce, LetsAWallBuildUpInFrontOfAFastHand) {
-  // 1 m/s into 2000 N/m, results 5 ticks late: 25 ms on, the force is the wall's, and within 10 ms it is half of it.
+  // 1 m/s into 2000 N/m, results 5 ticks late: 25 ms on, the force is the wall's, and within 10 ms it is half
+  // of it.
   ForceLawState state(steady(5));
   LawResult pending;
   for (int i = 0; i < 60; ++i) {
@@ -118,7 +126,8 @@ TEST(SteadyForce, LetsWhatIsLeftBehindGiveWayButNotGrow) {
 
 TEST(SteadyForce, KeepsTheStableStiffness) {
   // 1 mm of preload: reached within the loop's 200 ticks of settling, 0.1 N each.
-  for (const int delay : {1, 5, 10}) EXPECT_NEAR(critical_stiffness(steady(delay), delay, 1, 1e-3) / 2001, 1, 0.01) << delay;
+  for (const int delay : {1, 5, 10})
+    EXPECT_NEAR(critical_stiffness(steady(delay), delay, 1, 1e-3) / 2001, 1, 0.01) << delay;
 }
 
 }  // namespace

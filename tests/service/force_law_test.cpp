@@ -18,8 +18,8 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<LawResult> && std::is_trivially_copyable_v<ForceLawState>);
 
-/// Lowest force along the wall's normal while the newest result has contact: 5 mm deep, then a retreat at `speed` m/s, results
-/// 10 ms old and 10 ms apart.
+/// Lowest force along the wall's normal while the newest result has contact: 5 mm deep, then a retreat at
+/// `speed` m/s, results 10 ms old and 10 ms apart.
 double lowest_force_in_retreat(const ForceLawSettings& settings, double speed) {
   ForceLawState state(settings);
   LawResult pending;
@@ -38,14 +38,16 @@ double lowest_force_in_retreat(const ForceLawSettings& settings, double speed) {
 }
 
 TEST(ForceLaw, PrintedTurnsAQuickRetreatIntoAPull) {
-  // K·(2 mm − 0.3 m/s · 19 ms) and K·(5 mm − 1 m/s · 19 ms): a result is 19 ticks old before the next one comes.
+  // K·(2 mm − 0.3 m/s · 19 ms) and K·(5 mm − 1 m/s · 19 ms): a result is 19 ticks old before the next one
+  // comes.
   EXPECT_NEAR(lowest_force_in_retreat(law(kP, 1, true), 0.3), -7.4, 1e-6);
   EXPECT_NEAR(lowest_force_in_retreat(law(kP, 1, true), 1.0), -28, 1e-6);
 }
 
 TEST(ForceLaw, CorrectedNeverPullsInAQuickRetreat) {
   for (const int n : {0, 1, 3, 5, 10, 20})
-    for (const double speed : {0.1, 0.3, 1.0, 3.0}) EXPECT_GE(lowest_force_in_retreat(law(kC, n), speed), 0) << n << " " << speed;
+    for (const double speed : {0.1, 0.3, 1.0, 3.0})
+      EXPECT_GE(lowest_force_in_retreat(law(kC, n), speed), 0) << n << " " << speed;
 }
 
 TEST(ForceLaw, CorrectedNeverPullsWhateverResultsComeWhen) {
@@ -58,14 +60,16 @@ TEST(ForceLaw, CorrectedNeverPullsWhateverResultsComeWhen) {
     Quat rotation(1, 0, 0, 0);
     for (int i = 0; i < 400; ++i) {
       gc += 2e-3 * Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
-      rotation = glm::normalize(rotation_by(0.02 * Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5)) * rotation);
+      rotation = glm::normalize(
+          rotation_by(0.02 * Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5)) * rotation);
       LawResult result;
-      result.tick = i - 1 - static_cast<int>(12 * unit(random));   // sometimes older than one that has come
+      result.tick = i - 1 - static_cast<int>(12 * unit(random));  // sometimes older than one that has come
       result.gc = gc + 1e-2 * Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
       result.rotation = rotation;
       result.plane_count = static_cast<std::uint32_t>(3 * unit(random));
       for (std::uint32_t p = 0; p < result.plane_count; ++p)
-        result.planes[p] = {normal, 0.1 * Vec3(unit(random), unit(random), unit(random)), 10 * unit(random), 2000 * unit(random)};
+        result.planes[p] = {normal, 0.1 * Vec3(unit(random), unit(random), unit(random)), 10 * unit(random),
+                            2000 * unit(random)};
       const Wrench force = state.step({i, gc, rotation}, unit(random) < 0.4 ? &result : nullptr);
       ASSERT_GE(glm::dot(force.force, normal), 0);
       ASSERT_LT(length(glm::cross(force.force, normal)), 1e-9) << "force along the areas' normal only";
@@ -87,7 +91,8 @@ TEST(ForceLaw, PrintedDragsInFreeSpaceAndCorrectedDoesNot) {
 }
 
 TEST(ForceLaw, CorrectedIsEquationFiveWithTheHandsMotionPutBackOnOneLinearContact) {
-  // P = M(i−1) − K(U(i) − U(i−1)); ΔM = (M_r − K(U(i) − U(i−j)) − P)/n; n steps of ΔM. Coded directly, for n ≤ c.
+  // P = M(i−1) − K(U(i) − U(i−1)); ΔM = (M_r − K(U(i) − U(i−j)) − P)/n; n steps of ΔM. Coded directly, for n
+  // ≤ c.
   constexpr int kDelay = 6, kN = 4;
   ForceLawState state(law(kC, kN));
   double direct = 0, delta = 0, last_x = 0;
@@ -122,7 +127,7 @@ TEST(ForceLaw, CorrectedIsEquationFiveWithTheHandsMotionPutBackOnOneLinearContac
 
 TEST(ForceLaw, CorrectedReachesALateResultInNTicksAndNeverPassesIt) {
   ForceLawState corrected(law(kC, 5)), printed(law(kP, 5));
-  const LawResult free = wall(0, 1.0), touch = wall(10, -5e-3);   // 10 N
+  const LawResult free = wall(0, 1.0), touch = wall(10, -5e-3);  // 10 N
   double highest_printed = 0, before = 0;
   for (int i = 0; i < 80; ++i) {
     const LawResult* fresh = i == 0 ? &free : i == 20 ? &touch : nullptr;
@@ -137,18 +142,21 @@ TEST(ForceLaw, CorrectedReachesALateResultInNTicksAndNeverPassesIt) {
     }
     EXPECT_GE(force, before);
     before = force;
-    if (i >= 20) highest_printed = std::max(highest_printed, printed.step(pose, i == 20 ? &touch : nullptr).force.x);
+    if (i >= 20)
+      highest_printed = std::max(highest_printed, printed.step(pose, i == 20 ? &touch : nullptr).force.x);
   }
-  EXPECT_NEAR(highest_printed, 120, 1e-9) << "as printed, 2 N more at each of the 60 ticks until a result comes";
+  EXPECT_NEAR(highest_printed, 120, 1e-9)
+      << "as printed, 2 N more at each of the 60 ticks until a result comes";
 }
 
 TEST(ForceLaw, CorrectedEndsAContactInNTicksExactly) {
   ForceLawState state(law(kC, 4));
   const LawResult touch = wall(0, -5e-3);
   LawResult free = wall(10, 1.0);
-  free.gc.x = -5e-3;   // nothing where the wall was
+  free.gc.x = -5e-3;  // nothing where the wall was
   for (int i = 0; i < 10; ++i) state.step(at(i, -5e-3), &touch);
-  for (int i = 10; i < 14; ++i) EXPECT_NEAR(state.step(at(i, -5e-3), &free).force.x, 10.0 * (13 - i) / 4, 1e-12);
+  for (int i = 10; i < 14; ++i)
+    EXPECT_NEAR(state.step(at(i, -5e-3), &free).force.x, 10.0 * (13 - i) / 4, 1e-12);
   EXPECT_EQ(state.step(at(14, -5e-3), nullptr).force, Vec3(0));
 }
 
@@ -182,7 +190,8 @@ TEST(ForceLaw, IgnoresARepeatedAndAnOlderResult) {
 }
 
 TEST(ForceLaw, KeepsItsPlanesWhenResultsStayAway) {
-  // Nothing drifts: 1000 ticks later the force is that of the plane at the present pose. (The watchdog takes it away.)
+  // Nothing drifts: 1000 ticks later the force is that of the plane at the present pose. (The watchdog takes
+  // it away.)
   ForceLawState state(law(kC, 3));
   const LawResult touch = wall(0, -5e-3);
   state.step(at(3, -5e-3), &touch);
@@ -196,7 +205,7 @@ TEST(ForceLaw, ExtrapolatesRotationByTheShortWay) {
   result.planes[0].lever = Vec3(0, 0.1, 0);
   result.rotation = rotation_by({0.3, 0.2, 0.1});
   const Quat turned = rotation_by({0, 1e-3, 0}) * result.rotation;
-  for (const Quat& same : {turned, -turned}) {   // q and −q are one rotation
+  for (const Quat& same : {turned, -turned}) {  // q and −q are one rotation
     ForceLawState state(law(kC, 1));
     const Wrench force = state.step({1, result.gc, same}, &result);
     EXPECT_NEAR(force.force.x, 9.8, 1e-9);

@@ -8,7 +8,8 @@
 namespace palpate {
 namespace {
 
-/// A frame whose samples take `field_us` where all of them count, half as long a level coarser, beside `rest_us`.
+/// A frame whose samples take `field_us` where all of them count, half as long a level coarser, beside
+/// `rest_us`.
 void ask(FrameBudget& budget, double rest_us, double field_us) {
   const double field = field_us * std::exp2(-static_cast<double>(budget.coarser()) / 256);
   budget.frame(rest_us + field, field);

@@ -14,8 +14,14 @@ namespace palpate {
 namespace {
 
 AreaResponse area(std::uint32_t id, const Vec3& normal, double depth, double max_depth, const Vec3& point) {
-  return {.id = id, .normal = normal, .depth = depth, .max_depth = max_depth, .point = point, .force = kK * depth * normal,
-          .torque = glm::cross(point, kK * depth * normal), .flags = 0};
+  return {.id = id,
+          .normal = normal,
+          .depth = depth,
+          .max_depth = max_depth,
+          .point = point,
+          .force = kK * depth * normal,
+          .torque = glm::cross(point, kK * depth * normal),
+          .flags = 0};
 }
 
 TEST(LawResult, TakesTheStiffnessFromTheSlopeOfTheDepthWithinAQuarterAndOne) {
@@ -53,16 +59,18 @@ TEST(Respond, EstimatesTheSlopeOfPapersDepthOnTheSafeSideAndWithinOneAndAHalfPer
   EXPECT_NEAR(paper_slope(1. / 3), 1. / 3, 1e-8) << "a corner";
   // Mean height of a cap: d = h (3R − h) / (3 (2R − h)); ∂d/∂h by x = h/R: (6 − 4x + x²) / (3 (2 − x)²).
   for (double x = 0.01; x <= 0.5; x += 0.01) {
-    const double ratio = paper_slope((3 - x) / (3 * (2 - x))) / ((6 - 4 * x + x * x) / (3 * (2 - x) * (2 - x)));
-    EXPECT_GE(ratio, 1 - 1e-8) << x;   // below is what costs stability; rounding
+    const double ratio =
+        paper_slope((3 - x) / (3 * (2 - x))) / ((6 - 4 * x + x * x) / (3 * (2 - x) * (2 - x)));
+    EXPECT_GE(ratio, 1 - 1e-8) << x;  // below is what costs stability; rounding
     EXPECT_LE(ratio, 1.015) << x;
   }
 }
 
 TEST(LawResult, LeavesOutAreasThatDoNotPush) {
   ContactResponse response;
-  response.areas = {area(1, Vec3(0, 0, 1), 1e-3, 1e-3, Vec3(0)), area(2, Vec3(0, 0, -1), 5e-3, 5e-3, Vec3(0)), area(3, Vec3(0), 0, 0, Vec3(0))};
-  response.areas[1].force = Vec3(0);   // nothing of it is deep
+  response.areas = {area(1, Vec3(0, 0, 1), 1e-3, 1e-3, Vec3(0)), area(2, Vec3(0, 0, -1), 5e-3, 5e-3, Vec3(0)),
+                    area(3, Vec3(0), 0, 0, Vec3(0))};
+  response.areas[1].force = Vec3(0);  // nothing of it is deep
   LawResult out;
   fill_law_result(response, false, kK, out);
   EXPECT_EQ(out.plane_count, 1u);
@@ -76,7 +84,8 @@ TEST(LawResult, MergesTheSmallestOfManyAreasIntoOnePlaneWithTheSameWrench) {
   std::uniform_real_distribution<double> unit(0.1, 1);
   Wrench sum;
   for (std::uint32_t i = 0; i < 100; ++i) {
-    AreaResponse a = area(i, glm::normalize(Vec3(unit(random), unit(random), 1)), 1e-3 * unit(random), 2e-3, Vec3(unit(random), 0, 0));
+    AreaResponse a = area(i, glm::normalize(Vec3(unit(random), unit(random), 1)), 1e-3 * unit(random), 2e-3,
+                          Vec3(unit(random), 0, 0));
     a.torque = glm::cross(a.point - response.gc, a.force);
     sum.force += a.force, sum.torque += a.torque;
     response.areas.push_back(a);
@@ -91,7 +100,8 @@ TEST(LawResult, MergesTheSmallestOfManyAreasIntoOnePlaneWithTheSameWrench) {
   const Wrench force = state.step({1, response.gc, out.rotation}, &out);
   EXPECT_LT(length(force.force - sum.force), 1e-9);
   EXPECT_LT(length(force.torque - sum.torque), 1e-9);
-  for (std::uint32_t p = 1; p + 1 < kMaxLawPlanes; ++p) EXPECT_LE(out.planes[p].force, out.planes[p - 1].force);
+  for (std::uint32_t p = 1; p + 1 < kMaxLawPlanes; ++p)
+    EXPECT_LE(out.planes[p].force, out.planes[p - 1].force);
 }
 
 }  // namespace

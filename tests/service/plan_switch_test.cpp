@@ -1,4 +1,5 @@
-// Another plan in mid-run: the loop goes on, what a person can't feel changes no tick, and another profile fades in.
+// Another plan in mid-run: the loop goes on, what a person can't feel changes no tick, and another profile
+// fades in.
 #include "service/loop/plan_switch.h"
 
 #include <gmock/gmock.h>
@@ -58,7 +59,8 @@ PlanTarget target(Profile profile, bool telemetry, bool torques = true) {
 }
 
 /// A dip of a second in virtual time, with these changes.
-Ran run(const std::vector<PlanChange>& changes, std::function<Result<void>(const Progress&)> on_prepare = {}) {
+Ran run(const std::vector<PlanChange>& changes,
+        std::function<Result<void>(const Progress&)> on_prepare = {}) {
   LoadedScene scene = half_space_scene();
   scene.scene.control.fade_in_ms = 100;
   add_dip(scene, 1);
@@ -78,7 +80,8 @@ Ran run(const std::vector<PlanChange>& changes, std::function<Result<void>(const
 }
 
 TEST(PlanSwitch, AViewerThatComesChangesNoTick) {
-  const Ran still = run({}), changed = run({{400, target(Profile::kRefined, true)}, {700, target(Profile::kRefined, false)}});
+  const Ran still = run({}),
+            changed = run({{400, target(Profile::kRefined, true)}, {700, target(Profile::kRefined, false)}});
   ASSERT_EQ(still.ticks.size(), 1001u);
   ASSERT_EQ(changed.ticks.size(), 1001u);
   EXPECT_EQ(changed.summary.missed_ticks, 0u);
@@ -100,8 +103,9 @@ TEST(PlanSwitch, AnotherProfileOrDeviceFadesIn) {
     const Ran changed = run({{501, to}});
     ASSERT_EQ(changed.ticks.size(), 1001u);
     EXPECT_EQ(changed.summary.plan_changes, 1u);
-    std::size_t drop = 0;   // the first tick that differs: the new plan's first answer has come
-    while (drop < still.ticks.size() && changed.ticks[drop].sent.force == still.ticks[drop].sent.force) ++drop;
+    std::size_t drop = 0;  // the first tick that differs: the new plan's first answer has come
+    while (drop < still.ticks.size() && changed.ticks[drop].sent.force == still.ticks[drop].sent.force)
+      ++drop;
     EXPECT_GE(drop, 504u) << "asked for at tick 501, whose result is three ticks old";
     EXPECT_LE(drop, 510u);
     const double deep = still.ticks[drop].sent.force.z;
@@ -113,11 +117,14 @@ TEST(PlanSwitch, AnotherProfileOrDeviceFadesIn) {
 }
 
 TEST(PlanSwitch, APlanThatCantBePreparedChangesNothing) {
-  const Ran still = run({}), kept = run({{400, target(Profile::kPaper, true)}}, [](const Progress&) { return Result<void>(Error{ErrorCode::kBadValue, "out of memory"}); });
+  const Ran still = run({}), kept = run({{400, target(Profile::kPaper, true)}}, [](const Progress&) {
+                               return Result<void>(Error{ErrorCode::kBadValue, "out of memory"});
+                             });
   EXPECT_EQ(kept.by_other, 0);
   EXPECT_EQ(kept.summary.plan_changes, 0u);
   EXPECT_THAT(kept.summary.notes, testing::Contains(testing::HasSubstr("out of memory")));
-  for (std::size_t i = 0; i < still.ticks.size(); ++i) ASSERT_EQ(kept.ticks[i].sent.force, still.ticks[i].sent.force) << i;
+  for (std::size_t i = 0; i < still.ticks.size(); ++i)
+    ASSERT_EQ(kept.ticks[i].sent.force, still.ticks[i].sent.force) << i;
 }
 
 TEST(PlanSwitch, TheLoopTicksOnWhileAPlanIsPrepared) {
@@ -128,7 +135,8 @@ TEST(PlanSwitch, TheLoopTicksOnWhileAPlanIsPrepared) {
   auto owned = std::make_unique<Planned>();
   Ticks ticks;
   std::atomic<bool> began{false}, stop{false};
-  // The preparation ends only when the loop has done 200 ticks more; a loop that waited for it would stand still for good.
+  // The preparation ends only when the loop has done 200 ticks more; a loop that waited for it would stand
+  // still for good.
   owned->on_prepare = [&](const Progress& progress) -> Result<void> {
     const int from = ticks.seen.load();
     began.store(true);

@@ -51,11 +51,13 @@ TEST(RealtimeEstimate, TheWatchdogRunsOutWhileAFrameTakesLonger) {
   EXPECT_EQ(estimate.watchdog_ticks(), 1000u);
   EXPECT_EQ(estimate.result_age().max(), 59);
   EXPECT_EQ(estimated(3000, 3, 0, [](int) { return 30'000.0; }).watchdog_ticks(), 0u) << "there is none";
-  EXPECT_EQ(estimated(3000, 3, 20, [](int) { return 20'000.0; }).watchdog_ticks(), 0u) << "fresh in the very tick";
+  EXPECT_EQ(estimated(3000, 3, 20, [](int) { return 20'000.0; }).watchdog_ticks(), 0u)
+      << "fresh in the very tick";
 }
 
 TEST(RealtimeEstimate, ASingleSlowPoseIsTheRunsOwn) {
-  // One query of 100 ms among short ones: the results stay away for 100 ticks, 20 of which the watchdog waits.
+  // One query of 100 ms among short ones: the results stay away for 100 ticks, 20 of which the watchdog
+  // waits.
   const auto estimate = estimated(1000, 4, 20, [](int tick) { return tick == 400 ? 100'000.0 : 500.0; });
   EXPECT_EQ(estimate.watchdog_ticks(), 80u);
   EXPECT_EQ(estimate.result_age().max(), 100) << "at tick 499, of pose 399";

@@ -1,5 +1,5 @@
-// The whole server in this process, with a device that remembers what it was sent and a back end that answers at once. The quick test that
-// runs it under the sanitizers; tests/e2e/serve*.py go through the program.
+// The whole server in this process, with a device that remembers what it was sent and a back end that answers
+// at once. The quick test that runs it under the sanitizers; tests/e2e/serve*.py go through the program.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using namespace std::chrono_literals;
 /// What reached the device, in order.
 struct Sent {
   std::mutex mutex;
-  std::vector<double> forces;   ///< N
+  std::vector<double> forces;  ///< N
   bool closed = false;
   bool zero_when_closed = false;
 };
@@ -38,7 +38,9 @@ class RememberingDevice final : public HapticDevice {
  public:
   explicit RememberingDevice(Sent& sent) : sent_(sent) {}
   std::string name() const override { return "remembering"; }
-  DeviceCapabilities capabilities() const override { return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8}; }
+  DeviceCapabilities capabilities() const override {
+    return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8};
+  }
   Result<void> open() override { return {}; }
   void close() noexcept override {
     const std::lock_guard lock(sent_.mutex);
@@ -52,7 +54,7 @@ class RememberingDevice final : public HapticDevice {
     return sample;
   }
   void write(const Wrench& wrench, const Vec3&) noexcept override {
-    const std::lock_guard lock(sent_.mutex);   // a test's device may
+    const std::lock_guard lock(sent_.mutex);  // a test's device may
     sent_.forces.push_back(glm::length(wrench.force));
   }
 
@@ -86,14 +88,24 @@ class Serve : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::filesystem::temp_directory_path() / ("palpate_serve_test_" + std::to_string(::getpid()));
     std::filesystem::create_directory(folder_);
-    std::ofstream(folder_ / "scene.json") << R"({"static":[{"generate":{"name":"contacts","body":"mockup","triangles":2000}}],)"
-                                             R"("tool":{"generate":{"name":"contacts","body":"tool","triangles":1000}},"device":{"driver":"remembering"}})";
+    std::ofstream(folder_ / "scene.json")
+        << R"({"static":[{"generate":{"name":"contacts","body":"mockup","triangles":2000}}],)"
+           R"("tool":{"generate":{"name":"contacts","body":"tool","triangles":1000}},"device":{"driver":"remembering"}})";
     port_ = free_port();
-    parts_.make_gpu = [](bool) -> Result<std::unique_ptr<CollisionBackend>> { return Error{ErrorCode::kNoDevice, "none here"}; };
+    parts_.make_gpu = [](bool) -> Result<std::unique_ptr<CollisionBackend>> {
+      return Error{ErrorCode::kNoDevice, "none here"};
+    };
     parts_.has_gpu = [] { return false; };
-    parts_.make_ref = [] { return std::make_unique<CountingBackend>(asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]); };
-    parts_.make_cpu = [](bool) { return std::make_unique<CountingBackend>(asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]); };
-    parts_.make_device = [](const std::string&, const Scene&, const Vec3&, const std::string&) -> Result<std::unique_ptr<HapticDevice>> {
+    parts_.make_ref = [] {
+      return std::make_unique<CountingBackend>(
+          asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]);
+    };
+    parts_.make_cpu = [](bool) {
+      return std::make_unique<CountingBackend>(
+          asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]);
+    };
+    parts_.make_device = [](const std::string&, const Scene&, const Vec3&,
+                            const std::string&) -> Result<std::unique_ptr<HapticDevice>> {
       return std::unique_ptr<HapticDevice>(std::make_unique<RememberingDevice>(sent_));
     };
     parts_.list_devices = [] { return std::vector<DeviceLine>(); };
@@ -120,7 +132,7 @@ class Serve : public testing::Test {
 
   template <class Condition>
   static void until(const Condition& condition) {
-    const auto end = std::chrono::steady_clock::now() + 60s;   // a hang is a failure
+    const auto end = std::chrono::steady_clock::now() + 60s;  // a hang is a failure
     while (!condition()) {
       if (std::chrono::steady_clock::now() > end) FAIL() << "it does not come about";
       std::this_thread::sleep_for(5ms);
@@ -143,16 +155,23 @@ class Serve : public testing::Test {
     return address;
   }
   /// The whole answer, head and all; empty when nobody is there.
-  static std::string ask(const std::string& method, const std::string& path, const std::string& body = "", const std::string& more = "Connection: close\r\n") {
+  static std::string ask(const std::string& method, const std::string& path, const std::string& body = "",
+                         const std::string& more = "Connection: close\r\n") {
     const int link = ::socket(AF_INET, SOCK_STREAM, 0);
     const sockaddr_in address = loopback(port_);
     std::string answer;
     if (::connect(link, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
-      const std::string request = method + " " + path + " HTTP/1.1\r\nHost: localhost\r\n" + more +
-                                  (body.empty() ? "" : "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n") + "\r\n" + body;
-      if (::send(link, request.data(), request.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(request.size())) {
+      const std::string request =
+          method + " " + path + " HTTP/1.1\r\nHost: localhost\r\n" + more +
+          (body.empty() ? ""
+                        : "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) +
+                              "\r\n") +
+          "\r\n" + body;
+      if (::send(link, request.data(), request.size(), MSG_NOSIGNAL) ==
+          static_cast<ssize_t>(request.size())) {
         char piece[4096];
-        for (ssize_t got = 0; (got = ::recv(link, piece, sizeof piece, 0)) > 0;) answer.append(piece, static_cast<std::size_t>(got));
+        for (ssize_t got = 0; (got = ::recv(link, piece, sizeof piece, 0)) > 0;)
+          answer.append(piece, static_cast<std::size_t>(got));
       }
     }
     ::close(link);
@@ -165,7 +184,9 @@ class Serve : public testing::Test {
     const auto from = at + key.size();
     return json.substr(from, json.find('"', from) - from);
   }
-  static std::string start_session() { return field(ask("POST", "/v1/sessions", "{\"scene\":\"" + scene_ + "\"}"), "id"); }
+  static std::string start_session() {
+    return field(ask("POST", "/v1/sessions", "{\"scene\":\"" + scene_ + "\"}"), "id");
+  }
   static std::string batch(int poses) {
     std::string body = "{\"poses\":[";
     for (int i = 0; i < poses; ++i) body += std::string(i ? "," : "") + "[0,0,-0.0001,0,0,0,1]";
@@ -180,7 +201,7 @@ class Serve : public testing::Test {
   static inline int port_ = 0;
   static inline Sent sent_;
   static inline Asked asked_;
-  static inline std::array<std::atomic<int>, 4> queries_{};   ///< of the first back end made, the second, …
+  static inline std::array<std::atomic<int>, 4> queries_{};  ///< of the first back end made, the second, …
   static inline Parts parts_;
   static inline Result<void> outcome_ = Error{};
   static inline std::atomic<bool> returned_{false};
@@ -219,9 +240,15 @@ TEST_F(Serve, SigtermInMidSessionSendsZeroForceFirst) {
   // Others are busy with it meanwhile; none may hold up the zero.
   std::atomic<bool> done{false};
   std::vector<std::thread> others;
-  others.emplace_back([&] { while (!done) batch(1000); });
-  others.emplace_back([&] { while (!done) ask("GET", "/v1/sessions"); });
-  others.emplace_back([&] { while (!done) ask("GET", "/metrics"); });
+  others.emplace_back([&] {
+    while (!done) batch(1000);
+  });
+  others.emplace_back([&] {
+    while (!done) ask("GET", "/v1/sessions");
+  });
+  others.emplace_back([&] {
+    while (!done) ask("GET", "/metrics");
+  });
   std::this_thread::sleep_for(200ms);
   ::kill(::getpid(), SIGTERM);
   server_.join();
@@ -232,7 +259,7 @@ TEST_F(Serve, SigtermInMidSessionSendsZeroForceFirst) {
   EXPECT_GT(sent_.forces.size(), 10u);
   EXPECT_TRUE(sent_.closed);
   EXPECT_TRUE(sent_.zero_when_closed);
-  EXPECT_EQ(sent_.forces.back(), 0);   // and nothing came after
+  EXPECT_EQ(sent_.forces.back(), 0);  // and nothing came after
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Parts of the server by themselves, where the order of events decides and a whole server meets that order only now and then.
+// Parts of the server by themselves, where the order of events decides and a whole server meets that order
+// only now and then.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -25,7 +26,7 @@ class LongAnswers final : public HalfSpace {
     asked_();
     auto done = HalfSpace::query(pose, ignored, out);
     out.cst.resize(300'000);
-    std::iota(out.cst.begin(), out.cst.end(), 1'000'000u);   // eight bytes each as text
+    std::iota(out.cst.begin(), out.cst.end(), 1'000'000u);  // eight bytes each as text
     return done;
   }
 
@@ -33,17 +34,19 @@ class LongAnswers final : public HalfSpace {
   std::function<void()> asked_;
 };
 
-// A client that went while the slice was answered that would have set its batch aside was never counted out: 256 of them, and no query was taken any more.
+// A client that went while the slice was answered that would have set its batch aside was never counted out:
+// 256 of them, and no query was taken any more.
 TEST(BatchQueue, AClientThatGoesWhileItsPosesAreAnsweredLeavesNothing) {
   const Parts parts;
   const ServerLimits limits;
   Metrics metrics;
   Log log;
   SceneStore store(parts, "cpu", limits, metrics, log);
-  std::shared_ptr<BodySource> client;   // touched by the queue's thread alone
+  std::shared_ptr<BodySource> client;  // touched by the queue's thread alone
   const auto scene = std::make_shared<HostedScene>();
   scene->loaded = half_space_scene();
-  scene->backend = std::make_unique<LongAnswers>([&] { client.reset(); });   // it is there from the second slice on
+  scene->backend =
+      std::make_unique<LongAnswers>([&] { client.reset(); });  // it is there from the second slice on
   BatchQueue queue(store, limits, metrics);
   BatchRequest request;
   request.scene = std::make_shared<SceneLease>(scene, std::make_shared<SceneLease::Count>(), false);
@@ -52,7 +55,7 @@ TEST(BatchQueue, AClientThatGoesWhileItsPosesAreAnsweredLeavesNothing) {
     client = response.source;
     client->next([](const Chunk&) {});
   });
-  const auto end = std::chrono::steady_clock::now() + 60s;   // a hang is a failure
+  const auto end = std::chrono::steady_clock::now() + 60s;  // a hang is a failure
   while (metrics.batches_now > 0 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(5ms);
   EXPECT_EQ(metrics.batches_now, 0u) << "batches under way, and nobody waits for one";
 }
@@ -62,7 +65,9 @@ class Hand final : public HapticDevice {
  public:
   explicit Hand(double step_m) : step_m_(step_m) {}
   std::string name() const override { return "hand"; }
-  DeviceCapabilities capabilities() const override { return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8}; }
+  DeviceCapabilities capabilities() const override {
+    return {.sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 8};
+  }
   Result<void> open() override { return {}; }
   void close() noexcept override {}
   DeviceSample read() noexcept override {
@@ -81,7 +86,8 @@ class Hand final : public HapticDevice {
   double step_m_, x_ = 0;
 };
 
-// "paused" was told beside poses from before the pause, which a recording thread that got no processor had not told yet.
+// "paused" was told beside poses from before the pause, which a recording thread that got no processor had
+// not told yet.
 TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
   Hand sliding(1e-3);
   PausableDevice pausable(sliding, true);
@@ -92,7 +98,7 @@ TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
     tick.sense(i++);
     return tick.act(nullptr);
   };
-  std::vector<TickRecord> late;   // not told yet
+  std::vector<TickRecord> late;  // not told yet
   late.push_back(record());
   late.push_back(record());
   pausable.set_paused(true);
@@ -104,10 +110,11 @@ TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
   Metrics metrics;
   Telemetry telemetry(metrics, nullptr);
   const auto viewer = telemetry.attach([] {});
-  std::vector<std::pair<bool, double>> told;   // paused, x
+  std::vector<std::pair<bool, double>> told;  // paused, x
   std::uint64_t seen = 0;
   for (const TickRecord& row : late) {
-    while (!telemetry.newest() || telemetry.newest()->seq == seen) {   // a message is made of one tick in 16 ms
+    while (!telemetry.newest() ||
+           telemetry.newest()->seq == seen) {  // a message is made of one tick in 16 ms
       ASSERT_TRUE(telemetry.on_tick(row));
       std::this_thread::sleep_for(1ms);
     }
@@ -117,7 +124,9 @@ TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
     const bool bit = (static_cast<unsigned char>(telemetry.newest()->binary[6]) & 8) != 0;
     EXPECT_EQ(bit, told.back().first);
   }
-  const std::vector<std::pair<bool, double>> expected = {{false, 0}, {false, 0.001}, {true, 0.002}, {true, 0.002}, {true, 0.002}, {false, 0.002}, {false, 0.003}};
+  const std::vector<std::pair<bool, double>> expected = {{false, 0},    {false, 0.001}, {true, 0.002},
+                                                         {true, 0.002}, {true, 0.002},  {false, 0.002},
+                                                         {false, 0.003}};
   EXPECT_EQ(told, expected);
 }
 
@@ -145,7 +154,7 @@ TEST(PausableDevice, OfMetalFeelsAndTellsNoForceAndFadesInAgain) {
   pausable.set_paused(true);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(force(), 0);
   pausable.set_paused(false);
-  for (int i = 1; i <= 10; ++i) EXPECT_NEAR(force(), 0.2 * i, 1e-12);   // rounding of the gain's sum
+  for (int i = 1; i <= 10; ++i) EXPECT_NEAR(force(), 0.2 * i, 1e-12);  // rounding of the gain's sum
 }
 
 }  // namespace

@@ -124,8 +124,13 @@ TEST(Session, TellsWhatRealTimeWouldHaveMadeOfIt) {
   EXPECT_GE(late.realtime->watchdog_ticks, 90u) << "10 of every 30 ticks";
   EXPECT_GE(late.realtime->result_age_ticks.max, 59);
   EXPECT_EQ(late.watchdog_ticks, 0u) << "virtual time itself had none";
-  EXPECT_THAT(late.realtime->sentence, HasSubstr("this machine could not have kept up: the watchdog would have faded the force out in "));
-  EXPECT_THAT(late.notes, testing::Contains(testing::AllOf(HasSubstr("31 of 31 frames took longer than the watchdog's 20 ms; the slowest, "), HasSubstr(" with the tool at 0 0 "))));
+  EXPECT_THAT(
+      late.realtime->sentence,
+      HasSubstr("this machine could not have kept up: the watchdog would have faded the force out in "));
+  EXPECT_THAT(late.notes,
+              testing::Contains(testing::AllOf(
+                  HasSubstr("31 of 31 frames took longer than the watchdog's 20 ms; the slowest, "),
+                  HasSubstr(" with the tool at 0 0 "))));
 }
 
 TEST(Session, SaysThatRealTimeWouldHaveKeptUp) {
@@ -139,7 +144,8 @@ TEST(Session, SaysThatRealTimeWouldHaveKeptUp) {
   ASSERT_TRUE(summary) << summary.error().sentence;
   ASSERT_TRUE(summary->realtime);
   EXPECT_TRUE(summary->realtime->kept_up);
-  EXPECT_THAT(summary->realtime->sentence, HasSubstr("this machine would have kept up: results would have been 1 tick old"));
+  EXPECT_THAT(summary->realtime->sentence,
+              HasSubstr("this machine would have kept up: results would have been 1 tick old"));
   EXPECT_THAT(summary->realtime->sentence, HasSubstr("(in this run 1"));
   // A run that ends before a result was due says nothing of the machine.
   WatchedDevice brief(scene);
@@ -159,16 +165,18 @@ TEST(Session, PressesBackWithTheDepthOfTheContact) {
   EXPECT_EQ(summary->ticks, 2001u) << "the path's last point is part of the run";
   EXPECT_THAT(summary->stages_reached, ElementsAre(1, 2, 3));
   EXPECT_EQ(summary->areas_max, 1u);
-  EXPECT_EQ(summary->result_age_ticks.p50, 4);   // 3, 4, 5 in turn
+  EXPECT_EQ(summary->result_age_ticks.p50, 4);  // 3, 4, 5 in turn
   EXPECT_EQ(summary->result_age_ticks.max, 5);
   EXPECT_EQ(summary->law, "corrected");
   EXPECT_EQ(summary->missed_ticks, 0u);
   EXPECT_EQ(summary->watchdog_ticks, 0u);
-  // Static balance of hand (135 N/m) and wall (1000 N/m) against a hand 10 mm deep is 1.19 N; the dip is slow enough for 20 %.
+  // Static balance of hand (135 N/m) and wall (1000 N/m) against a hand 10 mm deep is 1.19 N; the dip is slow
+  // enough for 20 %.
   EXPECT_NEAR(summary->force_max_N, 0.01 * 135 * 1000 / 1135, 0.25);
   for (const TickRecord& tick : watcher.ticks) {
     ASSERT_GE(tick.sent.force.z, 0) << "never pulls";
-    // Apart from the ramp at touch and release the law knows the force of this very tick, but that planes are carried on firmer (kFirmer).
+    // Apart from the ramp at touch and release the law knows the force of this very tick, but that planes are
+    // carried on firmer (kFirmer).
     if (tick.contact && tick.pose.position.z < -1e-3) {
       ASSERT_NEAR(tick.sent.force.z, -1000 * tick.pose.position.z, 0.05);
     }
@@ -212,7 +220,9 @@ TEST(Session, HangsTheToolOnASpringOfKByItselfWhereTheProfileIsRefined) {
     for (const TickRecord& tick : watcher.ticks) {
       if (!tick.contact || tick.pose.position.z > -1e-3) continue;
       ++deep;
-      ASSERT_NEAR(tick.sent.force.z, -tick.pose.position.z * (profile == Profile::kRefined ? 500 : 1000), 0.03) << (profile == Profile::kPaper ? "paper" : "refined");
+      ASSERT_NEAR(tick.sent.force.z, -tick.pose.position.z * (profile == Profile::kRefined ? 500 : 1000),
+                  0.03)
+          << (profile == Profile::kPaper ? "paper" : "refined");
     }
     EXPECT_GT(deep, 100);
   }
@@ -239,13 +249,16 @@ TEST(Session, CountsFramesWithoutADirectionAndKeepsTheFirst) {
   EXPECT_THAT(summary->notes.front(), HasSubstr("in contact with nothing that says which way"));
 }
 
-/// The half-space in three patches of which the tool touches the second and third wherever it is below −4 mm, the second below 0.
+/// The half-space in three patches of which the tool touches the second and third wherever it is below −4 mm,
+/// the second below 0.
 class Patched : public HalfSpace {
  public:
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     auto done = HalfSpace::query(pose, ignored, out);
     sets.push_back(ignored ? ignored->patches : std::vector<std::uint32_t>());
-    const auto holds = [&](std::uint32_t patch) { return std::count(sets.back().begin(), sets.back().end(), patch) > 0; };
+    const auto holds = [&](std::uint32_t patch) {
+      return std::count(sets.back().begin(), sets.back().end(), patch) > 0;
+    };
     if (out.contact && holds(1)) out.field = {}, out.areas.clear(), out.ignored_touched.push_back(1);
     if (pose.translation.z < -4 * 1049 && holds(2)) out.ignored_touched.push_back(2);
     return done;
@@ -260,7 +273,8 @@ TEST(Session, LeavesContactsOfTheStartOutUntilTheyHaveOpened) {
   // From 8 mm deep up and out, and down again.
   auto& path = scene.scene.device.path;
   path.resize(3);
-  for (std::size_t i = 0; i < 3; ++i) path[i].time_s = 0.5 * static_cast<double>(i), path[i].pose.position.z = i == 1 ? 0.008 : -0.008;
+  for (std::size_t i = 0; i < 3; ++i)
+    path[i].time_s = 0.5 * static_cast<double>(i), path[i].pose.position.z = i == 1 ? 0.008 : -0.008;
   scene.scene.start = path.front().pose;
   Patched backend;
   WatchedDevice device(scene);
@@ -268,14 +282,17 @@ TEST(Session, LeavesContactsOfTheStartOutUntilTheyHaveOpened) {
   const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, &watcher);
   ASSERT_TRUE(summary) << summary.error().sentence;
   ASSERT_GT(backend.sets.size(), 100u);
-  EXPECT_EQ(backend.sets[0], (std::vector<std::uint32_t>{0, 1, 2})) << "to begin with, all that may be touched";
+  EXPECT_EQ(backend.sets[0], (std::vector<std::uint32_t>{0, 1, 2}))
+      << "to begin with, all that may be touched";
   EXPECT_EQ(backend.sets[1], (std::vector<std::uint32_t>{1, 2}));
   EXPECT_TRUE(backend.sets.back().empty());
   EXPECT_EQ(summary->ignored_patches_first, 2u);
   EXPECT_EQ(summary->ignored_patches_end, 0u);
-  EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("left out on 2 faces of the mock-up; all had opened by the end")));
+  EXPECT_THAT(summary->notes,
+              testing::Contains(HasSubstr("left out on 2 faces of the mock-up; all had opened by the end")));
   double early = 0, late = 0;
-  for (const TickRecord& tick : watcher.ticks) (tick.time_s < 0.5 ? early : late) = std::max(tick.time_s < 0.5 ? early : late, tick.sent.force.z);
+  for (const TickRecord& tick : watcher.ticks)
+    (tick.time_s < 0.5 ? early : late) = std::max(tick.time_s < 0.5 ? early : late, tick.sent.force.z);
   EXPECT_EQ(early, 0);
   EXPECT_GT(late, 0.2);
 }
@@ -316,9 +333,13 @@ TEST(Session, LeavesTheSameBytesEveryTimeInVirtualTime) {
   }
   EXPECT_EQ(traces[0], traces[1]);
   EXPECT_EQ(std::count(traces[0].begin(), traces[0].end(), '\n'), 502);
-  EXPECT_THAT(traces[0], testing::StartsWith("time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
-                                             "response_force_x_N,response_force_y_N,response_force_z_N,response_torque_x_Nm,response_torque_y_Nm,"
-                                             "response_torque_z_Nm,result_age_ticks,contact,stage\n0,0,0,0.01,0,0,0,1,"));
+  EXPECT_THAT(
+      traces[0],
+      testing::StartsWith(
+          "time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
+          "response_force_x_N,response_force_y_N,response_force_z_N,response_torque_x_Nm,response_torque_y_"
+          "Nm,"
+          "response_torque_z_Nm,result_age_ticks,contact,stage\n0,0,0,0.01,0,0,0,1,"));
   const std::string frames = slurp(root / "a" / "frames.jsonl");
   EXPECT_THAT(frames, HasSubstr("\"tick\":3"));
   std::filesystem::remove_all(root);
@@ -327,14 +348,15 @@ TEST(Session, LeavesTheSameBytesEveryTimeInVirtualTime) {
 TEST(Session, FadesItsForceInAtTheStart) {
   LoadedScene scene = half_space_scene();
   scene.scene.control.fade_in_ms = 100;
-  scene.scene.start.position.z = -0.005;   // parts of an assembly touch before anybody moves
+  scene.scene.start.position.z = -0.005;  // parts of an assembly touch before anybody moves
   HalfSpace backend;
   WatchedDevice device(scene);
   Watcher watcher;
   ASSERT_TRUE(run_session(scene, backend, device, {.pace = Pace::kAsap, .duration_s = 0.3}, &watcher));
   for (std::size_t i = 0; i < 100; ++i) {
     const double full = -1000 * watcher.ticks[i].pose.position.z;
-    EXPECT_LE(watcher.ticks[i].sent.force.z, full * static_cast<double>(i + 1) / 100 + 5e-4) << i;   // half a lattice step is 0.5 mN
+    EXPECT_LE(watcher.ticks[i].sent.force.z, full * static_cast<double>(i + 1) / 100 + 5e-4)
+        << i;  // half a lattice step is 0.5 mN
   }
   EXPECT_EQ(watcher.ticks.size(), 300u);
 }
@@ -365,15 +387,19 @@ class SessionExit : public testing::TestWithParam<Pace> {
     scene.scene.device.path.resize(1);
     scene.scene.device.path[0].pose = scene.scene.start;
   }
-  Result<SessionSummary> run(WatchedDevice& device, RunObserver* observer = nullptr, const std::atomic<bool>* stop = nullptr) {
-    return run_session(scene, backend, device, {.pace = GetParam(), .duration_s = duration_s, .stop = stop}, observer);
+  Result<SessionSummary> run(WatchedDevice& device, RunObserver* observer = nullptr,
+                             const std::atomic<bool>* stop = nullptr) {
+    return run_session(scene, backend, device, {.pace = GetParam(), .duration_s = duration_s, .stop = stop},
+                       observer);
   }
   LoadedScene scene;
   HalfSpace backend;
-  double duration_s = 60;   // of which a failing run uses a fraction
+  double duration_s = 60;  // of which a failing run uses a fraction
 };
 INSTANTIATE_TEST_SUITE_P(BothPaces, SessionExit, testing::Values(Pace::kRealtime, Pace::kAsap),
-                         [](const auto& tested) { return tested.param == Pace::kAsap ? "asap" : "realtime"; });
+                         [](const auto& tested) {
+                           return tested.param == Pace::kAsap ? "asap" : "realtime";
+                         });
 
 TEST_P(SessionExit, IsAtZeroAfterTheLastTick) {
   WatchedDevice device(scene);
@@ -397,7 +423,9 @@ TEST_P(SessionExit, IsAtZeroWhenStopped) {
 
 TEST_P(SessionExit, IsAtZeroWhenTheBackEndFails) {
   WatchedDevice device(scene);
-  backend.on_query = [](int n) { return n < 20 ? Result<void>() : Result<void>(Error{ErrorCode::kInternal, "the Vulkan device was lost"}); };
+  backend.on_query = [](int n) {
+    return n < 20 ? Result<void>() : Result<void>(Error{ErrorCode::kInternal, "the Vulkan device was lost"});
+  };
   const auto summary = run(device);
   ASSERT_TRUE(summary && summary->failure);
   EXPECT_EQ(summary->failure->sentence, "the Vulkan device was lost; the run has ended with zero force");
@@ -448,7 +476,8 @@ TEST_P(SessionExit, GivesNoForceForATruncatedFrame) {
       return done;
     }
   } truncating;
-  const auto summary = run_session(scene, truncating, device, {.pace = GetParam(), .duration_s = 0.05}, nullptr);
+  const auto summary =
+      run_session(scene, truncating, device, {.pace = GetParam(), .duration_s = 0.05}, nullptr);
   ASSERT_TRUE(summary);
   EXPECT_EQ(device.strongest, 0);
   EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("pairs")));
@@ -466,7 +495,8 @@ TEST(Session, SaysThatTheSimulatedHandSwingsUnlessItIsWellDamped) {
     const auto summary = run_session(scene, backend, device, {.pace = Pace::kAsap}, nullptr);
     EXPECT_TRUE(summary);
     EXPECT_EQ(summary->force_max_N > 0, touches);
-    return testing::Value(summary->notes, testing::Contains(HasSubstr("5.2 Hz: such swings")));   // √(1,135 N/m / 1.05 kg) / 2π
+    return testing::Value(
+        summary->notes, testing::Contains(HasSubstr("5.2 Hz: such swings")));  // √(1,135 N/m / 1.05 kg) / 2π
   };
   EXPECT_TRUE(swings(6.5, true));
   EXPECT_FALSE(swings(6.5, false));
@@ -489,7 +519,8 @@ TEST(Session, FadesToZeroWhileTheBackEndIsStuckAndKeepsTicking) {
   ASSERT_TRUE(summary);
   EXPECT_GT(device.strongest, 0.5);
   EXPECT_GT(summary->watchdog_ticks, 100u);
-  EXPECT_EQ(watcher.ticks.back().sent.force, Vec3(0)) << "long before the run ended the watchdog had taken the force away";
+  EXPECT_EQ(watcher.ticks.back().sent.force, Vec3(0))
+      << "long before the run ended the watchdog had taken the force away";
   EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("watchdog")));
 }
 
@@ -521,15 +552,22 @@ TEST(Session, RefusesSettingsInOneSentenceBeforeTheDeviceIsTouched) {
     EXPECT_EQ(device.writes, 0);
     return summary ? std::string("accepted") : summary.error().sentence;
   };
-  EXPECT_THAT(refusal([](Scene& s) { s.control.transitions = 1001; }), HasSubstr("control.transitions is 1001"));
-  EXPECT_THAT(refusal([](Scene& s) { s.control.virtual_delay_ticks = 0; }), HasSubstr("control.virtual_delay_ticks is 0"));
-  EXPECT_THAT(refusal([](Scene& s) { s.control.watchdog_ms = NAN; }), HasSubstr("control.watchdog_ms is nan"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.transitions = 1001; }),
+              HasSubstr("control.transitions is 1001"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.virtual_delay_ticks = 0; }),
+              HasSubstr("control.virtual_delay_ticks is 0"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.watchdog_ms = NAN; }),
+              HasSubstr("control.watchdog_ms is nan"));
   EXPECT_THAT(refusal([](Scene& s) { s.control.slew_ms = -1; }), HasSubstr("control.slew_ms is -1"));
-  EXPECT_THAT(refusal([](Scene& s) { s.control.change_n_per_s = NAN; }), HasSubstr("control.change_n_per_s is nan"));
-  EXPECT_THAT(refusal([](Scene& s) { s.control.coupling_n_per_m = NAN; }), HasSubstr("control.coupling_n_per_m is nan"));
-  EXPECT_THAT(refusal([](Scene& s) { s.control.coupling_nm_per_rad = 2, s.control.law = ForceLaw::kPrinted; }),
-              HasSubstr("control.coupling_nm_per_rad is 2, allowed is 0 with law printed"));
-  EXPECT_THAT(refusal([](Scene& s) { s.response.stiffness_n_per_m = -1; }), HasSubstr("response.stiffness is -1"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.change_n_per_s = NAN; }),
+              HasSubstr("control.change_n_per_s is nan"));
+  EXPECT_THAT(refusal([](Scene& s) { s.control.coupling_n_per_m = NAN; }),
+              HasSubstr("control.coupling_n_per_m is nan"));
+  EXPECT_THAT(
+      refusal([](Scene& s) { s.control.coupling_nm_per_rad = 2, s.control.law = ForceLaw::kPrinted; }),
+      HasSubstr("control.coupling_nm_per_rad is 2, allowed is 0 with law printed"));
+  EXPECT_THAT(refusal([](Scene& s) { s.response.stiffness_n_per_m = -1; }),
+              HasSubstr("response.stiffness is -1"));
 }
 
 // --- Recorder ---
@@ -547,7 +585,7 @@ TEST(Recorder, SaysThatTheDiskIsFull) {
   const auto root = std::filesystem::path(testing::TempDir()) / "palpate_full_disk";
   std::filesystem::create_directories(root);
   std::filesystem::remove(root / "trace.csv");
-  std::filesystem::create_symlink("/dev/full", root / "trace.csv");   // accepts an open, refuses every byte
+  std::filesystem::create_symlink("/dev/full", root / "trace.csv");  // accepts an open, refuses every byte
   auto recorder = Recorder::create(root.string());
   ASSERT_TRUE(recorder);
   Result<void> failed;

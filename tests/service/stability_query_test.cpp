@@ -1,4 +1,5 @@
-// The corrected law closed over the real collision query: results 10 ms old must cost little of the stiffness that none allows.
+// The corrected law closed over the real collision query: results 10 ms old must cost little of the stiffness
+// that none allows.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,21 +32,26 @@ class StabilityQuery : public testing::TestWithParam<int> {
   std::unique_ptr<PreparedCase> prepared_;
 };
 
-Result<std::unique_ptr<HapticDevice>> simulated(const DeviceSettings& settings, const Pose& start) { return make_simulated_device(settings, start, Vec3(0)); }
+Result<std::unique_ptr<HapticDevice>> simulated(const DeviceSettings& settings, const Pose& start) {
+  return make_simulated_device(settings, start, Vec3(0));
+}
 
 TEST_P(StabilityQuery, TenMillisecondsCostLessThanATenthOfTheStiffness) {
   // b / (T/2) is 2000 N/m for whatever is no softer than its spring; with a wall in series K may be more.
-  const auto late = highest_stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 10);
+  const auto late =
+      highest_stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 10);
   ASSERT_TRUE(late) << late.error().sentence;
   std::printf("%s: %.0f N/m with results 10 ms old\n", what_.name.c_str(), *late);
   EXPECT_GE(*late, 1800) << "however large the contact";
-  // A pad softer than its spring is damped by planes carried on twice as firm (kFirmer), most so without delay: both limits lie far above what the device bears.
+  // A pad softer than its spring is damped by planes carried on twice as firm (kFirmer), most so without
+  // delay: both limits lie far above what the device bears.
   if (what_.name == "pad") {
     EXPECT_GE(*late, 2 * 2000);
     return;
   }
   // Without delay a ninth more is not stable, either: one run of many queries in place of a dozen.
-  const auto none = stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 0, *late / 0.9);
+  const auto none =
+      stable_body_query(simulated, what_, *prepared_, bare_device(), LawKind::kCorrected, 0, *late / 0.9);
   ASSERT_TRUE(none) << none.error().sentence;
   EXPECT_FALSE(*none) << "ten milliseconds cost more than a tenth";
 }
@@ -55,7 +61,7 @@ class PressedDown : public StabilityQuery {};
 
 TEST_P(PressedDown, DeeperIsPushedHarderAndThePlanesSayNoLess) {
   ASSERT_NE(what_.kick.z, 0);
-  constexpr double kStep = 1e-5;   // m, a fiftieth of the samples' spacing
+  constexpr double kStep = 1e-5;  // m, a fiftieth of the samples' spacing
   double before = 0, told = 0;
   for (int i = -60; i <= 60; ++i) {
     Pose pose = what_.pose(0);
@@ -63,11 +69,13 @@ TEST_P(PressedDown, DeeperIsPushedHarderAndThePlanesSayNoLess) {
     LawResult result;
     ASSERT_TRUE(prepared_->ask(pose, result));
     double stiffness = 0;
-    for (std::uint32_t p = 0; p < result.plane_count; ++p) stiffness += result.planes[p].stiffness * result.planes[p].normal.z * result.planes[p].normal.z;
+    for (std::uint32_t p = 0; p < result.plane_count; ++p)
+      stiffness += result.planes[p].stiffness * result.planes[p].normal.z * result.planes[p].normal.z;
     if (i > -60) {
       const double rise = (result.wrench.force.z - before) / kStep;
       ASSERT_GT(rise, 0) << i;
-      // Told is kFirmer times what the sums say of it: never less than the rise, by 6 % at most, and no more than twice it and a tenth.
+      // Told is kFirmer times what the sums say of it: never less than the rise, by 6 % at most, and no more
+      // than twice it and a tenth.
       ASSERT_GE(2.1 * rise, std::min(told, stiffness)) << i;
       ASSERT_LE(rise, 1.06 * std::max(told, stiffness)) << i;
     }
@@ -81,36 +89,43 @@ Result<JumpStatistics> jumps_of(const std::string& name, Profile profile, LawKin
     if (what.name != name) continue;
     auto prepared = PreparedCase::make(what, profile, profile == Profile::kPaper ? reference : native);
     if (!prepared) return prepared.error();
-    return jumps(what, **prepared, {.kind = law, .stiffness_n_per_m = 2000, .transitions = delay, .change_n_per_s = 100}, delay);
+    return jumps(what, **prepared,
+                 {.kind = law, .stiffness_n_per_m = 2000, .transitions = delay, .change_n_per_s = 100},
+                 delay);
   }
   return bad_value("no motion is called " + name);
 }
 
 TEST(QuickRetreat, NeverPullsWithResultsTwentyMillisecondsOld) {
   // 1 m/s out of 5 mm. As printed the law pulls by 2000 N/m times what 20 to 39 ms make of it.
-  const auto ours = jumps_of("quick retreat", Profile::kRefined, LawKind::kCorrected, 20), chapter = jumps_of("quick retreat", Profile::kPaper, LawKind::kPrinted, 20);
+  const auto ours = jumps_of("quick retreat", Profile::kRefined, LawKind::kCorrected, 20),
+             chapter = jumps_of("quick retreat", Profile::kPaper, LawKind::kPrinted, 20);
   ASSERT_TRUE(ours && chapter);
-  EXPECT_GE(ours->least_push_n, -std::sqrt(2 * 2000 * kEnoughBalanceJ));   // how well the spring's balance is found
+  EXPECT_GE(ours->least_push_n,
+            -std::sqrt(2 * 2000 * kEnoughBalanceJ));  // how well the spring's balance is found
   EXPECT_LT(chapter->least_push_n, -1);
 }
 
 TEST(Seam, IsCrossedInStepsThatOneRowOfSamplesBounds) {
   const auto steps = jumps_of("seam", Profile::kRefined, LawKind::kCorrected, 5);
   ASSERT_TRUE(steps);
-  std::printf("seam: results step by up to %.4f N, the force by %.4f N a tick\n", steps->response_step_n, steps->force_step_n);
-  // The tool comes in at 10 mm/s, a result each 5 ms: K · 50 µm. What is not the way in, the seam's own, is a row of 22 samples of
-  // the 366 inside, half a millimetre deep on the mean: K · 0.5 mm · 6 %.
+  std::printf("seam: results step by up to %.4f N, the force by %.4f N a tick\n", steps->response_step_n,
+              steps->force_step_n);
+  // The tool comes in at 10 mm/s, a result each 5 ms: K · 50 µm. What is not the way in, the seam's own, is a
+  // row of 22 samples of the 366 inside, half a millimetre deep on the mean: K · 0.5 mm · 6 %.
   EXPECT_LE(steps->response_step_n, 0.1 + 0.06);
   // In a tick: κ and 2K times a way of 38 µm at most, and the rest's 0.1 N (docs/SAFETY.md).
   EXPECT_LE(steps->force_step_n, 3 * 2000 * 38e-6 + 0.1);
 }
 
 TEST(PiercedPlate, IsLeftOnTheOtherSideWithoutAJump) {
-  // The field pushes a sphere back until its middle is through, and then out of the other side: in between the tool slips through, and the spring eases it over.
+  // The field pushes a sphere back until its middle is through, and then out of the other side: in between
+  // the tool slips through, and the spring eases it over.
   const auto steps = jumps_of("pierced plate", Profile::kRefined, LawKind::kCorrected, 5);
   ASSERT_TRUE(steps);
-  std::printf("pierced plate: results step by up to %.3f N, the force by %.3f N a tick\n", steps->response_step_n, steps->force_step_n);
-  EXPECT_LE(steps->force_step_n, 3 * 2000 * 67e-6 + 0.1);   // 40 mm in 0.6 s (docs/SAFETY.md)
+  std::printf("pierced plate: results step by up to %.3f N, the force by %.3f N a tick\n",
+              steps->response_step_n, steps->force_step_n);
+  EXPECT_LE(steps->force_step_n, 3 * 2000 * 67e-6 + 0.1);  // 40 mm in 0.6 s (docs/SAFETY.md)
 }
 
 std::string name_of_case(const testing::TestParamInfo<int>& tested) {

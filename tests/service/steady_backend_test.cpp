@@ -8,11 +8,14 @@
 namespace palpate {
 namespace {
 
-/// Answers with the scene that it has prepared as the number of pairs; may find every frame too large, or never be ready.
+/// Answers with the scene that it has prepared as the number of pairs; may find every frame too large, or
+/// never be ready.
 class Teller final : public CollisionBackend {
  public:
   explicit Teller(bool truncates, bool finishes = true) : truncates_(truncates), finishes_(finishes) {}
-  Result<void> finish_preparing() override { return finishes_ ? Result<void>{} : Error{ErrorCode::kInternal, "a shader can't be compiled"}; }
+  Result<void> finish_preparing() override {
+    return finishes_ ? Result<void>{} : Error{ErrorCode::kInternal, "a shader can't be compiled"};
+  }
   Result<void> prepare(const SceneGeometry& geometry, const Plan&, const Progress&) override {
     scene_ = static_cast<std::uint64_t>(geometry.sample_spacing);
     return {};
@@ -73,7 +76,8 @@ class Choosy final : public CollisionBackend {
 };
 
 TEST(SteadyBackend, ASceneThatTheFirstDoesNotTakeIsTheSparesAndTheNextIsTheFirstsAgain) {
-  SteadyBackend backend(std::make_unique<Choosy>("first", Profile::kRefined), [] { return std::make_unique<Choosy>("spare", Profile::kPaper); });
+  SteadyBackend backend(std::make_unique<Choosy>("first", Profile::kRefined),
+                        [] { return std::make_unique<Choosy>("spare", Profile::kPaper); });
   const SceneGeometry geometry;
   Contacts out;
   std::vector<Contacts> batch(3);
@@ -111,7 +115,8 @@ class CutsShort final : public CollisionBackend {
 };
 
 TEST(SteadyBackend, SharedWorkThatIsCutShortIsDoneAgainAloneAndNoOther) {
-  SteadyBackend backend(std::make_unique<CutsShort>(), [] { return std::make_unique<Choosy>("spare", Profile::kRefined); });
+  SteadyBackend backend(std::make_unique<CutsShort>(),
+                        [] { return std::make_unique<Choosy>("spare", Profile::kRefined); });
   ASSERT_TRUE(backend.prepare(SceneGeometry{}, {}, {}));
   std::vector<std::string> engines(10);
   std::vector<int> times(10);
@@ -120,7 +125,7 @@ TEST(SteadyBackend, SharedWorkThatIsCutShortIsDoneAgainAloneAndNoOther) {
     LatticePose pose{};
     pose.translation.x = static_cast<std::int32_t>(i);
     Contacts out;
-    for (int again = 0; again < 2; ++again)   // a piece may ask as often as it likes
+    for (int again = 0; again < 2; ++again)  // a piece may ask as often as it likes
       if (auto done = asked.query(pose, nullptr, out); !done) return done;
     engines[i] = out.engine;
     return {};
@@ -129,12 +134,15 @@ TEST(SteadyBackend, SharedWorkThatIsCutShortIsDoneAgainAloneAndNoOther) {
     EXPECT_EQ(engines[i], i % 3 == 0 ? "spare" : "cuts short") << i;
     EXPECT_EQ(times[i], i % 3 == 0 ? 2 : 1) << i;
   }
-  EXPECT_FALSE(backend.share(3, [](PoseQuery&, std::size_t i) -> Result<void> { return i == 1 ? Result<void>(bad_value("no")) : Result<void>(); }));
+  EXPECT_FALSE(backend.share(3, [](PoseQuery&, std::size_t i) -> Result<void> {
+    return i == 1 ? Result<void>(bad_value("no")) : Result<void>();
+  }));
 }
 
 TEST(SteadyBackend, TellsWhatASpareWithASpareOfItsOwnHasToTell) {
   SteadyBackend backend(std::make_unique<Choosy>("first", Profile::kRefined), [] {
-    return std::make_unique<SteadyBackend>(std::make_unique<Choosy>("second", Profile::kRefined), [] { return std::make_unique<Choosy>("third", Profile::kPaper); });
+    return std::make_unique<SteadyBackend>(std::make_unique<Choosy>("second", Profile::kRefined),
+                                           [] { return std::make_unique<Choosy>("third", Profile::kPaper); });
   });
   const SceneGeometry geometry;
   Plan plan;
@@ -142,14 +150,17 @@ TEST(SteadyBackend, TellsWhatASpareWithASpareOfItsOwnHasToTell) {
   ASSERT_TRUE(backend.prepare(geometry, plan, {}));
   EXPECT_EQ(backend.name(), "third");
   const auto notes = backend.take_notes();
-  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) { return note.find("prepared on second") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note.find("prepared on second") != std::string::npos;
+  }));
   EXPECT_TRUE(backend.take_notes().empty());
 }
 
 TEST(SteadyBackend, AFirstThatIsNeverReadyIsReplacedBeforeALoopBegins) {
   SceneGeometry geometry;
   geometry.sample_spacing = 3;
-  SteadyBackend backend(std::make_unique<Teller>(true, false), [] { return std::make_unique<Teller>(false); });
+  SteadyBackend backend(std::make_unique<Teller>(true, false),
+                        [] { return std::make_unique<Teller>(false); });
   ASSERT_TRUE(backend.prepare(geometry, {}, {}));
   EXPECT_EQ(backend.name(), "first");
   ASSERT_TRUE(backend.finish_preparing());

@@ -50,7 +50,7 @@ class Worker {
     }
   }
 
-  std::function<void()> task_;   ///< empty: end
+  std::function<void()> task_;  ///< empty: end
   std::binary_semaphore told_{0}, done_{0};
   std::thread thread_;
 };
@@ -71,7 +71,7 @@ TEST_F(LoopRoomTest, MovesAllThreadsOffTheLoopsProcessorAndBack) {
     const LoopRoom room;
     EXPECT_TRUE(same(mine(), rest));
     EXPECT_TRUE(same(other.may(), rest));
-    Worker later;   // begins where its maker is
+    Worker later;  // begins where its maker is
     EXPECT_TRUE(same(later.may(), rest));
   }
   EXPECT_TRUE(same(mine(), all));
@@ -97,7 +97,7 @@ TEST_F(LoopRoomTest, LeavesWhoWorksForAHandWhereItIs) {
     EXPECT_TRUE(same(before.may(), all));
     within.does([&] { two = std::make_unique<ForHand>(); });
     EXPECT_TRUE(same(within.may(), all));
-    before.does([&] { one.reset(); });   // works for a hand no more
+    before.does([&] { one.reset(); });  // works for a hand no more
     EXPECT_TRUE(same(before.may(), rest));
   }
   EXPECT_TRUE(same(before.may(), all));

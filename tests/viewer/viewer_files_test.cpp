@@ -18,12 +18,15 @@ TEST(ViewerFiles, AreWhatTheBundlerMade) {
     // What is embedded names no address: scripts/cmake/EmbedText.cmake.
     for (std::size_t at; (at = text.find("https://")) != std::string::npos;) text.erase(at, 8);
     EXPECT_GT(text.size(), 1000u) << file.path;
-    EXPECT_TRUE(file.content == text) << file.path << ": " << file.content.size() << " bytes instead of " << text.size();
+    EXPECT_TRUE(file.content == text)
+        << file.path << ": " << file.content.size() << " bytes instead of " << text.size();
     EXPECT_NE(file.type.find("charset=utf-8"), std::string_view::npos) << file.path;
   }
 }
 
-TEST(ViewerFiles, EitherThereIsAViewerOrAReason) { EXPECT_NE(viewer_files().empty(), viewer_missing().empty()); }
+TEST(ViewerFiles, EitherThereIsAViewerOrAReason) {
+  EXPECT_NE(viewer_files().empty(), viewer_missing().empty());
+}
 
 }  // namespace
 }  // namespace palpate

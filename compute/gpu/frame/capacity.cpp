@@ -6,17 +6,33 @@
 namespace palpate {
 namespace {
 
-using namespace gpu;   // names of shaders/shared/frame.h
+using namespace gpu;  // names of shaders/shared/frame.h
 
 // Chosen: a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of it.
 constexpr std::uint64_t kUsual = 1u << 18, kPerTriangle = 16;
-constexpr std::uint64_t kMostItems = 1u << 22;   // to begin with; a binding of 128 MiB holds that many of 32 bytes
+constexpr std::uint64_t kMostItems =
+    1u << 22;  // to begin with; a binding of 128 MiB holds that many of 32 bytes
 
-constexpr std::array<const char*, 20> kListNames = {
-    "", "", "voxels to touch", "touched voxels", "samples found inside", "lists of touched voxels",
-    "pairs to test", "pairs", "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
-    "samples near the tool's surface", "samples", "tool triangles of areas", "", "",
-    "tiles of tool samples", "extra samples", "samples of the tool", "ignored patches"};
+constexpr std::array<const char*, 20> kListNames = {"",
+                                                    "",
+                                                    "voxels to touch",
+                                                    "touched voxels",
+                                                    "samples found inside",
+                                                    "lists of touched voxels",
+                                                    "pairs to test",
+                                                    "pairs",
+                                                    "contact triangles of the mock-up",
+                                                    "contact triangles of the tool",
+                                                    "lists with samples",
+                                                    "samples near the tool's surface",
+                                                    "samples",
+                                                    "tool triangles of areas",
+                                                    "",
+                                                    "",
+                                                    "tiles of tool samples",
+                                                    "extra samples",
+                                                    "samples of the tool",
+                                                    "ignored patches"};
 static_assert(kListFieldTiles == 16 && kListIgnored == 19);
 
 std::uint32_t items(std::uint64_t wanted, std::uint64_t most) {
@@ -29,13 +45,18 @@ std::uint32_t doubled(std::uint32_t capacity) {
 
 }  // namespace
 
-FrameCapacity FrameCapacity::first(const FrameDemand& demand, const std::map<std::string, std::uint32_t>& wanted) {
+FrameCapacity FrameCapacity::first(const FrameDemand& demand,
+                                   const std::map<std::string, std::uint32_t>& wanted) {
   const SceneConstants& scene = demand.scene;
   const bool refined = scene.refined != 0;
-  const std::uint64_t tool = scene.tool.triangles, mockup = scene.mockup.triangles, voxels = scene.mockup.grid.boundary_voxels;
-  const std::uint64_t entries = scene.mockup.grid.list_entries, all_voxels = voxels + (scene.mockup.has_internal != 0 ? kMostItems : 0);
+  const std::uint64_t tool = scene.tool.triangles, mockup = scene.mockup.triangles,
+                      voxels = scene.mockup.grid.boundary_voxels;
+  const std::uint64_t entries = scene.mockup.grid.list_entries,
+                      all_voxels = voxels + (scene.mockup.has_internal != 0 ? kMostItems : 0);
   // Of every list: what is usual, more for a large tool, and never more than there is.
-  const auto room = [&](std::uint64_t a_tool_triangle, std::uint64_t most) { return items(std::min(std::max(kUsual, a_tool_triangle * tool), most), kMostItems); };
+  const auto room = [&](std::uint64_t a_tool_triangle, std::uint64_t most) {
+    return items(std::min(std::max(kUsual, a_tool_triangle * tool), most), kMostItems);
+  };
   // Samples and first corners.
   const std::uint64_t samples = !refined ? 1 : demand.samples ? *demand.samples + mockup : kMostItems;
   FrameCapacity out;
@@ -43,7 +64,7 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand, const std::map<std
   l[kListTouchCandidates] = room(kPerTriangle, tool * all_voxels);
   l[kListTouchedVoxels] = room(kPerTriangle, voxels);
   l[kListStaticChunks] = room(kPerTriangle, voxels + entries / kStaticChunk);
-  l[kListPairCandidates] = room(kPerTriangle, tool * mockup);   // both below 2^32
+  l[kListPairCandidates] = room(kPerTriangle, tool * mockup);  // both below 2^32
   l[kListPairs] = room(kPerTriangle, tool * mockup);
   l[kListContactStatics] = room(0, mockup);
   l[kListContactMobiles] = items(tool, ~0u);
@@ -57,7 +78,8 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand, const std::map<std
   const auto put = [&](const char* name, std::uint32_t& capacity) {
     if (const auto asked = wanted.find(name); asked != wanted.end()) capacity = std::max(1u, asked->second);
   };
-  for (std::uint32_t list = 0; list < kListNames.size(); ++list) if (*kListNames[list] != 0) put(kListNames[list], l[list]);
+  for (std::uint32_t list = 0; list < kListNames.size(); ++list)
+    if (*kListNames[list] != 0) put(kListNames[list], l[list]);
   return out;
 }
 
@@ -72,7 +94,7 @@ bool FrameCapacity::grow(const FrameState& state, const std::array<std::uint32_t
 }
 
 const char* overflow_name(const FrameState& state) {
-  const auto first = static_cast<std::uint32_t>(std::countr_zero(state.overflow));   // 32 when none
+  const auto first = static_cast<std::uint32_t>(std::countr_zero(state.overflow));  // 32 when none
   if (const char* name = list_name(first)) return name;
   if ((state.overflow_other & kOverflowAreas) != 0) return "areas";
   if ((state.overflow_other & kOverflowLoop) != 0) return "steps of one invocation";
@@ -80,9 +102,12 @@ const char* overflow_name(const FrameState& state) {
 }
 
 std::string fixed_limit(const FrameState& state) {
-  if ((state.overflow_other & kOverflowAreas) != 0) return "a frame has more than " + std::to_string(kMaxFrameAreas) + " contact areas, the most there can be";
+  if ((state.overflow_other & kOverflowAreas) != 0)
+    return "a frame has more than " + std::to_string(kMaxFrameAreas) +
+           " contact areas, the most there can be";
   if ((state.overflow_other & kOverflowLoop) != 0)
-    return "a frame needs more than " + std::to_string(kLoopBudget) + " steps of one invocation, the most that every device takes";
+    return "a frame needs more than " + std::to_string(kLoopBudget) +
+           " steps of one invocation, the most that every device takes";
   return "the last frame ran out of nothing";
 }
 

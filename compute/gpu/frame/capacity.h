@@ -14,19 +14,21 @@ namespace palpate {
 /// What a frame of a scene can ask for.
 struct FrameDemand {
   const gpu::SceneConstants& scene;
-  std::optional<std::uint64_t> samples;   ///< of the mock-up, where preparation has listed them and the host searches among them
+  std::optional<std::uint64_t>
+      samples;  ///< of the mock-up, where preparation has listed them and the host searches among them
 };
 
-/// How many items each list of a frame holds. Chosen so that usual contacts fit, and no more than the scene can ask for; what has overflowed
-/// grows when asked.
+/// How many items each list of a frame holds. Chosen so that usual contacts fit, and no more than the scene
+/// can ask for; what has overflowed grows when asked.
 struct FrameCapacity {
-  std::array<std::uint32_t, gpu::kListCount> lists{};   ///< by kList…; at least 1 for each list that the profile has
+  std::array<std::uint32_t, gpu::kListCount>
+      lists{};  ///< by kList…; at least 1 for each list that the profile has
 
   /// What a frame begins with. `wanted` overrides lists by their names (overflow_name), for tests.
   static FrameCapacity first(const FrameDemand& demand, const std::map<std::string, std::uint32_t>& wanted);
 
-  /// Makes room for what a frame ran out of: at least double, and all that was `asked` for. False: what it ran out of is no
-  /// matter of memory (areas, steps of one invocation).
+  /// Makes room for what a frame ran out of: at least double, and all that was `asked` for. False: what it
+  /// ran out of is no matter of memory (areas, steps of one invocation).
   bool grow(const gpu::FrameState& state, const std::array<std::uint32_t, gpu::kListCount>& asked);
 };
 

@@ -11,9 +11,9 @@
 namespace palpate {
 namespace {
 
-using namespace gpu;   // names of shaders/shared/frame.h
+using namespace gpu;  // names of shaders/shared/frame.h
 
-constexpr std::size_t kMostSpareZones = 4096;   // whose memory is kept (chosen)
+constexpr std::size_t kMostSpareZones = 4096;  // whose memory is kept (chosen)
 
 /// Whether all that overflowed, if anything, comes after the sets: lists of areas, tables of the response.
 bool sets_are_whole(const FrameState& state) {
@@ -40,10 +40,14 @@ void decode_sums(const AreaResult& from, bool points, ContactArea& area) {
 
 }  // namespace
 
-/// Entries by ascending id, equal ones as they came: themselves where they are so already, as the host's are, else a copy in `sorted`.
+/// Entries by ascending id, equal ones as they came: themselves where they are so already, as the host's are,
+/// else a copy in `sorted`.
 template <class Entry, class Id>
-std::span<const Entry> FrameDecoder::by_id(std::span<const Entry> entries, Id id, std::vector<Entry>& sorted) {
-  if (std::is_sorted(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) { return id(a) < id(b); })) return entries;
+std::span<const Entry> FrameDecoder::by_id(std::span<const Entry> entries, Id id,
+                                           std::vector<Entry>& sorted) {
+  if (std::is_sorted(entries.begin(), entries.end(),
+                     [&](const Entry& a, const Entry& b) { return id(a) < id(b); }))
+    return entries;
   keys_.resize(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) keys_[i] = std::uint64_t{id(entries[i])} << 32 | i;
   sort_keys(keys_, spare_keys_);
@@ -53,7 +57,9 @@ std::span<const Entry> FrameDecoder::by_id(std::span<const Entry> entries, Id id
 }
 
 void FrameDecoder::decode_sets(const FrameOutput& output, Contacts& out) {
-  statics_ = by_id(std::span(output.statics, output.result->static_count), [](const StaticResult& s) { return s.id; }, sorted_statics_);
+  statics_ = by_id(
+      std::span(output.statics, output.result->static_count), [](const StaticResult& s) { return s.id; },
+      sorted_statics_);
   if (!out.lists) return;
   for (const StaticResult& s : statics_) {
     if ((s.state & kStaticHit) != 0) {
@@ -64,8 +70,12 @@ void FrameDecoder::decode_sets(const FrameOutput& output, Contacts& out) {
     if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
   }
   const std::span mobiles(output.mobiles, output.result->mobile_count);
-  for (const MobileResult& m : by_id(mobiles, [](const MobileResult& one) { return one.id; }, sorted_mobiles_))
-    ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
+  for (const MobileResult& m : by_id(
+           mobiles, [](const MobileResult& one) { return one.id; }, sorted_mobiles_))
+    ((m.state & kMobileHit) != 0        ? out.cmt
+     : (m.state & kMobileInternal) != 0 ? out.imt
+                                        : out.bmt)
+        .push_back(m.id);
 }
 
 /// One more zone of an area, empty.
@@ -81,7 +91,8 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
   const std::uint32_t count = std::min(result.area_count, kMaxFrameAreas);
   std::array<std::uint32_t, kMaxFrameAreas> order{}, position{};
   std::iota(order.begin(), order.begin() + count, 0u);
-  std::sort(order.begin(), order.begin() + count, [&](auto a, auto b) { return result.areas[a].id < result.areas[b].id; });
+  std::sort(order.begin(), order.begin() + count,
+            [&](auto a, auto b) { return result.areas[a].id < result.areas[b].id; });
   for (std::uint32_t i = 0; i < count; ++i) {
     position[order[i]] = i;
     if (!spare_areas_.empty()) {
@@ -93,7 +104,8 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
     decode_sums(result.areas[order[i]], out.contact_points, out.areas.back());
   }
 
-  // In the order of ids: every list ascends, and zones come by their first ids. A zone's label is the place of one of its triangles.
+  // In the order of ids: every list ascends, and zones come by their first ids. A zone's label is the place
+  // of one of its triangles.
   zone_of_.assign(result.static_count, kNone);
   for (std::size_t begin = 0, end; begin < statics_.size(); begin = end) {
     // Triangles of a zone mostly follow each other.
@@ -112,7 +124,8 @@ void FrameDecoder::decode_areas(const FrameOutput& output, Contacts& out) {
     append_ids(area.zones[zone], run);
   }
   const std::span members(output.members, out.lists ? result.member_count : 0);
-  for (const AreaMember& m : by_id(members, [](const AreaMember& one) { return one.mobile; }, sorted_members_))
+  for (const AreaMember& m : by_id(
+           members, [](const AreaMember& one) { return one.mobile; }, sorted_members_))
     out.areas[position[m.area]].mobile_ids.push_back(m.mobile);
 }
 
@@ -122,7 +135,8 @@ void FrameDecoder::clear(Contacts& out) {
   out.truncated_capacity = "";
   out.pairs = 0;
   for (auto* ids : {&out.cst, &out.bst, &out.est, &out.cmt, &out.bmt, &out.imt}) ids->clear();
-  // The last first, so that the next frame's first area, which is mostly this one's, takes what this one's had and does not grow.
+  // The last first, so that the next frame's first area, which is mostly this one's, takes what this one's
+  // had and does not grow.
   for (auto area = out.areas.rbegin(); area != out.areas.rend(); ++area) {
     for (auto zone = area->zones.rbegin(); zone != area->zones.rend(); ++zone) {
       zone->clear();

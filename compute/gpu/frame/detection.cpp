@@ -10,21 +10,24 @@
 
 namespace palpate {
 
-using namespace gpu;   // names of shaders/shared/frame.h
+using namespace gpu;  // names of shaders/shared/frame.h
 
-std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan) {
+std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geometry,
+                                                     const PreparedScene& scene, const Plan& plan) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
   out->plan_ = plan;
   out->order_ = order_in_space(geometry.tool);
   out->refined_ = scene.constants.refined != 0;
-  out->inside_ = out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
+  out->inside_ =
+      out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
   out->listed_ = scene.samples && scene.samples->listed();
   return out;
 }
 
-Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                          const FrameCapacity& capacity, FrameBuffers& buffers) const {
+Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeometry& geometry,
+                                          const PreparedScene& scene, const FrameCapacity& capacity,
+                                          FrameBuffers& buffers) const {
   const BodyConstants& mockup = scene.constants.mockup;
   const BodyConstants& tool = scene.constants.tool;
   const std::uint64_t voxels = mockup.grid.boundary_voxels, statics = capacity.lists[kListContactStatics];
@@ -51,7 +54,10 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kListMembers, kBindResultMembers, sizeof(AreaMember), BufferKind::kReadback},
   };
   for (const List& l : lists)
-    if (auto r = buffers.make(device, l.binding, list_name(l.list), capacity.lists[l.list] * std::uint64_t{l.item_bytes}, l.kind); !r) return r;
+    if (auto r = buffers.make(device, l.binding, list_name(l.list),
+                              capacity.lists[l.list] * std::uint64_t{l.item_bytes}, l.kind);
+        !r)
+      return r;
 
   struct Plain {
     std::int32_t binding;
@@ -66,31 +72,44 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindListsAnew, "frame lists", sizeof(FrameLists)},
       {kBindResultGroups, "group counts", sizeof(DispatchArguments)},
       {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
-      {kBindFinePlaces, "lists of the tool's fine voxels", closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
+      {kBindFinePlaces, "lists of the tool's fine voxels",
+       closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
       {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * clusters * (kClusterSize / kRunSize)},
-      {kBindToolCorners, "corners of the transformed tool", sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
+      {kBindToolCorners, "corners of the transformed tool",
+       sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
       {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
       {kBindResult, "frame result", sizeof(FrameResult), BufferKind::kReadback},
-      {kBindResultStatics, "results of the mock-up's triangles", sizeof(StaticResult) * statics, BufferKind::kReadback},
-      {kBindResultMobiles, "results of the tool's triangles", sizeof(MobileResult) * std::uint64_t{capacity.lists[kListContactMobiles]}, BufferKind::kReadback},
+      {kBindResultStatics, "results of the mock-up's triangles", sizeof(StaticResult) * statics,
+       BufferKind::kReadback},
+      {kBindResultMobiles, "results of the tool's triangles",
+       sizeof(MobileResult) * std::uint64_t{capacity.lists[kListContactMobiles]}, BufferKind::kReadback},
   };
   for (const Plain& p : plain)
     if (auto r = buffers.make(device, p.binding, p.what, p.bytes, p.kind); !r) return r;
 
   if (auto r = buffers.make_table(device, kBindFrameState, "frame state", sizeof(FrameState)); !r) return r;
-  for (const std::int32_t binding : {kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
-    if (auto r = buffers.make_table(device, binding, "group counts", 2 * sizeof(DispatchArguments)); !r) return r;
-  if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r) return r;
-  if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}); !r)
+  for (const std::int32_t binding :
+       {kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
+    if (auto r = buffers.make_table(device, binding, "group counts", 2 * sizeof(DispatchArguments)); !r)
+      return r;
+  if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r)
+    return r;
+  if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles",
+                                  4 * std::uint64_t{mockup.triangles});
+      !r)
     return r;
 
-  if (auto r = buffers.make_table(device, kBindMobileState, "states of the tool's triangles", 4 * std::uint64_t{tool.triangles}); !r) return r;
+  if (auto r = buffers.make_table(device, kBindMobileState, "states of the tool's triangles",
+                                  4 * std::uint64_t{tool.triangles});
+      !r)
+    return r;
   if (auto r = upload_records(device, geometry.tool, buffers[kBindToolRecords]); !r) return r;
   return closed_ ? upload_places(device, scene, buffers[kBindFinePlaces]) : Result<void>{};
 }
 
-Result<void> FrameDetection::upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const {
+Result<void> FrameDetection::upload_places(VulkanDevice& device, const PreparedScene& scene,
+                                           const VulkanBuffer& to) const {
   std::vector<std::uint32_t> place(order_.size());
   for (std::uint32_t i = 0; i < order_.size(); ++i) place[order_[i]] = i;
   std::vector<std::uint32_t> entries(scene.constants.fine.list_entries);
@@ -100,7 +119,8 @@ Result<void> FrameDetection::upload_places(VulkanDevice& device, const PreparedS
   return upload(device, to, entries.data(), entries.size() * sizeof entries[0]);
 }
 
-Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const {
+Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeMesh& tool,
+                                            const VulkanBuffer& to) const {
   std::vector<ToolRecord> records;
   records.reserve(order_.size());
   for (const std::uint32_t id : order_)
@@ -146,15 +166,18 @@ void FrameDetection::record(FrameRecorder& recorder) const {
     recorder.stage("transform");
     recorder.run_input(tool_clusters_place_, offsetof(FrameInput, clusters));
   }
-  // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the tool's partition knows.
-  recorder.stage(plan_.imt ? "imt" : "bmt");   // one dispatch decides both
+  // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the
+  // tool's partition knows.
+  recorder.stage(plan_.imt ? "imt" : "bmt");  // one dispatch decides both
   recorder.run_input(voxel_touch_, offsetof(FrameInput, touch));
   recorder.stage("pairs");
   recorder.run_input(pair_test_, offsetof(FrameInput, pairs));
   if (inside_) {
     recorder.stage("est");
-    if (listed_) recorder.run_input(sample_take_, offsetof(FrameInput, found));
-    else recorder.run_input(sample_scan_, offsetof(FrameInput, chunks));
+    if (listed_)
+      recorder.run_input(sample_take_, offsetof(FrameInput, found));
+    else
+      recorder.run_input(sample_scan_, offsetof(FrameInput, chunks));
   }
   recorder.barrier();
 
@@ -163,8 +186,10 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.run_stage(static_list_, kBindListedGroups, kGroupsStatics);
   if (inside_) {
     recorder.stage("open");
-    if (listed_) recorder.run_input(sample_walk_, offsetof(FrameInput, open));
-    else recorder.run_stage(sample_walk_, kBindListedGroups, kGroupsOpen);
+    if (listed_)
+      recorder.run_input(sample_walk_, offsetof(FrameInput, open));
+    else
+      recorder.run_stage(sample_walk_, kBindListedGroups, kGroupsOpen);
   }
 }
 
@@ -180,7 +205,9 @@ void FrameDetection::record_end(FrameRecorder& recorder) const {
 }
 
 void FrameDetection::record_anew(FrameRecorder& recorder) {
-  for (const std::int32_t binding : {kBindFrameState, kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups}) recorder.clear(binding);
+  for (const std::int32_t binding :
+       {kBindFrameState, kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
+    recorder.clear(binding);
   recorder.copy(kBindListsAnew, offsetof(FrameLists, lists), kBindFrameLists, sizeof FrameLists::lists);
   recorder.copy(kBindListsAnew, offsetof(FrameLists, result), kBindResultGroups, sizeof FrameLists::result);
 }

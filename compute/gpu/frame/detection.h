@@ -7,24 +7,27 @@
 #include "compute/gpu/frame/recorder.h"
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/vulkan/device.h"
-#include "model/scene/plan.h"
 #include "model/result.h"
+#include "model/scene/plan.h"
 #include "model/scene/scene_geometry.h"
 
 namespace palpate {
 
-/// The first half of a frame: from the pose to the contact sets, pairs and counting samples (docs/EXACTNESS.md sections 3, 4),
-/// and the frame's last step, which empties what it filled. Makes its own buffers and pipelines.
+/// The first half of a frame: from the pose to the contact sets, pairs and counting samples
+/// (docs/EXACTNESS.md sections 3, 4), and the frame's last step, which empties what it filled. Makes its own
+/// buffers and pipelines.
 class FrameDetection {
  public:
-  static std::unique_ptr<FrameDetection> make(const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan);
+  static std::unique_ptr<FrameDetection> make(const SceneGeometry& geometry, const PreparedScene& scene,
+                                              const Plan& plan);
 
   /// Asks for the pipelines, which are then made beside what follows. Before record().
   Result<void> make_shaders(VulkanDevice& device);
-  /// Makes the buffers of the lists and tables into `buffers`; those that are large enough already stay. Before the first record(), and
-  /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
-  Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const FrameCapacity& capacity,
-                            FrameBuffers& buffers) const;
+  /// Makes the buffers of the lists and tables into `buffers`; those that are large enough already stay.
+  /// Before the first record(), and again when the capacity has grown. Error: one buffer is beyond a limit,
+  /// or out of memory.
+  Result<void> make_buffers(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
+                            const FrameCapacity& capacity, FrameBuffers& buffers) const;
 
   /// From the pose to the lists of C_s, C_m, samples, and frame_state; ends with a barrier due.
   void record(FrameRecorder& recorder) const;
@@ -44,11 +47,13 @@ class FrameDetection {
 
   Plan plan_;
   bool refined_ = false;
-  bool inside_ = false;   ///< samples are asked whether they lie inside the tool: refined, and it has an inside
-  bool closed_ = false;   ///< the tool's surface, in `refined`: open samples ask for the winding
-  bool listed_ = false;   ///< samples were listed by preparation
+  bool inside_ =
+      false;  ///< samples are asked whether they lie inside the tool: refined, and it has an inside
+  bool closed_ = false;  ///< the tool's surface, in `refined`: open samples ask for the winding
+  bool listed_ = false;  ///< samples were listed by preparation
   std::vector<std::uint32_t> order_;
-  FrameShader voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_, sample_walk_, set_decide_, set_name_, frame_result_;
+  FrameShader voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_,
+      sample_walk_, set_decide_, set_name_, frame_result_;
 };
 
 }  // namespace palpate

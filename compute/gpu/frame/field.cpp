@@ -8,11 +8,11 @@
 
 namespace palpate {
 
-using namespace gpu;   // names of shaders/shared/frame_field.h
+using namespace gpu;  // names of shaders/shared/frame_field.h
 
 namespace {
 
-constexpr std::uint32_t kCarriersId = 8;   // of the specialisation constant CARRIERS
+constexpr std::uint32_t kCarriersId = 8;  // of the specialisation constant CARRIERS
 
 WideSum wide(std::int64_t low, std::int64_t high) { return {low, high}; }
 
@@ -45,7 +45,8 @@ CarrierSums carrier_of(std::uint32_t id, const CarrierWork& from) {
 
 }  // namespace
 
-Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan) {
+Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry& geometry,
+                                      const PreparedScene& scene, const Plan& plan) {
   FrameField out;
   out.geometry_ = &geometry;
   out.plan_ = plan;
@@ -76,7 +77,8 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
   return out;
 }
 
-Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity& capacity, FrameBuffers& buffers) {
+Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity& capacity,
+                                      FrameBuffers& buffers) {
   struct BufferPlan {
     std::int32_t binding;
     const char* what;
@@ -84,29 +86,35 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
     BufferKind kind = BufferKind::kDevice;
   };
   const auto& lists = capacity.lists;
-  const std::uint64_t carriers = (plan_.telemetry ? lists[kListContactStatics] : 1) * std::uint64_t{sizeof(CarrierWork)};
+  const std::uint64_t carriers =
+      (plan_.telemetry ? lists[kListContactStatics] : 1) * std::uint64_t{sizeof(CarrierWork)};
   const std::uint64_t patches = (geometry_->mockup.patch_count + 31) / 32 * std::uint64_t{4};
   for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
            {kBindCarrierWork, "what contact triangles carry", carriers},
-           {kBindFieldTiles, "tiles of tool samples", lists[kListFieldTiles] * std::uint64_t{sizeof(FieldTile)}},
+           {kBindFieldTiles, "tiles of tool samples",
+            lists[kListFieldTiles] * std::uint64_t{sizeof(FieldTile)}},
            {kBindMockupPoints, "extra samples", lists[kListMockupPoints] * std::uint64_t{sizeof(FieldPoint)}},
-           {kBindToolPoints, "samples of the tool", lists[kListToolPoints] * std::uint64_t{sizeof(FieldPoint)}},
+           {kBindToolPoints, "samples of the tool",
+            lists[kListToolPoints] * std::uint64_t{sizeof(FieldPoint)}},
            {kBindIgnored, "ignored patches", patches, BufferKind::kUpload},
-           {kBindResultIgnored, "ignored patches that are touched", lists[kListIgnored] * std::uint64_t{4}, BufferKind::kReadback},
+           {kBindResultIgnored, "ignored patches that are touched", lists[kListIgnored] * std::uint64_t{4},
+            BufferKind::kReadback},
            {kBindResultField, "result of the pressure field", sizeof(FieldWork), BufferKind::kReadback},
            {kBindResultCarriers, "result of what contact triangles carry", carriers, BufferKind::kReadback},
        }) {
     const bool there = buffers.bytes(plan.binding) >= std::max<std::uint64_t>(plan.bytes, 4);
-    if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, plan.kind); !made) return made.error();
+    if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, plan.kind); !made)
+      return made.error();
     if (plan.binding == kBindIgnored && !there) {
       ignored_bits_.assign(buffers[kBindIgnored].bytes() / 4, 0);
       buffers[kBindIgnored].write(0, ignored_bits_.data(), buffers[kBindIgnored].bytes());
       ignored_.clear();
     }
   }
-  if (buffers.bytes(kBindFineExit) == 0)   // of a tool that is not closed nobody reads it
+  if (buffers.bytes(kBindFineExit) == 0)  // of a tool that is not closed nobody reads it
     if (auto made = buffers.make(device, kBindFineExit, "unused", 4); !made) return made.error();
-  if (auto made = buffers.make_table(device, kBindFieldWork, "pressure field", sizeof(FieldWork)); !made) return made.error();
+  if (auto made = buffers.make_table(device, kBindFieldWork, "pressure field", sizeof(FieldWork)); !made)
+    return made.error();
   return buffers.make_table(device, kBindIgnoredState, "states of ignored patches", patches);
 }
 
@@ -134,7 +142,7 @@ bool FrameField::ignore(const Ignored* ignored, const FrameBuffers& buffers) {
     for (const std::uint32_t patch : on ? wanted : ignored_) {
       if (patch >= patches) continue;
       std::uint32_t& word = ignored_bits_[patch / 32];
-      word = on ? word | 1u << patch % 32 : 0;   // no other patch of the word stays ignored but by `wanted`
+      word = on ? word | 1u << patch % 32 : 0;  // no other patch of the word stays ignored but by `wanted`
       buffers[kBindIgnored].write(patch / 32 * sizeof word, &word, sizeof word);
     }
   ignored_ = wanted;
@@ -163,8 +171,10 @@ void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, 
   const auto* statics = buffers[kBindResultStatics].as<StaticResult>();
   const auto* carriers = buffers[kBindResultCarriers].as<CarrierWork>();
   for (std::uint32_t slot = 0; slot < result.static_count; ++slot)
-    if ((statics[slot].state & (kStaticHit | kStaticSampled)) != 0) out.carriers.push_back(carrier_of(statics[slot].id, carriers[slot]));
-  std::sort(out.carriers.begin(), out.carriers.end(), [](const CarrierSums& a, const CarrierSums& b) { return a.id < b.id; });
+    if ((statics[slot].state & (kStaticHit | kStaticSampled)) != 0)
+      out.carriers.push_back(carrier_of(statics[slot].id, carriers[slot]));
+  std::sort(out.carriers.begin(), out.carriers.end(),
+            [](const CarrierSums& a, const CarrierSums& b) { return a.id < b.id; });
 }
 
 static_assert(kFieldBins == kFieldBinCount);

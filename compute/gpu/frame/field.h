@@ -7,40 +7,45 @@
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/vulkan/device.h"
 #include "model/contact/contacts.h"
-#include "model/scene/plan.h"
 #include "model/result.h"
+#include "model/scene/plan.h"
 #include "model/scene/scene_geometry.h"
 #include "shaders/shared/frame_field.h"
 
 namespace palpate {
 
-/// `refined`: the response half of a frame, the pressure field (docs/EXACTNESS.md section 8), from the lists that detection leaves. Owns
-/// pipelines; its buffers live in FrameBuffers. Allocates when made, not when a frame runs.
+/// `refined`: the response half of a frame, the pressure field (docs/EXACTNESS.md section 8), from the lists
+/// that detection leaves. Owns pipelines; its buffers live in FrameBuffers. Allocates when made, not when a
+/// frame runs.
 class FrameField {
  public:
   /// Makes the pipelines. Geometry outlives this.
-  static Result<FrameField> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan);
+  static Result<FrameField> create(VulkanDevice& device, const SceneGeometry& geometry,
+                                   const PreparedScene& scene, const Plan& plan);
 
-  /// Makes its buffers in `buffers`; those that are large enough already stay. Before the first record(), and again when the
-  /// capacity has grown. Error: one buffer is beyond a limit, or out of memory.
+  /// Makes its buffers in `buffers`; those that are large enough already stay. Before the first record(), and
+  /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
   Result<void> make_buffers(VulkanDevice& device, const FrameCapacity& capacity, FrameBuffers& buffers);
 
-  /// Records every dispatch, from the lists that detection has left to the results and the tables as they were.
+  /// Records every dispatch, from the lists that detection has left to the results and the tables as they
+  /// were.
   void record(FrameRecorder& recorder) const;
 
-  /// Puts down for the next frame what is ignored; null: nothing. Writes only what has changed. True: some patch is.
+  /// Puts down for the next frame what is ignored; null: nothing. Writes only what has changed. True: some
+  /// patch is.
   bool ignore(const Ignored* ignored, const FrameBuffers& buffers);
 
-  /// Fills field, carriers, ignored_touched and flags of an answer whose sets are decoded, in contact, not truncated. `statics`: C_s by slot.
+  /// Fills field, carriers, ignored_touched and flags of an answer whose sets are decoded, in contact, not
+  /// truncated. `statics`: C_s by slot.
   void decode(const FrameBuffers& buffers, const gpu::FrameResult& result, Contacts& out);
 
  private:
   const SceneGeometry* geometry_ = nullptr;
   Plan plan_;
   FrameShader members_, points_, from_mockup_, from_tool_, result_;
-  bool inside_ = true;                     ///< the tool has one
-  std::vector<std::uint32_t> ignored_;        ///< what the bits say
-  std::vector<std::uint32_t> ignored_bits_;   ///< as the device has them
+  bool inside_ = true;                       ///< the tool has one
+  std::vector<std::uint32_t> ignored_;       ///< what the bits say
+  std::vector<std::uint32_t> ignored_bits_;  ///< as the device has them
 };
 
 }  // namespace palpate

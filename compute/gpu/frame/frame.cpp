@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "compute/search/broad_phase.h"
-#include "compute/vulkan/command_recorder.h"
 #include "compute/gpu/frame/capacity.h"
 #include "compute/gpu/frame/decode.h"
 #include "compute/gpu/frame/detection.h"
@@ -18,10 +16,12 @@
 #include "compute/gpu/frame/plan.h"
 #include "compute/gpu/frame/recorder.h"
 #include "compute/gpu/frame/response.h"
-#include "compute/search/posed_tool.h"
-#include "compute/search/run_tree.h"
 #include "compute/gpu/frame/stage_memory.h"
 #include "compute/gpu/scene_copies.h"
+#include "compute/search/broad_phase.h"
+#include "compute/search/posed_tool.h"
+#include "compute/search/run_tree.h"
+#include "compute/vulkan/command_recorder.h"
 #include "model/contact/contact_areas.h"
 
 namespace palpate {
@@ -29,7 +29,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double us_since(Clock::time_point from) { return std::chrono::duration<double, std::micro>(Clock::now() - from).count(); }
+double us_since(Clock::time_point from) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - from).count();
+}
 
 /// An answer cut short by a capacity: no force.
 Result<void> truncate(Contacts& out, const char* capacity) {
@@ -49,12 +51,19 @@ bool turned(const LatticePose& pose) {
 gpu::DispatchArguments groups_for(std::uint32_t groups) {
   return {std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX, 1};
 }
-gpu::DispatchArguments items_for(std::uint32_t items) { return groups_for((items + gpu::kGroupSize - 1) / gpu::kGroupSize); }
+gpu::DispatchArguments items_for(std::uint32_t items) {
+  return groups_for((items + gpu::kGroupSize - 1) / gpu::kGroupSize);
+}
 
 class RecordedFrame final : public Frame {
  public:
-  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene, const Plan& plan)
-      : device_(device), geometry_(geometry), scene_(scene), plan_(frame_plan(plan, scene.mockup.partition.has_internal)), posed_(geometry.tool) {}
+  RecordedFrame(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
+                const Plan& plan)
+      : device_(device),
+        geometry_(geometry),
+        scene_(scene),
+        plan_(frame_plan(plan, scene.mockup.partition.has_internal)),
+        posed_(geometry.tool) {}
 
   Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
   Result<void> finish() override;
@@ -98,11 +107,11 @@ class RecordedFrame final : public Frame {
   FrameCapacity capacity_;
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
-  std::optional<FrameResponse> response_;       ///< `paper`
-  std::optional<FrameField> field_;             ///< `refined`
+  std::optional<FrameResponse> response_;  ///< `paper`
+  std::optional<FrameField> field_;        ///< `refined`
   FrameDecoder decoder_;
-  std::unique_ptr<CommandRecorder> commands_;   ///< from the pose to the result. Null after a failed record()
-  double waited_us_ = 0, staged_us_ = 0;  ///< of this query's submissions
+  std::unique_ptr<CommandRecorder> commands_;  ///< from the pose to the result. Null after a failed record()
+  double waited_us_ = 0, staged_us_ = 0;       ///< of this query's submissions
   DeviceWork work_;
   std::vector<gpu::TouchCandidate> touch_;
   std::vector<gpu::PairCandidate> near_pairs_;
@@ -110,11 +119,12 @@ class RecordedFrame final : public Frame {
   std::vector<gpu::FrameSample> inside_, open_;
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
-  bool finished_ = false;           ///< pipelines are there and commands recorded
+  bool finished_ = false;  ///< pipelines are there and commands recorded
   bool tables_clear_ = false;
-  std::uint64_t pairs_ = 0;         ///< that the last query counted
-  std::uint32_t near_full_ = gpu::kNone;   ///< the list for which the last query found more than there is room for on the host
-  std::uint32_t frame_flags_ = 0;   ///< of every frame within the lattice
+  std::uint64_t pairs_ = 0;  ///< that the last query counted
+  std::uint32_t near_full_ =
+      gpu::kNone;  ///< the list for which the last query found more than there is room for on the host
+  std::uint32_t frame_flags_ = 0;  ///< of every frame within the lattice
 };
 
 void RecordedFrame::name_scene() {
@@ -122,18 +132,37 @@ void RecordedFrame::name_scene() {
   const BodyBuffers &m = scene_.mockup, &t = scene_.tool;
   const PartitionBuffers& fine = scene_.fine.brick_slot ? scene_.fine : t.partition;
   const std::pair<std::int32_t, const VulkanBuffer*> all[] = {
-      {kBindScene, &scene_.scene}, {kBindMockupVertices, &m.vertices}, {kBindMockupTriangles, &m.triangles},
-      {kBindMockupInfo, &m.triangle_info}, {kBindMockupNormals, &m.unit_normal}, {kBindMockupWeights, &m.field_weight},
-      {kBindNeighbourBegin, &m.neighbour_begin}, {kBindNeighbours, &m.neighbours}, {kBindMockupPatches, &m.patch},
-      {kBindMockupExtras, &m.extras}, {kBindMockupLevels, &m.levels}, {kBindMockupBrickSlot, &m.partition.brick_slot}, {kBindMockupBricks, &m.partition.bricks},
-      {kBindMockupListBegin, &m.partition.list_begin}, {kBindMockupListTriangles, &m.partition.list_triangles},
-      {kBindMockupBoundaryPlace, &m.partition.boundary_place}, {kBindMockupMixedBrick, &m.partition.mixed_brick},
-      {kBindToolVertices, &t.vertices}, {kBindToolTriangles, &t.triangles}, {kBindToolInfo, &t.triangle_info},
-      {kBindToolNormals, &t.unit_normal}, {kBindToolWeights, &t.field_weight}, {kBindToolExtras, &t.extras}, {kBindToolLevels, &t.levels},
-      {kBindFineBrickSlot, &fine.brick_slot}, {kBindFineBricks, &fine.bricks},
-      {kBindFineListBegin, &fine.list_begin}, {kBindFineListTriangles, &fine.list_triangles}, {kBindFineExit, &scene_.fine_exit}};
+      {kBindScene, &scene_.scene},
+      {kBindMockupVertices, &m.vertices},
+      {kBindMockupTriangles, &m.triangles},
+      {kBindMockupInfo, &m.triangle_info},
+      {kBindMockupNormals, &m.unit_normal},
+      {kBindMockupWeights, &m.field_weight},
+      {kBindNeighbourBegin, &m.neighbour_begin},
+      {kBindNeighbours, &m.neighbours},
+      {kBindMockupPatches, &m.patch},
+      {kBindMockupExtras, &m.extras},
+      {kBindMockupLevels, &m.levels},
+      {kBindMockupBrickSlot, &m.partition.brick_slot},
+      {kBindMockupBricks, &m.partition.bricks},
+      {kBindMockupListBegin, &m.partition.list_begin},
+      {kBindMockupListTriangles, &m.partition.list_triangles},
+      {kBindMockupBoundaryPlace, &m.partition.boundary_place},
+      {kBindMockupMixedBrick, &m.partition.mixed_brick},
+      {kBindToolVertices, &t.vertices},
+      {kBindToolTriangles, &t.triangles},
+      {kBindToolInfo, &t.triangle_info},
+      {kBindToolNormals, &t.unit_normal},
+      {kBindToolWeights, &t.field_weight},
+      {kBindToolExtras, &t.extras},
+      {kBindToolLevels, &t.levels},
+      {kBindFineBrickSlot, &fine.brick_slot},
+      {kBindFineBricks, &fine.bricks},
+      {kBindFineListBegin, &fine.list_begin},
+      {kBindFineListTriangles, &fine.list_triangles},
+      {kBindFineExit, &scene_.fine_exit}};
   for (const auto& [binding, buffer] : all)
-    if (*buffer) buffers_.name(binding, *buffer);   // `paper` has no partition of the tool
+    if (*buffer) buffers_.name(binding, *buffer);  // `paper` has no partition of the tool
 }
 
 Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& first_capacity) {
@@ -149,7 +178,9 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   if (auto r = copies_.read(device_, scene_); !r) return r;
   broad_phase_.emplace(BroadPhase::make(geometry_, copies_.tables(), *runs_));
   std::optional<std::uint64_t> samples;
-  if (scene_.samples && scene_.samples->listed() && (constants.tool.closed != 0 || constants.tool.has_internal != 0)) samples = scene_.samples->count();
+  if (scene_.samples && scene_.samples->listed() &&
+      (constants.tool.closed != 0 || constants.tool.has_internal != 0))
+    samples = scene_.samples->count();
   capacity_ = FrameCapacity::first({.scene = constants, .samples = samples}, first_capacity);
   if (auto r = make_buffers(); !r) return r;
   return finish();
@@ -173,7 +204,7 @@ Result<void> RecordedFrame::make_pipelines() {
 Result<void> RecordedFrame::finish() {
   if (finished_) return {};
   if (auto r = record(); !r) return r;
-  if (auto r = warm_up(device_, pipelines_); !r) return r;   // no frame of a loop should wait for a compiler
+  if (auto r = warm_up(device_, pipelines_); !r) return r;  // no frame of a loop should wait for a compiler
   finished_ = true;
   return {};
 }
@@ -181,14 +212,16 @@ Result<void> RecordedFrame::finish() {
 Result<void> RecordedFrame::make_buffers() {
   if (auto r = detection_->make_buffers(device_, geometry_, scene_, capacity_, buffers_); !r) return r;
   if (response_)
-    if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r) return r;
+    if (auto r = response_->make_buffers(device_, scene_.constants.tool.triangles, capacity_, buffers_); !r)
+      return r;
   if (field_)
     if (auto r = field_->make_buffers(device_, capacity_, buffers_); !r) return r;
   make_room();
   return set_capacities();
 }
 
-/// Room on the host for what the search finds: it is written to the device in one go, for memory that is written is no memory to work in.
+/// Room on the host for what the search finds: it is written to the device in one go, for memory that is
+/// written is no memory to work in.
 void RecordedFrame::make_room() {
   touch_.resize(capacity_.lists[gpu::kListTouchCandidates]);
   near_pairs_.resize(capacity_.lists[gpu::kListPairCandidates]);
@@ -202,7 +235,8 @@ Result<void> RecordedFrame::set_capacities() {
   for (std::size_t i = 0; i < gpu::kListCount; ++i) anew.lists[i].capacity = capacity_.lists[i];
   anew.result = items_for(field_ ? gpu::kFieldWords : 1);
   if (auto r = upload(device_, buffers_[gpu::kBindListsAnew], &anew, sizeof anew); !r) return r;
-  if (auto r = upload(device_, buffers_[gpu::kBindResultGroups], &anew.result, sizeof anew.result); !r) return r;
+  if (auto r = upload(device_, buffers_[gpu::kBindResultGroups], &anew.result, sizeof anew.result); !r)
+    return r;
   return upload(device_, buffers_[gpu::kBindFrameLists], anew.lists, sizeof anew.lists);
 }
 
@@ -217,7 +251,7 @@ Result<void> RecordedFrame::enlarge() {
   std::array<std::uint32_t, gpu::kListCount> asked{};
   std::copy_n(buffers_[gpu::kBindResult].as<gpu::FrameResult>()->asked, gpu::kListCount, asked.begin());
   gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
-  if (near_full_ != gpu::kNone) {   // before the frame began: of this one there is no result
+  if (near_full_ != gpu::kNone) {  // before the frame began: of this one there is no result
     asked = {};
     state = {};
     state.overflow = 1u << near_full_;
@@ -239,7 +273,7 @@ Result<void> RecordedFrame::enlarge() {
 /// A command buffer with what `body(FrameRecorder&)` records.
 template <class Body>
 Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
-  constexpr std::uint32_t kStages = 32;   // most calls of stage()
+  constexpr std::uint32_t kStages = 32;  // most calls of stage()
   times_.reserve(kStages);
   auto commands = CommandRecorder::create(device_, kStages);
   if (!commands) return commands.error();
@@ -275,7 +309,8 @@ Result<void> RecordedFrame::record() {
   return {};
 }
 
-void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays) {
+void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near,
+                                bool rays) {
   gpu::FrameInput input{};
   input.touch_candidates = near.touch.count;
   input.pair_candidates = near.pairs.count;
@@ -287,7 +322,9 @@ void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored,
   input.found = items_for(near.inside.count);
   input.chunks = items_for(near.samples.count);
   input.open = items_for(near.open.count);
-  if (response_ && rays) input.clusters = groups_for((scene_.constants.tool.triangles + gpu::kClusterSize - 1) / gpu::kClusterSize);
+  if (response_ && rays)
+    input.clusters =
+        groups_for((scene_.constants.tool.triangles + gpu::kClusterSize - 1) / gpu::kClusterSize);
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
@@ -335,18 +372,20 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
   out.times.push_back({"cull", us_since(start), pose.beyond_lattice ? 0 : broad_phase_->looks()});
   near_full_ = near.full;
   if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
-  if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0) return {};   // every pair lies in a voxel that may be touched
+  if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0)
+    return {};  // every pair lies in a voxel that may be touched
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
     if (auto r = clear(); !r) return r;
-  tables_clear_ = false;   // until the frame has run to its end
+  tables_clear_ = false;  // until the frame has run to its end
   const auto writing = Clock::now();
   write_input(pose, ignored, near, rays);
   out.times.push_back({"upload", us_since(writing)});
 
   if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
   if (auto r = run(*commands_, out); !r) return r;
-  out.times.push_back({"submit", std::max(0.0, waited_us_ - staged_us_)});   // what waiting cost beyond the stages themselves
+  out.times.push_back(
+      {"submit", std::max(0.0, waited_us_ - staged_us_)});  // what waiting cost beyond the stages themselves
   const auto finished = Clock::now();
   read(out);
   out.times.push_back({"readback", us_since(finished)});
@@ -379,23 +418,31 @@ Result<void> RecordedFrame::run(CommandRecorder& commands, Contacts& out) {
 void RecordedFrame::read(Contacts& out) {
   const auto* result = buffers_[gpu::kBindResult].as<gpu::FrameResult>();
   decoder_.decode({.result = result,
-          .statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(),
-          .mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>(),
-          .members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>(),
-          .areas = scene_.constants.refined == 0},
-         out);
+                   .statics = buffers_[gpu::kBindResultStatics].as<gpu::StaticResult>(),
+                   .mobiles = buffers_[gpu::kBindResultMobiles].as<gpu::MobileResult>(),
+                   .members = buffers_[gpu::kBindResultMembers].as<gpu::AreaMember>(),
+                   .areas = scene_.constants.refined == 0},
+                  out);
   pairs_ = out.pairs;
   out.flags |= frame_flags_;
   if (field_ && out.contact && !out.truncated) field_->decode(buffers_, *result, out);
-  work_.bytes_down += offsetof(gpu::FrameResult, areas) + result->area_count * sizeof(gpu::AreaResult) + result->static_count * sizeof(gpu::StaticResult);
-  if (out.lists) work_.bytes_down += result->mobile_count * sizeof(gpu::MobileResult) + result->member_count * sizeof(gpu::AreaMember);
-  if (field_ && out.contact) work_.bytes_down += sizeof(gpu::FieldWork) + (out.lists ? result->static_count * sizeof(gpu::CarrierWork) : 0);
+  work_.bytes_down += offsetof(gpu::FrameResult, areas) + result->area_count * sizeof(gpu::AreaResult) +
+                      result->static_count * sizeof(gpu::StaticResult);
+  if (out.lists)
+    work_.bytes_down +=
+        result->mobile_count * sizeof(gpu::MobileResult) + result->member_count * sizeof(gpu::AreaMember);
+  if (field_ && out.contact)
+    work_.bytes_down +=
+        sizeof(gpu::FieldWork) + (out.lists ? result->static_count * sizeof(gpu::CarrierWork) : 0);
   tables_clear_ = !out.truncated;
 }
 
 Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pairs() const {
   std::vector<gpu::ContactPair> found(pairs_);
-  if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(), found.size() * sizeof(gpu::ContactPair)); !r) return r.error();
+  if (auto r = download(device_, buffers_[gpu::kBindPairs], 0, found.data(),
+                        found.size() * sizeof(gpu::ContactPair));
+      !r)
+    return r.error();
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
   for (const gpu::ContactPair& pair : found) out.emplace_back(pair.static_id, pair.mobile);
   std::sort(out.begin(), out.end());
@@ -404,8 +451,10 @@ Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pair
 
 }  // namespace
 
-Result<std::unique_ptr<Frame>> Frame::create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                             const std::map<std::string, std::uint32_t>& first_capacity, const Plan& plan) {
+Result<std::unique_ptr<Frame>> Frame::create(VulkanDevice& device, const SceneGeometry& geometry,
+                                             const PreparedScene& scene,
+                                             const std::map<std::string, std::uint32_t>& first_capacity,
+                                             const Plan& plan) {
   auto out = std::make_unique<RecordedFrame>(device, geometry, scene, plan);
   if (auto r = out->make(first_capacity); !r) return r.error();
   return std::unique_ptr<Frame>(std::move(out));

@@ -21,9 +21,12 @@ class Frame {
  public:
   virtual ~Frame() = default;
   /// All arguments must outlive the frame.
-  /// `first_capacity` is GpuOptions::first_capacity. `plan`: what it leaves out has no pipeline, dispatch or buffer.
-  static Result<std::unique_ptr<Frame>> create(VulkanDevice& device, const SceneGeometry& geometry, const PreparedScene& scene,
-                                               const std::map<std::string, std::uint32_t>& first_capacity, const Plan& plan = {});
+  /// `first_capacity` is GpuOptions::first_capacity. `plan`: what it leaves out has no pipeline, dispatch or
+  /// buffer.
+  static Result<std::unique_ptr<Frame>> create(VulkanDevice& device, const SceneGeometry& geometry,
+                                               const PreparedScene& scene,
+                                               const std::map<std::string, std::uint32_t>& first_capacity,
+                                               const Plan& plan = {});
   /// As CollisionBackend::finish_preparing, query and enlarge.
   virtual Result<void> finish() = 0;
   virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;

@@ -8,8 +8,9 @@
 namespace palpate {
 namespace {
 
-// Words of SPIR-V that matter here (specification 2.3, 3.20, 3.32.3): a five-word header, then instructions that begin with
-// (length << 16 | opcode). OpDecorate target decoration literal; OpArrayLength type result variable member.
+// Words of SPIR-V that matter here (specification 2.3, 3.20, 3.32.3): a five-word header, then instructions
+// that begin with (length << 16 | opcode). OpDecorate target decoration literal; OpArrayLength type result
+// variable member.
 constexpr std::size_t kHeaderWords = 5;
 constexpr std::uint32_t kOpArrayLength = 68;
 constexpr std::uint32_t kOpDecorate = 71;
@@ -28,11 +29,12 @@ void for_each_binding(std::span<std::uint32_t> words, F f) {
 
 /// Bindings whose number of entries a module asks.
 std::vector<std::int32_t> measured_bindings(std::span<const std::uint32_t> words) {
-  std::map<std::uint32_t, std::int32_t> binding_of;   // by variable; decorations stand before all code
+  std::map<std::uint32_t, std::int32_t> binding_of;  // by variable; decorations stand before all code
   std::vector<std::int32_t> measured;
   for (std::size_t i = kHeaderWords; i < words.size() && words[i] >> 16 != 0; i += words[i] >> 16) {
     const std::uint32_t opcode = words[i] & 0xFFFFu;
-    if (opcode == kOpDecorate && words[i + 2] == kDecorationBinding) binding_of[words[i + 1]] = static_cast<std::int32_t>(words[i + 3]);
+    if (opcode == kOpDecorate && words[i + 2] == kDecorationBinding)
+      binding_of[words[i + 1]] = static_cast<std::int32_t>(words[i + 3]);
     if (opcode == kOpArrayLength) measured.push_back(binding_of.at(words[i + 3]));
   }
   return measured;
@@ -40,7 +42,8 @@ std::vector<std::int32_t> measured_bindings(std::span<const std::uint32_t> words
 
 }  // namespace
 
-Result<void> FrameBuffers::make(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes, BufferKind kind) {
+Result<void> FrameBuffers::make(VulkanDevice& device, std::int32_t binding, const char* what,
+                                std::uint64_t bytes, BufferKind kind) {
   if (owned_[at(binding)] && owned_[at(binding)].bytes() >= bytes) return {};
   auto buffer = VulkanBuffer::create(device, what, bytes, kind);
   if (!buffer) return buffer.error();
@@ -49,7 +52,8 @@ Result<void> FrameBuffers::make(VulkanDevice& device, std::int32_t binding, cons
   return {};
 }
 
-Result<void> FrameBuffers::make_table(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes) {
+Result<void> FrameBuffers::make_table(VulkanDevice& device, std::int32_t binding, const char* what,
+                                      std::uint64_t bytes) {
   if (auto r = make(device, binding, what, bytes); !r) return r;
   if (std::find(tables_.begin(), tables_.end(), binding) == tables_.end()) tables_.push_back(binding);
   return {};
@@ -96,26 +100,31 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
   for (std::size_t i = 0; i < out.bindings.size(); ++i)
     if (out.bindings[i] == gpu::kBindScene || out.bindings[i] == gpu::kBindFrameInput) uniform |= 1u << i;
   auto pipeline = ComputePipeline::create(device, {code.name, words.data(), code.bytes},
-                                          static_cast<std::uint32_t>(out.bindings.size()), push_bytes, constants, uniform);
+                                          static_cast<std::uint32_t>(out.bindings.size()), push_bytes,
+                                          constants, uniform);
   if (!pipeline) return pipeline.error();
   out.pipeline = std::move(*pipeline);
   return out;
 }
 
 std::span<const BufferView> FrameRecorder::bound(const FrameShader& shader) {
-  if (std::find(used_.begin(), used_.end(), &shader.pipeline) == used_.end()) used_.push_back(&shader.pipeline);
+  if (std::find(used_.begin(), used_.end(), &shader.pipeline) == used_.end())
+    used_.push_back(&shader.pipeline);
   views_.clear();
   for (const std::int32_t binding : shader.bindings) {
     const VulkanBuffer& buffer = buffers_[binding];
-    const bool measured = std::find(shader.measured.begin(), shader.measured.end(), binding) != shader.measured.end();
-    views_.push_back(measured ? BufferView(buffer, 0, buffer.bytes()) : BufferView(buffer));   // a guard is no entry
+    const bool measured =
+        std::find(shader.measured.begin(), shader.measured.end(), binding) != shader.measured.end();
+    views_.push_back(measured ? BufferView(buffer, 0, buffer.bytes())
+                              : BufferView(buffer));  // a guard is no entry
   }
   return views_;
 }
 
-void FrameRecorder::indirect(const FrameShader& shader, std::int32_t binding, std::uint64_t offset, const void* push,
-                             std::uint32_t push_bytes) {
-  recorder_.dispatch_indirect_raw(shader.pipeline, bound(shader), push, push_bytes, buffers_[binding], offset);
+void FrameRecorder::indirect(const FrameShader& shader, std::int32_t binding, std::uint64_t offset,
+                             const void* push, std::uint32_t push_bytes) {
+  recorder_.dispatch_indirect_raw(shader.pipeline, bound(shader), push, push_bytes, buffers_[binding],
+                                  offset);
 }
 
 }  // namespace palpate

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/buffer.h"
+#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/device.h"
 #include "compute/vulkan/pipeline.h"
 #include "model/result.h"
@@ -25,12 +25,12 @@ class FrameBuffers {
 
   /// Names a buffer that somebody else owns and that outlives this.
   void name(std::int32_t binding, const VulkanBuffer& buffer) { named_[at(binding)] = &buffer; }
-  /// Makes a buffer and owns it, unless it already has one there that is large enough. `what` is for sentences ("pairs"). Contents are
-  /// undefined. After an error the buffer before, if any, is still there.
+  /// Makes a buffer and owns it, unless it already has one there that is large enough. `what` is for
+  /// sentences ("pairs"). Contents are undefined. After an error the buffer before, if any, is still there.
   Result<void> make(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes,
                     BufferKind kind = BufferKind::kDevice);
-  /// Makes a table: a buffer that is all 0 between frames. The frame empties the entries that it filled; after an overflow
-  /// clear_tables() does.
+  /// Makes a table: a buffer that is all 0 between frames. The frame empties the entries that it filled;
+  /// after an overflow clear_tables() does.
   Result<void> make_table(VulkanDevice& device, std::int32_t binding, const char* what, std::uint64_t bytes);
   /// Fills all tables with 0 and waits.
   Result<void> clear_tables(VulkanDevice& device) const;
@@ -41,7 +41,7 @@ class FrameBuffers {
   /// Bytes of the buffers that this owns.
   std::uint64_t owned_bytes() const;
 
-  static constexpr std::int32_t kBindings = 128;   ///< binding numbers are below
+  static constexpr std::int32_t kBindings = 128;  ///< binding numbers are below
 
  private:
   static std::size_t at(std::int32_t binding) { return static_cast<std::size_t>(binding); }
@@ -50,29 +50,33 @@ class FrameBuffers {
   std::vector<std::int32_t> tables_;
 };
 
-/// A shader of the frame. Its module names buffers by frame-wide numbers; the pipeline has them packed from 0.
+/// A shader of the frame. Its module names buffers by frame-wide numbers; the pipeline has them packed from
+/// 0.
 struct FrameShader {
   ComputePipeline pipeline;
-  std::vector<std::int32_t> bindings;   ///< frame-wide number behind the pipeline's binding 0, 1, …
-  std::vector<std::int32_t> measured;   ///< of these, whose length the shader asks
+  std::vector<std::int32_t> bindings;  ///< frame-wide number behind the pipeline's binding 0, 1, …
+  std::vector<std::int32_t> measured;  ///< of these, whose length the shader asks
 };
 
 /// Builds the pipeline of a module that declares its buffers in set 0 by frame-wide numbers.
-Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& code, std::uint32_t push_bytes = 0,
+Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& code,
+                                      std::uint32_t push_bytes = 0,
                                       std::span<const SpecConstant> constants = {});
 
 /// Records dispatches of a frame. No order between calls unless barrier() stands between them.
 class FrameRecorder {
  public:
   /// All arguments outlive this.
-  FrameRecorder(CommandRecorder& recorder, const FrameBuffers& buffers) : recorder_(recorder), buffers_(buffers) {}
+  FrameRecorder(CommandRecorder& recorder, const FrameBuffers& buffers)
+      : recorder_(recorder), buffers_(buffers) {}
 
   /// x workgroups, spread over two axes where one is too short.
   void run(const FrameShader& shader, std::uint32_t groups) { run(shader, groups, NoPush{}); }
   template <class Push>
   void run(const FrameShader& shader, std::uint32_t groups, const Push& push) {
     const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
-    recorder_.dispatch_raw(shader.pipeline, bound(shader), &push, push_bytes<Push>(), std::min(groups, gpu::kMaxGroupsX), rows, 1);
+    recorder_.dispatch_raw(shader.pipeline, bound(shader), &push, push_bytes<Push>(),
+                           std::min(groups, gpu::kMaxGroupsX), rows, 1);
   }
   /// As many workgroups as kDispatch… `which` says.
   void run_dispatch(const FrameShader& shader, std::uint32_t which) { run_dispatch(shader, which, NoPush{}); }
@@ -81,14 +85,18 @@ class FrameRecorder {
     indirect(shader, gpu::kBindDispatches, which * sizeof(gpu::DispatchArguments), &push, push_bytes<Push>());
   }
   /// As many workgroups as the DispatchArguments at `offset` of FrameInput say.
-  void run_input(const FrameShader& shader, std::size_t offset) { indirect(shader, gpu::kBindFrameInput, offset, nullptr, 0); }
+  void run_input(const FrameShader& shader, std::size_t offset) {
+    indirect(shader, gpu::kBindFrameInput, offset, nullptr, 0);
+  }
   /// As entry `which` of a stage's group counts says.
   void run_stage(const FrameShader& shader, std::int32_t groups, std::uint32_t which = 0) {
     indirect(shader, groups, which * sizeof(gpu::DispatchArguments), nullptr, 0);
   }
   /// Fills a buffer with 0; copies all of `from`'s bytes from `offset` on that `to` has.
   void clear(std::int32_t binding) { recorder_.fill(buffers_[binding], 0); }
-  void copy(std::int32_t from, std::uint64_t offset, std::int32_t to, std::uint64_t bytes) { recorder_.copy(buffers_[from], offset, buffers_[to], 0, bytes); }
+  void copy(std::int32_t from, std::uint64_t offset, std::int32_t to, std::uint64_t bytes) {
+    recorder_.copy(buffers_[from], offset, buffers_[to], 0, bytes);
+  }
   void barrier() { recorder_.barrier(); }
   /// See CommandRecorder::stage.
   void stage(const char* name) { recorder_.stage(name); }
@@ -101,7 +109,8 @@ class FrameRecorder {
     return std::is_same_v<Push, NoPush> ? 0 : static_cast<std::uint32_t>(sizeof(Push));
   }
   std::span<const BufferView> bound(const FrameShader& shader);
-  void indirect(const FrameShader& shader, std::int32_t binding, std::uint64_t offset, const void* push, std::uint32_t push_bytes);
+  void indirect(const FrameShader& shader, std::int32_t binding, std::uint64_t offset, const void* push,
+                std::uint32_t push_bytes);
 
   CommandRecorder& recorder_;
   const FrameBuffers& buffers_;

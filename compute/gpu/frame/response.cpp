@@ -19,16 +19,20 @@ struct BufferPlan {
 
 }  // namespace
 
-Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t tool_triangles, const FrameCapacity& capacity, FrameBuffers& buffers) const {
+Result<void> FrameResponse::make_buffers(VulkanDevice& device, std::uint32_t tool_triangles,
+                                         const FrameCapacity& capacity, FrameBuffers& buffers) const {
   const std::uint64_t statics = capacity.lists[kListContactStatics];
   for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
            {kBindResponseState, "response state", sizeof(ResponseState)},
            {kBindAreas, "contact areas", kMaxFrameAreas * sizeof(AreaWork)},
            {kBindSlotAreas, "areas of contact triangles", statics * sizeof(std::uint32_t)},
-           {kBindParents, "union-find of contact triangles", statics * (plan_.zones ? 2 : 1) * sizeof(std::uint32_t)},
-           {kBindMobileAreas, "areas of tool triangles", tool_triangles * std::uint64_t{sizeof(std::uint32_t)}},
+           {kBindParents, "union-find of contact triangles",
+            statics * (plan_.zones ? 2 : 1) * sizeof(std::uint32_t)},
+           {kBindMobileAreas, "areas of tool triangles",
+            tool_triangles * std::uint64_t{sizeof(std::uint32_t)}},
        })
-    if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, BufferKind::kDevice); !made) return made.error();
+    if (auto made = buffers.make(device, plan.binding, plan.what, plan.bytes, BufferKind::kDevice); !made)
+      return made.error();
   return {};
 }
 

@@ -17,22 +17,30 @@ struct BufferUse {
   std::initializer_list<std::int32_t> bindings;
 };
 
-/// Small buffers of the frame as a whole (input, lists, state) stand with transform, which every frame begins with.
+/// Small buffers of the frame as a whole (input, lists, state) stand with transform, which every frame begins
+/// with.
 const BufferUse kUses[] = {
-    {"transform", {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists, kBindFrameState, kBindListsAnew, kBindListedGroups,
-                   kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups, kBindResultGroups,
-                   kBindDispatches, kBindToolRecords, kBindToolCorners, kBindClusterBoxes, kBindRunBoxes}},
+    {"transform",
+     {kBindScene, kBindToolVertices, kBindToolTriangles, kBindToolInfo, kBindFrameInput, kBindFrameLists,
+      kBindFrameState, kBindListsAnew, kBindListedGroups, kBindMembersGroups, kBindPlacedGroups,
+      kBindPushedGroups, kBindResultGroups, kBindDispatches, kBindToolRecords, kBindToolCorners,
+      kBindClusterBoxes, kBindRunBoxes}},
     {"cull", {kBindMockupBrickSlot, kBindMockupBricks, kBindMockupMixedBrick}},
-    {"pairs", {kBindMockupVertices, kBindMockupTriangles, kBindMockupInfo, kBindMockupListBegin, kBindMockupListTriangles,
-               kBindMockupBoundaryPlace, kBindMobileState, kBindTouchCandidates,
-               kBindPairCandidates, kBindPairs, kBindStaticState, kBindStaticSlot, kBindContactStatics, kBindContactMobiles,
-               kBindResult, kBindResultStatics, kBindResultMobiles}},
+    {"pairs",
+     {kBindMockupVertices, kBindMockupTriangles, kBindMockupInfo, kBindMockupListBegin,
+      kBindMockupListTriangles, kBindMockupBoundaryPlace, kBindMobileState, kBindTouchCandidates,
+      kBindPairCandidates, kBindPairs, kBindStaticState, kBindStaticSlot, kBindContactStatics,
+      kBindContactMobiles, kBindResult, kBindResultStatics, kBindResultMobiles}},
     {"bst", {kBindVoxelState, kBindTouchedVoxels, kBindStaticChunks}},
-    {"est", {kBindFineBrickSlot, kBindFineBricks, kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces, kBindFineExit,
-             kBindInsideSamples, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
-    {"rays", {kBindMockupWeights, kBindMockupPatches, kBindMockupExtras, kBindToolWeights, kBindToolExtras, kBindFieldWork, kBindCarrierWork, kBindFieldTiles,
-              kBindMockupPoints, kBindToolPoints, kBindIgnored, kBindIgnoredState, kBindResultIgnored, kBindResultField, kBindResultCarriers}},
-    {"areas", {kBindNeighbourBegin, kBindNeighbours, kBindMockupNormals, kBindToolNormals, kBindResultMembers}},
+    {"est",
+     {kBindFineBrickSlot, kBindFineBricks, kBindFineListBegin, kBindFineListTriangles, kBindFinePlaces,
+      kBindFineExit, kBindInsideSamples, kBindSampleChunks, kBindOpenSamples, kBindSamples}},
+    {"rays",
+     {kBindMockupWeights, kBindMockupPatches, kBindMockupExtras, kBindToolWeights, kBindToolExtras,
+      kBindFieldWork, kBindCarrierWork, kBindFieldTiles, kBindMockupPoints, kBindToolPoints, kBindIgnored,
+      kBindIgnoredState, kBindResultIgnored, kBindResultField, kBindResultCarriers}},
+    {"areas",
+     {kBindNeighbourBegin, kBindNeighbours, kBindMockupNormals, kBindToolNormals, kBindResultMembers}},
 };
 
 /// What the response adds and no line above names belongs to the areas.
@@ -51,12 +59,15 @@ std::vector<StageMemory> stage_memory(const FrameBuffers& buffers, bool zones) {
   std::vector<StageMemory> memory;
   for (const BufferUse& use : kUses) memory.push_back({std::string(use.stage), 0});
   for (std::int32_t binding = 0; binding < FrameBuffers::kBindings; ++binding) {
-    const auto line = std::find_if(memory.begin(), memory.end(), [&](const StageMemory& m) { return m.stage == stage_of(binding); });
+    const auto line = std::find_if(memory.begin(), memory.end(),
+                                   [&](const StageMemory& m) { return m.stage == stage_of(binding); });
     if (buffers.bytes(binding) > kPlaceholderBytes) line->bytes += buffers.bytes(binding);
   }
   // Areas and zones are joined in halves of one buffer.
   if (const std::uint64_t half = buffers.bytes(kBindParents) / 2; zones && half > kPlaceholderBytes) {
-    std::find_if(memory.begin(), memory.end(), [](const StageMemory& m) { return m.stage == "areas"; })->bytes -= half;
+    std::find_if(memory.begin(), memory.end(), [](const StageMemory& m) {
+      return m.stage == "areas";
+    })->bytes -= half;
     memory.push_back({"zones", half});
   }
   return memory;

@@ -6,7 +6,8 @@
 
 namespace palpate {
 
-/// Bytes of a frame's buffers, its own and the scene's, by the first stage of `palpate plan` that uses them. `zones`: they are joined, too.
+/// Bytes of a frame's buffers, its own and the scene's, by the first stage of `palpate plan` that uses them.
+/// `zones`: they are joined, too.
 std::vector<StageMemory> stage_memory(const FrameBuffers& buffers, bool zones);
 
 }  // namespace palpate

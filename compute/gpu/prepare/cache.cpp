@@ -31,13 +31,14 @@ ContentKey prepared_key(const VulkanDevice& device, const SceneGeometry& geometr
   key.value(program_key().low);
   key.text(device.name());
   key.text(device.driver());
-  key.value(device.limits().storage_range);   // what does not fit is left to the frame
+  key.value(device.limits().storage_range);  // what does not fit is left to the frame
   key.value(plan.profile);
   add_geometry(key, geometry);
   return key.finish();
 }
 
-std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key, const SceneGeometry& geometry, const Plan& plan) {
+std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key,
+                                           const SceneGeometry& geometry, const Plan& plan) {
   const auto entry = cache.find(kKind, key);
   if (!entry) return std::nullopt;
   ArchiveReader reader(entry->payload());
@@ -48,7 +49,7 @@ std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cach
     std::uint64_t bytes = 0;
     reader(bytes);
     const std::string_view content = reader.take(bytes);
-    if (!room || content.empty()) return;   // empty buffers stay empty
+    if (!room || content.empty()) return;  // empty buffers stay empty
     auto made = VulkanBuffer::create(device, "a scene from the cache", bytes, BufferKind::kDevice);
     room = made && upload(device, *made, content.data(), content.size());
     if (room) buffer = std::move(*made);
@@ -67,10 +68,11 @@ std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cach
   return scene;
 }
 
-void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key, const PreparedScene& scene, double seconds) {
+void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key, const PreparedScene& scene,
+                   double seconds) {
   ArchiveWriter writer;
   archive_numbers(writer, scene);
-  std::vector<std::vector<char>> copies;   // of what the host can't see
+  std::vector<std::vector<char>> copies;  // of what the host can't see
   copies.reserve(64);
   bool whole = true;
   for_each_made_buffer(scene, [&](const VulkanBuffer& buffer) {

@@ -1,5 +1,5 @@
-// Classes of the voxels that are not boundary: components inside bricks, joined across bricks; votes by the winding of
-// voxel centres, swept along rows.
+// Classes of the voxels that are not boundary: components inside bricks, joined across bricks; votes by the
+// winding of voxel centres, swept along rows.
 #include <cstdint>
 
 #include "compute/gpu/prepare/partition.h"
@@ -40,9 +40,11 @@ void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pa
   int runs = 0;
   do {
     steps.fill(again, 0);
-    steps.run_items(spirv::component_join, {}, {p.brick_slot, p.bricks, first, labels, parent, again}, grid, grid.count);
+    steps.run_items(spirv::component_join, {}, {p.brick_slot, p.bricks, first, labels, parent, again}, grid,
+                    grid.count);
     steps.run_items(spirv::component_root, {0u}, {parent, again}, node_count, nodes);
-    if (++runs > 1000) steps.fail(Error{ErrorCode::kInternal, "the components of the voxels did not settle in 1000 runs"});
+    if (++runs > 1000)
+      steps.fail(Error{ErrorCode::kInternal, "the components of the voxels did not settle in 1000 runs"});
     steps.progress("components", 0.8);
   } while (steps.read(again, 0) != 0);
 
@@ -62,21 +64,25 @@ void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pa
   push.grid.count = pairs.count;
   push.grid.axis = axes;
   steps.run_items(spirv::row_cross, {},
-                  {body.vertices, body.triangles, pairs.triangle, pairs.voxel, p.boundary_place, p.mixed_brick, crossings}, push,
-                  pairs.count);
-  steps.run_items(spirv::brick_enclosed, {}, {first, parent, enclosed}, gpu::EnclosedPush{slots, bricks}, slots);
+                  {body.vertices, body.triangles, pairs.triangle, pairs.voxel, p.boundary_place,
+                   p.mixed_brick, crossings},
+                  push, pairs.count);
+  steps.run_items(spirv::brick_enclosed, {}, {first, parent, enclosed}, gpu::EnclosedPush{slots, bricks},
+                  slots);
   for (std::uint32_t axis = 0; axis < axes; ++axis) {
     const int u = static_cast<int>((axis + 1) % 3), v = static_cast<int>((axis + 2) % 3);
-    const std::uint64_t rows = static_cast<std::uint64_t>(p.grid.bricks[u]) * static_cast<std::uint64_t>(p.grid.bricks[v]);
+    const std::uint64_t rows =
+        static_cast<std::uint64_t>(p.grid.bricks[u]) * static_cast<std::uint64_t>(p.grid.bricks[v]);
     const VulkanBuffer head = steps.buffer("rows of bricks", rows);
     if (!steps.ok()) return;
     push.grid.count = static_cast<std::uint32_t>(rows);
     push.grid.axis = axis;
     steps.run_items(spirv::row_link, {}, {p.brick_slot, head, link}, push.grid, rows);
     push.grid.count = static_cast<std::uint32_t>(rows * 64);
-    push.voxels = p.grid.boundary_voxels * axis;   // first crossing of this axis
+    push.voxels = p.grid.boundary_voxels * axis;  // first crossing of this axis
     steps.progress("votes", 0.85 + 0.05 * axis);
-    steps.run_items(spirv::vote_sweep, {}, {p.mixed_brick, p.bricks, first, labels, parent, crossings, votes, head, link, enclosed},
+    steps.run_items(spirv::vote_sweep, {},
+                    {p.mixed_brick, p.bricks, first, labels, parent, crossings, votes, head, link, enclosed},
                     push, rows * 64);
   }
 
@@ -84,7 +90,8 @@ void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pa
   const VulkanBuffer has_internal = steps.buffer("has internal voxels", 1);
   if (!steps.ok()) return;
   steps.fill(has_internal, 0);
-  steps.run_items(spirv::brick_classify, {}, {p.brick_slot, p.bricks, first, labels, parent, votes, has_internal}, bricks, bricks);
+  steps.run_items(spirv::brick_classify, {},
+                  {p.brick_slot, p.bricks, first, labels, parent, votes, has_internal}, bricks, bricks);
   p.has_internal = steps.read(has_internal, 0) != 0;
 }
 

@@ -1,4 +1,5 @@
-// Boundary voxels and their triangles: triangle → groups of bricks → bricks → voxels, each level by count, scan, emit.
+// Boundary voxels and their triangles: triangle → groups of bricks → bricks → voxels, each level by count,
+// scan, emit.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -21,15 +22,16 @@ struct Items {
 
 class ListBuilder {
  public:
-  ListBuilder(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t growth, const char* name,
-              BodyBuffers& body)
+  ListBuilder(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t growth,
+              const char* name, BodyBuffers& body)
       : steps_(steps), mesh_(mesh), grid_(grid), growth_(growth), name_(name), body_(body) {}
 
   VoxelPairs build();
 
  private:
   void check_grid();
-  Items expand(std::uint32_t source, const Items& from, Int3 cells, Int3 parents, std::int32_t side, std::uint32_t count);
+  Items expand(std::uint32_t source, const Items& from, Int3 cells, Int3 parents, std::int32_t side,
+               std::uint32_t count);
   Items large_triangles();
   void mark_bricks(const Items* lists, std::size_t count);
   VoxelPairs list_pairs(const Items* lists, std::size_t count);
@@ -54,19 +56,20 @@ void ListBuilder::check_grid() {
   const int most = std::max({b.x, b.y, b.z});
   if (most > gpu::kMostBricksAlong)
     steps_.fail(bad_value("the " + name_ + "'s grid has " + std::to_string(std::int64_t{most} * kBrickSide) +
-                          " voxels along an axis, at most " + std::to_string(gpu::kMostBricksAlong * kBrickSide) +
+                          " voxels along an axis, at most " +
+                          std::to_string(gpu::kMostBricksAlong * kBrickSide) +
                           " are possible: choose a larger voxel"));
   // Before the many small steps, the dense table of bricks and their nodes (8 bytes of votes each) must fit.
   const std::uint64_t range = steps_.device().limits().storage_range;
   if (steps_.ok() && brick_count() > range / 8 - 2)
-    steps_.fail(bad_value("the " + name_ + "'s grid has " + std::to_string(brick_count()) + " bricks of 512 voxels, at most " +
-                          std::to_string(range / 8 - 2) + " fit a buffer of " + steps_.device().name() +
-                          ": choose a larger voxel"));
+    steps_.fail(bad_value("the " + name_ + "'s grid has " + std::to_string(brick_count()) +
+                          " bricks of 512 voxels, at most " + std::to_string(range / 8 - 2) +
+                          " fit a buffer of " + steps_.device().name() + ": choose a larger voxel"));
 }
 
 /// Finds the cells of one level; `count` items or triangles come in. An empty list when nothing is found.
-Items ListBuilder::expand(std::uint32_t source, const Items& from, Int3 cells, Int3 parents, std::int32_t side,
-                          std::uint32_t count) {
+Items ListBuilder::expand(std::uint32_t source, const Items& from, Int3 cells, Int3 parents,
+                          std::int32_t side, std::uint32_t count) {
   Items out;
   gpu::ExpandPush push{};
   push.origin = grid_.origin;
@@ -79,14 +82,15 @@ Items ListBuilder::expand(std::uint32_t source, const Items& from, Int3 cells, I
   push.brick_side = grid_.size * kBrickSide;
   push.source = source;
   const bool items = source == gpu::kSourceItems;
-  const VulkanBuffer& in_triangle = items ? from.triangle : body_.triangle_info;   // not read for triangles
+  const VulkanBuffer& in_triangle = items ? from.triangle : body_.triangle_info;  // not read for triangles
   const VulkanBuffer& in_cell = items ? from.cell : body_.triangle_info;
   VulkanBuffer counts = steps_.buffer("counts of bricks", std::uint64_t{count} + 1);
   const VulkanBuffer unused = steps_.buffer("unused", 1);
   if (!steps_.ok()) return out;
-  steps_.run_items(spirv::triangle_expand, {},
-                   {body_.vertices, body_.triangles, body_.triangle_info, in_triangle, in_cell, counts, unused, unused}, push,
-                   count);
+  steps_.run_items(
+      spirv::triangle_expand, {},
+      {body_.vertices, body_.triangles, body_.triangle_info, in_triangle, in_cell, counts, unused, unused},
+      push, count);
   out.count = steps_.scan("pairs of triangle and brick", counts, count);
   if (out.count == 0) return out;
   out.triangle = steps_.buffer("pairs of triangle and brick", out.count);
@@ -94,7 +98,8 @@ Items ListBuilder::expand(std::uint32_t source, const Items& from, Int3 cells, I
   if (!steps_.ok()) return out;
   push.emit = 1;
   steps_.run_items(spirv::triangle_expand, {},
-                   {body_.vertices, body_.triangles, body_.triangle_info, in_triangle, in_cell, counts, out.triangle, out.cell},
+                   {body_.vertices, body_.triangles, body_.triangle_info, in_triangle, in_cell, counts,
+                    out.triangle, out.cell},
                    push, count);
   return out;
 }
@@ -105,7 +110,7 @@ Items ListBuilder::large_triangles() {
   std::vector<std::int32_t> sides{grid_.size * kBrickSide};
   while (std::max({cells.back().x, cells.back().y, cells.back().z}) > gpu::kTopCells) {
     cells.push_back((cells.back() + 7) / 8);
-    sides.push_back(sides.back() * 8);   // below eight times the grid's extent, 2^29, over eight cells
+    sides.push_back(sides.back() * 8);  // below eight times the grid's extent, 2^29, over eight cells
   }
   std::size_t level = cells.size() - 1;
   Items items = expand(gpu::kSourceLarge, {}, cells[level], Int3(0), sides[level],
@@ -125,16 +130,18 @@ void ListBuilder::mark_bricks(const Items* lists, std::size_t count) {
   if (!steps_.ok()) return;
   steps_.fill(marks, 0);
   for (std::size_t i = 0; i < count; ++i)
-    if (lists[i].count > 0) steps_.run_items(spirv::brick_mark, {}, {lists[i].cell, marks}, lists[i].count, lists[i].count);
+    if (lists[i].count > 0)
+      steps_.run_items(spirv::brick_mark, {}, {lists[i].cell, marks}, lists[i].count, lists[i].count);
   p.grid.mixed_bricks = steps_.scan("bricks", marks, brick_count());
   if (p.grid.mixed_bricks >= gpu::kMostMixedBricks)
-    steps_.fail(bad_value("the " + name_ + "'s surface lies in " + std::to_string(p.grid.mixed_bricks) + " bricks, at most " +
-                          std::to_string(gpu::kMostMixedBricks - 1) + " are possible: choose a larger voxel"));
+    steps_.fail(bad_value("the " + name_ + "'s surface lies in " + std::to_string(p.grid.mixed_bricks) +
+                          " bricks, at most " + std::to_string(gpu::kMostMixedBricks - 1) +
+                          " are possible: choose a larger voxel"));
   p.mixed_brick = steps_.buffer("numbers of mixed bricks", p.grid.mixed_bricks);
   p.bricks = steps_.buffer("mixed bricks", p.grid.mixed_bricks, sizeof(gpu::Brick));
   if (!steps_.ok()) return;
-  steps_.run_items(spirv::brick_assign, {}, {marks, p.brick_slot, p.mixed_brick}, static_cast<std::uint32_t>(brick_count()),
-                   brick_count());
+  steps_.run_items(spirv::brick_assign, {}, {marks, p.brick_slot, p.mixed_brick},
+                   static_cast<std::uint32_t>(brick_count()), brick_count());
   steps_.fill(p.bricks, 0);
 }
 
@@ -158,13 +165,14 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
     counts[i] = steps_.buffer("counts of voxels", std::uint64_t{lists[i].count} + 1);
     if (!steps_.ok() || push.count == 0) continue;
     steps_.run_items(spirv::voxel_list, {},
-                     {body_.vertices, body_.triangles, lists[i].triangle, lists[i].cell, p.brick_slot, p.bricks, counts[i],
-                      unused, unused, unused},
+                     {body_.vertices, body_.triangles, lists[i].triangle, lists[i].cell, p.brick_slot,
+                      p.bricks, counts[i], unused, unused, unused},
                      push, push.count);
     totals[i] = steps_.scan("pairs of triangle and voxel", counts[i], push.count);
     total += totals[i];
   }
-  if (total >= 0xFFFFFFFFu) steps_.fail(bad_value("more than 4294967294 pairs of triangle and voxel: choose a larger voxel"));
+  if (total >= 0xFFFFFFFFu)
+    steps_.fail(bad_value("more than 4294967294 pairs of triangle and voxel: choose a larger voxel"));
   steps_.progress("boundary voxels", 0.4);
 
   // Compact numbers of the boundary voxels.
@@ -188,8 +196,8 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
     push.count = lists[i].count;
     if (push.count > 0)
       steps_.run_items(spirv::voxel_list, {},
-                       {body_.vertices, body_.triangles, lists[i].triangle, lists[i].cell, p.brick_slot, p.bricks, counts[i],
-                        pairs.triangle, pairs.voxel, p.list_begin},
+                       {body_.vertices, body_.triangles, lists[i].triangle, lists[i].cell, p.brick_slot,
+                        p.bricks, counts[i], pairs.triangle, pairs.voxel, p.list_begin},
                        push, push.count);
     push.out_base += totals[i];
   }
@@ -200,13 +208,15 @@ VoxelPairs ListBuilder::list_pairs(const Items* lists, std::size_t count) {
 /// Scatters the pairs into their lists, and sorts each.
 void ListBuilder::scatter(VoxelPairs& pairs) {
   PartitionBuffers& p = body_.partition;
-  const VulkanBuffer cursors = steps_.buffer("cursors of voxels' lists", std::uint64_t{p.grid.boundary_voxels} + 1);
+  const VulkanBuffer cursors =
+      steps_.buffer("cursors of voxels' lists", std::uint64_t{p.grid.boundary_voxels} + 1);
   p.list_triangles = steps_.buffer("voxels' lists", pairs.count);
   pairs.entry_voxel = steps_.buffer("voxels of lists' entries", pairs.count);
   if (!steps_.ok()) return;
   steps_.run([&](CommandRecorder& r) { r.copy(p.list_begin, 0, cursors, 0, cursors.bytes()); });
-  steps_.run_items(spirv::pair_scatter, {}, {pairs.triangle, pairs.voxel, cursors, p.list_triangles, pairs.entry_voxel},
-                   pairs.count, pairs.count);
+  steps_.run_items(spirv::pair_scatter, {},
+                   {pairs.triangle, pairs.voxel, cursors, p.list_triangles, pairs.entry_voxel}, pairs.count,
+                   pairs.count);
   sort_lists(steps_, pairs.entry_voxel, p.list_begin, p.list_triangles, pairs.count);
 }
 
@@ -250,8 +260,8 @@ std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, c
   return bound;
 }
 
-VoxelPairs build_lists(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t growth,
-                       const char* name, BodyBuffers& body) {
+VoxelPairs build_lists(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid,
+                       std::int32_t growth, const char* name, BodyBuffers& body) {
   return ListBuilder(steps, mesh, grid, growth, name, body).build();
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "compute/gpu/prepare/steps.h"
 #include "compute/gpu/prepare/prepared_scene.h"
+#include "compute/gpu/prepare/steps.h"
 #include "model/lattice/lattice_mesh.h"
 #include "model/lattice/voxel_grid.h"
 
@@ -10,19 +10,21 @@ namespace palpate {
 
 /// Pairs (triangle, boundary voxel), in no order; what the lists and the crossings are made from.
 struct VoxelPairs {
-  VulkanBuffer triangle;   ///< uint32
-  VulkanBuffer voxel;      ///< uint32, compact index
-  VulkanBuffer entry_voxel;   ///< uint32, compact index of the voxel of every entry of list_triangles
+  VulkanBuffer triangle;     ///< uint32
+  VulkanBuffer voxel;        ///< uint32, compact index
+  VulkanBuffer entry_voxel;  ///< uint32, compact index of the voxel of every entry of list_triangles
   std::uint32_t count = 0;
 };
 
-/// Fills everything of `body.partition` but the classes of what is not boundary: bricks, boundary voxels, lists.
-/// `growth`: steps by which a voxel grows before it is asked what it touches. `name` opens sentences ("mock-up").
-VoxelPairs build_lists(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid, std::int32_t growth,
-                       const char* name, BodyBuffers& body);
+/// Fills everything of `body.partition` but the classes of what is not boundary: bricks, boundary voxels,
+/// lists. `growth`: steps by which a voxel grows before it is asked what it touches. `name` opens sentences
+/// ("mock-up").
+VoxelPairs build_lists(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid,
+                       std::int32_t growth, const char* name, BodyBuffers& body);
 
-/// Sorts each list of a CSR of `entries` distinct-in-their-list numbers: by ranks in chunks, then by merging the chunks of long
-/// lists. `entry_voxel`: the list of every entry. Returns a number that no list's length exceeds.
+/// Sorts each list of a CSR of `entries` distinct-in-their-list numbers: by ranks in chunks, then by merging
+/// the chunks of long lists. `entry_voxel`: the list of every entry. Returns a number that no list's length
+/// exceeds.
 std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, const VulkanBuffer& list_begin,
                          VulkanBuffer& lists, std::uint32_t entries);
 

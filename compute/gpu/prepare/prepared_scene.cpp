@@ -23,7 +23,8 @@ std::vector<gpu::ExtraSample> extras_of(const LatticeMesh& mesh) {
   std::vector<gpu::ExtraSample> out;
   out.reserve(mesh.extra_samples.size());
   for (const ExtraSample& extra : mesh.extra_samples) {
-    gpu::ExtraSample& sample = out.emplace_back(gpu::ExtraSample{extra.triangle, extra.point, {extra.weight_q30}});
+    gpu::ExtraSample& sample =
+        out.emplace_back(gpu::ExtraSample{extra.triangle, extra.point, {extra.weight_q30}});
     std::ranges::copy(extra.coarse_q30, sample.weights + 1);
   }
   return out;
@@ -96,7 +97,8 @@ std::uint64_t PreparedScene::memory_bytes() const {
   return sum + (samples ? samples->bytes() : 0);
 }
 
-Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out) {
+Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
+                           PreparedScene& out) {
   const Progress nobody;
   PrepareSteps steps(device, nobody);
   upload_bodies(steps, geometry, plan, out);
@@ -141,7 +143,8 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   PreparedScene out;
   upload_bodies(steps, geometry, plan, out);
 
-  const VoxelPairs pairs = build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
+  const VoxelPairs pairs =
+      build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
   make_search_tables(steps, geometry, out);
   if (refined) {
@@ -156,7 +159,8 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   }
 
   const auto grid_of = [](const PartitionBuffers& p) { return PreparedGrid{p.grid, p.has_internal}; };
-  out.constants = scene_constants(geometry, plan, grid_of(out.mockup.partition), grid_of(out.tool.partition), out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid);
+  out.constants = scene_constants(geometry, plan, grid_of(out.mockup.partition), grid_of(out.tool.partition),
+                                  out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid);
   out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
   steps.progress("prepared", 1);
   if (!steps.ok()) return steps.error();

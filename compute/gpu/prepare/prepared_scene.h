@@ -2,13 +2,13 @@
 #include <cstdint>
 #include <memory>
 
-#include "compute/scene/samples.h"
 #include "compute/scene/partition.h"
+#include "compute/scene/samples.h"
 #include "compute/vulkan/buffer.h"
 #include "compute/vulkan/device.h"
 #include "model/collision_backend.h"
-#include "model/scene/plan.h"
 #include "model/result.h"
+#include "model/scene/plan.h"
 #include "model/scene/scene_geometry.h"
 #include "shaders/shared/scene.h"
 
@@ -19,42 +19,43 @@ struct SearchTables;
 /// A voxel partition on the device (docs/EXACTNESS.md section 2); look-ups in shaders/lib/partition.glsl.
 struct PartitionBuffers {
   gpu::GridConstants grid{};
-  VulkanBuffer brick_slot;        ///< uint32, one a brick: place in `bricks`, or kBrickExternal / kBrickInternal
-  VulkanBuffer bricks;            ///< gpu::Brick, one a mixed brick, ascending brick number
-  VulkanBuffer mixed_brick;       ///< uint32, one a mixed brick: its brick number
-  VulkanBuffer boundary_place;    ///< uint32, one a boundary voxel: slot · 512 + bit; ascending
-  VulkanBuffer list_begin;        ///< uint32, CSR over boundary voxels, + 1
-  VulkanBuffer list_triangles;    ///< uint32 ids, ascending in each voxel
+  VulkanBuffer brick_slot;   ///< uint32, one a brick: place in `bricks`, or kBrickExternal / kBrickInternal
+  VulkanBuffer bricks;       ///< gpu::Brick, one a mixed brick, ascending brick number
+  VulkanBuffer mixed_brick;  ///< uint32, one a mixed brick: its brick number
+  VulkanBuffer boundary_place;  ///< uint32, one a boundary voxel: slot · 512 + bit; ascending
+  VulkanBuffer list_begin;      ///< uint32, CSR over boundary voxels, + 1
+  VulkanBuffer list_triangles;  ///< uint32 ids, ascending in each voxel
   bool has_internal = false;
 };
 
 /// One body on the device. Numbers of entries are in gpu::BodyConstants.
 struct BodyBuffers {
-  VulkanBuffer vertices;          ///< ivec3
-  VulkanBuffer triangles;         ///< uvec3, vertex indices
-  VulkanBuffer triangle_info;     ///< uint32: flags and sample axis (kInfo… in shaders/shared/scene.h)
-  VulkanBuffer unit_normal;       ///< ivec3, Q30
-  VulkanBuffer field_weight;      ///< uint32, Q30; `refined`
-  VulkanBuffer patch;             ///< uint32; mock-up only, `refined`
-  VulkanBuffer extras;            ///< gpu::ExtraSample, ascending by triangle; `refined`
-  VulkanBuffer levels;            ///< uint32: kBindMockupLevels in shaders/shared/frame_field.h; `refined`
-  VulkanBuffer neighbour_begin;   ///< uint32, CSR over triangles, + 1; mock-up only
-  VulkanBuffer neighbours;        ///< uint32: id · 2 + smooth; mock-up only
-  PartitionBuffers partition;     ///< empty for the tool in `paper`
+  VulkanBuffer vertices;         ///< ivec3
+  VulkanBuffer triangles;        ///< uvec3, vertex indices
+  VulkanBuffer triangle_info;    ///< uint32: flags and sample axis (kInfo… in shaders/shared/scene.h)
+  VulkanBuffer unit_normal;      ///< ivec3, Q30
+  VulkanBuffer field_weight;     ///< uint32, Q30; `refined`
+  VulkanBuffer patch;            ///< uint32; mock-up only, `refined`
+  VulkanBuffer extras;           ///< gpu::ExtraSample, ascending by triangle; `refined`
+  VulkanBuffer levels;           ///< uint32: kBindMockupLevels in shaders/shared/frame_field.h; `refined`
+  VulkanBuffer neighbour_begin;  ///< uint32, CSR over triangles, + 1; mock-up only
+  VulkanBuffer neighbours;       ///< uint32: id · 2 + smooth; mock-up only
+  PartitionBuffers partition;    ///< empty for the tool in `paper`
 };
 
-/// What preparation leaves on the device, and every frame reads. Buffers without entries are 4 bytes, so that each can
-/// always be bound.
+/// What preparation leaves on the device, and every frame reads. Buffers without entries are 4 bytes, so that
+/// each can always be bound.
 struct PreparedScene {
   gpu::SceneConstants constants{};
-  VulkanBuffer scene;             ///< constants, as a storage buffer
+  VulkanBuffer scene;  ///< constants, as a storage buffer
   BodyBuffers mockup;
   BodyBuffers tool;
-  PartitionBuffers fine;          ///< of a closed tool, in finer voxels; may be empty: then the tool's own serves
-  VulkanBuffer fine_exit;         ///< uint32, one a boundary voxel of it: kBindFineExit
-  VulkanBuffer tool_near;         ///< a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet the tool's solid; may be empty: all may
-  std::shared_ptr<const HostSamples> samples;   ///< may be null or empty: frames work them out
-  std::shared_ptr<const SearchTables> search;   ///< never null
+  PartitionBuffers fine;   ///< of a closed tool, in finer voxels; may be empty: then the tool's own serves
+  VulkanBuffer fine_exit;  ///< uint32, one a boundary voxel of it: kBindFineExit
+  VulkanBuffer tool_near;  ///< a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet
+                           ///< the tool's solid; may be empty: all may
+  std::shared_ptr<const HostSamples> samples;  ///< may be null or empty: frames work them out
+  std::shared_ptr<const SearchTables> search;  ///< never null
   std::uint64_t memory_bytes() const;
 };
 
@@ -66,12 +67,15 @@ void for_each_partition(Scene& scene, Visit visit) {
   visit(scene.fine);
 }
 
-/// Calls visit(buffer) for each buffer of a prepared scene that is worked out, const or not; always in the same order. Some may be empty.
+/// Calls visit(buffer) for each buffer of a prepared scene that is worked out, const or not; always in the
+/// same order. Some may be empty.
 template <class Scene, class Visit>
 void for_each_made_buffer(Scene& scene, Visit visit) {
   visit(scene.scene);
   for_each_partition(scene, [&](auto& p) {
-    for (auto* buffer : {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles}) visit(*buffer);
+    for (auto* buffer :
+         {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles})
+      visit(*buffer);
   });
   for (auto* buffer : {&scene.fine_exit, &scene.tool_near}) visit(*buffer);
 }
@@ -81,8 +85,9 @@ template <class Scene, class Visit>
 void for_each_buffer(Scene& scene, Visit visit) {
   for_each_made_buffer(scene, visit);
   for (auto* body : {&scene.mockup, &scene.tool})
-    for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->field_weight,
-                         &body->patch, &body->extras, &body->levels, &body->neighbour_begin, &body->neighbours})
+    for (auto* buffer :
+         {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->field_weight,
+          &body->patch, &body->extras, &body->levels, &body->neighbour_begin, &body->neighbours})
       visit(*buffer);
 }
 
@@ -91,7 +96,8 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
                                     const Progress& progress);
 
 /// Fills the buffers that hold the meshes as they are; the others stay empty.
-Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan, PreparedScene& out);
+Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
+                           PreparedScene& out);
 
 /// The same scene for another device that shares host memory (VulkanDevice::shares_memory): no copy is made.
 Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene);

@@ -18,12 +18,14 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t kSamplesARun = std::uint64_t{1} << 22;   // listed by one submission (chosen: 16 or 32 MiB; an entry has at most 2^12)
-constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;   // on the host (chosen)
+constexpr std::uint64_t kSamplesARun =
+    std::uint64_t{1} << 22;  // listed by one submission (chosen: 16 or 32 MiB; an entry has at most 2^12)
+constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;  // on the host (chosen)
 
 }  // namespace
 
-void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& pairs, PreparedScene& out) {
+void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& pairs,
+                  PreparedScene& out) {
   if (!steps.ok()) return;
   const BodyBuffers& body = out.mockup;
   const PartitionBuffers& p = body.partition;
@@ -38,8 +40,8 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
   const VulkanBuffer unused = steps.buffer("unused", 1);
   const auto run = [&](std::uint32_t emit, const VulkanBuffer& samples) {
     steps.run_items(spirv::sample_list, {emit},
-                    {body.vertices, body.triangles, body.triangle_info, pairs.entry_voxel, p.list_triangles, p.boundary_place, p.mixed_brick,
-                     begins, samples},
+                    {body.vertices, body.triangles, body.triangle_info, pairs.entry_voxel, p.list_triangles,
+                     p.boundary_place, p.mixed_brick, begins, samples},
                     push, push.count);
   };
   if (!steps.ok()) return;
@@ -50,7 +52,8 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
   samples.wide = push.wide != 0;
   samples.begin.resize(std::size_t{p.grid.list_entries} + 1);
   samples.words.resize(total * words);
-  if (auto r = download(steps.device(), begins, 0, samples.begin.data(), samples.begin.size() * 4); !r) return steps.fail(r.error());
+  if (auto r = download(steps.device(), begins, 0, samples.begin.data(), samples.begin.size() * 4); !r)
+    return steps.fail(r.error());
   // Run by run, so that the device holds few of them at a time.
   const VulkanBuffer some = steps.buffer("samples of the mock-up", std::min(total, kSamplesARun) * words);
   const std::vector<std::uint32_t>& begin = samples.begin;
@@ -61,12 +64,16 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
     push.base = *from;
     run(1, some);
     if (!steps.ok()) return;
-    if (auto r = download(steps.device(), some, 0, samples.words.data() + *from * words, (*to - *from) * words * 4); !r) return steps.fail(r.error());
+    if (auto r = download(steps.device(), some, 0, samples.words.data() + *from * words,
+                          (*to - *from) * words * 4);
+        !r)
+      return steps.fail(r.error());
     steps.progress("samples", 0.95 + 0.04 * static_cast<double>(*to) / static_cast<double>(total + 1));
     from = to;
   }
   if (!steps.ok()) return;
-  if (auto r = download(steps.device(), begins, 0, samples.begin.data(), samples.begin.size() * 4); !r) return steps.fail(r.error());
+  if (auto r = download(steps.device(), begins, 0, samples.begin.data(), samples.begin.size() * 4); !r)
+    return steps.fail(r.error());
   PartitionCopy lists;
   if (auto r = lists.read(steps.device(), p); !r) return steps.fail(r.error());
   auto by_voxel = std::make_shared<HostSamples>();
@@ -77,7 +84,7 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
         return steps.ok();
       },
       std::move(samples), *by_voxel);
-  if (outcome == Listing::kDone) out.samples = std::move(by_voxel);   // else it is not whole
+  if (outcome == Listing::kDone) out.samples = std::move(by_voxel);  // else it is not whole
 }
 
 void refine_tool(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
@@ -85,15 +92,18 @@ void refine_tool(PrepareSteps& steps, const SceneGeometry& geometry, PreparedSce
   const std::int32_t own_size = out.tool.partition.grid.size;
   if (const std::int32_t size = fine_voxel_size(geometry, out.tool.partition.grid); size != 0) {
     PartitionBuffers keep = std::exchange(out.tool.partition, PartitionBuffers{});
-    const VoxelPairs pairs = build_lists(steps, geometry.tool, make_grid(geometry.tool.box_min, geometry.tool.box_max, size),
-                                         gpu::kToolVoxelGrowth, "tool", out.tool);
+    const VoxelPairs pairs =
+        build_lists(steps, geometry.tool, make_grid(geometry.tool.box_min, geometry.tool.box_max, size),
+                    gpu::kToolVoxelGrowth, "tool", out.tool);
     classify(steps, geometry.tool, pairs, out.tool);
     out.fine = std::exchange(out.tool.partition, std::move(keep));
   }
   PartitionCopy fine;
   if (!steps.ok()) return;
-  if (auto r = fine.read(steps.device(), out.fine.brick_slot ? out.fine : out.tool.partition); !r) return steps.fail(r.error());
-  if (const auto near = near_tool(fine.view(), own_size); !near.empty()) out.tool_near = steps.filled("voxels near the tool", near);
+  if (auto r = fine.read(steps.device(), out.fine.brick_slot ? out.fine : out.tool.partition); !r)
+    return steps.fail(r.error());
+  if (const auto near = near_tool(fine.view(), own_size); !near.empty())
+    out.tool_near = steps.filled("voxels near the tool", near);
   if (geometry.tool.closed) out.fine_exit = steps.filled("ways out of the tool", ways_out(fine.view()));
 }
 

@@ -7,7 +7,8 @@
 
 namespace palpate {
 
-PrepareSteps::PrepareSteps(VulkanDevice& device, const Progress& progress) : device_(device), progress_(progress) {
+PrepareSteps::PrepareSteps(VulkanDevice& device, const Progress& progress)
+    : device_(device), progress_(progress) {
   auto recorder = CommandRecorder::create(device);
   if (recorder)
     recorder_.emplace(std::move(*recorder));
@@ -22,7 +23,8 @@ void PrepareSteps::fail(Error error) {
 void PrepareSteps::progress(const char* what, double done) {
   what_ = what;
   done_ = done;
-  if (ok() && progress_ && !progress_(what, done)) fail(Error{ErrorCode::kInternal, "preparation was cancelled"});
+  if (ok() && progress_ && !progress_(what, done))
+    fail(Error{ErrorCode::kInternal, "preparation was cancelled"});
 }
 
 VulkanBuffer PrepareSteps::buffer(const char* what, std::uint64_t entries, std::uint64_t entry_bytes) {
@@ -35,14 +37,16 @@ VulkanBuffer PrepareSteps::buffer(const char* what, std::uint64_t entries, std::
   return std::move(*made);
 }
 
-VulkanBuffer PrepareSteps::filled(const char* what, const void* data, std::uint64_t entries, std::uint64_t entry_bytes) {
+VulkanBuffer PrepareSteps::filled(const char* what, const void* data, std::uint64_t entries,
+                                  std::uint64_t entry_bytes) {
   VulkanBuffer out = buffer(what, entries, entry_bytes);
   if (ok())
     if (auto r = upload(device_, out, data, entries * entry_bytes); !r) fail(r.error());
   return out;
 }
 
-const ComputePipeline& PrepareSteps::pipeline(const ShaderCode& code, std::uint32_t buffers, std::uint32_t push_bytes,
+const ComputePipeline& PrepareSteps::pipeline(const ShaderCode& code, std::uint32_t buffers,
+                                              std::uint32_t push_bytes,
                                               std::initializer_list<std::uint32_t> constants) {
   if (!ok()) return no_pipeline_;
   std::string key = code.name;
@@ -63,7 +67,7 @@ const ComputePipeline& PrepareSteps::pipeline(const ShaderCode& code, std::uint3
 
 void PrepareSteps::finish() {
   if (auto r = recorder_->submit_and_wait(); !r) fail(r.error());
-  progress(what_, done_);   // whoever wants to end it waits for one submission at most
+  progress(what_, done_);  // whoever wants to end it waits for one submission at most
 }
 
 void PrepareSteps::fill(const VulkanBuffer& buffer, std::uint32_t word) {
@@ -95,7 +99,8 @@ std::uint32_t PrepareSteps::scan(const char* what, const VulkanBuffer& values, s
   run([&](CommandRecorder& r) { r.fill(values.handle(), 0, count * 4, 4); });
   scan_level(values, count + 1);
   const std::uint32_t total = read(values, count);
-  if (total == 0xFFFFFFFFu) fail(bad_value(std::string("more than 4294967294 ") + what + "; a larger voxel would do with fewer"));
+  if (total == 0xFFFFFFFFu)
+    fail(bad_value(std::string("more than 4294967294 ") + what + "; a larger voxel would do with fewer"));
   return ok() ? total : 0;
 }
 

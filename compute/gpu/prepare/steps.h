@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/buffer.h"
+#include "compute/vulkan/command_recorder.h"
 #include "compute/vulkan/device.h"
 #include "compute/vulkan/pipeline.h"
 #include "model/collision_backend.h"
@@ -16,8 +16,9 @@
 
 namespace palpate {
 
-/// What the steps of preparation are written with. The first failure sticks: from then on buffers are empty, run() does
-/// nothing and read() gives 0, so that a step reads straight down and its caller asks ok() once. One thread.
+/// What the steps of preparation are written with. The first failure sticks: from then on buffers are empty,
+/// run() does nothing and read() gives 0, so that a step reads straight down and its caller asks ok() once.
+/// One thread.
 class PrepareSteps {
  public:
   PrepareSteps(VulkanDevice& device, const Progress& progress);
@@ -55,13 +56,16 @@ class PrepareSteps {
                  std::initializer_list<BufferView> buffers, const Push& push, std::uint64_t count) {
     if (!ok()) return;
     const auto& shader = pipeline(code, static_cast<std::uint32_t>(buffers.size()), sizeof(Push), constants);
-    if (!device_.kernel_watch) return run([&](CommandRecorder& r) { r.dispatch_items(shader, buffers, push, count); });
+    if (!device_.kernel_watch)
+      return run([&](CommandRecorder& r) { r.dispatch_items(shader, buffers, push, count); });
     const auto start = std::chrono::steady_clock::now();
     run([&](CommandRecorder& r) { r.dispatch_items(shader, buffers, push, count); });
-    device_.kernel_watch(code.name, count, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    device_.kernel_watch(code.name, count,
+                         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  /// Replaces each of the first `count` numbers by the sum of those before it and puts the total behind them (the buffer
-  /// has count + 1 entries). Returns the total; fails when it reaches 2^32 − 1 (`what` says of what there are too many).
+  /// Replaces each of the first `count` numbers by the sum of those before it and puts the total behind them
+  /// (the buffer has count + 1 entries). Returns the total; fails when it reaches 2^32 − 1 (`what` says of
+  /// what there are too many).
   std::uint32_t scan(const char* what, const VulkanBuffer& values, std::uint64_t count);
 
   /// Sets a whole buffer to a word.
@@ -77,7 +81,7 @@ class PrepareSteps {
   const Progress& progress_;
   std::optional<CommandRecorder> recorder_;
   std::optional<Error> error_;
-  const char* what_ = "prepare";   ///< last told
+  const char* what_ = "prepare";  ///< last told
   double done_ = 0;
   std::map<std::string, ComputePipeline> pipelines_;
   ComputePipeline no_pipeline_;

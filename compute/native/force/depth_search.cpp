@@ -14,9 +14,12 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kEight = TriangleTree::kEight;
-constexpr std::int64_t kRounding = 16;   // steps by which a distance may be off, and more (EXACTNESS section 4)
+constexpr std::int64_t kRounding =
+    16;  // steps by which a distance may be off, and more (EXACTNESS section 4)
 
-std::int64_t product(const Int3& a, const Int3& b) { return std::int64_t{a.x} * b.x + std::int64_t{a.y} * b.y + std::int64_t{a.z} * b.z; }
+std::int64_t product(const Int3& a, const Int3& b) {
+  return std::int64_t{a.x} * b.x + std::int64_t{a.y} * b.y + std::int64_t{a.z} * b.z;
+}
 
 /// floor(√v), 0 ≤ v < 2^62: a double's root is off by less than one there.
 std::int64_t root(std::int64_t v) {
@@ -31,18 +34,20 @@ std::int64_t floor_quotient(std::int64_t a, std::int64_t b) {
   return a % b < 0 ? q - 1 : q;
 }
 
-/// Of single precision: a distance from an edge or a plane is off by less than this part of the way to the triangle's first corner and of its sides together, added up by
-/// axis. A dozen roundings, 2^-24 each, come to half of it.
+/// Of single precision: a distance from an edge or a plane is off by less than this part of the way to the
+/// triangle's first corner and of its sides together, added up by axis. A dozen roundings, 2^-24 each, come
+/// to half of it.
 constexpr float kFloatSlack = 0x1p-19F;
 /// A sum of squares is off by less than this part of it.
 constexpr float kSquareSlack = 0x1p-20F;
 
-/// Eight triangles as floats, in steps from their first corners. By edge: its first corner, and two vectors of unit length, along it and in the plane away from the triangle.
+/// Eight triangles as floats, in steps from their first corners. By edge: its first corner, and two vectors
+/// of unit length, along it and in the plane away from the triangle.
 struct TriangleRun {
   std::int32_t corner[3][kEight];
   float from[3][3][kEight], along[3][3][kEight], out[3][3][kEight], length[3][kEight];
   float normal[3][kEight];
-  float room[kEight];   ///< by how much a distance may be off, but for the way to the first corner
+  float room[kEight];  ///< by how much a distance may be off, but for the way to the first corner
 };
 struct NearTriangles {
   unsigned near, above;
@@ -57,16 +62,16 @@ struct Run : TriangleRun {
 /// A triangle as integers decide about it, with EXACTNESS's names for it.
 struct Known {
   std::uint32_t id = kNobody;
-  unsigned edges = 0;              ///< bits: those that are known
+  unsigned edges = 0;  ///< bits: those that are known
   struct Edge {
-    Int3 from, along, out;         ///< u, e, m
-    std::int64_t size, length;     ///< L, floor(√((v − u)·(v − u)))
+    Int3 from, along, out;      ///< u, e, m
+    std::int64_t size, length;  ///< L, floor(√((v − u)·(v − u)))
   } edge[3];
 };
 
 struct Search {
   Int3 point;
-  std::int64_t best = INT64_MAX;   ///< steps
+  std::int64_t best = INT64_MAX;  ///< steps
   std::uint32_t triangle = kNobody, place = kNobody;
 
   /// A triangle whose distance is computed to be larger is further than the best one.
@@ -76,12 +81,12 @@ struct Search {
 }  // namespace
 
 struct DepthSearch::Tables {
-  static constexpr std::uint32_t kRuns = 512;     // runs of triangles (chosen: 600 KiB)
-  static constexpr std::uint32_t kKnown = 1024;   // triangles (chosen: 200 KiB)
+  static constexpr std::uint32_t kRuns = 512;    // runs of triangles (chosen: 600 KiB)
+  static constexpr std::uint32_t kKnown = 1024;  // triangles (chosen: 200 KiB)
   const LatticeMesh& mesh;
   const TriangleTree& tree;
-  std::vector<Run> runs = std::vector<Run>(kRuns);          ///< by run, where a newer one takes an older one's place
-  std::vector<Known> known = std::vector<Known>(kKnown);    ///< by triangle, likewise
+  std::vector<Run> runs = std::vector<Run>(kRuns);  ///< by run, where a newer one takes an older one's place
+  std::vector<Known> known = std::vector<Known>(kKnown);  ///< by triangle, likewise
   std::uint64_t looks = 0;
 
   const Run& run(std::uint32_t number);
@@ -97,7 +102,8 @@ const Run& DepthSearch::Tables::run(std::uint32_t number) {
   run.number = number;
   const std::size_t first = kEight * number, count = std::min(kEight, tree.order.size() - first);
   for (std::size_t i = 0; i < kEight; ++i) {
-    const std::uint32_t id = tree.order[first + std::min(i, count - 1)];   // where there are fewer, the last one again
+    const std::uint32_t id =
+        tree.order[first + std::min(i, count - 1)];  // where there are fewer, the last one again
     const auto& [ia, ib, ic] = mesh.triangles[id];
     const Int3 corners[3] = {mesh.vertices[ia], mesh.vertices[ib], mesh.vertices[ic]};
     const Int3& n = mesh.unit_normal_q30[id];
@@ -105,7 +111,8 @@ const Run& DepthSearch::Tables::run(std::uint32_t number) {
     double sides = 0;
     for (std::size_t edge = 0; edge < 3; ++edge) {
       const Int3 from = corners[edge] - corners[0], way = corners[edge == 2 ? 0 : edge + 1] - corners[edge];
-      const double length = std::sqrt(static_cast<double>(product(way, way))), along[3] = {way.x / length, way.y / length, way.z / length};
+      const double length = std::sqrt(static_cast<double>(product(way, way))),
+                   along[3] = {way.x / length, way.y / length, way.z / length};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
         run.from[edge][k][i] = static_cast<float>(from[static_cast<int>(k)]);
@@ -119,7 +126,9 @@ const Run& DepthSearch::Tables::run(std::uint32_t number) {
       run.corner[k][i] = corners[0][static_cast<int>(k)];
       run.normal[k][i] = static_cast<float>(normal[k]);
     }
-    run.room[i] = 8 + kFloatSlack * static_cast<float>(sides);   // 8: m is rounded by a step in 2^28, L likewise, n by 2^-31, and what is left is rounded down
+    run.room[i] =
+        8 + kFloatSlack * static_cast<float>(sides);  // 8: m is rounded by a step in 2^28, L likewise, n by
+                                                      // 2^-31, and what is left is rounded down
   }
   return run;
 }
@@ -134,7 +143,8 @@ Known& DepthSearch::Tables::know(std::uint32_t id) {
 }
 
 std::int64_t DepthSearch::Tables::height_above(const Int3& point, std::uint32_t id) const {
-  return std::abs((product(mesh.unit_normal_q30[id], point - mesh.corner(id, 0)) + (std::int64_t{1} << 29)) >> 30);
+  return std::abs((product(mesh.unit_normal_q30[id], point - mesh.corner(id, 0)) + (std::int64_t{1} << 29)) >>
+                  30);
 }
 
 /// As EXACTNESS section 4 has it.
@@ -149,14 +159,15 @@ std::int64_t DepthSearch::Tables::distance_to(const Int3& point, std::uint32_t i
       const Int3 way = mesh.corner(id, k == 2 ? 0 : k + 1) - edge.from;
       edge.along = exact::normalise({way.x, way.y, way.z});
       const exact::Normal across = exact::cross(edge.along, mesh.unit_normal_q30[id]);
-      edge.out = Int3(static_cast<std::int32_t>(across.x >> 30), static_cast<std::int32_t>(across.y >> 30), static_cast<std::int32_t>(across.z >> 30));
+      edge.out = Int3(static_cast<std::int32_t>(across.x >> 30), static_cast<std::int32_t>(across.y >> 30),
+                      static_cast<std::int32_t>(across.z >> 30));
       edge.size = root(product(edge.along, edge.along));
       edge.length = root(product(way, way));
       entry.edges |= 1U << k;
     }
     const Int3 from = point - edge.from;
     const std::int64_t beyond = product(edge.out, from);
-    if (beyond < edge.size) continue;   // ⌊beyond / size⌋ ≤ 0
+    if (beyond < edge.size) continue;  // ⌊beyond / size⌋ ≤ 0
     const std::int64_t side = beyond / edge.size, at = floor_quotient(product(edge.along, from), edge.size);
     const std::int64_t over = std::max({std::int64_t{0}, -at, at - edge.length});
     const std::int64_t squared = height * height + side * side + over * over;
@@ -167,7 +178,8 @@ std::int64_t DepthSearch::Tables::distance_to(const Int3& point, std::uint32_t i
   std::int64_t squared = 0;
   for (int k = 0; k < 3; ++k) {
     const std::int64_t a = mesh.corner(id, 0)[k], b = mesh.corner(id, 1)[k], c = mesh.corner(id, 2)[k];
-    const std::int64_t gap = std::max({std::min({a, b, c}) - point[k], point[k] - std::max({a, b, c}), std::int64_t{0}});
+    const std::int64_t gap =
+        std::max({std::min({a, b, c}) - point[k], point[k] - std::max({a, b, c}), std::int64_t{0}});
     squared += gap * gap;
   }
   const std::int64_t to_box = root(squared);
@@ -190,21 +202,22 @@ namespace {
 namespace plain {
 constexpr std::size_t kWidth = 4;
 #include "compute/native/force/depth_lanes.h"
-}
+}  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 #define PALPATE_SIGN_BITS
 namespace second {
 constexpr std::size_t kWidth = 8;
 #include "compute/native/force/depth_lanes.h"
-}
+}  // namespace second
 #undef PALPATE_SIGN_BITS
 PALPATE_SECOND_CODE_END
 #endif
 
 }  // namespace
 
-DepthSearch::DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree) : tables_(new Tables{mesh, tree}) {}
+DepthSearch::DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree)
+    : tables_(new Tables{mesh, tree}) {}
 DepthSearch::DepthSearch() = default;
 DepthSearch::DepthSearch(DepthSearch&&) noexcept = default;
 DepthSearch& DepthSearch::operator=(DepthSearch&&) noexcept = default;

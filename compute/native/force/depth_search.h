@@ -7,15 +7,16 @@
 
 namespace palpate {
 
-/// How far a point lies below a body's surface (docs/EXACTNESS.md section 4), on the host: down the body's tree, eight boxes or triangles at a time in single precision,
-/// which only sorts out; what is left, integers decide. What it has worked out of triangles it keeps, as far as there is room. Arguments outlive this. One thread; only
-/// making one allocates.
+/// How far a point lies below a body's surface (docs/EXACTNESS.md section 4), on the host: down the body's
+/// tree, eight boxes or triangles at a time in single precision, which only sorts out; what is left, integers
+/// decide. What it has worked out of triangles it keeps, as far as there is room. Arguments outlive this. One
+/// thread; only making one allocates.
 class DepthSearch {
  public:
   struct Depth {
-    std::uint32_t steps;      ///< φ
-    std::uint32_t triangle;   ///< the nearest one, kNobody: there is none
-    std::uint32_t place;      ///< of it in the tree; kNobody: there is none
+    std::uint32_t steps;     ///< φ
+    std::uint32_t triangle;  ///< the nearest one, kNobody: there is none
+    std::uint32_t place;     ///< of it in the tree; kNobody: there is none
   };
   static constexpr std::uint32_t kNobody = UINT32_MAX;
 
@@ -26,12 +27,13 @@ class DepthSearch {
   /// `tree` is the mesh's.
   DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree);
 
-  /// The point is within ±2^30. `guess`: the place of a triangle that may be near, as for a point beside it; kNobody: none. It changes nothing but the time.
+  /// The point is within ±2^30. `guess`: the place of a triangle that may be near, as for a point beside it;
+  /// kNobody: none. It changes nothing but the time.
   Depth below(const Int3& point, std::uint32_t guess);
   /// How many groups of eight boxes or triangles it has looked at in all.
   std::uint64_t looks() const;
 
-  struct Tables;   ///< depth_search.cpp's own
+  struct Tables;  ///< depth_search.cpp's own
 
  private:
   std::unique_ptr<Tables> tables_;

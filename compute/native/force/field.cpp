@@ -11,12 +11,13 @@
 
 namespace palpate {
 
-using namespace gpu;   // names of shaders/shared/frame.h
+using namespace gpu;  // names of shaders/shared/frame.h
 
 namespace {
 
-constexpr std::size_t kMostListed = std::size_t{1} << 22;   // samples of the tool (chosen: 48 MiB)
-constexpr std::size_t kPart = 64;                           // samples or triangles of a part of the sum (chosen: a tenth of a millisecond)
+constexpr std::size_t kMostListed = std::size_t{1} << 22;  // samples of the tool (chosen: 48 MiB)
+constexpr std::size_t kPart =
+    64;  // samples or triangles of a part of the sum (chosen: a tenth of a millisecond)
 
 bool is_sheet(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & kTriangleSheet) != 0; }
 
@@ -24,7 +25,9 @@ Int3 turned(const LatticePose& pose, const Int3& n) {
   Int3 out;
   for (int r = 0; r < 3; ++r) {
     const auto& row = pose.rotation_q30[r];
-    out[r] = static_cast<std::int32_t>((std::int64_t{row[0]} * n.x + std::int64_t{row[1]} * n.y + std::int64_t{row[2]} * n.z + (std::int64_t{1} << 29)) >> 30);
+    out[r] = static_cast<std::int32_t>((std::int64_t{row[0]} * n.x + std::int64_t{row[1]} * n.y +
+                                        std::int64_t{row[2]} * n.z + (std::int64_t{1} << 29)) >>
+                                       30);
   }
   return out;
 }
@@ -33,7 +36,8 @@ Int3 to_tool(const LatticePose& pose, const Int3& point) {
   Int3 at;
   for (int c = 0; c < 3; ++c) {
     std::int64_t sum = std::int64_t{1} << 29;
-    for (int r = 0; r < 3; ++r) sum += pose.rotation_q30[r][c] * (std::int64_t{point[r]} - pose.translation[r]);
+    for (int r = 0; r < 3; ++r)
+      sum += pose.rotation_q30[r][c] * (std::int64_t{point[r]} - pose.translation[r]);
     at[c] = static_cast<std::int32_t>(sum >> 30);
   }
   return at;
@@ -83,14 +87,16 @@ void add_deepest(FieldSums& field, std::uint32_t depth, std::uint32_t static_id,
 /// A sample inside the other body (EXACTNESS section 8).
 struct HostField::Push {
   Int3 at;
-  Int3 along, against;      ///< n and u
+  Int3 along, against;  ///< n and u
   std::uint32_t depth;
-  std::uint32_t weight;     ///< the sample's own, Q24
+  std::uint32_t weight;  ///< the sample's own, Q24
   bool sheet;
 };
 
-HostField::Extras::Extras(const LatticeMesh& mesh) : all_(mesh.extra_samples), has_((mesh.triangles.size() + 63) / 64) {
-  for (const ExtraSample& extra : all_) has_[extra.triangle >> 6] |= std::uint64_t{1} << (extra.triangle & 63);
+HostField::Extras::Extras(const LatticeMesh& mesh)
+    : all_(mesh.extra_samples), has_((mesh.triangles.size() + 63) / 64) {
+  for (const ExtraSample& extra : all_)
+    has_[extra.triangle >> 6] |= std::uint64_t{1} << (extra.triangle & 63);
 }
 
 std::span<const ExtraSample> HostField::Extras::of(std::uint32_t triangle) const {
@@ -99,7 +105,8 @@ std::span<const ExtraSample> HostField::Extras::of(std::uint32_t triangle) const
   return {range.begin(), range.end()};
 }
 
-HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& mockup, const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside) {
+HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& mockup,
+                          const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside) {
   HostField out;
   out.geometry_ = &geometry;
   for (Lane& lane : out.lanes_) {
@@ -114,14 +121,15 @@ HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& moc
   out.own_begin_.assign(1, 0);
   const std::size_t triangles = geometry.tool.triangles.size();
   const double density = static_cast<double>(geometry.tool_sample_spacing) * geometry.tool_sample_spacing;
-  if (geometry.tool_surface.area / density + static_cast<double>(triangles) > static_cast<double>(kMostListed)) {
+  if (geometry.tool_surface.area / density + static_cast<double>(triangles) >
+      static_cast<double>(kMostListed)) {
     out.own_begin_.clear();
     return out;
   }
   std::vector<std::uint32_t> begin{0};
   std::vector<Int3> samples;
   for (std::uint32_t id = 0; id < triangles; ++id) {
-    out.own_begin_.clear();   // for_tool_samples then works them out
+    out.own_begin_.clear();  // for_tool_samples then works them out
     out.for_tool_samples(id, [&](const Int3& p, int level) {
       samples.push_back(p);
       out.own_levels_.push_back(static_cast<std::uint8_t>(level));
@@ -136,7 +144,8 @@ HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& moc
 template <class Take>
 void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   if (!own_begin_.empty()) {
-    for (std::uint32_t i = own_begin_[mobile]; i < own_begin_[mobile + 1]; ++i) take(own_samples_[i], own_levels_[i]);
+    for (std::uint32_t i = own_begin_[mobile]; i < own_begin_[mobile + 1]; ++i)
+      take(own_samples_[i], own_levels_[i]);
     return;
   }
   const LatticeMesh& tool = geometry_->tool;
@@ -145,12 +154,15 @@ void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   const exact::Box box = exact::box_of(corners);
   const int axis = tool.sample_axis[mobile];
   const std::int32_t spacing = geometry_->tool_sample_spacing;
-  exact::for_samples(corners, axis, spacing, box.low - Int3(1), box.high + Int3(1), [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
+  exact::for_samples(
+      corners, axis, spacing, box.low - Int3(1), box.high + Int3(1),
+      [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
 }
 
 void HostField::choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser) {
   const std::uint64_t wanted = geometry_->contact_samples, count = samples + mobiles / 16;
-  const std::uint32_t level = std::min((wanted != 0 && count > wanted ? log_q8(count) - log_q8(wanted) : 0) + coarser, Ignored::kCoarsest);
+  const std::uint32_t level = std::min(
+      (wanted != 0 && count > wanted ? log_q8(count) - log_q8(wanted) : 0) + coarser, Ignored::kCoarsest);
   level_ = level >> 8;
   between_ = level & 255;
 }
@@ -163,7 +175,9 @@ std::uint64_t HostField::weight_of(const LatticeMesh& mesh, std::uint32_t triang
   const auto at = [&](std::uint32_t taken) -> std::uint64_t {
     taken = std::min(taken, side.coarsest);
     if (level < static_cast<int>(taken)) return 0;
-    return taken == 0 ? mesh.field_weight_q30[triangle] : ((std::uint64_t{mesh.field_weight_q30[triangle]} * side.factor_q30[taken - 1]) >> 30) << taken;
+    return taken == 0 ? mesh.field_weight_q30[triangle]
+                      : ((std::uint64_t{mesh.field_weight_q30[triangle]} * side.factor_q30[taken - 1]) >> 30)
+                            << taken;
   };
   return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
 }
@@ -184,13 +198,15 @@ bool HostField::is_ignored(std::uint32_t static_id, Lane& lane) const {
   return true;
 }
 
-void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Lane& lane) const {
+void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
+                    Lane& lane) const {
   const std::uint32_t weight = push.weight >> (push.sheet ? 0 : 1);
   const Int3 &n = push.along, r = push.at;
   const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 14);
-  constexpr std::int32_t kLeast = 444764242;   // tan 22.5° in Q30
+  constexpr std::int32_t kLeast = 444764242;  // tan 22.5° in Q30
   std::size_t number = 0;
-  for (int k = 2; k >= 0; --k) number = 3 * number + static_cast<std::size_t>(1 + (n[k] > kLeast ? 1 : 0) - (n[k] < -kLeast ? 1 : 0));
+  for (int k = 2; k >= 0; --k)
+    number = 3 * number + static_cast<std::size_t>(1 + (n[k] > kLeast ? 1 : 0) - (n[k] < -kLeast ? 1 : 0));
   FieldBin& bin = lane.field.bins[number];
   ++bin.samples;
   const exact::Normal turn = exact::cross(r, n);
@@ -200,7 +216,8 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
     add_term(bin.turn[k], (p >> 10) * turns[k]);
   }
   const Int3& u = push.against;
-  const std::int64_t steep = std::max<std::int64_t>((std::int64_t{n.x} * u.x + std::int64_t{n.y} * u.y + std::int64_t{n.z} * u.z) >> 30, 0);
+  const std::int64_t steep = std::max<std::int64_t>(
+      (std::int64_t{n.x} * u.x + std::int64_t{n.y} * u.y + std::int64_t{n.z} * u.z) >> 30, 0);
   const std::int64_t give = (std::int64_t{weight} * steep) >> 34;
   const std::int64_t x = r.x >> lever_shift_, y = r.y >> lever_shift_, z = r.z >> lever_shift_;
   bin.give += give;
@@ -228,49 +245,63 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   }
 }
 
-void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const {
+void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point,
+                                 std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const {
   const DepthSearch::Depth below = lane.tool_depth.below(to_tool(pose, point), lane.near_tool);
   lane.near_tool = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, lane)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
-  add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against, below.steps, static_cast<std::uint32_t>(weight_q30 >> 6), sheet}, static_id, below.triangle, carrier, lane);
+  add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against,
+       below.steps, static_cast<std::uint32_t>(weight_q30 >> 6), sheet},
+      static_id, below.triangle, carrier, lane);
 }
 
-void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint64_t weight_q30, Lane& lane) const {
+void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point,
+                               std::uint64_t weight_q30, Lane& lane) const {
   const DepthSearch::Depth below = lane.mockup_depth.below(point, lane.near_mockup);
   lane.near_mockup = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, lane)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
-  add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]), against, below.steps, static_cast<std::uint32_t>(weight_q30 >> 4), sheet}, below.triangle, mobile, nullptr, lane);
+  add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]),
+       against, below.steps, static_cast<std::uint32_t>(weight_q30 >> 4), sheet},
+      below.triangle, mobile, nullptr, lane);
 }
 
 namespace {
 
 /// `carriers` ascend by id.
 CarrierSums* carrier_of(std::span<CarrierSums> carriers, std::uint32_t id) {
-  const auto at = std::lower_bound(carriers.begin(), carriers.end(), id, [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
+  const auto at = std::lower_bound(carriers.begin(), carriers.end(), id,
+                                   [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
   return at != carriers.end() && at->id == id ? &*at : nullptr;
 }
 
 }  // namespace
 
 /// Of the mock-up's samples inside the tool.
-void HostField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples, std::span<CarrierSums> carriers, Lane& lane) const {
+void HostField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples,
+                            std::span<CarrierSums> carriers, Lane& lane) const {
   const LatticeMesh& mockup = geometry_->mockup;
   const SampleGrid grid{geometry_->sample_spacing};
   const bool all = (level_ | between_) == 0;
   for (const FrameSample& sample : samples) {
     const std::uint32_t id = sample.static_id;
     const int axis = mockup.sample_axis[id];
-    const int level = all || mockup.levels_of[id] == 0 ? 0 : SampleGrid::level(grid.cell(sample.point[(axis + 1) % 3]), grid.cell(sample.point[(axis + 2) % 3]));
-    if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0) push_from_mockup(pose, id, sample.point, weight, carrier_of(carriers, id), lane);
+    const int level = all || mockup.levels_of[id] == 0
+                          ? 0
+                          : SampleGrid::level(grid.cell(sample.point[(axis + 1) % 3]),
+                                              grid.cell(sample.point[(axis + 2) % 3]));
+    if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0)
+      push_from_mockup(pose, id, sample.point, weight, carrier_of(carriers, id), lane);
   }
 }
 
 /// Of the mock-up's extra samples that lie inside the tool.
-void HostField::sum_extras(const LatticePose& pose, const HostSets& sets, std::span<const StaticResult> statics, std::span<CarrierSums> carriers, Lane& lane) const {
+void HostField::sum_extras(const LatticePose& pose, const HostSets& sets,
+                           std::span<const StaticResult> statics, std::span<CarrierSums> carriers,
+                           Lane& lane) const {
   for (const StaticResult& result : statics)
     for (const ExtraSample& extra : mockup_extras_.of(result.id))
       if (const std::uint64_t weight = weight_of(extra); weight != 0 && sets.inside(pose, extra.point))
@@ -291,7 +322,8 @@ void HostField::sum_tool(const LatticePose& pose, std::span<const MobileResult> 
       if (hit ? lane.in_mockup.inside(point) : *inside) push_from_tool(pose, result.id, point, weight, lane);
     };
     if (own.field_weight_q30[result.id] != 0)
-      for_tool_samples(result.id, [&](const Int3& p, int level) { push(p, weight_of(own, result.id, level)); });
+      for_tool_samples(result.id,
+                       [&](const Int3& p, int level) { push(p, weight_of(own, result.id, level)); });
     for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, weight_of(extra));
   }
 }
@@ -302,8 +334,10 @@ std::uint64_t HostField::looks() const {
   return out;
 }
 
-void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out) {
-  choose_level(found.samples.size(), found.mobiles.size(), wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
+void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found,
+                    const Wanted& wanted, FrameHelper* helper, Contacts& out) {
+  choose_level(found.samples.size(), found.mobiles.size(),
+               wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
   out.carriers.clear();
   ignored_ = wanted.ignored;
   for (Lane& lane : lanes_) {
@@ -316,19 +350,34 @@ void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSe
     for (const StaticResult& result : found.statics)
       if ((result.state & (kStaticHit | kStaticSampled)) != 0) out.carriers.emplace_back().id = result.id;
 
-  // Whole numbers are summed, so it is the same who sums which. Carriers are written by whoever has the mock-up's samples, so where they are wanted these are one part.
-  const auto parts_of = [](std::size_t count, bool one) { return one ? std::size_t{1} : (count + kPart - 1) / kPart; };
-  const std::span<const StaticResult> statics = tool_has_inside_ && !mockup_extras_.empty() ? std::span(found.statics) : std::span<const StaticResult>();
-  const std::size_t of_samples = parts_of(found.samples.size(), wanted.carriers), of_statics = parts_of(statics.size(), wanted.carriers), of_tool = parts_of(found.mobiles.size(), false);
+  // Whole numbers are summed, so it is the same who sums which. Carriers are written by whoever has the
+  // mock-up's samples, so where they are wanted these are one part.
+  const auto parts_of = [](std::size_t count, bool one) {
+    return one ? std::size_t{1} : (count + kPart - 1) / kPart;
+  };
+  const std::span<const StaticResult> statics = tool_has_inside_ && !mockup_extras_.empty()
+                                                    ? std::span(found.statics)
+                                                    : std::span<const StaticResult>();
+  const std::size_t of_samples = parts_of(found.samples.size(), wanted.carriers),
+                    of_statics = parts_of(statics.size(), wanted.carriers),
+                    of_tool = parts_of(found.mobiles.size(), false);
   const auto piece = []<class T>(std::span<const T> all, std::size_t part, std::size_t parts) {
     return parts == 1 ? all : all.subspan(part * kPart, std::min(kPart, all.size() - part * kPart));
   };
-  share_parts(helper, static_cast<std::uint32_t>(of_samples + of_statics + of_tool), [&](std::uint32_t part, int number) {
-    Lane& lane = lanes_[static_cast<std::size_t>(number)];
-    if (part < of_samples) sum_samples(pose, piece(std::span<const FrameSample>(found.samples), part, of_samples), out.carriers, lane);
-    else if (part < of_samples + of_statics) sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), out.carriers, lane);
-    else sum_tool(pose, piece(std::span<const MobileResult>(found.mobiles), part - of_samples - of_statics, of_tool), lane);
-  });
+  share_parts(helper, static_cast<std::uint32_t>(of_samples + of_statics + of_tool),
+              [&](std::uint32_t part, int number) {
+                Lane& lane = lanes_[static_cast<std::size_t>(number)];
+                if (part < of_samples)
+                  sum_samples(pose, piece(std::span<const FrameSample>(found.samples), part, of_samples),
+                              out.carriers, lane);
+                else if (part < of_samples + of_statics)
+                  sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), out.carriers, lane);
+                else
+                  sum_tool(pose,
+                           piece(std::span<const MobileResult>(found.mobiles), part - of_samples - of_statics,
+                                 of_tool),
+                           lane);
+              });
 
   const Lane &first = lanes_[0], &second = lanes_[1];
   static_assert(FrameHelper::kLanes == 2);
@@ -341,7 +390,9 @@ void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSe
   touched.insert(touched.end(), second.touched.begin(), second.touched.end());
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  if (std::none_of(out.field.bins.begin(), out.field.bins.end(), [](const FieldBin& bin) { return bin.samples != 0; })) out.flags |= kFlagNoDirection;
+  if (std::none_of(out.field.bins.begin(), out.field.bins.end(),
+                   [](const FieldBin& bin) { return bin.samples != 0; }))
+    out.flags |= kFlagNoDirection;
 }
 
 }  // namespace palpate

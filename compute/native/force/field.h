@@ -5,21 +5,22 @@
 #include <vector>
 
 #include "compute/native/force/depth_search.h"
-#include "compute/search/frame_helper.h"
-#include "compute/native/narrow_phase/sets.h"
 #include "compute/native/narrow_phase/inside_search.h"
+#include "compute/native/narrow_phase/sets.h"
 #include "compute/scene/triangle_tree.h"
+#include "compute/search/frame_helper.h"
 #include "model/contact/contacts.h"
 #include "model/scene/scene_geometry.h"
 
 namespace palpate {
 
-/// The pressure field at a pose (docs/EXACTNESS.md section 8), on the host. One thread and its helper; make() keeps references to its arguments; sum() allocates only when a contact is
-/// larger than all before.
+/// The pressure field at a pose (docs/EXACTNESS.md section 8), on the host. One thread and its helper; make()
+/// keeps references to its arguments; sum() allocates only when a contact is larger than all before.
 class HostField {
  public:
   /// What the arguments refer to outlives this.
-  static HostField make(const SceneGeometry& geometry, const TriangleTree& mockup, const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside);
+  static HostField make(const SceneGeometry& geometry, const TriangleTree& mockup,
+                        const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
@@ -27,7 +28,8 @@ class HostField {
     bool carriers = true;
   };
   /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags. `helper` may be null.
-  void sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted, FrameHelper* helper, Contacts& out);
+  void sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted,
+           FrameHelper* helper, Contacts& out);
   /// Groups of eight boxes or triangles that sums have looked at in all.
   std::uint64_t looks() const;
 
@@ -37,10 +39,12 @@ class HostField {
   struct Lane {
     DepthSearch mockup_depth, tool_depth;
     InsideSearch in_mockup;
-    std::uint32_t near_tool = DepthSearch::kNobody, near_mockup = DepthSearch::kNobody;   ///< places of the last samples' nearest triangles in their trees
+    std::uint32_t near_tool = DepthSearch::kNobody,
+                  near_mockup =
+                      DepthSearch::kNobody;  ///< places of the last samples' nearest triangles in their trees
     FieldSums field;
     std::uint32_t flags = 0;
-    std::vector<std::uint32_t> touched;   ///< ignored patches, in any order
+    std::vector<std::uint32_t> touched;  ///< ignored patches, in any order
   };
   /// Extra samples by triangle; few have some.
   class Extras {
@@ -52,13 +56,18 @@ class HostField {
 
    private:
     std::span<const ExtraSample> all_;
-    std::vector<std::uint64_t> has_;   ///< a bit a triangle
+    std::vector<std::uint64_t> has_;  ///< a bit a triangle
   };
-  void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier, Lane& lane) const;
-  void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point, std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const;
-  void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point, std::uint64_t weight_q30, Lane& lane) const;
-  void sum_samples(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::span<CarrierSums> carriers, Lane& lane) const;
-  void sum_extras(const LatticePose& pose, const HostSets& sets, std::span<const gpu::StaticResult> statics, std::span<CarrierSums> carriers, Lane& lane) const;
+  void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
+           Lane& lane) const;
+  void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point,
+                        std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const;
+  void push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point,
+                      std::uint64_t weight_q30, Lane& lane) const;
+  void sum_samples(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
+                   std::span<CarrierSums> carriers, Lane& lane) const;
+  void sum_extras(const LatticePose& pose, const HostSets& sets, std::span<const gpu::StaticResult> statics,
+                  std::span<CarrierSums> carriers, Lane& lane) const;
   void sum_tool(const LatticePose& pose, std::span<const gpu::MobileResult> mobiles, Lane& lane) const;
   bool is_ignored(std::uint32_t static_id, Lane& lane) const;
   template <class Take>
@@ -71,12 +80,14 @@ class HostField {
   Extras mockup_extras_, tool_extras_;
   bool tool_has_inside_ = true;
   int lever_shift_ = 0;
-  std::vector<std::uint32_t> own_begin_;   ///< by tool triangle, and one more; empty: the tool's samples are too many to list
-  std::vector<Int3> own_samples_;          ///< of the tool, in its lattice frame
-  std::vector<std::uint8_t> own_levels_;   ///< of these
-  std::uint32_t level_ = 0, between_ = 0;  ///< of this frame: the level of samples, and how far to the next, 1/256
-  const Ignored* ignored_ = nullptr;       ///< of this frame
-  std::array<Lane, FrameHelper::kLanes> lanes_;   ///< by thread of the frame
+  std::vector<std::uint32_t>
+      own_begin_;  ///< by tool triangle, and one more; empty: the tool's samples are too many to list
+  std::vector<Int3> own_samples_;         ///< of the tool, in its lattice frame
+  std::vector<std::uint8_t> own_levels_;  ///< of these
+  std::uint32_t level_ = 0,
+                between_ = 0;         ///< of this frame: the level of samples, and how far to the next, 1/256
+  const Ignored* ignored_ = nullptr;  ///< of this frame
+  std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
 };
 
 }  // namespace palpate

@@ -2,9 +2,10 @@
 
 namespace palpate {
 
-using namespace gpu;   // names of shaders/shared/frame.h
+using namespace gpu;  // names of shaders/shared/frame.h
 
-std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order) {
+std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, const SceneTables& scene,
+                                               std::span<const std::uint32_t> order) {
   std::unique_ptr<HostContact> out(new HostContact);
   out->mockup_ = HostPartition(scene.mockup);
   out->tool_ = HostPartition(scene.tool);
@@ -16,7 +17,9 @@ std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, co
   out->sets_ = HostSets::make(geometry, scene, order, out->in_tool_);
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
-  out->field_ = HostField::make(geometry, scene.search->triangles, InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes), out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);
+  out->field_ = HostField::make(geometry, scene.search->triangles,
+                                InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
+                                out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 
@@ -34,7 +37,10 @@ void HostContact::decide(PosedTool& tool, const NearLists& near, FrameHelper* he
     if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
   }
   for (const MobileResult& m : found_.mobiles)
-    ((m.state & kMobileHit) != 0 ? out.cmt : (m.state & kMobileInternal) != 0 ? out.imt : out.bmt).push_back(m.id);
+    ((m.state & kMobileHit) != 0        ? out.cmt
+     : (m.state & kMobileInternal) != 0 ? out.imt
+                                        : out.bmt)
+        .push_back(m.id);
 }
 
 }  // namespace palpate

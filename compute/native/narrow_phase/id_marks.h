@@ -7,8 +7,9 @@
 
 namespace palpate {
 
-/// Marks on ids, three bits each (values 1, 2 and 4), for sets that a frame finds in any order and then wants by ascending id: marking an id twice costs
-/// nothing more, and ids need no sorting. Half a byte an id, so that what is asked again and again stays in the caches. Only resize() allocates.
+/// Marks on ids, three bits each (values 1, 2 and 4), for sets that a frame finds in any order and then wants
+/// by ascending id: marking an id twice costs nothing more, and ids need no sorting. Half a byte an id, so
+/// that what is asked again and again stays in the caches. Only resize() allocates.
 class IdMarks {
  public:
   static constexpr std::uint32_t kNowhere = UINT32_MAX;
@@ -37,7 +38,8 @@ class IdMarks {
   /// Ids that have a mark.
   std::uint32_t count() const { return count_; }
 
-  /// Calls take(id, marks) for all that have a mark, ascending. After it place() holds until something is marked.
+  /// Calls take(id, marks) for all that have a mark, ascending. After it place() holds until something is
+  /// marked.
   template <class Take>
   void number(Take&& take) {
     std::uint32_t place = 0;
@@ -59,9 +61,9 @@ class IdMarks {
   }
 
  private:
-  struct Word {   // of 64 ids
-    std::array<std::uint64_t, 3> marks{};   ///< of value 1, 2 and 4
-    std::uint32_t place = 0, unused = 0;    ///< of the first that has one
+  struct Word {                            // of 64 ids
+    std::array<std::uint64_t, 3> marks{};  ///< of value 1, 2 and 4
+    std::uint32_t place = 0, unused = 0;   ///< of the first that has one
     std::uint64_t all() const { return marks[0] | marks[1] | marks[2]; }
     std::uint32_t of(std::uint32_t bit) const {
       const auto mark = [&](std::size_t i) { return static_cast<std::uint32_t>(marks[i] >> bit & 1) << i; };
@@ -78,7 +80,7 @@ class IdMarks {
   }
 
   std::vector<Word> words_;
-  std::vector<std::uint64_t> any_;   ///< a bit a word: it has a mark
+  std::vector<std::uint64_t> any_;  ///< a bit a word: it has a mark
   std::uint32_t count_ = 0;
 };
 

@@ -11,17 +11,24 @@
 
 namespace palpate {
 
-using namespace gpu;   // names of shaders/shared/scene.h
+using namespace gpu;  // names of shaders/shared/scene.h
 
 namespace {
 
-bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0; }
+bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) {
+  return (mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0;
+}
 
 }  // namespace
 
-InsideSearch::InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes)
-    : mesh_(&mesh), partition_(&partition), boxes_(boxes), per_part_(static_cast<double>(kVoxelParts) / partition.grid().size), way_(mesh.closed ? partition.grid().boundary_voxels : 0) {
-  constexpr std::size_t kMostKnown = std::size_t{1} << 14;   // 256 KiB (chosen)
+InsideSearch::InsideSearch(const LatticeMesh& mesh, const HostPartition& partition,
+                           std::span<const std::uint8_t> boxes)
+    : mesh_(&mesh),
+      partition_(&partition),
+      boxes_(boxes),
+      per_part_(static_cast<double>(kVoxelParts) / partition.grid().size),
+      way_(mesh.closed ? partition.grid().boundary_voxels : 0) {
+  constexpr std::size_t kMostKnown = std::size_t{1} << 14;  // 256 KiB (chosen)
   windings_.resize(kMostKnown);
   if (!mesh.closed) middle_.assign(partition.grid().boundary_voxels, kUnknown);
 }
@@ -46,40 +53,48 @@ bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::ui
 }
 
 void InsideSearch::keep_cells(const PartitionView& partition) {
-  cells_ = InsideCells(*mesh_, partition, boxes_, [this](const Int3& point, const Int3& voxel, std::uint32_t boundary) { return inside_open(point, voxel, boundary); });
+  cells_ = InsideCells(*mesh_, partition, boxes_,
+                       [this](const Int3& point, const Int3& voxel, std::uint32_t boundary) {
+                         return inside_open(point, voxel, boundary);
+                       });
 }
 
 bool InsideSearch::inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary) {
-  const std::atomic_ref<std::int16_t> known(middle_[boundary]);   // whoever comes first: all find the same
+  const std::atomic_ref<std::int16_t> known(middle_[boundary]);  // whoever comes first: all find the same
   std::int16_t winding = known.load(std::memory_order_relaxed);
   if (winding == kUnknown) {
     winding = winding_by_walks(voxel);
     known.store(winding, std::memory_order_relaxed);
   }
-  const Int3 middle = partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
+  const Int3 middle =
+      partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
   return winding + (point == middle ? 0 : crossed_within(point, middle, voxel, boundary)) > 0;
 }
 
 /// Of a V_bnd voxel's middle: what most of six walks say.
 std::int16_t InsideSearch::winding_by_walks(const Int3& voxel) const {
-  const Int3 middle = partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
+  const Int3 middle =
+      partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
   std::array<int, 6> said{};
   for (int axis = 0; axis < 3; ++axis)
     for (const int way : {1, -1}) {
       const Walk out = walk(middle, voxel, axis, way, false);
-      said[static_cast<std::size_t>(2 * axis + (way > 0 ? 1 : 0))] = out.net + (out.kind == kVoxelInternal ? 1 : 0);
+      said[static_cast<std::size_t>(2 * axis + (way > 0 ? 1 : 0))] =
+          out.net + (out.kind == kVoxelInternal ? 1 : 0);
     }
   std::sort(said.begin(), said.end());
   return static_cast<std::int16_t>(std::clamp(said[2], -30000, 30000));
 }
 
-/// What the straight way from one end to the other, both in the voxel, crosses of what the voxel lists and what bounds a solid.
-int InsideSearch::crossed_within(const Int3& from, const Int3& to, const Int3& voxel, std::uint32_t boundary) const {
+/// What the straight way from one end to the other, both in the voxel, crosses of what the voxel lists and
+/// what bounds a solid.
+int InsideSearch::crossed_within(const Int3& from, const Int3& to, const Int3& voxel,
+                                 std::uint32_t boundary) const {
   const GridConstants& grid = partition_->grid();
   const auto list = partition_->list(boundary);
   const std::size_t count = list.size();
   const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
-  std::int32_t low[3], high[3];   // of the way, in parts of the voxel, with a part to spare
+  std::int32_t low[3], high[3];  // of the way, in parts of the voxel, with a part to spare
   for (int k = 0; k < 3; ++k) {
     const double corner = grid.origin[k] + double(grid.size) * voxel[k];
     low[k] = static_cast<std::int32_t>((std::min(from[k], to[k]) - corner) * per_part_) - 1;
@@ -90,20 +105,27 @@ int InsideSearch::crossed_within(const Int3& from, const Int3& to, const Int3& v
   for (std::size_t first = 0; first < count; first += kAtOnce) {
     const std::size_t some = std::min(kAtOnce, count - first);
     std::uint8_t near[kAtOnce];
-    const std::uint8_t *lx = boxes + first, *ly = lx + count, *lz = ly + count, *hx = lz + count, *hy = hx + count, *hz = hy + count;
+    const std::uint8_t *lx = boxes + first, *ly = lx + count, *lz = ly + count, *hx = lz + count,
+                       *hy = hx + count, *hz = hy + count;
     for (std::size_t i = 0; i < some; ++i)
-      near[i] = lx[i] <= high[0] && hx[i] >= low[0] && ly[i] <= high[1] && hy[i] >= low[1] && lz[i] <= high[2] && hz[i] >= low[2] ? 1 : 0;
+      near[i] = lx[i] <= high[0] && hx[i] >= low[0] && ly[i] <= high[1] && hy[i] >= low[1] &&
+                        lz[i] <= high[2] && hz[i] >= low[2]
+                    ? 1
+                    : 0;
     for (std::size_t i = 0; i < some; ++i) {
       if (near[i] == 0) continue;
       const std::uint32_t id = list[first + i];
-      if (bounds_solid(*mesh_, id)) net += exact::segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+      if (bounds_solid(*mesh_, id))
+        net += exact::segment_crossing(from, to,
+                                       {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
     }
   }
   return net;
 }
 
 /// Along an axis to the first voxel that is not V_bnd. `sheets`: their triangles count, too.
-InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const {
+InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int axis, int way,
+                                      bool sheets) const {
   const GridConstants& grid = partition_->grid();
   Walk out{0, voxel, kVoxelBoundary};
   Int3 from = point;
@@ -120,27 +142,36 @@ InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int 
   return out;
 }
 
-/// What the way from one end to the other, along an axis and within a voxel, crosses of what the voxel lists: of those triangles that lie round it.
-int InsideSearch::crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary, bool sheets) const {
+/// What the way from one end to the other, along an axis and within a voxel, crosses of what the voxel lists:
+/// of those triangles that lie round it.
+int InsideSearch::crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel,
+                          std::uint32_t boundary, bool sheets) const {
   const GridConstants& grid = partition_->grid();
   const auto list = partition_->list(boundary);
   const std::size_t count = list.size();
   const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
   const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-  const auto part = [&](int k) { return static_cast<std::int32_t>((from[k] - (grid.origin[k] + double(grid.size) * voxel[k])) * per_part_); };
+  const auto part = [&](int k) {
+    return static_cast<std::int32_t>((from[k] - (grid.origin[k] + double(grid.size) * voxel[k])) * per_part_);
+  };
   const std::int32_t at_u = part(u), at_v = part(v);
   int net = 0;
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < count; first += kAtOnce) {
     const std::size_t some = std::min(kAtOnce, count - first);
     std::uint8_t near[kAtOnce];
-    const std::uint8_t *lu = boxes + static_cast<std::size_t>(u) * count + first, *hu = lu + 3 * count, *lv = boxes + static_cast<std::size_t>(v) * count + first, *hv = lv + 3 * count;
-    // A part to spare: both are rounded down, and a double's rounding may come out on either side of a part's border.
-    for (std::size_t i = 0; i < some; ++i) near[i] = lu[i] <= at_u + 1 && hu[i] + 1 >= at_u && lv[i] <= at_v + 1 && hv[i] + 1 >= at_v ? 1 : 0;
+    const std::uint8_t *lu = boxes + static_cast<std::size_t>(u) * count + first, *hu = lu + 3 * count,
+                       *lv = boxes + static_cast<std::size_t>(v) * count + first, *hv = lv + 3 * count;
+    // A part to spare: both are rounded down, and a double's rounding may come out on either side of a part's
+    // border.
+    for (std::size_t i = 0; i < some; ++i)
+      near[i] = lu[i] <= at_u + 1 && hu[i] + 1 >= at_u && lv[i] <= at_v + 1 && hv[i] + 1 >= at_v ? 1 : 0;
     for (std::size_t i = 0; i < some; ++i) {
       if (near[i] == 0) continue;
       const std::uint32_t id = list[first + i];
-      if (sheets || bounds_solid(*mesh_, id)) net += exact::segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+      if (sheets || bounds_solid(*mesh_, id))
+        net += exact::segment_crossing(from, to,
+                                       {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
     }
   }
   return net;
@@ -148,7 +179,7 @@ int InsideSearch::crossed(const Int3& from, const Int3& to, int axis, const Int3
 
 /// The way from a V_bnd voxel on which fewest of them lie; V_ext before V_int, whose winding has to be asked.
 std::uint8_t InsideSearch::shortest_way(const Int3& voxel) const {
-  for (std::int32_t steps = 1;; ++steps) {   // the grid's outermost layer is V_ext, so it ends
+  for (std::int32_t steps = 1;; ++steps) {  // the grid's outermost layer is V_ext, so it ends
     std::uint8_t internal = 0;
     for (int axis = 0; axis < 3; ++axis)
       for (const int up : {0, 1}) {
@@ -164,12 +195,17 @@ std::uint8_t InsideSearch::shortest_way(const Int3& voxel) const {
   }
 }
 
-/// Of a V_int voxel of a closed body: what is crossed from its middle on along +x until nothing can be any more.
+/// Of a V_int voxel of a closed body: what is crossed from its middle on along +x until nothing can be any
+/// more.
 int InsideSearch::winding_of(const Int3& voxel) {
   const GridConstants& grid = partition_->grid();
   const Int3 n = grid.bricks * 8;
-  const std::uint64_t number = 1 + static_cast<std::uint64_t>(voxel.x) + static_cast<std::uint64_t>(n.x) * (static_cast<std::uint64_t>(voxel.y) + static_cast<std::uint64_t>(n.y) * static_cast<std::uint64_t>(voxel.z));
-  Known& known = windings_[(number * 0x9E3779B97F4A7C15) >> 32 & (windings_.size() - 1)];   // 2^64 / golden ratio
+  const std::uint64_t number = 1 + static_cast<std::uint64_t>(voxel.x) +
+                               static_cast<std::uint64_t>(n.x) *
+                                   (static_cast<std::uint64_t>(voxel.y) +
+                                    static_cast<std::uint64_t>(n.y) * static_cast<std::uint64_t>(voxel.z));
+  Known& known =
+      windings_[(number * 0x9E3779B97F4A7C15) >> 32 & (windings_.size() - 1)];  // 2^64 / golden ratio
   if (known.voxel == number) return known.winding;
   int winding = 0;
   Int3 at = voxel, from = grid.origin + grid.size * voxel + Int3(grid.size / 2);

@@ -9,12 +9,15 @@
 
 namespace palpate {
 
-/// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md section 4): by walks along axes to voxels that list nothing,
-/// of a body that is not closed once a voxel, and where it keeps cells (InsideCells) not even that. Arguments outlive this. One thread, but of a body that is not closed any number; only the constructor allocates.
+/// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md
+/// section 4): by walks along axes to voxels that list nothing, of a body that is not closed once a voxel,
+/// and where it keeps cells (InsideCells) not even that. Arguments outlive this. One thread, but of a body
+/// that is not closed any number; only the constructor allocates.
 class InsideSearch {
  public:
   InsideSearch() = default;
-  /// `partition` lists every triangle of `mesh` in every voxel that it touches; `boxes`: SearchTables::boxes of it.
+  /// `partition` lists every triangle of `mesh` in every voxel that it touches; `boxes`: SearchTables::boxes
+  /// of it.
   InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes);
 
   bool inside(const Int3& point);
@@ -23,14 +26,15 @@ class InsideSearch {
 
  private:
   struct Walk {
-    int net;              ///< Σ of the signs of what is crossed
-    Int3 voxel;           ///< where it ends
-    std::uint32_t kind;   ///< of that voxel
+    int net;             ///< Σ of the signs of what is crossed
+    Int3 voxel;          ///< where it ends
+    std::uint32_t kind;  ///< of that voxel
   };
   bool inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary);
   bool inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary);
   Walk walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const;
-  int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary, bool sheets) const;
+  int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary,
+              bool sheets) const;
   int crossed_within(const Int3& from, const Int3& to, const Int3& voxel, std::uint32_t boundary) const;
   std::int16_t winding_by_walks(const Int3& voxel) const;
   std::uint8_t shortest_way(const Int3& voxel) const;
@@ -39,16 +43,19 @@ class InsideSearch {
   const LatticeMesh* mesh_ = nullptr;
   const HostPartition* partition_ = nullptr;
   std::span<const std::uint8_t> boxes_;
-  double per_part_ = 0;                    ///< parts of a voxel a step
+  double per_part_ = 0;  ///< parts of a voxel a step
   InsideCells cells_;
-  std::vector<std::uint8_t> way_;          ///< by V_bnd voxel of a closed body: the shortest way out of such voxels, axis · 2 + up + 1; 0: not known yet
+  std::vector<std::uint8_t> way_;  ///< by V_bnd voxel of a closed body: the shortest way out of such voxels,
+                                   ///< axis · 2 + up + 1; 0: not known yet
   static constexpr std::int16_t kUnknown = INT16_MIN;
-  std::vector<std::int16_t> middle_;       ///< by V_bnd voxel of a body that is not closed: how deep in its middle is, in shells
+  std::vector<std::int16_t>
+      middle_;  ///< by V_bnd voxel of a body that is not closed: how deep in its middle is, in shells
   struct Known {
-    std::uint64_t voxel;                   ///< its number + 1; 0: nothing
+    std::uint64_t voxel;  ///< its number + 1; 0: nothing
     int winding;
   };
-  std::vector<Known> windings_;            ///< of V_int voxels in which walks ended: a table where a newer answer takes an older one's place
+  std::vector<Known> windings_;  ///< of V_int voxels in which walks ended: a table where a newer answer takes
+                                 ///< an older one's place
 };
 
 }  // namespace palpate

@@ -8,20 +8,23 @@
 
 namespace palpate {
 
-using namespace gpu;   // names of shaders/shared/frame.h
+using namespace gpu;  // names of shaders/shared/frame.h
 
 namespace {
 
-constexpr std::uint32_t kOpenPart = 256;   // open samples that one thread takes at a time: some 50 us (chosen)
-constexpr std::size_t kPairPart = 512;   // likewise of pairs
-/// A moved triangle meets a moved segment only where, in the tool's own frame, they come this near, in steps: the segment's ends are off by 2.4 an axis,
-/// for the way to the tool and back is rounded twice and the matrix once, the corners by half; 5.1 in all (derived).
+constexpr std::uint32_t kOpenPart = 256;  // open samples that one thread takes at a time: some 50 us (chosen)
+constexpr std::size_t kPairPart = 512;    // likewise of pairs
+/// A moved triangle meets a moved segment only where, in the tool's own frame, they come this near, in steps:
+/// the segment's ends are off by 2.4 an axis, for the way to the tool and back is rounded twice and the
+/// matrix once, the corners by half; 5.1 in all (derived).
 constexpr std::int32_t kWalkSlack = 8;
-constexpr std::size_t kAhead = 4;   // voxels whose lists are called for before their turn: they lie far apart (chosen)
+constexpr std::size_t kAhead =
+    4;  // voxels whose lists are called for before their turn: they lie far apart (chosen)
 
 }  // namespace
 
-HostSets HostSets::make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool) {
+HostSets HostSets::make(const SceneGeometry& geometry, const SceneTables& scene,
+                        std::span<const std::uint32_t> order, InsideSearch& in_tool) {
   HostSets out;
   out.geometry_ = &geometry;
   out.in_tool_ = &in_tool;
@@ -35,12 +38,14 @@ HostSets HostSets::make(const SceneGeometry& geometry, const SceneTables& scene,
   return out;
 }
 
-/// The tool lattice point of a world lattice point (section 4). |p − translation| < 2^31: sums within 3 · 2^61.
+/// The tool lattice point of a world lattice point (section 4). |p − translation| < 2^31: sums within 3 ·
+/// 2^61.
 Int3 HostSets::tool_point(const LatticePose& pose, const Int3& point) const {
   Int3 at;
   for (int c = 0; c < 3; ++c) {
     std::int64_t sum = std::int64_t{1} << 29;
-    for (int r = 0; r < 3; ++r) sum += pose.rotation_q30[r][c] * (std::int64_t{point[r]} - pose.translation[r]);
+    for (int r = 0; r < 3; ++r)
+      sum += pose.rotation_q30[r][c] * (std::int64_t{point[r]} - pose.translation[r]);
     at[c] = static_cast<std::int32_t>(sum >> 30);
   }
   return at;
@@ -50,7 +55,9 @@ bool HostSets::inside(const LatticePose& pose, const Int3& point) const {
   const Int3 at = tool_point(pose, point);
   if (!geometry_->tool.closed) return in_tool_->inside(at);
   // A closed body's winding is 0 beyond its box. A voxel much larger than the tool lists points far from it.
-  if (glm::any(glm::lessThan(at, geometry_->tool.box_min - kWalkSlack)) || glm::any(glm::greaterThan(at, geometry_->tool.box_max + kWalkSlack))) return false;
+  if (glm::any(glm::lessThan(at, geometry_->tool.box_min - kWalkSlack)) ||
+      glm::any(glm::greaterThan(at, geometry_->tool.box_max + kWalkSlack)))
+    return false;
   const std::uint32_t kind = fine_.at(fine_.voxel_of(at)).kind;
   return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(pose, point));
 }
@@ -59,19 +66,26 @@ bool HostSets::inside(const LatticePose& pose, const Int3& point) const {
 template <class Take>
 void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
   const LatticeMesh& mesh = geometry_->mockup;
-  const Int3 low = mockup_.grid().origin + mockup_.grid().size * chunk.voxel, high = low + mockup_.grid().size - 1;   // half-open
+  const Int3 low = mockup_.grid().origin + mockup_.grid().size * chunk.voxel,
+             high = low + mockup_.grid().size - 1;  // half-open
   for (std::uint32_t i = chunk.begin; i < chunk.end; ++i) {
     const std::uint32_t id = mockup_.listed(i);
     const exact::Corners t{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
     if (t[0] == glm::clamp(t[0], low, high)) take(FrameSample{t[0], id | kCornerProbe});
-    exact::for_samples(t, mesh.sample_axis[id], geometry_->sample_spacing, low, high, [&](const Int3& p, std::int64_t, std::int64_t) { take(FrameSample{p, id}); });
+    exact::for_samples(t, mesh.sample_axis[id], geometry_->sample_spacing, low, high,
+                       [&](const Int3& p, std::int64_t, std::int64_t) {
+                         take(FrameSample{p, id});
+                       });
   }
 }
 
-/// The cells of open points. Point by point the way from voxel to list, triangles and sides is one long chain of loads, and what is decided at its end
-/// keeps the processor from the next point; step by step all points' loads run side by side.
-void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> samples, std::vector<OpenPoint>& all) const {
-  // From a plane, in steps: roundings and the rounded matrix come to less than 2.5, the rounded normal to less than 0.8 (derived).
+/// The cells of open points. Point by point the way from voxel to list, triangles and sides is one long chain
+/// of loads, and what is decided at its end keeps the processor from the next point; step by step all points'
+/// loads run side by side.
+void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> samples,
+                          std::vector<OpenPoint>& all) const {
+  // From a plane, in steps: roundings and the rounded matrix come to less than 2.5, the rounded normal to
+  // less than 0.8 (derived).
   constexpr std::int64_t kFar = std::int64_t{4} << 30;
   const LatticeMesh& mesh = geometry_->tool;
   all.clear();
@@ -89,7 +103,8 @@ void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> 
     bool far = open.list.size() <= CellMemo::kMostPlanes;
     for (const std::uint32_t id : open.list) {
       const Int3 &n = mesh.unit_normal_q30[id], from = open.at - mesh.corner(id, 0);
-      const std::int64_t height = std::int64_t{n.x} * from.x + std::int64_t{n.y} * from.y + std::int64_t{n.z} * from.z;   // within 2^62
+      const std::int64_t height = std::int64_t{n.x} * from.x + std::int64_t{n.y} * from.y +
+                                  std::int64_t{n.z} * from.z;  // within 2^62
       sides = sides << 1 | static_cast<std::uint32_t>(height > 0);
       far = far & (std::abs(height) > kFar);
     }
@@ -99,8 +114,9 @@ void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> 
   }
 }
 
-/// Whether the winding at an open sample is not 0. In the tool's frame the planes of all that the sample's voxel lists divide the voxel into convex cells that
-/// nothing passes through, so that all samples of a cell have one answer, at every pose (docs/EXACTNESS.md, section 9).
+/// Whether the winding at an open sample is not 0. In the tool's frame the planes of all that the sample's
+/// voxel lists divide the voxel into convex cells that nothing passes through, so that all samples of a cell
+/// have one answer, at every pose (docs/EXACTNESS.md, section 9).
 bool HostSets::open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open) {
   if (!open.in_cell) return walks_out(pose, point);
   if (const std::optional<bool> answer = cells_.find(open.voxel, open.sides)) return *answer;
@@ -131,7 +147,8 @@ bool HostSets::walks_out(const LatticePose& pose, const Int3& point) const {
         const exact::Corners own{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
         const exact::Box box = exact::box_of(own);
         if (glm::any(glm::greaterThan(box.low, high)) || glm::any(glm::lessThan(box.high, low))) continue;
-        winding += exact::segment_crossing(from, to, {transform(pose, own[0]), transform(pose, own[1]), transform(pose, own[2])});
+        winding += exact::segment_crossing(
+            from, to, {transform(pose, own[0]), transform(pose, own[1]), transform(pose, own[2])});
       }
     from = to;
     voxel[axis] += 2 * up - 1;
@@ -149,25 +166,32 @@ void HostSets::decide_open(const LatticePose& pose, std::span<const FrameSample>
   }
   on_this_processor([&] { find_cells(pose, samples, lane.open); });
   for (std::size_t i = 0; i < lane.open.size(); ++i) {
-    const std::size_t first = lane.open[i].first, end = i + 1 < lane.open.size() ? lane.open[i + 1].first : samples.size();
+    const std::size_t first = lane.open[i].first,
+                      end = i + 1 < lane.open.size() ? lane.open[i + 1].first : samples.size();
     if (!open_inside(pose, samples[first].point, lane.open[i])) continue;
     for (std::size_t j = first; j < end; ++j) lane.inside.push_back(samples[j]);
   }
 }
 
 /// Pairs that meet. The search has moved their tool triangles.
-void HostSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& found) const {
+void HostSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates,
+                            Lane& found) const {
   const LatticeMesh& mockup = geometry_->mockup;
   std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
   for (std::size_t begin = 0; begin < candidates.size(); begin += PairFilter::kLanes) {
-    for (std::size_t i = begin + 2 * PairFilter::kLanes; i < std::min(begin + 3 * PairFilter::kLanes, candidates.size()); ++i)
+    for (std::size_t i = begin + 2 * PairFilter::kLanes;
+         i < std::min(begin + 3 * PairFilter::kLanes, candidates.size()); ++i)
       __builtin_prefetch(&mockup.triangles[candidates[i].static_id]);
-    for (std::size_t i = begin + PairFilter::kLanes; i < std::min(begin + 2 * PairFilter::kLanes, candidates.size()); ++i)
-      for (const std::uint32_t vertex : mockup.triangles[candidates[i].static_id]) __builtin_prefetch(&mockup.vertices[vertex]);
-    const std::span<const PairCandidate> now = candidates.subspan(begin, std::min(PairFilter::kLanes, candidates.size() - begin));
+    for (std::size_t i = begin + PairFilter::kLanes;
+         i < std::min(begin + 2 * PairFilter::kLanes, candidates.size()); ++i)
+      for (const std::uint32_t vertex : mockup.triangles[candidates[i].static_id])
+        __builtin_prefetch(&mockup.vertices[vertex]);
+    const std::span<const PairCandidate> now =
+        candidates.subspan(begin, std::min(PairFilter::kLanes, candidates.size() - begin));
     for (std::size_t lane = 0; lane < now.size(); ++lane) {
       const std::uint32_t s = now[lane].static_id;
-      found.filter.put(lane, {mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, tool.moved(order_[now[lane].place]));
+      found.filter.put(lane, {mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)},
+                       tool.moved(order_[now[lane].place]));
     }
     found.filter.judge(verdicts);
     for (std::size_t lane = 0; lane < now.size(); ++lane) {
@@ -175,18 +199,21 @@ void HostSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate
       const std::uint32_t s = now[lane].static_id, id = order_[now[lane].place];
       if (verdicts[lane] == PairFilter::kUnknown) {
         const exact::Corners& t = tool.moved(id);
-        if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, t, exact::raw_normal(t))) continue;
+        if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, t,
+                                   exact::raw_normal(t)))
+          continue;
       }
       found.pairs.push_back({s, id});
     }
   }
 }
 
-/// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is not asked.
+/// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is
+/// not asked.
 void HostSets::decide_voxels(PosedTool& tool, const NearLists& near) {
   const GridConstants& grid = mockup_.grid();
-  std::uint32_t place = kNone, id = 0, marks = 0;   // candidates of one tool triangle follow each other
-  const exact::Corners* corners = nullptr;          // its own, once they are asked for
+  std::uint32_t place = kNone, id = 0, marks = 0;  // candidates of one tool triangle follow each other
+  const exact::Corners* corners = nullptr;         // its own, once they are asked for
   exact::Box box{};
   for (const TouchCandidate& candidate : near.touch.room.first(near.touch.count)) {
     if (candidate.place != place) {
@@ -197,7 +224,8 @@ void HostSets::decide_voxels(PosedTool& tool, const NearLists& near) {
     }
     // CMT outdoes IMT, and that BMT.
     const bool internal = candidate.boundary == kNoVoxel;
-    const std::uint32_t outdone_by = internal ? kMobileHit | kMobileInternal : kMobileHit | kMobileInternal | kMobileBoundary;
+    const std::uint32_t outdone_by =
+        internal ? kMobileHit | kMobileInternal : kMobileHit | kMobileInternal | kMobileBoundary;
     if ((marks & outdone_by) != 0 && (internal || touched_[candidate.boundary] != 0)) continue;
     if (corners == nullptr) {
       corners = &tool.corners(id);
@@ -218,7 +246,8 @@ void HostSets::decide_voxels(PosedTool& tool, const NearLists& near) {
 /// BST: what touched voxels list.
 void HostSets::mark_lists(IdMarks& statics) {
   for (std::size_t i = 0; i < touched_voxels_.size(); ++i) {
-    if (i + kAhead < touched_voxels_.size()) __builtin_prefetch(mockup_.list(touched_voxels_[i + kAhead]).data());
+    if (i + kAhead < touched_voxels_.size())
+      __builtin_prefetch(mockup_.list(touched_voxels_[i + kAhead]).data());
     touched_[touched_voxels_[i]] = 0;
     for (const std::uint32_t id : mockup_.list(touched_voxels_[i])) statics.add(id, kStaticListed);
   }
@@ -240,7 +269,8 @@ void HostSets::list(IdMarks& statics, FoundSets& out) {
   });
 }
 
-void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out) {
+void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper,
+                      FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();
@@ -254,12 +284,18 @@ void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, 
     lane.pairs.clear();
     lane.inside.clear();
   }
-  const auto parts_of = [](std::size_t count, std::size_t part) { return static_cast<std::uint32_t>((count + part - 1) / part); };
-  const auto piece = [](auto all, std::size_t part, std::size_t size) { return all.subspan(part * size, std::min(size, all.size() - part * size)); };
+  const auto parts_of = [](std::size_t count, std::size_t part) {
+    return static_cast<std::uint32_t>((count + part - 1) / part);
+  };
+  const auto piece = [](auto all, std::size_t part, std::size_t size) {
+    return all.subspan(part * size, std::min(size, all.size() - part * size));
+  };
   const auto lane_of = [&](int lane) -> Lane& { return lanes_[static_cast<std::size_t>(lane)]; };
 
   const std::span<const PairCandidate> candidates = near.pairs.room.first(near.pairs.count);
-  share_parts(helper, parts_of(candidates.size(), kPairPart), [&](std::uint32_t part, int lane) { decide_pairs(tool, piece(candidates, part, kPairPart), lane_of(lane)); });
+  share_parts(helper, parts_of(candidates.size(), kPairPart), [&](std::uint32_t part, int lane) {
+    decide_pairs(tool, piece(candidates, part, kPairPart), lane_of(lane));
+  });
   // CST and CMT.
   for (const Lane& lane : lanes_)
     for (const ContactPair& pair : lane.pairs) {

@@ -5,36 +5,41 @@
 #include <vector>
 
 #include "compute/native/narrow_phase/cell_memo.h"
-#include "compute/search/frame_helper.h"
-#include "compute/native/narrow_phase/inside_search.h"
-#include "compute/scene/partition_lookup.h"
 #include "compute/native/narrow_phase/id_marks.h"
-#include "compute/search/near_lists.h"
+#include "compute/native/narrow_phase/inside_search.h"
 #include "compute/native/narrow_phase/pair_filter.h"
-#include "compute/search/posed_tool.h"
+#include "compute/scene/partition_lookup.h"
 #include "compute/scene/scene_tables.h"
+#include "compute/search/frame_helper.h"
+#include "compute/search/near_lists.h"
+#include "compute/search/posed_tool.h"
 #include "model/scene/scene_geometry.h"
 
 namespace palpate {
 
-/// What detection finds at a pose: frame_state and the lists that the device would leave. C_s and C_m ascend by id.
+/// What detection finds at a pose: frame_state and the lists that the device would leave. C_s and C_m ascend
+/// by id.
 struct FoundSets {
   gpu::FrameState state{};
-  std::vector<gpu::StaticResult> statics;   ///< C_s by slot
-  std::vector<gpu::MobileResult> mobiles;   ///< C_m
-  std::vector<gpu::FrameSample> samples;    ///< that count
+  std::vector<gpu::StaticResult> statics;  ///< C_s by slot
+  std::vector<gpu::MobileResult> mobiles;  ///< C_m
+  std::vector<gpu::FrameSample> samples;   ///< that count
   std::vector<gpu::ContactPair> pairs;
 };
 
-/// Decides about the lists of what is near what the device engine's shaders decide there (docs/EXACTNESS.md sections 3 and 4): sets, pairs and
-/// samples inside the tool in `refined`. The same questions, answered exactly, so the same bits.
-/// One thread and its helper; make() keeps references to its arguments; decide() allocates only when a contact is larger than all before.
+/// Decides about the lists of what is near what the device engine's shaders decide there (docs/EXACTNESS.md
+/// sections 3 and 4): sets, pairs and samples inside the tool in `refined`. The same questions, answered
+/// exactly, so the same bits. One thread and its helper; make() keeps references to its arguments; decide()
+/// allocates only when a contact is larger than all before.
 class HostSets {
  public:
-  /// `order`: ids of the tool's triangles by place. `in_tool` outlives this and answers for a tool that is not closed. `refined`.
-  static HostSets make(const SceneGeometry& geometry, const SceneTables& scene, std::span<const std::uint32_t> order, InsideSearch& in_tool);
+  /// `order`: ids of the tool's triangles by place. `in_tool` outlives this and answers for a tool that is
+  /// not closed. `refined`.
+  static HostSets make(const SceneGeometry& geometry, const SceneTables& scene,
+                       std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
-  /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked there (kStatic…) and numbered. `helper` may be null.
+  /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked
+  /// there (kStatic…) and numbered. `helper` may be null.
   void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
 
   /// Whether a world lattice point lies inside the tool (section 4). Any number of threads.
@@ -44,24 +49,26 @@ class HostSets {
   void decide_voxels(PosedTool& tool, const NearLists& near);
   void mark_lists(IdMarks& statics);
   void list(IdMarks& statics, FoundSets& out);
-  /// A point in a V_bnd voxel of the fine partition, of one open sample or of several that follow each other: first corners of neighbours.
+  /// A point in a V_bnd voxel of the fine partition, of one open sample or of several that follow each other:
+  /// first corners of neighbours.
   struct OpenPoint {
-    std::uint32_t first;                    ///< of its samples
-    Int3 at;                                ///< in the tool's lattice
+    std::uint32_t first;  ///< of its samples
+    Int3 at;              ///< in the tool's lattice
     std::uint32_t voxel;
-    std::span<const std::uint32_t> list;    ///< the voxel's
-    std::uint32_t sides;                    ///< a bit a plane of a listed triangle: the point is on its outer side
-    bool in_cell;                           ///< it is far enough from all of them
+    std::span<const std::uint32_t> list;  ///< the voxel's
+    std::uint32_t sides;  ///< a bit a plane of a listed triangle: the point is on its outer side
+    bool in_cell;         ///< it is far enough from all of them
   };
   /// What one of a frame's threads keeps.
   struct Lane {
     PairFilter filter;
-    std::vector<gpu::ContactPair> pairs;          ///< of this frame: those that meet
-    std::vector<OpenPoint> open;                  ///< of the part at hand
-    std::vector<gpu::FrameSample> inside;         ///< of this frame: those that lie inside
+    std::vector<gpu::ContactPair> pairs;   ///< of this frame: those that meet
+    std::vector<OpenPoint> open;           ///< of the part at hand
+    std::vector<gpu::FrameSample> inside;  ///< of this frame: those that lie inside
   };
   void decide_pairs(const PosedTool& tool, std::span<const gpu::PairCandidate> candidates, Lane& lane) const;
-  void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples, std::vector<OpenPoint>& open) const;
+  void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
+                  std::vector<OpenPoint>& open) const;
   void decide_open(const LatticePose& pose, std::span<const gpu::FrameSample> samples, Lane& lane);
   bool open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
@@ -74,11 +81,11 @@ class HostSets {
   std::span<const std::uint32_t> order_;
   HostPartition mockup_, fine_;
   std::span<const std::uint32_t> fine_exit_;
-  std::array<Lane, FrameHelper::kLanes> lanes_;   ///< by thread of the frame
-  CellMemo cells_;                              ///< of fine V_bnd voxels: whether they are inside
-  std::vector<std::uint8_t> touched_;           ///< by V_bnd voxel; 0 between frames
-  std::vector<std::uint32_t> touched_voxels_;   ///< of this frame
-  IdMarks mobiles_;                             ///< C_m, with kMobile…
+  std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
+  CellMemo cells_;                               ///< of fine V_bnd voxels: whether they are inside
+  std::vector<std::uint8_t> touched_;            ///< by V_bnd voxel; 0 between frames
+  std::vector<std::uint32_t> touched_voxels_;    ///< of this frame
+  IdMarks mobiles_;                              ///< C_m, with kMobile…
 };
 
 }  // namespace palpate

@@ -12,17 +12,21 @@
 namespace palpate::native {
 namespace {
 
-constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;   // chosen
+constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;  // chosen
 
 /// The mock-up's samples; null where they are too many. False: cancelled.
 bool make_samples(const SceneGeometry& geometry, const Progress& progress, Scene& out) {
   const auto told = [&](double from, double part) {
-    return [&progress, from, part](double done) { return !progress || progress("samples", from + part * done); };
+    return
+        [&progress, from, part](double done) { return !progress || progress("samples", from + part * done); };
   };
   EntrySamples by_entry;
   auto samples = std::make_shared<HostSamples>();
-  Listing listing = list_samples(geometry.mockup, out.mockup, geometry.sample_spacing, kMostSampleBytes, told(0.6, 0.25), by_entry);
-  if (listing == Listing::kDone) listing = list_points(geometry.mockup, out.mockup, geometry.sample_spacing, told(0.85, 0.15), std::move(by_entry), *samples);
+  Listing listing = list_samples(geometry.mockup, out.mockup, geometry.sample_spacing, kMostSampleBytes,
+                                 told(0.6, 0.25), by_entry);
+  if (listing == Listing::kDone)
+    listing = list_points(geometry.mockup, out.mockup, geometry.sample_spacing, told(0.85, 0.15),
+                          std::move(by_entry), *samples);
   if (listing == Listing::kDone) out.samples = std::move(samples);
   return listing != Listing::kCancelled;
 }
@@ -43,7 +47,8 @@ SceneTables Scene::tables() const {
 }
 
 std::uint64_t Scene::bytes() const {
-  return mockup.bytes() + tool.bytes() + fine.bytes() + 4 * (std::uint64_t{fine_exit.size()} + tool_near.size()) + (samples ? samples->bytes() : 0) +
+  return mockup.bytes() + tool.bytes() + fine.bytes() +
+         4 * (std::uint64_t{fine_exit.size()} + tool_near.size()) + (samples ? samples->bytes() : 0) +
          (search ? search->bytes() : 0);
 }
 
@@ -63,7 +68,9 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
   out.mockup = std::move(*mockup);
 
   if (!at("tool", 0.3)) return cancelled();
-  const auto of_tool = [&](const VoxelGrid& grid) { return make_partition(geometry.tool, grid, gpu::kToolVoxelGrowth, "tool", go_on); };
+  const auto of_tool = [&](const VoxelGrid& grid) {
+    return make_partition(geometry.tool, grid, gpu::kToolVoxelGrowth, "tool", go_on);
+  };
   auto tool = of_tool(geometry.tool_grid);
   if (!tool) return tool.error();
   out.tool = std::move(*tool);
@@ -81,7 +88,8 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
   if (geometry.tool.closed || out.tool.has_internal)
     if (!make_samples(geometry, progress, out)) return cancelled();
 
-  out.constants = scene_constants(geometry, plan, {out.mockup.grid, out.mockup.has_internal}, {out.tool.grid, out.tool.has_internal}, out.finest().grid);
+  out.constants = scene_constants(geometry, plan, {out.mockup.grid, out.mockup.has_internal},
+                                  {out.tool.grid, out.tool.has_internal}, out.finest().grid);
   if (!at("prepared", 1)) return cancelled();
   return out;
 }

@@ -13,10 +13,10 @@ namespace palpate::native {
 struct Scene {
   gpu::SceneConstants constants{};
   Partition mockup, tool;
-  Partition fine;                               ///< of a closed tool in finer voxels; may be empty: the tool's own serves
-  std::vector<std::uint32_t> fine_exit, tool_near;   ///< as SceneTables has them
-  std::shared_ptr<const HostSamples> samples;   ///< may be null: frames work them out
-  std::shared_ptr<const SearchTables> search;   ///< never null
+  Partition fine;  ///< of a closed tool in finer voxels; may be empty: the tool's own serves
+  std::vector<std::uint32_t> fine_exit, tool_near;  ///< as SceneTables has them
+  std::shared_ptr<const HostSamples> samples;       ///< may be null: frames work them out
+  std::shared_ptr<const SearchTables> search;       ///< never null
 
   const Partition& finest() const { return fine.brick_slot.empty() ? tool : fine; }
   /// Valid as long as this neither moves nor changes.

@@ -10,13 +10,13 @@ namespace {
 namespace plain {
 constexpr std::size_t kWidth = 2;
 #include "compute/native/queries/pair_lanes.h"
-}
+}  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
 constexpr std::size_t kWidth = 4;
 #include "compute/native/queries/pair_lanes.h"
-}
+}  // namespace second
 PALPATE_SECOND_CODE_END
 #endif
 
@@ -38,15 +38,21 @@ void rooms(const PairLanes& lanes, std::array<double, kLanes>& squared) {
 
 void box_gaps(const BoxOf& box, const EightDoubles& boxes, std::array<double, kLanes>& squared) {
 #if PALPATE_TWO_CODES
-  if (has_second_code()) return second::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+  if (has_second_code())
+    return second::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(),
+                                squared.data());
 #endif
-  plain::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+  plain::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(),
+                      squared.data());
 }
 void box_gaps(const BoxOf& box, const TriangleTree::Boxes& boxes, std::array<double, kLanes>& squared) {
 #if PALPATE_TWO_CODES
-  if (has_second_code()) return second::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+  if (has_second_code())
+    return second::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(),
+                                squared.data());
 #endif
-  plain::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(), squared.data());
+  plain::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(),
+                      squared.data());
 }
 
 }  // namespace palpate::native

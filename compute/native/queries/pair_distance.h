@@ -13,8 +13,8 @@ inline constexpr std::size_t kLanes = 8;
 /// A triangle before eight others; those by coordinate, k of corner c at [3 c + k].
 struct PairLanes {
   std::array<std::array<std::int32_t, kLanes>, 9> s{};
-  std::int32_t origin[3]{};   ///< the one's first corner
-  double t[3][3]{};           ///< its corners relative to that
+  std::int32_t origin[3]{};  ///< the one's first corner
+  double t[3][3]{};          ///< its corners relative to that
 
   void take(const exact::Corners& m) {
     for (int k = 0; k < 3; ++k) {
@@ -24,23 +24,30 @@ struct PairLanes {
   }
 };
 
-/// Squared distances of the one to the eight, in double precision, of triangles that share no point. What stands for no triangle gives any number. They are off by at most distance_error().
+/// Squared distances of the one to the eight, in double precision, of triangles that share no point. What
+/// stands for no triangle gives any number. They are off by at most distance_error().
 void distances(const PairLanes& lanes, std::array<double, kLanes>& squared);
 
-/// Squares of what lies between the one and each of the eight along the two's normals: their distances are no smaller, but for roundings by less than kRoomError steps.
+/// Squares of what lies between the one and each of the eight along the two's normals: their distances are no
+/// smaller, but for roundings by less than kRoomError steps.
 void rooms(const PairLanes& lanes, std::array<double, kLanes>& squared);
 inline constexpr double kRoomError = 0x1p-8;
 
-/// By how many steps a distance from distances() may be off. `reach`: no coordinate difference is larger, nor an edge of the two; derived in section 10 of docs/EXACTNESS.md.
-inline double distance_error(double shorter_edge, double reach) { return shorter_edge * 0x1p-18 + reach * 0x1p-28 + 0x1p-10; }
+/// By how many steps a distance from distances() may be off. `reach`: no coordinate difference is larger, nor
+/// an edge of the two; derived in section 10 of docs/EXACTNESS.md.
+inline double distance_error(double shorter_edge, double reach) {
+  return shorter_edge * 0x1p-18 + reach * 0x1p-28 + 0x1p-10;
+}
 
-struct BoxOf {   ///< a closed box, steps
+struct BoxOf {  ///< a closed box, steps
   std::array<double, 3> low, high;
 };
 /// Eight boxes, by axis.
 struct EightDoubles {
   std::array<std::array<double, kLanes>, 3> low, high;
-  BoxOf box(std::size_t i) const { return {{low[0][i], low[1][i], low[2][i]}, {high[0][i], high[1][i], high[2][i]}}; }
+  BoxOf box(std::size_t i) const {
+    return {{low[0][i], low[1][i], low[2][i]}, {high[0][i], high[1][i], high[2][i]}};
+  }
 };
 /// Squared gaps between a box and eight.
 void box_gaps(const BoxOf& box, const EightDoubles& boxes, std::array<double, kLanes>& squared);

@@ -5,10 +5,11 @@
 
 namespace palpate::exact {
 
-/// How far two triangles that share no point are apart (docs/EXACTNESS.md, section 10). Neither is collapsed; coordinates as exact.h has them.
+/// How far two triangles that share no point are apart (docs/EXACTNESS.md, section 10). Neither is collapsed;
+/// coordinates as exact.h has them.
 struct Gap {
-  std::int32_t steps;   ///< floor of the distance
-  int feature;          ///< the first that is so near
+  std::int32_t steps;  ///< floor of the distance
+  int feature;         ///< the first that is so near
 };
 
 /// `most`: features further than that many steps need not be told apart; `steps` is then more than `most`.

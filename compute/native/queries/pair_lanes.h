@@ -1,5 +1,5 @@
-// Included by pair_distance.cpp alone, once for each processor's code (compute/search/processor.h); so it guards nothing and includes nothing.
-// kWidth: doubles in a vector of the processor's.
+// Included by pair_distance.cpp alone, once for each processor's code (compute/search/processor.h); so it
+// guards nothing and includes nothing. kWidth: doubles in a vector of the processor's.
 
 using Doubles = double __attribute__((vector_size(8 * kWidth)));
 using Ints = std::int32_t __attribute__((vector_size(4 * kWidth)));
@@ -24,8 +24,10 @@ static void clamp01(Doubles& v) {
   v = v < one ? v : one;
 }
 
-// A corner above a face: `from` is the corner relative to the face's first, normal and inward normals of the face's edges are given.
-static void above(const Point& corner, const Point face[3], const Point& normal, const Doubles& size2, const Point inward[3], Doubles& best) {
+// A corner above a face: `from` is the corner relative to the face's first, normal and inward normals of the
+// face's edges are given.
+static void above(const Point& corner, const Point face[3], const Point& normal, const Doubles& size2,
+                  const Point inward[3], Doubles& best) {
   Point from;
   Doubles height, side;
   minus(corner, face[0], from);
@@ -48,7 +50,8 @@ static void corners_of(const PairLanes& in, std::size_t begin, Point a[3], Point
       std::memcpy(&whole[k], in.s[3 * c + k].data() + begin, sizeof whole[k]);
       whole[k] -= in.origin[k];
     }
-    a[c] = {__builtin_convertvector(whole[0], Doubles), __builtin_convertvector(whole[1], Doubles), __builtin_convertvector(whole[2], Doubles)};
+    a[c] = {__builtin_convertvector(whole[0], Doubles), __builtin_convertvector(whole[1], Doubles),
+            __builtin_convertvector(whole[2], Doubles)};
     set(b[c].x, in.t[c][0]);
     set(b[c].y, in.t[c][1]);
     set(b[c].z, in.t[c][2]);
@@ -75,7 +78,7 @@ static void widen(const Point a[3], const Point b[3], const Point& way, Doubles&
   const Doubles zero{};
   between = between > zero ? between : zero;
   const Doubles squared = between * between / size;
-  room = squared > room ? squared : room;   // of no direction: not a number, and left out
+  room = squared > room ? squared : room;  // of no direction: not a number, and left out
 }
 
 // Squares of what lies between the two along the normals of both.
@@ -124,7 +127,8 @@ static void judge_from(const PairLanes& in, std::size_t begin, std::array<double
     above(a[c], b, normal_t, size_t_, inward_t, best);
     above(b[c], a, normal_s, size_s, inward_s, best);
   }
-  // Every edge with every other, ends included: the best place on one for the place on the other, once more the other way round.
+  // Every edge with every other, ends included: the best place on one for the place on the other, once more
+  // the other way round.
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) {
       Point r, way;
@@ -164,7 +168,8 @@ static void load(const std::int32_t* from, Doubles& out) {
 
 // Squared gaps between a box and eight others.
 template <class Number>
-static void gaps_between(const double* low, const double* high, const Number* lows, const Number* highs, double* out) {
+static void gaps_between(const double* low, const double* high, const Number* lows, const Number* highs,
+                         double* out) {
   for (std::size_t begin = 0; begin < kLanes; begin += kWidth) {
     Doubles sum{};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -10,19 +10,25 @@ namespace palpate::native {
 namespace {
 
 constexpr std::uint32_t kWide = kLanes;
-constexpr double kNowhereSteps = 0x1p40;   // where no triangle is
+constexpr double kNowhereSteps = 0x1p40;  // where no triangle is
 using Vec = std::array<double, 3>;
 
 Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vec operator+(const Vec& a, const Vec& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Vec operator*(const Vec& a, double f) { return {a[0] * f, a[1] * f, a[2] * f}; }
 double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec cross(const Vec& a, const Vec& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Vec cross(const Vec& a, const Vec& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-Vec vec(const Int3& p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }
+Vec vec(const Int3& p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
 Vec vec(const Vec3& p) { return {p.x, p.y, p.z}; }
 
-double largest(const BoxOf& box) { return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]}); }
+double largest(const BoxOf& box) {
+  return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+}
 BoxOf union_of(const TriangleTree::Boxes& boxes, std::uint32_t count) {
   BoxOf out;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -33,8 +39,12 @@ BoxOf union_of(const TriangleTree::Boxes& boxes, std::uint32_t count) {
 }
 
 /// The children of node `index` of `level` > 0: how many, and which Boxes they are.
-std::uint32_t children(const TriangleTree& tree, std::uint32_t level, std::uint32_t index) { return std::min(kWide, tree.nodes(level - 1) - kWide * index); }
-std::uint32_t group_of(const TriangleTree& tree, std::uint32_t level, std::uint32_t index) { return tree.level_begin[level - 1] + index; }
+std::uint32_t children(const TriangleTree& tree, std::uint32_t level, std::uint32_t index) {
+  return std::min(kWide, tree.nodes(level - 1) - kWide * index);
+}
+std::uint32_t group_of(const TriangleTree& tree, std::uint32_t level, std::uint32_t index) {
+  return tree.level_begin[level - 1] + index;
+}
 
 double gap(const BoxOf& a, const BoxOf& b) {
   double sum = 0;
@@ -50,7 +60,8 @@ template <class Boxes>
 double overlap(const BoxOf& box, const Boxes& boxes, std::size_t i) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k)
-    least = std::min({least, box.high[k] - static_cast<double>(boxes.low[k][i]), static_cast<double>(boxes.high[k][i]) - box.low[k]});
+    least = std::min({least, box.high[k] - static_cast<double>(boxes.low[k][i]),
+                      static_cast<double>(boxes.high[k][i]) - box.low[k]});
   return least;
 }
 
@@ -69,7 +80,8 @@ struct NearestPoints {
   }
 };
 
-/// A direction across which two triangles are apart is all that is wanted: whatever it is worth is measured along it.
+/// A direction across which two triangles are apart is all that is wanted: whatever it is worth is measured
+/// along it.
 NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m) {
   NearestPoints out;
   const auto above = [&](const Vec& p, const std::array<Vec, 3>& t, bool of_m) {
@@ -79,8 +91,10 @@ NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 
     for (std::size_t e = 0; e < 3; ++e)
       if (dot(cross(n, t[(e + 1) % 3] - t[e]), p - t[e]) < 0) return;
     const Vec foot = p - n * (dot(n, p - t[0]) / size);
-    if (of_m) out.take(foot, p);
-    else out.take(p, foot);
+    if (of_m)
+      out.take(foot, p);
+    else
+      out.take(p, foot);
   };
   for (std::size_t c = 0; c < 3; ++c) {
     above(m[c], s, true);
@@ -89,7 +103,8 @@ NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) {
       const Vec e = s[(i + 1) % 3] - s[i], f = m[(j + 1) % 3] - m[j], r = s[i] - m[j];
-      const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r), under = ee * ff - ef * ef;
+      const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r),
+                   under = ee * ff - ef * ef;
       double a = under > 0 ? std::clamp((ef * fr - er * ff) / under, 0.0, 1.0) : 0.0;
       const double b = std::clamp((ef * a + fr) / ff, 0.0, 1.0);
       a = std::clamp((ef * b - er) / ee, 0.0, 1.0);
@@ -102,8 +117,10 @@ NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 
 
 PairTrees::PairTrees(const SceneGeometry& of)
     : geometry(&of),
-      mockup(TriangleTree::make(of.mockup, [] { return true; }, kTriangleCollapsed)),
-      tool(TriangleTree::make(of.tool, [] { return true; }, kTriangleCollapsed)),
+      mockup(TriangleTree::make(
+          of.mockup, [] { return true; }, kTriangleCollapsed)),
+      tool(TriangleTree::make(
+          of.tool, [] { return true; }, kTriangleCollapsed)),
       corners((mockup.order.size() + kLanes - 1) / kLanes),
       boxes(corners.size()) {
   for (std::size_t place = 0; place < mockup.order.size(); ++place)
@@ -119,9 +136,13 @@ PairTrees::PairTrees(const SceneGeometry& of)
     }
 }
 
-PairSearch::PairSearch(const PairTrees& trees) : trees_(&trees), runs_(trees.tool.nodes(0)), groups_(trees.tool.boxes.size()) {
+PairSearch::PairSearch(const PairTrees& trees)
+    : trees_(&trees), runs_(trees.tool.nodes(0)), groups_(trees.tool.boxes.size()) {
   const auto root = [](const TriangleTree& tree) {
-    return tree.boxes.empty() ? BoxOf{} : union_of(tree.boxes.back(), children(tree, static_cast<std::uint32_t>(tree.level_begin.size()), 0));
+    return tree.boxes.empty()
+               ? BoxOf{}
+               : union_of(tree.boxes.back(),
+                          children(tree, static_cast<std::uint32_t>(tree.level_begin.size()), 0));
   };
   mockup_root_ = root(trees.mockup);
   tool_root_ = root(trees.tool);
@@ -135,14 +156,15 @@ void PairSearch::begin(const LatticePose& pose) {
       size_[r][c] = std::abs(rotation_[r][c]);
     }
   if (++now_ != 0) return;
-  for (Run& run : runs_) run.pose = 0;   // once in 2^32 poses
+  for (Run& run : runs_) run.pose = 0;  // once in 2^32 poses
   for (Group& group : groups_) group.pose = 0;
   now_ = 1;
 }
 
 exact::Corners PairSearch::mobile(std::uint32_t id) const {
   const LatticeMesh& mesh = trees_->geometry->tool;
-  return {transform(pose_, mesh.corner(id, 0)), transform(pose_, mesh.corner(id, 1)), transform(pose_, mesh.corner(id, 2))};
+  return {transform(pose_, mesh.corner(id, 0)), transform(pose_, mesh.corner(id, 1)),
+          transform(pose_, mesh.corner(id, 2))};
 }
 exact::Corners PairSearch::fixed(std::uint32_t id) const {
   const LatticeMesh& mesh = trees_->geometry->mockup;
@@ -183,7 +205,7 @@ const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
     for (std::size_t k = 0; k < 3; ++k) run.boxes.low[k][i] = run.boxes.high[k][i] = kNowhereSteps;
     if (place >= trees_->tool.order.size()) continue;
     const exact::Corners& t = run.corners[i] = mobile(trees_->tool.order[place]);
-    if (exact::raw_normal(t) == exact::Normal{}) continue;   // collinear at this pose: in no pair
+    if (exact::raw_normal(t) == exact::Normal{}) continue;  // collinear at this pose: in no pair
     const BoxOf box = box_of(t);
     for (std::size_t k = 0; k < 3; ++k) {
       run.boxes.low[k][i] = box.low[k];
@@ -193,9 +215,11 @@ const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
   return run;
 }
 
-/// Calls policy.lanes() for every tool triangle and run of the mock-up between which boxes leave room for what the policy wants. A policy has
+/// Calls policy.lanes() for every tool triangle and run of the mock-up between which boxes leave room for
+/// what the policy wants. A policy has
 ///   bool keep(squared, tool box, mock-up box): whether what is in them may matter;
-///   bool lanes(number of tool triangle, its id, run, mock-up run, mask): of eight pairs those in the mask may matter; false: it knows enough.
+///   bool lanes(number of tool triangle, its id, run, mock-up run, mask): of eight pairs those in the mask
+///   may matter; false: it knows enough.
 template <class Policy>
 void PairSearch::descend(Policy& policy) {
   const TriangleTree &tool = trees_->tool, &mockup = trees_->mockup;
@@ -211,7 +235,11 @@ void PairSearch::descend(Policy& policy) {
     tool_box.low[r] = centre - half;
     tool_box.high[r] = centre + half;
   }
-  open_.push_back({{static_cast<std::uint32_t>(tool.level_begin.size()), 0}, {static_cast<std::uint32_t>(mockup.level_begin.size()), 0}, tool_box, mockup_root_, gap(tool_box, mockup_root_)});
+  open_.push_back({{static_cast<std::uint32_t>(tool.level_begin.size()), 0},
+                   {static_cast<std::uint32_t>(mockup.level_begin.size()), 0},
+                   tool_box,
+                   mockup_root_,
+                   gap(tool_box, mockup_root_)});
   std::array<double, kLanes> gaps;
   while (!open_.empty()) {
     const Item item = open_.back();
@@ -222,10 +250,12 @@ void PairSearch::descend(Policy& policy) {
       if (!leaf(policy, item)) return;
       continue;
     }
-    const bool turn_tool = item.mockup.level == 0 || (item.tool.level != 0 && largest(item.tool_box) > largest(item.mockup_box));
+    const bool turn_tool =
+        item.mockup.level == 0 || (item.tool.level != 0 && largest(item.tool_box) > largest(item.mockup_box));
     std::array<std::uint32_t, kLanes> order;
     std::uint32_t count = 0, first = 0;
-    // Of those that may matter the furthest first, so that the nearest, or the two that overlap most, are on top then.
+    // Of those that may matter the furthest first, so that the nearest, or the two that overlap most, are on
+    // top then.
     const auto sort_in = [&](std::uint32_t all, const BoxOf& box, const auto& boxes) {
       std::array<double, kLanes> rank;
       for (std::uint32_t i = 0; i < all; ++i) {
@@ -243,7 +273,9 @@ void PairSearch::descend(Policy& policy) {
       sort_in(children(tool, item.tool.level, item.tool.index), item.mockup_box, boxes);
       for (std::uint32_t n = 0; n < count; ++n) {
         const BoxOf box = boxes.box(order[n]);
-        if (policy.keep(gaps[order[n]], box, item.mockup_box)) open_.push_back({{item.tool.level - 1, first + order[n]}, item.mockup, box, item.mockup_box, gaps[order[n]]});
+        if (policy.keep(gaps[order[n]], box, item.mockup_box))
+          open_.push_back(
+              {{item.tool.level - 1, first + order[n]}, item.mockup, box, item.mockup_box, gaps[order[n]]});
       }
     } else {
       const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, item.mockup.level, item.mockup.index)];
@@ -252,9 +284,13 @@ void PairSearch::descend(Policy& policy) {
       sort_in(children(mockup, item.mockup.level, item.mockup.index), item.tool_box, boxes);
       for (std::uint32_t n = 0; n < count; ++n) {
         const std::size_t i = order[n];
-        const BoxOf box{{static_cast<double>(boxes.low[0][i]), static_cast<double>(boxes.low[1][i]), static_cast<double>(boxes.low[2][i])},
-                        {static_cast<double>(boxes.high[0][i]), static_cast<double>(boxes.high[1][i]), static_cast<double>(boxes.high[2][i])}};
-        if (policy.keep(gaps[i], item.tool_box, box)) open_.push_back({item.tool, {item.mockup.level - 1, first + order[n]}, item.tool_box, box, gaps[i]});
+        const BoxOf box{{static_cast<double>(boxes.low[0][i]), static_cast<double>(boxes.low[1][i]),
+                         static_cast<double>(boxes.low[2][i])},
+                        {static_cast<double>(boxes.high[0][i]), static_cast<double>(boxes.high[1][i]),
+                         static_cast<double>(boxes.high[2][i])}};
+        if (policy.keep(gaps[i], item.tool_box, box))
+          open_.push_back(
+              {item.tool, {item.mockup.level - 1, first + order[n]}, item.tool_box, box, gaps[i]});
       }
     }
   }
@@ -263,7 +299,9 @@ void PairSearch::descend(Policy& policy) {
 template <class Policy>
 bool PairSearch::leaf(Policy& policy, const Item& item) {
   const Run& run = posed_run(item.tool.index);
-  const std::uint32_t statics = item.mockup.index, count = std::min(kWide, static_cast<std::uint32_t>(trees_->mockup.order.size()) - kWide * statics);
+  const std::uint32_t statics = item.mockup.index,
+                      count = std::min(
+                          kWide, static_cast<std::uint32_t>(trees_->mockup.order.size()) - kWide * statics);
   const TriangleTree::Boxes& boxes = trees_->boxes[statics];
   std::array<double, kLanes> gaps, of_triangles;
   box_gaps(item.mockup_box, run.boxes, of_triangles);
@@ -286,14 +324,17 @@ bool PairSearch::leaf(Policy& policy, const Item& item) {
     if (crossing != 0) {
       std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
       const auto fixed_corners = [&](std::size_t lane) {
-        return exact::Corners{Int3(corners[0][lane], corners[1][lane], corners[2][lane]), Int3(corners[3][lane], corners[4][lane], corners[5][lane]),
+        return exact::Corners{Int3(corners[0][lane], corners[1][lane], corners[2][lane]),
+                              Int3(corners[3][lane], corners[4][lane], corners[5][lane]),
                               Int3(corners[6][lane], corners[7][lane], corners[8][lane])};
       };
       filter_.put(corners, run.corners[i]);
       filter_.judge(verdicts);
       for (std::uint32_t lane = 0; lane < count; ++lane) {
         if ((crossing >> lane & 1) == 0 || verdicts[lane] == PairFilter::kApart) continue;
-        if (verdicts[lane] == PairFilter::kUnknown && !exact::triangles_meet(fixed_corners(lane), run.corners[i], exact::raw_normal(run.corners[i]))) continue;
+        if (verdicts[lane] == PairFilter::kUnknown &&
+            !exact::triangles_meet(fixed_corners(lane), run.corners[i], exact::raw_normal(run.corners[i])))
+          continue;
         policy.met(trees_->mockup.order[kWide * statics + lane], mobile_id);
         return false;
       }
@@ -315,7 +356,8 @@ bool PairSearch::leaf(Policy& policy, const Item& item) {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       if ((mask >> lane & 1) == 0) continue;
       const double distance = std::sqrt(squared[lane]);
-      policy.pair(trees_->mockup.order[kWide * statics + lane], mobile_id, run.corners[i], distance, distance_error(std::min(edge, 2 * largest(item.mockup_box)), reach + distance));
+      policy.pair(trees_->mockup.order[kWide * statics + lane], mobile_id, run.corners[i], distance,
+                  distance_error(std::min(edge, 2 * largest(item.mockup_box)), reach + distance));
     }
   }
   return true;
@@ -331,7 +373,9 @@ struct PairSearch::Any {
     who = {s, m};
   }
   bool wants_distances() const { return !close; }
-  void pair(std::uint32_t, std::uint32_t, const exact::Corners&, double distance, double error) { close = close || distance - error <= kCloseSteps; }
+  void pair(std::uint32_t, std::uint32_t, const exact::Corners&, double distance, double error) {
+    close = close || distance - error <= kCloseSteps;
+  }
 };
 
 PairSearch::Found PairSearch::any(const LatticePose& pose) {
@@ -352,8 +396,8 @@ PairSearch::Found PairSearch::any(const LatticePose& pose) {
 
 struct PairSearch::Nearest {
   std::vector<Candidate>& candidates;
-  double most;               ///< no pair is wanted that is a step further than this
-  double most_squared = 0;   ///< (most + 1)², and a little
+  double most;              ///< no pair is wanted that is a step further than this
+  double most_squared = 0;  ///< (most + 1)², and a little
   bool found = false;
   void set(double distance) {
     most = distance;
@@ -380,15 +424,20 @@ Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
     const exact::Corners m = mobile(near_[1]);
     if (!(exact::raw_normal(m) == exact::Normal{})) {
       const exact::Corners s = fixed(near_[0]);
-      const auto d = nearest_points({vec(s[0]), vec(s[1]), vec(s[2])}, {vec(m[0]), vec(m[1]), vec(m[2])});   // true points: no pair is nearer than it is
+      const auto d =
+          nearest_points({vec(s[0]), vec(s[1]), vec(s[2])},
+                         {vec(m[0]), vec(m[1]), vec(m[2])});  // true points: no pair is nearer than it is
       policy.set(std::min(policy.most, std::sqrt(d.squared) + 1));
     }
   }
   descend(policy);
   if (policy.found) return {.kind = Clearance::Kind::kTouching};
-  // Which of those within a step of each other are nearest, and of these the pair with the smallest ids: integers decide.
+  // Which of those within a step of each other are nearest, and of these the pair with the smallest ids:
+  // integers decide.
   std::erase_if(candidates_, [&](const Candidate& c) { return c.least >= policy.most + 1; });
-  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) { return a.static_id != b.static_id ? a.static_id < b.static_id : a.mobile_id < b.mobile_id; });
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    return a.static_id != b.static_id ? a.static_id < b.static_id : a.mobile_id < b.mobile_id;
+  });
   Clearance out;
   int feature = -1;
   for (const Candidate& c : candidates_) {
@@ -396,7 +445,10 @@ Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
     if (c.least >= static_cast<double>(most) + 1) continue;
     const exact::Gap gap = exact::gap(fixed(c.static_id), mobile(c.mobile_id), most);
     if (gap.steps > most) continue;
-    out = {.kind = Clearance::Kind::kApart, .steps = gap.steps, .static_id = c.static_id, .mobile_id = c.mobile_id};
+    out = {.kind = Clearance::Kind::kApart,
+           .steps = gap.steps,
+           .static_id = c.static_id,
+           .mobile_id = c.mobile_id};
     feature = gap.feature;
   }
   if (out.kind != Clearance::Kind::kApart) return out;
@@ -405,14 +457,15 @@ Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
   return out;
 }
 
-/// What may be met soonest. A box or a triangle that the screw carries on goes along a fixed direction n, in time δ, no further than δ v·n + ½ δ² a: v is where it
-/// goes now, and a, how much that can turn, is the angle a time times the speed across the axis, which a screw keeps.
+/// What may be met soonest. A box or a triangle that the screw carries on goes along a fixed direction n, in
+/// time δ, no further than δ v·n + ½ δ² a: v is where it goes now, and a, how much that can turn, is the
+/// angle a time times the speed across the axis, which a screw keeps.
 struct PairSearch::Timed {
   const PairSearch& search;
   Vec axis, velocity, origin;
-  double angle, time;           ///< the soonest so far
-  double fastest;               ///< speed of the tool's fastest point, at most
-  double reach_squared = 0;     ///< how far that one gets in `time`
+  double angle, time;        ///< the soonest so far
+  double fastest;            ///< speed of the tool's fastest point, at most
+  double reach_squared = 0;  ///< how far that one gets in `time`
   FreeTime out{};
   bool stop = false;
 
@@ -431,14 +484,17 @@ struct PairSearch::Timed {
     if (need <= 0) return true;
     Vec way, centre, half;
     for (std::size_t k = 0; k < 3; ++k) {
-      way[k] = (std::max(mockup.low[k] - tool.high[k], 0.0) - std::max(tool.low[k] - mockup.high[k], 0.0)) / distance;
+      way[k] = (std::max(mockup.low[k] - tool.high[k], 0.0) - std::max(tool.low[k] - mockup.high[k], 0.0)) /
+               distance;
       centre[k] = 0.5 * (tool.low[k] + tool.high[k]);
       half[k] = 0.5 * (tool.high[k] - tool.low[k]);
     }
     const Vec v = speed_at(centre), across_axis = cross(way, axis);
     const double turned = angle * length(half);
     if (time * (length(v) + turned) < need) return false;
-    const double along = dot(v, way) + angle * (std::abs(across_axis[0]) * half[0] + std::abs(across_axis[1]) * half[1] + std::abs(across_axis[2]) * half[2]);
+    const double along =
+        dot(v, way) + angle * (std::abs(across_axis[0]) * half[0] + std::abs(across_axis[1]) * half[1] +
+                               std::abs(across_axis[2]) * half[2]);
     return time * along + 0.5 * time * time * angle * (across(v) + turned) >= need;
   }
   void met(std::uint32_t s, std::uint32_t m) {
@@ -446,16 +502,19 @@ struct PairSearch::Timed {
     set(0);
   }
   bool wants_distances() const { return true; }
-  void pair(std::uint32_t s_id, std::uint32_t m_id, const exact::Corners& m_corners, double distance, double error) {
+  void pair(std::uint32_t s_id, std::uint32_t m_id, const exact::Corners& m_corners, double distance,
+            double error) {
     const double sure = distance - error;
     if (sure - kMotionSlack > fastest * time) return;
     double sooner = 0;
     if (sure > kMotionSlack) {
       const exact::Corners s_corners = search.fixed(s_id);
-      const std::array<Vec, 3> s{vec(s_corners[0]), vec(s_corners[1]), vec(s_corners[2])}, m{vec(m_corners[0]), vec(m_corners[1]), vec(m_corners[2])};
+      const std::array<Vec, 3> s{vec(s_corners[0]), vec(s_corners[1]), vec(s_corners[2])},
+          m{vec(m_corners[0]), vec(m_corners[1]), vec(m_corners[2])};
       const NearestPoints near = nearest_points(s, m);
       const Vec way = (near.on_s - near.on_m) * (1 / std::sqrt(near.squared));
-      double room = std::numeric_limits<double>::infinity(), front = -room, along = -room, faster = 0, turning = 0;
+      double room = std::numeric_limits<double>::infinity(), front = -room, along = -room, faster = 0,
+             turning = 0;
       for (std::size_t c = 0; c < 3; ++c) {
         const Vec v = speed_at(m[c]);
         room = std::min(room, dot(way, s[c] - near.on_m));
@@ -464,17 +523,25 @@ struct PairSearch::Timed {
         faster = std::max(faster, length(v));
         turning = std::max(turning, across(v));
       }
-      const double need = room - front - error - kMotionSlack;   // along `way` there is so much room between them, whatever `way` is worth
+      const double need =
+          room - front - error -
+          kMotionSlack;  // along `way` there is so much room between them, whatever `way` is worth
       if (need > 0) {
         const double a = angle * turning;
         const double under = std::sqrt(along * along + 2 * a * need);
-        sooner = a > 0 ? (along > 0 ? 2 * need / (along + under) : (under - along) / a) : along > 0 ? need / along : std::numeric_limits<double>::infinity();
+        sooner = a > 0       ? (along > 0 ? 2 * need / (along + under) : (under - along) / a)
+                 : along > 0 ? need / along
+                             : std::numeric_limits<double>::infinity();
         sooner *= 1 - 0x1p-40;
       }
       sooner = std::max(sooner, (sure - kMotionSlack) / faster * (1 - 0x1p-40));
     }
     if (sooner >= time) return;
-    out = {.time = sooner, .blocked = true, .steps = static_cast<std::int32_t>(std::max(distance, 0.0)), .static_id = s_id, .mobile_id = m_id};
+    out = {.time = sooner,
+           .blocked = true,
+           .steps = static_cast<std::int32_t>(std::max(distance, 0.0)),
+           .static_id = s_id,
+           .mobile_id = m_id};
     set(sooner);
   }
 };
@@ -482,8 +549,10 @@ struct PairSearch::Timed {
 FreeTime PairSearch::free_time(const LatticePose& pose, const Twist& twist, double longest) {
   begin(pose);
   Timed policy{*this, vec(twist.axis), vec(twist.velocity), vec(pose.translation), twist.angle, 0, 0};
-  // The tool's points go along the axis as its origin does, and across it by that one's speed and their own turn about it.
-  const double along = dot(policy.axis, policy.velocity), across = policy.across(policy.velocity) + twist.angle * twist.radius;
+  // The tool's points go along the axis as its origin does, and across it by that one's speed and their own
+  // turn about it.
+  const double along = dot(policy.axis, policy.velocity),
+               across = policy.across(policy.velocity) + twist.angle * twist.radius;
   policy.fastest = std::sqrt(along * along + across * across);
   policy.out.time = longest;
   policy.set(longest);
@@ -491,10 +560,13 @@ FreeTime PairSearch::free_time(const LatticePose& pose, const Twist& twist, doub
     const exact::Corners m = mobile(blocking_[1]), s = fixed(blocking_[0]);
     if (!(exact::raw_normal(m) == exact::Normal{})) {
       const exact::Box box = exact::box_of(m), other = exact::box_of(s);
-      if (gap({vec(box.low), vec(box.high)}, {vec(other.low), vec(other.high)}) > 0) {   // else it may meet: that is the search's to say
-        const NearestPoints d = nearest_points({vec(s[0]), vec(s[1]), vec(s[2])}, {vec(m[0]), vec(m[1]), vec(m[2])});
+      if (gap({vec(box.low), vec(box.high)}, {vec(other.low), vec(other.high)}) >
+          0) {  // else it may meet: that is the search's to say
+        const NearestPoints d =
+            nearest_points({vec(s[0]), vec(s[1]), vec(s[2])}, {vec(m[0]), vec(m[1]), vec(m[2])});
         const double size = std::sqrt(d.squared) + twist.radius;
-        policy.pair(blocking_[0], blocking_[1], m, std::sqrt(d.squared), distance_error(std::min(size, 0x1p29), size));
+        policy.pair(blocking_[0], blocking_[1], m, std::sqrt(d.squared),
+                    distance_error(std::min(size, 0x1p29), size));
       }
     }
   }

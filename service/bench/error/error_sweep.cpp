@@ -18,7 +18,8 @@ Mesh subdivided(const Mesh& mesh) {
     const auto first = static_cast<std::uint32_t>(out.vertices.size());
     const Vec3 a = mesh.vertices[triangle[0]], b = mesh.vertices[triangle[1]], c = mesh.vertices[triangle[2]];
     for (const Vec3& v : {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5}) out.vertices.push_back(v);
-    for (const auto& [i, j, k] : {std::array{0u, 3u, 5u}, {3u, 1u, 4u}, {5u, 4u, 2u}, {3u, 4u, 5u}}) out.triangles.push_back({first + i, first + j, first + k});
+    for (const auto& [i, j, k] : {std::array{0u, 3u, 5u}, {3u, 1u, 4u}, {5u, 4u, 2u}, {3u, 4u, 5u}})
+      out.triangles.push_back({first + i, first + j, first + k});
   }
   return out;
 }
@@ -31,12 +32,14 @@ std::optional<ContactTruth> summary_of(const ContactResponse& response) {
   return ContactTruth{deepest->normal, deepest->depth, deepest->point, response.wrench};
 }
 
-double angle_deg(const Vec3& a, const Vec3& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 57.29577951308232; }
+double angle_deg(const Vec3& a, const Vec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 57.29577951308232;
+}
 
 }  // namespace
 
-Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& setting, std::uint64_t rounds, CollisionBackend& backend,
-                            const Progress& progress) {
+Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& setting, std::uint64_t rounds,
+                            CollisionBackend& backend, const Progress& progress) {
   Mesh finer;
   const Mesh* mockup = &subject.meshes.mockup;
   for (int i = 0; i < setting.subdivisions; ++i) {
@@ -48,7 +51,8 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
   Plan plan;
   plan.profile = setting.profile;
   plan.est = setting.profile == Profile::kRefined;
-  if (auto done = backend.prepare(*geometry, plan, progress); !done) return Error{done.error().code, subject.name + ": " + done.error().sentence};
+  if (auto done = backend.prepare(*geometry, plan, progress); !done)
+    return Error{done.error().code, subject.name + ": " + done.error().sentence};
 
   Answered out;
   out.answers.resize(subject.poses.size());
@@ -56,24 +60,29 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
   out.all_us.resize(subject.poses.size());
   Contacts contacts;
   ContactResponse response;
-  for (std::uint64_t round = 0; round <= rounds; ++round)   // the first warms up
+  for (std::uint64_t round = 0; round <= rounds; ++round)  // the first warms up
     for (std::size_t i = 0; i < subject.poses.size(); ++i) {
       const auto start = std::chrono::steady_clock::now();
       const Result<LatticePose> pose = to_lattice(subject.poses[i], *geometry);
       if (!pose) return Error{pose.error().code, subject.name + ": " + pose.error().sentence};
       if (auto done = backend.query(*pose, nullptr, contacts); !done) return done.error();
       respond(contacts, *pose, *geometry, setting.profile, subject.stiffness_n_per_m, response);
-      const double us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-      if (contacts.truncated) return Error{ErrorCode::kInternal, subject.name + ": a frame was truncated: " + contacts.truncated_capacity};
+      const double us =
+          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+      if (contacts.truncated)
+        return Error{ErrorCode::kInternal,
+                     subject.name + ": a frame was truncated: " + contacts.truncated_capacity};
       if (round > 0) {
         out.times_us[i] = std::min(out.times_us[i], us);
         out.all_us[i].push_back(us);
       }
       if (round == 0) {
         out.answers[i] = summary_of(response);
-        for (const ContactArea& area : contacts.areas) out.samples += setting.profile == Profile::kPaper ? area.rays : area.field.samples;
+        for (const ContactArea& area : contacts.areas)
+          out.samples += setting.profile == Profile::kPaper ? area.rays : area.field.samples;
       }
-      if (i % 16 == 0 && !progress("poses", static_cast<double>(i) / static_cast<double>(subject.poses.size())))
+      if (i % 16 == 0 &&
+          !progress("poses", static_cast<double>(i) / static_cast<double>(subject.poses.size())))
         return Error{ErrorCode::kInternal, "interrupted"};
     }
   return out;
@@ -84,7 +93,8 @@ ErrorResult judge(const Answered& answered, const std::vector<std::optional<Cont
   for (std::size_t i = 0; i < truths.size(); ++i) {
     if (!truths[i]) continue;
     out.times_us.push_back(answered.times_us[i]);
-    const ContactTruth nothing, &truth = *truths[i], &answer = answered.answers[i] ? *answered.answers[i] : nothing;
+    const ContactTruth nothing, &truth = *truths[i],
+                                &answer = answered.answers[i] ? *answered.answers[i] : nothing;
     out.errors[0].push_back(std::fabs(answer.depth - truth.depth));
     out.errors[3].push_back(glm::length(answer.wrench.force - truth.wrench.force));
     out.errors[4].push_back(glm::length(answer.wrench.torque - truth.wrench.torque));

@@ -1,4 +1,5 @@
-// `palpate bench numerics`: stiff and extreme cases, swept until something breaks: palpate beside the same method in plain single and double precision.
+// `palpate bench numerics`: stiff and extreme cases, swept until something breaks: palpate beside the same
+// method in plain single and double precision.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 #include "model/scene/geometry_build.h"
 #include "service/bench/bench.h"
 #include "service/bench/error/error_sweep.h"
-#include "service/bench/output.h"
 #include "service/bench/error/plain_response.h"
+#include "service/bench/output.h"
 #include "service/cli/console.h"
 #include "service/cli/scene_host.h"
 #include "service/loop/force_law.h"
@@ -20,27 +21,31 @@ namespace {
 
 constexpr double kMm = 1e-3;
 constexpr double kVoxel = 2 * kMm, kStiffness = 2000;
-constexpr double kLost = 0.05;   ///< of the force: beyond it an answer counts as broken (chosen: what a hand tells apart)
+constexpr double kLost =
+    0.05;  ///< of the force: beyond it an answer counts as broken (chosen: what a hand tells apart)
 
-constexpr double kSide = 20 * kMm;   ///< of the tool, a cube
+constexpr double kSide = 20 * kMm;  ///< of the tool, a cube
 
-/// A cube on its corner, h deep in a plane with normal (0, 0, 1). The section is a triangle of area S = 3√3/2 h². Of the plane's samples the nearest of three faces is √3 h times the
-/// least of a place's barycentric coordinates away, a ninth on average; the cube's own push by the volume S h / 3. So F = K / (2 A_ref) · S h (√3/9 + 1/3), whatever the tessellation.
+/// A cube on its corner, h deep in a plane with normal (0, 0, 1). The section is a triangle of area S = 3√3/2
+/// h². Of the plane's samples the nearest of three faces is √3 h times the least of a place's barycentric
+/// coordinates away, a ninth on average; the cube's own push by the volume S h / 3. So F = K / (2 A_ref) · S
+/// h (√3/9 + 1/3), whatever the tessellation.
 struct Extreme {
-  double scale = 1;            ///< of the whole scene
-  double offset = 0;           ///< m along x and, half of it, along y
-  double depth = 3 * kMm;      ///< h, m before scaling
-  double spacing = kVoxel / 8; ///< m before scaling
+  double scale = 1;             ///< of the whole scene
+  double offset = 0;            ///< m along x and, half of it, along y
+  double depth = 3 * kMm;       ///< h, m before scaling
+  double spacing = kVoxel / 8;  ///< m before scaling
   double stiffness = kStiffness;
-  int strips = 1;              ///< the plane's face is cut into so many along y: triangles as long as it is, and ever narrower
+  int strips =
+      1;  ///< the plane's face is cut into so many along y: triangles as long as it is, and ever narrower
   double voxel = kVoxel;
 };
 
 struct Scene3 {
   Mesh mockup, tool;
   Pose pose;
-  double force = 0;            ///< N, the truth; along z
-  double reference_area = 0;   ///< m²: (the tool's longest side / 8)²
+  double force = 0;           ///< N, the truth; along z
+  double reference_area = 0;  ///< m²: (the tool's longest side / 8)²
 };
 
 Scene3 scene_of(const Extreme& e) {
@@ -51,22 +56,25 @@ Scene3 scene_of(const Extreme& e) {
   for (Vec3& v : out.mockup.vertices) v = v * e.scale + away;
   out.tool = solids::box(Vec3(-half), Vec3(half));
   for (Vec3& v : out.tool.vertices) v *= e.scale;
-  out.pose.rotation = glm::angleAxis(0.61, Vec3(0, 0, 1)) * glm::angleAxis(std::atan(std::sqrt(2.0)), glm::normalize(Vec3(1, -1, 0)));
+  out.pose.rotation = glm::angleAxis(0.61, Vec3(0, 0, 1)) *
+                      glm::angleAxis(std::atan(std::sqrt(2.0)), glm::normalize(Vec3(1, -1, 0)));
   out.pose.position = Vec3(0.617 * kMm, -0.331 * kMm, half * std::sqrt(3.0) - e.depth) * e.scale + away;
   const double h = e.depth, section = 1.5 * std::sqrt(3.0) * h * h;
   out.reference_area = kSide * e.scale * kSide * e.scale / 64;
-  out.force = e.stiffness * e.scale * (section * h * (std::sqrt(3.0) / 9 + 1.0 / 3) / (2 * kSide * kSide / 64));
+  out.force =
+      e.stiffness * e.scale * (section * h * (std::sqrt(3.0) / 9 + 1.0 / 3) / (2 * kSide * kSide / 64));
   return out;
 }
 
 struct Outcome {
-  double error = 0;            ///< |ΔF| over |F|, or a probability; HUGE_VAL: no contact found
-  std::string text;            ///< "held", "lost", "no contact", or why it was refused
+  double error = 0;  ///< |ΔF| over |F|, or a probability; HUGE_VAL: no contact found
+  std::string text;  ///< "held", "lost", "no contact", or why it was refused
 };
 
 Outcome judged(bool contact, const Vec3& force, double truth) {
   if (!contact) return {1, "no contact"};
-  const double error = glm::length(force / truth - Vec3(0, 0, 1));   // in this order: a square of 1e164 N is no number
+  const double error =
+      glm::length(force / truth - Vec3(0, 0, 1));  // in this order: a square of 1e164 N is no number
   return {std::isfinite(error) ? error : 1, error < kLost ? "held" : "lost"};
 }
 
@@ -83,7 +91,8 @@ class NumericsBench {
       for (int k = from; k <= to; k += step) out.push_back(std::pow(10.0, k));
       return out;
     };
-    const auto sweep = [&](const char* name, const char* parameter, const std::vector<double>& values, auto set) -> Result<void> {
+    const auto sweep = [&](const char* name, const char* parameter, const std::vector<double>& values,
+                           auto set) -> Result<void> {
       for (const double value : values) {
         Extreme extreme;
         set(extreme, value);
@@ -91,37 +100,65 @@ class NumericsBench {
       }
       return {};
     };
-    if (auto r = sweep("stiffness", "K, N/m", powers(-6, 42, 6), [](Extreme& e, double k) { e.stiffness = k; }); !r) return r;
-    if (auto r = sweep("scale", "factor", powers(-24, 12, 2), [](Extreme& e, double s) { e.scale = s; }); !r) return r;
-    if (auto r = sweep("offset", "m from the origin", powers(-1, 13, 1), [](Extreme& e, double d) { e.offset = d; }); !r) return r;
-    if (auto r = sweep("aspect", "length over width of the triangles", {1, 4, 16, 64, 256, 1024, 4096}, [](Extreme& e, double n) { e.strips = static_cast<int>(n); }); !r) return r;
-    if (auto r = sweep("depth", "voxels", {0.001, 0.01, 0.1, 0.3, 1, 3, 5}, [](Extreme& e, double h) {
-          e.depth = h * kVoxel;
-          e.spacing = std::max(kVoxel / 60, std::min(e.spacing, e.depth / 12));
-        }); !r)
+    if (auto r =
+            sweep("stiffness", "K, N/m", powers(-6, 42, 6), [](Extreme& e, double k) { e.stiffness = k; });
+        !r)
       return r;
-    if (auto r = sweep("sample_spacing", "voxels", {1.0 / 64, 1.0 / 60, 1.0 / 16, 1.0 / 4, 1, 2, 4}, [](Extreme& e, double s) { e.spacing = s * kVoxel; }); !r) return r;
+    if (auto r = sweep("scale", "factor", powers(-24, 12, 2), [](Extreme& e, double s) { e.scale = s; }); !r)
+      return r;
+    if (auto r = sweep("offset", "m from the origin", powers(-1, 13, 1),
+                       [](Extreme& e, double d) { e.offset = d; });
+        !r)
+      return r;
+    if (auto r = sweep("aspect", "length over width of the triangles", {1, 4, 16, 64, 256, 1024, 4096},
+                       [](Extreme& e, double n) { e.strips = static_cast<int>(n); });
+        !r)
+      return r;
+    if (auto r = sweep("depth", "voxels", {0.001, 0.01, 0.1, 0.3, 1, 3, 5},
+                       [](Extreme& e, double h) {
+                         e.depth = h * kVoxel;
+                         e.spacing = std::max(kVoxel / 60, std::min(e.spacing, e.depth / 12));
+                       });
+        !r)
+      return r;
+    if (auto r = sweep("sample_spacing", "voxels", {1.0 / 64, 1.0 / 60, 1.0 / 16, 1.0 / 4, 1, 2, 4},
+                       [](Extreme& e, double s) { e.spacing = s * kVoxel; });
+        !r)
+      return r;
     touching();
     delay();
     breaking_points();
-    facts_.more.emplace_back("cases", fmt::format("a cube on its corner, 3 mm deep in a plane, the force of the field alone (no spring), in closed form. An answer is lost when its force is off by {:.0f} % or more; samples cost some of it "
-                                                  "wherever arithmetic does not (same spacing for all three)", 100 * kLost));
-    facts_.more.emplace_back("left out", "rotations other than one; round bodies (their tessellation hides rounding); single precision on a device, which may round otherwise");
+    facts_.more.emplace_back(
+        "cases",
+        fmt::format(
+            "a cube on its corner, 3 mm deep in a plane, the force of the field alone (no spring), in closed "
+            "form. An answer is lost when its force is off by {:.0f} % or more; samples cost some of it "
+            "wherever arithmetic does not (same spacing for all three)",
+            100 * kLost));
+    facts_.more.emplace_back("left out",
+                             "rotations other than one; round bodies (their tessellation hides rounding); "
+                             "single precision on a device, which may round otherwise");
     console_.finish();
     return write_bench(options_.out, facts_, table_, charts());
   }
 
  private:
-  void note(const std::string& name, const std::string& parameter, double value, const char* precision, const Outcome& outcome) {
+  void note(const std::string& name, const std::string& parameter, double value, const char* precision,
+            const Outcome& outcome) {
     table_.rows.push_back({name, parameter, value, precision, outcome.error, outcome.text});
     seen_[name].push_back({parameter, value, precision, outcome});
   }
 
-  Result<void> contact_case(const std::string& name, const std::string& parameter, double value, const Extreme& extreme) {
+  Result<void> contact_case(const std::string& name, const std::string& parameter, double value,
+                            const Extreme& extreme) {
     if (!console_.progress(name.c_str(), 0)) return Error{ErrorCode::kInternal, "interrupted"};
     const Scene3 scene = scene_of(extreme);
-    const PlainAnswer single = plain_response<float>(scene.mockup, scene.tool, scene.pose, extreme.spacing * extreme.scale, extreme.stiffness, scene.reference_area);
-    const PlainAnswer twice = plain_response<double>(scene.mockup, scene.tool, scene.pose, extreme.spacing * extreme.scale, extreme.stiffness, scene.reference_area);
+    const PlainAnswer single =
+        plain_response<float>(scene.mockup, scene.tool, scene.pose, extreme.spacing * extreme.scale,
+                              extreme.stiffness, scene.reference_area);
+    const PlainAnswer twice =
+        plain_response<double>(scene.mockup, scene.tool, scene.pose, extreme.spacing * extreme.scale,
+                               extreme.stiffness, scene.reference_area);
     note(name, parameter, value, "fp32", judged(single.contact, single.force, scene.force));
     note(name, parameter, value, "fp64", judged(twice.contact, twice.force, scene.force));
     note(name, parameter, value, "palpate", by_palpate(scene, extreme));
@@ -135,7 +172,8 @@ class NumericsBench {
     settings.sample_spacing_m = extreme.spacing * extreme.scale;
     const Result<SceneGeometry> geometry = build_geometry(scene.mockup, scene.tool, settings);
     if (!geometry) return refused(geometry.error());
-    if (auto done = backend_->prepare(*geometry, Plan{}, [](const char*, double) { return true; }); !done) return refused(done.error());
+    if (auto done = backend_->prepare(*geometry, Plan{}, [](const char*, double) { return true; }); !done)
+      return refused(done.error());
     const Result<LatticePose> pose = to_lattice(scene.pose, *geometry);
     if (!pose) return refused(pose.error());
     Contacts contacts;
@@ -146,7 +184,8 @@ class NumericsBench {
     return judged(contacts.contact, response.wrench.force, scene.force);
   }
 
-  /// A flat face that comes as near as `gap` to another and stops: touching is contact, a gap is none. 200 places each.
+  /// A flat face that comes as near as `gap` to another and stops: touching is contact, a gap is none. 200
+  /// places each.
   void touching() {
     for (const double gap : {0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6}) {
       std::map<std::string, int> wrong;
@@ -155,8 +194,10 @@ class NumericsBench {
         for (const double sign : {1.0, -1.0}) {
           if (gap == 0 && sign < 0) continue;
           Scene3 scene;
-          const double half = 10 * kMm, top = 0.1 + 0.0137 * i;   // the plane's height, no round number in binary
-          scene.mockup = solids::box(Vec3(-20 * kMm, -20 * kMm, top - 20 * kMm), Vec3(20 * kMm, 20 * kMm, top));
+          const double half = 10 * kMm,
+                       top = 0.1 + 0.0137 * i;  // the plane's height, no round number in binary
+          scene.mockup =
+              solids::box(Vec3(-20 * kMm, -20 * kMm, top - 20 * kMm), Vec3(20 * kMm, 20 * kMm, top));
           scene.tool = solids::box(Vec3(-half), Vec3(half));
           scene.pose.position = Vec3(0.617 * kMm, -0.331 * kMm, top + half + sign * gap);
           const bool truth = sign * gap <= 0;
@@ -186,12 +227,17 @@ class NumericsBench {
         }
       const double tried = gap == 0 ? kPlaces : 2 * kPlaces;
       for (const char* precision : {"fp32", "fp64", "palpate"})
-        note("touching", "gap or overlap, m", gap, precision, {wrong[precision] / tried, wrong[precision] == 0 ? "held" : "lost"});
+        note("touching", "gap or overlap, m", gap, precision,
+             {wrong[precision] / tried, wrong[precision] == 0 ? "held" : "lost"});
     }
-    facts_.more.emplace_back("touching", fmt::format("the lattice step is {:.3g} m there: gaps below half of it are touch, by definition (docs/EXACTNESS.md); the error is the share of wrong answers", step_m_));
+    facts_.more.emplace_back(
+        "touching", fmt::format("the lattice step is {:.3g} m there: gaps below half of it are touch, by "
+                                "definition (docs/EXACTNESS.md); the error is the share of wrong answers",
+                                step_m_));
   }
 
-  /// A hand that presses into a wall 5 m from the origin and out, results of all ages: the force felt against the one of the moment.
+  /// A hand that presses into a wall 5 m from the origin and out, results of all ages: the force felt against
+  /// the one of the moment.
   void delay() {
     constexpr double kWall = 5, kDeep = 2e-3, kSeconds = 0.5;
     const auto depth_at = [&](double t) { return kDeep * std::sin(3.14159265358979 * t / kSeconds); };
@@ -199,9 +245,10 @@ class NumericsBench {
       double worst[3] = {0, 0, 0};
       const int ticks = static_cast<int>(kSeconds * 1000);
       ForceLawState law({.kind = LawKind::kCorrected, .stiffness_n_per_m = kStiffness, .transitions = 1});
-      int of = -1;   // the tick whose pose the newest result is of
+      int of = -1;  // the tick whose pose the newest result is of
       for (int i = 0; i < ticks; ++i) {
-        const double x = kWall - depth_at(i / 1000.0), truth = kStiffness * std::max(0.0, depth_at(i / 1000.0));
+        const double x = kWall - depth_at(i / 1000.0),
+                     truth = kStiffness * std::max(0.0, depth_at(i / 1000.0));
         LawResult result;
         const bool fresh = i % age == 0 && i >= age;
         if (fresh) {
@@ -217,10 +264,12 @@ class NumericsBench {
           }
         }
         const Wrench felt = law.step({i, Vec3(x, 0, 0), Quat(1, 0, 0, 0)}, fresh ? &result : nullptr);
-        if (of < 2 * age || i < 3 * age) continue;   // the first results of a touch come late for everybody
+        if (of < 2 * age || i < 3 * age) continue;  // the first results of a touch come late for everybody
         const double then = kWall - depth_at(of / 1000.0);
-        worst[0] = std::max(worst[0], std::fabs(plain_extrapolation<float>(kWall, then, x, kStiffness) - truth));
-        worst[1] = std::max(worst[1], std::fabs(plain_extrapolation<double>(kWall, then, x, kStiffness) - truth));
+        worst[0] =
+            std::max(worst[0], std::fabs(plain_extrapolation<float>(kWall, then, x, kStiffness) - truth));
+        worst[1] =
+            std::max(worst[1], std::fabs(plain_extrapolation<double>(kWall, then, x, kStiffness) - truth));
         worst[2] = std::max(worst[2], std::fabs(felt.force.x - truth));
       }
       const char* names[] = {"fp32", "fp64", "palpate"};
@@ -242,7 +291,8 @@ class NumericsBench {
           std::string& list = seen.outcome.text.starts_with("refused") ? refused : lost;
           list += fmt::format("{}{:.3g}", list.empty() ? "" : ", ", seen.value);
         }
-        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", precision, lost.empty() && refused.empty() ? "nowhere" : "");
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", precision,
+                            lost.empty() && refused.empty() ? "nowhere" : "");
         if (!lost.empty()) text += "lost at " + lost;
         if (!refused.empty()) text += (lost.empty() ? "" : ", ") + ("refused at " + refused);
       }
@@ -253,11 +303,18 @@ class NumericsBench {
   std::vector<BenchChart> charts() const {
     std::vector<BenchChart> out;
     for (const auto& [name, all] : seen_) {
-      BenchChart chart{.title = "Relative error of the force: " + name, .unit = "", .labels = {}, .series = {}, .log_x = true, .log_y = true, .x_title = all.front().parameter};
+      BenchChart chart{.title = "Relative error of the force: " + name,
+                       .unit = "",
+                       .labels = {},
+                       .series = {},
+                       .log_x = true,
+                       .log_y = true,
+                       .x_title = all.front().parameter};
       for (const char* precision : {"fp32", "fp64", "palpate"}) {
         BenchChart::Series series{precision, {}, {}};
         for (const Seen& seen : all)
-          if (seen.precision == precision && seen.outcome.error > 0 && std::isfinite(seen.outcome.error) && seen.value > 0 && !seen.outcome.text.starts_with("refused")) {
+          if (seen.precision == precision && seen.outcome.error > 0 && std::isfinite(seen.outcome.error) &&
+              seen.value > 0 && !seen.outcome.text.starts_with("refused")) {
             series.x.push_back(seen.value);
             series.y.push_back(seen.outcome.error);
           }

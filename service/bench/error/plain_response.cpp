@@ -37,7 +37,9 @@ V<Real> cast(const Vec3& v) {
 template <class Real>
 Body<Real> body_of(const Mesh& mesh) {
   Body<Real> out;
-  for (const auto& t : mesh.triangles) out.triangles.push_back({cast<Real>(mesh.vertices[t[0]]), cast<Real>(mesh.vertices[t[1]]), cast<Real>(mesh.vertices[t[2]])});
+  for (const auto& t : mesh.triangles)
+    out.triangles.push_back(
+        {cast<Real>(mesh.vertices[t[0]]), cast<Real>(mesh.vertices[t[1]]), cast<Real>(mesh.vertices[t[2]])});
   return out;
 }
 
@@ -45,7 +47,8 @@ Body<Real> body_of(const Mesh& mesh) {
 template <class Real>
 Body<Real> moved(Body<Real> body, const Pose& pose) {
   const Quat& q = pose.rotation;
-  const auto x = static_cast<Real>(q.x), y = static_cast<Real>(q.y), z = static_cast<Real>(q.z), w = static_cast<Real>(q.w);
+  const auto x = static_cast<Real>(q.x), y = static_cast<Real>(q.y), z = static_cast<Real>(q.z),
+             w = static_cast<Real>(q.w);
   const Real one(1), two(2);
   const V<Real> rows[3] = {{one - two * (y * y + z * z), two * (x * y - z * w), two * (x * z + y * w)},
                            {two * (x * y + z * w), one - two * (x * x + z * z), two * (y * z - x * w)},
@@ -63,7 +66,7 @@ Body<Real> moved(Body<Real> body, const Pose& pose) {
 template <class Real>
 int winding(const Body<Real>& body, const V<Real>& from, const V<Real>& way) {
   int out = 0;
-  for (const auto& t : body.triangles) {   // Möller and Trumbore
+  for (const auto& t : body.triangles) {  // Möller and Trumbore
     const V<Real> e1 = operator_minus(t[1], t[0]), e2 = operator_minus(t[2], t[0]), h = cross(way, e2);
     const Real a = dot(e1, h);
     if (a == Real(0)) continue;
@@ -123,20 +126,25 @@ Sums<Real> sum_samples(const Body<Real>& of, const Body<Real>& in, Real spacing)
     if (!(size > Real(0))) continue;
     const auto range = [&](std::size_t i, Real& from, Real& to) {
       from = std::min({t[0][i], t[1][i], t[2][i]}), to = std::max({t[0][i], t[1][i], t[2][i]});
-      from = std::floor(std::max(from, low[i]) / spacing), to = std::floor(std::min(to, high[i]) / spacing) + Real(1);
+      from = std::floor(std::max(from, low[i]) / spacing),
+      to = std::floor(std::min(to, high[i]) / spacing) + Real(1);
     };
     Real u0, u1, v0, v1;
     range(iu, u0, u1);
     range(iv, v0, v1);
     // A grid whose numbers can't be told apart has no points worth counting; nor has one of billions.
     if (!(u1 - u0 < Real(4096)) || !(v1 - v0 < Real(4096))) continue;
-    const auto side = [&](const V<Real>& a, const V<Real>& b, Real u, Real v) { return (b[iu] - a[iu]) * (v - a[iv]) - (b[iv] - a[iv]) * (u - a[iu]); };
+    const auto side = [&](const V<Real>& a, const V<Real>& b, Real u, Real v) {
+      return (b[iu] - a[iu]) * (v - a[iv]) - (b[iv] - a[iv]) * (u - a[iu]);
+    };
     const int nu = static_cast<int>(u1 - u0), nv = static_cast<int>(v1 - v0);
     const Real facing = n[axis] > Real(0) ? Real(1) : Real(-1);
     for (int j = 0; j <= nv; ++j)
       for (int i = 0; i <= nu; ++i) {
         const Real u = (u0 + static_cast<Real>(i)) * spacing, v = (v0 + static_cast<Real>(j)) * spacing;
-        if (side(t[0], t[1], u, v) * facing < Real(0) || side(t[1], t[2], u, v) * facing <= Real(0) || side(t[2], t[0], u, v) * facing < Real(0)) continue;
+        if (side(t[0], t[1], u, v) * facing < Real(0) || side(t[1], t[2], u, v) * facing <= Real(0) ||
+            side(t[2], t[0], u, v) * facing < Real(0))
+          continue;
         V<Real> p;
         p[iu] = u, p[iv] = v;
         p[axis] = t[0][axis] - (n[iu] * (u - t[0][iu]) + n[iv] * (v - t[0][iv])) / n[axis];
@@ -155,16 +163,20 @@ Sums<Real> sum_samples(const Body<Real>& of, const Body<Real>& in, Real spacing)
 }  // namespace
 
 template <class Real>
-PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool_mesh, const Pose& pose, double spacing_m, double stiffness_n_per_m, double reference_area_m2) {
+PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool_mesh, const Pose& pose, double spacing_m,
+                           double stiffness_n_per_m, double reference_area_m2) {
   const Body<Real> statics = body_of<Real>(mockup), tool = moved(body_of<Real>(tool_mesh), pose);
-  const auto spacing = static_cast<Real>(spacing_m), area = static_cast<Real>(reference_area_m2), stiffness = static_cast<Real>(stiffness_n_per_m);
-  const Sums<Real> own = sum_samples(statics, tool, spacing), others = sum_samples(tool, statics, Real(2) * spacing);
+  const auto spacing = static_cast<Real>(spacing_m), area = static_cast<Real>(reference_area_m2),
+             stiffness = static_cast<Real>(stiffness_n_per_m);
+  const Sums<Real> own = sum_samples(statics, tool, spacing),
+                   others = sum_samples(tool, statics, Real(2) * spacing);
   PlainAnswer out;
   if (!(own.weight > Real(0)) && !(others.weight > Real(0))) return out;
   out.contact = true;
   if (own.weight > Real(0)) out.depth = static_cast<double>(own.depth / own.weight);
-  for (std::size_t k = 0; k < 3; ++k)   // a tool's face pushes the other way
-    out.force[static_cast<int>(k)] = static_cast<double>(stiffness * ((own.push[k] - others.push[k]) / area / Real(2)));
+  for (std::size_t k = 0; k < 3; ++k)  // a tool's face pushes the other way
+    out.force[static_cast<int>(k)] =
+        static_cast<double>(stiffness * ((own.push[k] - others.push[k]) / area / Real(2)));
   return out;
 }
 

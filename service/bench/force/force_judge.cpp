@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "model/scene/geometry_build.h"
 #include "model/lattice/rotation.h"
+#include "model/scene/geometry_build.h"
 #include "service/queries/lone_query.h"
 
 namespace palpate {
@@ -25,7 +25,11 @@ struct Answer {
 class Asking {
  public:
   Asking(const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness)
-      : geometry_(geometry), backend_(backend), profile_(profile), stiffness_(stiffness), lone_(geometry, stiffness) {}
+      : geometry_(geometry),
+        backend_(backend),
+        profile_(profile),
+        stiffness_(stiffness),
+        lone_(geometry, stiffness) {}
 
   Result<Answer> at(const Pose& pose) {
     const Result<LatticePose> rounded = to_lattice(pose, geometry_);
@@ -51,7 +55,9 @@ class Asking {
   ContactResponse response_;
 };
 
-double angle(const Vec3& a, const Vec3& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * kDegrees; }
+double angle(const Vec3& a, const Vec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * kDegrees;
+}
 
 /// Turn from one rotation to the other, rad.
 Vec3 turn_between(const Quat& from, const Quat& to) {
@@ -62,10 +68,11 @@ Vec3 turn_between(const Quat& from, const Quat& to) {
   return sine > 0 ? v * (2 * std::atan2(sine, by.w) / sine) : 2.0 * v;
 }
 
-/// |A − Aᵀ| / |A + Aᵀ| by central differences; poses turn about the centre of mass. Small turns about two axes don't commute, so of a conservative torque, too,
-/// ∂T_i/∂θ_j − ∂T_j/∂θ_i is not 0 but ε_ijk T_k, which is left out.
+/// |A − Aᵀ| / |A + Aᵀ| by central differences; poses turn about the centre of mass. Small turns about two
+/// axes don't commute, so of a conservative torque, too, ∂T_i/∂θ_j − ∂T_j/∂θ_i is not 0 but ε_ijk T_k, which
+/// is left out.
 Result<double> antisymmetry(Asking& asking, const SceneGeometry& geometry, const Pose& pose) {
-  const double step = 20e-6, rho = geometry.tool_gyration_m;   // about what the hand moves in a tick
+  const double step = 20e-6, rho = geometry.tool_gyration_m;  // about what the hand moves in a tick
   const Vec3 gc = geometry.tool_gc_m;
   std::array<std::array<double, 6>, 6> a{};
   for (std::size_t j = 0; j < 6; ++j) {
@@ -87,7 +94,8 @@ Result<double> antisymmetry(Asking& asking, const SceneGeometry& geometry, const
     }
     for (std::size_t i = 0; i < 3; ++i) {
       a[i][j] = (ends[1].force[static_cast<int>(i)] - ends[0].force[static_cast<int>(i)]) / (2 * step);
-      a[i + 3][j] = (ends[1].torque[static_cast<int>(i)] - ends[0].torque[static_cast<int>(i)]) / (2 * step * rho);
+      a[i + 3][j] =
+          (ends[1].torque[static_cast<int>(i)] - ends[0].torque[static_cast<int>(i)]) / (2 * step * rho);
     }
   }
   const Result<Answer> here = asking.at(pose);
@@ -109,10 +117,15 @@ void judge_truths(const ForceCase& subject, const std::vector<Answer>& answers, 
     const double force = glm::length(wrench.force);
     if (truth.direction) {
       const double off = angle(wrench.force, *truth.direction);
-      if (force == 0 || off > truth.direction_deg) out.broken.push_back(fmt::format("pose {}: {:.3g} N, {:.1f}° from the way it must push ({}°)", truth.at, force, off, truth.direction_deg));
+      if (force == 0 || off > truth.direction_deg)
+        out.broken.push_back(fmt::format("pose {}: {:.3g} N, {:.1f}° from the way it must push ({}°)",
+                                         truth.at, force, off, truth.direction_deg));
     }
-    if (truth.most_force && force > *truth.most_force) out.broken.push_back(fmt::format("pose {}: {:.3g} N where there is no net force ({:.3g})", truth.at, force, *truth.most_force));
-    if (truth.couple_against && !(glm::dot(wrench.torque, *truth.couple_against) < 0)) out.broken.push_back(fmt::format("pose {}: the couple does not right it", truth.at));
+    if (truth.most_force && force > *truth.most_force)
+      out.broken.push_back(fmt::format("pose {}: {:.3g} N where there is no net force ({:.3g})", truth.at,
+                                       force, *truth.most_force));
+    if (truth.couple_against && !(glm::dot(wrench.torque, *truth.couple_against) < 0))
+      out.broken.push_back(fmt::format("pose {}: the couple does not right it", truth.at));
   }
 }
 
@@ -121,16 +134,20 @@ void judge_truths(const ForceCase& subject, const std::vector<Answer>& answers, 
 std::vector<Pose> finer_path(const std::vector<Pose>& path, std::size_t count) {
   std::vector<Pose> out;
   for (std::size_t i = 0; i < count; ++i) {
-    const double place = static_cast<double>(i) * static_cast<double>(path.size() - 1) / static_cast<double>(std::max<std::size_t>(count - 1, 1));
-    const std::size_t first = std::min(static_cast<std::size_t>(place), path.size() - 1), second = std::min(first + 1, path.size() - 1);
+    const double place = static_cast<double>(i) * static_cast<double>(path.size() - 1) /
+                         static_cast<double>(std::max<std::size_t>(count - 1, 1));
+    const std::size_t first = std::min(static_cast<std::size_t>(place), path.size() - 1),
+                      second = std::min(first + 1, path.size() - 1);
     const double part = place - static_cast<double>(first);
     const Pose &a = path[first], &b = path[second];
-    out.push_back({a.position + part * (b.position - a.position), rotation_by(part * turn_between(a.rotation, b.rotation)) * a.rotation});
+    out.push_back({a.position + part * (b.position - a.position),
+                   rotation_by(part * turn_between(a.rotation, b.rotation)) * a.rotation});
   }
   return out;
 }
 
-Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend, Profile profile, double stiffness) {
+Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& geometry,
+                                CollisionBackend& backend, Profile profile, double stiffness) {
   Asking asking(geometry, backend, profile, stiffness);
   ForceFigures out;
   out.poses = subject.path.size();
@@ -157,42 +174,54 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
     }
     if (subject.approach) {
       deepest = std::max(deepest, out.force_n[i]);
-      if (deepest > 0) out.largest_loss = std::max(out.largest_loss, (deepest - out.force_n[i]) / std::max(deepest, 0.01 * out.largest_n));
+      if (deepest > 0)
+        out.largest_loss =
+            std::max(out.largest_loss, (deepest - out.force_n[i]) / std::max(deepest, 0.01 * out.largest_n));
     }
     if (i == 0) continue;
     const Wrench& before = answers[i - 1].wrench;
     const Pose &p = subject.path[i - 1], &q = subject.path[i];
     const Vec3 turn = turn_between(p.rotation, q.rotation);
-    const Vec3 way = (q.position + q.rotation * geometry.tool_gc_m) - (p.position + p.rotation * geometry.tool_gc_m);
+    const Vec3 way =
+        (q.position + q.rotation * geometry.tool_gc_m) - (p.position + p.rotation * geometry.tool_gc_m);
     const double size = glm::length(way) + rho * glm::length(turn);
     if (size > 0 && glm::length(here.force - before.force) / (stiffness * size) > out.largest_step) {
       out.largest_step = glm::length(here.force - before.force) / (stiffness * size);
       out.largest_step_at = i;
     }
     const double floor = 0.01 * out.largest_n;
-    if (out.force_n[i] > floor && out.force_n[i - 1] > floor && glm::dot(here.force, before.force) < 0) ++out.reversals;
-    const double part = 0.5 * (glm::dot(here.force + before.force, way) + glm::dot(here.torque + before.torque, turn));
+    if (out.force_n[i] > floor && out.force_n[i - 1] > floor && glm::dot(here.force, before.force) < 0)
+      ++out.reversals;
+    const double part =
+        0.5 * (glm::dot(here.force + before.force, way) + glm::dot(here.torque + before.torque, turn));
     work += part;
     moved_work += std::fabs(part);
   }
   if (subject.loop && moved_work > 0) out.loop_share = std::fabs(work) / moved_work;
   if (out.largest_n > 0) {
-    const auto largest = static_cast<std::size_t>(std::max_element(out.force_n.begin(), out.force_n.end()) - out.force_n.begin());
+    const auto largest = static_cast<std::size_t>(std::max_element(out.force_n.begin(), out.force_n.end()) -
+                                                  out.force_n.begin());
     const Result<double> odd = antisymmetry(asking, geometry, subject.path[largest]);
     if (!odd) return odd.error();
     out.antisymmetry = *odd;
   }
   if (out.touching == 0) out.broken.emplace_back("nothing touches");
   judge_truths(subject, answers, out);
-  if (!subject.slips && out.largest_step > kMostStep) out.broken.push_back(fmt::format("a step of {:.3g} K Δx at pose {}", out.largest_step, out.largest_step_at));
-  if (!subject.slips && out.loop_share > kMostLoop) out.broken.push_back(fmt::format("{:.1f} % of the work is lost round the loop", 100 * out.loop_share));
-  if (out.antisymmetry > kMostAntisymmetry) out.broken.push_back(fmt::format("∂F is {:.1f} % antisymmetric", 100 * out.antisymmetry));
+  if (!subject.slips && out.largest_step > kMostStep)
+    out.broken.push_back(
+        fmt::format("a step of {:.3g} K Δx at pose {}", out.largest_step, out.largest_step_at));
+  if (!subject.slips && out.loop_share > kMostLoop)
+    out.broken.push_back(fmt::format("{:.1f} % of the work is lost round the loop", 100 * out.loop_share));
+  if (out.antisymmetry > kMostAntisymmetry)
+    out.broken.push_back(fmt::format("∂F is {:.1f} % antisymmetric", 100 * out.antisymmetry));
   if (out.first_along > 0) out.broken.emplace_back("pulled in at first touch");
-  if (out.largest_loss > kMostLoss) out.broken.push_back(fmt::format("{:.1f} % less while going deeper", 100 * out.largest_loss));
+  if (out.largest_loss > kMostLoss)
+    out.broken.push_back(fmt::format("{:.1f} % less while going deeper", 100 * out.largest_loss));
   return out;
 }
 
-Result<ForceFigures> judge_force(const ForceCase& subject, CollisionBackend& backend, Profile profile, double voxel_scale) {
+Result<ForceFigures> judge_force(const ForceCase& subject, CollisionBackend& backend, Profile profile,
+                                 double voxel_scale) {
   GeometrySettings settings;
   if (subject.voxel_m > 0) settings.voxel_size_m = subject.voxel_m * voxel_scale;
   Result<SceneGeometry> geometry = build_geometry(subject.mockup, subject.tool, settings);

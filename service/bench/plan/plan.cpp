@@ -1,4 +1,5 @@
-// `palpate bench plan`: scenes that lack something, under the whole plan and under their own: the same bits, time and memory.
+// `palpate bench plan`: scenes that lack something, under the whole plan and under their own: the same bits,
+// time and memory.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +24,8 @@ class PlanBench {
     if (!backend) return backend.error();
     backend_ = std::move(*backend);
     for (const PlanSubject& subject : plan_subjects())
-      if (auto done = one(subject); !done) return Error{done.error().code, subject.name + ": " + done.error().sentence};
+      if (auto done = one(subject); !done)
+        return Error{done.error().code, subject.name + ": " + done.error().sentence};
     for (BenchChart* chart : {&time_, &memory_}) chart->series = {{"whole", {}, {}}, {"lean", {}, {}}};
     for (std::size_t k = 0; k < names_.size(); ++k)
       for (std::size_t lean = 0; lean < 2; ++lean) {
@@ -43,26 +45,36 @@ class PlanBench {
     PlanFacts facts = facts_of(subject, *geometry);
     PlanFacts full = facts;
     full.full = true;
-    if (auto done = backend_->prepare(*geometry, decide_plan(full).plan, [&](const char* what, double done_part) { return console_.progress(what, done_part); }); !done) return done;
+    if (auto done = backend_->prepare(
+            *geometry, decide_plan(full).plan,
+            [&](const char* what, double done_part) { return console_.progress(what, done_part); });
+        !done)
+      return done;
     facts.internal_voxels = full.internal_voxels = backend_->has_internal_voxels();
     const PlanDecision lean = decide_plan(facts);
     const Plan plans[] = {decide_plan(full).plan, lean.plan};
 
     const PlanQuestion question{&*geometry, subject.poses, 2000};
     PlanTrial trials[2];
-    for (std::uint64_t round = 0; round < options_.rounds; ++round)   // in turns: other work on the machine meets both
+    for (std::uint64_t round = 0; round < options_.rounds;
+         ++round)  // in turns: other work on the machine meets both
       for (std::size_t k = 0; k < 2; ++k)
         if (auto done = try_plan(*backend_, question, plans[k], 1, trials[k]); !done) return done;
-    if (const std::string differs = difference(trials[0], trials[1]); !differs.empty()) return Error{ErrorCode::kInternal, differs};
+    if (const std::string differs = difference(trials[0], trials[1]); !differs.empty())
+      return Error{ErrorCode::kInternal, differs};
 
     std::string left_out;
     for (const PlanStage& stage : lean.stages) {
       if (!stage.kept) left_out += (left_out.empty() ? "" : " ") + stage.stage;
     }
     if (!lean.plan.transform_rotates) left_out = "rotation" + (left_out.empty() ? "" : " " + left_out);
-    const auto contacts = std::count_if(trials[0].frames.begin(), trials[0].frames.end(), [](const auto& frame) { return frame.contacts.contact; });
-    facts_.more.emplace_back(subject.name, fmt::format("{}; left out: {}; {} of {} poses in contact; the same bits in all that both plans work out", subject.about,
-                                                       left_out.empty() ? "nothing" : left_out, contacts, subject.poses.size()));
+    const auto contacts = std::count_if(trials[0].frames.begin(), trials[0].frames.end(),
+                                        [](const auto& frame) { return frame.contacts.contact; });
+    facts_.more.emplace_back(
+        subject.name,
+        fmt::format(
+            "{}; left out: {}; {} of {} poses in contact; the same bits in all that both plans work out",
+            subject.about, left_out.empty() ? "nothing" : left_out, contacts, subject.poses.size()));
     std::set<std::string> stages;
     for (const PlanTrial& trial : trials) {
       for (const auto& [stage, us] : trial.stage_us) stages.insert(stage);
@@ -76,13 +88,17 @@ class PlanBench {
       const PlanTrial& trial = trials[k];
       us_.back()[k] = median_frame_us(trial);
       mib_.back()[k] = static_cast<double>(trial.memory_bytes) / 1048576;
-      table_.rows.push_back({subject.name, name, "total", us_.back()[k], trial.memory_bytes, k == 0 ? "" : left_out});
+      table_.rows.push_back(
+          {subject.name, name, "total", us_.back()[k], trial.memory_bytes, k == 0 ? "" : left_out});
       for (const std::string& stage : stages) {
         const auto time = trial.stage_us.find(stage);
-        const auto memory = std::find_if(trial.memory.begin(), trial.memory.end(), [&](const StageMemory& line) { return line.stage == stage; });
-        if (time == trial.stage_us.end() && memory == trial.memory.end()) continue;   // it isn't there
-        table_.rows.push_back({subject.name, name, stage, time == trial.stage_us.end() ? BenchCell("") : BenchCell(time->second),
-                               memory == trial.memory.end() ? BenchCell("") : BenchCell(memory->bytes), k == 0 ? "" : left_out});
+        const auto memory = std::find_if(trial.memory.begin(), trial.memory.end(),
+                                         [&](const StageMemory& line) { return line.stage == stage; });
+        if (time == trial.stage_us.end() && memory == trial.memory.end()) continue;  // it isn't there
+        table_.rows.push_back({subject.name, name, stage,
+                               time == trial.stage_us.end() ? BenchCell("") : BenchCell(time->second),
+                               memory == trial.memory.end() ? BenchCell("") : BenchCell(memory->bytes),
+                               k == 0 ? "" : left_out});
       }
     }
     return {};
@@ -94,7 +110,11 @@ class PlanBench {
   std::unique_ptr<CollisionBackend> backend_;
   BenchFacts facts_{.command = "plan", .device = {}, .more = {}};
   BenchTable table_{{"scene", "plan", "stage", "time_us_p50", "memory_bytes", "left_out"}, {}};
-  BenchChart time_{.title = "A frame, median over the poses in contact", .unit = "µs", .labels = {}, .series = {}, .x_title = {}};
+  BenchChart time_{.title = "A frame, median over the poses in contact",
+                   .unit = "µs",
+                   .labels = {},
+                   .series = {},
+                   .x_title = {}};
   BenchChart memory_{.title = "Memory", .unit = "MiB", .labels = {}, .series = {}, .x_title = {}};
   std::vector<std::string> names_;
   std::vector<std::array<double, 2>> us_, mib_;

@@ -11,13 +11,16 @@ namespace {
 constexpr double kMm = 1e-3;
 constexpr std::size_t kPoses = 24;
 
-/// From just above a face at z = 0 to `deepest` below it, wandering over the face; turned all ways if `turns`.
+/// From just above a face at z = 0 to `deepest` below it, wandering over the face; turned all ways if
+/// `turns`.
 std::vector<Pose> presses(double reach, double deepest, bool turns) {
   std::vector<Pose> out;
   for (std::size_t i = 0; i < kPoses; ++i) {
     const double k = static_cast<double>(i), depth = deepest * (k - 2) / static_cast<double>(kPoses - 3);
-    const Vec3 at(3.171 * kMm * static_cast<double>(i % 7) - 9 * kMm, 2.339 * kMm * static_cast<double>(i % 5) - 5 * kMm, reach - depth);
-    out.push_back({at, turns ? glm::angleAxis(0.37 * k, glm::normalize(Vec3(1, 2 - 0.1 * k, 3))) : Quat(1, 0, 0, 0)});
+    const Vec3 at(3.171 * kMm * static_cast<double>(i % 7) - 9 * kMm,
+                  2.339 * kMm * static_cast<double>(i % 5) - 5 * kMm, reach - depth);
+    out.push_back(
+        {at, turns ? glm::angleAxis(0.37 * k, glm::normalize(Vec3(1, 2 - 0.1 * k, 3))) : Quat(1, 0, 0, 0)});
   }
   return out;
 }
@@ -66,10 +69,15 @@ Mesh bowl(double radius) {
 
 std::vector<PlanSubject> plan_subjects() {
   const double radius = 10 * kMm;
-  const auto block = [](double depth) { return solids::box(Vec3(-40, -40, -depth) * kMm, Vec3(40, 40, 0) * kMm, Int3(6, 6, 1)); };
-  const Mesh ball = solids::sphere(radius, 32, 16), cube = solids::box(Vec3(-8, -8, -8) * kMm, Vec3(8, 8, 8) * kMm, Int3(3));
+  const auto block = [](double depth) {
+    return solids::box(Vec3(-40, -40, -depth) * kMm, Vec3(40, 40, 0) * kMm, Int3(6, 6, 1));
+  };
+  const Mesh ball = solids::sphere(radius, 32, 16),
+             cube = solids::box(Vec3(-8, -8, -8) * kMm, Vec3(8, 8, 8) * kMm, Int3(3));
   // A ball's top at z = 0, so that the same presses meet it.
-  const auto round_block = [](double r, std::uint64_t triangles) { return solids::moved(solids::sphere_of(r, triangles), Pose{Vec3(0, 0, -r), Quat(1, 0, 0, 0)}); };
+  const auto round_block = [](double r, std::uint64_t triangles) {
+    return solids::moved(solids::sphere_of(r, triangles), Pose{Vec3(0, 0, -r), Quat(1, 0, 0, 0)});
+  };
 
   PlanSubject whole;
   whole.mockup = block(40);
@@ -86,9 +94,12 @@ std::vector<PlanSubject> plan_subjects() {
     out.push_back(std::move(subject));
   };
   add("everything", "lacks nothing", [](PlanSubject&) {});
-  add("no_inside", "a plate as thin as a voxel: no V_int voxel", [&](PlanSubject& s) { s.mockup = block(2); });
-  add("all_smooth", "a round mock-up: no sharp edge", [&](PlanSubject& s) { s.mockup = round_block(30 * kMm, 6000); });
-  add("sheet", "an open, bent sheet: no inside, no sharp edge", [&](PlanSubject& s) { s.mockup = bent_sheet(40 * kMm, 24); });
+  add("no_inside", "a plate as thin as a voxel: no V_int voxel",
+      [&](PlanSubject& s) { s.mockup = block(2); });
+  add("all_smooth", "a round mock-up: no sharp edge",
+      [&](PlanSubject& s) { s.mockup = round_block(30 * kMm, 6000); });
+  add("sheet", "an open, bent sheet: no inside, no sharp edge",
+      [&](PlanSubject& s) { s.mockup = bent_sheet(40 * kMm, 24); });
   add("translation", "a tool that doesn't turn", [&](PlanSubject& s) {
     s.tool_rotates = false;
     s.poses = presses(8 * kMm, 9 * kMm, false);
@@ -98,7 +109,8 @@ std::vector<PlanSubject> plan_subjects() {
   add("far_tool", "a tool that stays away", [](PlanSubject& s) {
     for (Pose& pose : s.poses) pose.position.z += 0.3;
   });
-  add("one_triangle", "a mock-up of one triangle", [&](PlanSubject& s) { s.mockup = one_triangle(30 * kMm); });
+  add("one_triangle", "a mock-up of one triangle",
+      [&](PlanSubject& s) { s.mockup = one_triangle(30 * kMm); });
   add("one_triangle_tool", "a tool of one triangle", [&](PlanSubject& s) {
     s.tool = one_triangle(6 * kMm);
     s.poses = presses(3 * kMm, 9 * kMm, true);

@@ -20,21 +20,26 @@ double median(std::vector<double> values) {
 }
 
 bool any_contact(const PlanTrial& trial) {
-  return std::any_of(trial.frames.begin(), trial.frames.end(), [](const auto& frame) { return frame.contacts.contact; });
+  return std::any_of(trial.frames.begin(), trial.frames.end(),
+                     [](const auto& frame) { return frame.contacts.contact; });
 }
 
 bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 /// Names the first difference of two areas and their responses.
-const char* difference(const ContactArea& a, const AreaResponse& ra, const ContactArea& b, const AreaResponse& rb, bool points, bool lists) {
+const char* difference(const ContactArea& a, const AreaResponse& ra, const ContactArea& b,
+                       const AreaResponse& rb, bool points, bool lists) {
   if (a.id != b.id || ra.id != rb.id) return "id";
   if (a.static_ids != b.static_ids) return "static";
   if (lists && (a.zones != b.zones || a.mobile_ids != b.mobile_ids)) return "zones or mobile";
   if (a.flags != b.flags || ra.flags != rb.flags) return "flags";
   if (a.direction != b.direction || !same_bits(ra.normal, rb.normal)) return "n_c";
-  if (a.rays != b.rays || a.max_height != b.max_height || a.height_sum != b.height_sum || a.field != b.field) return "sums";
-  if (!same_bits(ra.depth, rb.depth) || !same_bits(ra.max_depth, rb.max_depth) || !same_bits(ra.slope, rb.slope)) return "d";
+  if (a.rays != b.rays || a.max_height != b.max_height || a.height_sum != b.height_sum || a.field != b.field)
+    return "sums";
+  if (!same_bits(ra.depth, rb.depth) || !same_bits(ra.max_depth, rb.max_depth) ||
+      !same_bits(ra.slope, rb.slope))
+    return "d";
   if (!same_bits(ra.force, rb.force)) return "F";
   if (points && (!same_bits(ra.point, rb.point) || !same_bits(ra.torque, rb.torque))) return "cp or T";
   return nullptr;
@@ -42,7 +47,8 @@ const char* difference(const ContactArea& a, const AreaResponse& ra, const Conta
 
 }  // namespace
 
-Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, const Plan& plan, std::uint64_t rounds, PlanTrial& trial) {
+Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, const Plan& plan,
+                      std::uint64_t rounds, PlanTrial& trial) {
   using Clock = std::chrono::steady_clock;
   if (auto done = backend.replan(plan); !done) return done;
   const bool first = trial.frames.empty();
@@ -62,7 +68,9 @@ Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, c
       if (auto done = backend.query(*pose, nullptr, contacts); !done) return done;
       respond(contacts, *pose, *question.geometry, plan.profile, question.stiffness_n_per_m, response);
       const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-      if (contacts.truncated) return Error{ErrorCode::kInternal, std::string("a frame was truncated: ") + contacts.truncated_capacity};
+      if (contacts.truncated)
+        return Error{ErrorCode::kInternal,
+                     std::string("a frame was truncated: ") + contacts.truncated_capacity};
       if (round == 0) {
         if (first) trial.frames[i] = {contacts, response};
         continue;
@@ -74,7 +82,8 @@ Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, c
   }
   for (const auto& [stage, times] : stages) {
     const auto known = trial.stage_us.find(stage);
-    trial.stage_us[stage] = known == trial.stage_us.end() ? median(times) : std::min(known->second, median(times));
+    trial.stage_us[stage] =
+        known == trial.stage_us.end() ? median(times) : std::min(known->second, median(times));
   }
   trial.memory = backend.memory_by_stage();
   trial.memory_bytes = backend.memory_bytes();
@@ -87,15 +96,24 @@ std::string difference(const PlanTrial& whole, const PlanTrial& lean) {
     const ContactResponse &ra = whole.frames[i].response, &rb = lean.frames[i].response;
     const bool points = a.contact_points && b.contact_points, lists = a.lists && b.lists;
     // In `refined` areas are for people to look at: without lists there are none.
-    const bool compared = lists || (a.carriers.empty() && b.carriers.empty() && a.areas.size() == b.areas.size());
+    const bool compared =
+        lists || (a.carriers.empty() && b.carriers.empty() && a.areas.size() == b.areas.size());
     const char* what = nullptr;
-    if (a.contact != b.contact || a.pairs != b.pairs || a.flags != b.flags || ra.flags != rb.flags) what = "contact, pairs or flags";
-    else if (lists && (a.cst != b.cst || a.bst != b.bst || a.est != b.est || a.cmt != b.cmt || a.bmt != b.bmt || a.imt != b.imt)) what = "sets";
-    else if (a.field != b.field) what = "the field";
-    else if (compared && (a.areas.size() != b.areas.size() || ra.areas.size() != rb.areas.size())) what = "areas";
-    else if (!same_bits(ra.wrench.force, rb.wrench.force)) what = "F";
-    else if (points && !same_bits(ra.wrench.torque, rb.wrench.torque)) what = "T";
-    for (std::size_t k = 0; compared && what == nullptr && k < a.areas.size(); ++k) what = difference(a.areas[k], ra.areas[k], b.areas[k], rb.areas[k], points, lists);
+    if (a.contact != b.contact || a.pairs != b.pairs || a.flags != b.flags || ra.flags != rb.flags)
+      what = "contact, pairs or flags";
+    else if (lists && (a.cst != b.cst || a.bst != b.bst || a.est != b.est || a.cmt != b.cmt ||
+                       a.bmt != b.bmt || a.imt != b.imt))
+      what = "sets";
+    else if (a.field != b.field)
+      what = "the field";
+    else if (compared && (a.areas.size() != b.areas.size() || ra.areas.size() != rb.areas.size()))
+      what = "areas";
+    else if (!same_bits(ra.wrench.force, rb.wrench.force))
+      what = "F";
+    else if (points && !same_bits(ra.wrench.torque, rb.wrench.torque))
+      what = "T";
+    for (std::size_t k = 0; compared && what == nullptr && k < a.areas.size(); ++k)
+      what = difference(a.areas[k], ra.areas[k], b.areas[k], rb.areas[k], points, lists);
     if (what != nullptr) return fmt::format("pose {}: {} of the two plans differ", i, what);
   }
   return {};

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "model/collision_backend.h"
-#include "model/lattice/pose.h"
 #include "model/contact/response.h"
+#include "model/lattice/pose.h"
 
 namespace palpate {
 
@@ -15,10 +15,11 @@ struct PlanTrial {
     Contacts contacts;
     ContactResponse response;
   };
-  std::vector<Frame> frames;                      ///< one a pose
-  std::vector<double> frame_us;                   ///< the least of the rounds, one a pose
-  std::map<std::string, double> stage_us;         ///< median over the poses in contact, over all poses if there is none
-  std::vector<StageMemory> memory;                ///< by stage of the plan
+  std::vector<Frame> frames;     ///< one a pose
+  std::vector<double> frame_us;  ///< the least of the rounds, one a pose
+  std::map<std::string, double>
+      stage_us;                     ///< median over the poses in contact, over all poses if there is none
+  std::vector<StageMemory> memory;  ///< by stage of the plan
   std::uint64_t memory_bytes = 0;
 };
 
@@ -29,11 +30,14 @@ struct PlanQuestion {
   double stiffness_n_per_m = 2000;
 };
 
-/// Goes through the poses once more under `plan`, and adds what it sees to `trial`. The back end has been prepared for the geometry in the plan's
-/// profile; its first round warms up and is the only one whose answers are kept. Errors: the back end's; a pose; a truncated frame.
-Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, const Plan& plan, std::uint64_t rounds, PlanTrial& trial);
+/// Goes through the poses once more under `plan`, and adds what it sees to `trial`. The back end has been
+/// prepared for the geometry in the plan's profile; its first round warms up and is the only one whose
+/// answers are kept. Errors: the back end's; a pose; a truncated frame.
+Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, const Plan& plan,
+                      std::uint64_t rounds, PlanTrial& trial);
 
-/// The first thing that both plans work out and that differs, in words; empty: all the same bits. What one of the two leaves out isn't compared.
+/// The first thing that both plans work out and that differs, in words; empty: all the same bits. What one of
+/// the two leaves out isn't compared.
 std::string difference(const PlanTrial& whole, const PlanTrial& lean);
 
 /// Median over the frames in contact, over all if there is none, µs.

@@ -15,11 +15,13 @@
 namespace palpate {
 namespace {
 
-constexpr double kTick = 1e-3;               // s
-constexpr double kLow = 10, kHigh = 20000;   // N/m: where K is looked for
+constexpr double kTick = 1e-3;              // s
+constexpr double kLow = 10, kHigh = 20000;  // N/m: where K is looked for
 constexpr int kTicks = 20000;
 
-const char* name_of(LawKind kind) { return kind == LawKind::kHold ? "hold" : kind == LawKind::kPrinted ? "printed" : "corrected"; }
+const char* name_of(LawKind kind) {
+  return kind == LawKind::kHold ? "hold" : kind == LawKind::kPrinted ? "printed" : "corrected";
+}
 
 /// One cell: everything that the highest stable K depends on.
 struct Cell {
@@ -28,7 +30,7 @@ struct Cell {
   double mass = 0.5, damping = 1, hand_damping = 0;
   std::uint32_t areas = 1;
   Delivery::Kind delivery = Delivery::Kind::kFixed;
-  bool pushes_only = false;   ///< bounces on the wall, instead of being pressed deep into it
+  bool pushes_only = false;  ///< bounces on the wall, instead of being pressed deep into it
 };
 
 AxisLoop loop_of(const Cell& cell, double k) {
@@ -41,11 +43,11 @@ AxisLoop loop_of(const Cell& cell, double k) {
   if (cell.pushes_only) {
     loop.contact = linear_wall(k, 0, cell.areas);
     loop.load_n = -1;
-    loop.reach_m = 0.1 + 4 / k;   // a soft wall is deep
+    loop.reach_m = 0.1 + 4 / k;  // a soft wall is deep
     loop.start_x = 1e-3;
     loop.settle_ticks = 0;
   } else {
-    constexpr double kLoad = 10;   // N; shakes of a micrometre never come out of the wall
+    constexpr double kLoad = 10;  // N; shakes of a micrometre never come out of the wall
     loop.contact = linear_wall(k, kLoad / k, cell.areas, 1, false);
     loop.load_n = -kLoad;
   }
@@ -56,20 +58,27 @@ AxisLoop loop_of(const Cell& cell, double k) {
 double least(const Cell& cell) { return cell.pushes_only ? 1e-6 : 1e-12; }
 
 double critical(const Cell& cell) {
-  return highest_stable(kLow, kHigh, [&](double k) { return AxisLoop::stable(loop_of(cell, k).run(kTicks), least(cell)); });
+  return highest_stable(
+      kLow, kHigh, [&](double k) { return AxisLoop::stable(loop_of(cell, k).run(kTicks), least(cell)); });
 }
 
-/// The linear limit (b + B) / (T/2 + t): t is the time by which the force lags the hand. Held: a result is c ticks old when it comes and
-/// 2c − 1 when it goes. Printed, n = c: a tick's motion is lost at each result and made good over c ticks. Corrected: none.
+/// The linear limit (b + B) / (T/2 + t): t is the time by which the force lags the hand. Held: a result is c
+/// ticks old when it comes and 2c − 1 when it goes. Printed, n = c: a tick's motion is lost at each result
+/// and made good over c ticks. Corrected: none.
 double theory(const Cell& cell) {
   const double c = cell.delay;
-  const double lag = cell.law == LawKind::kHold ? (1.5 * c - 0.5) * kTick : cell.law == LawKind::kPrinted ? (c - 1) / (2 * c) * kTick : 0;
+  const double lag = cell.law == LawKind::kHold      ? (1.5 * c - 0.5) * kTick
+                     : cell.law == LawKind::kPrinted ? (c - 1) / (2 * c) * kTick
+                                                     : 0;
   return (cell.damping + cell.hand_damping) / (0.5 * kTick + lag);
 }
 
-void add_cell(BenchTable& table, const std::string& model, const Cell& cell, double critical_k, double theory_k) {
-  table.rows.push_back({std::string(name_of(cell.law)), model, std::uint64_t(cell.delay), std::uint64_t(cell.n), cell.mass, cell.damping,
-                        cell.hand_damping, std::uint64_t{cell.areas}, critical_k, std::isfinite(theory_k) ? BenchCell(theory_k) : BenchCell(std::string())});
+void add_cell(BenchTable& table, const std::string& model, const Cell& cell, double critical_k,
+              double theory_k) {
+  table.rows.push_back({std::string(name_of(cell.law)), model, std::uint64_t(cell.delay),
+                        std::uint64_t(cell.n), cell.mass, cell.damping, cell.hand_damping,
+                        std::uint64_t{cell.areas}, critical_k,
+                        std::isfinite(theory_k) ? BenchCell(theory_k) : BenchCell(std::string())});
 }
 
 using Chart = BenchChart;
@@ -88,10 +97,12 @@ constexpr LawKind kLaws[] = {LawKind::kHold, LawKind::kPrinted, LawKind::kCorrec
 
 /// Table and curves: one thing changed at a time.
 void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& charts) {
-  const auto sweep = [&](const std::string& model, const char* x_title, const std::vector<double>& values, auto set) {
+  const auto sweep = [&](const std::string& model, const char* x_title, const std::vector<double>& values,
+                         auto set) {
     Chart chart = lines("Highest stable K, " + model, x_title, "N/m", true, true);
     for (const LawKind law : kLaws) {
-      Chart::Series series{name_of(law), {}, {}}, expected{std::string(name_of(law)) + ", theory", {}, {}, true};
+      Chart::Series series{name_of(law), {}, {}},
+          expected{std::string(name_of(law)) + ", theory", {}, {}, true};
       for (const double value : values) {
         Cell cell{.law = law};
         set(cell, value);
@@ -107,17 +118,24 @@ void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& c
     console.step(model);
   };
   const std::vector<double> delays{1, 2, 3, 5, 10, 20, 50};
-  sweep("linear", "age of results c, ticks (n = c)", delays, [](Cell& cell, double c) { cell.delay = cell.n = static_cast<int>(c); });
+  sweep("linear", "age of results c, ticks (n = c)", delays,
+        [](Cell& cell, double c) { cell.delay = cell.n = static_cast<int>(c); });
   sweep("unilateral", "age of results c, ticks (n = c)", delays, [](Cell& cell, double c) {
     cell.delay = cell.n = static_cast<int>(c);
     cell.pushes_only = true;
   });
-  sweep("linear, 10 ms", "n, ticks", {1, 3, 5, 10, 20, 50}, [](Cell& cell, double n) { cell.delay = 10, cell.n = static_cast<int>(n); });
-  sweep("linear, 5 ms, mass", "kg", {0.02, 0.05, 0.2, 0.5, 2, 5}, [](Cell& cell, double m) { cell.delay = cell.n = 5, cell.mass = m; });
-  sweep("linear, 5 ms, damping", "N·s/m", {0.1, 0.3, 1, 3, 10}, [](Cell& cell, double b) { cell.delay = cell.n = 5, cell.damping = b; });
-  sweep("linear, 5 ms, hand", "N·s/m", {0.1, 1, 3, 6.5}, [](Cell& cell, double b) { cell.delay = cell.n = 5, cell.hand_damping = b; });
-  sweep("linear, 5 ms, areas", "areas", {1, 2, 4, 8}, [](Cell& cell, double a) { cell.delay = cell.n = 5, cell.areas = static_cast<std::uint32_t>(a); });
-  for (const auto& [kind, model] : {std::pair{Delivery::Kind::kRandom, "unilateral, random delay"}, {Delivery::Kind::kBursty, "unilateral, bursts"},
+  sweep("linear, 10 ms", "n, ticks", {1, 3, 5, 10, 20, 50},
+        [](Cell& cell, double n) { cell.delay = 10, cell.n = static_cast<int>(n); });
+  sweep("linear, 5 ms, mass", "kg", {0.02, 0.05, 0.2, 0.5, 2, 5},
+        [](Cell& cell, double m) { cell.delay = cell.n = 5, cell.mass = m; });
+  sweep("linear, 5 ms, damping", "N·s/m", {0.1, 0.3, 1, 3, 10},
+        [](Cell& cell, double b) { cell.delay = cell.n = 5, cell.damping = b; });
+  sweep("linear, 5 ms, hand", "N·s/m", {0.1, 1, 3, 6.5},
+        [](Cell& cell, double b) { cell.delay = cell.n = 5, cell.hand_damping = b; });
+  sweep("linear, 5 ms, areas", "areas", {1, 2, 4, 8},
+        [](Cell& cell, double a) { cell.delay = cell.n = 5, cell.areas = static_cast<std::uint32_t>(a); });
+  for (const auto& [kind, model] : {std::pair{Delivery::Kind::kRandom, "unilateral, random delay"},
+                                    {Delivery::Kind::kBursty, "unilateral, bursts"},
                                     {Delivery::Kind::kLost, "unilateral, one in four lost"}})
     sweep(model, "mean age c, ticks (n = c)", {2, 5, 10}, [kind = kind](Cell& cell, double c) {
       cell.delay = cell.n = static_cast<int>(c);
@@ -129,10 +147,13 @@ void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& c
 /// Two things changed at a time: age of the results against n, and against the mass.
 void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& charts) {
   const std::vector<int> delays{1, 2, 5, 10, 20, 50};
-  const auto map = [&](const std::string& model, LawKind law, const char* y_title, const std::vector<double>& values, auto set) {
-    Chart chart = lines(fmt::format("Highest stable K, {}, {} ({:g}: at most)", model, name_of(law), kLow), "age of results c, ticks", "N/m", false, false);
+  const auto map = [&](const std::string& model, LawKind law, const char* y_title,
+                       const std::vector<double>& values, auto set) {
+    Chart chart = lines(fmt::format("Highest stable K, {}, {} ({:g}: at most)", model, name_of(law), kLow),
+                        "age of results c, ticks", "N/m", false, false);
     chart.map = true;
-    chart.map_low = kLow, chart.map_high = kHigh;   // the same for all, so that they can be held beside each other
+    chart.map_low = kLow,
+    chart.map_high = kHigh;  // the same for all, so that they can be held beside each other
     chart.y_title = y_title;
     for (const int delay : delays) chart.labels.push_back(std::to_string(delay));
     for (const double value : values) {
@@ -141,7 +162,8 @@ void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& chart
         Cell cell{.law = law, .delay = delay, .n = delay};
         set(cell, value);
         row.y.push_back(critical(cell));
-        add_cell(table, model, cell, row.y.back(), cell.pushes_only || cell.n != cell.delay ? std::nan("") : theory(cell));
+        add_cell(table, model, cell, row.y.back(),
+                 cell.pushes_only || cell.n != cell.delay ? std::nan("") : theory(cell));
       }
       chart.series.push_back(std::move(row));
     }
@@ -149,8 +171,10 @@ void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& chart
     console.step(fmt::format("map: {}, {}", model, name_of(law)));
   };
   for (const LawKind law : {LawKind::kPrinted, LawKind::kCorrected}) {
-    map("linear", law, "n, ticks", {1, 2, 5, 10, 20, 50}, [](Cell& cell, double n) { cell.n = static_cast<int>(n); });
-    map("unilateral", law, "mass, kg (n = c)", {0.02, 0.05, 0.2, 0.5, 2, 5}, [](Cell& cell, double m) { cell.mass = m, cell.pushes_only = true; });
+    map("linear", law, "n, ticks", {1, 2, 5, 10, 20, 50},
+        [](Cell& cell, double n) { cell.n = static_cast<int>(n); });
+    map("unilateral", law, "mass, kg (n = c)", {0.02, 0.05, 0.2, 0.5, 2, 5},
+        [](Cell& cell, double m) { cell.mass = m, cell.pushes_only = true; });
   }
 }
 
@@ -163,13 +187,15 @@ SimulatedMaker simulated(const Parts& parts) {
   };
 }
 
-/// The native engine answers `refined` alone; the reference answers the chapter's profile, too, but takes its time.
+/// The native engine answers `refined` alone; the reference answers the chapter's profile, too, but takes its
+/// time.
 BackendMaker engine_of(const Parts& parts, Profile profile) {
   if (profile == Profile::kPaper) return parts.make_ref;
   return [&parts] { return parts.make_cpu(false); };
 }
 
-/// The real collision query in the loop, a whole tool behind the spring that goes with it: results 10 ticks old against none.
+/// The real collision query in the loop, a whole tool behind the spring that goes with it: results 10 ticks
+/// old against none.
 Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& table, Chart& chart) {
   const SimulatedMaker make = simulated(parts);
   for (const LawKind law : kLaws) chart.series.push_back({name_of(law), {}, {}});
@@ -178,15 +204,18 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
     console.step("closing the loop over " + what.name);
     auto prepared = PreparedCase::make(what, Profile::kRefined, engine_of(parts, Profile::kRefined));
     if (!prepared) return prepared.error();
-    const auto none = highest_stable_body_query(make, what, **prepared, bare_device(), LawKind::kCorrected, 0);
+    const auto none =
+        highest_stable_body_query(make, what, **prepared, bare_device(), LawKind::kCorrected, 0);
     if (!none) return none.error();
     chart.labels.push_back(what.name);
     const std::uint32_t areas = what.name == "four" ? 4 : 1;
-    add_cell(table, "query: " + what.name, {.law = LawKind::kCorrected, .delay = 0, .areas = areas}, *none, *none);
+    add_cell(table, "query: " + what.name, {.law = LawKind::kCorrected, .delay = 0, .areas = areas}, *none,
+             *none);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto k = highest_stable_body_query(make, what, **prepared, bare_device(), kLaws[i], 10);
       if (!k) return k.error();
-      add_cell(table, "query: " + what.name, {.law = kLaws[i], .delay = 10, .n = 10, .areas = areas}, *k, *none);
+      add_cell(table, "query: " + what.name, {.law = kLaws[i], .delay = 10, .n = 10, .areas = areas}, *k,
+               *none);
       chart.series[i].y.push_back(*k);
     }
     chart.series[3].y.push_back(*none);
@@ -197,9 +226,12 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
 /// A whole tool in six degrees of freedom, its contact a formula; then the real query, held by a hand.
 Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& table, Chart& chart) {
   const SimulatedMaker make = simulated(parts);
-  const auto row = [&](const std::string& model, LawKind law, int delay, const DeviceSettings& device, std::size_t areas, double found, double expected) {
-    Cell cell{.law = law, .delay = delay, .n = std::max(delay, 1), .areas = static_cast<std::uint32_t>(areas)};
-    cell.mass = device.mass_kg + device.hand_mass_kg, cell.damping = device.damping_n_s_per_m, cell.hand_damping = device.hand_damping_n_s_per_m;
+  const auto row = [&](const std::string& model, LawKind law, int delay, const DeviceSettings& device,
+                       std::size_t areas, double found, double expected) {
+    Cell cell{
+        .law = law, .delay = delay, .n = std::max(delay, 1), .areas = static_cast<std::uint32_t>(areas)};
+    cell.mass = device.mass_kg + device.hand_mass_kg, cell.damping = device.damping_n_s_per_m,
+    cell.hand_damping = device.hand_damping_n_s_per_m;
     add_cell(table, model, cell, found, expected);
   };
   for (const LawKind law : kLaws) chart.series.push_back({name_of(law), {}, {}});
@@ -211,7 +243,11 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
       for (std::size_t i = 0; i < 3; ++i) {
         const double k = highest_stable_body(make, what, kLaws[i], delay);
         // The printed law pulls by a scalar K along every way, so no limit of one contact is its own.
-        const double expected = kLaws[i] == LawKind::kPrinted ? std::nan("") : body_theory(what.device, what.pads, kLaws[i] == LawKind::kHold ? (1.5 * delay - 0.5) * kTick : 0);
+        const double expected =
+            kLaws[i] == LawKind::kPrinted
+                ? std::nan("")
+                : body_theory(what.device, what.pads,
+                              kLaws[i] == LawKind::kHold ? (1.5 * delay - 0.5) * kTick : 0);
         row("body: " + what.name, kLaws[i], delay, what.device, what.pads.size(), k, expected);
         if (delay == 10) chart.series[i].y.push_back(k);
       }
@@ -220,11 +256,13 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
   const BodyCase plate = body_cases().front();
   for (const int delay : {1, 5, 10})
     for (const LawKind law : kLaws)
-      row("body: plate, dropped", law, delay, plate.device, plate.pads.size(), highest_stable_body(make, plate, law, delay, true), std::nan(""));
+      row("body: plate, dropped", law, delay, plate.device, plate.pads.size(),
+          highest_stable_body(make, plate, law, delay, true), std::nan(""));
   const double limit = 4 * body_theory(plate.device, plate.pads, 0);
   for (const double spring : {1800.0, 3000.0, 4000.0, 10000.0}) {
     const double k = highest_stable_body(make, plate, LawKind::kCorrected, 10, false, {spring, 8});
-    row(fmt::format("body: plate, virtual coupling of {:.0f} N/m", spring), LawKind::kCorrected, 10, plate.device, plate.pads.size(), k,
+    row(fmt::format("body: plate, virtual coupling of {:.0f} N/m", spring), LawKind::kCorrected, 10,
+        plate.device, plate.pads.size(), k,
         spring > limit ? limit * spring / (spring - limit) / 4 : std::nan(""));
   }
   for (const ContactCase& what : pressed_contacts()) {
@@ -232,9 +270,11 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
     auto prepared = PreparedCase::make(what, Profile::kRefined, engine_of(parts, Profile::kRefined));
     if (!prepared) return prepared.error();
     console.step("six degrees of freedom over the query, held by a hand: " + what.name);
-    const auto k = highest_stable_body_query(make, what, **prepared, DeviceSettings{}, LawKind::kCorrected, 10);
+    const auto k =
+        highest_stable_body_query(make, what, **prepared, DeviceSettings{}, LawKind::kCorrected, 10);
     if (!k) return k.error();
-    row("body over the query, held by a hand: " + what.name, LawKind::kCorrected, 10, DeviceSettings{}, what.name == "four" ? 4 : 1, *k, std::nan(""));
+    row("body over the query, held by a hand: " + what.name, LawKind::kCorrected, 10, DeviceSettings{},
+        what.name == "four" ? 4 : 1, *k, std::nan(""));
   }
   return {};
 }
@@ -254,7 +294,7 @@ class StepWatch : public RunObserver {
     return {};
   }
   double jerk() const { return std::sqrt(sum_ / std::max(ticks_, 1)); }
-  double force = 0, torque = 0;   ///< largest step in a tick, N and N·m
+  double force = 0, torque = 0;  ///< largest step in a tick, N and N·m
 
  private:
   Wrench before_, step_;
@@ -262,8 +302,10 @@ class StepWatch : public RunObserver {
   int ticks_ = 0;
 };
 
-/// Whole scenes in virtual time, with their device, hand and limits: the chapter's profile and law, then as the scene says.
-Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Console& console, BenchFacts& facts, Chart& force, Chart& torque) {
+/// Whole scenes in virtual time, with their device, hand and limits: the chapter's profile and law, then as
+/// the scene says.
+Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Console& console,
+                            BenchFacts& facts, Chart& force, Chart& torque) {
   for (const std::string& file : options.scenes) {
     StepWatch watch[2];
     for (const bool own : {false, true}) {
@@ -271,14 +313,16 @@ Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Con
       common.scene = file;
       common.backend = own ? "cpu" : "ref";
       if (!own) common.profile = Profile::kPaper;
-      Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(common, Purpose::kSession, parts, console);
+      Result<std::unique_ptr<HostedScene>> prepared =
+          prepare_scene(common, Purpose::kSession, parts, console);
       if (!prepared) return prepared.error();
       LoadedScene& loaded = (*prepared)->loaded;
       if (!own) loaded.scene.control.law = ForceLaw::kPrinted;
       auto device = parts.make_device("simulated", loaded.scene, loaded.geometry.tool_gc_m, {});
       if (!device) return device.error();
       console.step(fmt::format("{}, {}", file, own ? "as it is" : "the chapter's method"));
-      const auto summary = run_session(loaded, *(*prepared)->backend, **device, {.pace = Pace::kAsap}, &watch[own]);
+      const auto summary =
+          run_session(loaded, *(*prepared)->backend, **device, {.pace = Pace::kAsap}, &watch[own]);
       if (!summary) return summary.error();
       if (summary->failure) return *summary->failure;
       force.series[own].y.push_back(watch[own].force);
@@ -286,14 +330,18 @@ Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Con
     }
     const std::string name = std::filesystem::path(file).stem().string();
     force.labels.push_back(name), torque.labels.push_back(name);
-    facts.more.emplace_back("session, " + name, fmt::format("largest step a tick {:.3f} N and {:.1f} mN·m (chapter {:.3f} and {:.1f}), rms jerk {:.3f} N a tick² ({:.3f})", watch[1].force,
-                                                            1e3 * watch[1].torque, watch[0].force, 1e3 * watch[0].torque, watch[1].jerk(), watch[0].jerk()));
+    facts.more.emplace_back("session, " + name,
+                            fmt::format("largest step a tick {:.3f} N and {:.1f} mN·m (chapter {:.3f} and "
+                                        "{:.1f}), rms jerk {:.3f} N a tick² ({:.3f})",
+                                        watch[1].force, 1e3 * watch[1].torque, watch[0].force,
+                                        1e3 * watch[0].torque, watch[1].jerk(), watch[0].jerk()));
   }
   return {};
 }
 
 /// Largest step of force and torque, the chapter's method beside the default.
-Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& facts, Chart& force, Chart& torque) {
+Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& facts, Chart& force,
+                           Chart& torque) {
   force.series = {{"chapter", {}, {}}, {"default", {}, {}}};
   torque.series = force.series;
   constexpr int kDelay = 5;
@@ -304,7 +352,9 @@ Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& fac
       const Profile profile = refined ? Profile::kRefined : Profile::kPaper;
       auto prepared = PreparedCase::make(what, profile, engine_of(parts, profile));
       if (!prepared) return prepared.error();
-      const ForceLawSettings law{.kind = refined ? LawKind::kCorrected : LawKind::kPrinted, .stiffness_n_per_m = 2000, .transitions = kDelay,
+      const ForceLawSettings law{.kind = refined ? LawKind::kCorrected : LawKind::kPrinted,
+                                 .stiffness_n_per_m = 2000,
+                                 .transitions = kDelay,
                                  .change_n_per_s = 100};
       const auto statistics = jumps(what, **prepared, law, kDelay);
       if (!statistics) return statistics.error();
@@ -316,11 +366,13 @@ Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& fac
     torque.labels.push_back(what.name);
     facts.more.emplace_back(
         "jumps, " + what.name,
-        fmt::format("largest step a tick {:.3f} N and {:.3f} mN·m (chapter {:.3f} and {:.3f}), rms jerk {:.3f} N and {:.3f} mN·m a tick² ({:.3f} and {:.3f}), "
+        fmt::format("largest step a tick {:.3f} N and {:.3f} mN·m (chapter {:.3f} and {:.3f}), rms jerk "
+                    "{:.3f} N and {:.3f} mN·m a tick² ({:.3f} and {:.3f}), "
                     "least push {:.2f} N ({:.2f}), results step by up to {:.1f} N ({:.1f})",
-                    found[1].force_step_n, 1e3 * found[1].torque_step_nm, found[0].force_step_n, 1e3 * found[0].torque_step_nm, found[1].force_jerk,
-                    1e3 * found[1].torque_jerk, found[0].force_jerk, 1e3 * found[0].torque_jerk, found[1].least_push_n, found[0].least_push_n,
-                    found[1].response_step_n, found[0].response_step_n));
+                    found[1].force_step_n, 1e3 * found[1].torque_step_nm, found[0].force_step_n,
+                    1e3 * found[0].torque_step_nm, found[1].force_jerk, 1e3 * found[1].torque_jerk,
+                    found[0].force_jerk, 1e3 * found[0].torque_jerk, found[1].least_push_n,
+                    found[0].least_push_n, found[1].response_step_n, found[0].response_step_n));
   }
   return {};
 }
@@ -331,9 +383,11 @@ void measure_energy(BenchTable&, BenchFacts& facts) {
     for (const LawKind law : kLaws) {
       const Cell cell{.law = law, .delay = delay, .n = delay, .pushes_only = true};
       const AxisLoop::Outcome outcome = loop_of(cell, 500).run(kTicks);
-      facts.more.emplace_back(fmt::format("energy, {} {} ms", name_of(law), delay),
-                              fmt::format("{:.2f} mJ given out, least force {:.2f} N, largest step {:.2f} N (500 N/m, 0.5 kg, 1 N·s/m, dropped from 1 mm by 1 N)",
-                                          outcome.energy_out_j * 1e3, outcome.least_force_n, outcome.largest_step_n));
+      facts.more.emplace_back(
+          fmt::format("energy, {} {} ms", name_of(law), delay),
+          fmt::format("{:.2f} mJ given out, least force {:.2f} N, largest step {:.2f} N (500 N/m, 0.5 kg, 1 "
+                      "N·s/m, dropped from 1 mm by 1 N)",
+                      outcome.energy_out_j * 1e3, outcome.least_force_n, outcome.largest_step_n));
     }
 }
 
@@ -341,16 +395,23 @@ void measure_energy(BenchTable&, BenchFacts& facts) {
 
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
   Console console;
-  BenchFacts facts{.command = "stability", .device = "cpu (profile refined) and ref (paper) on the processor, in virtual time", .more = {}};
-  BenchTable table{{"law", "stiffness_model", "delay_ticks", "n", "mass_kg", "damping", "hand_damping", "areas", "critical_k", "theory_k"}, {}};
+  BenchFacts facts{.command = "stability",
+                   .device = "cpu (profile refined) and ref (paper) on the processor, in virtual time",
+                   .more = {}};
+  BenchTable table{{"law", "stiffness_model", "delay_ticks", "n", "mass_kg", "damping", "hand_damping",
+                    "areas", "critical_k", "theory_k"},
+                   {}};
   std::vector<Chart> charts;
   measure_formulas(console, table, charts);
   measure_maps(console, table, charts);
-  Chart queries = lines("Highest stable K over the real collision query, results 10 ms old", "", "N/m", false, true);
+  Chart queries =
+      lines("Highest stable K over the real collision query, results 10 ms old", "", "N/m", false, true);
   if (auto done = measure_queries(parts, console, table, queries); !done) return done;
-  Chart bodies = lines("Highest stable K of a tool in six degrees of freedom, results 10 ms old", "", "N/m", false, true);
+  Chart bodies = lines("Highest stable K of a tool in six degrees of freedom, results 10 ms old", "", "N/m",
+                       false, true);
   if (auto done = measure_bodies(parts, console, table, bodies); !done) return done;
-  Chart force = lines("Largest step of the force between two ticks", "", "N", false, true), torque = lines("Largest step of the torque between two ticks", "", "N·m", false, true);
+  Chart force = lines("Largest step of the force between two ticks", "", "N", false, true),
+        torque = lines("Largest step of the torque between two ticks", "", "N·m", false, true);
   if (auto done = measure_jumps(parts, console, facts, force, torque); !done) return done;
   if (auto done = measure_scenes(options, parts, console, facts, force, torque); !done) return done;
   measure_energy(table, facts);

@@ -8,10 +8,11 @@
 
 namespace palpate {
 
-Result<std::unique_ptr<PreparedCase>> PreparedCase::make(const ContactCase& what, Profile profile, const BackendMaker& backend) {
+Result<std::unique_ptr<PreparedCase>> PreparedCase::make(const ContactCase& what, Profile profile,
+                                                         const BackendMaker& backend) {
   std::unique_ptr<PreparedCase> made(new PreparedCase);
   GeometrySettings settings;
-  settings.voxel_size_m = 2e-3;   // the same for all, so that their figures compare
+  settings.voxel_size_m = 2e-3;  // the same for all, so that their figures compare
   Result<SceneGeometry> geometry = build_geometry(what.mockup, what.tool, settings);
   if (!geometry) return geometry.error();
   made->geometry_ = std::move(*geometry);
@@ -33,7 +34,9 @@ void PreparedCase::begin(double stiffness) {
   stiffness_ = stiffness;
 }
 
-Result<Felt> PreparedCase::feel(const Pose& pose) { return lone_->ask(*backend_, nullptr, pose, slot_.response); }
+Result<Felt> PreparedCase::feel(const Pose& pose) {
+  return lone_->ask(*backend_, nullptr, pose, slot_.response);
+}
 
 CouplingSettings PreparedCase::spring() const {
   if (profile_ == Profile::kPaper) return {};
@@ -45,12 +48,13 @@ Result<void> PreparedCase::ask(const Pose& pose, LawResult& out) {
   return frame_->solve(slot_, out);
 }
 
-Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, const ForceLawSettings& law, int delay) {
+Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, const ForceLawSettings& law,
+                             int delay) {
   JumpStatistics out;
   prepared.begin(law.stiffness_n_per_m);
   const CouplingSettings spring = law.kind == LawKind::kCorrected ? prepared.spring() : CouplingSettings{};
   ForceLawSettings settings = law;
-  if (spring.on()) settings.change_n_per_s = 0;   // the spring's (ControlTick::couple)
+  if (spring.on()) settings.change_n_per_s = 0;  // the spring's (ControlTick::couple)
   ForceLawState state(settings);
   VirtualCoupling coupling(spring, law.change_n_per_s);
   const Vec3 gc_tool = prepared.geometry().tool_gc_m;
@@ -62,7 +66,8 @@ Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, co
   for (int i = 0; i < ticks; ++i) {
     Pose pose = what.pose(i * 1e-3);
     if (spring.on()) {
-      const LawPose tool = coupling.follow(state, {i, pose.position + pose.rotation * gc_tool, pose.rotation});
+      const LawPose tool =
+          coupling.follow(state, {i, pose.position + pose.rotation * gc_tool, pose.rotation});
       pose = {tool.gc - tool.rotation * gc_tool, tool.rotation};
     }
     const LawResult* fresh = nullptr;
@@ -84,7 +89,8 @@ Result<JumpStatistics> jumps(const ContactCase& what, PreparedCase& prepared, co
     const Vec3 bend = step.force - step_before.force, twist = step.torque - step_before.torque;
     force_sum += glm::dot(bend, bend);
     torque_sum += glm::dot(twist, twist);
-    if (arrived.contact && glm::length(told) > 0) out.least_push_n = std::min(out.least_push_n, glm::dot(force.force, told) / glm::length(told));
+    if (arrived.contact && glm::length(told) > 0)
+      out.least_push_n = std::min(out.least_push_n, glm::dot(force.force, told) / glm::length(told));
     before = force;
     step_before = step;
   }

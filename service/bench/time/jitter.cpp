@@ -1,4 +1,5 @@
-// `bench jitter`: how late the 1 kHz loop's ticks come while lavapipe, or any back end, works as hard as it can; cyclictest beside it.
+// `bench jitter`: how late the 1 kHz loop's ticks come while lavapipe, or any back end, works as hard as it
+// can; cyclictest beside it.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -23,18 +24,18 @@
 #include "service/loop/session.h"
 #include "service/loop/thread_share.h"
 
-extern char** environ;   // NOLINT: POSIX names it so
+extern char** environ;  // NOLINT: POSIX names it so
 
 namespace palpate {
 namespace {
 
-constexpr int kHistogramUs = 100'000;   // cyclictest counts latenesses up to this, and how many were beyond
+constexpr int kHistogramUs = 100'000;  // cyclictest counts latenesses up to this, and how many were beyond
 
 /// What is compared. Microseconds after the scheduled time.
 struct Lateness {
   std::uint64_t ticks = 0, missed = 0;
   double p50 = 0, p99 = 0, p999 = 0, max = 0;
-  std::vector<HistogramBin> bins{};   ///< µs
+  std::vector<HistogramBin> bins{};  ///< µs
 };
 
 /// cyclictest, begun with the same priority and period; its histogram goes to a file. Ended when this goes.
@@ -51,11 +52,14 @@ class Cyclictest {
 
   /// False: there is none.
   bool begin(const std::string& file, double seconds, bool realtime) {
-    const std::string histogram = std::to_string(kHistogramUs), loops = std::to_string(std::llround(seconds * 1000));
-    std::vector<std::string> words{"cyclictest", "--quiet", "--threads=1", "--interval=1000", "--loops=" + loops, "--histogram=" + histogram};
+    const std::string histogram = std::to_string(kHistogramUs),
+                      loops = std::to_string(std::llround(seconds * 1000));
+    std::vector<std::string> words{"cyclictest",      "--quiet",          "--threads=1",
+                                   "--interval=1000", "--loops=" + loops, "--histogram=" + histogram};
     if (realtime && loop_processor() >= 0) words.push_back("--affinity=" + std::to_string(loop_processor()));
     if (realtime)
-      words.insert(words.end(), {"--mlockall", "--policy=fifo", "--priority=" + std::to_string(kLoopPriority)});
+      words.insert(words.end(),
+                   {"--mlockall", "--policy=fifo", "--priority=" + std::to_string(kLoopPriority)});
     else
       words.push_back("--policy=other");
     std::vector<char*> arguments;
@@ -63,7 +67,8 @@ class Cyclictest {
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0644);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     const int error = posix_spawnp(&child_, "cyclictest", &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
@@ -81,7 +86,8 @@ class Cyclictest {
   pid_t child_ = -1;
 };
 
-/// Lines "000123 000045": microseconds and how often; "# Max Latencies: 00456" and "# Histogram Overflows: 00001".
+/// Lines "000123 000045": microseconds and how often; "# Max Latencies: 00456" and "# Histogram Overflows:
+/// 00001".
 Result<Lateness> read_histogram(const std::string& file) {
   std::ifstream in(file);
   std::vector<std::uint64_t> counts(kHistogramUs, 0);
@@ -113,7 +119,9 @@ Result<Lateness> read_histogram(const std::string& file) {
   for (double low = 1; low < kHistogramUs; low *= std::sqrt(std::sqrt(2.0))) {
     const double high = low * std::sqrt(std::sqrt(2.0));
     HistogramBin bin{low, high, 0};
-    for (auto us = static_cast<std::uint64_t>(std::ceil(low)); static_cast<double>(us) < high && us < counts.size(); ++us) bin.count += counts[us];
+    for (auto us = static_cast<std::uint64_t>(std::ceil(low));
+         static_cast<double>(us) < high && us < counts.size(); ++us)
+      bin.count += counts[us];
     if (bin.count > 0) out.bins.push_back(bin);
   }
   out.p50 = percentile(0.5), out.p99 = percentile(0.99), out.p999 = percentile(0.999);
@@ -134,11 +142,14 @@ void repeat(std::vector<PathPoint>& path, double seconds) {
   }
 }
 
-void add(BenchTable& table, BenchChart& chart, BenchChart& histogram, const std::string& who, const Lateness& late) {
+void add(BenchTable& table, BenchChart& chart, BenchChart& histogram, const std::string& who,
+         const Lateness& late) {
   table.rows.push_back({who, late.ticks, late.missed, late.p50, late.p99, late.p999, late.max});
   chart.series.push_back({who, {}, {late.p50, late.p99, late.p999, late.max}});
   BenchChart::Series counts{who, {}, {}};
-  for (const HistogramBin& bin : late.bins) counts.x.push_back(std::sqrt(std::max(bin.low, 0.5) * bin.high)), counts.y.push_back(static_cast<double>(bin.count));
+  for (const HistogramBin& bin : late.bins)
+    counts.x.push_back(std::sqrt(std::max(bin.low, 0.5) * bin.high)),
+        counts.y.push_back(static_cast<double>(bin.count));
   histogram.series.push_back(std::move(counts));
 }
 
@@ -159,7 +170,8 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
   catch_interrupts();
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
-  if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", options.out, error.message()));
+  if (error)
+    return bad_value(fmt::format("{}: the directory can't be made ({})", options.out, error.message()));
 
   BenchFacts facts{.command = "jitter", .device = device_text(*scene.backend, parts), .more = {}};
   const std::string file = (std::filesystem::path(options.out) / "cyclictest.txt").string();
@@ -171,12 +183,14 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
   session.duration_s = options.seconds;
   session.room = true;
   session.stop = &interrupt_flag();
-  const Result<SessionSummary> summary = run_session(scene.loaded, *scene.backend, **device, session, nullptr);
+  const Result<SessionSummary> summary =
+      run_session(scene.loaded, *scene.backend, **device, session, nullptr);
   if (!summary) return summary.error();
   if (summary->failure) return *summary->failure;
   if (summary->stopped) return Error{ErrorCode::kInternal, "interrupted"};
 
-  BenchTable table{{"loop", "ticks", "missed", "late_p50_us", "late_p99_us", "late_p999_us", "late_max_us"}, {}};
+  BenchTable table{{"loop", "ticks", "missed", "late_p50_us", "late_p99_us", "late_p999_us", "late_max_us"},
+                   {}};
   BenchChart chart;
   chart.title = "How late a tick comes";
   chart.unit = "µs";
@@ -188,7 +202,8 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
   histogram.x_title = "µs after the scheduled time";
   histogram.log_x = histogram.log_y = true;
   const Percentiles& late = summary->lateness_us;
-  const Lateness own{summary->ticks, summary->missed_ticks, late.p50, late.p99, late.p999, late.max, summary->lateness_bins_us};
+  const Lateness own{summary->ticks, summary->missed_ticks,    late.p50, late.p99, late.p999,
+                     late.max,       summary->lateness_bins_us};
   add(table, chart, histogram, "palpate", own);
   if (!compared) {
     facts.more.emplace_back("cyclictest", "not found (Debian: rt-tests); palpate's loop was measured alone");
@@ -198,14 +213,19 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
     const Result<Lateness> other = read_histogram(file);
     if (!other) return other.error();
     add(table, chart, histogram, "cyclictest", *other);
-    facts.more.emplace_back("beside cyclictest", fmt::format("p99.9 {:.2f} times as late, {} missed against {}", late.p999 / std::max(other->p999, 1.0),
-                                                             own.missed, other->missed));
+    facts.more.emplace_back("beside cyclictest",
+                            fmt::format("p99.9 {:.2f} times as late, {} missed against {}",
+                                        late.p999 / std::max(other->p999, 1.0), own.missed, other->missed));
   }
-  facts.more.emplace_back("scheduling", realtime ? "SCHED_FIFO for both" : "no real-time priority: the ordinary scheduler for both");
-  facts.more.emplace_back("load", fmt::format("{} frames answered meanwhile, {:.2f} ms each (median); load average {:.1f}", summary->frames,
-                                              summary->frame_us.p50 / 1000, load_average()));
-  facts.more.emplace_back("age of results", fmt::format("{:.0f} ticks median, {:.0f} p99, {:.0f} at most", summary->result_age_ticks.p50,
-                                                        summary->result_age_ticks.p99, summary->result_age_ticks.max));
+  facts.more.emplace_back("scheduling", realtime ? "SCHED_FIFO for both"
+                                                 : "no real-time priority: the ordinary scheduler for both");
+  facts.more.emplace_back(
+      "load", fmt::format("{} frames answered meanwhile, {:.2f} ms each (median); load average {:.1f}",
+                          summary->frames, summary->frame_us.p50 / 1000, load_average()));
+  facts.more.emplace_back(
+      "age of results",
+      fmt::format("{:.0f} ticks median, {:.0f} p99, {:.0f} at most", summary->result_age_ticks.p50,
+                  summary->result_age_ticks.p99, summary->result_age_ticks.max));
   for (const std::string& note : summary->notes) facts.more.emplace_back("note", note);
   for (const auto& [what, text] : facts.more) console.note(what + ": " + text);
   console.finish();

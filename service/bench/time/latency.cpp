@@ -19,13 +19,16 @@ struct Subject {
 };
 
 /// Measures one scene on all back ends, in turns, pose by pose.
-Result<std::vector<Subject>> measure(const BenchOptions& options, const std::string& file, const Parts& parts, Console& console) {
-  const std::vector<std::string> backends = options.backends.empty() ? std::vector<std::string>{""} : options.backends;
+Result<std::vector<Subject>> measure(const BenchOptions& options, const std::string& file, const Parts& parts,
+                                     Console& console) {
+  const std::vector<std::string> backends =
+      options.backends.empty() ? std::vector<std::string>{""} : options.backends;
   std::vector<Subject> subjects;
   for (const std::string& backend : backends) {
     auto prepared = prepare_scene({file, backend, options.profile, false}, Purpose::kSession, parts, console);
     if (!prepared) return prepared.error();
-    if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
+    if (auto done = (*prepared)->backend->finish_preparing(); !done)
+      return done.error();  // no frame beside compilers
     subjects.push_back({std::move(*prepared), {}});
   }
   const Result<std::vector<Pose>> poses = bench_poses(options, *subjects.front().scene, parts, console);
@@ -37,14 +40,16 @@ Result<std::vector<Subject>> measure(const BenchOptions& options, const std::str
   for (std::uint64_t round = 0; round <= options.rounds; ++round)
     for (std::size_t i = 0; i < poses->size(); ++i) {
       for (std::size_t k = 0; k < subjects.size(); ++k) {
-        Subject& subject = subjects[(i + k) % subjects.size()];   // nobody is always the first
+        Subject& subject = subjects[(i + k) % subjects.size()];  // nobody is always the first
         const DeviceWork before = subject.scene->backend->device_work();
         const Stopwatch watch(options.cpu_clock);
         if (auto done = answer_frame(*subject.scene, (*poses)[i], answer); !done) return done.error();
         const double total_us = watch.us();
-        if (round > 0) subject.times.add(answer.contacts, total_us, since(before, subject.scene->backend->device_work()));
+        if (round > 0)
+          subject.times.add(answer.contacts, total_us, since(before, subject.scene->backend->device_work()));
       }
-      const double done = static_cast<double>(round * poses->size() + i) / static_cast<double>((options.rounds + 1) * poses->size());
+      const double done = static_cast<double>(round * poses->size() + i) /
+                          static_cast<double>((options.rounds + 1) * poses->size());
       if (i % 16 == 0 && !console.progress("poses", done)) return Error{ErrorCode::kInternal, "interrupted"};
     }
   console.finish();
@@ -56,8 +61,11 @@ void add_rows(const std::string& scene, const Subject& subject, BenchTable& tabl
     for (const std::string& stage : subject.times.stages()) {
       const TimePercentiles p = percentiles(subject.times.times(kind, stage));
       if (p.count == 0) continue;
-      auto& row = table.rows.emplace_back(std::vector<BenchCell>{scene, subject.scene->backend->name(), kFrameKindNames[kind], stage, std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max});
-      for (BenchCell& cell : work_cells(stage == "total" ? subject.times.work(kind) : DeviceWork{})) row.push_back(std::move(cell));
+      auto& row = table.rows.emplace_back(
+          std::vector<BenchCell>{scene, subject.scene->backend->name(), kFrameKindNames[kind], stage,
+                                 std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max});
+      for (BenchCell& cell : work_cells(stage == "total" ? subject.times.work(kind) : DeviceWork{}))
+        row.push_back(std::move(cell));
     }
 }
 
@@ -67,17 +75,30 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
   catch_interrupts();
   Console console;
   BenchFacts facts{.command = "latency", .device = {}, .more = {}};
-  BenchTable table{{"scene", "backend", "frames", "stage", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us"}, {}};
+  BenchTable table{
+      {"scene", "backend", "frames", "stage", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us"},
+      {}};
   table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
-  BenchChart stages{.title = "Median of each stage, frames in contact", .unit = "µs", .labels = {}, .series = {}, .stacked = true, .x_title = {}};
-  BenchChart tails{.title = "Whole frame, all frames", .unit = "µs", .labels = {"p50", "p95", "p99", "max"}, .series = {}, .log_y = true, .x_title = {}};
+  BenchChart stages{.title = "Median of each stage, frames in contact",
+                    .unit = "µs",
+                    .labels = {},
+                    .series = {},
+                    .stacked = true,
+                    .x_title = {}};
+  BenchChart tails{.title = "Whole frame, all frames",
+                   .unit = "µs",
+                   .labels = {"p50", "p95", "p99", "max"},
+                   .series = {},
+                   .log_y = true,
+                   .x_title = {}};
   const double load = load_average();
   for (const std::string& file : options.scenes) {
     const auto subjects = measure(options, file, parts, console);
     if (!subjects) return subjects.error();
     for (const Subject& subject : *subjects) {
       const HostedScene& scene = *subject.scene;
-      const std::string name = scene_name(file), label = subjects->size() > 1 ? name + ", " + scene.backend->name() : name;
+      const std::string name = scene_name(file),
+                        label = subjects->size() > 1 ? name + ", " + scene.backend->name() : name;
       add_rows(name, subject, table);
       const TimePercentiles all = percentiles(subject.times.times(3, "total"));
       tails.series.push_back({label, {}, {all.p50, all.p95, all.p99, all.max}});
@@ -85,21 +106,26 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
       stages.labels.push_back(label);
       for (const std::string& stage : subject.times.stages()) {
         if (stage == "total") continue;
-        auto series = std::find_if(stages.series.begin(), stages.series.end(), [&](const auto& s) { return s.label == stage; });
+        auto series = std::find_if(stages.series.begin(), stages.series.end(),
+                                   [&](const auto& s) { return s.label == stage; });
         if (series == stages.series.end()) series = stages.series.insert(series, {stage, {}, {}});
         series->y.resize(stages.labels.size() - 1);
         series->y.push_back(percentiles(subject.times.times(0, stage)).p50);
       }
       const SceneGeometry& geometry = scene.loaded.geometry;
-      facts.more.emplace_back(label, fmt::format("mock-up {} triangles, tool {}, read {:.2f} s, prepared {:.2f} s, {} on {}",
-                                                 count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()), scene.load_s,
-                                                 scene.prepare_s, bytes_text(scene.backend->memory_bytes()), scene.backend->name()));
+      facts.more.emplace_back(
+          label, fmt::format("mock-up {} triangles, tool {}, read {:.2f} s, prepared {:.2f} s, {} on {}",
+                             count_text(geometry.mockup.triangles.size()),
+                             count_text(geometry.tool.triangles.size()), scene.load_s, scene.prepare_s,
+                             bytes_text(scene.backend->memory_bytes()), scene.backend->name()));
       const std::string device = device_text(*scene.backend, parts);
-      if (facts.device.find(device) == std::string::npos) facts.device += (facts.device.empty() ? "" : "; ") + device;
+      if (facts.device.find(device) == std::string::npos)
+        facts.device += (facts.device.empty() ? "" : "; ") + device;
     }
   }
   facts.more.emplace_back("clock", options.cpu_clock ? "CPU time of this process" : "wall");
-  facts.more.emplace_back("load average", fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
+  facts.more.emplace_back("load average",
+                          fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
   return write_bench(options.out, facts, table, {stages, tails});
 }
 

@@ -15,15 +15,19 @@
 namespace palpate {
 namespace {
 
-/// Coal is not packaged, so it is not run: on one machine its medians and 99th percentiles were these parts of FCL OBB's, on scenes of
-/// these sizes (contacts 25,000 × 1,500; disassembly 100,000 × 2,000, 1,000,000 × 2,000, 1,000,000 × 100,000).
+/// Coal is not packaged, so it is not run: on one machine its medians and 99th percentiles were these parts
+/// of FCL OBB's, on scenes of these sizes (contacts 25,000 × 1,500; disassembly 100,000 × 2,000, 1,000,000 ×
+/// 2,000, 1,000,000 × 100,000).
 struct CoalFactor {
   double p50, p99;
 };
 CoalFactor coal_factor(const SceneGeometry& geometry) {
   constexpr CoalFactor kFactors[] = {{0.82, 0.87}, {0.74, 1.15}, {0.78, 0.98}, {0.87, 0.93}};
   const std::size_t mockup = geometry.mockup.triangles.size(), tool = geometry.tool.triangles.size();
-  return kFactors[mockup < 50'000 ? 0 : mockup < 300'000 ? 1 : tool < 15'000 ? 2 : 3];   // borders: chosen between the sizes
+  return kFactors[mockup < 50'000    ? 0
+                  : mockup < 300'000 ? 1
+                  : tool < 15'000    ? 2
+                                     : 3];  // borders: chosen between the sizes
 }
 
 /// Where a library's pairs differ from the exact ones, over all poses.
@@ -43,15 +47,17 @@ struct Race {
   std::vector<Competitor> peers;
   TimeTable ours;
   std::uint64_t exact_pairs = 0;
-  Difference our_difference;      ///< pairs counted; missing and extra: of the static and mobile triangles in them
+  Difference
+      our_difference;  ///< pairs counted; missing and extra: of the static and mobile triangles in them
   std::vector<Pose> poses;
   std::vector<FrameKind> kinds;
 };
 
 bool wanted(const BenchOptions& options, const std::string& name) {
   if (options.peers.empty()) return true;
-  return std::any_of(options.peers.begin(), options.peers.end(),
-                     [&](const std::string& word) { return name.size() >= word.size() && strncasecmp(name.c_str(), word.c_str(), word.size()) == 0; });
+  return std::any_of(options.peers.begin(), options.peers.end(), [&](const std::string& word) {
+    return name.size() >= word.size() && strncasecmp(name.c_str(), word.c_str(), word.size()) == 0;
+  });
 }
 
 Result<void> build(const BenchOptions& options, const Parts& parts, Race& race, Console& console) {
@@ -62,7 +68,9 @@ Result<void> build(const BenchOptions& options, const Parts& parts, Race& race, 
     peer->build(race.scene->loaded.geometry);
     race.peers.push_back({std::move(peer), watch.us() * 1e-6, {}, {}});
   }
-  if (race.peers.empty()) return Error{ErrorCode::kUsage, "--peers: no library's name begins like that; there are fcl, embree, bullet, cgal"};
+  if (race.peers.empty())
+    return Error{ErrorCode::kUsage,
+                 "--peers: no library's name begins like that; there are fcl, embree, bullet, cgal"};
   return {};
 }
 
@@ -95,14 +103,16 @@ Result<void> check(const Parts& parts, Race& race, Console& console) {
       std::sort(ids->begin(), ids->end());
       ids->erase(std::unique(ids->begin(), ids->end()), ids->end());
     }
-    const auto add = [](Difference& difference, std::uint64_t pairs, std::uint64_t missing, std::uint64_t extra, bool differs) {
+    const auto add = [](Difference& difference, std::uint64_t pairs, std::uint64_t missing,
+                        std::uint64_t extra, bool differs) {
       difference.pairs += pairs;
       difference.missing += missing;
       difference.extra += extra;
       difference.poses += differs ? 1 : 0;
     };
     const Contacts& ours = answer.contacts;
-    add(race.our_difference, ours.pairs, lacking(statics, ours.cst) + lacking(mobiles, ours.cmt), lacking(ours.cst, statics) + lacking(ours.cmt, mobiles),
+    add(race.our_difference, ours.pairs, lacking(statics, ours.cst) + lacking(mobiles, ours.cmt),
+        lacking(ours.cst, statics) + lacking(ours.cmt, mobiles),
         ours.pairs != exact.size() || statics != ours.cst || mobiles != ours.cmt);
     for (Competitor& competitor : race.peers) {
       competitor.peer->find(*pose, found);
@@ -135,17 +145,23 @@ Result<void> time_all(const BenchOptions& options, Race& race, Console& console)
         race.peers[runner].peer->find(*pose, found);
         race.peers[runner].times.add(race.kinds[i], watch.us());
       }
-      const double done = static_cast<double>(round * race.poses.size() + i) / static_cast<double>(options.rounds * race.poses.size());
-      if (i % 16 == 0 && !console.progress("timing", 0.3 + 0.7 * done)) return Error{ErrorCode::kInternal, "interrupted"};
+      const double done = static_cast<double>(round * race.poses.size() + i) /
+                          static_cast<double>(options.rounds * race.poses.size());
+      if (i % 16 == 0 && !console.progress("timing", 0.3 + 0.7 * done))
+        return Error{ErrorCode::kInternal, "interrupted"};
     }
   return {};
 }
 
-Result<Race> run_race(const BenchOptions& options, const std::string& file, const Parts& parts, Console& console) {
+Result<Race> run_race(const BenchOptions& options, const std::string& file, const Parts& parts,
+                      Console& console) {
   Race race;
-  auto prepared = prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false}, Purpose::kQuery, parts, console);
+  auto prepared =
+      prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false},
+                    Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
-  if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
+  if (auto done = (*prepared)->backend->finish_preparing(); !done)
+    return done.error();  // no frame beside compilers
   race.scene = std::move(*prepared);
   auto poses = bench_poses(options, *race.scene, parts, console);
   if (!poses) return poses.error();
@@ -163,8 +179,9 @@ void add_rows(const std::string& scene, const Race& race, BenchTable& table) {
     const TimePercentiles ours = percentiles(race.ours.times(kind, "total"));
     if (ours.count == 0) continue;
     const auto row = [&](const std::string& name, const TimePercentiles& p, const Difference& d) {
-      table.rows.push_back({scene, name, kFrameKindNames[kind], std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max, ours.p50 / p.p50,
-                            ours.p99 / p.p99, d.pairs, d.missing, d.extra, d.poses});
+      table.rows.push_back({scene, name, kFrameKindNames[kind], std::uint64_t{p.count}, p.p50, p.p95, p.p99,
+                            cell_of(p.p999), p.max, ours.p50 / p.p50, ours.p99 / p.p99, d.pairs, d.missing,
+                            d.extra, d.poses});
     };
     row("palpate " + race.scene->backend->name(), ours, race.our_difference);
     for (const Competitor& competitor : race.peers) {
@@ -176,19 +193,28 @@ void add_rows(const std::string& scene, const Race& race, BenchTable& table) {
       const double p50 = factor.p50 * p.p50, p99 = factor.p99 * p.p99;
       const std::string none;
       if (kind == 0)
-        table.rows.push_back({scene, "Coal OBB (estimated from FCL)", kFrameKindNames[kind], std::uint64_t{0}, p50, none, none, none, none, ours.p50 / p50,
-                              none, none, none, none, none});
+        table.rows.push_back({scene, "Coal OBB (estimated from FCL)", kFrameKindNames[kind], std::uint64_t{0},
+                              p50, none, none, none, none, ours.p50 / p50, none, none, none, none, none});
       if (kind == 3)
-        table.rows.push_back({scene, "Coal OBB (estimated from FCL)", kFrameKindNames[kind], std::uint64_t{0}, none, none, p99, none, none, none,
-                              ours.p99 / p99, none, none, none, none});
+        table.rows.push_back({scene, "Coal OBB (estimated from FCL)", kFrameKindNames[kind], std::uint64_t{0},
+                              none, none, p99, none, none, none, ours.p99 / p99, none, none, none, none});
     }
   }
 }
 
 void add_chart(const std::string& scene, const Race& race, std::vector<BenchChart>& charts) {
-  BenchChart chart{.title = scene, .unit = "µs, logarithmic", .labels = {"contact, p50", "all, p99", "free, p50"}, .series = {}, .log_y = true, .x_title = {}};
+  BenchChart chart{.title = scene,
+                   .unit = "µs, logarithmic",
+                   .labels = {"contact, p50", "all, p99", "free, p50"},
+                   .series = {},
+                   .log_y = true,
+                   .x_title = {}};
   const auto series = [&](const std::string& name, const TimeTable& times) {
-    chart.series.push_back({name, {}, {percentiles(times.times(0, "total")).p50, percentiles(times.times(3, "total")).p99, percentiles(times.times(1, "total")).p50}});
+    chart.series.push_back(
+        {name,
+         {},
+         {percentiles(times.times(0, "total")).p50, percentiles(times.times(3, "total")).p99,
+          percentiles(times.times(1, "total")).p50}});
   };
   series("palpate, whole frame", race.ours);
   for (const Competitor& competitor : race.peers) series(competitor.peer->name(), competitor.times);
@@ -199,12 +225,15 @@ void add_chart(const std::string& scene, const Race& race, std::vector<BenchChar
 
 Result<void> bench_peers(const BenchOptions& options, const Parts& parts) {
   if (!parts.make_peers)
-    return Error{ErrorCode::kUsage, "bench peers: this build has no other libraries in it; scripts/bench makes one that has (PALPATE_BENCH_PEERS=ON)"};
+    return Error{ErrorCode::kUsage,
+                 "bench peers: this build has no other libraries in it; scripts/bench makes one that has "
+                 "(PALPATE_BENCH_PEERS=ON)"};
   catch_interrupts();
   Console console;
   BenchFacts facts{.command = "peers", .device = {}, .more = {}};
-  BenchTable table{{"scene", "library", "frames", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us", "palpate_p50_ratio", "palpate_p99_ratio",
-                    "pairs", "missing", "extra", "poses_different"}, {}};
+  BenchTable table{{"scene", "library", "frames", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us",
+                    "palpate_p50_ratio", "palpate_p99_ratio", "pairs", "missing", "extra", "poses_different"},
+                   {}};
   std::vector<BenchChart> charts;
   const double load = load_average();
   for (const std::string& file : options.scenes) {
@@ -215,14 +244,18 @@ Result<void> bench_peers(const BenchOptions& options, const Parts& parts) {
     add_rows(name, *race, table);
     add_chart(name, *race, charts);
     if (facts.device.empty()) facts.device = device_text(*race->scene->backend, parts);
-    facts.more.emplace_back(name, fmt::format("mock-up {} triangles, tool {}, {} poses, {} exact pairs", count_text(geometry.mockup.triangles.size()),
-                                              count_text(geometry.tool.triangles.size()), race->poses.size(), count_text(race->exact_pairs)));
+    facts.more.emplace_back(name, fmt::format("mock-up {} triangles, tool {}, {} poses, {} exact pairs",
+                                              count_text(geometry.mockup.triangles.size()),
+                                              count_text(geometry.tool.triangles.size()), race->poses.size(),
+                                              count_text(race->exact_pairs)));
     for (const Competitor& competitor : race->peers)
-      facts.more.emplace_back(fmt::format("{}, {}", name, competitor.peer->name()),
-                              fmt::format("version {}, trees built in {:.2f} s", competitor.peer->version(), competitor.build_s));
+      facts.more.emplace_back(
+          fmt::format("{}, {}", name, competitor.peer->name()),
+          fmt::format("version {}, trees built in {:.2f} s", competitor.peer->version(), competitor.build_s));
   }
   facts.more.emplace_back("clock", options.cpu_clock ? "CPU time of this process" : "wall");
-  facts.more.emplace_back("load average", fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
+  facts.more.emplace_back("load average",
+                          fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
   return write_bench(options.out, facts, table, charts);
 }
 

@@ -22,10 +22,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kContact = 100'000, kTool = 2'000;   // triangles of the chapter's scene, to which the series are compared
-constexpr double kAside_m = 2;                               // where triangles that nobody touches stand
+constexpr std::uint64_t kContact = 100'000,
+                        kTool = 2'000;  // triangles of the chapter's scene, to which the series are compared
+constexpr double kAside_m = 2;          // where triangles that nobody touches stand
 
-/// A scene of one of three series: triangles added around the same contact; the same surface, finer; a finer tool.
+/// A scene of one of three series: triangles added around the same contact; the same surface, finer; a finer
+/// tool.
 struct Case {
   const char* series;
   std::uint64_t triangles, tool;
@@ -35,7 +37,8 @@ std::vector<Case> cases(std::uint64_t most) {
   std::vector<Case> out;
   for (std::uint64_t n = kContact; n <= most; n *= 10) out.push_back({"around", n, kTool});
   for (std::uint64_t n = 10'000; n <= most; n *= 10) out.push_back({"finer", n, kTool});
-  for (const std::uint64_t n : {std::uint64_t{1'000}, std::uint64_t{10'000}, std::uint64_t{100'000}}) out.push_back({"tool", kContact, n});
+  for (const std::uint64_t n : {std::uint64_t{1'000}, std::uint64_t{10'000}, std::uint64_t{100'000}})
+    out.push_back({"tool", kContact, n});
   return out;
 }
 
@@ -59,14 +62,18 @@ Json scene_of(const Case& c, bool paper, double spacing_m) {
   return {{"static", statics}, {"tool", tool}, {"response", response}, {"device", {{"driver", "simulated"}}}};
 }
 
-/// The same surface with each edge in two: four triangles for one. Middles are those of both neighbours, to the bit.
+/// The same surface with each edge in two: four triangles for one. Middles are those of both neighbours, to
+/// the bit.
 Mesh refined(const Mesh& mesh) {
   Mesh out;
   for (const auto& [i, j, k] : mesh.triangles) {
-    const Vec3 &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k], ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+    const Vec3 &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k], ab = 0.5 * (a + b),
+               bc = 0.5 * (b + c), ca = 0.5 * (c + a);
     const auto first = static_cast<std::uint32_t>(out.vertices.size());
     out.vertices.insert(out.vertices.end(), {a, b, c, ab, bc, ca});
-    for (const std::array<std::uint32_t, 3>& t : {std::array<std::uint32_t, 3>{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}) out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    for (const std::array<std::uint32_t, 3>& t :
+         {std::array<std::uint32_t, 3>{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}})
+      out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   return out;
 }
@@ -78,11 +85,15 @@ struct Figures {
   std::string device, backend;
 };
 
-Result<Figures> measure(const BenchOptions& options, const std::string& file, const Parts& parts, Console& console) {
+Result<Figures> measure(const BenchOptions& options, const std::string& file, const Parts& parts,
+                        Console& console) {
   restart_peak_memory();
-  auto prepared = prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false}, Purpose::kQuery, parts, console);
+  auto prepared =
+      prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false},
+                    Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
-  if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
+  if (auto done = (*prepared)->backend->finish_preparing(); !done)
+    return done.error();  // no frame beside compilers
   HostedScene& scene = **prepared;
   const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
   if (!poses) return poses.error();
@@ -94,7 +105,9 @@ Result<Figures> measure(const BenchOptions& options, const std::string& file, co
       const Stopwatch watch(options.cpu_clock);
       if (auto done = answer_frame(scene, (*poses)[i], answer); !done) return done.error();
       if (const double us = watch.us(); round > 0) out.times.add(frame_kind(answer.contacts), us);
-      if (i % 16 == 0 && !console.progress("poses", static_cast<double>(round) / static_cast<double>(options.rounds + 1))) return Error{ErrorCode::kInternal, "interrupted"};
+      if (i % 16 == 0 &&
+          !console.progress("poses", static_cast<double>(round) / static_cast<double>(options.rounds + 1)))
+        return Error{ErrorCode::kInternal, "interrupted"};
     }
   console.finish();
   out.triangles = scene.loaded.geometry.mockup.triangles.size();
@@ -116,14 +129,16 @@ struct Step {
   bool keeps_samples = false;  ///< has the samples of its series' first
 };
 
-/// Rows and curve of all steps. `write` makes a step's file once it is known how far apart the first's samples are (0: not yet).
+/// Rows and curve of all steps. `write` makes a step's file once it is known how far apart the first's
+/// samples are (0: not yet).
 class Scale {
  public:
   Scale(const BenchOptions& options, const Parts& parts) : options_(options), parts_(parts) {}
 
   template <class Write>
   Result<void> add(const Step& step, Write write) {
-    const double spacing_m = step.keeps_samples && spacing_m_.count(step.series) != 0 ? spacing_m_.at(step.series) : 0;
+    const double spacing_m =
+        step.keeps_samples && spacing_m_.count(step.series) != 0 ? spacing_m_.at(step.series) : 0;
     if (auto written = write(spacing_m); !written) return written;
     const Result<Figures> figures = measure(options_, step.file, parts_, console_);
     if (!figures) return figures.error();
@@ -132,13 +147,18 @@ class Scale {
       const TimePercentiles p = percentiles(figures->times.times(kind, "total"));
       if (p.count == 0) continue;
       const std::string line = fmt::format("{} {}", step.series, kind);
-      const double smallest = first_.emplace(line, p.p50).first->second, before = last_.emplace(line, p.p50).first->second;
+      const double smallest = first_.emplace(line, p.p50).first->second,
+                   before = last_.emplace(line, p.p50).first->second;
       last_[line] = p.p50;
-      table_.rows.push_back({step.series, figures->triangles, figures->tool, std::string(kFrameKindNames[kind]), std::uint64_t{p.count}, p.p50, p.p99, p.p50 / smallest, p.p50 / before,
-                             1000 * figures->voxel_m, figures->prepare_s, figures->kept, figures->peak, figures->backend});
+      table_.rows.push_back({step.series, figures->triangles, figures->tool,
+                             std::string(kFrameKindNames[kind]), std::uint64_t{p.count}, p.p50, p.p99,
+                             p.p50 / smallest, p.p50 / before, 1000 * figures->voxel_m, figures->prepare_s,
+                             figures->kept, figures->peak, figures->backend});
       if (kind != 0) continue;
-      if (growth_.series.empty() || growth_.series.back().label != step.series) growth_.series.push_back({step.series, {}, {}});
-      growth_.series.back().x.push_back(static_cast<double>(step.of_tool ? figures->tool : figures->triangles));
+      if (growth_.series.empty() || growth_.series.back().label != step.series)
+        growth_.series.push_back({step.series, {}, {}});
+      growth_.series.back().x.push_back(
+          static_cast<double>(step.of_tool ? figures->tool : figures->triangles));
       growth_.series.back().y.push_back(p.p50);
     }
     facts_.device = figures->device;
@@ -149,7 +169,8 @@ class Scale {
   Console& console() { return console_; }
   Result<void> write() {
     facts_.more.emplace_back("clock", options_.cpu_clock ? "CPU time of this process" : "wall");
-    facts_.more.emplace_back("load average", fmt::format("{:.1f} at the start, {:.1f} at the end", load_, load_average()));
+    facts_.more.emplace_back("load average",
+                             fmt::format("{:.1f} at the start, {:.1f} at the end", load_, load_average()));
     return write_bench(options_.out, facts_, table_, {growth_});
   }
 
@@ -158,11 +179,22 @@ class Scale {
   const Parts& parts_;
   Console console_;
   double load_ = load_average();
-  std::map<std::string, double> first_, last_;   ///< by series and kind of frame: the median of its smallest scene, and of the scene before
-  std::map<std::string, double> spacing_m_;      ///< by series, of its first: other samples would be another contact
+  std::map<std::string, double> first_,
+      last_;  ///< by series and kind of frame: the median of its smallest scene, and of the scene before
+  std::map<std::string, double>
+      spacing_m_;  ///< by series, of its first: other samples would be another contact
   BenchFacts facts_{.command = "scale", .device = {}, .more = {}};
-  BenchTable table_{{"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us", "times_the_first", "times_the_last", "voxel_mm", "prepare_s", "kept_bytes", "peak_bytes", "backend"}, {}};
-  BenchChart growth_{.title = "Median of a frame in contact", .unit = "µs", .labels = {}, .series = {}, .log_x = true, .log_y = true, .x_title = "triangles of the mock-up, or of the tool"};
+  BenchTable table_{
+      {"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us",
+       "times_the_first", "times_the_last", "voxel_mm", "prepare_s", "kept_bytes", "peak_bytes", "backend"},
+      {}};
+  BenchChart growth_{.title = "Median of a frame in contact",
+                     .unit = "µs",
+                     .labels = {},
+                     .series = {},
+                     .log_x = true,
+                     .log_y = true,
+                     .x_title = "triangles of the mock-up, or of the tool"};
 };
 
 Result<void> write_json(const std::string& file, const Json& scene) {
@@ -172,23 +204,34 @@ Result<void> write_json(const std::string& file, const Json& scene) {
   return {};
 }
 
-Result<void> measure_generated(const BenchOptions& options, const std::filesystem::path& folder, Scale& scale) {
+Result<void> measure_generated(const BenchOptions& options, const std::filesystem::path& folder,
+                               Scale& scale) {
   for (const Case& c : cases(options.most_triangles)) {
     const bool around = std::string_view(c.series) == "around";
     const std::string file = (folder / fmt::format("{}_{}_{}.json", c.series, c.triangles, c.tool)).string();
     const Step step{c.series, file, std::string_view(c.series) == "tool", around};
-    if (auto done = scale.add(step, [&](double spacing_m) { return write_json(file, scene_of(c, options.profile == Profile::kPaper, spacing_m)); }); !done) return done;
+    if (auto done = scale.add(step,
+                              [&](double spacing_m) {
+                                return write_json(file,
+                                                  scene_of(c, options.profile == Profile::kPaper, spacing_m));
+                              });
+        !done)
+      return done;
   }
-  scale.tell("around", fmt::format("the disassembly of {} triangles, and others {} m aside that are never touched; the samples of the first for all", kContact, kAside_m));
+  scale.tell("around", fmt::format("the disassembly of {} triangles, and others {} m aside that are never "
+                                   "touched; the samples of the first for all",
+                                   kContact, kAside_m));
   scale.tell("finer", "the same surfaces in more triangles");
   scale.tell("tool", fmt::format("the mock-up of {} triangles, the tool's surface in more", kContact));
   return {};
 }
 
 /// A scene as it is, with each edge in two, and in four.
-Result<void> measure_refined(const BenchOptions& options, const std::string& scene_file, const std::filesystem::path& folder, Scale& scale) {
+Result<void> measure_refined(const BenchOptions& options, const std::string& scene_file,
+                             const std::filesystem::path& folder, Scale& scale) {
   const std::string name = scene_name(scene_file);
-  if (auto done = scale.add({name, scene_file, false, true}, [](double) { return Result<void>(); }); !done) return done;
+  if (auto done = scale.add({name, scene_file, false, true}, [](double) { return Result<void>(); }); !done)
+    return done;
   auto scene = read_scene(scene_file, options.profile);
   if (!scene) return scene.error();
   auto meshes = import_scene(*scene, {});
@@ -200,12 +243,19 @@ Result<void> measure_refined(const BenchOptions& options, const std::string& sce
     if (auto done = write_stl(folder / (stem + "_mockup.stl"), meshes->mockup); !done) return done;
     if (auto done = write_stl(folder / (stem + "_tool.stl"), meshes->tool); !done) return done;
     const auto write = [&](double spacing_m) {
-      Json response = {{"profile", options.profile.value_or(scene->response.profile) == Profile::kPaper ? "paper" : "refined"}, {"sample_spacing", spacing_m}};
-      return write_json(file, {{"static", Json::array({{{"mesh", stem + "_mockup.stl"}, {"units", "m"}}})}, {"tool", {{"mesh", stem + "_tool.stl"}, {"units", "m"}}}, {"response", response}});
+      Json response = {
+          {"profile",
+           options.profile.value_or(scene->response.profile) == Profile::kPaper ? "paper" : "refined"},
+          {"sample_spacing", spacing_m}};
+      return write_json(file, {{"static", Json::array({{{"mesh", stem + "_mockup.stl"}, {"units", "m"}}})},
+                               {"tool", {{"mesh", stem + "_tool.stl"}, {"units", "m"}}},
+                               {"response", response}});
     };
     if (auto done = scale.add({name, file, false, true}, write); !done) return done;
   }
-  scale.tell(name, "the scene as it is, with each edge in two, and in four: the same surfaces in 4 and 16 times the triangles; the samples of the first for all");
+  scale.tell(name,
+             "the scene as it is, with each edge in two, and in four: the same surfaces in 4 and 16 times "
+             "the triangles; the samples of the first for all");
   return {};
 }
 
@@ -214,11 +264,14 @@ Result<void> measure_refined(const BenchOptions& options, const std::string& sce
 Result<void> bench_scale(const BenchOptions& options, const Parts& parts) {
   catch_interrupts();
   if (!options.scenes.empty() && (options.poses.empty() || options.poses == "run"))
-    return Error{ErrorCode::kUsage, "bench scale: a scene of one's own wants poses: name a file with --poses (a refined scene has no path)"};
+    return Error{ErrorCode::kUsage,
+                 "bench scale: a scene of one's own wants poses: name a file with --poses (a refined scene "
+                 "has no path)"};
   const std::filesystem::path folder = std::filesystem::path(options.out) / "scenes";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return bad_value(fmt::format("{}: the directory can't be made ({})", folder.string(), error.message()));
+  if (error)
+    return bad_value(fmt::format("{}: the directory can't be made ({})", folder.string(), error.message()));
   Scale scale(options, parts);
   if (options.scenes.empty())
     if (auto done = measure_generated(options, folder, scale); !done) return done;

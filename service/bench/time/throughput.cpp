@@ -16,10 +16,10 @@ constexpr std::size_t kSizes[] = {1, 4, 16, 64, 256, 1024};
 
 /// Poses asked together, and what they took.
 struct Series {
-  bool answers = false;          ///< with a lone query's balance
-  std::size_t size = 0;          ///< 0: asked singly
-  std::vector<double> pose_us;   ///< a round each: the mean over all poses
-  DeviceWork work;               ///< of one batch
+  bool answers = false;         ///< with a lone query's balance
+  std::size_t size = 0;         ///< 0: asked singly
+  std::vector<double> pose_us;  ///< a round each: the mean over all poses
+  DeviceWork work;              ///< of one batch
 };
 
 double mean(const std::vector<double>& values) {
@@ -42,19 +42,25 @@ Result<void> ask_frames(HostedScene& scene, std::span<const Pose> poses, BatchAn
   out.responses.resize(poses.size());
   if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
   for (std::size_t i = 0; i < poses.size(); ++i)
-    respond(out.contacts[i], out.poses[i], scene.loaded.geometry, settings.profile, settings.stiffness_n_per_m, out.responses[i]);
+    respond(out.contacts[i], out.poses[i], scene.loaded.geometry, settings.profile,
+            settings.stiffness_n_per_m, out.responses[i]);
   out.total_us = watch.us();
   return {};
 }
 
 /// Goes through all poses once; µs a pose.
-Result<double> ask_all(const Series& series, HostedScene& scene, std::span<const Pose> all, Answer& answer, BatchAnswer& batch) {
+Result<double> ask_all(const Series& series, HostedScene& scene, std::span<const Pose> all, Answer& answer,
+                       BatchAnswer& batch) {
   double us = 0;
   for (std::size_t first = 0; first < all.size(); first += std::max<std::size_t>(series.size, 1)) {
-    const auto poses = all.subspan(first, std::min(std::max<std::size_t>(series.size, 1), all.size() - first));
+    const auto poses =
+        all.subspan(first, std::min(std::max<std::size_t>(series.size, 1), all.size() - first));
     Result<void> done = {};
-    if (series.size == 0) done = series.answers ? answer_pose(scene, poses.front(), answer) : answer_frame(scene, poses.front(), answer);
-    else done = series.answers ? answer_batch(scene, poses, batch) : ask_frames(scene, poses, batch);
+    if (series.size == 0)
+      done = series.answers ? answer_pose(scene, poses.front(), answer)
+                            : answer_frame(scene, poses.front(), answer);
+    else
+      done = series.answers ? answer_batch(scene, poses, batch) : ask_frames(scene, poses, batch);
     if (!done) return done.error();
     us += series.size == 0 ? answer.total_us : batch.total_us;
   }
@@ -62,7 +68,8 @@ Result<double> ask_all(const Series& series, HostedScene& scene, std::span<const
 }
 
 /// In turns: single poses, then a batch of each size, again and again; the first round warms up.
-Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& scene, const std::vector<Pose>& poses, Console& console) {
+Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& scene,
+                                    const std::vector<Pose>& poses, Console& console) {
   std::vector<Series> out;
   for (const bool answers : {false, true}) {
     out.push_back({answers, 0, {}, {}});
@@ -81,10 +88,13 @@ Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& sc
       if (!us) return us.error();
       const std::uint64_t batches = all.size() / std::max<std::size_t>(series.size, 1);
       series.work = since(before, scene.backend->device_work());
-      for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers, &DeviceWork::bytes_up, &DeviceWork::bytes_down}) series.work.*member /= batches;
+      for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers,
+                                &DeviceWork::bytes_up, &DeviceWork::bytes_down})
+        series.work.*member /= batches;
       series.work.host_us /= static_cast<double>(batches);
       if (round > 0) series.pose_us.push_back(*us);
-      if (!console.progress("poses", static_cast<double>(round) / static_cast<double>(options.rounds + 1))) return Error{ErrorCode::kInternal, "interrupted"};
+      if (!console.progress("poses", static_cast<double>(round) / static_cast<double>(options.rounds + 1)))
+        return Error{ErrorCode::kInternal, "interrupted"};
     }
   console.finish();
   return out;
@@ -98,14 +108,21 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
   BenchFacts facts{.command = "throughput", .device = {}, .more = {}};
   BenchTable table{{"scene", "backend", "asked", "batch", "poses_per_s", "pose_us", "share_of_single"}, {}};
   table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
-  BenchChart chart{.title = "Poses a second", .unit = "1/s", .labels = {}, .series = {}, .log_x = true, .x_title = "poses a batch"};
+  BenchChart chart{.title = "Poses a second",
+                   .unit = "1/s",
+                   .labels = {},
+                   .series = {},
+                   .log_x = true,
+                   .x_title = "poses a batch"};
   const double load = load_average();
-  const std::vector<std::string> backends = options.backends.empty() ? std::vector<std::string>{""} : options.backends;
+  const std::vector<std::string> backends =
+      options.backends.empty() ? std::vector<std::string>{""} : options.backends;
   for (const std::string& file : options.scenes)
     for (const std::string& wanted : backends) {
       auto prepared = prepare_scene({file, wanted, options.profile, false}, Purpose::kQuery, parts, console);
       if (!prepared) return prepared.error();
-      if (auto done = (*prepared)->backend->finish_preparing(); !done) return done.error();   // no frame beside compilers
+      if (auto done = (*prepared)->backend->finish_preparing(); !done)
+        return done.error();  // no frame beside compilers
       HostedScene& scene = **prepared;
       const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
       if (!poses) return poses.error();
@@ -125,15 +142,20 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
           line.y.push_back(1e6 / us);
           if (series.size == kSizes[std::size(kSizes) - 1]) chart.series.push_back(line);
         }
-        auto& row = table.rows.emplace_back(std::vector<BenchCell>{name, backend, asked, series.size == 0 ? BenchCell(std::string("single")) : BenchCell(std::uint64_t{series.size}), 1e6 / us, us, us / single});
+        auto& row = table.rows.emplace_back(std::vector<BenchCell>{
+            name, backend, asked,
+            series.size == 0 ? BenchCell(std::string("single")) : BenchCell(std::uint64_t{series.size}),
+            1e6 / us, us, us / single});
         for (BenchCell& cell : work_cells(series.work)) row.push_back(std::move(cell));
       }
       const std::string device = device_text(*scene.backend, parts);
-      if (facts.device.find(device) == std::string::npos) facts.device += (facts.device.empty() ? "" : "; ") + device;
+      if (facts.device.find(device) == std::string::npos)
+        facts.device += (facts.device.empty() ? "" : "; ") + device;
       facts.more.emplace_back(name + ", " + backend, fmt::format("{} poses", poses->size()));
     }
   facts.more.emplace_back("clock", "wall");
-  facts.more.emplace_back("load average", fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
+  facts.more.emplace_back("load average",
+                          fmt::format("{:.1f} at the start, {:.1f} at the end", load, load_average()));
   return write_bench(options.out, facts, table, {chart});
 }
 

@@ -55,7 +55,8 @@ void TimeTable::add(const Contacts& contacts, double total_us, const DeviceWork&
   double known = 0;
   for (const auto& time : contacts.times) {
     known += time.us;
-    const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return sum.first == time.stage; });
+    const auto found =
+        std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return sum.first == time.stage; });
     if (found == sums.end())
       sums.emplace_back(time.stage, time.us);
     else
@@ -83,17 +84,21 @@ DeviceWork TimeTable::work(std::size_t kind) const {
   if (all.empty()) return out;
   const auto take = [&](auto member) {
     const auto middle = all.begin() + static_cast<std::ptrdiff_t>((all.size() - 1) / 2);
-    std::nth_element(all.begin(), middle, all.end(), [&](const DeviceWork& a, const DeviceWork& b) { return a.*member < b.*member; });
+    std::nth_element(all.begin(), middle, all.end(),
+                     [&](const DeviceWork& a, const DeviceWork& b) { return a.*member < b.*member; });
     out.*member = (*middle).*member;
   };
-  for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers, &DeviceWork::bytes_up, &DeviceWork::bytes_down}) take(member);
+  for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers,
+                            &DeviceWork::bytes_up, &DeviceWork::bytes_down})
+    take(member);
   take(&DeviceWork::host_us);
   return out;
 }
 
 DeviceWork since(const DeviceWork& before, const DeviceWork& after) {
-  return {after.submissions - before.submissions, after.dispatches - before.dispatches, after.barriers - before.barriers,
-          after.bytes_up - before.bytes_up,       after.bytes_down - before.bytes_down, after.host_us - before.host_us};
+  return {after.submissions - before.submissions, after.dispatches - before.dispatches,
+          after.barriers - before.barriers,       after.bytes_up - before.bytes_up,
+          after.bytes_down - before.bytes_down,   after.host_us - before.host_us};
 }
 
 }  // namespace palpate

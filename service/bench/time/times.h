@@ -23,14 +23,17 @@ class Stopwatch {
 /// Percentiles of measured times, nearest rank; all 0 without samples.
 struct TimePercentiles {
   std::size_t count = 0;
-  double p50 = 0, p95 = 0, p99 = 0, max = 0;   ///< µs
-  std::optional<double> p999;                  ///< of at least 1,000 samples: of fewer it would be the largest by another name
+  double p50 = 0, p95 = 0, p99 = 0, max = 0;  ///< µs
+  std::optional<double>
+      p999;  ///< of at least 1,000 samples: of fewer it would be the largest by another name
 };
 TimePercentiles percentiles(std::vector<double> times_us);
 
-/// What a frame was like. A frame is `kApart` when the search found nothing that may touch, so that nothing had to be decided.
+/// What a frame was like. A frame is `kApart` when the search found nothing that may touch, so that nothing
+/// had to be decided.
 enum class FrameKind : std::uint8_t { kContact, kFree, kApart };
-inline constexpr const char* kFrameKindNames[] = {"contact", "free", "apart", "all"};   ///< and all of them together
+inline constexpr const char* kFrameKindNames[] = {"contact", "free", "apart",
+                                                  "all"};  ///< and all of them together
 FrameKind frame_kind(const Contacts& contacts);
 
 /// What was asked of a device between two looks at CollisionBackend::device_work.

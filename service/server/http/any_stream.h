@@ -1,6 +1,6 @@
 #pragma once
 // Heavy: for the few .cpp files that talk to sockets.
-#include <utility>   // boost/asio/awaitable.hpp of 1.74 forgets it
+#include <utility>  // boost/asio/awaitable.hpp of 1.74 forgets it
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/ssl/context.hpp>

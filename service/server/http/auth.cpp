@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <cctype>
 
-#include "service/server/scenes/content_hash.h"
 #include "service/server/http/json_input.h"
+#include "service/server/scenes/content_hash.h"
 
 namespace palpate {
 namespace {
 
-bool ours(const AccessRules& rules, const std::string& name) { return !name.empty() && std::find(rules.hosts.begin(), rules.hosts.end(), name) != rules.hosts.end(); }
+bool ours(const AccessRules& rules, const std::string& name) {
+  return !name.empty() && std::find(rules.hosts.begin(), rules.hosts.end(), name) != rules.hosts.end();
+}
 
 /// The token of "Bearer TOKEN", or of a subprotocol "palpate.token.TOKEN".
 std::string_view token_of(const AccessFields& fields) {
   constexpr std::string_view kBearer = "bearer ", kSubprotocol = "palpate.token.";
   const std::string_view field = fields.authorization;
-  if (field.size() > kBearer.size() && std::equal(kBearer.begin(), kBearer.end(), field.begin(), [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); }))
+  if (field.size() > kBearer.size() &&
+      std::equal(kBearer.begin(), kBearer.end(), field.begin(),
+                 [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); }))
     return field.substr(kBearer.size());
   std::string_view rest = fields.subprotocols;
   while (!rest.empty()) {
@@ -59,10 +63,13 @@ std::string host_name(std::string_view text) {
 
 std::optional<Problem> refuse_access(const AccessRules& rules, const AccessFields& fields, bool open) {
   if (!ours(rules, host_name(fields.host)))
-    return Problem{403, "foreign-host", "the host '" + shown_text(fields.host) + "' is none of this server's (see --host)", "Host"};
+    return Problem{403, "foreign-host",
+                   "the host '" + shown_text(fields.host) + "' is none of this server's (see --host)",
+                   "Host"};
   // A page of another port of this machine is another's page.
   if (!fields.origin.empty() && authority(fields.origin) != authority(fields.host))
-    return Problem{403, "foreign-origin", "pages of '" + shown_text(fields.origin) + "' may not ask here", "Origin"};
+    return Problem{403, "foreign-origin", "pages of '" + shown_text(fields.origin) + "' may not ask here",
+                   "Origin"};
   if (!open && !rules.token.empty() && !same_secret(token_of(fields), rules.token))
     return Problem{401, "token", "a token is wanted: Authorization: Bearer TOKEN", "Authorization"};
   return std::nullopt;

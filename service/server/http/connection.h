@@ -3,8 +3,8 @@
 #include <atomic>
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/http/message.hpp>
 #include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
 #include <functional>
 #include <list>
 #include <memory>
@@ -14,9 +14,9 @@
 #include "service/server/http/any_stream.h"
 #include "service/server/http/auth.h"
 #include "service/server/http/limits.h"
+#include "service/server/http/router.h"
 #include "service/server/log.h"
 #include "service/server/metrics.h"
-#include "service/server/http/router.h"
 
 namespace palpate {
 
@@ -28,16 +28,17 @@ struct ConnectionContext {
   Metrics& metrics;
   Log& log;
   std::atomic<bool> stopping{false};
-  std::atomic<int> busy{0};                   ///< requests being answered and WebSockets
+  std::atomic<int> busy{0};  ///< requests being answered and WebSockets
   std::mutex mutex;
-  std::list<std::function<void()>> closers;   ///< of open connections: each posts to its own strand
+  std::list<std::function<void()>> closers;  ///< of open connections: each posts to its own strand
 };
 
 /// Answers one connection until it ends. On its own strand; never throws.
 boost::asio::awaitable<void> serve_connection(AnyStream stream, std::string peer, ConnectionContext& context);
 
 /// Holds a WebSocket's conversation until it ends.
-boost::asio::awaitable<void> serve_socket(AnyStream stream, boost::beast::http::request<boost::beast::http::empty_body> head,
+boost::asio::awaitable<void> serve_socket(AnyStream stream,
+                                          boost::beast::http::request<boost::beast::http::empty_body> head,
                                           std::shared_ptr<SocketHandler> handler, ConnectionContext& context);
 
 }  // namespace palpate

@@ -29,15 +29,19 @@ using Parser = http::request_parser<http::buffer_body>;
 
 constexpr std::size_t kPiece = 64 << 10;
 
-std::chrono::nanoseconds seconds(double s) { return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
+std::chrono::nanoseconds seconds(double s) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9));
+}
 
 std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Ends what is being read when its time is over. The stream's own deadline would close the connection, and the client could not be told why.
+/// Ends what is being read when its time is over. The stream's own deadline would close the connection, and
+/// the client could not be told why.
 class ReadDeadline {
  public:
   /// `stream` outlives this; it has no other deadline meanwhile.
-  ReadDeadline(AnyStream& stream, std::chrono::nanoseconds time) : timer_(stream.lowest().get_executor(), time) {
+  ReadDeadline(AnyStream& stream, std::chrono::nanoseconds time)
+      : timer_(stream.lowest().get_executor(), time) {
     stream.lowest().expires_never();
     timer_.async_wait([state = state_, &lowest = stream.lowest()](error_code error) {
       if (error || !state->reading) return;
@@ -45,7 +49,7 @@ class ReadDeadline {
       lowest.cancel();
     });
   }
-  ~ReadDeadline() { state_->reading = false; }   // the handler may be on its way already
+  ~ReadDeadline() { state_->reading = false; }  // the handler may be on its way already
   ReadDeadline(const ReadDeadline&) = delete;
   ReadDeadline& operator=(const ReadDeadline&) = delete;
   bool late() const { return state_->late; }
@@ -62,13 +66,17 @@ class ReadDeadline {
 class HttpConnection {
  public:
   HttpConnection(AnyStream stream, std::string peer, ConnectionContext& context)
-      : stream_(std::move(stream)), peer_(std::move(peer)), context_(context), buffer_(context.limits.header_bytes + kPiece) {}
+      : stream_(std::move(stream)),
+        peer_(std::move(peer)),
+        context_(context),
+        buffer_(context.limits.header_bytes + kPiece) {}
 
   asio::awaitable<void> run() {
     if (stream_.secure()) {
       error_code error;
       stream_.lowest().expires_after(seconds(context_.limits.header_s));
-      co_await stream_.secure()->async_handshake(asio::ssl::stream_base::server, asio::redirect_error(asio::use_awaitable, error));
+      co_await stream_.secure()->async_handshake(asio::ssl::stream_base::server,
+                                                 asio::redirect_error(asio::use_awaitable, error));
       if (error) co_return;
     }
     for (bool first = true; !context_.stopping; first = false)
@@ -82,13 +90,14 @@ class HttpConnection {
   asio::awaitable<bool> one_request(bool first) {
     Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(context_.limits.header_bytes));
-    parser.body_limit(std::numeric_limits<std::uint64_t>::max());   // by route, below
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // by route, below
     error_code error;
     // A new connection has the head's time from the start; a kept one may rest longer.
     if (!first && buffer_.size() == 0) {
       stream_.lowest().expires_after(seconds(context_.limits.idle_s));
       std::size_t got = 0;
-      got = co_await stream_.async_read_some(buffer_.prepare(kPiece), asio::redirect_error(asio::use_awaitable, error));
+      got = co_await stream_.async_read_some(buffer_.prepare(kPiece),
+                                             asio::redirect_error(asio::use_awaitable, error));
       if (error) co_return false;
       buffer_.commit(got);
     }
@@ -96,18 +105,22 @@ class HttpConnection {
     started_ = Clock::now();
     method_ = path_ = "-";
     route_ = "none";
-    const Clock::time_point end = started_ + std::chrono::duration_cast<Clock::duration>(seconds(context_.limits.header_s));
+    const Clock::time_point end =
+        started_ + std::chrono::duration_cast<Clock::duration>(seconds(context_.limits.header_s));
     while (!head_complete() && buffer_.size() <= context_.limits.header_bytes) {
       const ReadDeadline deadline(stream_, end - Clock::now());
-      const std::size_t got = co_await stream_.async_read_some(buffer_.prepare(4096), asio::redirect_error(asio::use_awaitable, error));
-      if (deadline.late() ? buffer_.size() == 0 : error.failed()) co_return false;   // who never began to ask needs no answer
+      const std::size_t got = co_await stream_.async_read_some(
+          buffer_.prepare(4096), asio::redirect_error(asio::use_awaitable, error));
+      if (deadline.late() ? buffer_.size() == 0 : error.failed())
+        co_return false;  // who never began to ask needs no answer
       buffer_.commit(got);
       if (deadline.late() || Clock::now() > end) {
         refusal_ = Problem{408, "slow", "the head of the request did not come in time", ""};
         co_return co_await refuse();
       }
     }
-    co_await http::async_read_header(stream_, buffer_, parser, asio::redirect_error(asio::use_awaitable, error));
+    co_await http::async_read_header(stream_, buffer_, parser,
+                                     asio::redirect_error(asio::use_awaitable, error));
     struct Busy {
       explicit Busy(std::atomic<int>& count) : count_(count) { ++count_; }
       ~Busy() { --count_; }
@@ -116,10 +129,13 @@ class HttpConnection {
     HttpRequest request;
     if (error) {
       if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-        refusal_ = Problem{431, "header", "the head is larger than " + std::to_string(context_.limits.header_bytes) + " bytes", ""};
+        refusal_ =
+            Problem{431, "header",
+                    "the head is larger than " + std::to_string(context_.limits.header_bytes) + " bytes", ""};
         co_return co_await refuse();
       }
-      if (error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream && error != http::error::partial_message) {
+      if (error.category() == http::make_error_code(http::error::bad_method).category() &&
+          error != http::error::end_of_stream && error != http::error::partial_message) {
         refusal_ = Problem{400, "bad-request", "this is no HTTP/1.1 request: " + error.message(), ""};
         co_return co_await refuse();
       }
@@ -148,8 +164,10 @@ class HttpConnection {
     // Who asks, and for what, before any byte of the body.
     std::string allowed;
     const auto found = context_.router.find(request, allowed);
-    const Route* route = std::holds_alternative<const Route*>(found) ? std::get<const Route*>(found) : nullptr;
-    const AccessFields fields{view(head[http::field::host]), view(head[http::field::origin]), view(head[http::field::authorization]),
+    const Route* route =
+        std::holds_alternative<const Route*>(found) ? std::get<const Route*>(found) : nullptr;
+    const AccessFields fields{view(head[http::field::host]), view(head[http::field::origin]),
+                              view(head[http::field::authorization]),
                               view(head[http::field::sec_websocket_protocol])};
     if (auto problem = refuse_access(context_.rules, fields, route && route->open)) {
       refusal_ = *problem;
@@ -181,7 +199,8 @@ class HttpConnection {
       http::request<http::empty_body> upgrade;
       upgrade.base() = head.base();
       stream_.lowest().expires_never();
-      asio::awaitable<void> conversation = serve_socket(std::move(stream_), std::move(upgrade), std::get<std::shared_ptr<SocketHandler>>(opened), context_);
+      asio::awaitable<void> conversation = serve_socket(
+          std::move(stream_), std::move(upgrade), std::get<std::shared_ptr<SocketHandler>>(opened), context_);
       co_await std::move(conversation);
       co_return false;
     }
@@ -189,7 +208,8 @@ class HttpConnection {
     const bool sink_fits = route->sink && request.content_type.starts_with(route->sink_type);
     const std::size_t limit = sink_fits ? route->sink_limit : route->body_limit;
     const bool has_body = !parser.is_done() && (parser.chunked() || parser.content_length().value_or(0) > 0);
-    const Problem large{413, "too-large", "the body may have " + std::to_string(limit) + " bytes here", "body"};
+    const Problem large{413, "too-large", "the body may have " + std::to_string(limit) + " bytes here",
+                        "body"};
     if (parser.content_length().value_or(0) > limit) {
       refusal_ = large;
       co_return co_await refuse();
@@ -203,7 +223,7 @@ class HttpConnection {
     if (sink_fits) sink = route->sink(request);
     const std::optional<Problem> problem = co_await read_body(parser, limit, large, sink.get(), request.body);
     if (problem) {
-      sink.reset();   // what it wrote is gone before the client can try again
+      sink.reset();  // what it wrote is gone before the client can try again
       if (problem->status == 0) co_return false;
       refusal_ = *problem;
       co_return co_await refuse();
@@ -215,25 +235,32 @@ class HttpConnection {
 
   bool head_complete() const {
     const auto data = buffer_.data();
-    return std::string_view(static_cast<const char*>(data.data()), data.size()).find("\r\n\r\n") != std::string_view::npos;
+    return std::string_view(static_cast<const char*>(data.data()), data.size()).find("\r\n\r\n") !=
+           std::string_view::npos;
   }
 
   /// The whole body into `text`, or into the sink. Status 0: the client has gone.
-  asio::awaitable<std::optional<Problem>> read_body(Parser& parser, std::size_t limit, const Problem& large, BodySink* sink, std::string& text) {
+  asio::awaitable<std::optional<Problem>> read_body(Parser& parser, std::size_t limit, const Problem& large,
+                                                    BodySink* sink, std::string& text) {
     std::vector<char> piece(parser.is_done() ? 0 : kPiece);
     std::size_t total = 0;
     while (!parser.is_done()) {
       parser.get().body().data = piece.data();
       parser.get().body().size = piece.size();
       // Both a client that stops and one that drips are cut off.
-      const double allowed = context_.limits.piece_s + static_cast<double>(total) / context_.limits.slowest_bytes_per_s;
-      if (Clock::now() - started_ > seconds(allowed)) co_return Problem{408, "slow", "the body comes too slowly", "body"};
+      const double allowed =
+          context_.limits.piece_s + static_cast<double>(total) / context_.limits.slowest_bytes_per_s;
+      if (Clock::now() - started_ > seconds(allowed))
+        co_return Problem{408, "slow", "the body comes too slowly", "body"};
       const ReadDeadline deadline(stream_, seconds(context_.limits.piece_s));
       error_code error;
-      co_await http::async_read_some(stream_, buffer_, parser, asio::redirect_error(asio::use_awaitable, error));
+      co_await http::async_read_some(stream_, buffer_, parser,
+                                     asio::redirect_error(asio::use_awaitable, error));
       if (error == http::error::need_buffer) error = {};
       if (deadline.late()) co_return Problem{408, "slow", "the body did not come in time", "body"};
-      if (error == http::error::end_of_stream || error == http::error::partial_message || (error && error.category() == boost::system::system_category())) co_return Problem{0, "", "", ""};
+      if (error == http::error::end_of_stream || error == http::error::partial_message ||
+          (error && error.category() == boost::system::system_category()))
+        co_return Problem{0, "", "", ""};
       if (error) co_return Problem{400, "bad-request", "the body is no HTTP: " + error.message(), "body"};
       const std::size_t got = piece.size() - parser.get().body().size;
       total += got;
@@ -254,7 +281,9 @@ class HttpConnection {
           // A reply may be copied and may come on any thread; the conversation goes on on its own strand.
           auto handler = std::make_shared<std::decay_t<decltype(done)>>(std::forward<decltype(done)>(done));
           const Reply reply = [handler, executor = stream_.get_executor()](HttpResponse response) {
-            asio::post(executor, [handler, response = std::move(response)]() mutable { (*handler)(std::move(response)); });
+            asio::post(executor, [handler, response = std::move(response)]() mutable {
+              (*handler)(std::move(response));
+            });
           };
           try {
             if (sink)
@@ -273,7 +302,8 @@ class HttpConnection {
         [&](auto&& done) {
           auto handler = std::make_shared<std::decay_t<decltype(done)>>(std::forward<decltype(done)>(done));
           source.next([handler, executor = stream_.get_executor()](Chunk chunk) {
-            asio::post(executor, [handler, chunk = std::move(chunk)]() mutable { (*handler)(std::move(chunk)); });
+            asio::post(executor,
+                       [handler, chunk = std::move(chunk)]() mutable { (*handler)(std::move(chunk)); });
           });
         },
         asio::use_awaitable);
@@ -284,13 +314,16 @@ class HttpConnection {
     keep_alive_ = false;
     HttpResponse response(refusal_);
     co_await send(response, false);
-    // The client may still be sending; if it is not listened to for a moment, a reset may take the answer from it.
+    // The client may still be sending; if it is not listened to for a moment, a reset may take the answer
+    // from it.
     stream_.lowest().expires_after(seconds(0.5));
     error_code error;
     error_code ignored;
     stream_.lowest().socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
     std::vector<char> waste(kPiece);
-    for (int i = 0; i < 64 && !error; ++i) co_await stream_.lowest().async_read_some(asio::buffer(waste), asio::redirect_error(asio::use_awaitable, error));
+    for (int i = 0; i < 64 && !error; ++i)
+      co_await stream_.lowest().async_read_some(asio::buffer(waste),
+                                                asio::redirect_error(asio::use_awaitable, error));
     co_return false;
   }
 
@@ -337,15 +370,18 @@ class HttpConnection {
   asio::awaitable<bool> write_chunk(const std::string& data) {
     char size[20];
     const int length = std::snprintf(size, sizeof size, "%zx\r\n", data.size());
-    const std::array<asio::const_buffer, 3> parts = {asio::buffer(size, static_cast<std::size_t>(length)), asio::buffer(data), asio::buffer("\r\n", 2)};
-    stream_.lowest().expires_after(seconds(context_.limits.piece_s + static_cast<double>(data.size()) / context_.limits.slowest_bytes_per_s));
+    const std::array<asio::const_buffer, 3> parts = {asio::buffer(size, static_cast<std::size_t>(length)),
+                                                     asio::buffer(data), asio::buffer("\r\n", 2)};
+    stream_.lowest().expires_after(seconds(
+        context_.limits.piece_s + static_cast<double>(data.size()) / context_.limits.slowest_bytes_per_s));
     error_code error;
     co_await asio::async_write(stream_, parts, asio::redirect_error(asio::use_awaitable, error));
     co_return !error;
   }
 
   asio::awaitable<bool> write_all(asio::const_buffer data) {
-    stream_.lowest().expires_after(seconds(context_.limits.piece_s + static_cast<double>(data.size()) / context_.limits.slowest_bytes_per_s));
+    stream_.lowest().expires_after(seconds(
+        context_.limits.piece_s + static_cast<double>(data.size()) / context_.limits.slowest_bytes_per_s));
     error_code error;
     co_await asio::async_write(stream_, data, asio::redirect_error(asio::use_awaitable, error));
     co_return !error;
@@ -353,8 +389,12 @@ class HttpConnection {
 
   void account(unsigned status) {
     context_.metrics.count_request(route_, status);
-    context_.log.info("request", {{"peer", peer_}, {"method", shown_text(method_)}, {"path", shown_text(path_)}, {"status", status},
-                                  {"ms", std::chrono::duration<double, std::milli>(Clock::now() - started_).count()}});
+    context_.log.info("request",
+                      {{"peer", peer_},
+                       {"method", shown_text(method_)},
+                       {"path", shown_text(path_)},
+                       {"status", status},
+                       {"ms", std::chrono::duration<double, std::milli>(Clock::now() - started_).count()}});
   }
 
   AnyStream stream_;
@@ -363,7 +403,7 @@ class HttpConnection {
   beast::flat_buffer buffer_;
   Clock::time_point started_{};
   std::string method_, path_, route_;
-  Problem refusal_;   ///< not a parameter of refuse(): GCC 12 destroys such a temporary of a co_await twice
+  Problem refusal_;  ///< not a parameter of refuse(): GCC 12 destroys such a temporary of a co_await twice
   bool keep_alive_ = true, upgraded_ = false;
 };
 

@@ -36,7 +36,8 @@ bool decode_target(std::string_view target, HttpRequest& request) {
     path = slash == std::string_view::npos ? std::string_view{} : path.substr(slash + 1);
   }
   request.query.clear();
-  std::string_view rest = question == std::string_view::npos ? std::string_view{} : target.substr(question + 1);
+  std::string_view rest =
+      question == std::string_view::npos ? std::string_view{} : target.substr(question + 1);
   while (!rest.empty()) {
     const auto amp = rest.find('&');
     const std::string_view pair = rest.substr(0, amp);

@@ -15,12 +15,12 @@ namespace palpate {
 
 /// A request, decoded, without anything of the library that read it.
 struct HttpRequest {
-  std::string method;                          ///< "GET"
-  std::string path;                            ///< as sent, without the query
-  std::vector<std::string> segments;           ///< of the path, percent-decoded
-  std::map<std::string, std::string> query;    ///< percent-decoded
+  std::string method;                        ///< "GET"
+  std::string path;                          ///< as sent, without the query
+  std::vector<std::string> segments;         ///< of the path, percent-decoded
+  std::map<std::string, std::string> query;  ///< percent-decoded
   std::string content_type, accept, range, expect;
-  std::string body;                            ///< empty when it went to a BodySink
+  std::string body;  ///< empty when it went to a BodySink
 
   std::string query_or(const std::string& name, std::string otherwise) const {
     const auto found = query.find(name);
@@ -32,11 +32,11 @@ struct HttpRequest {
 struct Chunk {
   std::string data;
   bool last = false;
-  bool broken = false;   ///< the rest can't be made: the connection ends without the closing chunk
+  bool broken = false;  ///< the rest can't be made: the connection ends without the closing chunk
 };
 
-/// Where a long answer comes from. next() is asked for one piece at a time; it calls `take` once, now or later, on any thread. Destroyed
-/// early when the client has gone.
+/// Where a long answer comes from. next() is asked for one piece at a time; it calls `take` once, now or
+/// later, on any thread. Destroyed early when the client has gone.
 class BodySource {
  public:
   virtual ~BodySource() = default;
@@ -53,7 +53,10 @@ struct HttpResponse {
 
   HttpResponse() = default;
   HttpResponse(unsigned code, std::string json) : status(code), body(std::move(json)) {}
-  HttpResponse(const Problem& problem) : status(problem.status), type("application/problem+json"), body(problem.json()) {   // NOLINT(google-explicit-constructor)
+  HttpResponse(const Problem& problem)
+      : status(problem.status),
+        type("application/problem+json"),
+        body(problem.json()) {  // NOLINT(google-explicit-constructor)
     if (status == 503) headers.emplace_back("Retry-After", "1");
     if (status == 401) headers.emplace_back("WWW-Authenticate", "Bearer");
   }
@@ -75,24 +78,28 @@ struct SocketMessage {
   std::string head;
   std::shared_ptr<const std::string> tail;
   bool binary = false;
-  bool close = false;   ///< the last one
+  bool close = false;  ///< the last one
 };
 
 /// One end of a WebSocket conversation. All calls come from the connection's own strand, one at a time.
 class SocketHandler {
  public:
   virtual ~SocketHandler() = default;
-  /// `wake` may be called on any thread, at any time, also when the connection is gone: next() is then asked again.
+  /// `wake` may be called on any thread, at any time, also when the connection is gone: next() is then asked
+  /// again.
   virtual void start(std::function<void()> wake) = 0;
   virtual void message(std::string_view data, bool binary) = 0;
-  /// What to send now, if anything. Asked again once that has been sent, so who is slow simply misses what a newer message overtook.
+  /// What to send now, if anything. Asked again once that has been sent, so who is slow simply misses what a
+  /// newer message overtook.
   virtual std::optional<SocketMessage> next() = 0;
-  /// The server stops: what is said before the farewell, in place of anything that next() would say. Asked once.
+  /// The server stops: what is said before the farewell, in place of anything that next() would say. Asked
+  /// once.
   virtual std::optional<SocketMessage> last_words() { return std::nullopt; }
   virtual void closed() noexcept = 0;
 };
 
-/// Splits and decodes a request's target ("/v1/scenes/a%2Fb?wait=3"). Nothing: not a path, a bad percent sign, a zero byte.
+/// Splits and decodes a request's target ("/v1/scenes/a%2Fb?wait=3"). Nothing: not a path, a bad percent
+/// sign, a zero byte.
 bool decode_target(std::string_view target, HttpRequest& request);
 
 /// Undoes percent-encoding. False: an escape that is none, or a zero byte.

@@ -8,9 +8,13 @@
 
 namespace palpate {
 
-std::string shown_text(std::string_view text) { return one_line(std::string(text.substr(0, 80))) + (text.size() > 80 ? "…" : ""); }
+std::string shown_text(std::string_view text) {
+  return one_line(std::string(text.substr(0, 80))) + (text.size() > 80 ? "…" : "");
+}
 
-std::string dump(const nlohmann::ordered_json& value) { return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+std::string dump(const nlohmann::ordered_json& value) {
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 bool nests_deeper(std::string_view text, std::size_t depth) {
   std::size_t open = 0;
@@ -31,8 +35,10 @@ bool nests_deeper(std::string_view text, std::size_t depth) {
   return false;
 }
 
-std::variant<nlohmann::json, Problem> read_json_object(std::string_view text, std::size_t depth, const std::vector<std::string>& keys) {
-  if (nests_deeper(text, depth)) return bad_request("the body nests deeper than " + std::to_string(depth) + " levels", "body");
+std::variant<nlohmann::json, Problem> read_json_object(std::string_view text, std::size_t depth,
+                                                       const std::vector<std::string>& keys) {
+  if (nests_deeper(text, depth))
+    return bad_request("the body nests deeper than " + std::to_string(depth) + " levels", "body");
   nlohmann::json value;
   try {
     value = parse_scene_text("body", std::string(text));
@@ -45,7 +51,9 @@ std::variant<nlohmann::json, Problem> read_json_object(std::string_view text, st
   if (!keys.empty())
     for (const auto& [key, ignored] : value.items())
       if (std::find(keys.begin(), keys.end(), key) == keys.end())
-        return bad_request("unknown key \"" + shown_text(key) + "\"; the nearest known one is \"" + nearest_word(key.substr(0, 40), keys) + "\"", shown_text(key));
+        return bad_request("unknown key \"" + shown_text(key) + "\"; the nearest known one is \"" +
+                               nearest_word(key.substr(0, 40), keys) + "\"",
+                           shown_text(key));
   return value;
 }
 

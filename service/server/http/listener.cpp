@@ -18,8 +18,8 @@
 #include <thread>
 #include <vector>
 
-#include "service/server/http/connection.h"
 #include "service/loop/thread_share.h"
+#include "service/server/http/connection.h"
 
 namespace palpate {
 namespace {
@@ -28,7 +28,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr int kThreads = 2;   ///< chosen: they decode and copy; what takes long is done elsewhere
+constexpr int kThreads = 2;  ///< chosen: they decode and copy; what takes long is done elsewhere
 
 /// As many open files as the system lets us have: a connection is one.
 void raise_open_files() {
@@ -39,7 +39,8 @@ void raise_open_files() {
 }
 
 constexpr std::string_view kBusy =
-    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/problem+json\r\nRetry-After: 1\r\nConnection: close\r\nContent-Length: 116\r\n\r\n"
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/problem+json\r\nRetry-After: "
+    "1\r\nConnection: close\r\nContent-Length: 116\r\n\r\n"
     R"({"type":"urn:palpate:problem:busy","title":"Busy","status":503,"detail":"there are too many connections; ask again"})";
 
 }  // namespace
@@ -51,7 +52,8 @@ bool is_loopback(const std::string& address) {
 }
 
 struct Listener::State {
-  State(const Router& router, const AccessRules& rules, const ServerLimits& limits, Metrics& metrics, Log& log)
+  State(const Router& router, const AccessRules& rules, const ServerLimits& limits, Metrics& metrics,
+        Log& log)
       : context{router, rules, limits, metrics, log, {}, {}, {}, {}} {}
 
   asio::io_context io{kThreads};
@@ -67,7 +69,7 @@ struct Listener::State {
       tcp::socket socket(asio::make_strand(io));
       co_await acceptor->async_accept(socket, asio::redirect_error(asio::use_awaitable, error));
       if (context.stopping || !acceptor->is_open()) co_return;
-      if (error) {   // out of descriptors, mostly: what is open goes on, new ones wait
+      if (error) {  // out of descriptors, mostly: what is open goes on, new ones wait
         asio::steady_timer pause(io, std::chrono::milliseconds(100));
         co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, error));
         continue;
@@ -86,12 +88,14 @@ struct Listener::State {
       ++context.metrics.connections_now;
       const auto executor = socket.get_executor();
       AnyStream stream(AnyStream::Plain(std::move(socket)), tls ? &*tls : nullptr);
-      asio::co_spawn(executor, serve_connection(std::move(stream), std::move(peer), context), [this](std::exception_ptr) { --context.metrics.connections_now; });
+      asio::co_spawn(executor, serve_connection(std::move(stream), std::move(peer), context),
+                     [this](std::exception_ptr) { --context.metrics.connections_now; });
     }
   }
 };
 
-Listener::Listener(const Router& router, const AccessRules& rules, const ServerLimits& limits, Metrics& metrics, Log& log)
+Listener::Listener(const Router& router, const AccessRules& rules, const ServerLimits& limits,
+                   Metrics& metrics, Log& log)
     : state_(std::make_unique<State>(router, rules, limits, metrics, log)) {}
 
 Listener::~Listener() { stop(0); }
@@ -101,12 +105,14 @@ Result<void> Listener::start(const ListenOptions& options) {
   try {
     if (!options.certificate.empty()) {
       state_->tls.emplace(asio::ssl::context::tls_server);
-      state_->tls->set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_tlsv1 | asio::ssl::context::no_tlsv1_1);
+      state_->tls->set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_tlsv1 |
+                               asio::ssl::context::no_tlsv1_1);
       state_->tls->use_certificate_chain_file(options.certificate);
       state_->tls->use_private_key_file(options.key, asio::ssl::context::pem);
     }
   } catch (const std::exception& error) {
-    return bad_value("the certificate '" + options.certificate + "' with the key '" + options.key + "' can't be used: " + error.what());
+    return bad_value("the certificate '" + options.certificate + "' with the key '" + options.key +
+                     "' can't be used: " + error.what());
   }
   try {
     const tcp::endpoint endpoint(asio::ip::make_address(options.address), options.port);
@@ -117,7 +123,8 @@ Result<void> Listener::start(const ListenOptions& options) {
     state_->acceptor->listen(1024);
     state_->port = state_->acceptor->local_endpoint().port();
   } catch (const std::exception& error) {
-    return bad_value("--listen " + options.address + ":" + std::to_string(options.port) + " can't be had: " + error.what());
+    return bad_value("--listen " + options.address + ":" + std::to_string(options.port) +
+                     " can't be had: " + error.what());
   }
   asio::co_spawn(state_->io, state_->accept_loop(), asio::detached);
   for (int i = 0; i < kThreads; ++i)
@@ -143,7 +150,8 @@ void Listener::stop(double grace_s) {
   }
   // What is being answered and every farewell gets its time; who merely rests on a kept connection does not.
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(grace_s);
-  while (state_->context.busy > 0 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  while (state_->context.busy > 0 && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   state_->io.stop();
   for (std::thread& thread : state_->threads) thread.join();
   state_->threads.clear();

@@ -10,7 +10,8 @@ namespace {
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
 bool same_word(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::string_view trim(std::string_view text) {
@@ -35,7 +36,7 @@ std::optional<std::string> parameter(std::string_view field, std::string_view na
         if (value[used] == '\\' && used + 1 < value.size()) ++used;
         text.push_back(value[used]);
       }
-      if (used >= value.size()) return std::nullopt;   // no closing quote
+      if (used >= value.size()) return std::nullopt;  // no closing quote
     } else {
       used = std::min(value.find(';'), value.size());
       text = std::string(trim(value.substr(0, used)));
@@ -61,12 +62,14 @@ std::string boundary_of(std::string_view content_type) {
 }
 
 MultipartReader::MultipartReader(const std::string& boundary, Events events)
-    : delimiter_("\r\n--" + boundary), pending_("\r\n"), events_(std::move(events)) {}   // the first boundary may stand at the very start
+    : delimiter_("\r\n--" + boundary),
+      pending_("\r\n"),
+      events_(std::move(events)) {}  // the first boundary may stand at the very start
 
 std::optional<Problem> MultipartReader::feed(std::string_view bytes) {
-  if (state_ == State::kOver) return std::nullopt;   // an epilogue says nothing
+  if (state_ == State::kOver) return std::nullopt;  // an epilogue says nothing
   pending_.append(bytes);
-  std::size_t at = 0;   // what stands before is done with
+  std::size_t at = 0;  // what stands before is done with
   std::optional<Problem> problem;
   for (bool more = true; more && !problem;) {
     const std::string_view rest = std::string_view(pending_).substr(at);
@@ -74,7 +77,9 @@ std::optional<Problem> MultipartReader::feed(std::string_view bytes) {
       case State::kPreamble:
       case State::kData: {
         const auto found = rest.find(delimiter_);
-        const std::size_t sure = found != std::string_view::npos ? found : rest.size() - std::min(rest.size(), delimiter_.size() - 1);
+        const std::size_t sure = found != std::string_view::npos
+                                     ? found
+                                     : rest.size() - std::min(rest.size(), delimiter_.size() - 1);
         if (state_ == State::kData && sure > 0) problem = events_.data(rest.substr(0, sure));
         at += sure;
         if (found == std::string_view::npos) {
@@ -93,7 +98,7 @@ std::optional<Problem> MultipartReader::feed(std::string_view bytes) {
           state_ = State::kOver;
           more = false;
         } else if (rest.starts_with("\r\n")) {
-          state_ = State::kHead;   // the line end stays: a head may be empty
+          state_ = State::kHead;  // the line end stays: a head may be empty
         } else {
           problem = bad_request("a boundary of the form is followed by rubbish", "body");
         }
@@ -101,7 +106,8 @@ std::optional<Problem> MultipartReader::feed(std::string_view bytes) {
       case State::kHead: {
         const auto end = rest.find("\r\n\r\n");
         if (end == std::string_view::npos || end > kLongestHead) {
-          if (rest.size() > kLongestHead) problem = bad_request("the header of a part is longer than 8192 bytes", "body");
+          if (rest.size() > kLongestHead)
+            problem = bad_request("the header of a part is longer than 8192 bytes", "body");
           more = false;
           break;
         }
@@ -110,7 +116,9 @@ std::optional<Problem> MultipartReader::feed(std::string_view bytes) {
         state_ = State::kData;
         break;
       }
-      case State::kOver: more = false; break;
+      case State::kOver:
+        more = false;
+        break;
     }
   }
   if (problem) state_ = State::kOver;
@@ -126,7 +134,8 @@ std::optional<Problem> MultipartReader::read_head(std::string_view head) {
     const std::string_view line = head.substr(0, end);
     head = end == std::string_view::npos ? std::string_view{} : head.substr(end + 2);
     const auto colon = line.find(':');
-    if (colon == std::string_view::npos || !same_word(trim(line.substr(0, colon)), "content-disposition")) continue;
+    if (colon == std::string_view::npos || !same_word(trim(line.substr(0, colon)), "content-disposition"))
+      continue;
     const auto name = parameter(line.substr(colon + 1), "name");
     if (!name) break;
     part.name = *name;

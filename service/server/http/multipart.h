@@ -8,12 +8,13 @@
 
 namespace palpate {
 
-/// The boundary of a multipart/form-data content type, or "" when it has none that is allowed (RFC 2046: 1 to 70 characters).
+/// The boundary of a multipart/form-data content type, or "" when it has none that is allowed (RFC 2046: 1 to
+/// 70 characters).
 std::string boundary_of(std::string_view content_type);
 
 /// What stands before a part's content.
 struct PartHead {
-  std::string name, filename;   ///< of Content-Disposition; bytes as sent
+  std::string name, filename;  ///< of Content-Disposition; bytes as sent
 };
 
 /// Reads multipart/form-data piece by piece, in memory that doesn't grow with the body. Never throws.
@@ -22,9 +23,9 @@ class MultipartReader {
   struct Events {
     std::function<std::optional<Problem>(const PartHead&)> part;
     std::function<std::optional<Problem>(std::string_view)> data;
-    std::function<std::optional<Problem>()> end;   ///< of the part
+    std::function<std::optional<Problem>()> end;  ///< of the part
   };
-  static constexpr std::size_t kLongestHead = 8 << 10;   ///< bytes of a part's header
+  static constexpr std::size_t kLongestHead = 8 << 10;  ///< bytes of a part's header
 
   MultipartReader(const std::string& boundary, Events events);
   /// The first problem ends the reading.

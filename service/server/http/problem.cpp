@@ -11,12 +11,15 @@ std::string Problem::json() const {
   for (char& c : title)
     if (c == '-') c = ' ';
   if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  nlohmann::ordered_json out = {{"type", "urn:palpate:problem:" + type}, {"title", title}, {"status", status}, {"detail", detail}};
+  nlohmann::ordered_json out = {
+      {"type", "urn:palpate:problem:" + type}, {"title", title}, {"status", status}, {"detail", detail}};
   if (!field.empty()) out["field"] = field;
   return out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-Problem bad_request(std::string detail, std::string field) { return {400, "bad-value", std::move(detail), std::move(field)}; }
+Problem bad_request(std::string detail, std::string field) {
+  return {400, "bad-value", std::move(detail), std::move(field)};
+}
 
 Problem problem_of(const Error& error, std::string field) {
   if (error.code == ErrorCode::kBadValue) return bad_request(error.sentence, std::move(field));

@@ -8,9 +8,9 @@ namespace palpate {
 /// Why a request was refused, as problem+json (RFC 9457) tells it.
 struct Problem {
   unsigned status = 500;
-  std::string type = "internal";   ///< last word of urn:palpate:problem:…
-  std::string detail;              ///< one sentence with the value and its limit
-  std::string field;               ///< the part of the request at fault; empty: none
+  std::string type = "internal";  ///< last word of urn:palpate:problem:…
+  std::string detail;             ///< one sentence with the value and its limit
+  std::string field;              ///< the part of the request at fault; empty: none
 
   /// One JSON object. Bytes of a stranger that are no UTF-8 are replaced.
   std::string json() const;

@@ -25,10 +25,14 @@ std::variant<const Route*, Problem> Router::find(const HttpRequest& request, std
   for (const Route& route : routes_) {
     if (!fits(route.pattern, request.segments)) continue;
     if (route.method == method) return &route;
-    if (allowed.find(route.method) == std::string::npos) allowed += (allowed.empty() ? "" : ", ") + route.method;
+    if (allowed.find(route.method) == std::string::npos)
+      allowed += (allowed.empty() ? "" : ", ") + route.method;
   }
-  if (allowed.empty()) return Problem{404, "not-found", "there is nothing at '" + shown_text(request.path) + "'", ""};
-  return Problem{405, "method", shown_text(request.method) + " is not for '" + shown_text(request.path) + "'; " + allowed + " is", ""};
+  if (allowed.empty())
+    return Problem{404, "not-found", "there is nothing at '" + shown_text(request.path) + "'", ""};
+  return Problem{
+      405, "method",
+      shown_text(request.method) + " is not for '" + shown_text(request.path) + "'; " + allowed + " is", ""};
 }
 
 }  // namespace palpate

@@ -12,9 +12,9 @@ namespace palpate {
 /// What answers one method of one path.
 struct Route {
   std::string method{};
-  std::string pattern{};         ///< "v1/scenes/*/query": `*` is any one segment
-  bool open = false;            ///< needs no token
-  std::size_t body_limit = 0;   ///< bytes of a body that is read whole; 0: none is wanted
+  std::string pattern{};       ///< "v1/scenes/*/query": `*` is any one segment
+  bool open = false;           ///< needs no token
+  std::size_t body_limit = 0;  ///< bytes of a body that is read whole; 0: none is wanted
   std::function<void(HttpRequest, Reply)> handle{};
   /// For bodies that are streamed; asked when the content type begins with `sink_type`.
   std::string sink_type{};

@@ -8,7 +8,8 @@ namespace fs = std::filesystem;
 
 std::optional<fs::path> path_below(const fs::path& root, const fs::path& name) {
   std::error_code error;
-  const fs::path real = fs::canonical(root / name, error);   // an absolute name takes the root's place, and is judged like any other
+  const fs::path real = fs::canonical(
+      root / name, error);  // an absolute name takes the root's place, and is judged like any other
   if (error) return std::nullopt;
   const auto [end, ignored] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
   if (end != root.end()) return std::nullopt;
@@ -18,7 +19,8 @@ std::optional<fs::path> path_below(const fs::path& root, const fs::path& name) {
 bool plain_name(std::string_view name) {
   if (name.empty() || name.size() > 100 || name.front() == '.') return false;
   return std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+           c == '_' || c == '-';
   });
 }
 

@@ -6,10 +6,13 @@
 
 namespace palpate {
 
-/// The real path of `name` below `root` (itself a real path), all symbolic links followed; nothing when it does not exist or lies elsewhere.
-std::optional<std::filesystem::path> path_below(const std::filesystem::path& root, const std::filesystem::path& name);
+/// The real path of `name` below `root` (itself a real path), all symbolic links followed; nothing when it
+/// does not exist or lies elsewhere.
+std::optional<std::filesystem::path> path_below(const std::filesystem::path& root,
+                                                const std::filesystem::path& name);
 
-/// Whether a file of an upload may be called so: letters, digits, '.', '_', '-'; at most 100; no dot in front.
+/// Whether a file of an upload may be called so: letters, digits, '.', '_', '-'; at most 100; no dot in
+/// front.
 bool plain_name(std::string_view name);
 
 }  // namespace palpate

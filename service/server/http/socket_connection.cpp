@@ -20,14 +20,18 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
 
-constexpr auto kSilence = std::chrono::seconds(30);      ///< without a byte from the client, pongs included; chosen
+constexpr auto kSilence =
+    std::chrono::seconds(30);  ///< without a byte from the client, pongs included; chosen
 constexpr auto kHandshake = std::chrono::seconds(10);
 
 /// A WebSocket's two directions, each a coroutine on the connection's strand; both hold this.
 class Conversation : public std::enable_shared_from_this<Conversation> {
  public:
   Conversation(AnyStream stream, std::shared_ptr<SocketHandler> handler, ConnectionContext& context)
-      : socket_(std::move(stream)), wake_(socket_.get_executor()), handler_(std::move(handler)), context_(context) {}
+      : socket_(std::move(stream)),
+        wake_(socket_.get_executor()),
+        handler_(std::move(handler)),
+        context_(context) {}
 
   asio::awaitable<void> run(http::request<http::empty_body> head) {
     websocket::stream_base::timeout timeout{};
@@ -66,7 +70,8 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
       buffer.clear();
       co_await socket_.async_read(buffer, asio::redirect_error(asio::use_awaitable, error));
       if (error) break;
-      handler_->message({static_cast<const char*>(buffer.data().data()), buffer.size()}, socket_.got_binary());
+      handler_->message({static_cast<const char*>(buffer.data().data()), buffer.size()},
+                        socket_.got_binary());
     }
     {
       const std::lock_guard lock(context_.mutex);
@@ -95,14 +100,17 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
         message = handler_->next();
       else if (!std::exchange(parting_, true))
         message = handler_->last_words();
-      if (!message && parting_) message = SocketMessage{R"({"type":"bye","reason":"the server stops"})", nullptr, false, true};
+      if (!message && parting_)
+        message = SocketMessage{R"({"type":"bye","reason":"the server stops"})", nullptr, false, true};
       if (message) {
         socket_.binary(message->binary);
-        const std::array<asio::const_buffer, 2> parts = {asio::buffer(message->head), message->tail ? asio::buffer(*message->tail) : asio::const_buffer()};
+        const std::array<asio::const_buffer, 2> parts = {
+            asio::buffer(message->head), message->tail ? asio::buffer(*message->tail) : asio::const_buffer()};
         co_await socket_.async_write(parts, asio::redirect_error(asio::use_awaitable, error));
         if (message->close && !error) {
-          co_await socket_.async_close(context_.stopping ? websocket::close_code::going_away : websocket::close_code::normal,
-                                       asio::redirect_error(asio::use_awaitable, error));
+          co_await socket_.async_close(
+              context_.stopping ? websocket::close_code::going_away : websocket::close_code::normal,
+              asio::redirect_error(asio::use_awaitable, error));
           break;
         }
       } else if (!woken_) {
@@ -113,7 +121,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
     }
   }
 
-  websocket::stream<AnyStream, false> socket_;   // without compression: it would cost more than it saves here
+  websocket::stream<AnyStream, false> socket_;  // without compression: it would cost more than it saves here
   asio::steady_timer wake_;
   std::shared_ptr<SocketHandler> handler_;
   ConnectionContext& context_;
@@ -122,8 +130,8 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
 
 }  // namespace
 
-asio::awaitable<void> serve_socket(AnyStream stream, http::request<http::empty_body> head, std::shared_ptr<SocketHandler> handler,
-                                   ConnectionContext& context) {
+asio::awaitable<void> serve_socket(AnyStream stream, http::request<http::empty_body> head,
+                                   std::shared_ptr<SocketHandler> handler, ConnectionContext& context) {
   const auto conversation = std::make_shared<Conversation>(std::move(stream), std::move(handler), context);
   co_await conversation->run(std::move(head));
 }

@@ -7,15 +7,16 @@
 #include <utility>
 
 #include "service/cli/answer.h"
-#include "service/queries/query_json.h"
 #include "service/loop/thread_share.h"
+#include "service/queries/query_json.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSlicePoses = 64;                          ///< chosen: few enough that a lone pose behind many batches is soon answered
-constexpr auto kSliceTime = std::chrono::milliseconds(10);       ///< chosen, for poses that take long
-constexpr std::size_t kReadAhead = 1 << 20;                      ///< bytes made before the client has read; chosen
+constexpr std::size_t kSlicePoses =
+    64;  ///< chosen: few enough that a lone pose behind many batches is soon answered
+constexpr auto kSliceTime = std::chrono::milliseconds(10);  ///< chosen, for poses that take long
+constexpr std::size_t kReadAhead = 1 << 20;                 ///< bytes made before the client has read; chosen
 
 /// The 64 bytes of docs/SERVICE.md.
 void append_wrench(const Answer& answer, std::string& out) {
@@ -40,10 +41,10 @@ void append_wrench(const Answer& answer, std::string& out) {
 struct BatchQueue::Batch {
   // The queue's thread alone:
   BatchRequest request;
-  Reply reply;               ///< empty once replied
+  Reply reply;  ///< empty once replied
   std::size_t next = 0;
   Answer answer;
-  std::string made;          ///< by the slice under way
+  std::string made;  ///< by the slice under way
   bool failed = false;
   std::string failure;
 
@@ -53,7 +54,8 @@ struct BatchQueue::Batch {
   std::function<void(Chunk)> taker;
   bool done = false, broken = false, cancelled = false, parked = false;
 
-  /// Hands on what is ready, if somebody asked; called without the mutex. Returns whether something was taken.
+  /// Hands on what is ready, if somebody asked; called without the mutex. Returns whether something was
+  /// taken.
   void serve() {
     std::function<void(Chunk)> take;
     Chunk chunk;
@@ -72,11 +74,12 @@ struct BatchQueue::Batch {
 /// The connection's end of a batch.
 class BatchQueue::Source final : public BodySource {
  public:
-  Source(BatchQueue& queue, std::shared_ptr<Batch> batch) : queue_(queue), metrics_(queue.metrics_), batch_(std::move(batch)) {}
+  Source(BatchQueue& queue, std::shared_ptr<Batch> batch)
+      : queue_(queue), metrics_(queue.metrics_), batch_(std::move(batch)) {}
   ~Source() override {
     const std::lock_guard lock(batch_->mutex);
     batch_->cancelled = true;
-    if (batch_->parked) --metrics_.batches_now;   // nobody will look at it again
+    if (batch_->parked) --metrics_.batches_now;  // nobody will look at it again
   }
   void next(std::function<void(Chunk)> take) override {
     bool resume = false;
@@ -152,7 +155,7 @@ void BatchQueue::run() {
     }
     answer_slice(*batch);
     const bool done = batch->failed || batch->next == batch->request.poses.size();
-    if (batch->failed && batch->reply) {   // nothing was sent: the client gets the reason
+    if (batch->failed && batch->reply) {  // nothing was sent: the client gets the reason
       --metrics_.batches_now;
       batch->reply(Problem{500, "internal", batch->failure, ""});
       continue;
@@ -163,7 +166,9 @@ void BatchQueue::run() {
       batch->ready += batch->made;
       batch->done = done;
       batch->broken = batch->failed;
-      parked = batch->parked = !done && !batch->cancelled && batch->ready.size() > kReadAhead;   // whoever has gone would never come back for it
+      parked = batch->parked =
+          !done && !batch->cancelled &&
+          batch->ready.size() > kReadAhead;  // whoever has gone would never come back for it
     }
     batch->made.clear();
     if (done) {
@@ -225,7 +230,8 @@ Result<void> BatchQueue::touch_slice(Batch& batch) {
     }
   }
   for (const std::uint8_t bit : bits) {
-    batch.made += "{\"number\":" + std::to_string(batch.next++) + ",\"engine\":\"" + engine + (bit != 0 ? "\",\"touches\":true}\n" : "\",\"touches\":false}\n");
+    batch.made += "{\"number\":" + std::to_string(batch.next++) + ",\"engine\":\"" + engine +
+                  (bit != 0 ? "\",\"touches\":true}\n" : "\",\"touches\":false}\n");
     ++metrics_.poses;
   }
   return {};
@@ -244,7 +250,8 @@ void BatchQueue::answer_slice(Batch& batch) {
       batch.failure = answered.error().sentence;
       return;
     }
-    const auto parts = request.names ? std::optional<TouchedParts>(std::in_place, scene.loaded.geometry) : std::nullopt;
+    const auto parts =
+        request.names ? std::optional<TouchedParts>(std::in_place, scene.loaded.geometry) : std::nullopt;
     for (std::size_t i = 0; i < kSlicePoses && batch.next < request.poses.size(); ++i, ++batch.next) {
       if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
       Result<void> answered;
@@ -265,12 +272,19 @@ void BatchQueue::answer_slice(Batch& batch) {
       }
       ++metrics_.poses;
       metrics_.query_s.add(batch.answer.total_us / 1e6);
-      for (const auto& time : batch.answer.contacts.times) metrics_.add_stage(batch.answer.contacts.engine, time.stage, time.us);
+      for (const auto& time : batch.answer.contacts.times)
+        metrics_.add_stage(batch.answer.contacts.engine, time.stage, time.us);
       if (batch.answer.contacts.truncated) ++metrics_.truncated;
       if (request.binary)
         append_wrench(batch.answer, batch.made);
       else
-        append_query_line({.number = batch.next, .total_us = batch.answer.total_us, .batch = std::nullopt, .tick = std::nullopt, .sets = request.sets, .parts = request.names ? &*parts : nullptr, .pose = &request.poses[batch.next]},
+        append_query_line({.number = batch.next,
+                           .total_us = batch.answer.total_us,
+                           .batch = std::nullopt,
+                           .tick = std::nullopt,
+                           .sets = request.sets,
+                           .parts = request.names ? &*parts : nullptr,
+                           .pose = &request.poses[batch.next]},
                           batch.answer.contacts, batch.answer.response, batch.made);
     }
   } catch (const std::exception& error) {

@@ -25,15 +25,16 @@ struct BatchRequest {
   bool sets = true;
   bool names = false;   ///< the parts that touch, by their paths
   bool any = false;     ///< touch or not, a line a pose, and nothing else
-  bool binary = false;   ///< 64 bytes a pose instead of JSON lines
+  bool binary = false;  ///< 64 bytes a pose instead of JSON lines
 };
 
-/// Answers the poses of all queries on one thread, a slice of each by turns. Beside loops on the same scene it uses a back end of its own,
-/// or, where there is no room for one, lets them go first between any two poses. A query whose client reads slowly is set aside until it has.
+/// Answers the poses of all queries on one thread, a slice of each by turns. Beside loops on the same scene
+/// it uses a back end of its own, or, where there is no room for one, lets them go first between any two
+/// poses. A query whose client reads slowly is set aside until it has.
 class BatchQueue {
  public:
   BatchQueue(SceneStore& store, const ServerLimits& limits, Metrics& metrics);
-  ~BatchQueue();   ///< what is under way breaks off
+  ~BatchQueue();  ///< what is under way breaks off
   BatchQueue(const BatchQueue&) = delete;
   BatchQueue& operator=(const BatchQueue&) = delete;
 
@@ -53,7 +54,7 @@ class BatchQueue {
   Metrics& metrics_;
   std::mutex mutex_;
   std::condition_variable work_;
-  std::list<std::shared_ptr<Batch>> ring_;   ///< next first
+  std::list<std::shared_ptr<Batch>> ring_;  ///< next first
   bool stop_ = false;
   std::thread thread_;
 };

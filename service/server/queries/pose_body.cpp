@@ -21,14 +21,17 @@ std::variant<Pose, Problem> checked(const std::array<double, 7>& values, const s
 }
 
 Problem too_many(std::size_t count, const ServerLimits& limits) {
-  return {413, "too-large", "there are " + std::to_string(count) + " poses, and the limit is " + std::to_string(limits.poses), "poses"};
+  return {413, "too-large",
+          "there are " + std::to_string(count) + " poses, and the limit is " + std::to_string(limits.poses),
+          "poses"};
 }
 
 std::variant<std::vector<Pose>, Problem> from_json(const std::string& body, const ServerLimits& limits) {
   const auto read = read_json_object(body, limits.json_depth, {"poses", "pose"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
-  if (json.contains("pose") == json.contains("poses")) return bad_request("either \"pose\" or \"poses\" is wanted", "poses");
+  if (json.contains("pose") == json.contains("poses"))
+    return bad_request("either \"pose\" or \"poses\" is wanted", "poses");
   std::vector<Pose> poses;
   const auto take = [&](const nlohmann::json& value, const std::string& field) -> std::optional<Problem> {
     const auto pose = pose_from_json(value, field);
@@ -52,9 +55,11 @@ std::variant<std::vector<Pose>, Problem> from_json(const std::string& body, cons
 
 std::variant<Pose, Problem> pose_from_json(const nlohmann::json& value, const std::string& field) {
   std::array<double, 7> values{};
-  if (!value.is_array() || value.size() != values.size()) return bad_request(field + " is no list of 7 numbers (x y z qx qy qz qw)", field);
+  if (!value.is_array() || value.size() != values.size())
+    return bad_request(field + " is no list of 7 numbers (x y z qx qy qz qw)", field);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!value[i].is_number()) return bad_request(field + " is no list of 7 numbers (x y z qx qy qz qw)", field);
+    if (!value[i].is_number())
+      return bad_request(field + " is no list of 7 numbers (x y z qx qy qz qw)", field);
     values[i] = value[i].get<double>();
   }
   return checked(values, field);
@@ -66,7 +71,8 @@ std::variant<Pose, Problem> pose_from_bytes(const char* bytes, const std::string
   return checked(values, field);
 }
 
-std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content_type, const std::string& body, const ServerLimits& limits) {
+std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content_type,
+                                                        const std::string& body, const ServerLimits& limits) {
   content_type = content_type.substr(0, content_type.find_first_of("; "));
   if (content_type == "application/json") return from_json(body, limits);
   std::vector<Pose> poses;
@@ -77,7 +83,9 @@ std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content
     poses = std::move(*read);
   } else if (content_type == "application/vnd.palpate.poses") {
     if (body.empty() || body.size() % kPoseBytes != 0)
-      return bad_request("the body has " + std::to_string(body.size()) + " bytes, no multiple of 56 (7 doubles a pose)", "body");
+      return bad_request(
+          "the body has " + std::to_string(body.size()) + " bytes, no multiple of 56 (7 doubles a pose)",
+          "body");
     if (body.size() / kPoseBytes > limits.poses) return too_many(body.size() / kPoseBytes, limits);
     for (std::size_t at = 0; at < body.size(); at += kPoseBytes) {
       const auto pose = pose_from_bytes(body.data() + at, "poses[" + std::to_string(at / kPoseBytes) + "]");
@@ -85,7 +93,10 @@ std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content
       poses.push_back(std::get<Pose>(pose));
     }
   } else {
-    return Problem{415, "media-type", "poses come as text/csv, application/json or application/vnd.palpate.poses, not as '" + shown_text(content_type) + "'", "Content-Type"};
+    return Problem{415, "media-type",
+                   "poses come as text/csv, application/json or application/vnd.palpate.poses, not as '" +
+                       shown_text(content_type) + "'",
+                   "Content-Type"};
   }
   if (poses.size() > limits.poses) return too_many(poses.size(), limits);
   return poses;

@@ -11,8 +11,10 @@
 
 namespace palpate {
 
-/// The poses of a query's body (docs/SERVICE.md): CSV, JSON or doubles, by `content_type`. At least one, at most limits.poses; each is a pose.
-std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content_type, const std::string& body, const ServerLimits& limits);
+/// The poses of a query's body (docs/SERVICE.md): CSV, JSON or doubles, by `content_type`. At least one, at
+/// most limits.poses; each is a pose.
+std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content_type,
+                                                        const std::string& body, const ServerLimits& limits);
 
 /// [x, y, z, qx, qy, qz, qw]; `field` names it in a refusal.
 std::variant<Pose, Problem> pose_from_json(const nlohmann::json& value, const std::string& field);

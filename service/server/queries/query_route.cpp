@@ -5,14 +5,18 @@
 
 namespace palpate {
 
-void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, WorkerPool& workers, const ServerLimits& limits) {
+void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, WorkerPool& workers,
+                     const ServerLimits& limits) {
   const auto ask = [&store, &batches, &limits](const HttpRequest& request, const Reply& reply) {
     const std::string sets = request.query_or("sets", "1");
-    if (sets != "0" && sets != "1") return reply(bad_request("sets is '" + shown_text(sets) + "', allowed is 0 or 1", "sets"));
+    if (sets != "0" && sets != "1")
+      return reply(bad_request("sets is '" + shown_text(sets) + "', allowed is 0 or 1", "sets"));
     const std::string names = request.query_or("names", "0");
-    if (names != "0" && names != "1") return reply(bad_request("names is '" + shown_text(names) + "', allowed is 0 or 1", "names"));
+    if (names != "0" && names != "1")
+      return reply(bad_request("names is '" + shown_text(names) + "', allowed is 0 or 1", "names"));
     const std::string any = request.query_or("any", "0");
-    if (any != "0" && any != "1") return reply(bad_request("any is '" + shown_text(any) + "', allowed is 0 or 1", "any"));
+    if (any != "0" && any != "1")
+      return reply(bad_request("any is '" + shown_text(any) + "', allowed is 0 or 1", "any"));
     auto scene = store.use(request.segments[2], false);
     if (const auto* problem = std::get_if<Problem>(&scene)) return reply(*problem);
     auto poses = read_pose_body(request.content_type, request.body, limits);
@@ -22,10 +26,14 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
                  .sets = sets == "1",
                  .names = names == "1",
                  .any = any == "1",
-                 .binary = any == "0" && request.accept.find("application/vnd.palpate.wrenches") != std::string::npos},
+                 .binary = any == "0" &&
+                           request.accept.find("application/vnd.palpate.wrenches") != std::string::npos},
                 reply);
   };
-  router.add({.method = "POST", .pattern = "v1/scenes/*/query", .body_limit = limits.poses_bytes, .handle = [&workers, ask](HttpRequest request, Reply reply) {
+  router.add({.method = "POST",
+              .pattern = "v1/scenes/*/query",
+              .body_limit = limits.poses_bytes,
+              .handle = [&workers, ask](HttpRequest request, Reply reply) {
                 // A short body is read at once: a lone pose then never waits behind a long one.
                 if (request.body.size() <= 4096) return ask(request, reply);
                 workers.post([ask, request = std::move(request), reply] { ask(request, reply); });

@@ -25,7 +25,7 @@ void Turns::leave() {
     const std::lock_guard lock(mutex_);
     busy_ = false;
   }
-  loops_.notify_all();   // a few at most; each looks whether it is its turn
+  loops_.notify_all();  // a few at most; each looks whether it is its turn
   batches_.notify_one();
 }
 

@@ -11,30 +11,33 @@
 
 namespace palpate {
 
-/// Who may ask a back end now: one at a time, loops before batches, loops in the order they came. A pose can't be
-/// interrupted, so a loop waits for one pose of a batch at most. A batch that has seen kLoopTurns of loops go by gets one turn, so that it
-/// isn't starved by loops that always want more.
+/// Who may ask a back end now: one at a time, loops before batches, loops in the order they came. A pose
+/// can't be interrupted, so a loop waits for one pose of a batch at most. A batch that has seen kLoopTurns of
+/// loops go by gets one turn, so that it isn't starved by loops that always want more.
 class Turns {
  public:
-  static constexpr std::uint64_t kLoopTurns = 4;   ///< chosen: loops keep four fifths of the time, and a batch goes on
+  static constexpr std::uint64_t kLoopTurns =
+      4;  ///< chosen: loops keep four fifths of the time, and a batch goes on
 
   void enter_loop();
-  void enter_batch();   ///< one thread at a time
+  void enter_batch();  ///< one thread at a time
   void leave();
 
  private:
   std::mutex mutex_;
   std::condition_variable loops_, batches_;
   bool busy_ = false, batch_waits_ = false;
-  std::uint64_t head_ = 0, tail_ = 0;      ///< tickets of loops: next to be served, next to be given
-  std::uint64_t passed_ = 0;               ///< loop turns since a batch began to wait
+  std::uint64_t head_ = 0, tail_ = 0;  ///< tickets of loops: next to be served, next to be given
+  std::uint64_t passed_ = 0;           ///< loop turns since a batch began to wait
 };
 
 /// A loop's or a batch's turn, given back at the end of its scope.
 class TurnGuard {
  public:
   enum class Kind : std::uint8_t { kLoop, kBatch };
-  TurnGuard(Turns& turns, Kind kind) : turns_(turns) { kind == Kind::kLoop ? turns.enter_loop() : turns.enter_batch(); }
+  TurnGuard(Turns& turns, Kind kind) : turns_(turns) {
+    kind == Kind::kLoop ? turns.enter_loop() : turns.enter_batch();
+  }
   ~TurnGuard() { turns_.leave(); }
   TurnGuard(const TurnGuard&) = delete;
   TurnGuard& operator=(const TurnGuard&) = delete;

@@ -20,7 +20,9 @@ WorkerPool::~WorkerPool() {
 void WorkerPool::after(double seconds, std::function<void()> task) {
   {
     const std::lock_guard lock(mutex_);
-    tasks_.emplace(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)), std::move(task));
+    tasks_.emplace(
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),
+        std::move(task));
   }
   work_.notify_one();
 }
@@ -42,7 +44,7 @@ void WorkerPool::run() {
       tasks_.erase(tasks_.begin());
       lock.unlock();
       task();
-    }   // what the task holds is given back before the lock is taken: it may post
+    }  // what the task holds is given back before the lock is taken: it may post
     lock.lock();
   }
 }

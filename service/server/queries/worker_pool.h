@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Threads for what would hold up the connections: reading and writing files, decoding large bodies; and for what is due later. Tasks may
-/// not throw. The destructor drops what has not begun.
+/// Threads for what would hold up the connections: reading and writing files, decoding large bodies; and for
+/// what is due later. Tasks may not throw. The destructor drops what has not begun.
 class WorkerPool {
  public:
   explicit WorkerPool(int threads);

@@ -12,7 +12,7 @@ class ContentHash {
   ContentHash();
   ~ContentHash();
   void add(std::string_view bytes);
-  std::string hex();   ///< 64 digits; ends the hash
+  std::string hex();  ///< 64 digits; ends the hash
 
  private:
   struct State;
@@ -22,7 +22,8 @@ class ContentHash {
 /// SHA-256 of a file's content; empty when it can't be read to the end.
 std::string file_hash(const std::string& path);
 
-/// Whether two secrets are equal, in a time that tells nothing of where they differ or how long the right one is.
+/// Whether two secrets are equal, in a time that tells nothing of where they differ or how long the right one
+/// is.
 bool same_secret(std::string_view given, std::string_view right);
 
 }  // namespace palpate

@@ -28,7 +28,8 @@ DrawnMesh clustered(const BodyView& body, const Vec3& low, double cell) {
     if (of_vertex[v] != UINT32_MAX) return of_vertex[v];
     const Vec3 point = body.point(v);
     std::uint64_t key = 0;
-    for (int k = 0; k < 3; ++k) key = key << 21 | static_cast<std::uint64_t>(std::clamp((point[k] - low[k]) / cell, 0.0, 2'000'000.0));
+    for (int k = 0; k < 3; ++k)
+      key = key << 21 | static_cast<std::uint64_t>(std::clamp((point[k] - low[k]) / cell, 0.0, 2'000'000.0));
     const auto [place, fresh] = of_cell.emplace(key, static_cast<std::uint32_t>(out.vertices.size()));
     if (fresh) out.vertices.push_back(point);
     return of_vertex[v] = place->second;
@@ -56,7 +57,8 @@ DrawnMesh reduced(const BodyView& body, std::size_t most) {
       high = glm::max(high, body.point(v));
     }
   const Vec3 size = high - low;
-  double cell = std::max({size.x, size.y, size.z}) / (2 * std::sqrt(static_cast<double>(std::max<std::size_t>(most, 1))) + 1);
+  double cell = std::max({size.x, size.y, size.z}) /
+                (2 * std::sqrt(static_cast<double>(std::max<std::size_t>(most, 1))) + 1);
   for (;;) {
     DrawnMesh out = clustered(body, low, cell);
     if (out.triangles.size() <= most || !(cell > 0)) return out;
@@ -64,7 +66,8 @@ DrawnMesh reduced(const BodyView& body, std::size_t most) {
   }
 }
 
-std::optional<std::vector<std::uint32_t>> parse_ids(std::string_view text, std::size_t count, std::size_t most) {
+std::optional<std::vector<std::uint32_t>> parse_ids(std::string_view text, std::size_t count,
+                                                    std::size_t most) {
   std::vector<std::uint32_t> ids;
   const char* at = text.data();
   const char* end = at + text.size();
@@ -87,13 +90,16 @@ std::optional<std::vector<std::uint32_t>> parse_ids(std::string_view text, std::
   return ids;
 }
 
-std::optional<std::string> voxel_bytes(const VoxelPartition& partition, VoxelClass wanted, bool tool, const Vec3& origin_m, double step_m, std::uint32_t most) {
+std::optional<std::string> voxel_bytes(const VoxelPartition& partition, VoxelClass wanted, bool tool,
+                                       const Vec3& origin_m, double step_m, std::uint32_t most) {
   const Int3 counts = partition.grid.voxels();
   if (partition.classes.size() > UINT32_MAX) return std::nullopt;
   const auto n = std::count(partition.classes.begin(), partition.classes.end(), wanted);
   if (n > most) return std::nullopt;
   std::string out = "PVOX";
-  const auto put = [&out](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  const auto put = [&out](const auto& value) {
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
   put(std::uint32_t{1});
   put(static_cast<std::uint32_t>(wanted));
   put(std::uint32_t{tool ? 1u : 0u});

@@ -5,15 +5,16 @@
 #include <mutex>
 #include <tuple>
 
-#include "service/server/scenes/drawing.h"
 #include "service/server/http/json_input.h"
+#include "service/server/scenes/drawing.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kPiece = 256 << 10;
 constexpr std::size_t kMostIds = 100'000;
-constexpr std::size_t kKeptVoxels = 8;   ///< answers remembered, so that a loop that has begun meanwhile need not be disturbed
+constexpr std::size_t kKeptVoxels =
+    8;  ///< answers remembered, so that a loop that has begun meanwhile need not be disturbed
 
 template <class T>
 void put(std::string& out, const T& value) {
@@ -31,7 +32,9 @@ struct Body {
 
   std::size_t vertices() const { return drawn ? drawn->vertices.size() : view.mesh.vertices.size(); }
   Vec3 vertex(std::size_t i) const { return drawn ? drawn->vertices[i] : view.point(i); }
-  const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return drawn ? drawn->triangles : view.mesh.triangles; }
+  const std::vector<std::array<std::uint32_t, 3>>& triangles() const {
+    return drawn ? drawn->triangles : view.mesh.triangles;
+  }
   std::uint32_t id(std::size_t i) const { return drawn ? drawn->ids[i] : static_cast<std::uint32_t>(i); }
 };
 
@@ -44,7 +47,9 @@ BodyView view_of(const SceneGeometry& geometry, bool tool) {
 class Geometry final : public BodySource {
  public:
   Geometry(SceneUse use, std::optional<std::size_t> most)
-      : use_(std::move(use)), bodies_{Body{view_of((*use_)->loaded.geometry, false)}, Body{view_of((*use_)->loaded.geometry, true)}} {
+      : use_(std::move(use)),
+        bodies_{Body{view_of((*use_)->loaded.geometry, false)},
+                Body{view_of((*use_)->loaded.geometry, true)}} {
     bool any = false;
     for (Body& body : bodies_)
       if (most && body.triangles().size() > *most) {
@@ -90,7 +95,7 @@ class Geometry final : public BodySource {
   SceneUse use_;
   Body bodies_[2];
   std::string head_;
-  std::size_t section_ = 0, item_ = 0;   ///< vertices, corners, ids of the mock-up, then of the tool
+  std::size_t section_ = 0, item_ = 0;  ///< vertices, corners, ids of the mock-up, then of the tool
 };
 
 HttpResponse binary(std::string body) {
@@ -113,7 +118,9 @@ HttpResponse geometry(SceneStore& store, const HttpRequest& request) {
   if (const std::string text = request.query_or("max_triangles", ""); !text.empty()) {
     std::size_t value = 0;
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || stop != text.data() + text.size() || value < 100) return bad_request("max_triangles is '" + shown_text(text) + "', allowed is a number from 100", "max_triangles");
+    if (error != std::errc() || stop != text.data() + text.size() || value < 100)
+      return bad_request("max_triangles is '" + shown_text(text) + "', allowed is a number from 100",
+                         "max_triangles");
     most = value;
   }
   auto use = store.use(request.segments[2], false);
@@ -132,7 +139,10 @@ HttpResponse triangles(SceneStore& store, const HttpRequest& request) {
   if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
   const BodyView body = view_of((*std::get<SceneUse>(use))->loaded.geometry, *tool);
   const auto ids = parse_ids(request.query_or("ids", ""), body.mesh.triangles.size(), kMostIds);
-  if (!ids) return bad_request("ids is no list like 1,5-9 of at most 100000 ids below " + std::to_string(body.mesh.triangles.size()), "ids");
+  if (!ids)
+    return bad_request(
+        "ids is no list like 1,5-9 of at most 100000 ids below " + std::to_string(body.mesh.triangles.size()),
+        "ids");
   std::string out;
   for (const std::uint32_t id : *ids)
     for (const std::uint32_t v : body.mesh.triangles[id]) put_point(out, body.point(v));
@@ -146,18 +156,23 @@ class VoxelAnswers {
     const auto tool = is_tool(request);
     if (!tool) return bad_body();
     const std::string name = request.query_or("class", "boundary");
-    if (name != "boundary" && name != "internal") return bad_request("class is '" + shown_text(name) + "', allowed is boundary or internal", "class");
+    if (name != "boundary" && name != "internal")
+      return bad_request("class is '" + shown_text(name) + "', allowed is boundary or internal", "class");
     const std::string key = request.segments[2] + (*tool ? "t" : "s") + name;
     auto use = store.use(request.segments[2], false);
     if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
     const SceneLease& scene = *std::get<SceneUse>(use);
-    const std::lock_guard lock(mutex_);   // one at a time: a partition is large
+    const std::lock_guard lock(mutex_);  // one at a time: a partition is large
     for (const auto& [kept, bytes] : kept_)
       if (kept == key) return binary(bytes);
     std::optional<Result<VoxelPartition>> partition;
-    if (scene.loops() > 0) {   // reading voxels would hold them up
+    if (scene.loops() > 0) {  // reading voxels would hold them up
       const Aside aside = store.aside(scene);
-      if (!aside.backend) return Problem{409, "conflict", "a loop uses the scene, and there is no memory to read voxels beside it; ask when it has ended", "id"};
+      if (!aside.backend)
+        return Problem{
+            409, "conflict",
+            "a loop uses the scene, and there is no memory to read voxels beside it; ask when it has ended",
+            "id"};
       partition = aside.backend->partition(*tool);
     } else {
       const TurnGuard turn(scene.turns(), TurnGuard::Kind::kLoop);
@@ -165,9 +180,13 @@ class VoxelAnswers {
     }
     if (!*partition) return problem_of(partition->error());
     const SceneGeometry& geometry = scene->loaded.geometry;
-    auto bytes = voxel_bytes(**partition, name == "internal" ? VoxelClass::kInternal : VoxelClass::kBoundary, *tool,
-                             *tool ? geometry.tool_centre_m : geometry.lattice.origin_m, geometry.lattice.step_m, limits.voxels);
-    if (!bytes) return Problem{413, "too-large", "there are more than " + std::to_string(limits.voxels) + " voxels of this class", "class"};
+    auto bytes = voxel_bytes(**partition, name == "internal" ? VoxelClass::kInternal : VoxelClass::kBoundary,
+                             *tool, *tool ? geometry.tool_centre_m : geometry.lattice.origin_m,
+                             geometry.lattice.step_m, limits.voxels);
+    if (!bytes)
+      return Problem{413, "too-large",
+                     "there are more than " + std::to_string(limits.voxels) + " voxels of this class",
+                     "class"};
     kept_.emplace_back(key, *bytes);
     if (kept_.size() > kKeptVoxels) kept_.pop_front();
     return binary(std::move(*bytes));
@@ -181,14 +200,20 @@ class VoxelAnswers {
 }  // namespace
 
 void add_drawing_routes(Router& router, SceneStore& store, WorkerPool& workers, const ServerLimits& limits) {
-  router.add({.method = "GET", .pattern = "v1/scenes/*/geometry", .handle = [&](HttpRequest request, Reply reply) {
-                workers.post([&store, request = std::move(request), reply] { reply(geometry(store, request)); });
-              }});
-  router.add({.method = "GET", .pattern = "v1/scenes/*/triangles", .handle = [&](HttpRequest request, Reply reply) {
-                workers.post([&store, request = std::move(request), reply] { reply(triangles(store, request)); });
-              }});
-  router.add({.method = "GET", .pattern = "v1/scenes/*/voxels", .handle = [&, answers = std::make_shared<VoxelAnswers>()](HttpRequest request, Reply reply) {
-                workers.post([&store, &limits, answers, request = std::move(request), reply] { reply(answers->get(store, limits, request)); });
+  router.add(
+      {.method = "GET", .pattern = "v1/scenes/*/geometry", .handle = [&](HttpRequest request, Reply reply) {
+         workers.post([&store, request = std::move(request), reply] { reply(geometry(store, request)); });
+       }});
+  router.add(
+      {.method = "GET", .pattern = "v1/scenes/*/triangles", .handle = [&](HttpRequest request, Reply reply) {
+         workers.post([&store, request = std::move(request), reply] { reply(triangles(store, request)); });
+       }});
+  router.add({.method = "GET",
+              .pattern = "v1/scenes/*/voxels",
+              .handle = [&, answers = std::make_shared<VoxelAnswers>()](HttpRequest request, Reply reply) {
+                workers.post([&store, &limits, answers, request = std::move(request), reply] {
+                  reply(answers->get(store, limits, request));
+                });
               }});
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "service/server/http/router.h"
-#include "service/server/scenes/scene_store.h"
 #include "service/server/queries/worker_pool.h"
+#include "service/server/scenes/scene_store.h"
 
 namespace palpate {
 

@@ -14,19 +14,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLongestWait = 60;    ///< s
-constexpr double kPing = 10;           ///< s between signs of life of an event stream, so that a client that has gone is noticed
+constexpr double kLongestWait = 60;  ///< s
+constexpr double kPing =
+    10;  ///< s between signs of life of an event stream, so that a client that has gone is noticed
 constexpr std::size_t kMostListed = 200;
-constexpr int kDeepest = 4;            ///< folders below the root that are looked through
+constexpr int kDeepest = 4;  ///< folders below the root that are looked through
 
-bool settled(SceneState state) { return state == SceneState::kReady || state == SceneState::kFailed || state == SceneState::kEvicted; }
+bool settled(SceneState state) {
+  return state == SceneState::kReady || state == SceneState::kFailed || state == SceneState::kEvicted;
+}
 
-Problem unknown_scene(const std::string& id) { return {404, "not-found", "there is no scene " + shown_text(id), "id"}; }
+Problem unknown_scene(const std::string& id) {
+  return {404, "not-found", "there is no scene " + shown_text(id), "id"};
+}
 
 /// Answers once the scene is settled, or when time is up.
 class Wait : public std::enable_shared_from_this<Wait> {
  public:
-  Wait(SceneStore& store, WorkerPool& workers, std::string id, Reply reply) : store_(store), workers_(workers), id_(std::move(id)), reply_(std::move(reply)) {}
+  Wait(SceneStore& store, WorkerPool& workers, std::string id, Reply reply)
+      : store_(store), workers_(workers), id_(std::move(id)), reply_(std::move(reply)) {}
 
   void start(double seconds) {
     listener_ = store_.listen([weak = weak_from_this(), &workers = workers_] {
@@ -34,7 +40,7 @@ class Wait : public std::enable_shared_from_this<Wait> {
         if (const auto alive = weak.lock()) alive->look(false);
       });
     });
-    workers_.after(seconds, [self = shared_from_this()] { self->look(true); });   // keeps this alive
+    workers_.after(seconds, [self = shared_from_this()] { self->look(true); });  // keeps this alive
     look(false);
   }
 
@@ -57,7 +63,8 @@ class Wait : public std::enable_shared_from_this<Wait> {
 /// Server-sent events of one scene's preparation.
 class SceneEvents final : public BodySource, public std::enable_shared_from_this<SceneEvents> {
  public:
-  SceneEvents(SceneStore& store, WorkerPool& workers, std::string id) : store_(store), workers_(workers), id_(std::move(id)) {}
+  SceneEvents(SceneStore& store, WorkerPool& workers, std::string id)
+      : store_(store), workers_(workers), id_(std::move(id)) {}
 
   void start() {
     listener_ = store_.listen([weak = weak_from_this(), &workers = workers_] {
@@ -90,8 +97,11 @@ class SceneEvents final : public BodySource, public std::enable_shared_from_this
         chunk = {"event: gone\ndata: {}\n\n", true, false};
       } else if (view->version != seen_) {
         seen_ = view->version;
-        const char* event = view->state == SceneState::kReady ? "ready" : view->state == SceneState::kFailed ? "failed" : "progress";
-        chunk = {std::string("event: ") + event + "\ndata: " + view->json + "\n\n", settled(view->state), false};
+        const char* event = view->state == SceneState::kReady    ? "ready"
+                            : view->state == SceneState::kFailed ? "failed"
+                                                                 : "progress";
+        chunk = {std::string("event: ") + event + "\ndata: " + view->json + "\n\n", settled(view->state),
+                 false};
       } else if (ping) {
         chunk.data = ": still here\n\n";
       } else {
@@ -116,14 +126,18 @@ std::vector<std::string> available(const fs::path& root) {
   std::vector<std::string> found;
   std::error_code error;
   if (root.empty()) return found;
-  for (auto it = fs::recursive_directory_iterator(root, fs::directory_options::skip_permission_denied, error); !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+  for (auto it = fs::recursive_directory_iterator(root, fs::directory_options::skip_permission_denied, error);
+       !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
     if (it.depth() >= kDeepest) it.disable_recursion_pending();
-    if (it->path().extension() != ".json" || it->path().filename().string().ends_with(".schema.json") || !it->is_regular_file(error)) continue;
+    if (it->path().extension() != ".json" || it->path().filename().string().ends_with(".schema.json") ||
+        !it->is_regular_file(error))
+      continue;
     std::ifstream in(it->path(), std::ios::binary);
     std::string start(4096, '\0');
     in.read(start.data(), static_cast<std::streamsize>(start.size()));
     start.resize(static_cast<std::size_t>(in.gcount()));
-    if (start.find("\"static\"") != std::string::npos || start.find("\"tool\"") != std::string::npos) found.push_back(fs::relative(it->path(), root, error).string());
+    if (start.find("\"static\"") != std::string::npos || start.find("\"tool\"") != std::string::npos)
+      found.push_back(fs::relative(it->path(), root, error).string());
     if (found.size() == kMostListed) break;
   }
   std::sort(found.begin(), found.end());
@@ -140,29 +154,38 @@ HttpResponse added(SceneStore& store, SceneContent content) {
   return response;
 }
 
-HttpResponse add_named(const std::string& body, SceneStore& store, const ServerLimits& limits, const fs::path& root) {
+HttpResponse add_named(const std::string& body, SceneStore& store, const ServerLimits& limits,
+                       const fs::path& root) {
   const auto read = read_json_object(body, limits.json_depth, {"path", "profile"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
-  if (!json.contains("path") || !json["path"].is_string()) return bad_request("\"path\" is wanted: a scene file below the root", "path");
+  if (!json.contains("path") || !json["path"].is_string())
+    return bad_request("\"path\" is wanted: a scene file below the root", "path");
   const std::string path = json["path"];
   std::optional<Profile> profile;
   if (json.contains("profile")) {
-    if (json["profile"] != "paper" && json["profile"] != "refined") return bad_request("\"profile\" is paper or refined", "profile");
+    if (json["profile"] != "paper" && json["profile"] != "refined")
+      return bad_request("\"profile\" is paper or refined", "profile");
     profile = json["profile"] == "paper" ? Profile::kPaper : Profile::kRefined;
   }
-  if (root.empty()) return Problem{404, "not-found", "this server has no folder of scenes (see --root); upload one", "path"};
+  if (root.empty())
+    return Problem{404, "not-found", "this server has no folder of scenes (see --root); upload one", "path"};
   const bool sane = !path.empty() && path.size() <= 1024 && path.find('\0') == std::string::npos;
   const auto file = sane ? path_below(root, path) : std::nullopt;
   std::error_code error;
   if (!file) {
-    // Whether something lies outside is nobody's business: what leads out is refused alike, be it there or not.
+    // Whether something lies outside is nobody's business: what leads out is refused alike, be it there or
+    // not.
     const fs::path straight = fs::path(path).lexically_normal();
-    const bool leads_out = straight.is_absolute() || (!straight.empty() && *straight.begin() == "..") || fs::exists(fs::symlink_status(root / straight, error));
-    if (sane && leads_out) return Problem{403, "outside-root", "'" + shown_text(path) + "' lies outside the root", "path"};
-    return Problem{404, "not-found", "there is no scene file '" + shown_text(path) + "' below the root", "path"};
+    const bool leads_out = straight.is_absolute() || (!straight.empty() && *straight.begin() == "..") ||
+                           fs::exists(fs::symlink_status(root / straight, error));
+    if (sane && leads_out)
+      return Problem{403, "outside-root", "'" + shown_text(path) + "' lies outside the root", "path"};
+    return Problem{404, "not-found", "there is no scene file '" + shown_text(path) + "' below the root",
+                   "path"};
   }
-  if (!fs::is_regular_file(*file, error)) return Problem{404, "not-found", "'" + shown_text(path) + "' is no file", "path"};
+  if (!fs::is_regular_file(*file, error))
+    return Problem{404, "not-found", "'" + shown_text(path) + "' is no file", "path"};
   auto content = read_scene_content(*file, root, profile, limits, Neighbours::kByTime);
   if (const auto* problem = std::get_if<Problem>(&content)) return *problem;
   std::get<SceneContent>(content).name = fs::relative(*file, root, error).string();
@@ -171,50 +194,68 @@ HttpResponse add_named(const std::string& body, SceneStore& store, const ServerL
 
 }  // namespace
 
-void add_scene_routes(Router& router, SceneStore& store, WorkerPool& workers, Metrics& metrics, const ServerLimits& limits, const fs::path& root,
-                      const fs::path& spool) {
-  router.add({.method = "GET", .pattern = "v1/scenes", .handle = [&store, &workers, root](HttpRequest, Reply reply) {
-                workers.post([&store, root, reply] {
-                  std::string text = "{\"scenes\":[";
-                  for (const auto& view : store.all()) text += (text.back() == '[' ? "" : ",") + view.json;
-                  nlohmann::ordered_json names = nlohmann::ordered_json::array();
-                  for (const std::string& name : available(root)) names.push_back(name);
-                  reply(HttpResponse(200, text + "],\"available\":" + dump(names) + "}"));
-                });
-              }});
+void add_scene_routes(Router& router, SceneStore& store, WorkerPool& workers, Metrics& metrics,
+                      const ServerLimits& limits, const fs::path& root, const fs::path& spool) {
+  router.add(
+      {.method = "GET", .pattern = "v1/scenes", .handle = [&store, &workers, root](HttpRequest, Reply reply) {
+         workers.post([&store, root, reply] {
+           std::string text = "{\"scenes\":[";
+           for (const auto& view : store.all()) text += (text.back() == '[' ? "" : ",") + view.json;
+           nlohmann::ordered_json names = nlohmann::ordered_json::array();
+           for (const std::string& name : available(root)) names.push_back(name);
+           reply(HttpResponse(200, text + "],\"available\":" + dump(names) + "}"));
+         });
+       }});
   router.add({.method = "POST",
               .pattern = "v1/scenes",
               .body_limit = limits.json_bytes,
               .handle =
                   [&store, &workers, &limits, root](HttpRequest request, Reply reply) {
                     if (!request.content_type.starts_with("application/json"))
-                      return reply(Problem{415, "media-type", "a scene comes as multipart/form-data or is named in application/json, not as '" + shown_text(request.content_type) + "'", "Content-Type"});
-                    workers.post([&store, &limits, root, body = std::move(request.body), reply] { reply(add_named(body, store, limits, root)); });
+                      return reply(Problem{
+                          415, "media-type",
+                          "a scene comes as multipart/form-data or is named in application/json, not as '" +
+                              shown_text(request.content_type) + "'",
+                          "Content-Type"});
+                    workers.post([&store, &limits, root, body = std::move(request.body), reply] {
+                      reply(add_named(body, store, limits, root));
+                    });
                   },
               .sink_type = "multipart/form-data",
               .sink_limit = limits.upload_bytes,
               .sink =
                   [&store, &workers, &metrics, &limits, spool](const HttpRequest& request) {
-                    return receive_upload(request, spool, limits, metrics, workers, [&store](SceneContent content, const Reply& reply) { reply(added(store, std::move(content))); });
+                    return receive_upload(request, spool, limits, metrics, workers,
+                                          [&store](SceneContent content, const Reply& reply) {
+                                            reply(added(store, std::move(content)));
+                                          });
                   }});
-  router.add({.method = "GET", .pattern = "v1/scenes/*", .handle = [&store, &workers](HttpRequest request, Reply reply) {
+  router.add({.method = "GET",
+              .pattern = "v1/scenes/*",
+              .handle = [&store, &workers](HttpRequest request, Reply reply) {
                 const std::string& id = request.segments[2];
                 const std::string wait = request.query_or("wait", "0");
                 double seconds = 0;
                 const auto [stop, error] = std::from_chars(wait.data(), wait.data() + wait.size(), seconds);
-                if (error != std::errc() || stop != wait.data() + wait.size() || !(seconds >= 0 && seconds <= kLongestWait))
-                  return reply(bad_request("wait is '" + shown_text(wait) + "', allowed is 0 to 60 s", "wait"));
+                if (error != std::errc() || stop != wait.data() + wait.size() ||
+                    !(seconds >= 0 && seconds <= kLongestWait))
+                  return reply(
+                      bad_request("wait is '" + shown_text(wait) + "', allowed is 0 to 60 s", "wait"));
                 if (seconds > 0) return std::make_shared<Wait>(store, workers, id, reply)->start(seconds);
                 const auto view = store.view(id);
                 reply(view ? HttpResponse(200, view->json) : HttpResponse(unknown_scene(id)));
               }});
-  router.add({.method = "DELETE", .pattern = "v1/scenes/*", .handle = [&store, &workers](HttpRequest request, Reply reply) {
+  router.add({.method = "DELETE",
+              .pattern = "v1/scenes/*",
+              .handle = [&store, &workers](HttpRequest request, Reply reply) {
                 workers.post([&store, id = request.segments[2], reply] {
                   if (auto problem = store.remove(id)) return reply(*problem);
                   reply(HttpResponse(204, ""));
                 });
               }});
-  router.add({.method = "GET", .pattern = "v1/scenes/*/events", .handle = [&store, &workers](HttpRequest request, Reply reply) {
+  router.add({.method = "GET",
+              .pattern = "v1/scenes/*/events",
+              .handle = [&store, &workers](HttpRequest request, Reply reply) {
                 const std::string& id = request.segments[2];
                 if (!store.view(id)) return reply(unknown_scene(id));
                 const auto events = std::make_shared<SceneEvents>(store, workers, id);

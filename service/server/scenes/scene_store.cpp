@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "service/server/http/json_input.h"
 #include "service/loop/thread_share.h"
+#include "service/server/http/json_input.h"
 
 namespace palpate {
 namespace {
@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kProgressEvery = std::chrono::milliseconds(100);   ///< chosen: what a bar can show
+constexpr auto kProgressEvery = std::chrono::milliseconds(100);  ///< chosen: what a bar can show
 
 template <class T>
 std::uint64_t bytes_of(const std::vector<T>& list) {
@@ -23,9 +23,10 @@ std::uint64_t bytes_of(const std::vector<T>& list) {
 }
 
 std::uint64_t bytes_of(const LatticeMesh& mesh) {
-  return bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.flags) + bytes_of(mesh.unit_normal_q30) +
-         bytes_of(mesh.sample_weight_q30) + bytes_of(mesh.sample_axis) + bytes_of(mesh.neighbour_begin) + bytes_of(mesh.neighbours) +
-         bytes_of(mesh.patch) + bytes_of(mesh.field_weight_q30) + bytes_of(mesh.extra_samples);
+  return bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.flags) +
+         bytes_of(mesh.unit_normal_q30) + bytes_of(mesh.sample_weight_q30) + bytes_of(mesh.sample_axis) +
+         bytes_of(mesh.neighbour_begin) + bytes_of(mesh.neighbours) + bytes_of(mesh.patch) +
+         bytes_of(mesh.field_weight_q30) + bytes_of(mesh.extra_samples);
 }
 
 /// What a prepared scene keeps: back end and integers.
@@ -43,23 +44,31 @@ ordered_json json_of(const Pose& pose) {
 
 const char* name_of(SceneState state) {
   switch (state) {
-    case SceneState::kQueued: return "queued";
-    case SceneState::kPreparing: return "preparing";
-    case SceneState::kReady: return "ready";
-    case SceneState::kFailed: return "failed";
-    case SceneState::kEvicted: return "evicted";
+    case SceneState::kQueued:
+      return "queued";
+    case SceneState::kPreparing:
+      return "preparing";
+    case SceneState::kReady:
+      return "ready";
+    case SceneState::kFailed:
+      return "failed";
+    case SceneState::kEvicted:
+      return "evicted";
   }
   return "";
 }
 
-constexpr std::array kFacts = {"profile",       "stiffness",   "static_triangles", "tool_triangles", "memory_bytes", "backend", "device", "voxel_size",
-                               "bounds",        "tool_radius", "tool_gc",          "start",          "stages",       "driver"};
+constexpr std::array kFacts = {"profile", "stiffness", "static_triangles", "tool_triangles", "memory_bytes",
+                               "backend", "device",    "voxel_size",       "bounds",         "tool_radius",
+                               "tool_gc", "start",     "stages",           "driver"};
 
 /// What is known of a scene once it has been prepared.
 ordered_json facts_of(const HostedScene& prepared, std::uint64_t bytes) {
   const LoadedScene& loaded = prepared.loaded;
   const SceneGeometry& geometry = loaded.geometry;
-  const auto metres = [&](const Int3& p) { return json_of(geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p)); };
+  const auto metres = [&](const Int3& p) {
+    return json_of(geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p));
+  };
   return {{"profile", loaded.scene.response.profile == Profile::kPaper ? "paper" : "refined"},
           {"stiffness", loaded.scene.response.stiffness_n_per_m},
           {"static_triangles", geometry.mockup.triangles.size()},
@@ -98,8 +107,14 @@ struct SceneStore::Entry {
   bool removed = false;
 };
 
-SceneStore::SceneStore(const Parts& parts, std::string backend, const ServerLimits& limits, Metrics& metrics, Log& log)
-    : parts_(parts), backend_(std::move(backend)), limits_(limits), metrics_(metrics), log_(log), thread_([this] { prepare_loop(); }) {}
+SceneStore::SceneStore(const Parts& parts, std::string backend, const ServerLimits& limits, Metrics& metrics,
+                       Log& log)
+    : parts_(parts),
+      backend_(std::move(backend)),
+      limits_(limits),
+      metrics_(metrics),
+      log_(log),
+      thread_([this] { prepare_loop(); }) {}
 
 SceneStore::~SceneStore() {
   {
@@ -112,15 +127,20 @@ SceneStore::~SceneStore() {
 }
 
 std::shared_ptr<SceneStore::Entry> SceneStore::find_locked(const std::string& id) const {
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->content.id == id; });
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const auto& entry) { return entry->content.id == id; });
   return found == entries_.end() ? nullptr : *found;
 }
 
 SceneStore::View SceneStore::view_of(const Entry& entry) const {
-  ordered_json json = {{"id", entry.content.id}, {"name", entry.content.name}, {"state", name_of(entry.state)}, {"step", entry.step},
+  ordered_json json = {{"id", entry.content.id},
+                       {"name", entry.content.name},
+                       {"state", name_of(entry.state)},
+                       {"step", entry.step},
                        {"progress", std::round(entry.progress * 1000) / 1000}};
   json["error"] = entry.error ? ordered_json::parse(entry.error->json()) : ordered_json();
-  for (const char* fact : kFacts) json[fact] = entry.facts.contains(fact) ? entry.facts[fact] : ordered_json();
+  for (const char* fact : kFacts)
+    json[fact] = entry.facts.contains(fact) ? entry.facts[fact] : ordered_json();
   json["warnings"] = entry.warnings;
   json["users"] = entry.count->loops.load();
   return {entry.state, entry.version, dump(json)};
@@ -142,16 +162,19 @@ std::shared_ptr<void> SceneStore::listen(std::function<void()> changed) {
           }};
 }
 
-std::optional<Problem> SceneStore::make_room_locked(std::uint64_t disk_bytes, std::vector<fs::path>& garbage) {
+std::optional<Problem> SceneStore::make_room_locked(std::uint64_t disk_bytes,
+                                                    std::vector<fs::path>& garbage) {
   const auto used = [&] {
     std::uint64_t sum = disk_bytes;
     for (const auto& entry : entries_) sum += entry->content.disk_bytes;
     return sum;
   };
-  for (auto it = entries_.begin(); (entries_.size() >= limits_.scenes || used() > limits_.disk_bytes) && it != entries_.end();) {
+  for (auto it = entries_.begin();
+       (entries_.size() >= limits_.scenes || used() > limits_.disk_bytes) && it != entries_.end();) {
     Entry& entry = **it;
     const bool idle = entry.state == SceneState::kFailed || entry.state == SceneState::kEvicted;
-    if (!idle || entry.count->all > 0 || (entries_.size() < limits_.scenes && entry.content.disk_bytes == 0)) {
+    if (!idle || entry.count->all > 0 ||
+        (entries_.size() < limits_.scenes && entry.content.disk_bytes == 0)) {
       ++it;
       continue;
     }
@@ -160,8 +183,14 @@ std::optional<Problem> SceneStore::make_room_locked(std::uint64_t disk_bytes, st
     if (entry.content.uploaded) garbage.push_back(entry.content.folder);
     it = entries_.erase(it);
   }
-  if (entries_.size() >= limits_.scenes) return Problem{503, "busy", "there are " + std::to_string(limits_.scenes) + " scenes already; delete one", ""};
-  if (used() > limits_.disk_bytes) return Problem{507, "storage", "uploads may take " + std::to_string(limits_.disk_bytes >> 20) + " MiB of disk together; delete a scene", ""};
+  if (entries_.size() >= limits_.scenes)
+    return Problem{503, "busy", "there are " + std::to_string(limits_.scenes) + " scenes already; delete one",
+                   ""};
+  if (used() > limits_.disk_bytes)
+    return Problem{507, "storage",
+                   "uploads may take " + std::to_string(limits_.disk_bytes >> 20) +
+                       " MiB of disk together; delete a scene",
+                   ""};
   return std::nullopt;
 }
 
@@ -179,7 +208,7 @@ std::variant<SceneStore::View, Problem> SceneStore::add(SceneContent content) {
     } else {
       entry = std::make_shared<Entry>();
       entry->content = std::move(content);
-      entry->state = SceneState::kFailed;   // queued below
+      entry->state = SceneState::kFailed;  // queued below
       entries_.push_back(entry);
     }
     if (entry) {
@@ -219,8 +248,9 @@ std::optional<Problem> SceneStore::remove(const std::string& id) {
     const std::lock_guard lock(mutex_);
     entry = find_locked(id);
     if (!entry) return Problem{404, "not-found", "there is no scene " + shown_text(id), "id"};
-    if (entry->count->loops > 0) return Problem{409, "conflict", "a session or a haptic loop uses the scene", "id"};
-    entry->removed = true;   // a preparation under way sees it and ends
+    if (entry->count->loops > 0)
+      return Problem{409, "conflict", "a session or a haptic loop uses the scene", "id"};
+    entry->removed = true;  // a preparation under way sees it and ends
     changed(*entry);
     entries_.remove(entry);
     queue_.remove(entry);
@@ -240,8 +270,10 @@ std::variant<SceneUse, Problem> SceneStore::use(const std::string& id, bool loop
     entries_.remove(entry);
     entries_.push_back(entry);
     switch (entry->state) {
-      case SceneState::kReady: return std::make_shared<SceneLease>(entry->prepared, entry->count, loop);
-      case SceneState::kFailed: return Problem{409, "conflict", "the scene could not be prepared: " + entry->error->detail, "id"};
+      case SceneState::kReady:
+        return std::make_shared<SceneLease>(entry->prepared, entry->count, loop);
+      case SceneState::kFailed:
+        return Problem{409, "conflict", "the scene could not be prepared: " + entry->error->detail, "id"};
       case SceneState::kEvicted:
         entry->state = SceneState::kQueued;
         entry->progress = 0;
@@ -249,7 +281,8 @@ std::variant<SceneUse, Problem> SceneStore::use(const std::string& id, bool loop
         changed(*entry);
         problem = Problem{503, "busy", "the scene was evicted and is being prepared again", "id"};
         break;
-      default: problem = Problem{503, "busy", "the scene is not ready yet", "id"};
+      default:
+        problem = Problem{503, "busy", "the scene is not ready yet", "id"};
     }
   }
   work_.notify_all();
@@ -265,7 +298,8 @@ std::vector<Metrics::Gauge> SceneStore::gauges() const {
   return {{"palpate_scenes", "Scenes known.", static_cast<double>(entries_.size())},
           {"palpate_scenes_ready", "Scenes prepared and in memory.", ready},
           {"palpate_scene_memory_bytes", "Memory of the prepared scenes.", bytes},
-          {"palpate_scene_memory_budget_bytes", "Memory that prepared scenes may take.", static_cast<double>(limits_.memory_bytes)},
+          {"palpate_scene_memory_budget_bytes", "Memory that prepared scenes may take.",
+           static_cast<double>(limits_.memory_bytes)},
           {"palpate_scene_queue", "Scenes waiting to be prepared.", static_cast<double>(queue_.size())}};
 }
 
@@ -282,10 +316,11 @@ void SceneStore::prepare_loop() {
       changed(*entry);
     }
     notify();
-    // On a thread of its own: it gives way once the back end is made, and no thread can take that back without rights.
+    // On a thread of its own: it gives way once the back end is made, and no thread can take that back
+    // without rights.
     try {
       std::thread([&] { prepare_one(entry); }).join();
-    } catch (const std::system_error&) {   // there can be no more threads
+    } catch (const std::system_error&) {  // there can be no more threads
       prepare_one(entry);
     }
     notify();
@@ -302,12 +337,14 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   PrepareWatch watch;
   watch.folder = entry->content.folder.string();
   watch.cached = !entry->content.uploaded;
-  watch.note = [&](const std::string& sentence) { log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}}); };
-  // A driver's threads begin at their maker's share, and answer for loops later; the rest of the preparation gives way: whoever feels a force comes before
-  // a scene that is not there yet.
+  watch.note = [&](const std::string& sentence) {
+    log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}});
+  };
+  // A driver's threads begin at their maker's share, and answer for loops later; the rest of the preparation
+  // gives way: whoever feels a force comes before a scene that is not there yet.
   std::optional<MakesForHand> making(std::in_place);
   watch.step = [&](const char* step) {
-    if (making) {   // the first step comes after the back end
+    if (making) {  // the first step comes after the back end
       making.reset();
       set_nice(kNicePreparation);
     }
@@ -337,9 +374,12 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   };
   bool too_many = false;
   watch.admit = [&](const LoadedScene& loaded) -> Result<void> {
-    const std::uint64_t triangles = loaded.geometry.mockup.triangles.size() + loaded.geometry.tool.triangles.size();
+    const std::uint64_t triangles =
+        loaded.geometry.mockup.triangles.size() + loaded.geometry.tool.triangles.size();
     too_many = triangles > limits_.triangles;
-    if (too_many) return bad_value("the scene has " + std::to_string(triangles) + " triangles, and the limit is " + std::to_string(limits_.triangles));
+    if (too_many)
+      return bad_value("the scene has " + std::to_string(triangles) + " triangles, and the limit is " +
+                       std::to_string(limits_.triangles));
     return {};
   };
 
@@ -348,7 +388,8 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   try {
     auto made = prepare_scene(options, Purpose::kQuery, parts_, watch);
     if (made)
-      if (auto finished = (*made)->backend->finish_preparing(); !finished) made = finished.error();   // sessions ask it, too
+      if (auto finished = (*made)->backend->finish_preparing(); !finished)
+        made = finished.error();  // sessions ask it, too
     if (made)
       prepared = std::move(*made);
     else
@@ -362,7 +403,8 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   if (problem) {
     // A client learns what is wrong with its scene, not where it lies on this machine.
     const std::string folder = entry->content.folder.string() + "/";
-    for (std::size_t at = 0; (at = problem->detail.find(folder, at)) != std::string::npos;) problem->detail.erase(at, folder.size());
+    for (std::size_t at = 0; (at = problem->detail.find(folder, at)) != std::string::npos;)
+      problem->detail.erase(at, folder.size());
     log_.warn("scene_failed", {{"scene", entry->content.id}, {"detail", problem->detail}});
     bool removed = false;
     {
@@ -404,19 +446,24 @@ Aside SceneStore::aside(const SceneLease& lease) {
   if (aside.backend || scene.aside_failed) return aside;
   const std::uint64_t bytes = scene.backend->memory_bytes();
   std::shared_ptr<Entry> entry;
-  std::vector<std::shared_ptr<HostedScene>> evicted;   // given back when nobody is locked out
+  std::vector<std::shared_ptr<HostedScene>> evicted;  // given back when nobody is locked out
   {
     const std::lock_guard lock(mutex_);
     for (const auto& known : entries_)
       if (known->prepared.get() == &scene) entry = known;
     if (!entry || !make_memory_locked(bytes, evicted)) return aside;
-    entry->bytes += bytes;   // its place is kept while it is made
+    entry->bytes += bytes;  // its place is kept while it is made
   }
   evicted.clear();
-  const auto note = [&](const std::string& sentence) { log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}}); };
-  auto made = choose_backend(backend_, scene.loaded.scene.response.profile, parts_, note, !entry->content.uploaded);
+  const auto note = [&](const std::string& sentence) {
+    log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}});
+  };
+  auto made =
+      choose_backend(backend_, scene.loaded.scene.response.profile, parts_, note, !entry->content.uploaded);
   Result<void> prepared = made ? Result<void>() : made.error();
-  if (made) prepared = (*made)->prepare(scene.loaded.geometry, scene.plan.plan, [this](const char*, double) { return !stopping_; });
+  if (made)
+    prepared = (*made)->prepare(scene.loaded.geometry, scene.plan.plan,
+                                [this](const char*, double) { return !stopping_; });
   if (prepared) prepared = (*made)->finish_preparing();
   if (prepared) {
     scene.aside = std::move(*made);
@@ -431,17 +478,21 @@ Aside SceneStore::aside(const SceneLease& lease) {
   return aside;
 }
 
-void SceneStore::finish(const std::shared_ptr<Entry>& entry, std::shared_ptr<HostedScene> prepared, std::uint64_t bytes) {
-  std::vector<std::shared_ptr<HostedScene>> evicted;   // given back when nobody is locked out
+void SceneStore::finish(const std::shared_ptr<Entry>& entry, std::shared_ptr<HostedScene> prepared,
+                        std::uint64_t bytes) {
+  std::vector<std::shared_ptr<HostedScene>> evicted;  // given back when nobody is locked out
   bool removed = false;
   {
     const std::lock_guard lock(mutex_);
     if (!make_memory_locked(bytes, evicted)) {
       const bool alone = bytes > limits_.memory_bytes;
       entry->state = SceneState::kFailed;
-      entry->error = Problem{alone ? 413u : 503u, alone ? "too-large" : "busy",
-                             "the scene takes " + std::to_string(bytes >> 20) + " MiB, and " +
-                                 (alone ? "scenes may take " + std::to_string(limits_.memory_bytes >> 20) + " MiB" : "those in use leave no room for it"), ""};
+      entry->error =
+          Problem{alone ? 413u : 503u, alone ? "too-large" : "busy",
+                  "the scene takes " + std::to_string(bytes >> 20) + " MiB, and " +
+                      (alone ? "scenes may take " + std::to_string(limits_.memory_bytes >> 20) + " MiB"
+                             : "those in use leave no room for it"),
+                  ""};
     } else {
       entry->state = SceneState::kReady;
       entry->step.clear();
@@ -456,7 +507,8 @@ void SceneStore::finish(const std::shared_ptr<Entry>& entry, std::shared_ptr<Hos
     changed(*entry);
     entries_.remove(entry);
     if (!removed) entries_.push_back(entry);
-    log_.info("scene_prepared", {{"scene", entry->content.id}, {"state", name_of(entry->state)}, {"memory_bytes", bytes}});
+    log_.info("scene_prepared",
+              {{"scene", entry->content.id}, {"state", name_of(entry->state)}, {"memory_bytes", bytes}});
   }
   if (removed && entry->content.uploaded) remove_folder(entry->content.folder);
 }

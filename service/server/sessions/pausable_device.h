@@ -5,13 +5,14 @@
 
 namespace palpate {
 
-/// A device that can be paused from outside. One of metal goes on telling its pose and is clutched for SafeDevice, which sends it no force and fades in
-/// again afterwards; a simulated one stands still meanwhile. Refers to the device.
+/// A device that can be paused from outside. One of metal goes on telling its pose and is clutched for
+/// SafeDevice, which sends it no force and fades in again afterwards; a simulated one stands still meanwhile.
+/// Refers to the device.
 class PausableDevice final : public HapticDevice {
  public:
   PausableDevice(HapticDevice& device, bool stands_still) : device_(device), stands_still_(stands_still) {}
 
-  void set_paused(bool paused) noexcept { paused_.store(paused, std::memory_order_relaxed); }   ///< any thread
+  void set_paused(bool paused) noexcept { paused_.store(paused, std::memory_order_relaxed); }  ///< any thread
 
   std::string name() const override { return device_.name(); }
   DeviceCapabilities capabilities() const override { return device_.capabilities(); }
@@ -24,7 +25,9 @@ class PausableDevice final : public HapticDevice {
     sample.clutched |= held_ && !stands_still_;
     return sample;
   }
-  Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override { return device_.exertable(wrench, gc); }
+  Wrench exertable(const Wrench& wrench, const Vec3& gc) const noexcept override {
+    return device_.exertable(wrench, gc);
+  }
   void write(const Wrench& wrench, const Vec3& gc) noexcept override {
     if (!(held_ && stands_still_)) device_.write(wrench, gc);
   }
@@ -33,7 +36,7 @@ class PausableDevice final : public HapticDevice {
   HapticDevice& device_;
   bool stands_still_;
   std::atomic<bool> paused_{false};
-  bool held_ = false;   ///< what the tick's sample said
+  bool held_ = false;  ///< what the tick's sample said
 };
 
 }  // namespace palpate

@@ -36,7 +36,8 @@ Result<void> Recording::on_frame(const FrameRecord& frame) {
   return series_.on_frame(frame);
 }
 
-Result<void> Recording::finish(const SessionSummary* summary, const LoadedScene& scene, const ReportFacts& facts) {
+Result<void> Recording::finish(const SessionSummary* summary, const LoadedScene& scene,
+                               const ReportFacts& facts) {
   if (auto closed = recorder_->finish(); !closed) return closed;
   if (!summary) return {};
   if (auto done = write_text(folder_ / "summary.json", summary_json(*summary)); !done) return done;

@@ -11,21 +11,22 @@
 #include <utility>
 
 #include "service/loop/collision_frame.h"
+#include "service/loop/thread_share.h"
 #include "service/queries/lone_query.h"
 #include "service/queries/query_json.h"
 #include "service/server/http/json_input.h"
 #include "service/server/queries/pose_body.h"
-#include "service/loop/thread_share.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kContact = 1, kTruncated = 2, kStopped = 4;   ///< bits of a binary wrench (docs/SERVICE.md)
+constexpr std::uint32_t kContact = 1, kTruncated = 2,
+                        kStopped = 4;  ///< bits of a binary wrench (docs/SERVICE.md)
 
 using Clock = std::chrono::steady_clock;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kPoseMessage = 16 + 7 * sizeof(double);   ///< seq, time, pose
+constexpr std::size_t kPoseMessage = 16 + 7 * sizeof(double);  ///< seq, time, pose
 
 /// A pose on its way, with what comes back as it was sent.
 struct PoseMessage {
@@ -41,7 +42,8 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
   out.arrived = Clock::now();
   out.binary = binary;
   if (binary) {
-    if (data.size() != kPoseMessage) return bad_request("a pose message has 72 bytes, not " + std::to_string(data.size()), "message");
+    if (data.size() != kPoseMessage)
+      return bad_request("a pose message has 72 bytes, not " + std::to_string(data.size()), "message");
     std::memcpy(&out.seq, data.data(), 8);
     std::memcpy(&out.time, data.data() + 8, 8);
     const auto pose = pose_from_bytes(data.data() + 16, "pose");
@@ -52,8 +54,10 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
   const auto read = read_json_object(data, depth, {"type", "seq", "time", "pose", "full"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
-  if (!json.contains("type") || json["type"] != "pose") return bad_request("\"type\" is not \"pose\"", "type");
-  if (!json.contains("seq") || !json["seq"].is_number_unsigned()) return bad_request("\"seq\" is no whole number from 0", "seq");
+  if (!json.contains("type") || json["type"] != "pose")
+    return bad_request("\"type\" is not \"pose\"", "type");
+  if (!json.contains("seq") || !json["seq"].is_number_unsigned())
+    return bad_request("\"seq\" is no whole number from 0", "seq");
   out.seq = json["seq"];
   if (json.contains("time")) {
     if (!json["time"].is_number()) return bad_request("\"time\" is no number", "time");
@@ -72,11 +76,16 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 std::string json(const Vec3& v) { return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z)); }
 
-std::string error_message(const Problem& problem) { return R"({"type":"error","problem":)" + problem.json() + "}"; }
+std::string error_message(const Problem& problem) {
+  return R"({"type":"error","problem":)" + problem.json() + "}";
+}
 
 /// The start of a binary wrench; planes follow it.
-void put_wrench_head(const PoseMessage& pose, const Wrench& wrench, const Vec3& gc, double us, std::uint32_t skipped, std::uint32_t bits, std::uint32_t planes, std::string& out) {
-  const auto put = [&out](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
+void put_wrench_head(const PoseMessage& pose, const Wrench& wrench, const Vec3& gc, double us,
+                     std::uint32_t skipped, std::uint32_t bits, std::uint32_t planes, std::string& out) {
+  const auto put = [&out](const auto& value) {
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
   put(pose.seq);
   put(pose.time);
   for (const Vec3& v : {wrench.force, wrench.torque, gc})
@@ -85,13 +94,18 @@ void put_wrench_head(const PoseMessage& pose, const Wrench& wrench, const Vec3& 
   for (const std::uint32_t word : {skipped, bits, planes}) put(word);
 }
 
-/// `refined`: what is felt, as one area: a client carries the force on along a wall as stiff as the spring. None without a force, for a couple has no wall.
+/// `refined`: what is felt, as one area: a client carries the force on along a wall as stiff as the spring.
+/// None without a force, for a couple has no wall.
 std::vector<AreaResponse> felt_area(const ContactResponse& response, double stiffness) {
   const Wrench& felt = response.told();
   const double force = glm::length(felt.force);
   if (!(force > 0) || !(stiffness > 0)) return {};
-  AreaResponse area{.normal = felt.force / force, .depth = force / stiffness, .max_depth = force / stiffness, .force = felt.force};
-  area.point = response.gc + glm::cross(felt.force, felt.torque) / (force * force);   // what the torque has along the force is no wall's
+  AreaResponse area{.normal = felt.force / force,
+                    .depth = force / stiffness,
+                    .max_depth = force / stiffness,
+                    .force = felt.force};
+  area.point = response.gc + glm::cross(felt.force, felt.torque) /
+                                 (force * force);  // what the torque has along the force is no wall's
   area.torque = glm::cross(area.point - response.gc, area.force);
   return {area};
 }
@@ -103,8 +117,9 @@ SocketMessage zero_wrench(const PoseMessage& pose, const Vec3& gc) {
   if (pose.binary)
     put_wrench_head(pose, {}, gc, 0, 0, kStopped, 0, message.head);
   else
-    message.head = fmt::format(R"({{"type":"wrench","seq":{},"time":{},"skipped":0,"server_us":0,"contact":false,"truncated":false,"stopped":true,"pairs":0,"gc":{},"force":[0,0,0],"torque":[0,0,0],"areas":[]}})",
-                               pose.seq, number(pose.time), json(gc));
+    message.head = fmt::format(
+        R"({{"type":"wrench","seq":{},"time":{},"skipped":0,"server_us":0,"contact":false,"truncated":false,"stopped":true,"pairs":0,"gc":{},"force":[0,0,0],"torque":[0,0,0],"areas":[]}})",
+        pose.seq, number(pose.time), json(gc));
   return message;
 }
 
@@ -114,7 +129,8 @@ struct RemoteLoops::Loop {
   explicit Loop(SceneUse scene)
       : use(std::move(scene)),
         backend(*(*use)->backend, use->turns()),
-        frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile, (*use)->loaded.scene.response.stiffness_n_per_m, true, nullptr,
+        frame((*use)->loaded.geometry, backend, (*use)->loaded.scene.response.profile,
+              (*use)->loaded.scene.response.stiffness_n_per_m, true, nullptr,
               (*use)->loaded.scene.start_contacts),
         lone((*use)->loaded.geometry, (*use)->loaded.scene.response.stiffness_n_per_m),
         field((*use)->loaded.scene.response.profile == Profile::kRefined) {}
@@ -124,7 +140,7 @@ struct RemoteLoops::Loop {
     if (auto solved = frame.solve(slot, result); !solved || !field || !slot.response.contact) return solved;
     try {
       return lone.feel(backend, frame.ignored(), slot.sample.pose, slot.response);
-    } catch (const std::exception& error) {   // a library's, as in CollisionFrame::solve
+    } catch (const std::exception& error) {  // a library's, as in CollisionFrame::solve
       return Error{ErrorCode::kInternal, std::string("the collision query failed: ") + error.what()};
     } catch (...) {
       return Error{ErrorCode::kInternal, "the collision query failed for an unknown reason"};
@@ -136,7 +152,7 @@ struct RemoteLoops::Loop {
   BackendInTurns backend;
   CollisionFrame frame;
   LoneQuery lone;
-  bool field;   ///< profile `refined`
+  bool field;  ///< profile `refined`
   FrameSlot slot;
   LawResult result;
   std::int64_t count = 0;
@@ -144,7 +160,7 @@ struct RemoteLoops::Loop {
   // Shared:
   std::mutex mutex;
   std::function<void()> wake;
-  std::optional<PoseMessage> pose, newest;   ///< not taken up yet; the last that came
+  std::optional<PoseMessage> pose, newest;  ///< not taken up yet; the last that came
   std::optional<SocketMessage> reply;
   std::uint32_t skipped = 0;
   bool queued = false, closed = false;
@@ -153,10 +169,13 @@ struct RemoteLoops::Loop {
 /// The connection's end of a loop.
 class RemoteLoops::Socket final : public SocketHandler {
  public:
-  Socket(RemoteLoops& loops, std::shared_ptr<Loop> loop, std::string hello) : loops_(loops), metrics_(loops.metrics_), loop_(std::move(loop)), hello_(std::move(hello)) { ++metrics_.loops_now; }
+  Socket(RemoteLoops& loops, std::shared_ptr<Loop> loop, std::string hello)
+      : loops_(loops), metrics_(loops.metrics_), loop_(std::move(loop)), hello_(std::move(hello)) {
+    ++metrics_.loops_now;
+  }
   ~Socket() override {
     closed();
-    --metrics_.loops_now;   // not by way of the loops: a connection may outlive them when the server stops
+    --metrics_.loops_now;  // not by way of the loops: a connection may outlive them when the server stops
   }
 
   void start(std::function<void()> wake) override {
@@ -195,10 +214,11 @@ class RemoteLoops::Socket final : public SocketHandler {
   /// No force any more, as the newest pose's answer.
   std::optional<SocketMessage> last_words() override {
     const std::lock_guard lock(loop_->mutex);
-    loop_->closed = true;   // an answer under way comes too late
+    loop_->closed = true;  // an answer under way comes too late
     if (!loop_->newest) return std::nullopt;
     const Pose& pose = loop_->newest->pose;
-    return zero_wrench(*loop_->newest, pose.position + pose.rotation * (*loop_->use)->loaded.geometry.tool_gc_m);
+    return zero_wrench(*loop_->newest,
+                       pose.position + pose.rotation * (*loop_->use)->loaded.geometry.tool_gc_m);
   }
 
   void closed() noexcept override {
@@ -226,25 +246,29 @@ RemoteLoops::~RemoteLoops() {
   thread_.join();
 }
 
-std::variant<std::shared_ptr<SocketHandler>, Problem> RemoteLoops::open(SceneUse scene, const std::string& id) {
-  if (metrics_.loops_now >= limits_.loops) return Problem{503, "busy", "there are " + std::to_string(limits_.loops) + " haptic connections already", ""};
+std::variant<std::shared_ptr<SocketHandler>, Problem> RemoteLoops::open(SceneUse scene,
+                                                                        const std::string& id) {
+  if (metrics_.loops_now >= limits_.loops)
+    return Problem{503, "busy", "there are " + std::to_string(limits_.loops) + " haptic connections already",
+                   ""};
   const LoadedScene& loaded = (*scene)->loaded;
   const Vec3& gc = loaded.geometry.tool_gc_m;
   const Pose& start = loaded.scene.start;
   const Quat& q = start.rotation;
-  std::string hello = dump({{"type", "hello"},
-                            {"scene", id},
-                            {"stiffness", loaded.scene.response.stiffness_n_per_m},
-                            {"watchdog_ms", loaded.scene.control.watchdog_ms},
-                            {"tool_gc", {gc.x, gc.y, gc.z}},
-                            {"start", {start.position.x, start.position.y, start.position.z, q.x, q.y, q.z, q.w}}});
+  std::string hello =
+      dump({{"type", "hello"},
+            {"scene", id},
+            {"stiffness", loaded.scene.response.stiffness_n_per_m},
+            {"watchdog_ms", loaded.scene.control.watchdog_ms},
+            {"tool_gc", {gc.x, gc.y, gc.z}},
+            {"start", {start.position.x, start.position.y, start.position.z, q.x, q.y, q.z, q.w}}});
   return std::make_shared<Socket>(*this, std::make_shared<Loop>(std::move(scene)), std::move(hello));
 }
 
 void RemoteLoops::submit(const std::shared_ptr<Loop>& loop) {
   {
     const std::lock_guard lock(mutex_);
-    if (std::exchange(loop->queued, true)) return;   // it will see the newest
+    if (std::exchange(loop->queued, true)) return;  // it will see the newest
     waiting_.push_back(loop);
   }
   work_.notify_one();
@@ -287,17 +311,22 @@ void RemoteLoops::answer(Loop& loop) {
   SocketMessage message;
   const Contacts& contacts = loop.slot.contacts;
   const ContactResponse& response = loop.slot.response;
-  const std::vector<AreaResponse> areas = loop.field ? felt_area(response, (*loop.use)->loaded.scene.response.stiffness_n_per_m) : response.areas;
+  const std::vector<AreaResponse> areas =
+      loop.field ? felt_area(response, (*loop.use)->loaded.scene.response.stiffness_n_per_m) : response.areas;
   if (!solved) {
     ++metrics_.backend_errors;
     message = {error_message(Problem{500, "internal", solved.error().sentence, ""}), nullptr, false, true};
   } else if (pose->binary) {
     std::string& out = message.head;
-    const auto put = [&out](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    const auto put = [&out](const auto& value) {
+      out.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
     const auto put_vector = [&](const Vec3& v) {
       for (int i = 0; i < 3; ++i) put(double{v[i]});
     };
-    put_wrench_head(*pose, response.told(), response.gc, us, skipped, (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u), static_cast<std::uint32_t>(areas.size()), out);
+    put_wrench_head(*pose, response.told(), response.gc, us, skipped,
+                    (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u),
+                    static_cast<std::uint32_t>(areas.size()), out);
     for (const AreaResponse& area : areas) {
       put_vector(area.normal);
       put_vector(area.point);
@@ -307,20 +336,29 @@ void RemoteLoops::answer(Loop& loop) {
     message.binary = true;
   } else {
     std::string& out = message.head;
-    fmt::format_to(std::back_inserter(out),
-                   R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"engine":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
-                   pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated, *contacts.engine != 0 ? fmt::format("\"{}\"", contacts.engine) : "null", contacts.pairs, json(response.gc), json(response.told().force),
-                   json(response.told().torque));
+    fmt::format_to(
+        std::back_inserter(out),
+        R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"engine":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
+        pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated,
+        *contacts.engine != 0 ? fmt::format("\"{}\"", contacts.engine) : "null", contacts.pairs,
+        json(response.gc), json(response.told().force), json(response.told().torque));
     for (std::size_t i = 0; i < areas.size(); ++i) {
       const AreaResponse& area = areas[i];
-      fmt::format_to(std::back_inserter(out), R"({}{{"id":{},"normal":{},"point":{},"depth":{},"force":{},"torque":{}}})", i ? "," : "", area.id, json(area.normal),
-                     json(area.point), number(area.depth), json(area.force), json(area.torque));
+      fmt::format_to(std::back_inserter(out),
+                     R"({}{{"id":{},"normal":{},"point":{},"depth":{},"force":{},"torque":{}}})",
+                     i ? "," : "", area.id, json(area.normal), json(area.point), number(area.depth),
+                     json(area.force), json(area.torque));
     }
     out += "]";
     if (pose->full) {
       out += ",\"frame\":";
-      append_query_line({.number = pose->seq, .total_us = loop.slot.total_us, .batch = std::nullopt, .tick = loop.slot.sample.tick, .heights = true}, contacts, response, out);
-      out.pop_back();   // the line feed
+      append_query_line({.number = pose->seq,
+                         .total_us = loop.slot.total_us,
+                         .batch = std::nullopt,
+                         .tick = loop.slot.sample.tick,
+                         .heights = true},
+                        contacts, response, out);
+      out.pop_back();  // the line feed
     }
     out += "}";
   }
@@ -329,18 +367,21 @@ void RemoteLoops::answer(Loop& loop) {
     const std::lock_guard lock(loop.mutex);
     if (loop.closed) return;
     loop.closed = message.close;
-    loop.reply = std::move(message);   // in place of one that was not sent in time
+    loop.reply = std::move(message);  // in place of one that was not sent in time
     wake = loop.wake;
   }
   if (wake) wake();
 }
 
 void add_haptic_route(Router& router, SceneStore& store, RemoteLoops& loops) {
-  router.add({.method = "GET", .pattern = "v1/scenes/*/haptic", .socket = [&](const HttpRequest& request) -> std::variant<std::shared_ptr<SocketHandler>, Problem> {
-                auto use = store.use(request.segments[2], true);
-                if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
-                return loops.open(std::move(std::get<SceneUse>(use)), request.segments[2]);
-              }});
+  router.add(
+      {.method = "GET",
+       .pattern = "v1/scenes/*/haptic",
+       .socket = [&](const HttpRequest& request) -> std::variant<std::shared_ptr<SocketHandler>, Problem> {
+         auto use = store.use(request.segments[2], true);
+         if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
+         return loops.open(std::move(std::get<SceneUse>(use)), request.segments[2]);
+       }});
 }
 
 }  // namespace palpate

@@ -7,14 +7,14 @@
 
 #include "service/server/http/http_message.h"
 #include "service/server/http/limits.h"
-#include "service/server/metrics.h"
 #include "service/server/http/router.h"
+#include "service/server/metrics.h"
 #include "service/server/scenes/scene_store.h"
 
 namespace palpate {
 
-/// Answers the poses of all remote loops on one thread, each loop's newest alone, by turns. A loop remembers what the frame before held, as
-/// a session's does.
+/// Answers the poses of all remote loops on one thread, each loop's newest alone, by turns. A loop remembers
+/// what the frame before held, as a session's does.
 class RemoteLoops {
  public:
   RemoteLoops(const ServerLimits& limits, Metrics& metrics);
@@ -36,7 +36,7 @@ class RemoteLoops {
   Metrics& metrics_;
   std::mutex mutex_;
   std::condition_variable work_;
-  std::deque<std::shared_ptr<Loop>> waiting_;   ///< loops with a pose that nobody has looked at
+  std::deque<std::shared_ptr<Loop>> waiting_;  ///< loops with a pose that nobody has looked at
   bool stop_ = false;
   std::thread thread_;
 };

@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr auto kPeriod = std::chrono::microseconds(16'600);   ///< 60 a second: what a screen shows
-constexpr std::size_t kHeadBytes = 240, kDroppedAt = 204;     ///< docs/SERVICE.md
+constexpr auto kPeriod = std::chrono::microseconds(16'600);  ///< 60 a second: what a screen shows
+constexpr std::size_t kHeadBytes = 240, kDroppedAt = 204;    ///< docs/SERVICE.md
 
 template <class T>
 void put(std::string& out, const T& value) {
@@ -29,17 +29,21 @@ void put(std::string& out, const Pose& pose) {
   put(out, pose.position);
   for (const double q : {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}) put(out, q);
 }
-void put(std::string& out, const std::vector<std::uint32_t>& list) { out.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(std::uint32_t)); }
+void put(std::string& out, const std::vector<std::uint32_t>& list) {
+  out.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(std::uint32_t));
+}
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 std::string json(const Vec3& v) { return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z)); }
 std::string json(const Pose& pose) {
   const Quat& q = pose.rotation;
-  return fmt::format("[{},{},{},{},{},{},{}]", number(pose.position.x), number(pose.position.y), number(pose.position.z), number(q.x), number(q.y), number(q.z), number(q.w));
+  return fmt::format("[{},{},{},{},{},{},{}]", number(pose.position.x), number(pose.position.y),
+                     number(pose.position.z), number(q.x), number(q.y), number(q.z), number(q.w));
 }
 
 void append_area(const ContactArea& area, const AreaResponse& response, std::string& out) {
-  for (const std::size_t count : {std::size_t{area.id}, std::size_t{response.flags}, area.zones.size(), area.static_ids.size(), area.mobile_ids.size(), std::size_t{area.rays}})
+  for (const std::size_t count : {std::size_t{area.id}, std::size_t{response.flags}, area.zones.size(),
+                                  area.static_ids.size(), area.mobile_ids.size(), std::size_t{area.rays}})
     put(out, static_cast<std::uint32_t>(count));
   put(out, response.normal);
   put(out, response.depth);
@@ -57,28 +61,35 @@ void append_area(const ContactArea& area, const AreaResponse& response, std::str
 Result<void> Telemetry::on_frame(const FrameRecord& frame) {
   frame_us_ = frame.total_us;
   metrics_.session_frame_s.add(frame.total_us / 1e6);
-  for (const auto& time : frame.contacts.times) metrics_.add_stage(frame.contacts.engine, time.stage, time.us);
+  for (const auto& time : frame.contacts.times)
+    metrics_.add_stage(frame.contacts.engine, time.stage, time.us);
   // A frame for each message is enough; making more would cost as much as the frames themselves.
   const auto now = Clock::now();
   if (now - last_frame_ >= kPeriod * 3 / 4 && viewers() > 0) {
     last_frame_ = now;
     const Contacts& contacts = frame.contacts;
     frame_json_.clear();
-    append_query_line({.number = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.tick, 0)), .total_us = frame.total_us, .batch = std::nullopt, .tick = frame.tick, .heights = true},
+    append_query_line({.number = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.tick, 0)),
+                       .total_us = frame.total_us,
+                       .batch = std::nullopt,
+                       .tick = frame.tick,
+                       .heights = true},
                       contacts, frame.response, frame_json_);
-    frame_json_.pop_back();   // the line feed
+    frame_json_.pop_back();  // the line feed
     frame_pose_ = frame.pose;
     truncated_ = contacts.truncated;
     frame_binary_.clear();
     std::size_t i = 0;
-    for (const auto* list : {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est}) {
+    for (const auto* list :
+         {&contacts.cst, &contacts.bst, &contacts.cmt, &contacts.bmt, &contacts.imt, &contacts.est}) {
       counts_[i++] = static_cast<std::uint32_t>(list->size());
       put(frame_binary_, *list);
     }
     put(frame_binary_, frame.pose);
     const std::size_t areas = std::min(contacts.areas.size(), frame.response.areas.size());
     counts_[6] = static_cast<std::uint32_t>(areas);
-    for (std::size_t a = 0; a < areas; ++a) append_area(contacts.areas[a], frame.response.areas[a], frame_binary_);
+    for (std::size_t a = 0; a < areas; ++a)
+      append_area(contacts.areas[a], frame.response.areas[a], frame_binary_);
   }
   return then_ ? then_->on_frame(frame) : Result<void>();
 }
@@ -112,15 +123,19 @@ void Telemetry::publish() {
     message = std::make_shared<TelemetryMessage>();
     message->seq = ++seq_;
     fmt::format_to(std::back_inserter(message->json),
-                   ",\"tick\":{},\"time_s\":{},\"pose\":{},\"force\":{},\"torque\":{},\"response_force\":{},\"response_torque\":{},\"result_age_ticks\":{},"
-                   "\"contact\":{},\"stage\":{},\"lateness_us\":{},\"lateness_max_us\":{},\"missed_ticks\":{},\"frame_us\":{},\"paused\":{},\"frame\":{},\"frame_pose\":{}}}",
-                   t.tick, number(t.time_s), json(t.pose), json(t.sent.force), json(t.sent.torque), json(t.response.force), json(t.response.torque), t.result_age_ticks,
-                   t.contact, t.stage, t.lateness_us, number(lateness_max_us_), t.missed_ticks, number(frame_us_), t.paused, framed ? frame_json_ : "null",
-                   framed ? json(frame_pose_) : "null");
+                   ",\"tick\":{},\"time_s\":{},\"pose\":{},\"force\":{},\"torque\":{},\"response_force\":{},"
+                   "\"response_torque\":{},\"result_age_ticks\":{},"
+                   "\"contact\":{},\"stage\":{},\"lateness_us\":{},\"lateness_max_us\":{},\"missed_ticks\":{}"
+                   ",\"frame_us\":{},\"paused\":{},\"frame\":{},\"frame_pose\":{}}}",
+                   t.tick, number(t.time_s), json(t.pose), json(t.sent.force), json(t.sent.torque),
+                   json(t.response.force), json(t.response.torque), t.result_age_ticks, t.contact, t.stage,
+                   t.lateness_us, number(lateness_max_us_), t.missed_ticks, number(frame_us_), t.paused,
+                   framed ? frame_json_ : "null", framed ? json(frame_pose_) : "null");
     std::string& out = message->binary;
     out = "PTEL";
     put(out, std::uint16_t{1});
-    put(out, static_cast<std::uint16_t>((t.contact ? 1 : 0) | (framed ? 2 : 0) | (framed && truncated_ ? 4 : 0) | (t.paused ? 8 : 0)));
+    put(out, static_cast<std::uint16_t>((t.contact ? 1 : 0) | (framed ? 2 : 0) |
+                                        (framed && truncated_ ? 4 : 0) | (t.paused ? 8 : 0)));
     put(out, message->seq);
     put(out, t.tick);
     put(out, t.time_s);
@@ -131,7 +146,7 @@ void Telemetry::publish() {
     put(out, static_cast<std::uint32_t>(t.missed_ticks));
     put(out, t.stage);
     put(out, static_cast<float>(frame_us_));
-    put(out, std::uint32_t{0});   // dropped
+    put(out, std::uint32_t{0});  // dropped
     for (const std::uint32_t count : counts_) put(out, framed ? count : std::uint32_t{0});
     put(out, std::uint32_t{0});
     if (framed) out += frame_binary_;
@@ -186,7 +201,12 @@ std::size_t Telemetry::viewers() const {
 
 Telemetry::Punctuality Telemetry::punctuality() const {
   const std::lock_guard lock(mutex_);
-  return {ages_.percentile(0.5), ages_.percentile(0.99), ages_.max(), lateness_ns_.percentile(0.5) / 1000, lateness_ns_.percentile(0.99) / 1000, lateness_ns_.max() / 1000};
+  return {ages_.percentile(0.5),
+          ages_.percentile(0.99),
+          ages_.max(),
+          lateness_ns_.percentile(0.5) / 1000,
+          lateness_ns_.percentile(0.99) / 1000,
+          lateness_ns_.max() / 1000};
 }
 
 TickRecord Telemetry::last_tick() const {
@@ -206,11 +226,12 @@ class Viewer final : public SocketHandler {
     ++metrics_.viewers_now;
     handle_ = telemetry_->attach(std::move(wake));
   }
-  void message(std::string_view, bool) override {}   // viewers have nothing to say
+  void message(std::string_view, bool) override {}  // viewers have nothing to say
 
   std::optional<SocketMessage> next() override {
     if (!hello_.empty()) return SocketMessage{std::exchange(hello_, {}), nullptr, false, false};
-    if (const auto reason = telemetry_->over()) return SocketMessage{R"({"type":"bye","reason":")" + *reason + "\"}", nullptr, false, true};
+    if (const auto reason = telemetry_->over())
+      return SocketMessage{R"({"type":"bye","reason":")" + *reason + "\"}", nullptr, false, true};
     const auto newest = telemetry_->newest();
     if (!newest || newest->seq == seen_) return std::nullopt;
     if (seen_ > 0) {
@@ -220,7 +241,8 @@ class Viewer final : public SocketHandler {
     seen_ = newest->seq;
     ++metrics_.telemetry_sent;
     if (!binary_)
-      return SocketMessage{fmt::format("{{\"type\":\"telemetry\",\"seq\":{},\"dropped\":{}", seen_, dropped_), std::shared_ptr<const std::string>(newest, &newest->json), false, false};
+      return SocketMessage{fmt::format("{{\"type\":\"telemetry\",\"seq\":{},\"dropped\":{}", seen_, dropped_),
+                           std::shared_ptr<const std::string>(newest, &newest->json), false, false};
     std::string all = newest->binary;
     const auto dropped = static_cast<std::uint32_t>(dropped_);
     std::memcpy(all.data() + kDroppedAt, &dropped, sizeof dropped);
@@ -245,7 +267,8 @@ class Viewer final : public SocketHandler {
 
 }  // namespace
 
-std::shared_ptr<SocketHandler> make_viewer(std::shared_ptr<Telemetry> telemetry, std::string hello, bool binary, Metrics& metrics) {
+std::shared_ptr<SocketHandler> make_viewer(std::shared_ptr<Telemetry> telemetry, std::string hello,
+                                           bool binary, Metrics& metrics) {
   return std::make_shared<Viewer>(std::move(telemetry), std::move(hello), binary, metrics);
 }
 

@@ -9,37 +9,39 @@ struct PoseCase {
   int32_t rotation_q30[9];
   ivec3 translation;
   ivec3 point;
-  uint32_t rotates;          // 0: as where a plan knows that no pose does
+  uint32_t rotates;  // 0: as where a plan knows that no pose does
 };
 PALPATE_ASSERT_SIZE(PoseCase, 64);
 
 struct PoseAnswer {
-  ivec3 world, tool;         // of the point, from the tool and from the world
+  ivec3 world, tool;  // of the point, from the tool and from the world
 };
 PALPATE_ASSERT_SIZE(PoseAnswer, 24);
 
 struct PartitionCase {
-  GridConstants grid;        // of at most three bricks an axis
+  GridConstants grid;  // of at most three bricks an axis
   ivec3 point;
-  ivec3 voxel;               // of the grid, or beside it
+  ivec3 voxel;  // of the grid, or beside it
 };
 PALPATE_ASSERT_SIZE(PartitionCase, 64);
 
 struct PartitionAnswer {
-  ivec3 voxel;               // of the point
-  uint32_t voxel_class;      // of the case's voxel, as the next
+  ivec3 voxel;           // of the point
+  uint32_t voxel_class;  // of the case's voxel, as the next
   uint32_t boundary;
 };
 PALPATE_ASSERT_SIZE(PartitionAnswer, 20);
 
 // The probed partition: of brick b, and of word w of a mixed brick.
-#define PALPATE_PROBE_SLOT(b) ((b) % 4u == 0u ? kBrickInternal : (b) % 4u == 1u ? kBrickExternal : (b) % 4u - 2u)
+#define PALPATE_PROBE_SLOT(b) \
+  ((b) % 4u == 0u ? kBrickInternal : (b) % 4u == 1u ? kBrickExternal : (b) % 4u - 2u)
 #define PALPATE_PROBE_BOUNDARY(slot, w) ((0x9E3779B9u + (slot)) * (2u * (w) + 1u))
-#define PALPATE_PROBE_INTERNAL(slot, w) (((0x85EBCA6Bu + (slot)) * (2u * (w) + 3u)) & ~PALPATE_PROBE_BOUNDARY(slot, w))
+#define PALPATE_PROBE_INTERNAL(slot, w) \
+  (((0x85EBCA6Bu + (slot)) * (2u * (w) + 3u)) & ~PALPATE_PROBE_BOUNDARY(slot, w))
 #define PALPATE_PROBE_FIRST(slot, w) (1000u * (slot) + 40u * (w))
 
 struct GroupsAnswer {
-  uint32_t x, y, z;          // of groups_for
+  uint32_t x, y, z;  // of groups_for
 };
 PALPATE_ASSERT_SIZE(GroupsAnswer, 12);
 PALPATE_SHARED_END

@@ -1,4 +1,5 @@
-// Both sides of the probes of lib/triangle_pair.glsl, lib/ray.glsl, lib/segment.glsl, lib/sample.glsl, lib/cells.glsl and lib/voxel_range.glsl.
+// Both sides of the probes of lib/triangle_pair.glsl, lib/ray.glsl, lib/segment.glsl, lib/sample.glsl,
+// lib/cells.glsl and lib/voxel_range.glsl.
 #ifndef PALPATE_PROBE_GEOMETRY_H
 #define PALPATE_PROBE_GEOMETRY_H
 #include "shaders/shared/base.h"
@@ -17,23 +18,23 @@ struct RayCase {
 PALPATE_ASSERT_SIZE(RayCase, 60);
 
 struct RayAnswer {
-  int32_t crossing_sign;     // of ray_crossing along the direction
+  int32_t crossing_sign;  // of ray_crossing along the direction
   uint32_t height;
-  int32_t culled;            // 1: it crosses what lib/line_box.glsl leaves out
+  int32_t culled;  // 1: it crosses what lib/line_box.glsl leaves out
 };
 PALPATE_ASSERT_SIZE(RayAnswer, 12);
 
 struct DistanceCase {
   ivec3 point;
   ivec3 corner[3];
-  ivec3 normal;              // Q30
+  ivec3 normal;  // Q30
 };
 PALPATE_ASSERT_SIZE(DistanceCase, 60);
 
 struct SampleCase {
   ivec3 corner[3];
   int32_t axis;
-  int32_t u, v;              // grid point, in lattice steps
+  int32_t u, v;  // grid point, in lattice steps
 };
 PALPATE_ASSERT_SIZE(SampleCase, 48);
 
@@ -44,17 +45,17 @@ struct SampleAnswer {
 PALPATE_ASSERT_SIZE(SampleAnswer, 16);
 
 struct CellCase {
-  ivec3 d;                   // from the grid's origin
-  ivec3 n;                   // cells
+  ivec3 d;  // from the grid's origin
+  ivec3 n;  // cells
   int32_t side;
   int32_t unused;
 };
 PALPATE_ASSERT_SIZE(CellCase, 32);
 
 struct CellAnswer {
-  ivec3 along;               // of cell_along
-  ivec3 first, last;         // of first_touched, last_touched by the point
-  ivec3 back;                // of the number of the cell that `along` is clamped to
+  ivec3 along;        // of cell_along
+  ivec3 first, last;  // of first_touched, last_touched by the point
+  ivec3 back;         // of the number of the cell that `along` is clamped to
 };
 PALPATE_ASSERT_SIZE(CellAnswer, 48);
 PALPATE_SHARED_END

@@ -13,7 +13,7 @@ struct WideCase {
 PALPATE_ASSERT_SIZE(WideCase, 88);
 
 struct WideAnswer {
-  int64_t dot_high, dot_low;   // Split30
+  int64_t dot_high, dot_low;  // Split30
   int64_t sum_high, sum_low;
   int64_t difference_high, difference_low;
   int64_t normal[3];

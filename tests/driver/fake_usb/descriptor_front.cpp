@@ -35,7 +35,7 @@ void drain(int descriptor) {
 }
 
 constexpr auto kStep = std::chrono::microseconds(100);
-constexpr auto kStatusEvery = std::chrono::milliseconds(1);   // the serial chip's latency timer
+constexpr auto kStatusEvery = std::chrono::milliseconds(1);  // the serial chip's latency timer
 
 }  // namespace
 
@@ -120,7 +120,7 @@ void DescriptorFront::deliver() {
     }
     const std::vector<std::uint8_t> packet = calls_.in();
     const std::size_t size = std::min(packet.size(), static_cast<std::size_t>(urb->buffer_length));
-    if (size > 0) std::memcpy(urb->buffer, packet.data(), size);   // an empty vector has no address
+    if (size > 0) std::memcpy(urb->buffer, packet.data(), size);  // an empty vector has no address
     urb->actual_length = static_cast<int>(size);
     finish(urb, 0);
   }
@@ -144,7 +144,8 @@ int DescriptorFront::submit(void* argument) {
     if ((setup[0] & 0x60) == 0x20 && calls_.class_out)
       calls_.class_out(setup[1], static_cast<std::uint16_t>(setup[2] | (setup[3] << 8)),
                        {setup + 8, static_cast<std::size_t>(urb->buffer_length) - 8});
-    if ((setup[0] & 0x60) != 0x40) {   // standard requests: the system answers them for a device; nothing depends on them here
+    if ((setup[0] & 0x60) !=
+        0x40) {  // standard requests: the system answers them for a device; nothing depends on them here
       finish(urb, 0);
       return 0;
     }
@@ -173,7 +174,7 @@ int DescriptorFront::submit(void* argument) {
   calls_.out({static_cast<const std::uint8_t*>(urb->buffer), static_cast<std::size_t>(urb->buffer_length)});
   urb->actual_length = urb->buffer_length;
   finish(urb, 0);
-  if (faults.slow_us == 0) deliver();   // a device that answers at once, so that what is measured is the host
+  if (faults.slow_us == 0) deliver();  // a device that answers at once, so that what is measured is the host
   return 0;
 }
 
@@ -212,8 +213,9 @@ int DescriptorFront::handle_ioctl(unsigned long request, void* argument) {
     case USBDEVFS_CONNECTINFO:
       *static_cast<usbdevfs_connectinfo*>(argument) = {.devnum = 7, .slow = 0};
       return 0;
-    case USBDEVFS_GET_SPEED: return 3;
-    case USBDEVFS_CONTROL: {   // the system's own: which configuration is active
+    case USBDEVFS_GET_SPEED:
+      return 3;
+    case USBDEVFS_CONTROL: {  // the system's own: which configuration is active
       auto* transfer = static_cast<usbdevfs_ctrltransfer*>(argument);
       if (transfer->bRequest == 8 && transfer->wLength >= 1) {
         *static_cast<std::uint8_t*>(transfer->data) = 1;
@@ -221,19 +223,26 @@ int DescriptorFront::handle_ioctl(unsigned long request, void* argument) {
       }
       return -EPIPE;
     }
-    case USBDEVFS_GETDRIVER: return -ENODATA;
-    case USBDEVFS_IOCTL: return -ENODATA;
+    case USBDEVFS_GETDRIVER:
+      return -ENODATA;
+    case USBDEVFS_IOCTL:
+      return -ENODATA;
     case USBDEVFS_CLAIMINTERFACE:
       if (faults.busy) return -EBUSY;
       ++claims_;
       return 0;
     case USBDEVFS_RELEASEINTERFACE:
-    case USBDEVFS_CLEAR_HALT: return 0;
-    case USBDEVFS_SUBMITURB: return submit(argument);
+    case USBDEVFS_CLEAR_HALT:
+      return 0;
+    case USBDEVFS_SUBMITURB:
+      return submit(argument);
     case USBDEVFS_REAPURB:
-    case USBDEVFS_REAPURBNDELAY: return reap(static_cast<void**>(argument));
-    case USBDEVFS_DISCARDURB: return discard(argument);
-    default: return -ENOTTY;
+    case USBDEVFS_REAPURBNDELAY:
+      return reap(static_cast<void**>(argument));
+    case USBDEVFS_DISCARDURB:
+      return discard(argument);
+    default:
+      return -ENOTTY;
   }
 }
 
@@ -267,7 +276,8 @@ extern "C" int ioctl(int descriptor, unsigned long request, ...) {
   va_start(arguments, request);
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
-  if (auto* front = palpate::fake::DescriptorFront::of(descriptor)) return result_of(front->handle_ioctl(request, argument));
+  if (auto* front = palpate::fake::DescriptorFront::of(descriptor))
+    return result_of(front->handle_ioctl(request, argument));
   return static_cast<int>(::syscall(SYS_ioctl, descriptor, request, argument));
 }
 

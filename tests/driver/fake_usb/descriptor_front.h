@@ -13,9 +13,10 @@
 
 namespace palpate::fake {
 
-/// A USB device behind a descriptor of this process: the unmodified libusb talks to it, since this program defines ioctl,
-/// read and lseek itself and hands all other descriptors on to the system. Readiness is a pipe's: full while nothing waits,
-/// emptied when a transfer is done, its other end closed when the device is unplugged.
+/// A USB device behind a descriptor of this process: the unmodified libusb talks to it, since this program
+/// defines ioctl, read and lseek itself and hands all other descriptors on to the system. Readiness is a
+/// pipe's: full while nothing waits, emptied when a transfer is done, its other end closed when the device is
+/// unplugged.
 class DescriptorFront {
  public:
   DescriptorFront(DeviceCalls calls, std::vector<std::uint8_t> descriptors);

@@ -81,7 +81,8 @@ void FalconModel::answer(const Command& command) {
   ++commands_;
   motors_ = command.motors;
   leds_ = static_cast<std::uint8_t>(command.bits & (kGreen | kBlue | kRed));
-  if ((command.bits & kHomingOn) != 0 && ++homing_reports_ >= homes_after) homed_bits_ = faults.never_homed ? 3 : 7;
+  if ((command.bits & kHomingOn) != 0 && ++homing_reports_ >= homes_after)
+    homed_bits_ = faults.never_homed ? 3 : 7;
   const int number = reports_++;
   if (faults.silent) return;
   if (faults.reports_silent_after >= 0 && number >= faults.reports_silent_after) return;
@@ -106,7 +107,7 @@ void FalconModel::answer(const Command& command) {
 std::vector<std::uint8_t> FalconModel::in() {
   const std::size_t said = std::min<std::size_t>(faults.splits ? 9 : 62, answer_.size());
   std::vector<std::uint8_t> packet(2 + said);
-  packet[0] = 0x01;   // modem status: carrier lines, transmitter empty
+  packet[0] = 0x01;  // modem status: carrier lines, transmitter empty
   packet[1] = 0x60;
   std::copy_n(answer_.begin(), said, packet.begin() + 2);
   answer_.erase(answer_.begin(), answer_.begin() + static_cast<std::ptrdiff_t>(said));

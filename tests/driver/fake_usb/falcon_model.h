@@ -13,36 +13,36 @@ namespace palpate::fake {
 /// What goes wrong with a model of the Falcon. Counts are of the thing named; −1: never.
 struct FalconFaults {
   bool deaf_to_greeting = false;
-  bool leads_with_zero = false;        ///< a zero byte before the answer to the greeting, as some devices do
+  bool leads_with_zero = false;  ///< a zero byte before the answer to the greeting, as some devices do
   int greetings_ignored = 0;
   bool deaf_to_baud = false;
-  int wrong_echo_at = -1;              ///< the firmware byte whose echo differs
-  int wrong_echoes = 1'000'000;        ///< how many loads that spoils
-  bool silent = false;                 ///< no report at all
-  int bad_loads = 0;                   ///< loads that end in silence, before one works
-  int never_homed = 0;                 ///< 1: an encoder never passes its index
-  int reports_silent_after = -1;       ///< then no report any more
-  int jump_at = -1;                    ///< the report from which encoder 1 is off by jump_by
+  int wrong_echo_at = -1;         ///< the firmware byte whose echo differs
+  int wrong_echoes = 1'000'000;   ///< how many loads that spoils
+  bool silent = false;            ///< no report at all
+  int bad_loads = 0;              ///< loads that end in silence, before one works
+  int never_homed = 0;            ///< 1: an encoder never passes its index
+  int reports_silent_after = -1;  ///< then no report any more
+  int jump_at = -1;               ///< the report from which encoder 1 is off by jump_by
   int jump_by = 20000;
-  int jump_reports = 1'000'000;        ///< how many reports the jump lasts
-  int short_every = 0;                 ///< every n-th report has 14 bytes, without j and k
-  int corrupt_every = 0;               ///< every n-th report has a byte broken
-  int stray_every = 0;                 ///< every n-th report is followed by stray bytes
-  bool splits = false;                 ///< every report comes in two packets
-  int merges = 0;                      ///< reports kept back and sent together
+  int jump_reports = 1'000'000;  ///< how many reports the jump lasts
+  int short_every = 0;           ///< every n-th report has 14 bytes, without j and k
+  int corrupt_every = 0;         ///< every n-th report has a byte broken
+  int stray_every = 0;           ///< every n-th report is followed by stray bytes
+  bool splits = false;           ///< every report comes in two packets
+  int merges = 0;                ///< reports kept back and sent together
 };
 
-/// A Falcon behind its serial chip, as the bus sees it: control requests and bytes in, packets out. No clock and no threads: the
-/// fronts bring those. The hand that holds it is `encoders`.
+/// A Falcon behind its serial chip, as the bus sees it: control requests and bytes in, packets out. No clock
+/// and no threads: the fronts bring those. The hand that holds it is `encoders`.
 class FalconModel {
  public:
   explicit FalconModel(FalconFaults wrong = {}, bool loaded = false) : faults(wrong), loaded_(loaded) {}
 
-  FalconFaults faults;                 ///< may change while it runs
+  FalconFaults faults;  ///< may change while it runs
 
   /// What the encoders read once homed, by report number since power-up.
   std::function<falcon::Encoders(int)> encoders = [](int) { return falcon::Encoders{}; };
-  int homes_after = 50;                ///< reports with the homing bit until all three are homed
+  int homes_after = 50;  ///< reports with the homing bit until all three are homed
 
   /// Vendor request to the serial chip. False: stall.
   bool control(std::uint8_t request, std::uint16_t value);
@@ -50,8 +50,8 @@ class FalconModel {
   /// One IN packet of at most 64 bytes, status first; empty: nothing to say but status.
   std::vector<std::uint8_t> in();
   bool has_bytes() const { return !answer_.empty(); }
-  void lose_homing();                  ///< as after a knock: it counts to homes_after again
-  void power_cycle();                  ///< unplugged and plugged in: firmware and homing are gone
+  void lose_homing();  ///< as after a knock: it counts to homes_after again
+  void power_cycle();  ///< unplugged and plugged in: firmware and homing are gone
 
   const falcon::MotorCounts& motors() const { return motors_; }
   bool running() const { return loaded_; }
@@ -61,7 +61,7 @@ class FalconModel {
   int loads() const { return loads_; }
   std::uint8_t leds() const { return leds_; }
   const std::vector<std::uint8_t>& firmware() const { return image_; }
-  std::size_t firmware_size = 0;       ///< bytes that make it whole
+  std::size_t firmware_size = 0;  ///< bytes that make it whole
 
  private:
   enum class Baud { kNone, kGreeting, kLoading, kRunning };

@@ -14,8 +14,8 @@
 namespace palpate::fake {
 namespace {
 
-constexpr auto kStatusEvery = std::chrono::milliseconds(1);      // the serial chip's latency timer
-constexpr auto kIdle = std::chrono::microseconds(200);           // nothing to reap: don't let the client spin
+constexpr auto kStatusEvery = std::chrono::milliseconds(1);  // the serial chip's latency timer
+constexpr auto kIdle = std::chrono::microseconds(200);       // nothing to reap: don't let the client spin
 
 usbdevfs_urb& urb_in(UMockdevIoctlData* block) { return *reinterpret_cast<usbdevfs_urb*>(block->data); }
 
@@ -43,7 +43,8 @@ std::string Testbed::root() const {
   return text;
 }
 
-TestbedFront::TestbedFront(Testbed& testbed, DeviceCalls calls, const std::vector<std::uint8_t>& descriptors, int address)
+TestbedFront::TestbedFront(Testbed& testbed, DeviceCalls calls, const std::vector<std::uint8_t>& descriptors,
+                           int address)
     : testbed_(testbed), calls_(std::move(calls)), handler_(umockdev_ioctl_base_new()) {
   char text[64];
   std::snprintf(text, sizeof text, "/dev/bus/usb/001/%03d", address);
@@ -60,10 +61,11 @@ TestbedFront::TestbedFront(Testbed& testbed, DeviceCalls calls, const std::vecto
     std::snprintf(text, sizeof text, "%02X", byte);
     hex += text;
   }
-  const std::string about = "P: " + name + "\nN: bus/usb/001/" + node_.substr(node_.size() - 3) + "\nE: DEVNAME=" + node_ +
-                            "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=" + node_.substr(node_.size() - 3) +
-                            "\nA: busnum=1\\n\nA: devnum=" + std::to_string(address) +
-                            "\\n\nA: bConfigurationValue=1\\n\nA: speed=12\\n\nH: descriptors=" + hex + "\n";
+  const std::string about =
+      "P: " + name + "\nN: bus/usb/001/" + node_.substr(node_.size() - 3) + "\nE: DEVNAME=" + node_ +
+      "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=" +
+      node_.substr(node_.size() - 3) + "\nA: busnum=1\\n\nA: devnum=" + std::to_string(address) +
+      "\\n\nA: bConfigurationValue=1\\n\nA: speed=12\\n\nH: descriptors=" + hex + "\n";
   if (!umockdev_testbed_add_from_string(testbed_.get(), about.c_str(), &error))
     throw std::runtime_error(std::string("umockdev: ") + (error ? error->message : "add_from_string failed"));
   syspath_ = "/sys" + name;
@@ -120,7 +122,7 @@ gboolean TestbedFront::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client,
 }
 
 void TestbedFront::answer(UMockdevIoctlClient* client) {
-  int result = 0;   // ≥ 0, or −errno
+  int result = 0;  // ≥ 0, or −errno
   {
     const std::lock_guard lock(mutex_);
     UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
@@ -161,15 +163,25 @@ void TestbedFront::answer(UMockdevIoctlClient* client) {
           umockdev_ioctl_data_unref(block);
           break;
         }
-        case USBDEVFS_CLAIMINTERFACE: result = faults.busy || faults.kernel_driver ? -EBUSY : 0; break;
+        case USBDEVFS_CLAIMINTERFACE:
+          result = faults.busy || faults.kernel_driver ? -EBUSY : 0;
+          break;
         case USBDEVFS_RELEASEINTERFACE:
         case USBDEVFS_CLEAR_HALT:
-        case USBDEVFS_RESET: break;
-        case USBDEVFS_SUBMITURB: result = submit(arg); break;
+        case USBDEVFS_RESET:
+          break;
+        case USBDEVFS_SUBMITURB:
+          result = submit(arg);
+          break;
         case USBDEVFS_REAPURB:
-        case USBDEVFS_REAPURBNDELAY: result = reap(arg); break;
-        case USBDEVFS_DISCARDURB: result = discard(arg); break;
-        default: result = -ENOTTY;
+        case USBDEVFS_REAPURBNDELAY:
+          result = reap(arg);
+          break;
+        case USBDEVFS_DISCARDURB:
+          result = discard(arg);
+          break;
+        default:
+          result = -ENOTTY;
       }
     }
   }
@@ -181,8 +193,9 @@ int TestbedFront::submit(UMockdevIoctlData* arg) {
   UMockdevIoctlData* block = resolved(arg, 0, sizeof(usbdevfs_urb));
   if (!block) return -EFAULT;
   usbdevfs_urb& urb = urb_in(block);
-  UMockdevIoctlData* buffer =
-      urb.buffer_length > 0 ? resolved(block, offsetof(usbdevfs_urb, buffer), static_cast<std::size_t>(urb.buffer_length)) : nullptr;
+  UMockdevIoctlData* buffer = urb.buffer_length > 0 ? resolved(block, offsetof(usbdevfs_urb, buffer),
+                                                               static_cast<std::size_t>(urb.buffer_length))
+                                                    : nullptr;
   urb.actual_length = 0;
   Urb kept{block, buffer, 0};
   const bool control = urb.type == USBDEVFS_URB_TYPE_CONTROL;
@@ -199,7 +212,9 @@ int TestbedFront::submit(UMockdevIoctlData* arg) {
   }
   if (control) {
     const guint8* setup = buffer->data;
-    if ((setup[0] & 0x60) == 0x40 && !calls_.control(setup[1], static_cast<std::uint16_t>(setup[2] | (setup[3] << 8)))) kept.status = -EPIPE;
+    if ((setup[0] & 0x60) == 0x40 &&
+        !calls_.control(setup[1], static_cast<std::uint16_t>(setup[2] | (setup[3] << 8))))
+      kept.status = -EPIPE;
   } else if (faults.stalled_out > 0) {
     --faults.stalled_out;
     kept.status = -EPIPE;
@@ -211,7 +226,8 @@ int TestbedFront::submit(UMockdevIoctlData* arg) {
   return 0;
 }
 
-/// Gives the oldest waiting IN transfer what the device says, if it says something or the latency timer has run out.
+/// Gives the oldest waiting IN transfer what the device says, if it says something or the latency timer has
+/// run out.
 void TestbedFront::bring_in() {
   const auto now = std::chrono::steady_clock::now();
   if (waiting_in_.empty() || !(calls_.has_bytes() || now - last_in_ >= kStatusEvery)) return;
@@ -226,7 +242,8 @@ void TestbedFront::bring_in() {
     done.status = -EOVERFLOW;
   } else {
     const std::vector<std::uint8_t> packet = calls_.in();
-    const std::size_t size = std::min(packet.size(), static_cast<std::size_t>(urb_in(done.block).buffer_length));
+    const std::size_t size =
+        std::min(packet.size(), static_cast<std::size_t>(urb_in(done.block).buffer_length));
     put(done.buffer, 0, packet.data(), size);
     urb_in(done.block).actual_length = static_cast<int>(size);
   }
@@ -249,8 +266,10 @@ int TestbedFront::reap(UMockdevIoctlData* arg) {
 
 int TestbedFront::discard(UMockdevIoctlData* arg) {
   gulong address = 0;
-  std::memcpy(&address, arg->data, sizeof address);   // never resolved: the call's argument is the client's own pointer
-  const auto found = std::find_if(waiting_in_.begin(), waiting_in_.end(), [&](const Urb& urb) { return urb.block->client_addr == address; });
+  std::memcpy(&address, arg->data,
+              sizeof address);  // never resolved: the call's argument is the client's own pointer
+  const auto found = std::find_if(waiting_in_.begin(), waiting_in_.end(),
+                                  [&](const Urb& urb) { return urb.block->client_addr == address; });
   if (found == waiting_in_.end()) return gone_ ? -ENODEV : -EINVAL;
   found->status = -ENOENT;
   finished_.push_back(*found);

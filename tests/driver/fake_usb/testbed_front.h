@@ -12,8 +12,8 @@
 
 namespace palpate::fake {
 
-/// A USB bus of its own, which programs started by this one see instead of the system's: sysfs, device nodes, hot-plug messages. This
-/// program must run with umockdev's library preloaded; one at a time.
+/// A USB bus of its own, which programs started by this one see instead of the system's: sysfs, device nodes,
+/// hot-plug messages. This program must run with umockdev's library preloaded; one at a time.
 class Testbed {
  public:
   Testbed() : bed_(umockdev_testbed_new()) {}
@@ -27,19 +27,20 @@ class Testbed {
   UMockdevTestbed* bed_;
 };
 
-/// A USB device on a testbed's bus: whatever program opens it through libusb talks to `calls`. Its transfers are answered when they are asked
-/// for (poll is always ready there), so it is no judge of time.
+/// A USB device on a testbed's bus: whatever program opens it through libusb talks to `calls`. Its transfers
+/// are answered when they are asked for (poll is always ready there), so it is no judge of time.
 class TestbedFront {
  public:
   /// Plugs the device in at an address of bus 1 that was not used before.
-  TestbedFront(Testbed& testbed, DeviceCalls calls, const std::vector<std::uint8_t>& descriptors, int address);
+  TestbedFront(Testbed& testbed, DeviceCalls calls, const std::vector<std::uint8_t>& descriptors,
+               int address);
   ~TestbedFront();
   TestbedFront(const TestbedFront&) = delete;
   TestbedFront& operator=(const TestbedFront&) = delete;
 
   void unplug();
   BusFaults faults;
-  const std::string& node() const { return node_; }   ///< "/dev/bus/usb/001/004"
+  const std::string& node() const { return node_; }  ///< "/dev/bus/usb/001/004"
   /// OUT transfers that a program tried to send after the device was unplugged.
   std::vector<std::vector<std::uint8_t>> sent_too_late();
 
@@ -51,7 +52,8 @@ class TestbedFront {
   }
 
  private:
-  /// One transfer of the client: its block, and the buffer that it points to, both copies until they are written back.
+  /// One transfer of the client: its block, and the buffer that it points to, both copies until they are
+  /// written back.
   struct Urb {
     UMockdevIoctlData* block;
     UMockdevIoctlData* buffer;

@@ -6,6 +6,7 @@
 int main(int, char** argv) {
   palpate::ImportReport report;
   const auto mesh = palpate::import_mesh(argv[1], 1, report);
-  if (!mesh) return std::fprintf(stderr, "%s\n", mesh.error().sentence.c_str()), static_cast<int>(mesh.error().code);
+  if (!mesh)
+    return std::fprintf(stderr, "%s\n", mesh.error().sentence.c_str()), static_cast<int>(mesh.error().code);
   std::printf("%zu triangles\n", mesh->triangles.size());
 }
