@@ -88,6 +88,36 @@ TEST(IncludeGraph, EveryFolderOfComputeIsAnArrowsEnd) {
         << entry.path();
 }
 
+TEST(IncludeGraph, TheLoopsKnowNoFrontEnd) {
+  // The installed library is loop/ and queries/: neither command line, nor server, report or bench.
+  for (const std::string folder : {"service/loop", "service/queries"}) {
+    const auto found = includes_below(folder);
+    EXPECT_GT(found.size(), 20u) << folder;
+    for (const auto& include : found)
+      if (include.quoted) {
+        EXPECT_TRUE(
+            starts_with_any(include.target, {"service/loop/", "service/queries/", "model/", "driver/"}))
+            << include.file << " includes " << include.target;
+      }
+  }
+}
+
+TEST(Layout, NoFolderIsAHeap) {
+  // Forty files are what a reader takes in at a look; more want folders of their own.
+  std::size_t folders = 0;
+  for (const auto& [top, allowed] : kAllowed) {
+    std::map<std::string, int> files;
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top))
+      if (entry.is_regular_file() && entry.path().string().find("node_modules") == std::string::npos)
+        ++files[entry.path().parent_path().string()];
+    for (const auto& [folder, count] : files) {
+      ++folders;
+      EXPECT_LE(count, 40) << folder;
+    }
+  }
+  EXPECT_GT(folders, 30u);  // the walk sees the tree
+}
+
 TEST(IncludeGraph, NothingIncludesTestsOrBench) {
   for (const auto& [folder, allowed] : kAllowed)
     for (const auto& include : includes_below(folder))

@@ -17,10 +17,9 @@ class MyDevice : public HapticDevice {
     return {
         .sensed = {true, true, true}, .actuated = {true, true, true}, .max_force_n = 3.3, .max_torque_nm = 0};
   }
-  Result<void> open() override {
-    return {};
-  }                                  // find it, load firmware; an Error says in one sentence what failed
-  void close() noexcept override {}  // motors off
+  // Find it, load firmware; an Error says in one sentence what failed.
+  Result<void> open() override { return {}; }
+  void close() noexcept override {}        // motors off
   DeviceSample read() noexcept override {  // once a tick; never allocates, locks, throws or waits
     return {.pose = pose_, .time_ns = tick_ * 1'000'000, .state = DeviceState::kReady};
   }
