@@ -96,10 +96,10 @@ Result<std::int32_t> choose_voxel_size(const VoxelSubject& mockup, const VoxelSu
     least = work;
   };
   std::int32_t v = kSmallestVoxel;
-  const auto grow = [&] { v += std::max(2, v / 32 * 2); };
-  for (; v < upper; grow()) consider(v);
+  const auto next = [](std::int32_t size) { return size + std::max(2, size / 32 * 2); };
+  for (; v < upper; v = next(v)) consider(v);
   consider(upper);
-  for (; v < kLatticeReach / 2 && best == 0; grow()) consider(v);  // memory comes before resolution
+  for (; v < kLatticeReach / 2 && best == 0; v = next(v)) consider(v);  // memory comes before resolution
   if (best == 0)
     return bad_value("no voxel size fits the limits: the mock-up or the tool has too many triangles");
   return best;

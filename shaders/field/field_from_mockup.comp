@@ -1,7 +1,8 @@
 #version 460
-// One invocation: a sample of the mock-up that counts; behind the last one's workgroup an extra one, which is asked first whether it lies inside the tool. Adds how the
-// tool's depth there pushes.
-// Reads samples or mockup_points, both bodies, the tool's fine partition. Writes field_work, carrier_work, ignored patches.
+// One invocation: a sample of the mock-up that counts; behind the last one's workgroup an extra one, which is
+// asked first whether it lies inside the tool. Adds how the tool's depth there pushes.
+// Reads samples or mockup_points, both bodies, the tool's fine partition. Writes field_work, carrier_work,
+// ignored patches.
 // Before: field_members; the lists are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -71,7 +72,8 @@ bool push_of(bool extra, uint32_t item, out Push push) {
     point = work.point;
     id = work.static_id;
     const uint32_t axis = mockup_info[id] >> kInfoAxisShift & 3u;
-    const ivec2 ij = cell_of_sample(ivec2(point[(axis + 1u) % 3u], point[(axis + 2u) % 3u]), scene.sample_spacing);
+    const ivec2 ij =
+        cell_of_sample(ivec2(point[(axis + 1u) % 3u], point[(axis + 2u) % 3u]), scene.sample_spacing);
     weight = uint32_t(mockup_weight(id, mockup_weights[id], ij) >> 6);
   }
   const ivec3 at = tool_from_world(point);
@@ -86,15 +88,18 @@ bool push_of(bool extra, uint32_t item, out Push push) {
   push.weight = weight;
   push.static_id = id;
   push.mobile = depth.triangle;
-  push.slot = (static_state[id] & (kStaticHit | kStaticSampled)) != 0u ? static_slot[id] : kNone;   // CST and EST carry
+  // CST and EST carry.
+  push.slot = (static_state[id] & (kStaticHit | kStaticSampled)) != 0u ? static_slot[id] : kNone;
   return true;
 }
 
 void main() {
-  const uint32_t samples = in_contact() ? list_count(kListSamples) : 0u, rounded = groups_to(list_count(kListSamples)) * kGroupSize;
+  const uint32_t samples = in_contact() ? list_count(kListSamples) : 0u,
+                 rounded = groups_to(list_count(kListSamples)) * kGroupSize;
   const uint32_t i = flat_invocation();
   const bool extra = i >= rounded;
   Push push;
-  const bool pushes = (extra ? i - rounded < list_count(kListMockupPoints) : i < samples) && push_of(extra, extra ? i - rounded : i, push);
+  const bool pushes = (extra ? i - rounded < list_count(kListMockupPoints) : i < samples) &&
+                      push_of(extra, extra ? i - rounded : i, push);
   add_pushes(pushes, push);
 }

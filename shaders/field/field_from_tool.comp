@@ -1,5 +1,6 @@
 #version 460
-// One invocation: a sample of a triangle of C_m in a V_bnd or V_int voxel of the mock-up, or an extra one. Where it lies inside, adds how the mock-up's depth there pushes.
+// One invocation: a sample of a triangle of C_m in a V_bnd or V_int voxel of the mock-up, or an extra one.
+// Where it lies inside, adds how the mock-up's depth there pushes.
 // Reads tool_points, both bodies, the mock-up's partition. Writes field_work, ignored patches.
 // Before: field_points; the list is closed.
 #extension GL_GOOGLE_include_directive : require
@@ -54,7 +55,8 @@ bool push_of(uint32_t item, out Push push) {
   const FieldPoint work = tool_points[item];
   // What touches nothing is on one side of the mock-up, with its first corner.
   const bool hit = (mobile_state[work.triangle] & kMobileHit) != 0u;
-  if (!inside_mockup(hit ? work.point : world_from_tool(tool_vertices[tool_triangles[work.triangle].x]))) return false;
+  if (!inside_mockup(hit ? work.point : world_from_tool(tool_vertices[tool_triangles[work.triangle].x])))
+    return false;
   const Depth depth = body_depth(work.point);
   if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
   push.at = work.point;

@@ -1,7 +1,8 @@
 #version 460
-// One invocation: a slot of C_s and a member of C_m. Names their sets; in contact, empties what the slot carries, and lists extra samples that weigh something and
-// the tiles of the member's sample grid.
-// Reads C_s and C_m, both bodies' extra samples, the tool's triangles in its own frame. Writes the sets' results, carrier_work, mockup_points, tool_points, field_tiles.
+// One invocation: a slot of C_s and a member of C_m. Names their sets; in contact, empties what the slot
+// carries, and lists extra samples that weigh something and the tiles of the member's sample grid.
+// Reads C_s and C_m, both bodies' extra samples, the tool's triangles in its own frame. Writes the sets'
+// results, carrier_work, mockup_points, tool_points, field_tiles.
 // Before: the lists of samples, C_s and C_m are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -37,19 +38,23 @@ GROUP_COUNTS(kBindPlacedGroups, placed_groups)
 GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 
 void list_static_extras(uint32_t id) {
-  const uint32_t first = first_mockup_extra(id, scene.mockup_extras), count = mockup_extras_from(first, id, scene.mockup_extras);
+  const uint32_t first = first_mockup_extra(id, scene.mockup_extras),
+                 count = mockup_extras_from(first, id, scene.mockup_extras);
   for (uint32_t i = 0u; i < count; ++i) {
     const uint32_t weight = uint32_t(extra_weight(mockup_extras[first + i].weights) >> 6);
     if (weight == 0u) continue;
     const uint32_t at = take_room(kListMockupPoints, 1u);
     if (at >= frame_lists[kListMockupPoints].capacity) continue;
     mockup_points[at] = FieldPoint(mockup_extras[first + i].point, id, weight);
-    if (begins_group(at, 1u)) grow_placed_groups(kGroupsMockupPush, groups_to(list_count(kListSamples)) + groups_to(at + 1u));   // behind the samples
+    if (begins_group(at, 1u))
+      grow_placed_groups(kGroupsMockupPush,
+                         groups_to(list_count(kListSamples)) + groups_to(at + 1u));  // behind the samples
   }
 }
 
 void list_mobile_extras(uint32_t mobile) {
-  const uint32_t first = first_tool_extra(mobile, scene.tool_extras), count = tool_extras_from(first, mobile, scene.tool_extras);
+  const uint32_t first = first_tool_extra(mobile, scene.tool_extras),
+                 count = tool_extras_from(first, mobile, scene.tool_extras);
   for (uint32_t i = 0u; i < count; ++i) {
     const uint32_t weight = uint32_t(extra_weight(tool_extras[first + i].weights) >> 4);
     if (weight == 0u) continue;
@@ -78,7 +83,8 @@ void list_tiles(uint32_t mobile, uint32_t info) {
   const uint32_t capacity = frame_lists[kListFieldTiles].capacity;
   if (first < capacity) grow_placed_groups(kGroupsTiles, min(first + across * down, capacity));
   for (uint32_t t = 0u; t < across * down && first + t < capacity && !spent(1u); ++t)
-    field_tiles[first + t] = FieldTile(mobile, u_first + kFieldTile * int32_t(t % across), v_first + kFieldTile * int32_t(t / across));
+    field_tiles[first + t] = FieldTile(mobile, u_first + kFieldTile * int32_t(t % across),
+                                       v_first + kFieldTile * int32_t(t / across));
 }
 
 void take_static(uint32_t slot) {

@@ -1,6 +1,7 @@
 #version 460
-// One workgroup: a tile of a tool triangle's sample grid; one invocation: a cell. Lists the samples that weigh something, and lie in a V_bnd or V_int voxel of the
-// mock-up, or with their triangle's first corner where it touches nothing.
+// One workgroup: a tile of a tool triangle's sample grid; one invocation: a cell. Lists the samples that
+// weigh something, and lie in a V_bnd or V_int voxel of the mock-up, or with their triangle's first corner
+// where it touches nothing.
 // Reads field_tiles, the tool in its own frame, the mock-up's partition. Writes tool_points.
 // Before: field_members; its list is closed.
 #extension GL_GOOGLE_include_directive : require
@@ -43,8 +44,10 @@ void main() {
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
   const int32_t axis = int32_t(tool_info[tile.mobile] >> kInfoAxisShift & 3u);
   const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
-  const ivec2 place = ivec2(gl_LocalInvocationIndex % uint32_t(kFieldTile), gl_LocalInvocationIndex / uint32_t(kFieldTile));
-  const ivec2 ij = ivec2(tile.first_u, tile.first_v) + place, g = sample_of_cell(ij, scene.tool_sample_spacing);
+  const ivec2 place =
+      ivec2(gl_LocalInvocationIndex % uint32_t(kFieldTile), gl_LocalInvocationIndex / uint32_t(kFieldTile));
+  const ivec2 ij = ivec2(tile.first_u, tile.first_v) + place,
+              g = sample_of_cell(ij, scene.tool_sample_spacing);
   if (!grid_point_inside(triangle, g)) return;
   const uint32_t weight = uint32_t(tool_weight(tile.mobile, tool_weights[tile.mobile], ij) >> 4);
   if (weight == 0u) return;

@@ -1,5 +1,6 @@
 #version 460
-// One invocation: a word of the field, a slot of C_s, an ignored patch, an entry of each list. Hands them to the host, and empties what is 0 between frames.
+// One invocation: a word of the field, a slot of C_s, an ignored patch, an entry of each list. Hands them to
+// the host, and empties what is 0 between frames.
 // Reads field_work, carrier_work, frame_lists, frame_state. Writes the results.
 // Before: all pushes are added.
 #extension GL_GOOGLE_include_directive : require
@@ -28,10 +29,13 @@ void main() {
       result_field[i] = field_work[i];
       field_work[i] = 0l;
     }
-    if (CARRIERS && i < list_count(kListContactStatics) && (static_state[contact_statics[i]] & (kStaticHit | kStaticSampled)) != 0u)
-      for (uint32_t word = kCarrierWords * i; word < kCarrierWords * (i + 1u); ++word) result_carriers[word] = carrier_work[word];
+    if (CARRIERS && i < list_count(kListContactStatics) &&
+        (static_state[contact_statics[i]] & (kStaticHit | kStaticSampled)) != 0u)
+      for (uint32_t word = kCarrierWords * i; word < kCarrierWords * (i + 1u); ++word)
+        result_carriers[word] = carrier_work[word];
     const uint32_t all = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kGroupSize;
-    for (uint32_t patch_at = i; patch_at < list_count(kListIgnored); patch_at += all) ignored_state[result_ignored[patch_at] >> 5] = 0u;
+    for (uint32_t patch_at = i; patch_at < list_count(kListIgnored); patch_at += all)
+      ignored_state[result_ignored[patch_at] >> 5] = 0u;
   }
   reset_entry(i);
 }

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Whether two triangles intersect, exactly. An invocation a PairCandidate. Reads both bodies; appends pairs, marks CST and CMT.
+// Whether two triangles intersect, exactly. An invocation a PairCandidate. Reads both bodies; appends pairs,
+// marks CST and CMT.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/triangle_pair.glsl"
 

@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The grid samples of listed triangles in one voxel, and what the tool's fine partition says of them. An invocation a SampleChunk.
-// V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. A triangle's first corner is asked as well,
-// in the voxel that holds it. Only where samples are not listed.
+// The grid samples of listed triangles in one voxel, and what the tool's fine partition says of them. An
+// invocation a SampleChunk.
+// V_int: counts, appended to samples and marked kStaticSampled. V_bnd: appended to open_samples. A triangle's
+// first corner is asked as well, in the voxel that holds it. Only where samples are not listed.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
@@ -76,7 +77,8 @@ void decide(uint32_t item) {
     t.axis = int(mockup_info[id] >> kInfoAxisShift & 3u);
     t.normal = raw_normal(t.a, t.b, t.c);
     if (all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) probe(t.a, id);
-    // Cells that reach into the voxel and into the triangle's box; at most 64 an axis, as a voxel is at most 63 spacings.
+    // Cells that reach into the voxel and into the triangle's box; at most 64 an axis, as a voxel is at most
+    // 63 spacings.
     const ivec2 first = cell_of_sample(seen_along(t.axis, max(low, min(min(t.a, t.b), t.c))), spacing);
     const ivec2 last = cell_of_sample(seen_along(t.axis, min(high, max(max(t.a, t.b), t.c))), spacing);
     for (int32_t j = first.y; j <= last.y; ++j) {

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Samples that the tool's fine partition has inside (found by the host, compute/search/near_samples.h). An invocation a sample; appends samples
-// and marks kStaticSampled. A first corner (kCornerProbe) tells EST and does not count.
+// Samples that the tool's fine partition has inside (found by the host, compute/search/near_samples.h). An
+// invocation a sample; appends samples and marks kStaticSampled. A first corner (kCornerProbe) tells EST and
+// does not count.
 #include "shaders/lib/frame.glsl"
 
 CONSTANT(kBindScene, SceneConstants, scene);

@@ -1,7 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Whether an open sample lies inside the tool: where it is closed by the winding there, else by walks in its own frame. An invocation a sample.
-// Reads the tool and its fine partition; appends samples, marks kStaticSampled. A first corner (kCornerProbe) tells EST and does not count.
+// Whether an open sample lies inside the tool: where it is closed by the winding there, else by walks in its
+// own frame. An invocation a sample.
+// Reads the tool and its fine partition; appends samples, marks kStaticSampled. A first corner (kCornerProbe)
+// tells EST and does not count.
 #include "shaders/lib/frame.glsl"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the tool
@@ -33,7 +35,8 @@ EDIT(kBindSamples, ivec4, samples);
 #include "shaders/lib/body_walks.glsl"
 
 void decide(uint32_t item) {
-  if (item >= frame_input.open_samples + list_count(kListOpenSamples)) return;   // of the host, or of the device
+  // Of the host, or of the device.
+  if (item >= frame_input.open_samples + list_count(kListOpenSamples)) return;
   const ivec4 work = open_samples[item];   // FrameSample
   const ivec3 at = tool_from_world(work.xyz), voxel = body_voxel_of(at);
   if (!(CLOSED ? tool_winding(work.xyz) != 0 : body_walks_inside(at, voxel))) return;

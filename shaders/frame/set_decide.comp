@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// `paper`: is there contact, and how many groups the response needs. A lone invocation. Reads frame_lists, frame_state; writes dispatches.
+// `paper`: is there contact, and how many groups the response needs. A lone invocation. Reads frame_lists,
+// frame_state; writes dispatches.
 // Before: the lists of C_s, C_m and touched voxels are whole.
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// `paper`: names the sets. An invocation a slot of C_s and a member of C_m. Counts into frame_state, writes result_statics and result_mobiles.
+// `paper`: names the sets. An invocation a slot of C_s and a member of C_m. Counts into frame_state, writes
+// result_statics and result_mobiles.
 #include "shaders/lib/frame.glsl"
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);

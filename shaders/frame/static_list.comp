@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Marks what touched V_bnd voxels list: BST, unless CST. An invocation a StaticChunk. Reads the voxels' lists; marks kStaticListed.
+// Marks what touched V_bnd voxels list: BST, unless CST. An invocation a StaticChunk. Reads the voxels'
+// lists; marks kStaticListed.
 #include "shaders/lib/frame.glsl"
 
 CONSTANT(kBindScene, SceneConstants, scene);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The whole tool at its pose, for rays: corners, and boxes of clusters and runs. A workgroup a cluster, an invocation one of its
-// triangles. Reads tool_records; writes tool_corners and boxes.
+// The whole tool at its pose, for rays: corners, and boxes of clusters and runs. A workgroup a cluster, an
+// invocation one of its triangles. Reads tool_records; writes tool_corners and boxes.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/wide_integer.glsl"
 
@@ -18,7 +18,8 @@ EDIT(kBindToolCorners, ToolCorners, tool_corners);
 shared int32_t low[3 * kClusterSize / kRunSize], high[3 * kClusterSize / kRunSize];
 
 LatticeBox run_box(uint32_t run) {
-  return LatticeBox(ivec3(low[3u * run], low[3u * run + 1u], low[3u * run + 2u]), ivec3(high[3u * run], high[3u * run + 1u], high[3u * run + 2u]));
+  return LatticeBox(ivec3(low[3u * run], low[3u * run + 1u], low[3u * run + 2u]),
+                    ivec3(high[3u * run], high[3u * run + 1u], high[3u * run + 2u]));
 }
 
 void main() {
@@ -34,8 +35,10 @@ void main() {
   // Void triangles stay out of boxes.
   const uint32_t place = cluster * kClusterSize + lane;
   if (place < scene.tool.triangles) {
-    const uvec4 a_id = tool_records[3u * place], b_info = tool_records[3u * place + 1u], c_none = tool_records[3u * place + 2u];
-    const ivec3 a = world_from_tool(ivec3(a_id.xyz)), b = world_from_tool(ivec3(b_info.xyz)), c = world_from_tool(ivec3(c_none.xyz));
+    const uvec4 a_id = tool_records[3u * place], b_info = tool_records[3u * place + 1u],
+                c_none = tool_records[3u * place + 2u];
+    const ivec3 a = world_from_tool(ivec3(a_id.xyz)), b = world_from_tool(ivec3(b_info.xyz)),
+                c = world_from_tool(ivec3(c_none.xyz));
     if ((b_info.w & kInfoCollapsed) != 0u || raw_normal(a, b, c) == i64vec3(0l)) {
       tool_corners[place] = ToolCorners(a, a, a);
     } else {
@@ -50,7 +53,8 @@ void main() {
   }
   barrier();
   const uint32_t runs = kClusterSize / kRunSize;
-  if (lane < runs && cluster * kClusterSize + lane * kRunSize < scene.tool.triangles) run_boxes[cluster * runs + lane] = run_box(lane);
+  if (lane < runs && cluster * kClusterSize + lane * kRunSize < scene.tool.triangles)
+    run_boxes[cluster * runs + lane] = run_box(lane);
   if (lane != 0u) return;
   LatticeBox box = run_box(0u);
   for (uint32_t run = 1u; run < runs; ++run) {

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Whether a triangle touches a voxel, or a brick that is all V_int, exactly. An invocation a TouchCandidate. Reads tool_records; sets
-// kMobileInternal or kMobileBoundary; a touched V_bnd voxel enters touched_voxels once, and its list goes to static_chunks.
+// Whether a triangle touches a voxel, or a brick that is all V_int, exactly. An invocation a TouchCandidate.
+// Reads tool_records; sets kMobileInternal or kMobileBoundary; a touched V_bnd voxel enters touched_voxels
+// once, and its list goes to static_chunks.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/triangle_voxel.glsl"
 
@@ -27,7 +28,8 @@ GROUP_COUNTS(kBindListedGroups, listed_groups)
 void decide(uint32_t item) {
   if (item >= frame_input.touch_candidates) return;
   const u64vec2 work = touch_candidates[item];   // TouchCandidate
-  const uint32_t place = uint32_t(work.x), boundary = uint32_t(work.x >> 32), xy = uint32_t(work.y), z = uint32_t(work.y >> 32);
+  const uint32_t place = uint32_t(work.x), boundary = uint32_t(work.x >> 32), xy = uint32_t(work.y),
+                 z = uint32_t(work.y >> 32);
   const RecordCorners r = record_at(place);
   const ivec3 a = world_from_tool(r.a), b = world_from_tool(r.b), c = world_from_tool(r.c);
   const ivec3 voxel = ivec3(xy & 0xFFFFu, xy >> 16, z & ~uint32_t(kWholeBrick));
@@ -52,8 +54,10 @@ void decide(uint32_t item) {
   }
   const uint32_t chunks = (end - begin + chunk - 1u) / chunk;
   if (chunks == 0u) return;
-  const uint32_t first = take_room(kListStaticChunks, chunks), capacity = frame_lists[kListStaticChunks].capacity;
-  if (first < capacity && begins_group(first, chunks)) grow_listed_groups(kGroupsStatics, groups_to(min(first + chunks, capacity)));
+  const uint32_t first = take_room(kListStaticChunks, chunks),
+                 capacity = frame_lists[kListStaticChunks].capacity;
+  if (first < capacity && begins_group(first, chunks))
+    grow_listed_groups(kGroupsStatics, groups_to(min(first + chunks, capacity)));
   for (uint32_t i = 0u; i < chunks && first + i < frame_lists[kListStaticChunks].capacity; ++i)
     static_chunks[first + i] = uvec2(begin + i * chunk, min(begin + (i + 1u) * chunk, end));
 }

@@ -1,5 +1,5 @@
-// The sphere of an area (docs/EXACTNESS.md section 5): whether it holds a tool triangle, and how far off a triangle is. The including shader
-// declares areas[].
+// The sphere of an area (docs/EXACTNESS.md section 5): whether it holds a tool triangle, and how far off a
+// triangle is. The including shader declares areas[].
 #ifndef PALPATE_LIB_AREA_SPHERE
 #define PALPATE_LIB_AREA_SPHERE
 
@@ -9,7 +9,11 @@ int64_t squared(ivec3 v) {
 }
 
 // |2g − c2|² for the rounded centroid g of a triangle; components within 2^30: below 2^62.
-int64_t area_distance(uint32_t area, ivec3 g) { return squared(2 * g - (areas[area].box_low + areas[area].box_high)); }
+int64_t area_distance(uint32_t area, ivec3 g) {
+  return squared(2 * g - (areas[area].box_low + areas[area].box_high));
+}
 
-bool area_holds(uint32_t area, ivec3 g) { return area_distance(area, g) <= squared(areas[area].box_high - areas[area].box_low); }
+bool area_holds(uint32_t area, ivec3 g) {
+  return area_distance(area, g) <= squared(areas[area].box_high - areas[area].box_low);
+}
 #endif

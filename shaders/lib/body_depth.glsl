@@ -1,4 +1,5 @@
-// How deep a lattice point lies below the surface of a body that does not move, in its own frame (docs/EXACTNESS.md section 4, "Depth"), exact.
+// How deep a lattice point lies below the surface of a body that does not move, in its own frame
+// (docs/EXACTNESS.md section 4, "Depth"), exact.
 // The including shader has what lib/body.glsl asks for, ivec3 body_normals[] and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_DEPTH
 #define PALPATE_LIB_BODY_DEPTH
@@ -22,8 +23,9 @@ bool may_be_nearer(ivec3 gap, Depth best) {
   return wide_dot(gap, gap) <= reach * reach;
 }
 
-// How far p lies on the outer side of the edge from u to v, in floats. Coordinates, components of n, products and sums are rounded by 2^-24 each, the
-// root and the quotient by less than 2^-21: off by less than 2^-18 of the way from u (derived: 20 · 2^-24); what section 4 computes, by less than 4 steps.
+// How far p lies on the outer side of the edge from u to v, in floats. Coordinates, components of n, products
+// and sums are rounded by 2^-24 each, the root and the quotient by less than 2^-21: off by less than 2^-18 of
+// the way from u (derived: 20 · 2^-24); what section 4 computes, by less than 4 steps.
 const float kEstimate = 1.0 / 262144.0;
 
 float edge_estimate(ivec3 u, ivec3 v, ivec3 n, ivec3 p) {
@@ -46,17 +48,20 @@ void look_at(uint32_t id, ivec3 p, inout Depth best) {
   const ivec3 n = body_normals[id];
   const int32_t height = height_above(n, a, p);
   if (height > best.steps) return;
-  // Floats first: on the inner side of all edges the height is the distance, and beyond one of them nothing is nearer than that edge's line.
+  // Floats first: on the inner side of all edges the height is the distance, and beyond one of them nothing
+  // is nearer than that edge's line.
   const vec3 sides = vec3(edge_estimate(a, b, n, p), edge_estimate(b, c, n, p), edge_estimate(c, a, n, p));
   const vec3 slack = 8.0 + kEstimate * vec3(reach_of(p - a), reach_of(p - b), reach_of(p - c));
   const vec3 beyond = max(sides - slack, vec3(0.0));
-  const float out_by = max(beyond.x, max(beyond.y, beyond.z)), h = float(height), near = float(best.steps) + float(kDepthSlack);
+  const float out_by = max(beyond.x, max(beyond.y, beyond.z)), h = float(height),
+              near = float(best.steps) + float(kDepthSlack);
   if (h * h + out_by * out_by > near * near * 1.0001) return;
   const int32_t steps = all(lessThan(sides, -slack)) ? height : distance_at(height, n, a, b, c, p);
   if (steps < best.steps || (steps == best.steps && id < best.triangle)) best = Depth(steps, id);
 }
 
-// Something near: what the nearest V_bnd voxels along the axes list, the point's own first. One loop does all of it (see lib/body_walks.glsl).
+// Something near: what the nearest V_bnd voxels along the axes list, the point's own first. One loop does all
+// of it (see lib/body_walks.glsl).
 void look_along_axes(ivec3 p, ivec3 home, inout Depth best) {
   const ivec3 cells = 8 * BODY_GRID.bricks;
   const int32_t last_ring = max(cells.x, max(cells.y, cells.z));
@@ -116,7 +121,8 @@ Depth body_depth(ivec3 p) {
       const ivec3 voxel = 8 * at + ivec3(bit & 7u, 4u * (word & 1u) + (bit >> 3), word >> 1);
       const ivec3 corner = BODY_GRID.origin + size * voxel;
       if (voxel == home || !may_be_nearer(box_gap(p, corner, corner + size), best)) continue;
-      const uint32_t boundary = body_bricks[slot].first[word] + uint32_t(bitCount(whole & ((1u << bit) - 1u)));
+      const uint32_t boundary =
+          body_bricks[slot].first[word] + uint32_t(bitCount(whole & ((1u << bit) - 1u)));
       entry = body_list_begin[boundary];
       last = body_list_begin[boundary + 1u];
     } else if (word + 1u < words) {

@@ -1,5 +1,6 @@
-// Whether a lattice point in a V_bnd voxel lies inside a body that does not move, in its own frame (docs/EXACTNESS.md section 4): by walks along axes,
-// voxel by voxel. One loop does all of it, a voxel or a triangle a turn, so that invocations side by side do not wait for each other's inner loops.
+// Whether a lattice point in a V_bnd voxel lies inside a body that does not move, in its own frame
+// (docs/EXACTNESS.md section 4): by walks along axes, voxel by voxel. One loop does all of it, a voxel or a
+// triangle a turn, so that invocations side by side do not wait for each other's inner loops.
 // The including shader has what lib/body.glsl asks for and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_WALKS
 #define PALPATE_LIB_BODY_WALKS
@@ -7,15 +8,18 @@
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/segment.glsl"
 
-// What the way from one point to another crosses of a triangle, after a look at its box: a perturbed segment that crosses it touches its closed box.
+// What the way from one point to another crosses of a triangle, after a look at its box: a perturbed segment
+// that crosses it touches its closed box.
 int32_t body_crossing(ivec3 from, ivec3 to, uint32_t id) {
   const uvec3 corners = body_triangles[id];
   const ivec3 a = body_vertices[corners.x], b = body_vertices[corners.y], c = body_vertices[corners.z];
-  if (any(greaterThan(min(min(a, b), c), max(from, to))) || any(lessThan(max(max(a, b), c), min(from, to)))) return 0;
+  if (any(greaterThan(min(min(a, b), c), max(from, to))) || any(lessThan(max(max(a, b), c), min(from, to))))
+    return 0;
   return segment_crossing(from, to, a, b, c);
 }
 
-// A body that is not closed: what most of six walks from the voxel's middle say, and what lies between it and the point. Sheets do not count.
+// A body that is not closed: what most of six walks from the voxel's middle say, and what lies between it and
+// the point. Sheets do not count.
 bool body_walks_inside(ivec3 point, ivec3 home) {
   const ivec3 middle = BODY_GRID.origin + BODY_GRID.size * home + ivec3(BODY_GRID.size / 2);
   const uint32_t first = body_boundary_index(home);

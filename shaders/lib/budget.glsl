@@ -1,5 +1,6 @@
-// llvmpipe ends an invocation's loops silently at 65,535 iterations, all of them together. Every loop of unknown length asks
-// spent() and gives up with an overflow instead. The including shader declares `FrameState frame_state`, writable.
+// llvmpipe ends an invocation's loops silently at 65,535 iterations, all of them together. Every loop of
+// unknown length asks spent() and gives up with an overflow instead. The including shader declares
+// `FrameState frame_state`, writable.
 #ifndef PALPATE_LIB_BUDGET
 #define PALPATE_LIB_BUDGET
 

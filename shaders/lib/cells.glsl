@@ -9,12 +9,15 @@ uint32_t cell_number(ivec3 cell, ivec3 cells) {
 
 ivec3 cell_of_number(uint32_t number, ivec3 cells) {
   uint32_t row = number / uint32_t(cells.x);
-  return ivec3(int32_t(number - row * uint32_t(cells.x)), int32_t(row % uint32_t(cells.y)), int32_t(row / uint32_t(cells.y)));
+  return ivec3(int32_t(number - row * uint32_t(cells.x)), int32_t(row % uint32_t(cells.y)),
+               int32_t(row / uint32_t(cells.y)));
 }
 
-// First and last cell along each axis that, grown and closed, meets the closed box [lo, hi]. The grid's padding of two
-// voxels keeps lo − growth − 1 beyond the origin. ceil(x / side) − 1 = floor((x − 1) / side).
-ivec3 first_cell(ivec3 lo, ivec3 origin, int32_t side, int32_t growth) { return (lo - growth - 1 - origin) / side; }
+// First and last cell along each axis that, grown and closed, meets the closed box [lo, hi]. The grid's
+// padding of two voxels keeps lo − growth − 1 beyond the origin. ceil(x / side) − 1 = floor((x − 1) / side).
+ivec3 first_cell(ivec3 lo, ivec3 origin, int32_t side, int32_t growth) {
+  return (lo - growth - 1 - origin) / side;
+}
 ivec3 last_cell(ivec3 hi, ivec3 origin, int32_t side, int32_t growth, ivec3 cells) {
   return min((hi + growth - origin) / side, cells - 1);
 }

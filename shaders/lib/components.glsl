@@ -1,5 +1,5 @@
-// Nodes of the graph of components: 0 is what lies beyond the border, 1 + b is brick b if it is uniform, and then the
-// components of the mixed bricks, slot by slot. The file that includes this declares, before:
+// Nodes of the graph of components: 0 is what lies beyond the border, 1 + b is brick b if it is uniform, and
+// then the components of the mixed bricks, slot by slot. The file that includes this declares, before:
 //   Brick bricks[], uint32_t component_first[] (slots + 1), uint32_t labels[], and NODE_BRICKS.
 
 // What is looked up once for all voxels of a mixed brick.

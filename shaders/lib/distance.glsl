@@ -1,5 +1,5 @@
-// The distance between a lattice point and a triangle (docs/EXACTNESS.md section 4, "Distance"), exact. There are no loops here: they would count against
-// what llvmpipe lets an invocation run, triangle by triangle.
+// The distance between a lattice point and a triangle (docs/EXACTNESS.md section 4, "Distance"), exact. There
+// are no loops here: they would count against what llvmpipe lets an invocation run, triangle by triangle.
 #ifndef PALPATE_LIB_DISTANCE
 #define PALPATE_LIB_DISTANCE
 #include "shaders/shared/frame_field.h"
@@ -8,7 +8,8 @@
 
 int64_t wide_dot(ivec3 a, ivec3 b) { return mul_wide(a.x, b.x) + mul_wide(a.y, b.y) + mul_wide(a.z, b.z); }
 
-// floor(√v), 0 ≤ v < 2^62. A float's root is off by less than 2^10; what is left of v says by how much, to less than one.
+// floor(√v), 0 ≤ v < 2^62. A float's root is off by less than 2^10; what is left of v says by how much, to
+// less than one.
 int32_t floor_root(int64_t v) {
   int64_t r = int64_t(sqrt(float(v)));
   if (r > 0l) r += int64_t(floor(float(v - r * r) / (2.0 * float(r))));
@@ -33,20 +34,26 @@ int32_t floor_quotient(int64_t a, int32_t b) {
 }
 
 // How far p lies from the plane through a with the unit normal n (Q30). |n·(p − a)| within 3 · 2^59.
-int32_t height_above(ivec3 n, ivec3 a, ivec3 p) { return int32_t(abs((wide_dot(n, p - a) + (1l << 29)) >> 30)); }
+int32_t height_above(ivec3 n, ivec3 a, ivec3 p) {
+  return int32_t(abs((wide_dot(n, p - a) + (1l << 29)) >> 30));
+}
 
-// The squared distance by way of the edge from u to v, if the point lies on its outer side; the least of them so far, −1: none.
+// The squared distance by way of the edge from u to v, if the point lies on its outer side; the least of them
+// so far, −1: none.
 void pass_edge(ivec3 u, ivec3 v, ivec3 p, ivec3 n, int32_t height, inout int64_t least) {
   const ivec3 edge = v - u, from = p - u;
   const ivec3 along = normalise(i64vec3(edge));   // within 2^29
-  const ivec3 across = ivec3(i64vec3(mul_wide(along.y, n.z) - mul_wide(along.z, n.y), mul_wide(along.z, n.x) - mul_wide(along.x, n.z),
-                                     mul_wide(along.x, n.y) - mul_wide(along.y, n.x)) >> 30);
+  const ivec3 across = ivec3(i64vec3(mul_wide(along.y, n.z) - mul_wide(along.z, n.y),
+                                     mul_wide(along.z, n.x) - mul_wide(along.x, n.z),
+                                     mul_wide(along.x, n.y) - mul_wide(along.y, n.x)) >>
+                             30);
   const int32_t size = floor_root(wide_dot(along, along));   // from 2^28 on
   const int32_t side = floor_quotient(wide_dot(across, from), size);
   if (side <= 0) return;
   const int32_t at = floor_quotient(wide_dot(along, from), size);
   const int32_t over = max(0, max(-at, at - floor_root(wide_dot(edge, edge))));
-  const int64_t squared = mul_wide(height, height) + mul_wide(side, side) + mul_wide(over, over);   // within 3 · 2^60
+  // Within 3 · 2^60.
+  const int64_t squared = mul_wide(height, height) + mul_wide(side, side) + mul_wide(over, over);
   if (least == -1l || squared < least) least = squared;
 }
 

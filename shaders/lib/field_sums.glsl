@@ -1,5 +1,6 @@
-// Adds a workgroup's pushes to the field (docs/EXACTNESS.md section 8). Invocations put their terms side by side in shared memory; then each of the first ones
-// adds up one kind of term over the workgroup, and goes to the buffer only where the bin, or the carrier, changes: neighbours mostly share theirs.
+// Adds a workgroup's pushes to the field (docs/EXACTNESS.md section 8). Invocations put their terms side by
+// side in shared memory; then each of the first ones adds up one kind of term over the workgroup, and goes to
+// the buffer only where the bin, or the carrier, changes: neighbours mostly share theirs.
 // The including shader has scene, frame_input, int64_t field_work[] and carrier_work[] (both writable).
 #ifndef PALPATE_LIB_FIELD_SUMS
 #define PALPATE_LIB_FIELD_SUMS
@@ -43,12 +44,14 @@ uint32_t bin_of(ivec3 n) {
 }
 
 void put_push(Push push) {
-  const i64vec3 n = i64vec3(push.along), u = i64vec3(push.against), r = i64vec3(push.at) - i64vec3(frame_input.translation);
+  const i64vec3 n = i64vec3(push.along), u = i64vec3(push.against),
+                r = i64vec3(push.at) - i64vec3(frame_input.translation);
   const uint32_t weight = push.weight >> (push.sheet ? 0u : 1u);
   const int64_t p = int64_t((uint64_t(push.depth) * uint64_t(weight)) >> 14);
   put_term(0u, 1l);
   put_wide(1u, p * (n >> 10));
-  put_wide(7u, (p >> 10) * (i64vec3(r.y * n.z - r.z * n.y, r.z * n.x - r.x * n.z, r.x * n.y - r.y * n.x) >> 30));
+  put_wide(7u,
+           (p >> 10) * (i64vec3(r.y * n.z - r.z * n.y, r.z * n.x - r.x * n.z, r.x * n.y - r.y * n.x) >> 30));
   const int64_t steep = (n.x * u.x + n.y * u.y + n.z * u.z) >> 30;
   const int64_t give = steep > 0l ? (int64_t(weight) * steep) >> 34 : 0l;
   const i64vec3 lever = r >> scene.lever_shift, moment = give * lever;

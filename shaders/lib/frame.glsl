@@ -10,8 +10,10 @@ layout(local_size_x = kGroupSize) in;
 // An array of T behind `bind`, called `name`; and a single T.
 #define READ(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name[]; }
 #define EDIT(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name[]; }
-#define READ_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name; }
-// A small T that no shader of the frame writes: a uniform buffer, which llvmpipe reads once for all lanes. By is_uniform() of frame.h.
+#define READ_ONE(bind, T, name) \
+  layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name; }
+// A small T that no shader of the frame writes: a uniform buffer, which llvmpipe reads once for all lanes. By
+// is_uniform() of frame.h.
 #define CONSTANT(bind, T, name) layout(set = 0, binding = bind, scalar) uniform name##_block { T name; }
 #define EDIT_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name; }
 

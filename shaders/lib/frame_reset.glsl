@@ -1,5 +1,6 @@
-// The end of a frame: counts to the host, and the tables that are 0 between frames as they were, entry by entry, so that the cost follows the contact. After an
-// overflow the host clears them whole instead. The including shader has scene, frame_lists and frame_state.
+// The end of a frame: counts to the host, and the tables that are 0 between frames as they were, entry by
+// entry, so that the cost follows the contact. After an overflow the host clears them whole instead. The
+// including shader has scene, frame_lists and frame_state.
 #ifndef PALPATE_LIB_FRAME_RESET
 #define PALPATE_LIB_FRAME_RESET
 #include "shaders/lib/list_room.glsl"

@@ -1,5 +1,7 @@
-// Contacts that are left out (docs/EXACTNESS.md section 8): whether what would push has its static triangle in an ignored patch, which is then listed.
-// The including shader has frame_input, uint32_t mockup_patches[], ignored[], and, writable, ignored_state[], result_ignored[], frame_lists.
+// Contacts that are left out (docs/EXACTNESS.md section 8): whether what would push has its static triangle
+// in an ignored patch, which is then listed.
+// The including shader has frame_input, uint32_t mockup_patches[], ignored[], and, writable, ignored_state[],
+// result_ignored[], frame_lists.
 #ifndef PALPATE_LIB_IGNORED
 #define PALPATE_LIB_IGNORED
 #include "shaders/lib/list_room.glsl"

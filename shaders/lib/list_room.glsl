@@ -1,4 +1,5 @@
-// Room for items of a list, how many it has, and whether a frame is in contact. The including shader has frame_lists and frame_state, both writable.
+// Room for items of a list, how many it has, and whether a frame is in contact. The including shader has
+// frame_lists and frame_state, both writable.
 #ifndef PALPATE_LIST_ROOM_GLSL
 #define PALPATE_LIST_ROOM_GLSL
 // The place of the first of n items. Who crosses the capacity notes the overflow at once.
@@ -14,9 +15,12 @@ uint32_t list_count(uint32_t list) { return min(frame_lists[list].count, frame_l
 
 // When the sets are known.
 bool in_contact() {
-  return frame_state.meets != 0u && (frame_state.overflow & ~kOverflowAfterSets) == 0u && (frame_state.overflow_other & kOverflowLoop) == 0u;
+  return frame_state.meets != 0u && (frame_state.overflow & ~kOverflowAfterSets) == 0u &&
+         (frame_state.overflow_other & kOverflowLoop) == 0u;
 }
 
 // How many of `count` entries a chunk takes: `usual`, or as many as make `most` chunks.
-uint32_t chunk_of(uint32_t count, uint32_t usual, uint32_t most) { return max(usual, (count + most - 1u) / most); }
+uint32_t chunk_of(uint32_t count, uint32_t usual, uint32_t most) {
+  return max(usual, (count + most - 1u) / most);
+}
 #endif

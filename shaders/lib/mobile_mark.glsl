@@ -1,5 +1,5 @@
-// Sets a bit of a tool triangle's state; the first of kMobileSets enters it in C_m. The including file has mobile_state, contact_mobiles, frame_lists and
-// frame_state.
+// Sets a bit of a tool triangle's state; the first of kMobileSets enters it in C_m. The including file has
+// mobile_state, contact_mobiles, frame_lists and frame_state.
 #ifndef PALPATE_MOBILE_MARK_GLSL
 #define PALPATE_MOBILE_MARK_GLSL
 #include "shaders/lib/list_room.glsl"

@@ -6,8 +6,11 @@
 // and may include it again with other names for the other body (it has no include guard, and undefines them).
 // All outside the grid is V_ext.
 
-// The voxel that holds lattice point p, half-open; some voxel off the grid when p is off it. |p − origin| < 2^31.
-ivec3 PARTITION(voxel_of)(ivec3 p) { return cell_along(p - PARTITION_GRID.origin, PARTITION_GRID.size, 8 * PARTITION_GRID.bricks); }
+// The voxel that holds lattice point p, half-open; some voxel off the grid when p is off it. |p − origin| <
+// 2^31.
+ivec3 PARTITION(voxel_of)(ivec3 p) {
+  return cell_along(p - PARTITION_GRID.origin, PARTITION_GRID.size, 8 * PARTITION_GRID.bricks);
+}
 
 bool PARTITION(in_grid)(ivec3 voxel) {
   return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, PARTITION_GRID.bricks * 8));
@@ -16,7 +19,8 @@ bool PARTITION(in_grid)(ivec3 voxel) {
 // Entry of brick_slot[] for a brick inside the grid.
 uint32_t PARTITION(slot_of)(ivec3 brick) {
   ivec3 n = PARTITION_GRID.bricks;
-  return PARTITION_SLOTS[uint32_t(brick.x) + uint32_t(n.x) * (uint32_t(brick.y) + uint32_t(n.y) * uint32_t(brick.z))];
+  return PARTITION_SLOTS[uint32_t(brick.x) +
+                         uint32_t(n.x) * (uint32_t(brick.y) + uint32_t(n.y) * uint32_t(brick.z))];
 }
 
 // Bit of a voxel in its brick.
@@ -31,7 +35,8 @@ uint32_t PARTITION(class_of)(ivec3 voxel) {
   if (slot >= kBrickInternal) return slot == kBrickInternal ? kVoxelInternal : kVoxelExternal;
   uint32_t bit = PARTITION(bit_of)(voxel);
   if ((PARTITION_BRICKS[slot].boundary[bit >> 5] >> (bit & 31u) & 1u) != 0u) return kVoxelBoundary;
-  return (PARTITION_BRICKS[slot].internal_[bit >> 5] >> (bit & 31u) & 1u) != 0u ? kVoxelInternal : kVoxelExternal;
+  return (PARTITION_BRICKS[slot].internal_[bit >> 5] >> (bit & 31u) & 1u) != 0u ? kVoxelInternal
+                                                                                : kVoxelExternal;
 }
 
 // Compact index of a voxel of a mixed brick, for list_begin[]; kNoVoxel if it is not V_bnd.

@@ -9,7 +9,8 @@ struct SampledTriangle {
   i64vec3 normal;  // raw, N_k ≠ 0
 };
 
-// Side of the edge from p to q on which the grid point g, moved by (ε, ε²), lies. Differences within 2^29 + 1.
+// Side of the edge from p to q on which the grid point g, moved by (ε, ε²), lies. Differences within 2^29 +
+// 1.
 int grid_side(ivec2 p, ivec2 q, ivec2 g) {
   const int side = sign_of(mul_wide(q.x - p.x, g.y - p.y) - mul_wide(q.y - p.y, g.x - p.x));
   if (side != 0) return side;
@@ -47,8 +48,8 @@ bool grid_point_inside(SampledTriangle t, ivec2 g) {
 }
 
 // floor(a_k − (N_u (g_u − a_u) + N_v (g_v − a_v)) / N_k), for g in the triangle's box.
-// |N_u|, |N_v| ≤ |N_k| < 2^60 and |g − a| ≤ 2^29 + 1. The estimate from the leading 31 bits of N_k is at most 4 off, so that
-// the exact remainder is within 5 · 2^59.2 and may be computed modulo 2^64.
+// |N_u|, |N_v| ≤ |N_k| < 2^60 and |g − a| ≤ 2^29 + 1. The estimate from the leading 31 bits of N_k is at most
+// 4 off, so that the exact remainder is within 5 · 2^59.2 and may be computed modulo 2^64.
 int32_t height_on_triangle(SampledTriangle t, ivec2 g) {
   const ivec2 d = g - seen_along(t.axis, t.a);
   const int64_t nk = t.normal[t.axis];

@@ -1,4 +1,5 @@
-// What a sample weighs in the field: in large contacts samples are left out, level by level (docs/EXACTNESS.md sections 4 and 8).
+// What a sample weighs in the field: in large contacts samples are left out, level by level
+// (docs/EXACTNESS.md sections 4 and 8).
 // The including shader has scene, frame_input and frame_lists; its lists of samples and of C_m are closed.
 #ifndef PALPATE_LIB_SAMPLE_LEVELS
 #define PALPATE_LIB_SAMPLE_LEVELS
@@ -26,28 +27,34 @@ uint32_t log_q8(uint32_t count) {
 
 // Of this frame, Q8.
 uint32_t frame_level() {
-  const uint32_t count = list_count(kListSamples) + list_count(kListContactMobiles) / 16u, wanted = scene.contact_samples;
+  const uint32_t count = list_count(kListSamples) + list_count(kListContactMobiles) / 16u,
+                 wanted = scene.contact_samples;
   const uint32_t by_size = wanted != 0u && count > wanted ? log_q8(count) - log_q8(wanted) : 0u;
   return min(by_size + frame_input.coarser, 256u * kMostSampleLevel);
 }
 
 // Q30. `weights`: an extra sample's.
 uint64_t extra_weight(uint32_t weights[kMostSampleLevel + 1u]) {
-  const uint32_t now = frame_level(), part = now & 255u, level = now >> 8, next = min(level + 1u, kMostSampleLevel);
-  return (uint64_t(256u - part) * (uint64_t(weights[level]) << level) + uint64_t(part) * (uint64_t(weights[next]) << next)) >> 8;
+  const uint32_t now = frame_level(), part = now & 255u, level = now >> 8,
+                 next = min(level + 1u, kMostSampleLevel);
+  return (uint64_t(256u - part) * (uint64_t(weights[level]) << level) +
+          uint64_t(part) * (uint64_t(weights[next]) << next)) >>
+         8;
 }
 
-#define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                                               \
-  uint64_t NAME##_at(uint32_t base, uint32_t place, uint32_t level, uint32_t wanted) {                                       \
-    const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS[words]);                   \
-    if (level < taken) return 0ul;                                                                                           \
-    return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS[words + taken]) >> 30) << taken;                 \
-  }                                                                                                                          \
-  /* Q30. `base`: the triangle's field weight. */                                                                            \
-  uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij) {                                                                \
-    const uint32_t place = LEVELS[triangle], now = frame_level(), part = now & 255u;                                         \
-    if (place == 0u || now == 0u) return uint64_t(base);                                                                     \
-    const uint32_t level = level_of_cell(ij);                                                                               \
-    return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) + uint64_t(part) * NAME##_at(base, place, level, (now >> 8) + 1u)) >> 8; \
+#define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                               \
+  uint64_t NAME##_at(uint32_t base, uint32_t place, uint32_t level, uint32_t wanted) {                       \
+    const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS[words]);   \
+    if (level < taken) return 0ul;                                                                           \
+    return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS[words + taken]) >> 30) << taken; \
+  }                                                                                                          \
+  /* Q30. `base`: the triangle's field weight. */                                                            \
+  uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij) {                                                \
+    const uint32_t place = LEVELS[triangle], now = frame_level(), part = now & 255u;                         \
+    if (place == 0u || now == 0u) return uint64_t(base);                                                     \
+    const uint32_t level = level_of_cell(ij);                                                                \
+    return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) +                                \
+            uint64_t(part) * NAME##_at(base, place, level, (now >> 8) + 1u)) >>                              \
+           8;                                                                                                \
   }
 #endif

@@ -1,4 +1,5 @@
-// Room for a sample inside the tool, in its list and in the stage that sums what it pushes. The including shader has frame_lists and frame_state.
+// Room for a sample inside the tool, in its list and in the stage that sums what it pushes. The including
+// shader has frame_lists and frame_state.
 #ifndef PALPATE_LIB_SAMPLE_ROOM
 #define PALPATE_LIB_SAMPLE_ROOM
 #include "shaders/lib/list_room.glsl"

@@ -1,4 +1,5 @@
-// Names the sets that a slot of C_s, and a member of C_m, are in; counts into frame_state, starts their results. The including shader has frame_lists and frame_state.
+// Names the sets that a slot of C_s, and a member of C_m, are in; counts into frame_state, starts their
+// results. The including shader has frame_lists and frame_state.
 #ifndef PALPATE_LIB_SET_NAME
 #define PALPATE_LIB_SET_NAME
 #include "shaders/lib/list_room.glsl"

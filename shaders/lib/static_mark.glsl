@@ -1,5 +1,5 @@
-// Sets a bit of a static triangle's state; the first one gives it a slot in C_s. The including file has static_state, static_slot, contact_statics,
-// frame_lists and frame_state.
+// Sets a bit of a static triangle's state; the first one gives it a slot in C_s. The including file has
+// static_state, static_slot, contact_statics, frame_lists and frame_state.
 #ifndef PALPATE_STATIC_MARK_GLSL
 #define PALPATE_STATIC_MARK_GLSL
 #include "shaders/lib/list_room.glsl"

@@ -1,9 +1,11 @@
-// Whether two closed triangles share a point, exactly: coplanar overlap and touching count. Neither may be collapsed.
+// Whether two closed triangles share a point, exactly: coplanar overlap and touching count. Neither may be
+// collapsed.
 #ifndef PALPATE_TRIANGLE_PAIR_GLSL
 #define PALPATE_TRIANGLE_PAIR_GLSL
 #include "shaders/lib/wide_integer.glsl"
 
-// Sign of (b − a) × (c − a) · (d − a): > 0 when d lies on the side to which abc, seen counter-clockwise, faces.
+// Sign of (b − a) × (c − a) · (d − a): > 0 when d lies on the side to which abc, seen counter-clockwise,
+// faces.
 int orientation(ivec3 a, ivec3 b, ivec3 c, ivec3 d) {
   return sign_dot(raw_normal(a, b, c), d - a);
 }
@@ -38,18 +40,21 @@ int64_t area_along(int k, ivec3 u, ivec3 v, ivec3 w) {
   return int64_t(v[i] - u[i]) * int64_t(w[j] - u[j]) - int64_t(v[j] - u[j]) * int64_t(w[i] - u[i]);
 }
 
-// Whether an edge of s has all of t strictly on its outer side, in the projection along k where s turns as `turn`.
+// Whether an edge of s has all of t strictly on its outer side, in the projection along k where s turns as
+// `turn`.
 bool edge_separates(Triangle s, Triangle t, int k, int turn) {
   bool apart = false;
   for (int e = 0; e < 3; ++e) {
     const ivec3 u = corner_of(s, e), v = corner_of(s, (e + 1) % 3);
-    const ivec3 sides = turn * ivec3(sign_of(area_along(k, u, v, t.a)), sign_of(area_along(k, u, v, t.b)), sign_of(area_along(k, u, v, t.c)));
+    const ivec3 sides = turn * ivec3(sign_of(area_along(k, u, v, t.a)), sign_of(area_along(k, u, v, t.b)),
+                                     sign_of(area_along(k, u, v, t.c)));
     apart = apart || all(lessThan(sides, ivec3(0)));
   }
   return apart;
 }
 
-// Convex sets in a plane are disjoint exactly when a line along an edge of one of them separates them strictly.
+// Convex sets in a plane are disjoint exactly when a line along an edge of one of them separates them
+// strictly.
 bool coplanar_triangles_meet(Triangle s, Triangle t, i64vec3 n) {
   const int k = largest_axis(n);
   const int s_turn = sign_of(area_along(k, s.a, s.b, s.c)), t_turn = sign_of(area_along(k, t.a, t.b, t.c));
@@ -60,14 +65,16 @@ bool same_side(ivec3 sides) {
   return all(greaterThanEqual(sides, ivec3(0))) || all(lessThanEqual(sides, ivec3(0)));
 }
 
-// An edge whose ends lie on different sides of the other's plane (touching allowed, not both) meets the other triangle
-// exactly when the edge's line passes its three edges on one side. `line` are those three orientations.
+// An edge whose ends lie on different sides of the other's plane (touching allowed, not both) meets the other
+// triangle exactly when the edge's line passes its three edges on one side. `line` are those three
+// orientations.
 bool edge_meets(int from, int to, ivec3 line) {
   return from * to <= 0 && (from != 0 || to != 0) && same_side(line);
 }
 
-// Two triangles in different planes meet exactly when an edge of one meets the other at a single point; edges that lie in
-// the other's plane need no look of their own, because their ends and what crosses them belong to edges that do not.
+// Two triangles in different planes meet exactly when an edge of one meets the other at a single point; edges
+// that lie in the other's plane need no look of their own, because their ends and what crosses them belong to
+// edges that do not.
 bool triangles_meet(Triangle s, Triangle t) {
   const i64vec3 t_normal = raw_normal(t.a, t.b, t.c);
   const ivec3 s_sides = plane_sides(t_normal, t.a, s);

@@ -1,6 +1,8 @@
-// Union-find without locks. Nodes of a slot: one joins areas and, where there are ZONES, one joins zones. The including shader declares
+// Union-find without locks. Nodes of a slot: one joins areas and, where there are ZONES, one joins zones. The
+// including shader declares
 //   coherent buffer uint32_t parents[], uint32_t contact_statics[], FrameState frame_state.
-// A root is only ever hooked to a root of a smaller static id, so parents never form a ring and a set's root is its smallest id.
+// A root is only ever hooked to a root of a smaller static id, so parents never form a ring and a set's root
+// is its smallest id.
 
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/union_nodes.glsl"
@@ -11,7 +13,8 @@ uint32_t union_root(uint32_t node) {
     if (parent == node) return node;
     const uint32_t above = parents[parent];
     if (above == parent) return parent;
-    parents[node] = above;   // halves the path; only nodes that are no roots are written, and only with an ancestor
+    // Halves the path; only nodes that are no roots are written, and only with an ancestor.
+    parents[node] = above;
     node = above;
   }
   return node;

@@ -1,4 +1,5 @@
-// Nodes of the union-find (lib/union_find.glsl): where no zones are joined, their half of the buffer isn't there.
+// Nodes of the union-find (lib/union_find.glsl): where no zones are joined, their half of the buffer isn't
+// there.
 #ifndef PALPATE_LIB_UNION_NODES
 #define PALPATE_LIB_UNION_NODES
 #include "shaders/lib/plan.glsl"

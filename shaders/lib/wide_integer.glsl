@@ -12,7 +12,8 @@ i64vec3 raw_normal(ivec3 a, ivec3 b, ivec3 c) {
   return i64vec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
 }
 
-// A value of up to 2^93 as high · 2^30 + low, 0 ≤ low < 2^30: the sum of products of 32-bit and 60-bit integers.
+// A value of up to 2^93 as high · 2^30 + low, 0 ≤ low < 2^30: the sum of products of 32-bit and 60-bit
+// integers.
 struct Split30 {
   int64_t high;
   int64_t low;
@@ -20,8 +21,8 @@ struct Split30 {
 
 Split30 split30_carry(int64_t high, int64_t low) { return Split30(high + (low >> 30), low & 0x3FFFFFFFl); }
 
-// n·d, |n_i| < 2^61, |d_i| ≤ 2^30: each sum is within 3·2^61 < 2^63. The high parts fit 32 bits: products of widened 32-bit integers
-// are one instruction where those of 64-bit ones are eight.
+// n·d, |n_i| < 2^61, |d_i| ≤ 2^30: each sum is within 3·2^61 < 2^63. The high parts fit 32 bits: products of
+// widened 32-bit integers are one instruction where those of 64-bit ones are eight.
 Split30 split30_dot(i64vec3 n, ivec3 d) {
   i64vec3 w = i64vec3(d);
   i64vec3 h = i64vec3(ivec3(n >> 30));

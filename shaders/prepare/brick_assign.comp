@@ -1,5 +1,5 @@
-// One invocation: a brick. Reads the prefix sums of the marks; gives a mixed brick its slot, any other kBrickExternal for
-// the time being; writes each slot's brick number.
+// One invocation: a brick. Reads the prefix sums of the marks; gives a mixed brick its slot, any other
+// kBrickExternal for the time being; writes each slot's brick number.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

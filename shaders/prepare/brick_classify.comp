@@ -1,5 +1,6 @@
-// One invocation: a brick. Gives a uniform brick its code and a mixed one its internal bits: a component is V_int when it
-// does not reach the border (its root is not 0) and its votes are positive. Raises has_internal if there is any.
+// One invocation: a brick. Gives a uniform brick its code and a mixed one its internal bits: a component is
+// V_int when it does not reach the border (its root is not 0) and its votes are positive. Raises has_internal
+// if there is any.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

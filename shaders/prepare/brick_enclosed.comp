@@ -1,5 +1,5 @@
-// One invocation: a mixed brick. Writes 1 if one of its components does not reach the border, else 0. Before: parents are
-// roots.
+// One invocation: a mixed brick. Writes 1 if one of its components does not reach the border, else 0. Before:
+// parents are roots.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

@@ -1,6 +1,7 @@
-// One invocation: a mixed brick. Finds the components of its voxels that are not boundary, connected through faces inside
-// the brick, by flooding eight slices of 64 bits. Writes their number, and each voxel's component in bit planes: bit k
-// of the component of voxel `bit` is bit of labels[slot · 128 + k · 16 …]. Before: labels are 0.
+// One invocation: a mixed brick. Finds the components of its voxels that are not boundary, connected through
+// faces inside the brick, by flooding eight slices of 64 bits. Writes their number, and each voxel's
+// component in bit planes: bit k of the component of voxel `bit` is bit of labels[slot · 128 + k · 16 …].
+// Before: labels are 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -16,8 +17,8 @@ layout(push_constant, scalar) uniform Push { uint32_t count; };
 const uint64_t kColumn0 = 0x0101010101010101ul;   // voxels with x = 0
 const uint64_t kColumn7 = 0x8080808080808080ul;
 
-// Cells of `open` that a straight walk from r reaches through `open`, along +x, −x, +y and −y one after the other. Each walk
-// doubles its stride: 1, 2 and 4 cells cover a slice.
+// Cells of `open` that a straight walk from r reaches through `open`, along +x, −x, +y and −y one after the
+// other. Each walk doubles its stride: 1, 2 and 4 cells cover a slice.
 uint64_t flood_slice(uint64_t r, uint64_t open) {
   uint64_t pass = open & ~kColumn0;
   r |= pass & r << 1;

@@ -1,5 +1,5 @@
-// One invocation: a mixed brick. Reads the prefix sums of the bricks' boundary voxels, numbers this brick's: writes
-// first[] of the brick and the place (slot · 512 + bit) of each of its boundary voxels.
+// One invocation: a mixed brick. Reads the prefix sums of the bricks' boundary voxels, numbers this brick's:
+// writes first[] of the brick and the place (slot · 512 + bit) of each of its boundary voxels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

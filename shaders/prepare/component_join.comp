@@ -1,6 +1,7 @@
-// One invocation: a brick and an axis (item = brick · 3 + axis). Joins the nodes that meet at the brick's upper face, and
-// with node 0 those that lie at the grid's border. The smallest node of a tree is its root. A union that loses too many
-// races or walks too far raises `again`: the host runs all once more, which does no harm.
+// One invocation: a brick and an axis (item = brick · 3 + axis). Joins the nodes that meet at the brick's
+// upper face, and with node 0 those that lie at the grid's border. The smallest node of a tree is its root. A
+// union that loses too many races or walks too far raises `again`: the host runs all once more, which does no
+// harm.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"
@@ -46,7 +47,8 @@ void join(uint32_t a, uint32_t b) {
 
 // Bit of voxel (i, j) of a face at `depth` along the axis.
 uint32_t face_bit(uint32_t axis, uint32_t depth, uint32_t i, uint32_t j) {
-  return axis == 0u ? depth | i << 3 | j << 6 : (axis == 1u ? i | depth << 3 | j << 6 : i | j << 3 | depth << 6);
+  return axis == 0u ? depth | i << 3 | j << 6
+                    : (axis == 1u ? i | depth << 3 | j << 6 : i | j << 3 | depth << 6);
 }
 
 // Nodes of one side of a face.

@@ -1,5 +1,5 @@
-// One invocation: a node. Replaces its parent by its root; INIT 1: makes it its own parent. A walk that is too long
-// raises `again`, and the host runs all once more.
+// One invocation: a node. Replaces its parent by its root; INIT 1: makes it its own parent. A walk that is
+// too long raises `again`, and the host runs all once more.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

@@ -1,5 +1,6 @@
-// One invocation: an entry of the lists. Merges neighbouring sorted runs of `run` entries into runs of 2·run: the entry
-// moves to its place among both runs, which is its rank in the other one. Entries of short lists are copied.
+// One invocation: an entry of the lists. Merges neighbouring sorted runs of `run` entries into runs of 2·run:
+// the entry moves to its place among both runs, which is its rank in the other one. Entries of short lists
+// are copied.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

@@ -1,5 +1,6 @@
-// One invocation: an entry of a voxel's list. Its place among the kRankSpan entries of its chunk of the list is the number of
-// smaller ones. Reads lists, writes sorted; lists longer than a chunk raise `longest` and are left to list_merge.
+// One invocation: an entry of a voxel's list. Its place among the kRankSpan entries of its chunk of the list
+// is the number of smaller ones. Reads lists, writes sorted; lists longer than a chunk raise `longest` and
+// are left to list_merge.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"
@@ -23,6 +24,7 @@ void main() {
     end = min(end, begin + kRankSpan);
   }
   uint32_t id = list_triangles[entry], rank = 0u;
-  for (uint32_t i = begin; i < end; ++i) rank += list_triangles[i] < id ? 1u : 0u;   // ids in a list are distinct
+  // Ids in a list are distinct.
+  for (uint32_t i = begin; i < end; ++i) rank += list_triangles[i] < id ? 1u : 0u;
   sorted[begin + rank] = id;
 }

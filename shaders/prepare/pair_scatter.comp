@@ -1,5 +1,6 @@
-// One invocation: a pair (triangle, boundary voxel). Puts the triangle into the voxel's list at the next free place;
-// cursors start as the lists' begins. Notes the voxel of every entry. The order inside a list is left to list_rank.
+// One invocation: a pair (triangle, boundary voxel). Puts the triangle into the voxel's list at the next free
+// place; cursors start as the lists' begins. Notes the voxel of every entry. The order inside a list is left
+// to list_rank.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

@@ -1,6 +1,6 @@
-// One invocation: a pair (triangle, boundary voxel). For each of the first `axis` axes: does the line through the voxel's
-// centre along that axis, its point perturbed (docs/EXACTNESS.md section 1), cross the triangle inside this voxel? Adds
-// the crossing's sign to crossings[voxels · axis + voxel]. Before: crossings are 0.
+// One invocation: a pair (triangle, boundary voxel). For each of the first `axis` axes: does the line through
+// the voxel's centre along that axis, its point perturbed (docs/EXACTNESS.md section 1), cross the triangle
+// inside this voxel? Adds the crossing's sign to crossings[voxels · axis + voxel]. Before: crossings are 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"
@@ -17,8 +17,8 @@ layout(scalar, set = 0, binding = 5) readonly buffer MixedBrick { uint32_t mixed
 layout(scalar, set = 0, binding = 6) buffer Crossings { int32_t crossings[]; };
 layout(push_constant, scalar) uniform Push { GridPush push; uint32_t voxels; };
 
-// Side of the line along `axis` (u, v the next axes, cyclic) on which the edge p→q, relative to the perturbed point,
-// passes: sign of e·(p×q), or of the first non-zero component of e×(q−p) in the order x, y, z.
+// Side of the line along `axis` (u, v the next axes, cyclic) on which the edge p→q, relative to the perturbed
+// point, passes: sign of e·(p×q), or of the first non-zero component of e×(q−p) in the order x, y, z.
 int32_t edge_side(uint32_t axis, ivec3 p, ivec3 q) {
   uint32_t u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
   int64_t area = mul_wide(p[u], q[v]) - mul_wide(p[v], q[u]);
@@ -43,7 +43,8 @@ void main() {
   for (uint32_t axis = 0u; axis < push.axis; ++axis) {
     int32_t facing = sign_of(n[axis]);
     if (facing == 0) continue;
-    if (edge_side(axis, a, b) != facing || edge_side(axis, b, c) != facing || edge_side(axis, c, a) != facing) continue;
+    if (edge_side(axis, a, b) != facing || edge_side(axis, b, c) != facing || edge_side(axis, c, a) != facing)
+      continue;
     // In [lower face, upper face) along the axis: the crossing lies where n·(a − x) changes sign.
     ivec3 half_step = ivec3(0);
     half_step[axis] = push.size / 2;

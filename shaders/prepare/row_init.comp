@@ -1,5 +1,6 @@
-// One invocation: a row of bricks along x. Gives every run of uniform bricks in it one parent: node 0 if the run reaches the
-// border, else its first brick. Before: every node is its own parent. component_join then leaves such neighbours out.
+// One invocation: a row of bricks along x. Gives every run of uniform bricks in it one parent: node 0 if the
+// run reaches the border, else its first brick. Before: every node is its own parent. component_join then
+// leaves such neighbours out.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

@@ -1,5 +1,5 @@
-// One invocation: a row of bricks along `axis`. Links its mixed bricks from the far end to the near one: row_head[row] is the
-// slot of the first, row_link[slot] the next, kNoVoxel ends.
+// One invocation: a row of bricks along `axis`. Links its mixed bricks from the far end to the near one:
+// row_head[row] is the slot of the first, row_link[slot] the next, kNoVoxel ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"

@@ -1,7 +1,9 @@
 #version 460
-// One invocation: an entry of the mock-up's lists, from `first` on, a triangle in a voxel. Counts the triangle's samples that lie in the
-// voxel (EMIT 0), or lists them, and whether its first corner lies in it (EMIT 1; form: compute/scene/samples.h).
-// Reads the mock-up and its partition. Writes begins[]; EMIT 1 also samples[], from those of number `base` on.
+// One invocation: an entry of the mock-up's lists, from `first` on, a triangle in a voxel. Counts the
+// triangle's samples that lie in the voxel (EMIT 0), or lists them, and whether its first corner lies in it
+// (EMIT 1; form: compute/scene/samples.h).
+// Reads the mock-up and its partition. Writes begins[]; EMIT 1 also samples[], from those of number `base`
+// on.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"
 #include "shaders/shared/scene.h"
@@ -28,8 +30,10 @@ void main() {
   if (item_index() >= push.count) return;
   const uint32_t entry = item_index() + push.first;
   const uint32_t place = boundary_place[entry_voxel[entry]], bit = place & 511u;
-  const ivec3 voxel = 8 * cell_of_number(mixed_brick[place >> 9], push.bricks) + ivec3(bit & 7u, bit >> 3 & 7u, bit >> 6);
-  const ivec3 low = push.origin + push.size * voxel, high = low + push.size - 1;   // the last lattice point of the half-open cube
+  const ivec3 voxel =
+      8 * cell_of_number(mixed_brick[place >> 9], push.bricks) + ivec3(bit & 7u, bit >> 3 & 7u, bit >> 6);
+  // The last lattice point of the half-open cube.
+  const ivec3 low = push.origin + push.size * voxel, high = low + push.size - 1;
   const uint32_t id = list_triangles[entry];
   const uvec3 corners = triangles[id];
   SampledTriangle t;
@@ -41,7 +45,8 @@ void main() {
   uint32_t count = 0u;
   const uint32_t begin = EMIT != 0u ? begins[entry] : 0u;
   const ivec2 grid = cell_of_sample(seen_along(t.axis, low), push.spacing);
-  // Cells that reach into the voxel and into the triangle's box; at most 64 an axis, as a voxel is at most 63 spacings.
+  // Cells that reach into the voxel and into the triangle's box; at most 64 an axis, as a voxel is at most 63
+  // spacings.
   const ivec2 first = cell_of_sample(seen_along(t.axis, max(low, min(min(t.a, t.b), t.c))), push.spacing);
   const ivec2 last = cell_of_sample(seen_along(t.axis, min(high, max(max(t.a, t.b), t.c))), push.spacing);
   for (int32_t j = first.y; j <= last.y; ++j) {
@@ -64,5 +69,6 @@ void main() {
     }
   }
   const bool corner = all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high));
-  begins[entry] = EMIT == 0u ? count : begin | (corner ? kSampleCorner : 0u) | uint32_t(t.axis) << kSampleAxisShift;
+  begins[entry] =
+      EMIT == 0u ? count : begin | (corner ? kSampleCorner : 0u) | uint32_t(t.axis) << kSampleAxisShift;
 }

@@ -1,5 +1,6 @@
-// One invocation: a chunk of kScanChunk numbers. Reads values and, in bases, the sum of all chunks before each; replaces
-// every value by the sum of all values before it. Second step; `has_bases` is 0 for a lone chunk.
+// One invocation: a chunk of kScanChunk numbers. Reads values and, in bases, the sum of all chunks before
+// each; replaces every value by the sum of all values before it. Second step; `has_bases` is 0 for a lone
+// chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/item.glsl"

@@ -1,7 +1,8 @@
-// One invocation: a triangle and the whole grid, or an item (triangle, cell) of the level above. Finds the cells of this
-// level that, closed and grown, touch the triangle. emit 0: writes their number to counts; emit 1: reads counts, now
-// prefix sums, and writes the items. Before: cells of this level are at most kTopCells along each axis (large
-// triangles), or an eighth of the parents' (items), so that no invocation tests more than 512.
+// One invocation: a triangle and the whole grid, or an item (triangle, cell) of the level above. Finds the
+// cells of this level that, closed and grown, touch the triangle. emit 0: writes their number to counts; emit
+// 1: reads counts, now prefix sums, and writes the items. Before: cells of this level are at most kTopCells
+// along each axis (large triangles), or an eighth of the parents' (items), so that no invocation tests more
+// than 512.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"
@@ -46,7 +47,8 @@ void main() {
     i64vec3 n = raw_normal(a, b, c);
     ivec3 grid_end = push.origin + push.bricks * push.brick_side;
     uint32_t at = push.emit != 0u ? counts[item] : 0u;
-    // One loop instead of three: invocations that run together are done after the most cells that any of them has.
+    // One loop instead of three: invocations that run together are done after the most cells that any of them
+    // has.
     ivec3 cell = first;
     while (all(lessThanEqual(cell, last))) {
       ivec3 box_lo = push.origin + cell * push.side;

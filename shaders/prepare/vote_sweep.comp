@@ -1,6 +1,7 @@
-// One invocation: a row of voxels along `axis`. Walks its mixed bricks from the far end and keeps the winding, the sum of the
-// crossings passed; every voxel that is not boundary gives its component's root a vote: +1 where the winding is not 0,
-// else −1. Components that reach the border get none. Before: parents are roots; row_link along this axis.
+// One invocation: a row of voxels along `axis`. Walks its mixed bricks from the far end and keeps the
+// winding, the sum of the crossings passed; every voxel that is not boundary gives its component's root a
+// vote: +1 where the winding is not 0, else −1. Components that reach the border get none. Before: parents
+// are roots; row_link along this axis.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"

@@ -1,6 +1,7 @@
-// One invocation: an item (triangle, brick). Finds the brick's voxels that, closed and grown, touch the triangle.
-// emit 0: marks them as boundary and writes their number to counts. emit 1: reads counts, now prefix sums, writes pairs
-// (triangle, compact index of the voxel) and counts the triangles of each voxel. Before emit 1: first[] of every brick.
+// One invocation: an item (triangle, brick). Finds the brick's voxels that, closed and grown, touch the
+// triangle. emit 0: marks them as boundary and writes their number to counts. emit 1: reads counts, now
+// prefix sums, writes pairs (triangle, compact index of the voxel) and counts the triangles of each voxel.
+// Before emit 1: first[] of every brick.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"
@@ -29,7 +30,9 @@ void main() {
   ivec3 a = vertices[corner.x], b = vertices[corner.y], c = vertices[corner.z];
   ivec3 base = cell_of_number(brick, push.bricks) * 8;
   ivec3 first = max(first_cell(min(a, min(b, c)), push.origin, push.size, push.growth), base) - base;
-  ivec3 last = min(last_cell(max(a, max(b, c)), push.origin, push.size, push.growth, push.bricks * 8), base + 7) - base;
+  ivec3 last =
+      min(last_cell(max(a, max(b, c)), push.origin, push.size, push.growth, push.bricks * 8), base + 7) -
+      base;
   ivec3 corner_of_brick = push.origin + base * push.size;
   i64vec3 n = raw_normal(a, b, c);
   uint32_t at = push.emit != 0u ? push.out_base + counts[item] : 0u;
@@ -43,7 +46,8 @@ void main() {
       if (push.emit == 0u) {
         atomicOr(bricks[slot].boundary[word], mask);
       } else {
-        uint32_t index = bricks[slot].first[word] + uint32_t(bitCount(bricks[slot].boundary[word] & (mask - 1u)));
+        uint32_t index =
+            bricks[slot].first[word] + uint32_t(bitCount(bricks[slot].boundary[word] & (mask - 1u)));
         pair_triangle[at + found] = t;
         pair_voxel[at + found] = index;
         atomicAdd(list_count[index], 1u);

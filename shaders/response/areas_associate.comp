@@ -1,5 +1,6 @@
 #version 460
-// One invocation: a tool triangle of C_m. Gives it to every area whose sphere holds its rounded centroid, else to the nearest.
+// One invocation: a tool triangle of C_m. Gives it to every area whose sphere holds its rounded centroid,
+// else to the nearest.
 // Reads areas, transformed vertices. Writes members, mobile_areas.
 // Before: areas_gather.
 #extension GL_GOOGLE_include_directive : require
@@ -32,7 +33,9 @@ void main() {
   if (i >= frame_lists[kListContactMobiles].count) return;
   const uint32_t mobile = contact_mobiles[i];
   const uvec3 corners = tool_triangles[mobile];
-  const ivec3 g = rounded_centroid(world_from_tool(tool_vertices[corners.x]), world_from_tool(tool_vertices[corners.y]), world_from_tool(tool_vertices[corners.z]));
+  const ivec3 g =
+      rounded_centroid(world_from_tool(tool_vertices[corners.x]), world_from_tool(tool_vertices[corners.y]),
+                       world_from_tool(tool_vertices[corners.z]));
   bool held_by_one = false;
   uint32_t nearest = kNone;
   int64_t nearest_distance = 0l;

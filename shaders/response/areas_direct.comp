@@ -14,7 +14,8 @@ EDIT(kBindAreas, AreaWork, areas);
 void main() {
   const uint32_t count = min(response.areas, kMaxFrameAreas);
   for (uint32_t area = gl_LocalInvocationIndex; area < count; area += kGroupSize) {
-    const i64vec3 sum = areas[area].zones > 1u ? -vector_of(areas[area].mobile_sum) : vector_of(areas[area].static_sum);
+    const i64vec3 sum =
+        areas[area].zones > 1u ? -vector_of(areas[area].mobile_sum) : vector_of(areas[area].static_sum);
     if (sum == i64vec3(0l)) areas[area].flags = kAreaFlagCancelled | kAreaFlagNoDirection;
     else areas[area].direction = normalise(sum);
   }

@@ -14,5 +14,8 @@ READ(kBindAreas, AreaWork, areas);
 void main() {
   const uint32_t count = min(response.areas, kMaxFrameAreas);
   for (uint32_t area = gl_LocalInvocationIndex; area < count; area += kGroupSize)
-    if (areas[area].zones > 1u) dispatches[kDispatchAreaMembers] = items_for(min(frame_lists[kListMembers].count, frame_lists[kListMembers].capacity));   // whoever writes it, the same value
+    if (areas[area].zones > 1u)
+      dispatches[kDispatchAreaMembers] =
+          items_for(min(frame_lists[kListMembers].count,
+                        frame_lists[kListMembers].capacity));  // whoever writes it, the same value
 }

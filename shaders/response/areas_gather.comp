@@ -1,6 +1,7 @@
 #version 460
 // One invocation: a slot of C_s. Adds its triangle to its area: box, zones, the sum of static normals.
-// Reads parents, slot_areas, the mock-up's triangles. Writes areas, slot_areas, area and zone of the statics' results.
+// Reads parents, slot_areas, the mock-up's triangles. Writes areas, slot_areas, area and zone of the statics'
+// results.
 // Before: areas_number.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"

@@ -1,6 +1,6 @@
 #version 460
-// One invocation: a slot of C_s. Joins its triangle with its neighbours of smaller id in C_s: into areas over every shared edge,
-// into zones over smooth ones.
+// One invocation: a slot of C_s. Joins its triangle with its neighbours of smaller id in C_s: into areas over
+// every shared edge, into zones over smooth ones.
 // Reads the mock-up's neighbours, static states. Writes parents.
 // Before: areas_begin.
 #extension GL_GOOGLE_include_directive : require

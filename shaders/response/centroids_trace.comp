@@ -1,6 +1,8 @@
 #version 460
-// One invocation: a triangle of C_s. Traces −n_c from its rounded centroid through the tool triangles that its area has of C_m.
-// Reads the mock-up's triangles, slot_areas, areas, the tool at its pose, mobile_state and mobile_areas. Adds the height to the area.
+// One invocation: a triangle of C_s. Traces −n_c from its rounded centroid through the tool triangles that
+// its area has of C_m.
+// Reads the mock-up's triangles, slot_areas, areas, the tool at its pose, mobile_state and mobile_areas. Adds
+// the height to the area.
 // Before: areas_associate, areas_direct.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -27,8 +29,8 @@ EDIT(kBindAreas, AreaWork, areas);
 #include "shaders/lib/centroid.glsl"
 #include "shaders/lib/area_sphere.glsl"
 
-// Whether the area has the tool triangle at a place in the order of clusters: what areas_associate has put down, asked the other way round,
-// so that no invocation walks a list of members.
+// Whether the area has the tool triangle at a place in the order of clusters: what areas_associate has put
+// down, asked the other way round, so that no invocation walks a list of members.
 bool area_has(uint32_t area, uint32_t place) {
   const uint32_t mobile = tool_records[place].id;
   if ((mobile_state[mobile] & kMobileSets) == 0u) return false;   // not in C_m
@@ -38,10 +40,12 @@ bool area_has(uint32_t area, uint32_t place) {
   return area_holds(area, rounded_centroid(t.a, t.b, t.c));
 }
 
-const uint32_t kCandidates = 16u;   // triangles put by for the exact test (chosen: a ray of a compact tool has 2 to 6)
+// Triangles put by for the exact test (chosen: a ray of a compact tool has 2 to 6).
+const uint32_t kCandidates = 16u;
 
-// The smallest height at which the ray from p in direction d crosses a triangle of the area; kNone: none. First those that the ray may meet are put
-// by, then all are tested: so that rays side by side, which meet different triangles, run the long exact test together.
+// The smallest height at which the ray from p in direction d crosses a triangle of the area; kNone: none.
+// First those that the ray may meet are put by, then all are tested: so that rays side by side, which meet
+// different triangles, run the long exact test together.
 uint32_t area_height(uint32_t area, ivec3 p, ivec3 d) {
   const vec3 e = ray_scaled(d);
   const uint32_t triangles = scene.tool.triangles;
@@ -52,7 +56,8 @@ uint32_t area_height(uint32_t area, ivec3 p, ivec3 d) {
     uint32_t count = 0u;
     while (i < triangles && count < kCandidates && !spent(1u)) {
       const uint32_t cluster = i / kClusterSize, run = i / kRunSize;
-      if (i % kClusterSize == 0u && !ray_may_meet_box(p, e, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) {
+      if (i % kClusterSize == 0u &&
+          !ray_may_meet_box(p, e, cluster_boxes[cluster].low, cluster_boxes[cluster].high)) {
         i += kClusterSize;
       } else if (i % kRunSize == 0u && !ray_may_meet_box(p, e, run_boxes[run].low, run_boxes[run].high)) {
         i += kRunSize;
@@ -64,7 +69,8 @@ uint32_t area_height(uint32_t area, ivec3 p, ivec3 d) {
     }
     for (uint32_t k = 0u; k < count && !spent(1u); ++k) {
       const ToolCorners t = tool_corners[candidates[k]];
-      const Crossing crossing = ray_crossing(p, d, t.a, t.b, t.c);   // none for a void triangle: its corners are one point
+      // None for a void triangle: its corners are one point.
+      const Crossing crossing = ray_crossing(p, d, t.a, t.b, t.c);
       if (crossing.sign != 0) least = min(least, crossing.height);
     }
   }
@@ -79,7 +85,10 @@ void main() {
   const ivec3 direction = areas[area].direction;
   if (direction == ivec3(0)) return;
   const uvec3 corners = mockup_triangles[contact_statics[slot]];
-  const uint32_t height = area_height(area, rounded_centroid(mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]), -direction);
+  const uint32_t height = area_height(
+      area,
+      rounded_centroid(mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]),
+      -direction);
   if (height == kNone) return;
   atomicAdd(areas[area].rays, 1u);
   atomicMax(areas[area].max_height, height);

@@ -1,5 +1,6 @@
 #version 460
-// One invocation: a member of an area. Where the area has several zones, adds the tool triangle's rotated normal.
+// One invocation: a member of an area. Where the area has several zones, adds the tool triangle's rotated
+// normal.
 // Reads members, the tool's normals. Writes areas[].mobile_sum.
 // Before: areas_first.
 #extension GL_GOOGLE_include_directive : require

@@ -1,6 +1,8 @@
 #version 460
-// One invocation: a touched V_bnd voxel (`paper`). Adds its centre to every area that has a triangle in its list.
-// Reads touched voxels, the voxels' lists, static states and slots, slot_areas. Writes areas[].voxel_sum and voxel_count.
+// One invocation: a touched V_bnd voxel (`paper`). Adds its centre to every area that has a triangle in its
+// list.
+// Reads touched voxels, the voxels' lists, static states and slots, slot_areas. Writes areas[].voxel_sum and
+// voxel_count.
 // Before: areas_gather.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -21,7 +23,8 @@ void main() {
   const uint32_t i = flat_invocation();
   if (i >= frame_lists[kListTouchedVoxels].count) return;
   const FrameVoxel touched = touched_voxels[i];
-  const i64vec3 centre = i64vec3(scene.mockup.grid.origin + touched.voxel * scene.mockup.grid.size + scene.mockup.grid.size / 2);
+  const i64vec3 centre =
+      i64vec3(scene.mockup.grid.origin + touched.voxel * scene.mockup.grid.size + scene.mockup.grid.size / 2);
   uint32_t seen[kMaxFrameAreas / 32u];
   for (uint32_t w = 0u; w < kMaxFrameAreas / 32u; ++w) seen[w] = 0u;
   const uint32_t begin = mockup_list_begin[touched.boundary], end = mockup_list_begin[touched.boundary + 1u];
