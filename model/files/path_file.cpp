@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string_view>
 
 #include "model/files/csv_file.h"
@@ -77,6 +78,18 @@ Result<std::vector<PathPoint>> read_path(const std::string& file, bool guided) {
     return read.error();
   if (path.empty()) return bad_value(file + " has no point");
   return path;
+}
+
+std::optional<bool> guided_header(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  std::getline(in, line);
+  std::string_view header = line;
+  if (header.starts_with("\xEF\xBB\xBF")) header.remove_prefix(3);
+  if (header.ends_with('\r')) header.remove_suffix(1);
+  if (header == kGuidedHeader) return true;
+  if (header == kFreeHeader) return false;
+  return std::nullopt;
 }
 
 Result<std::vector<GuidePoint>> read_guide(const std::string& file) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace palpate {
 /// Errors (kBadValue) name file, line, value and what is allowed: another header, a number that is missing or
 /// not finite, times that do not ascend, a rotation that is not unit, a stage below 0, no point at all.
 Result<std::vector<PathPoint>> read_path(const std::string& file, bool guided);
+
+/// Which of the two headers a file begins with: true for guided; empty: neither, or it can't be read.
+std::optional<bool> guided_header(const std::string& file);
 
 /// Reads a guide: header travel_m,x_m,y_m,z_m,qx,qy,qz,qw, at least two points, travel ascending. Errors as
 /// above.

@@ -9,7 +9,10 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "model/files/path_file.h"
+#include "model/scene/scene_file.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
 #include "service/cli/pose_input.h"
@@ -123,8 +126,29 @@ Result<void> write(const std::filesystem::path& file, const std::string& text) {
   return {};
 }
 
+/// World from tool: of a list of poses, or of a path as a scene's device has it, along the scene's guide if
+/// it is guided.
+Result<std::vector<Pose>> poses_of(const PathOptions& options) {
+  const std::optional<bool> guided = guided_header(options.path);
+  if (!guided) return read_poses(options.path);
+  const auto path = read_path(options.path, *guided);
+  if (!path) return path.error();
+  std::vector<GuidePoint> guide;
+  if (*guided) {
+    auto scene = read_scene(options.common.scene);
+    if (!scene) return scene.error();
+    guide = std::move(scene->device.guide);
+    if (guide.empty())
+      return bad_value(options.path + ": the path is along a guide, and " + options.common.scene +
+                       " names none");
+  }
+  std::vector<Pose> out;
+  for (const PathPoint& point : *path) out.push_back(path_pose(point, guide));
+  return out;
+}
+
 Result<void> path_command(const PathOptions& options, const Parts& parts) {
-  auto poses = read_poses(options.path);
+  auto poses = poses_of(options);
   if (!poses) return poses.error();
   if (poses->empty())
     return bad_value(options.path + ": the file has no pose, so there is nothing to examine");
@@ -180,7 +204,8 @@ void add_path_command(CLI::App& app, PathOptions& options, const Parts& parts, R
       "path",
       "tell whether a path is clear: first contact, clearance along it, worst depth, the parts that touch");
   path->add_option("scene", options.common.scene, "scene file (JSON)")->required()->type_name("SCENE");
-  path->add_option("path", options.path, "CSV file of poses, header x,y,z,qx,qy,qz,qw: world from tool")
+  path->add_option("path", options.path,
+                   "CSV file of poses, header x,y,z,qx,qy,qz,qw: world from tool; or a scene's own path")
       ->required()
       ->type_name("PATH.csv");
   path->add_option("--backend", options.common.backend, "the engine that answers, as for query (auto)")

@@ -48,6 +48,26 @@ def test_a_path_through_the_block_is_not_clear_though_its_poses_are():
         expect(report['first_contact']['pose'] <= 0.4 and report['first_contact']['tool_part'] and report['worst_depth_m'] is None, report)
 
 
+def test_a_scenes_own_path_is_taken_as_its_device_takes_it():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        path, guide = pathlib.Path(folder) / 'own.csv', pathlib.Path(folder) / 'guide.csv'
+        # The guide goes down along z, from 0.05 to -0.05; half of the way and less is travelled.
+        guide.write_text('travel_m,x_m,y_m,z_m,qx,qy,qz,qw\n0,0.001,0.002,0.05,0,0,0,1\n0.1,0.001,0.002,-0.05,0,0,0,1\n')
+        path.write_text('time_s,travel_m,rx_rad,ry_rad,rz_rad,stage\n0,0,0,0,0,1\n1,0.03,0,0,0,1\n')
+        done = palpate('path', scene, path)
+        expect(done.code == 3 and 'along a guide, and' in done.err and 'names none' in done.err, done)
+        scene.write_text(json.dumps({**json.loads(scene.read_text()),
+                                     'device': {'driver': 'simulated', 'path': 'own.csv', 'guide': 'guide.csv'}}))
+        done = palpate('path', scene, path)
+        expect(done.code == 0, done)
+        expect(abs(json.loads(done.out)['least_clearance_m'] - 0.01) < 1e-7, done)
+        free = pathlib.Path(folder) / 'free.csv'
+        free.write_text('time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0.001,0.002,0.05,0,0,0,1,1\n1,0.001,0.002,0.02,0,0,0,1,1\n')
+        again = palpate('path', scene, free)
+        expect(again.code == 0 and json.loads(again.out)['least_clearance_m'] == json.loads(done.out)['least_clearance_m'], again)
+
+
 def test_a_scene_of_profile_paper_gets_the_same_verdicts():
     with tempfile.TemporaryDirectory() as folder:
         scene = ball_over_a_block(folder)

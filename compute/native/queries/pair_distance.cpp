@@ -36,6 +36,14 @@ void rooms(const PairLanes& lanes, std::array<double, kLanes>& squared) {
   plain::room_lanes(lanes, squared);
 }
 
+void places_along(const std::array<std::array<double, kLanes>, 9>& points, const double ways[3][3],
+                  double low[3], double high[3]) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::places_along(points, ways, low, high);
+#endif
+  plain::places_along(points, ways, low, high);
+}
+
 void box_gaps(const BoxOf& box, const EightDoubles& boxes, std::array<double, kLanes>& squared) {
 #if PALPATE_TWO_CODES
   if (has_second_code())

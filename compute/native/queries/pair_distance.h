@@ -10,9 +10,10 @@ namespace palpate::native {
 
 inline constexpr std::size_t kLanes = 8;
 
-/// A triangle before eight others; those by coordinate, k of corner c at [3 c + k].
+/// A triangle before eight others; those by coordinate, k of corner c at [3 c + k], elsewhere: a copy costs
+/// as much as a first look at them.
 struct PairLanes {
-  std::array<std::array<std::int32_t, kLanes>, 9> s{};
+  const std::array<std::array<std::int32_t, kLanes>, 9>* s;
   std::int32_t origin[3]{};  ///< the one's first corner
   double t[3][3]{};          ///< its corners relative to that
 
@@ -38,6 +39,11 @@ inline constexpr double kRoomError = 0x1p-8;
 inline double distance_error(double shorter_edge, double reach) {
   return shorter_edge * 0x1p-18 + reach * 0x1p-28 + 0x1p-10;
 }
+
+/// The least and the greatest place of eight triangles' corners along three directions; those by coordinate,
+/// as above.
+void places_along(const std::array<std::array<double, kLanes>, 9>& points, const double ways[3][3],
+                  double low[3], double high[3]);
 
 struct BoxOf {  ///< a closed box, steps
   std::array<double, 3> low, high;

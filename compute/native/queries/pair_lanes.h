@@ -47,7 +47,7 @@ static void corners_of(const PairLanes& in, std::size_t begin, Point a[3], Point
   for (std::size_t c = 0; c < 3; ++c) {
     Ints whole[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      std::memcpy(&whole[k], in.s[3 * c + k].data() + begin, sizeof whole[k]);
+      std::memcpy(&whole[k], (*in.s)[3 * c + k].data() + begin, sizeof whole[k]);
       whole[k] -= in.origin[k];
     }
     a[c] = {__builtin_convertvector(whole[0], Doubles), __builtin_convertvector(whole[1], Doubles),
@@ -182,5 +182,29 @@ static void gaps_between(const double* low, const double* high, const Number* lo
       sum += gap * gap;
     }
     std::memcpy(out + begin, &sum, sizeof sum);
+  }
+}
+
+// Least and greatest place of twenty-four points along three directions.
+static void places_along(const std::array<std::array<double, kLanes>, 9>& points, const double ways[3][3],
+                         double low[3], double high[3]) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    Doubles least = Doubles{} + 1e300, most = -least;
+    for (std::size_t begin = 0; begin < kLanes; begin += kWidth)
+      for (std::size_t c = 0; c < 3; ++c) {
+        Point p;
+        load(points[3 * c].data() + begin, p.x);
+        load(points[3 * c + 1].data() + begin, p.y);
+        load(points[3 * c + 2].data() + begin, p.z);
+        const Doubles at = p.x * ways[a][0] + p.y * ways[a][1] + p.z * ways[a][2];
+        least = at < least ? at : least;
+        most = at > most ? at : most;
+      }
+    low[a] = least[0];
+    high[a] = most[0];
+    for (std::size_t i = 1; i < kWidth; ++i) {
+      low[a] = least[i] < low[a] ? least[i] : low[a];
+      high[a] = most[i] > high[a] ? most[i] : high[a];
+    }
   }
 }

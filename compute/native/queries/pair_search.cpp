@@ -200,6 +200,7 @@ const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
   Run& run = runs_[number];
   if (run.pose == now_) return run;
   run.pose = now_;
+  bool first = true;
   for (std::size_t i = 0; i < kLanes; ++i) {
     const std::size_t place = kWide * number + i;
     for (std::size_t k = 0; k < 3; ++k) run.boxes.low[k][i] = run.boxes.high[k][i] = kNowhereSteps;
@@ -211,6 +212,16 @@ const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
       run.boxes.low[k][i] = box.low[k];
       run.boxes.high[k][i] = box.high[k];
     }
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double at = t[c][static_cast<int>(k)];
+        auto& lanes = run.places[3 * c + k];
+        if (first)
+          lanes.fill(at);
+        else
+          lanes[i] = at;
+      }
+    first = false;
   }
   return run;
 }
@@ -296,9 +307,31 @@ void PairSearch::descend(Policy& policy) {
   }
 }
 
+/// Square of what a run of the tool is apart from the box of one of the mock-up's runs that lies along its
+/// triangles; no more than that. Axes are floats, so each gap is taken shorter by 2^-20 of the way and a
+/// step, which is more than they are off (section 9: depth).
+double PairSearch::turned_gap(std::uint32_t fixed_run, const Run& run) const {
+  const TriangleTree::TurnedBoxes& turned = trees_->mockup.turned[fixed_run / kWide];
+  const std::size_t i = fixed_run % kWide;
+  double ways[3][3], low[3], high[3], sum = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t k = 0; k < 3; ++k) ways[a][k] = turned.axis[a][k][i];
+  places_along(run.places, ways, low, high);
+  for (std::size_t a = 0; a < 3; ++a) {
+    double origin = 0;
+    for (std::size_t k = 0; k < 3; ++k) origin += ways[a][k] * turned.corner[k][i];
+    const double gap = std::max(low[a] - origin - turned.high[a][i], turned.low[a][i] - (high[a] - origin)),
+                 sure = gap * (1 - 0x1p-20) - 1;
+    if (sure > 0) sum += sure * sure;
+  }
+  return sum * (1 - 0x1p-20);
+}
+
 template <class Policy>
 bool PairSearch::leaf(Policy& policy, const Item& item) {
   const Run& run = posed_run(item.tool.index);
+  if constexpr (Policy::kTurned)
+    if (!policy.near(turned_gap(item.mockup.index, run))) return true;
   const std::uint32_t statics = item.mockup.index,
                       count = std::min(
                           kWide, static_cast<std::uint32_t>(trees_->mockup.order.size()) - kWide * statics);
@@ -340,8 +373,7 @@ bool PairSearch::leaf(Policy& policy, const Item& item) {
       }
     }
     if (!policy.wants_distances()) continue;
-    PairLanes lanes;
-    lanes.s = corners;
+    PairLanes lanes{.s = &corners};
     lanes.take(run.corners[i]);
     std::array<double, kLanes> squared;
     rooms(lanes, squared);
@@ -364,6 +396,8 @@ bool PairSearch::leaf(Policy& policy, const Item& item) {
 }
 
 struct PairSearch::Any {
+  static constexpr bool kTurned =
+      false;  ///< whether boxes along the triangles are worth a look: nearer, few are left out
   bool found = false, close = false;
   std::array<std::uint32_t, 2> who{};
   bool near(double squared) const { return squared <= kCloseSteps * kCloseSteps; }
@@ -395,6 +429,7 @@ PairSearch::Found PairSearch::any(const LatticePose& pose) {
 }
 
 struct PairSearch::Nearest {
+  static constexpr bool kTurned = true;
   std::vector<Candidate>& candidates;
   double most;              ///< no pair is wanted that is a step further than this
   double most_squared = 0;  ///< (most + 1)², and a little
@@ -461,6 +496,7 @@ Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
 /// time δ, no further than δ v·n + ½ δ² a: v is where it goes now, and a, how much that can turn, is the
 /// angle a time times the speed across the axis, which a screw keeps.
 struct PairSearch::Timed {
+  static constexpr bool kTurned = true;
   const PairSearch& search;
   Vec axis, velocity, origin;
   double angle, time;        ///< the soonest so far

@@ -58,7 +58,8 @@ class PairSearch {
   };
   struct Run {  ///< of the tool, at the pose
     std::array<exact::Corners, kLanes> corners;
-    EightDoubles boxes;  ///< of no triangle: nowhere
+    EightDoubles boxes;                                  ///< of no triangle: nowhere
+    std::array<std::array<double, kLanes>, 9> places{};  ///< corners by coordinate; of no triangle: another's
     std::uint32_t pose = 0;
   };
   struct Group {  ///< of the tool's boxes, at the pose
@@ -76,6 +77,7 @@ class PairSearch {
   void begin(const LatticePose& pose);
   const EightDoubles& posed_boxes(std::uint32_t group);
   const Run& posed_run(std::uint32_t run);
+  double turned_gap(std::uint32_t fixed_run, const Run& run) const;
   exact::Corners mobile(std::uint32_t id) const;
   exact::Corners fixed(std::uint32_t id) const;
   bool meet(std::uint32_t static_id, std::uint32_t mobile_id) const;
