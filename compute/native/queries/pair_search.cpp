@@ -156,7 +156,7 @@ void PairSearch::begin(const LatticePose& pose) {
       size_[r][c] = std::abs(rotation_[r][c]);
     }
   if (++now_ != 0) return;
-  for (Run& run : runs_) run.pose = 0;  // once in 2^32 poses
+  for (Run& run : runs_) run.pose = run.placed = 0;  // once in 2^32 poses
   for (Group& group : groups_) group.pose = 0;
   now_ = 1;
 }
@@ -200,7 +200,6 @@ const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
   Run& run = runs_[number];
   if (run.pose == now_) return run;
   run.pose = now_;
-  bool first = true;
   for (std::size_t i = 0; i < kLanes; ++i) {
     const std::size_t place = kWide * number + i;
     for (std::size_t k = 0; k < 3; ++k) run.boxes.low[k][i] = run.boxes.high[k][i] = kNowhereSteps;
@@ -212,9 +211,20 @@ const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
       run.boxes.low[k][i] = box.low[k];
       run.boxes.high[k][i] = box.high[k];
     }
+  }
+  return run;
+}
+
+const PairSearch::Places& PairSearch::posed_places(std::uint32_t number) {
+  Run& run = runs_[number];
+  if (run.placed == now_) return run.places;
+  run.placed = now_;
+  bool first = true;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    if (run.boxes.low[0][i] == kNowhereSteps) continue;  // no triangle
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t k = 0; k < 3; ++k) {
-        const double at = t[c][static_cast<int>(k)];
+        const double at = run.corners[i][c][static_cast<int>(k)];
         auto& lanes = run.places[3 * c + k];
         if (first)
           lanes.fill(at);
@@ -223,7 +233,7 @@ const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
       }
     first = false;
   }
-  return run;
+  return run.places;
 }
 
 /// Calls policy.lanes() for every tool triangle and run of the mock-up between which boxes leave room for
@@ -310,13 +320,13 @@ void PairSearch::descend(Policy& policy) {
 /// Square of what a run of the tool is apart from the box of one of the mock-up's runs that lies along its
 /// triangles; no more than that. Axes are floats, so each gap is taken shorter by 2^-20 of the way and a
 /// step, which is more than they are off (section 9: depth).
-double PairSearch::turned_gap(std::uint32_t fixed_run, const Run& run) const {
+double PairSearch::turned_gap(std::uint32_t fixed_run, const Places& places) const {
   const TriangleTree::TurnedBoxes& turned = trees_->mockup.turned[fixed_run / kWide];
   const std::size_t i = fixed_run % kWide;
   double ways[3][3], low[3], high[3], sum = 0;
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t k = 0; k < 3; ++k) ways[a][k] = turned.axis[a][k][i];
-  places_along(run.places, ways, low, high);
+  places_along(places, ways, low, high);
   for (std::size_t a = 0; a < 3; ++a) {
     double origin = 0;
     for (std::size_t k = 0; k < 3; ++k) origin += ways[a][k] * turned.corner[k][i];
@@ -331,7 +341,7 @@ template <class Policy>
 bool PairSearch::leaf(Policy& policy, const Item& item) {
   const Run& run = posed_run(item.tool.index);
   if constexpr (Policy::kTurned)
-    if (!policy.near(turned_gap(item.mockup.index, run))) return true;
+    if (!policy.near(turned_gap(item.mockup.index, posed_places(item.tool.index)))) return true;
   const std::uint32_t statics = item.mockup.index,
                       count = std::min(
                           kWide, static_cast<std::uint32_t>(trees_->mockup.order.size()) - kWide * statics);

@@ -56,11 +56,13 @@ class PairSearch {
     BoxOf tool_box, mockup_box;
     double squared;  ///< gap of the boxes
   };
-  struct Run {  ///< of the tool, at the pose
+  using Places =
+      std::array<std::array<double, kLanes>, 9>;  ///< corners by coordinate, k of corner c: 3 c + k
+  struct Run {                                    ///< of the tool, at the pose
     std::array<exact::Corners, kLanes> corners;
-    EightDoubles boxes;                                  ///< of no triangle: nowhere
-    std::array<std::array<double, kLanes>, 9> places{};  ///< corners by coordinate; of no triangle: another's
-    std::uint32_t pose = 0;
+    EightDoubles boxes;  ///< of no triangle: nowhere
+    Places places{};     ///< of no triangle: another's
+    std::uint32_t pose = 0, placed = 0;
   };
   struct Group {  ///< of the tool's boxes, at the pose
     EightDoubles boxes;
@@ -77,7 +79,9 @@ class PairSearch {
   void begin(const LatticePose& pose);
   const EightDoubles& posed_boxes(std::uint32_t group);
   const Run& posed_run(std::uint32_t run);
-  double turned_gap(std::uint32_t fixed_run, const Run& run) const;
+  /// Of a run that is posed already. For turned_gap() alone: whoever asks for touch needs none.
+  const Places& posed_places(std::uint32_t run);
+  double turned_gap(std::uint32_t fixed_run, const Places& places) const;
   exact::Corners mobile(std::uint32_t id) const;
   exact::Corners fixed(std::uint32_t id) const;
   bool meet(std::uint32_t static_id, std::uint32_t mobile_id) const;
