@@ -50,20 +50,16 @@ class SafeDevice final : public HapticDevice {
   void restart_fade() noexcept { gain_ = 0; }
 
   bool faulted() const noexcept { return faulted_; }  ///< latched until open()
-  const char* fault() const noexcept {
-    return fault_;
-  }  ///< why, one sentence, the device's own where it has one; "" without a fault
+  /// Why, one sentence, the device's own where it has one; "" without a fault.
+  const char* fault() const noexcept { return fault_; }
   double gain() const noexcept { return gain_; }
   const Wrench& sent() const noexcept { return sent_; }  ///< by the last write, torque about its gc
-  std::uint64_t watchdog_ticks() const noexcept {
-    return watchdog_ticks_;
-  }  ///< writes with the watchdog run out
-  std::uint64_t saturated_ticks() const noexcept {
-    return saturated_ticks_;
-  }  ///< writes that a limit shortened
-  std::uint64_t slewed_ticks() const noexcept {
-    return slewed_ticks_;
-  }  ///< writes that the slew limit held back
+  /// Writes with the watchdog run out.
+  std::uint64_t watchdog_ticks() const noexcept { return watchdog_ticks_; }
+  /// Writes that a limit shortened.
+  std::uint64_t saturated_ticks() const noexcept { return saturated_ticks_; }
+  /// Writes that the slew limit held back.
+  std::uint64_t slewed_ticks() const noexcept { return slewed_ticks_; }
   std::uint64_t damped_ticks() const noexcept { return damped_ticks_; }  ///< writes with passivity damping
 
  private:

@@ -59,9 +59,8 @@ class PacketStream {
   /// Forgets a packet begun.
   void reset() noexcept { size_ = 0; }
 
-  std::uint64_t malformed() const noexcept {
-    return malformed_;
-  }                                                        ///< packets begun and not ended as they must
+  /// Packets begun and not ended as they must.
+  std::uint64_t malformed() const noexcept { return malformed_; }
   std::uint64_t stray() const noexcept { return stray_; }  ///< bytes outside any packet
 
  private:

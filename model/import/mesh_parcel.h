@@ -13,9 +13,10 @@ namespace palpate {
 ///   header    magic, error code (0: a mesh), counts of vertices, triangles, parts, notes, bytes of text
 ///   vertices  3 doubles each
 ///   triangles 3 uint32 each
-///   parts     5 uint32 each: first triangle, count, bytes of its path and of its other name, colour
-///   (0x1000000: none) notes     1 uint32 each: bytes text      the parts' paths and other names, then the
-///   notes; or the error's sentence
+///   parts     5 uint32 each: first triangle, count, bytes of its path and of its other name,
+///             colour (0x1000000: none)
+///   notes     1 uint32 each: bytes
+///   text      the parts' paths and other names, then the notes; or the error's sentence
 ///
 /// The header is written last, so that a parcel that was not finished has none. Until then its place says how
 /// far the importer is.

@@ -11,9 +11,8 @@
 namespace palpate {
 namespace {
 
-std::string last_name(const std::string& path) {
-  return path.substr(path.find_last_of('/') + 1);
-}  // npos + 1 is 0
+// Npos + 1 is 0.
+std::string last_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
 
 /// A part by its number, "#3"; null: none.
 const MeshPart* numbered(const std::vector<MeshPart>& parts, const std::string& name) {

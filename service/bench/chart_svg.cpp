@@ -7,18 +7,14 @@
 #include <cmath>
 #include <vector>
 
+#include "service/report/markup.h"
+
 namespace palpate {
 namespace {
 
 constexpr double kWidth = 760, kLeft = 86, kRight = 20, kTop = 40, kPlot = 330, kLegendRow = 20;
 constexpr const char* kInks[] = {"#4269d0", "#efb118", "#ff725c", "#3ca951", "#a463f2",
                                  "#9c6b4e", "#6cc5b0", "#ff8ab7", "#97bbf5", "#9498a0"};
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
 
 /// One axis: from values to the picture.
 struct Axis {
@@ -64,7 +60,7 @@ std::string head(const BenchChart& chart, double height) {
       "font-size=\"12\" fill=\"#333\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"14\" y=\"22\" "
       "font-size=\"15\">{}{}</text>\n",
-      kWidth, height, escaped(chart.title), chart.unit.empty() ? "" : ", " + escaped(chart.unit));
+      kWidth, height, markup_text(chart.title), chart.unit.empty() ? "" : ", " + markup_text(chart.unit));
 }
 
 /// From pale yellow to deep blue, evenly darker, so that it reads in grey, too; part 0 to 1.
@@ -93,7 +89,7 @@ std::string map_svg(const BenchChart& chart) {
     const auto& row = chart.series[r];
     const double y = kTop + kRow * static_cast<double>(r);
     out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", kLeft - 7, y + kRow / 2 + 4,
-                       escaped(row.label));
+                       markup_text(row.label));
     for (std::size_t c = 0; c < row.y.size(); ++c) {
       const double part = row.y[c] > 0 && high > low ? std::log(row.y[c] / low) / std::log(high / low) : 0;
       const std::array<int, 3> ink = shade(part);
@@ -107,11 +103,12 @@ std::string map_svg(const BenchChart& chart) {
   }
   for (std::size_t c = 0; c < chart.labels.size(); ++c)
     out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                       kLeft + width * (static_cast<double>(c) + 0.5), bottom + 17, escaped(chart.labels[c]));
+                       kLeft + width * (static_cast<double>(c) + 0.5), bottom + 17,
+                       markup_text(chart.labels[c]));
   out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                     (kLeft + kWidth - kRight) / 2, bottom + 37, escaped(chart.x_title));
+                     (kLeft + kWidth - kRight) / 2, bottom + 37, markup_text(chart.x_title));
   out += fmt::format("<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                     (kTop + bottom) / 2, escaped(chart.y_title));
+                     (kTop + bottom) / 2, markup_text(chart.y_title));
   return out + "</svg>\n";
 }
 
@@ -141,7 +138,7 @@ std::string chart_svg(const BenchChart& chart) {
         "text-anchor=\"end\">{5:.3g}</text>\n",
         y.at(tick), kLeft, kWidth - kRight, kLeft - 7, y.at(tick) + 4, tick);
   out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                     (kLeft + kWidth - kRight) / 2, kTop + kPlot + 36, escaped(chart.x_title));
+                     (kLeft + kWidth - kRight) / 2, kTop + kPlot + 36, markup_text(chart.x_title));
   for (std::size_t s = 0; s < chart.series.size(); ++s) {
     const auto& series = chart.series[s];
     // What is expected of a series goes in its ink, dashed; so do series beyond the inks.
@@ -162,7 +159,7 @@ std::string chart_svg(const BenchChart& chart) {
                        dashed ? " stroke-dasharray=\"6 4\"" : "", dots);
     out += fmt::format(
         "<rect x=\"{}\" y=\"{}\" width=\"12\" height=\"12\" fill=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
-        column, row - 10, ink, column + 18, row, escaped(series.label));
+        column, row - 10, ink, column + 18, row, markup_text(series.label));
   }
   return out + "</svg>\n";
 }

@@ -65,9 +65,8 @@ class CollisionFrame {
   const SlowFrame& slowest() const { return slowest_; }  ///< of slow_frames(); tick −1: there is none
   std::uint64_t truncated_frames() const { return truncated_frames_; }
   const char* truncated_capacity() const { return truncated_capacity_; }  ///< of the last truncated frame
-  std::uint64_t no_direction_frames() const {
-    return no_direction_frames_;
-  }  ///< with contact and nothing that pushes (kFlagNoDirection)
+  /// With contact and nothing that pushes (kFlagNoDirection).
+  std::uint64_t no_direction_frames() const { return no_direction_frames_; }
   const PoseSample& no_direction_first() const { return no_direction_first_; }  ///< of the first of them
   /// The contacts that are left out, as they are there from the start and have not opened yet; null: none.
   const Ignored* ignored() const { return ignored_.patches.empty() ? nullptr : &ignored_; }
@@ -75,9 +74,8 @@ class CollisionFrame {
   std::size_t ignored_at_first() const { return ignored_at_first_; }  ///< patches
   std::uint64_t plan_changes() const { return plan_changes_; }
   std::uint32_t areas_max() const { return areas_max_; }
-  std::uint64_t merged_frames() const {
-    return merged_frames_;
-  }  ///< more areas than the force law keeps apart
+  /// More areas than the force law keeps apart.
+  std::uint64_t merged_frames() const { return merged_frames_; }
 
  private:
   void take_plan() noexcept;

@@ -39,9 +39,8 @@ class ControlTick {
 
   bool device_failed() const noexcept { return device_.faulted(); }
   std::uint64_t ticks() const { return ticks_; }
-  std::uint64_t unready_ticks() const {
-    return unready_ticks_;
-  }  ///< in which the device was opening, loading, homing or at fault
+  /// In which the device was opening, loading, homing or at fault.
+  std::uint64_t unready_ticks() const { return unready_ticks_; }
   const Histogram& result_age() const { return result_age_; }
   const std::array<bool, kMaxStages>& stages() const { return stages_; }
   double force_max() const { return force_max_; }    ///< N, sent

@@ -80,9 +80,8 @@ class ForceLawState {
 
   int transitions() const { return transitions_; }  ///< n in use
   bool took_fresh() const { return took_fresh_; }   ///< the last step used a new result
-  bool jumped() const {
-    return jumped_;
-  }  ///< `corrected`: the pose went further in a tick than a hand can; all was forgotten
+  /// `corrected`: the pose went further in a tick than a hand can; all was forgotten.
+  bool jumped() const { return jumped_; }
 
  private:
   void measure_age(std::int64_t age);

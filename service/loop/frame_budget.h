@@ -29,9 +29,8 @@ class FrameBudget {
     }
   }
 
-  std::uint64_t coarse_frames() const noexcept {
-    return coarse_frames_;
-  }  ///< frames that were coarser than their size asked for
+  /// Frames that were coarser than their size asked for.
+  std::uint64_t coarse_frames() const noexcept { return coarse_frames_; }
   std::uint32_t coarsest() const noexcept { return coarsest_; }  ///< of these, 256ths of a level
 
  private:

@@ -18,12 +18,10 @@ class RealtimeEstimate {
   /// The loop's tick number `tick`, from 0, every one.
   void tick(std::int64_t tick) noexcept;
 
-  const Histogram& result_age() const {
-    return result_age_;
-  }  ///< ticks, over ticks that would have had a result
-  std::uint64_t watchdog_ticks() const {
-    return faded_ticks_;
-  }  ///< ticks without a fresh result for longer than the watchdog, as SafeDevice counts them
+  /// Ticks, over ticks that would have had a result.
+  const Histogram& result_age() const { return result_age_; }
+  /// Ticks without a fresh result for longer than the watchdog, as SafeDevice counts them.
+  std::uint64_t watchdog_ticks() const { return faded_ticks_; }
 
  private:
   struct Measured {

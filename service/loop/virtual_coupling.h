@@ -49,9 +49,8 @@ class VirtualCoupling {
   /// What the spring pulls the device with; where there is none, `pushed` as it is.
   Wrench force(const Wrench& pushed) const;
   bool on() const { return settings_.on(); }
-  bool all() const {
-    return settings_.stiffness_n_per_m > 0 && settings_.stiffness_nm_per_rad > 0;
-  }  ///< nothing reaches the device but by a spring
+  /// Nothing reaches the device but by a spring.
+  bool all() const { return settings_.stiffness_n_per_m > 0 && settings_.stiffness_nm_per_rad > 0; }
   /// Tool and device are in one place again.
   void reset() { apart_ = {}; }
 

@@ -8,6 +8,7 @@
 
 #include "service/bench/chart_svg.h"
 #include "service/cli/numbers.h"
+#include "service/report/markup.h"
 #include "service/report/report_assets.h"
 #include "service/report/section_svg.h"
 
@@ -16,25 +17,15 @@ namespace {
 
 constexpr std::size_t kMostRows = 400;  // of the page's table; the CSV has all (chosen)
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '<'   ? "&lt;"
-           : c == '>' ? "&gt;"
-           : c == '&' ? "&amp;"
-           : c == '"' ? "&quot;"
-                      : std::string(1, c);
-  return out;
-}
-
 std::string pair_text(const std::string& tool, const std::string& fixed) {
   if (tool.empty() && fixed.empty()) return "";
-  return escaped(tool.empty() ? "the tool" : tool) + " and " + escaped(fixed.empty() ? "the mock-up" : fixed);
+  return markup_text(tool.empty() ? "the tool" : tool) + " and " +
+         markup_text(fixed.empty() ? "the mock-up" : fixed);
 }
 
 std::string joined(const std::vector<std::string>& names) {
   std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + escaped(name);
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + markup_text(name);
   return out;
 }
 
@@ -107,8 +98,8 @@ std::string path_page(const LoadedScene& scene, const PathReport& report, const 
   const double step = scene.geometry.lattice.step_m;
   std::string body = "<header><h1>" +
                      std::string(report.clear() ? "The path is clear" : "The path is not clear") +
-                     "</h1><p>" + escaped(path_file) + " in " + escaped(scene.scene.file) +
-                     ", examined by the engine " + escaped(engine) + "</p></header>";
+                     "</h1><p>" + markup_text(path_file) + " in " + markup_text(scene.scene.file) +
+                     ", examined by the engine " + markup_text(engine) + "</p></header>";
   body += "<div class=\"tiles\">";
   if (report.first_screw)
     body += tile(
@@ -181,7 +172,7 @@ std::string path_page(const LoadedScene& scene, const PathReport& report, const 
         m.first_contact
             ? fmt::format("{:.4f}", (i == 0 ? 0.0 : static_cast<double>(i) - 1) + *m.first_contact)
             : "",
-        escaped(m.tool_part), escaped(m.static_part));
+        markup_text(m.tool_part), markup_text(m.static_part));
   }
   body += "</table></div></section>";
   if (every > 1) body += fmt::format("<p class=\"lead\">Every {}th pose; path.csv has all.</p>", every);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "service/cli/numbers.h"
+#include "service/report/markup.h"
 
 namespace palpate {
 namespace {
@@ -57,17 +58,6 @@ std::string outline(std::size_t triangles, const char* colour, const SectionView
   return fmt::format(
       "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linecap=\"round\"/>", path,
       colour);
-}
-
-std::string text_of(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '<'   ? "&lt;"
-           : c == '>' ? "&gt;"
-           : c == '&' ? "&amp;"
-           : c == '"' ? "&quot;"
-                      : std::string(1, c);
-  return out;
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is at most a fifth of the width.
@@ -121,7 +111,7 @@ std::string section_svg(const SceneGeometry& geometry, const LatticePose& pose, 
   out += fmt::format(
       "<text x=\"{}\" y=\"{}\" font-size=\"13\" fill=\"currentColor\" paint-order=\"stroke\" "
       "stroke=\"var(--card, #fff)\" stroke-width=\"3\">{}</text>",
-      kWidth / 2 + 12, kHeight / 2 - 10, text_of(view.label));
+      kWidth / 2 + 12, kHeight / 2 - 10, markup_text(view.label));
   const double bar = bar_length(view.width_m);
   out += fmt::format(
       "<path d=\"M12 {0}h{1:.2f}m0 -4v8M12 {2}v8\" fill=\"none\" stroke=\"currentColor\"/><text x=\"12\" "

@@ -1,7 +1,7 @@
 // A body that does not move, in its own lattice frame, as its partition has it. The including shader names
 // it: BODY_GRID (GridConstants) and
-//   ivec3 body_vertices[], uvec3 body_triangles[], uint32_t body_info[], body_brick_slot[], Brick
-// body_bricks[], uint32_t body_list_begin[], body_list[].
+//   ivec3 body_vertices[], uvec3 body_triangles[], uint32_t body_info[], body_brick_slot[],
+//   Brick body_bricks[], uint32_t body_list_begin[], body_list[].
 #ifndef PALPATE_LIB_BODY
 #define PALPATE_LIB_BODY
 #include "shaders/lib/voxel_range.glsl"

@@ -1,7 +1,7 @@
 // The extra samples of a triangle. The including shader has frame_lists and frame_state (both writable); for
 // each body it names its own:
 //   EXTRA_SAMPLES(mockup, extras)   first_mockup_extra() and mockup_extras_from() of ExtraSample extras[],
-// ascending by triangle.
+//                                   ascending by triangle.
 #ifndef PALPATE_LIB_EXTRA_SAMPLES
 #define PALPATE_LIB_EXTRA_SAMPLES
 #include "shaders/lib/budget.glsl"

@@ -1,6 +1,6 @@
 // Group counts of later stages, which grow with the lists that those go through.
-//   GROUP_COUNTS(kBindMembersGroups, members_groups)   the buffer, and grow_members_groups(which, groups): so
-// many at least.
+//   GROUP_COUNTS(kBindMembersGroups, members_groups)   the buffer, and grow_members_groups(which, groups):
+//                                                      so many at least.
 #ifndef PALPATE_LIB_GROUP_COUNT
 #define PALPATE_LIB_GROUP_COUNT
 

@@ -7,8 +7,8 @@
 //
 // *Lists.* Everything of unknown length is a list: a buffer of items and a FrameList (count, capacity, group
 // counts).
-//   append:  uint i = atomicAdd(frame_lists[kListPairs].count, 1u); if (i < frame_lists[kListPairs].capacity)
-//   pairs[i] = …;
+//   append:  uint i = atomicAdd(frame_lists[kListPairs].count, 1u);
+//            if (i < frame_lists[kListPairs].capacity) pairs[i] = …;
 // `count` runs beyond `capacity` where there is no room: whoever crosses it notes an overflow
 // (lib/list_room.glsl). Readers ask list_count().
 //

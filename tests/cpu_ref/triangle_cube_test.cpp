@@ -90,9 +90,10 @@ TEST(TriangleMeetsBox, AgreesWithClippingWhereverThatIsClear) {
                             Int3(draw(reach), draw(reach), draw(reach)));
     if (triangle.collapsed()) continue;
     const bool answer = triangle_meets_box(triangle, kCube);
+    // 1e-6: far above rounding of 1e-13.
     if (meets_clearly(triangle, kCube, -1e-6)) {
       ASSERT_TRUE(answer) << i;
-    }  // 1e-6: far above rounding of 1e-13
+    }
     if (!meets_clearly(triangle, kCube, 1e-6)) {
       ASSERT_FALSE(answer) << i;
     }

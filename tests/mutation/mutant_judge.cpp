@@ -1,13 +1,13 @@
 // Judges mutants, one a line of standard input, one line of answer each.
 //   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
 //                         "host" NUMBER             of the host's exact code (model/)
-//   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES   bytes of a shader source become TEXT;
-//   modules that include it
+//   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES
+//                                                    bytes of a shader source become TEXT; modules with it
 //                          in: "intact"             whether the unchanged program still answers as at first
 // With --killers behind these only the killer cases are asked, with --probes no case of shaders but the
 // probes alone; names of cases after --without are not asked, nor is any probe then.
-//   out: OUTCOME, SECONDS of processor time, CASE, what differed. All tab-separated; first line "ready" when
-//   it is.
+//   out: OUTCOME, SECONDS of processor time, CASE, what differed.
+// All tab-separated; first line "ready" when it is.
 // Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the
 // same), not-asked (no case runs the module, or the sources are not those that this program was built of). A
 // mutant costs little: scenes, their answers and all pipelines but the mutant's are there already. The

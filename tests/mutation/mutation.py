@@ -31,9 +31,8 @@ CHANGES_NOTHING = ("equivalent: ", "speed only: ", "a sentence of an error", "me
 SECOND = ("logic", "not", "name")   # kinds that are judged when all others have been
 
 # What is judged first: predicates, then areas, rays, classes; then the rest.
-FIRST = """cpu_ref/ model/ compute/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl shaders/lib/seam
-shaders/lib/edge_crossing shaders/lib/line_box shaders/lib/tool_ray shaders/lib/direction shaders/lib/pierce shaders/lib/area
-shaders/lib/height_sum shaders/lib/union_find shaders/lib/partition shaders/lib/cells shaders/lib/components shaders/lib/pose
+FIRST = """cpu_ref/ model/ compute/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl
+shaders/lib/line_box shaders/lib/direction shaders/lib/area shaders/lib/union_find shaders/lib/partition shaders/lib/cells shaders/lib/components shaders/lib/pose
 shaders/lib/voxel_range shaders/lib/ shaders/response/ shaders/prepare/
 shaders/frame/ shaders/""".split()
 

@@ -1,8 +1,8 @@
 // Holds clearance() of the native engine against CGAL's exact kernel: no pair is nearer, the named pair is as
 // near, and both witnesses lie on their triangles but for rounding. CGAL finds the pairs whose boxes are near
 // enough by itself.
-//   distance_judge --poses N [SCENE...]     without SCENE: the cases of tests/equivalence that together reach
-//   every rule
+//   distance_judge --poses N [SCENE...]
+// Without SCENE: the cases of tests/equivalence that together reach every rule.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 

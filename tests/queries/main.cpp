@@ -3,7 +3,7 @@
 //   queries any [SCENE] --poses N        touches() of cpu (and with --ref of ref) against the sets' contact
 //   queries distance [SCENE] --poses N   clearance() of cpu against that of ref
 //   queries motions [SCENE] --poses N    first_contact() of cpu on N screws against dense sampling of the
-//   same screw, and its time beside a frame's
+//                                        same screw, and its time beside a frame's
 // Without SCENE: every case of tests/equivalence in `refined`, N poses each.
 #include <CLI/CLI.hpp>
 #include <algorithm>

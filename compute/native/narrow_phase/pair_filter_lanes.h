@@ -58,8 +58,8 @@ static void side(const Floats& v, const Floats& error, Side& out) {
 // two products of such, so off by less than 2 · 3 + 2 = 8 u times both sizes and itself within twice these; a
 // scalar product of it with a third vector by 3 · (8 + 2 · 2) for its terms and 4 + 6 for sums: 46 u times
 // three sizes, itself within six times these. So
-//   S_i, 46 u A B²;   T_1 and T_2, u E² (46 (A + B) + 6 (A + B));   L_i1, u B E (46 B + 2 · 46 A + 6 B + 12
-//   A).
+//   S_i, 46 u A B²;   T_1 and T_2, u E² (46 (A + B) + 6 (A + B));
+//   L_i1, u B E (46 B + 2 · 46 A + 6 B + 12 A).
 // Second orders are below 2^-18 of that. A product that is added without being rounded (fused) only takes
 // errors away.
 static void judge_from(const Coordinates& s, const Coordinates& t, std::size_t begin,

@@ -29,9 +29,10 @@ bool at_most(const Product& a, const Product& b) {
 UWide size(Wide v) { return v < 0 ? -static_cast<UWide>(v) : static_cast<UWide>(v); }
 Wide square(const Normal& n) { return Wide{n.x} * n.x + Wide{n.y} * n.y + Wide{n.z} * n.z; }  // within 2^120
 Wide dot(const Normal& a, const Normal& b) { return Wide{a.x} * b.x + Wide{a.y} * b.y + Wide{a.z} * b.z; }
+// Within 2^60.1.
 std::int64_t dot(const Int3& a, const Int3& b) {
   return std::int64_t{a.x} * b.x + std::int64_t{a.y} * b.y + std::int64_t{a.z} * b.z;
-}  // within 2^60.1
+}
 
 /// floor(√(num / den)): `guess` from doubles, then the integers have the last word. num within 2^121.
 std::int32_t root(UWide num, UWide den) {

@@ -240,7 +240,7 @@ const PairSearch::Places& PairSearch::posed_places(std::uint32_t number) {
 /// what the policy wants. A policy has
 ///   bool keep(squared, tool box, mock-up box): whether what is in them may matter;
 ///   bool lanes(number of tool triangle, its id, run, mock-up run, mask): of eight pairs those in the mask
-///   may matter; false: it knows enough.
+///     may matter; false: it knows enough.
 template <class Policy>
 void PairSearch::descend(Policy& policy) {
   const TriangleTree &tool = trees_->tool, &mockup = trees_->mockup;
@@ -318,8 +318,8 @@ void PairSearch::descend(Policy& policy) {
 }
 
 /// Square of what a run of the tool is apart from the box of one of the mock-up's runs that lies along its
-/// triangles; no more than that. Axes are floats, so each gap is taken shorter by 2^-20 of the way and a
-/// step, which is more than they are off (section 9: depth).
+/// triangles; no more than that. Axes are floats, so each gap is taken shorter by 2^-20 of itself and a step,
+/// and the sum by 2^-20, which is more than they are off (docs/EXACTNESS.md, section 9).
 double PairSearch::turned_gap(std::uint32_t fixed_run, const Places& places) const {
   const TriangleTree::TurnedBoxes& turned = trees_->mockup.turned[fixed_run / kWide];
   const std::size_t i = fixed_run % kWide;

@@ -56,9 +56,9 @@ class PairSearch {
     BoxOf tool_box, mockup_box;
     double squared;  ///< gap of the boxes
   };
-  using Places =
-      std::array<std::array<double, kLanes>, 9>;  ///< corners by coordinate, k of corner c: 3 c + k
-  struct Run {                                    ///< of the tool, at the pose
+  /// Corners of eight triangles, steps, by coordinate: k of corner c at [3 c + k].
+  using Places = std::array<std::array<double, kLanes>, 9>;
+  struct Run {  ///< of the tool, at the pose
     std::array<exact::Corners, kLanes> corners;
     EightDoubles boxes;  ///< of no triangle: nowhere
     Places places{};     ///< of no triangle: another's

@@ -5,6 +5,7 @@
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
+#include "service/bench/ready_scene.h"
 #include "service/bench/time/times.h"
 #include "service/cli/answer.h"
 #include "service/cli/numbers.h"
@@ -21,14 +22,10 @@ struct Subject {
 /// Measures one scene on all back ends, in turns, pose by pose.
 Result<std::vector<Subject>> measure(const BenchOptions& options, const std::string& file, const Parts& parts,
                                      Console& console) {
-  const std::vector<std::string> backends =
-      options.backends.empty() ? std::vector<std::string>{""} : options.backends;
   std::vector<Subject> subjects;
-  for (const std::string& backend : backends) {
-    auto prepared = prepare_scene({file, backend, options.profile, false}, Purpose::kSession, parts, console);
+  for (const std::string& backend : asked_backends(options)) {
+    auto prepared = ready_scene(options, file, backend, Purpose::kSession, parts, console);
     if (!prepared) return prepared.error();
-    if (auto done = (*prepared)->backend->finish_preparing(); !done)
-      return done.error();  // no frame beside compilers
     subjects.push_back({std::move(*prepared), {}});
   }
   const Result<std::vector<Pose>> poses = bench_poses(options, *subjects.front().scene, parts, console);

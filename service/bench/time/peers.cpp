@@ -7,6 +7,7 @@
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
+#include "service/bench/ready_scene.h"
 #include "service/bench/time/times.h"
 #include "service/cli/answer.h"
 #include "service/cli/numbers.h"
@@ -157,11 +158,8 @@ Result<Race> run_race(const BenchOptions& options, const std::string& file, cons
                       Console& console) {
   Race race;
   auto prepared =
-      prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false},
-                    Purpose::kQuery, parts, console);
+      ready_scene(options, file, asked_backends(options).front(), Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
-  if (auto done = (*prepared)->backend->finish_preparing(); !done)
-    return done.error();  // no frame beside compilers
   race.scene = std::move(*prepared);
   auto poses = bench_poses(options, *race.scene, parts, console);
   if (!poses) return poses.error();

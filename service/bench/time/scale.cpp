@@ -12,6 +12,7 @@
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
+#include "service/bench/ready_scene.h"
 #include "service/bench/time/process_memory.h"
 #include "service/bench/time/times.h"
 #include "service/cli/answer.h"
@@ -89,11 +90,8 @@ Result<Figures> measure(const BenchOptions& options, const std::string& file, co
                         Console& console) {
   restart_peak_memory();
   auto prepared =
-      prepare_scene({file, options.backends.empty() ? "" : options.backends.front(), options.profile, false},
-                    Purpose::kQuery, parts, console);
+      ready_scene(options, file, asked_backends(options).front(), Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
-  if (auto done = (*prepared)->backend->finish_preparing(); !done)
-    return done.error();  // no frame beside compilers
   HostedScene& scene = **prepared;
   const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
   if (!poses) return poses.error();

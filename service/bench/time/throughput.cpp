@@ -5,6 +5,7 @@
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/poses.h"
+#include "service/bench/ready_scene.h"
 #include "service/bench/time/times.h"
 #include "service/cli/answer.h"
 #include "service/report/run_summary.h"
@@ -115,14 +116,10 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
                    .log_x = true,
                    .x_title = "poses a batch"};
   const double load = load_average();
-  const std::vector<std::string> backends =
-      options.backends.empty() ? std::vector<std::string>{""} : options.backends;
   for (const std::string& file : options.scenes)
-    for (const std::string& wanted : backends) {
-      auto prepared = prepare_scene({file, wanted, options.profile, false}, Purpose::kQuery, parts, console);
+    for (const std::string& wanted : asked_backends(options)) {
+      auto prepared = ready_scene(options, file, wanted, Purpose::kQuery, parts, console);
       if (!prepared) return prepared.error();
-      if (auto done = (*prepared)->backend->finish_preparing(); !done)
-        return done.error();  // no frame beside compilers
       HostedScene& scene = **prepared;
       const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
       if (!poses) return poses.error();
