@@ -182,8 +182,9 @@ PALPATE_API int32_t palpate_clearance(palpate_scene* scene, const double* poses,
 
 #define PALPATE_MOTION_CLEAR 0
 #define PALPATE_MOTION_CONTACT 1
-#define PALPATE_MOTION_UNDECIDED 2 /* so near for so long that the search was given up: clear until `time` \
-                                    */
+#define PALPATE_MOTION_UNDECIDED                                            \
+  2 /* so near for so long that the search was given up: clear until `time` \
+     */
 
 typedef struct palpate_motions {
   size_t size;
