@@ -1,13 +1,11 @@
-// The program: the one place that knows every back end and driver by name.
-#include <algorithm>
+// The program: the one place that knows every driver by name.
 #include <string>
 
 #include "compute/gpu/gpu_backend.h"
-#include "compute/native/native_backend.h"
-#include "cpu_ref/ref_backend.h"
 #include "driver/device_list.h"
 #include "service/bench/time/peer.h"
 #include "service/cli/cli.h"
+#include "service/engines.h"
 
 namespace {
 
@@ -36,35 +34,12 @@ Result<std::unique_ptr<HapticDevice>> make_device(const std::string& name, const
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto folder = palpate::DiskCache::usual_folder();
-  const auto cache =
-      folder ? std::make_shared<palpate::DiskCache>(palpate::DiskCache::Settings{.folder = *folder})
-             : nullptr;
-  const palpate::Parts parts{
-      .make_gpu =
-          [&cache](bool cached) {
-            palpate::GpuOptions options;
-            options.cache = cached ? cache : nullptr;
-            return palpate::make_gpu_backend(options);
-          },
-      .make_cpu = [&cache](bool cached) { return palpate::make_native_backend(cached ? cache : nullptr); },
-      .make_ref = palpate::make_ref_backend,
-      .has_gpu =
-          [] {
-            const auto devices = palpate::list_vulkan_devices();
-            return std::any_of(devices.begin(), devices.end(),
-                               [](const auto& device) { return device.usable && !device.processor; });
-          },
-      .cache = cache,
-      .make_device = make_device,
-      .list_devices = list_devices,
+  palpate::Parts parts = palpate::engine_parts();
+  parts.make_device = make_device;
+  parts.list_devices = list_devices;
 #ifdef PALPATE_BENCH_PEERS
-      .make_peers = palpate::make_peers,
-      .make_judge = palpate::make_judge,
-#else
-      .make_peers = nullptr,
-      .make_judge = nullptr,
+  parts.make_peers = palpate::make_peers;
+  parts.make_judge = palpate::make_judge;
 #endif
-  };
   return palpate::command_line(argc, argv, parts);
 }

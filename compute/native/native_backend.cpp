@@ -23,6 +23,7 @@
 #include "model/address_space.h"
 #include "model/pose_threads.h"
 #include "model/processors.h"
+#include "model/shared_backend.h"
 
 namespace palpate {
 namespace {
@@ -50,9 +51,36 @@ std::uint64_t memory_limit() {
   return left ? std::min(whole, *left) : whole;
 }
 
-class NativeBackend final : public CollisionBackend {
+/// What the planner's questions read, made when the first of them is asked.
+class QuestionTables {
  public:
-  explicit NativeBackend(std::shared_ptr<DiskCache> cache) : cache_(std::move(cache)) {}
+  QuestionTables(const SceneGeometry& geometry, std::shared_ptr<const native::Scene> scene)
+      : geometry_(geometry), scene_(std::move(scene)) {}
+
+  const native::PairTrees& trees() const { return made().trees; }
+  const native::Containment& containment() const { return made().containment; }
+
+ private:
+  struct Made {
+    native::PairTrees trees;
+    native::Containment containment;
+  };
+  const Made& made() const {
+    const std::lock_guard lock(mutex_);
+    if (!made_) made_.reset(new Made{native::PairTrees(geometry_), {geometry_, scene_->tables()}});
+    return *made_;
+  }
+
+  const SceneGeometry& geometry_;
+  const std::shared_ptr<const native::Scene> scene_;
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<const Made> made_;
+};
+
+class NativeBackend final : public CollisionBackend, public SharedBackend {
+ public:
+  explicit NativeBackend(std::shared_ptr<DiskCache> cache, std::string device = processor_name())
+      : cache_(std::move(cache)), device_(std::move(device)) {}
 
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override {
     drop_frames();
@@ -65,9 +93,8 @@ class NativeBackend final : public CollisionBackend {
                        std::to_string(most >> 20) + " MiB of memory that this process may have");
     try {
       if (auto found = scene_for(geometry, plan, progress); !found) return found;
-      geometry_ = &geometry;
-      plan_ = plan;
-      frame_.emplace(geometry, scene_->tables(), plan);
+      tables_ = std::make_shared<const QuestionTables>(geometry, scene_);
+      begin(geometry, plan);
       frame_->share(true);
       return {};
     } catch (const std::bad_alloc&) {
@@ -76,6 +103,18 @@ class NativeBackend final : public CollisionBackend {
       return Error{ErrorCode::kInternal, "there was no memory left for preparing " +
                                              std::to_string(geometry.mockup.triangles.size()) + " triangles"};
     }
+  }
+
+  Another another() const override {
+    if (!frame_) return {};
+    return [geometry = geometry_, plan = plan_, device = device_, scene = scene_,
+            tables = tables_]() -> std::unique_ptr<CollisionBackend> {
+      auto made = std::make_unique<NativeBackend>(nullptr, device);
+      made->scene_ = scene;
+      made->tables_ = tables;
+      made->begin(*geometry, plan);  // no second thread: who wants another has threads enough
+      return made;
+    };
   }
 
   Result<void> replan(const Plan& plan) override {
@@ -112,8 +151,8 @@ class NativeBackend final : public CollisionBackend {
     ask();
     if (!threads_ && (shared_ += poses.size()) >= kWorthThreads) make_helpers();
     while (questions_.size() < 1 + helpers_.size())
-      questions_.push_back(
-          std::make_unique<Questions>(*trees_, *containment_, *helpers_[questions_.size() - 1]));
+      questions_.push_back(std::make_unique<Questions>(tables_->trees(), tables_->containment(),
+                                                       *helpers_[questions_.size() - 1]));
     // Poses that follow each other mostly touch alike: each thread has runs of them.
     constexpr std::size_t kRunOfPoses = 64;
     std::atomic<std::size_t> next{0};
@@ -180,11 +219,14 @@ class NativeBackend final : public CollisionBackend {
   Result<void> scene_for(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const ContentKey key = cache_ ? native::scene_key(geometry) : ContentKey{};
-    if (cache_) scene_ = native::find_scene(*cache_, key);
-    if (scene_) return {};
+    if (cache_)
+      if (auto found = native::find_scene(*cache_, key)) {
+        scene_ = std::make_shared<const native::Scene>(std::move(*found));
+        return {};
+      }
     auto scene = native::prepare_scene(geometry, plan, progress);
     if (!scene) return scene.error();
-    scene_.emplace(std::move(*scene));
+    scene_ = std::make_shared<const native::Scene>(std::move(*scene));
     if (cache_)
       native::keep_scene(*cache_, key, *scene_,
                          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
@@ -193,17 +235,19 @@ class NativeBackend final : public CollisionBackend {
   /// Who answers the planner's questions on this thread; what they read is made when the first of them is
   /// asked.
   Questions& ask() {
-    if (!trees_) {
-      trees_.emplace(*geometry_);
-      containment_.emplace(*geometry_, scene_->tables());
-      questions_.push_back(std::make_unique<Questions>(*trees_, *containment_, *frame_));
-    }
+    if (questions_.empty())
+      questions_.push_back(std::make_unique<Questions>(tables_->trees(), tables_->containment(), *frame_));
     return *questions_.front();
+  }
+  /// Makes the frame that answers lone poses.
+  void begin(const SceneGeometry& geometry, const Plan& plan) {
+    geometry_ = &geometry;
+    plan_ = plan;
+    frame_.emplace(geometry, scene_->tables(), plan);
   }
   void drop_frames() {
     questions_.clear();
-    containment_.reset();
-    trees_.reset();
+    tables_.reset();
     threads_.reset();
     helpers_.clear();
     frame_.reset();
@@ -220,16 +264,15 @@ class NativeBackend final : public CollisionBackend {
   }
 
   const std::shared_ptr<DiskCache> cache_;  ///< may be null
-  const std::string device_ = processor_name();
+  const std::string device_;
   const SceneGeometry* geometry_ = nullptr;  ///< of scene_
   Plan plan_;                                ///< of frame_
-  std::optional<native::Scene> scene_;
+  std::shared_ptr<const native::Scene> scene_;
   std::optional<Frame> frame_;
   std::vector<std::unique_ptr<Frame>> helpers_;
   std::optional<PoseThreads> threads_;  ///< of these
   std::size_t shared_ = 0;              ///< pieces of all work so far
-  std::optional<native::PairTrees> trees_;
-  std::optional<native::Containment> containment_;
+  std::shared_ptr<const QuestionTables> tables_;
   std::vector<std::unique_ptr<Questions>> questions_;  ///< of this thread and the helpers
 };
 

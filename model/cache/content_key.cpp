@@ -8,6 +8,8 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "model/files/own_file.h"
+
 namespace palpate {
 
 struct KeyBuilder::State {
@@ -45,7 +47,7 @@ ContentKey KeyBuilder::finish() const {
 const ContentKey& program_key() {
   static const ContentKey key = [] {
     KeyBuilder builder;
-    return builder.file("/proc/self/exe") ? builder.finish() : ContentKey{};
+    return builder.file(own_file()) ? builder.finish() : ContentKey{};
   }();
   return key;
 }

@@ -58,8 +58,8 @@ class KeyBuilder {
   std::unique_ptr<State> state_;
 };
 
-/// Key of the running program: what another build has worked out may mean something else. Zero where the
-/// program can't be read.
+/// Key of the running program, or of the shared library that this code is in: what another build has worked
+/// out may mean something else. Zero where it can't be read.
 const ContentKey& program_key();
 
 }  // namespace palpate

@@ -139,7 +139,13 @@ namespace {
 
 bool add_source(KeyBuilder& key, const MeshSource& source) {
   key.text(source.file);  // its name is in warnings
-  if (!source.file.empty() && (!stands_alone(source.file) || !key.file(source.file))) return false;
+  key.value(std::uint8_t{source.given != nullptr});
+  if (source.given) {
+    key.list(source.given->vertices);
+    key.list(source.given->triangles);
+  } else if (!source.file.empty() && (!stands_alone(source.file) || !key.file(source.file))) {
+    return false;
+  }
   key.value(source.scale);
   key.text(source.part);
   key.value(source.without.size());

@@ -14,6 +14,7 @@
 #include <filesystem>
 
 #include "model/files/one_line.h"
+#include "model/files/own_file.h"
 #include "model/import/import_child.h"
 #include "model/import/mesh_parcel.h"
 #include "model/mesh/confined_import.h"
@@ -40,14 +41,16 @@ bool is_one_of(const std::string& word, const std::array<const char*, n>& words)
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Beside the running program (the build tree), in ../libexec/palpate (installed, the bundle), or where we
-/// were told.
+/// Beside the running program or the shared library that this is (a wheel), in ../bin (the build tree), in
+/// libexec/palpate of the prefix (installed, the bundle; a library may lie in lib/x86_64-linux-gnu), or where
+/// we were told.
 Result<std::string> find_import_program(const std::string& path) {
   const bool cad = is_cad_file(path);
   const std::string name = cad ? "palpate-import-cad" : "palpate-import";
   std::error_code ignored;
-  const fs::path here = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  const fs::path places[] = {here / name, here.parent_path() / "libexec" / "palpate" / name,
+  const fs::path here = fs::path(own_file()).parent_path(), above = here.parent_path();
+  const fs::path places[] = {here / name, above / "bin" / name, above / "libexec" / "palpate" / name,
+                             above.parent_path() / "libexec" / "palpate" / name,
                              told().empty() ? fs::path() : fs::path(told()).replace_filename(name)};
   std::string looked;
   for (const fs::path& place : places) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,9 +15,10 @@
 
 namespace palpate {
 
-/// Where triangles come from: a file, or a generator by name.
+/// Where triangles come from: a file, a generator by name, or whoever has them in memory.
 struct MeshSource {
   std::string file;                                   ///< absolute after loading; empty when generated
+  std::shared_ptr<const Mesh> given;                  ///< in place of the file, whose name it has then
   double scale = 1;                                   ///< metres per file unit
   bool scale_stated = false;                          ///< the scene says `units` or `scale`
   std::string part;                                   ///< node taken out; empty: all

@@ -86,7 +86,8 @@ void read_generate(const SceneObject& body, const char* usual_body, MeshSource& 
   if (triangles > 0) source.generate_parameters["triangles"] = triangles;
 }
 
-void read_source(const SceneObject& body, const char* usual_body, MeshSource& source) {
+void read_source(const SceneObject& body, const char* usual_body, const GivenMeshes& given,
+                 MeshSource& source) {
   if (body.has("mesh") == body.has("generate"))
     body.fail("mesh", body.has("mesh") ? "stands beside \"generate\"; only one of them may"
                                        : "is missing, and so is \"generate\"; one is wanted");
@@ -98,8 +99,11 @@ void read_source(const SceneObject& body, const char* usual_body, MeshSource& so
     read_generate(body, usual_body, source);
   } else {
     body.text("mesh", source.file);
-    source.file = beside(body.file(), source.file);
-    if (body.has("units") && states_unit(source.file))
+    if (const auto found = given.find(source.file); found != given.end())
+      source.given = found->second;
+    else
+      source.file = beside(body.file(), source.file);
+    if (!source.given && body.has("units") && states_unit(source.file))
       body.fail("units",
                 "stands beside a file that states its unit and comes in metres; leave it out (\"scale\" "
                 "makes it larger or smaller)");
@@ -113,7 +117,7 @@ void read_source(const SceneObject& body, const char* usual_body, MeshSource& so
   body.texts("without", source.without);
 }
 
-void read_statics(const SceneObject& scene_json, Scene& scene) {
+void read_statics(const SceneObject& scene_json, const GivenMeshes& given, Scene& scene) {
   if (!scene_json.has("static")) scene_json.fail("static", "is missing; an array of bodies is wanted");
   const json& list = scene_json.at("static");
   if (!list.is_array() || list.empty()) scene_json.fail("static", "must be an array of at least one body");
@@ -121,16 +125,16 @@ void read_statics(const SceneObject& scene_json, Scene& scene) {
     const SceneObject body(scene.file, scene_json.pointer("static") + "/" + std::to_string(i), list[i],
                            keys_of("static"));
     StaticBody& out = scene.statics.emplace_back();
-    read_source(body, "mockup", out.source);
+    read_source(body, "mockup", given, out.source);
     body.vector("position", kFarthest, " m", out.placement.position);
     body.rotation("rotation", out.placement.rotation);
   }
 }
 
-void read_tool(const SceneObject& scene_json, Scene& scene) {
+void read_tool(const SceneObject& scene_json, const GivenMeshes& given, Scene& scene) {
   if (!scene_json.has("tool")) scene_json.fail("tool", "is missing; an object is wanted");
   const SceneObject body(scene.file, scene_json.pointer("tool"), scene_json.at("tool"), keys_of("tool"));
-  read_source(body, "tool", scene.tool.source);
+  read_source(body, "tool", given, scene.tool.source);
   body.number("mass", {0, 1e3, " kg", true}, scene.tool.mass_kg);
   if (body.has("centre_of_mass") && !body.is_auto("centre_of_mass")) {
     if (body.at("centre_of_mass").is_string())
@@ -322,19 +326,20 @@ Pose start_of(const Scene& scene) {
   return {};
 }
 
-}  // namespace
-
-Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile) {
+/// `text_from` gives the text.
+template <class Read>
+Result<Scene> read(const std::string& path, Read text_from, const GivenMeshes& given,
+                   std::optional<Profile> profile) {
   try {
     Scene scene;
     scene.file = path;
-    const json text = parse_scene_text(path, text_of(path));
+    const json text = parse_scene_text(path, text_from());
     const SceneObject root(scene.file, "", text, keys_of("scene"));
     std::string ignored;
     root.text("$schema", ignored);
     root.text("description", ignored);
-    read_statics(root, scene);
-    read_tool(root, scene);
+    read_statics(root, given, scene);
+    read_tool(root, given, scene);
     read_response(root, scene.response);
     if (profile) scene.response.profile = *profile;
     read_control(root, scene.response.profile, scene.control);
@@ -349,6 +354,26 @@ Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile
                found) {  // of the JSON library or the file system: nothing of theirs leaves this file
     return bad_value(one_line(path + " cannot be read: " + found.what()));
   }
+}
+
+}  // namespace
+
+Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile) {
+  return read(
+      path, [&] { return text_of(path); }, {}, profile);
+}
+
+Result<Scene> read_scene_text(const std::string& text, const std::string& name, const GivenMeshes& given,
+                              std::optional<Profile> profile) {
+  return read(
+      name,
+      [&] {
+        if (text.size() > kLargestFile)
+          fault(name + " has " + std::to_string(text.size()) + " bytes; a scene has at most " +
+                std::to_string(kLargestFile));
+        return text;
+      },
+      given, profile);
 }
 
 }  // namespace palpate

@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -15,6 +17,14 @@ class DiskCache;
 /// allowed; an unknown key names the nearest known one. `profile` stands in place of the file's; a law that
 /// the file does not name follows it.
 Result<Scene> read_scene(const std::string& path, std::optional<Profile> profile = std::nullopt);
+
+/// Meshes that somebody has in memory, by the name that a scene's "mesh" calls them by. Their own units:
+/// "units" and "scale" hold as for a file.
+using GivenMeshes = std::map<std::string, std::shared_ptr<const Mesh>>;
+
+/// The same of a text. `name` stands for the file in sentences, and files that the text names lie beside it.
+Result<Scene> read_scene_text(const std::string& text, const std::string& name, const GivenMeshes& given,
+                              std::optional<Profile> profile = std::nullopt);
 
 /// Imports or generates the meshes of a scene, and adds what is odd about them to its warnings. Reports
 /// progress; may be cancelled. `limits` are each mesh file's; `folder` as in model/mesh/confined_import.h.

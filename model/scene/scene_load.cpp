@@ -39,6 +39,11 @@ Result<Mesh> generate(const MeshSource& source) {
   return tool ? std::move(scene->tool) : std::move(scene->mockup);
 }
 
+Mesh scaled(Mesh mesh, double scale) {
+  for (Vec3& vertex : mesh.vertices) vertex *= scale;
+  return mesh;
+}
+
 /// Reads the files of a scene, each once: what several bodies take from one file is kept until the last has
 /// had it.
 class Files {
@@ -59,6 +64,7 @@ class Files {
       kept_.erase(kept);
       return last;
     }
+    if (source.given) return scaled(*source.given, source.scale);
     ImportReport report;
     Result<Mesh> mesh =
         import_mesh_below(folder_, source.file, source.scale, report, limits_, progress, tessellation);
@@ -98,9 +104,8 @@ void place(const Mesh& body, const Pose& placement, const std::string& prefix, M
   for (const auto& [a, b, c] : body.triangles)
     mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
   for (const MeshPart& part : body.parts) {
-    const std::string path = prefix.empty()      ? part.path
-                             : part.path.empty() ? prefix
-                                                 : prefix + "/" + part.path;
+    const bool whole = part.path.empty() || part.path == prefix;  // a mesh in memory is a part of its name
+    const std::string path = prefix.empty() ? part.path : whole ? prefix : prefix + "/" + part.path;
     mockup.parts.push_back(
         {path, part.first_triangle + triangle, part.triangle_count, part.also, part.colour});
   }

@@ -57,7 +57,7 @@ function(palpate_test name)
   add_test(NAME ${name} COMMAND ${name})
   # Host code runs under the sanitizers in CI too: asan_tests and tsan_tests build just those, the labels run them.
   get_filename_component(folder "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
-  if(arg_LABEL STREQUAL "quick" AND folder MATCHES "^(model|driver|service)$")
+  if(arg_LABEL STREQUAL "quick" AND folder MATCHES "^(model|driver|service|library)$")
     list(APPEND arg_LABEL asan)
     add_dependencies(asan_tests ${name})
   endif()

@@ -102,21 +102,26 @@ Result<std::unique_ptr<CollisionBackend>> choose_backend(const std::string& name
 
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose,
                                                    const Parts& parts, const PrepareWatch& watch) {
-  auto prepared = std::make_unique<HostedScene>();
   Result<Scene> scene = read_scene(options.scene, options.profile);
   if (!scene) return scene.error();
+  return prepare_scene(std::move(*scene), options, purpose, parts, watch);
+}
+
+Result<std::unique_ptr<HostedScene>> prepare_scene(Scene scene, const SceneOptions& options, Purpose purpose,
+                                                   const Parts& parts, const PrepareWatch& watch) {
+  auto prepared = std::make_unique<HostedScene>();
   if (options.unit_m) {
     const auto take_unit = [&](MeshSource& source) {
       if (!source.file.empty() && !source.scale_stated && !states_unit(source.file))
         source.scale = *options.unit_m;
     };
-    for (StaticBody& body : scene->statics) take_unit(body.source);
-    take_unit(scene->tool.source);
+    for (StaticBody& body : scene.statics) take_unit(body.source);
+    take_unit(scene.tool.source);
   }
 
   // The back end comes before the meshes: their import may start threads.
   const std::optional<Profile> profile =
-      options.second_backend ? std::nullopt : std::optional(scene->response.profile);
+      options.second_backend ? std::nullopt : std::optional(scene.response.profile);
   Result<std::unique_ptr<CollisionBackend>> backend =
       choose_backend(options.backend, profile, parts, watch.note, watch.cached);
   if (!backend) return backend.error();
@@ -130,7 +135,7 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, 
 
   watch.step("reading the meshes");
   const auto load_start = Clock::now();
-  Result<LoadedScene> loaded = load_scene(std::move(*scene), watch.progress, options.import,
+  Result<LoadedScene> loaded = load_scene(std::move(scene), watch.progress, options.import,
                                           watch.cached ? parts.cache.get() : nullptr, watch.folder);
   if (!loaded) return loaded.error();
   prepared->loaded = std::move(*loaded);

@@ -53,6 +53,10 @@ struct PrepareWatch {
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose,
                                                    const Parts& parts, const PrepareWatch& watch);
 
+/// The same of a scene that has been read: `options.scene` and `options.profile` say nothing.
+Result<std::unique_ptr<HostedScene>> prepare_scene(Scene scene, const SceneOptions& options, Purpose purpose,
+                                                   const Parts& parts, const PrepareWatch& watch);
+
 /// The same with notes and progress on `console`.
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose,
                                                    const Parts& parts, Console& console);

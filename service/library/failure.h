@@ -1,0 +1,75 @@
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "model/result.h"
+#include "service/library/palpate.h"
+
+struct palpate_error {
+  std::int32_t code = PALPATE_INTERNAL;
+  std::string sentence;
+};
+
+namespace palpate::library {
+
+/// Hands an error to the caller, who may not want it, and gives its code.
+std::int32_t fail(std::int32_t code, const std::string& sentence, palpate_error** out) noexcept;
+
+/// A watch as this version knows it; members beyond a caller's `size` are zero.
+template <class Sized>
+Sized taken(const Sized* given) {
+  Sized out{};
+  if (given) std::memcpy(&out, given, given->size < sizeof out ? given->size : sizeof out);
+  return out;
+}
+
+/// A caller's watch, looked at.
+class Watch {
+ public:
+  explicit Watch(const palpate_watch* watch) : watch_(taken(watch)) {}
+
+  /// By any thread.
+  bool cancelled() const {
+    return stopped_.load(std::memory_order_relaxed) ||
+           (watch_.cancel && __atomic_load_n(watch_.cancel, __ATOMIC_RELAXED) != 0);
+  }
+  /// By the calling thread alone. False: stop.
+  bool tell(const char* what, double done) {
+    if (watch_.progress && watch_.progress(watch_.context, what, done) != 0) stopped_ = true;
+    return !cancelled();
+  }
+  void note(const std::string& sentence) {
+    if (watch_.note) watch_.note(watch_.context, sentence.c_str());
+  }
+
+ private:
+  palpate_watch watch_;
+  std::atomic<bool> stopped_{false};
+};
+
+/// Runs a function of the interface: what it returns or throws becomes a code and an error. `watch`, where
+/// there is one, tells a failure from a wish.
+template <class Body>
+std::int32_t guarded(palpate_error** out, const Watch* watch, Body body) noexcept {
+  if (out) *out = nullptr;
+  try {
+    const Result<void> done = body();
+    if (done) return PALPATE_OK;
+    if (watch && watch->cancelled()) return fail(PALPATE_CANCELLED, "cancelled by the caller", out);
+    return fail(static_cast<std::int32_t>(done.error().code), done.error().sentence, out);
+  } catch (const std::bad_alloc&) {
+    return fail(PALPATE_INTERNAL, "there was no memory left", out);
+  } catch (const std::exception& thrown) {
+    return fail(PALPATE_INTERNAL, thrown.what(), out);
+  } catch (...) {
+    return fail(PALPATE_INTERNAL, "something unknown was thrown", out);
+  }
+}
+
+inline Error wrong_call(std::string sentence) { return {ErrorCode::kUsage, std::move(sentence)}; }
+
+}  // namespace palpate::library
