@@ -12,6 +12,7 @@
 #include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/geometric/SimpleSetup.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 #include <palpate.h>
 
@@ -118,7 +119,8 @@ int main(int count, char** words) {
   for (int i = 0; i < 3; ++i) goal[i] += std::atof(words[2 + i]), reach += std::pow(goal[i] - start[i], 2);
   reach = std::sqrt(reach);
   const double seconds = count > 5 ? std::atof(words[5]) : 60;
-  ompl::RNG::setSeed(1);
+  ompl::RNG::setSeed(1);                         // the same way each time
+  ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);  // standard output is for the way
 
   // Room to plan in: as far as the goal is, beyond both ends.
   const auto space = std::make_shared<ob::SE3StateSpace>();
@@ -143,10 +145,10 @@ int main(int count, char** words) {
     return 5;
   }
   setup.simplifySolution(seconds);
+  std::puts("x,y,z,qx,qy,qz,qw");
   for (const ob::State* state : setup.getSolutionPath().getStates()) {
-    const Pose pose = pose_of(state);
-    for (std::size_t i = 0; i < pose.size(); ++i)
-      std::printf(i + 1 < pose.size() ? "%.17g " : "%.17g\n", pose[i]);
+    const auto [x, y, z, qx, qy, qz, qw] = pose_of(state);
+    std::printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", x, y, z, qx, qy, qz, qw);
   }
   palpate_scene_close(scene);
 }

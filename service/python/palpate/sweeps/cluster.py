@@ -2,6 +2,7 @@
 import contextlib
 import logging
 import os
+import tempfile
 
 from .words import refuse
 
@@ -29,6 +30,7 @@ def local(workers, gpu):
     if workers < 1:
         refuse(f'a sweep needs one worker or more, not {workers}')
     # One thread's batch has threads of its own; the other writes meanwhile.
-    with LocalCluster(n_workers=workers, threads_per_worker=2, processes=True, dashboard_address=':0',
-                      silence_logs=logging.ERROR) as cluster, Client(cluster) as client:
+    with tempfile.TemporaryDirectory(prefix='palpate-sweep-') as folder, \
+            LocalCluster(n_workers=workers, threads_per_worker=2, processes=True, dashboard_address=':0', local_directory=folder,
+                         silence_logs=logging.ERROR) as cluster, Client(cluster) as client:
         yield client, shares(workers, processors)
