@@ -20,7 +20,7 @@ endif()
 foreach(importer ${palpate_importers})
   target_link_options(${importer} PRIVATE -Wl,--disable-new-dtags)
 endforeach()
-set_target_properties(${palpate_importers} PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate")
+set_target_properties(${palpate_importers} PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate" BUILD_RPATH "$ORIGIN/libs")   # the latter: a wheel
 install(TARGETS ${palpate_importers} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpate COMPONENT library)
 set(PALPATE_IMPORT_PATH "${CMAKE_INSTALL_LIBEXECDIR}/palpate/palpate-import")
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
@@ -28,7 +28,7 @@ install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LI
 # Headers keep their folders, so that "model/lattice/pose.h" means the same here and there.
 install(DIRECTORY model driver service DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT library
   FILES_MATCHING PATTERN "*.h" PATTERN "service/server" EXCLUDE PATTERN "service/viewer" EXCLUDE PATTERN "service/report" EXCLUDE PATTERN "service/clients" EXCLUDE
-  PATTERN "service/deploy" EXCLUDE)
+  PATTERN "service/deploy" EXCLUDE PATTERN "service/library" EXCLUDE PATTERN "service/python" EXCLUDE)
 install(FILES compute/gpu/gpu_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute/gpu COMPONENT library)
 install(FILES compute/vulkan/options.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute/vulkan COMPONENT library)
 install(FILES compute/native/native_backend.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/compute/native COMPONENT library)
@@ -39,6 +39,14 @@ configure_package_config_file(scripts/cmake/palpateConfig.cmake.in "${PROJECT_BI
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/palpateConfig.cmake" "${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake"
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
+
+# The shared library for C: palpate.h stands by itself, so that `#include <palpate.h>` finds it without a folder.
+install(TARGETS palpate_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+install(FILES service/library/palpate.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
+# From lib/pkgconfig, or lib/x86_64-linux-gnu/pkgconfig, up to the prefix, wherever that is moved.
+file(RELATIVE_PATH PALPATE_PC_UP "/${CMAKE_INSTALL_LIBDIR}" "/")
+configure_file(scripts/cmake/palpate.pc.in "${PROJECT_BINARY_DIR}/palpate.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/palpate.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
 
 if(TARGET palpate)
   # DT_RPATH, not DT_RUNPATH: it also serves the libraries that our libraries need, which carry no path of their own.

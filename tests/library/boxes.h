@@ -25,8 +25,9 @@ struct BoxMesh {
   }
 };
 
-/// Expects a call to have come to a code; gives the sentence and frees the error.
-inline std::string sentence_of(std::int32_t code, std::int32_t wanted, palpate_error* error) {
+/// Expects a call to have come to a code; gives the sentence and frees the error. By reference, for the call
+/// is among the arguments.
+inline std::string sentence_of(std::int32_t code, std::int32_t wanted, palpate_error* const& error) {
   const std::string sentence = palpate_error_sentence(error);
   EXPECT_EQ(code, wanted) << sentence;
   EXPECT_EQ(palpate_error_code(error), wanted);
@@ -34,7 +35,9 @@ inline std::string sentence_of(std::int32_t code, std::int32_t wanted, palpate_e
   return sentence;
 }
 
-inline void must(std::int32_t code, palpate_error* error) { (void)sentence_of(code, PALPATE_OK, error); }
+inline void must(std::int32_t code, palpate_error* const& error) {
+  (void)sentence_of(code, PALPATE_OK, error);
+}
 
 /// A cube of 20 mm over a plate of 200 × 200 × 20 mm whose top is at z = 0: at height z of its middle it is
 /// z − 10 mm off.
@@ -44,7 +47,9 @@ class BoxScene {
     const BoxMesh tool(0.01, 0.01, 0.01), plate(0.1, 0.1, 0.01, -0.01);
     palpate_source* source = palpate_source_new();
     palpate_error* error = nullptr;
-    const char* text = R"({"tool": {"mesh": "cube"}, "static": [{"mesh": "plate"}]})";
+    // Coarse, so that it is ready in milliseconds, under sanitizers, too.
+    const char* text = R"({"tool": {"mesh": "cube"}, "static": [{"mesh": "plate"}],
+                           "response": {"voxel_size": 0.02, "sample_spacing": 0.005}})";
     must(palpate_source_text(source, text, nullptr, &error), error);
     must(palpate_source_mesh(source, "cube", tool.vertices.data(), 8, tool.faces.data(), 12, &error), error);
     must(palpate_source_mesh(source, "plate", plate.vertices.data(), 8, plate.faces.data(), 12, &error),

@@ -71,7 +71,7 @@ TEST(Library, GivesTheColumnsThatAreAskedForAndNoOthers) {
   must(palpate_query(scene, poses.data(), 2, &columns, nullptr, &error), error);
   EXPECT_EQ(force[2], 0);
   EXPECT_GT(force[5], 0.1);                   // upwards, out of the plate
-  EXPECT_NEAR(force[3], 0, 1e-4 * force[5]);  // samples lie on a grid, not about the middle
+  EXPECT_NEAR(force[3], 0, 1e-3 * force[5]);  // samples, 5 mm apart, are not the same about the middle
   EXPECT_GT(evaluations[1], 1u);
 }
 
@@ -225,8 +225,8 @@ std::int32_t stop_at_half(void* context, const char*, double done) {
 
 TEST(Library, TheCallerEndsABatch) {
   const BoxScene scene;
-  const std::vector<double> poses = at_heights(std::vector<double>(100'000, 0.009));
-  std::vector<std::uint8_t> contact(100'000);
+  const std::vector<double> poses = at_heights(std::vector<double>(20'000, 0.009));
+  std::vector<std::uint8_t> contact(20'000);
   palpate_columns columns{};
   columns.size = sizeof columns;
   columns.contact = contact.data();
@@ -236,11 +236,11 @@ TEST(Library, TheCallerEndsABatch) {
   watch.progress = stop_at_half;
   watch.context = &told;
   palpate_error* error = nullptr;
-  EXPECT_THAT(sentence_of(palpate_query(scene, poses.data(), 100'000, &columns, &watch, &error),
+  EXPECT_THAT(sentence_of(palpate_query(scene, poses.data(), 20'000, &columns, &watch, &error),
                           PALPATE_CANCELLED, error),
               HasSubstr("cancelled"));
   EXPECT_GT(told, 1);
-  EXPECT_EQ(std::count(contact.begin() + 90'000, contact.end(), 1), 0);  // it did end
+  EXPECT_EQ(std::count(contact.begin() + 18'000, contact.end(), 1), 0);  // it did end
 }
 
 TEST(Library, AFlagOfAnotherThreadEndsABatch) {

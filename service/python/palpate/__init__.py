@@ -10,11 +10,12 @@ from .contact import Contact
 from .drawing import draw
 from .manager import CollisionManager
 from .poses import matrix_of_pose, pose_of_matrix
+from .run import Run
 from .scene import Scene
 
 __version__: str = text('version')
 __all__ = ['COLUMNS', 'CollisionManager', 'Columns', 'Contact', 'DISTANCE_COLUMNS', 'Distances', 'ENGINES', 'MOTION_COLUMNS', 'Motions',
-           'NO_TRIANGLE', 'PalpateError', 'Scene', 'draw', 'generate', 'matrix_of_pose', 'pose_of_matrix']
+           'NO_TRIANGLE', 'PalpateError', 'Run', 'Scene', 'draw', 'generate', 'matrix_of_pose', 'pose_of_matrix']
 
 
 def generate(name: str, folder: Union[str, os.PathLike[str]], triangles: int = 0, tool_triangles: int = 0) -> str:

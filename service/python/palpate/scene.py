@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._library import PalpateError, call, library, obeying, text, watch
 from .columns import Columns, Distances, Motions
 from .contact import Contact
+from .run import Run, run
 
 Progress = Callable[[int, int], Any]
 #: Vertices (V, 3) and faces (F, 3), or anything that has `vertices` and `faces`, as a trimesh has.
@@ -189,6 +190,16 @@ class Scene:
             return Contact(json.loads(text('contact_json', out)))
         finally:
             library.palpate_contact_free(out)
+
+    def run(self, out: Union[str, os.PathLike[str]], *, pace: str = 'asap', device: Optional[str] = None, duration: Optional[float] = None,
+            overwrite: bool = False) -> Run:
+        """Lets the program do the scene's whole task, as `palpate run` does, and gives what it left in the folder `out`.
+
+        pace: 'asap' or 'real'. device: in place of the scene's. duration: s; the whole path by default. The scene must be one of a file.
+        """
+        if self.file is None:
+            raise PalpateError(2, 'a run needs a scene of a file: its device and path stand there')
+        return run(self.file, out, self._options['engine'], pace, device, duration, overwrite)
 
     # ---- how ------------------------------------------------------------------------------------------
 
