@@ -14,6 +14,7 @@
 #include "cpu_ref/sets.h"
 #include "model/contact/contact_areas.h"
 #include "model/pose_threads.h"
+#include "model/processors.h"
 
 namespace palpate {
 namespace {
@@ -242,7 +243,7 @@ class RefBackend final : public CollisionBackend {
   /// Somebody to ask, and a thread, for every other processor.
   void make_helpers() {
     std::vector<PoseQuery*> asked;
-    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
+    for (unsigned i = 1; i < processors(); ++i)
       asked.push_back(helpers_.emplace_back(std::make_unique<Asked>(*scene_, plan_)).get());
     threads_.emplace(std::move(asked));
   }

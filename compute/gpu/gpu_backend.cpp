@@ -13,6 +13,7 @@
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/scene/estimate.h"
 #include "compute/vulkan/device.h"
+#include "model/processors.h"
 
 namespace palpate {
 namespace {
@@ -156,7 +157,7 @@ class GpuBackend final : public CollisionBackend {
 
   void set_helpers_up() {
     no_workers_ = true;
-    const unsigned cores = std::thread::hardware_concurrency();
+    const unsigned cores = processors();
     if (cores < 2) return;
     const bool own_devices = device_->shares_memory() && options_.inline_execution;
     auto made = BatchWorkers::create(options_, own_devices ? nullptr : device_.get(), *geometry_, *scene_,

@@ -22,6 +22,7 @@
 #include "compute/scene/shares.h"
 #include "model/address_space.h"
 #include "model/pose_threads.h"
+#include "model/processors.h"
 #include "model/shared_backend.h"
 
 namespace palpate {
@@ -39,7 +40,7 @@ std::string processor_name() {
       name = line.substr(line.find(": ") + 2);
       break;
     }
-  return name + ", " + std::to_string(std::max(1u, std::thread::hardware_concurrency())) + " threads";
+  return name + ", " + std::to_string(processors()) + " threads";
 }
 
 /// Bytes that this process may come to hold.
@@ -254,7 +255,7 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
   }
   /// A frame and a thread for every other processor.
   void make_helpers() {
-    const unsigned cores = std::thread::hardware_concurrency();
+    const unsigned cores = processors();
     std::vector<PoseQuery*> asked;
     for (unsigned i = 1; i < cores; ++i)
       asked.push_back(

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "model/processors.h"
+
 namespace palpate {
 
 /// Calls work(share) for the shares 0 … count − 1, on this thread and others, one a core (at most 8: chosen),
@@ -35,7 +37,7 @@ bool in_shares(std::uint32_t count, Work&& work, Between&& between) {
     return true;
   };
   std::vector<std::thread> others;
-  const unsigned cores = std::min({std::thread::hardware_concurrency(), kMostThreads, count});
+  const unsigned cores = std::min({processors(), kMostThreads, count});
   others.reserve(cores);
   for (unsigned i = 1; i < cores; ++i) {
     try {

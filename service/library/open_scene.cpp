@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "model/cache/geometry_cache.h"
+#include "model/processors.h"
 #include "service/cli/pose_input.h"
 
 namespace palpate::library {
@@ -133,7 +134,7 @@ CollisionBackend* OpenScene::fellow(std::unique_lock<std::mutex>& lock) {
     free_.pop_back();
     return found;
   }
-  if (!another_ || fellows_.size() + 1 >= std::thread::hardware_concurrency()) return nullptr;
+  if (!another_ || fellows_.size() + 1 >= processors()) return nullptr;
   // Its place first: others may make theirs meanwhile, and giving back must not allocate.
   fellows_.emplace_back();
   free_.reserve(fellows_.size());
@@ -197,7 +198,7 @@ Result<void> OpenScene::ask_side_by_side(std::size_t count, const Piece& piece,
     }
   };
   const Turn own = take_any();
-  const std::size_t most = std::min<std::size_t>(std::thread::hardware_concurrency(), count / kWorthAThread);
+  const std::size_t most = std::min<std::size_t>(processors(), count / kWorthAThread);
   std::vector<Turn> others;  // given back after their threads have ended
   std::vector<std::jthread> threads;
   try {

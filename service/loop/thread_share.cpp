@@ -13,6 +13,8 @@
 #include <mutex>
 #include <set>
 
+#include "model/processors.h"
+
 namespace palpate {
 namespace {
 
@@ -64,6 +66,7 @@ class Places {
     const std::lock_guard lock(mutex_);
     if (wanted) {
       if (rooms_++ > 0) return;
+      (void)processors();  // counted before there are fewer
       // A thread's own mask counts, not the process's: a program may have been given its processors by
       // taskset or a control group.
       processor_ = ::sched_getaffinity(0, sizeof all_, &all_) == 0 ? loop_processor() : -1;

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Union
+from typing import Any, Union
 
 from ._library import PalpateError, call, text
 from .columns import COLUMNS, DISTANCE_COLUMNS, ENGINES, MOTION_COLUMNS, NO_TRIANGLE, Columns, Distances, Motions
@@ -22,3 +22,11 @@ def generate(name: str, folder: Union[str, os.PathLike[str]], triangles: int = 0
     """Writes a generated scene, 'contacts' or 'disassembly', to a folder; gives the path of its scene.json. 0: the usual counts."""
     call('generate', name.encode(), triangles, tool_triangles, os.fsencode(folder))
     return os.path.join(folder, 'scene.json')
+
+
+def __getattr__(name: str) -> Any:
+    """`sweep` and its `Grid` of poses (docs/SWEEPS.md), loaded when they are wanted: Dask and Zarr take a second."""
+    if name in ('Grid', 'sweep'):
+        from . import sweeps
+        return getattr(sweeps, name)
+    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
