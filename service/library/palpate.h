@@ -21,7 +21,8 @@
  *
  * Later versions add functions, constants, and members at the ends of the structs that begin with `size`, and
  * change or remove nothing while the library is called libpalpate.so.0. A caller sets `size` to sizeof of its
- * own struct and all members that it does not use to zero.
+ * own struct and all members that it does not use to zero; a library that is older than a member refuses it,
+ * unless it is zero.
  */
 #ifndef PALPATE_H
 #define PALPATE_H
@@ -60,7 +61,8 @@ typedef struct palpate_watch {
   size_t size;
   /* Not 0: stop. May be set by another thread or a signal handler at any time; may be null. */
   const volatile int32_t* cancel;
-  /* Told by the calling thread what goes on and how much of it is done, 0 to 1. Not 0 stops. May be null. */
+  /* Told by the calling thread what goes on and how much of it is done, 0 to 1. Not 0 stops. May be null.
+   * Must not ask the scene that is at work. */
   int32_t (*progress)(void* context, const char* what, double done);
   /* Told by the calling thread what a user should know, a sentence each. May be null. */
   void (*note)(void* context, const char* sentence);
@@ -104,7 +106,7 @@ PALPATE_API int32_t palpate_scene_open_file(const char* path, const palpate_watc
                                             palpate_scene** scene, palpate_error** error);
 PALPATE_API void palpate_scene_close(palpate_scene* scene); /* null is allowed */
 
-/* "gpu", "cpu" or "ref": who answers batches. */
+/* "gpu", "cpu" or "ref": who answers. Should it fail later another does, which the columns `engine` tell. */
 PALPATE_API const char* palpate_scene_engine(const palpate_scene* scene);
 /* 32 hexadecimal digits that stand for all that decides the scene's answers: the triangles on the lattice,
  * samples, profile and stiffness, wherever the files lie. */
