@@ -63,11 +63,19 @@ class Watch {
   }
   /// By the calling thread alone. False: stop.
   bool tell(const char* what, double done) {
-    if (watch_.progress && watch_.progress(watch_.context, what, done) != 0) stopped_ = true;
+    try {
+      if (watch_.progress && watch_.progress(watch_.context, what, done) != 0) stopped_ = true;
+    } catch (...) {  // a caller in C++: nothing of it may pass through threads of ours
+      stopped_ = true;
+    }
     return !cancelled();
   }
   void note(const std::string& sentence) {
-    if (watch_.note) watch_.note(watch_.context, sentence.c_str());
+    try {
+      if (watch_.note) watch_.note(watch_.context, sentence.c_str());
+    } catch (...) {
+      stopped_ = true;
+    }
   }
 
  private:

@@ -4,7 +4,7 @@
  *
  * Errors. A function that can fail returns PALPATE_OK or a code, and, where `error` is not null, sets *error
  * to an error that says why in one sentence, or to null. The caller frees it by palpate_error_free. No C++
- * exception leaves the library, and nothing is printed.
+ * exception leaves the library, and nothing is printed. A callback that throws one cancels the call.
  *
  * Threads. Any function may be called by any thread at any time, on the same scene, too, but for
  * palpate_scene_close and palpate_source_free, which must be a handle's last. A call on many poses uses all

@@ -50,6 +50,9 @@ def test_the_wheel_works_alone(tmp_path):
 import palpate
 open("cube.off", "w").write("OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 2 1\\n3 0 1 3\\n3 0 3 2\\n3 1 2 3\\n")
 scene = palpate.Scene({"tool": {"mesh": "cube.off"}, "static": [{"mesh": "cube.off"}]}, engine="cpu")
+loaded = open("/proc/self/maps").read()
+for library in ("libembree3", "libtbb", "libfmt", "libvulkan"):
+    assert f"site/palpate/libs/{library}" in loaded, f"{library} is not the wheel's own"
 print(palpate.__file__, scene.touches(scene.start), palpate._library.library._name)
 '''
     plain = {name: value for name, value in os.environ.items() if not name.startswith('PALPATE_')}

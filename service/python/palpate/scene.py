@@ -62,7 +62,7 @@ class Scene:
             self._made_of: dict[str, Any] = {'text': json.dumps(written), 'folder': folder, 'meshes': meshes}
         else:
             self._made_of = {'file': os.path.abspath(source)}
-        self._options = {'engine': engine, 'profile': profile, 'all_samples': all_samples, 'cache': cache}
+        self._options: dict[str, Any] = {'engine': engine, 'profile': profile, 'all_samples': all_samples, 'cache': cache}
         self._open(progress)
 
     def _open(self, progress: Optional[Callable[[str, float], Any]]) -> None:
