@@ -171,13 +171,15 @@ PALPATE_API int32_t palpate_touches(palpate_scene* scene, const double* poses, s
 
 typedef struct palpate_distances {
   size_t size;
-  double* distance;                /* m; 0: they touch; infinite: further than `within` */
+  double* distance;                /* m; 0: they touch; infinite: further than `within`, or beyond reach */
   uint32_t *static_id, *mobile_id; /* the nearest pair, or PALPATE_NO_TRIANGLE */
   double *on_static, *on_mobile; /* (n, 3), its nearest points, world, m; not a number where there are none */
   uint8_t* engine;               /* PALPATE_ENGINE_… */
 } palpate_distances;
 
-/* The smallest distance at each pose. What is further than `within` metres is not measured; infinite: all. */
+/* The smallest distance at each pose. What is further than `within` metres is not measured; infinite: all
+ * that the lattice tells, whose `reach` the description has: a pose with a vertex of the tool beyond has
+ * none. */
 PALPATE_API int32_t palpate_clearance(palpate_scene* scene, const double* poses, size_t count, double within,
                                       const palpate_distances* columns, const palpate_watch* watch,
                                       palpate_error** error);

@@ -121,7 +121,7 @@ class Columns(_Columns):
 class Distances(_Columns):
     """What `Scene.clearance` finds, a row a pose.
 
-    distance (float64, m): 0: they touch; inf: further than `within`. static_id, mobile_id (uint32): the nearest pair of triangles, or
+    distance (float64, m): 0: they touch; inf: further than `within`, or beyond the lattice's reach (Scene.description). static_id, mobile_id (uint32): the nearest pair of triangles, or
     NO_TRIANGLE. on_static, on_mobile (…, 3; m, world): its nearest points; nan where there are none. engine (uint8): ENGINES[code].
     """
 

@@ -157,7 +157,11 @@ class Scene:
         return found
 
     def clearance(self, poses: ArrayLike, within: Optional[float] = None, *, progress: Optional[Progress] = None) -> Distances:
-        """The exact smallest distance at poses (N, 7), where, and between which triangles. within (m): further is not measured."""
+        """The exact smallest distance at poses (N, 7), where, and between which triangles.
+
+        within (m): what is further is inf; None: what the lattice reaches, description['reach'] from description['origin'] along each
+        axis, about as far as the scene is large. Poses with a vertex of the tool beyond that are inf, too.
+        """
         asked, shape = _poses(poses)
         found = Distances(shape)
         reach = float('inf') if within is None else within
