@@ -57,6 +57,11 @@ def whole():
 
 
 scene.query_batch(poses[:2000], names)   # threads and lists are there
+before = resident_kib()
+peak_kib(reset=True)
+found = scene.query_batch(poses, names)
+print(f'memory: {(peak_kib() - before) / 1024:.1f} MiB at the peak, of which the columns are {found.nbytes / 2**20:.1f} MiB')
+
 one, other = [], []
 for _ in range(options.rounds):
     one.append(timed(whole))
@@ -65,11 +70,6 @@ for what, times in (('one call of palpate_query', one), ('Scene.query_batch', ot
     wall, processor = (statistics.median(column) for column in zip(*times))
     print(f'{what}: {options.poses / wall:.0f} poses/s by the clock, {1e6 * processor / options.poses:.2f} us of processor time a pose')
 assert all((whole()[name] == scene.query_batch(poses, names)[name]).all() for name in names)
-
-before = resident_kib()
-peak_kib(reset=True)
-found = scene.query_batch(poses, names)
-print(f'memory: {(peak_kib() - before) / 1024:.1f} MiB at the peak, of which the columns are {found.nbytes / 2**20:.1f} MiB')
 
 lone = poses[:20_000]
 for question in (lambda pose: scene.touches(pose), lambda pose: scene.query_batch(pose, names)):
