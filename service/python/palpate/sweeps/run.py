@@ -8,7 +8,7 @@ import sys
 import uuid
 
 from . import digest
-from .asking import ASKS, answer, maker
+from .asking import ASKS, answer, maker, second_engine
 from .chunks import SIZE, Chunks
 from .poses import ArrayPoses, source_of
 from .progress import Progress
@@ -50,8 +50,8 @@ def sweep(scene, poses, *, out, count=None, client=None, ask='touches', within=N
     client : a distributed.Client whose workers have palpate and see `out` and the scene's files under the same paths. None:
         `workers` processes here, which share the processors out (None: one each, at most 8).
     ask : 'touches' (bool), 'clearance' (distance and nearest points; `within` metres) or 'query' (contact, force, torque).
-    engine : of a scene that is made here. again : the engine that answers `share` of the chunks a second time: 'auto' (gpu
-        where there is one, else ref; cpu beside gpu), 'gpu', 'cpu' or 'ref'.
+    engine : of a scene that is made here. again : the engine that answers `share` of the chunks a second time: 'auto' (ref
+        beside cpu, cpu beside gpu), 'gpu', 'cpu' or 'ref'.
     quiet : no progress on standard error. command : what to note as the command; connect : makes a lost client anew.
 
     Called again with the same question and `out`, it goes on where it was cut off. Raises PalpateError in one sentence: bad
@@ -85,6 +85,7 @@ def _sweep(scene, source, chunks, store, client, ask, within, again, share, work
     from .drive import Driver
     from .worker import Job
 
+    again = second_engine(scene.engine, again)
     first = answer(scene, ask, within, source.poses(0, 1))
     types = {name: [values.dtype.newbyteorder('<').str, list(values.shape[1:])] for name, values in sorted(first.items())}
     asked = {'scene': scene.hash, 'ask': ask, 'within': within, 'columns': types}

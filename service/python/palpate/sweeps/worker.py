@@ -7,7 +7,7 @@ import threading
 from distributed import WorkerPlugin, get_worker
 
 from . import digest
-from .asking import answer, first_difference, second_engine
+from .asking import answer, first_difference
 from .chunks import Chunks
 from .poses import ArrayPoses
 from .store import Store
@@ -22,7 +22,7 @@ class Job:
     scene: str        # content hash
     make: object      # make(engine=…) gives the scene
     engine: str
-    again: str        # the second engine, or 'auto'
+    again: str        # the second engine
     ask: str
     within: object
     source: object    # of poses; None: the store keeps them
@@ -97,7 +97,7 @@ def _answer(work, number, twice):
               'engine': scene.engine}
     if twice:
         with _answering:
-            second = _scene(job, job.again, beside=scene.engine)
+            second = _scene(job, job.again)
             others = answer(second, job.ask, job.within, poses)
         differs = first_difference(columns, others)
         if differs:
@@ -108,9 +108,9 @@ def _answer(work, number, twice):
     work.store.write(record, columns)
 
 
-def _scene(job, engine, beside=None):
-    """The job's scene by `engine`, or by one that can be held `beside` another; kept for the next chunk and the next sweep."""
-    key = (job.scene, engine, beside)
+def _scene(job, engine):
+    """The job's scene by `engine`; kept for the next chunk and the next sweep."""
+    key = (job.scene, engine)
     if key not in _scenes:
         import palpate
 
@@ -120,7 +120,7 @@ def _scene(job, engine, beside=None):
             del _scenes[other]
         if palpate.__version__ != job.version:
             refuse(f'worker {get_worker().name} has palpate {palpate.__version__}, the sweep is of {job.version}')
-        _scenes[key] = second_engine(job.make, beside, engine) if beside else job.make(engine=engine)
+        _scenes[key] = job.make(engine=engine)
     return _scenes[key]
 
 
