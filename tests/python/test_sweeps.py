@@ -26,7 +26,7 @@ def test_every_question_is_answered_as_the_scene_itself_does_and_by_two_engines(
 
 
 def test_a_scene_file_is_swept_by_the_command(tmp_path):
-    scene = palpate.generate('contacts', tmp_path, triangles=2000, tool_triangles=500)
+    scene = palpate.generate('contacts', tmp_path, triangles=2000, tool_triangles=1000)
     words = [sys.executable, '-m', 'palpate.sweeps', scene, '--out', str(tmp_path / 'out.zarr'), '--x=-0.05:0.05:5', '--y=-0.1:0:5', '--z=0.1:0.2:4', 
              '--size', '40', '--workers', '1']
     done = subprocess.run(words, capture_output=True, text=True, timeout=300)

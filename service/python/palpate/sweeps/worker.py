@@ -4,6 +4,7 @@ import functools
 import os
 import threading
 
+import numpy
 from distributed import WorkerPlugin, get_worker
 
 from . import digest
@@ -23,6 +24,7 @@ class Job:
     make: object      # make(engine=…) gives the scene
     engine: str
     again: str        # the second engine
+    again_poses: int  # of a chunk that it is asked of
     ask: str
     within: object
     source: object    # of poses; None: the store keeps them
@@ -96,13 +98,15 @@ def _answer(work, number, twice):
     record = {'chunk': number, 'start': start, 'poses': n, 'posed': digest.of_array(poses), 'answers': digest.of_columns(columns),
               'engine': scene.engine}
     if twice:
+        asked = numpy.unique(numpy.arange(job.again_poses) * n // job.again_poses)   # evenly spread; all of a small chunk
         with _answering:
             second = _scene(job, job.again)
-            others = answer(second, job.ask, job.within, poses)
-        differs = first_difference(columns, others)
+            others = answer(second, job.ask, job.within, poses[asked])
+        differs = first_difference({name: values[asked] for name, values in columns.items()}, others)
         if differs:
             row, column = differs
-            refuse(f'pose {start + row} ({" ".join(repr(float(x)) for x in poses[row])}): {column} is {columns[column][row]} by '
+            place = asked[row]
+            refuse(f'pose {start + place} ({" ".join(repr(float(x)) for x in poses[place])}): {column} is {columns[column][place]} by '
                    f'{scene.engine} and {others[column][row]} by {second.engine}')
         record['again'] = second.engine
     work.store.write(record, columns)
