@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstring>
@@ -19,18 +20,41 @@ namespace palpate::library {
 /// Hands an error to the caller, who may not want it, and gives its code.
 std::int32_t fail(std::int32_t code, const std::string& sentence, palpate_error** out) noexcept;
 
-/// A watch as this version knows it; members beyond a caller's `size` are zero.
+inline Error wrong_call(std::string sentence) { return {ErrorCode::kUsage, std::move(sentence)}; }
+
+/// A caller's struct as this version knows it: members beyond its `size` are zero. What a newer caller has
+/// beyond must be zero, or it would wait for an answer in vain. Error: kUsage.
 template <class Sized>
-Sized taken(const Sized* given) {
+Result<Sized> taken(const Sized* given, const char* name) {
   Sized out{};
-  if (given) std::memcpy(&out, given, given->size < sizeof out ? given->size : sizeof out);
+  if (!given) return out;
+  const std::size_t size = given->size;
+  if (size < sizeof size || size > 64 * sizeof out)
+    return wrong_call(std::string(name) + " has the size " + std::to_string(size) +
+                      "; it must be sizeof of the struct");
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
+  if (std::any_of(bytes + std::min(size, sizeof out), bytes + size, [](unsigned char b) { return b != 0; }))
+    return wrong_call(std::string(name) + " has members that version " PALPATE_VERSION " does not know");
+  std::memcpy(&out, given, std::min(size, sizeof out));
   return out;
 }
 
 /// A caller's watch, looked at.
 class Watch {
  public:
-  explicit Watch(const palpate_watch* watch) : watch_(taken(watch)) {}
+  explicit Watch(const palpate_watch* watch) {
+    const Result<palpate_watch> known = taken(watch, "palpate_watch");
+    if (known)
+      watch_ = *known;
+    else
+      wrong_ = known.error().sentence;
+  }
+
+  /// Error: it is no watch.
+  Result<void> usable() const {
+    if (wrong_.empty()) return {};
+    return wrong_call(wrong_);
+  }
 
   /// By any thread.
   bool cancelled() const {
@@ -39,15 +63,24 @@ class Watch {
   }
   /// By the calling thread alone. False: stop.
   bool tell(const char* what, double done) {
-    if (watch_.progress && watch_.progress(watch_.context, what, done) != 0) stopped_ = true;
+    try {
+      if (watch_.progress && watch_.progress(watch_.context, what, done) != 0) stopped_ = true;
+    } catch (...) {  // a caller in C++: nothing of it may pass through threads of ours
+      stopped_ = true;
+    }
     return !cancelled();
   }
   void note(const std::string& sentence) {
-    if (watch_.note) watch_.note(watch_.context, sentence.c_str());
+    try {
+      if (watch_.note) watch_.note(watch_.context, sentence.c_str());
+    } catch (...) {
+      stopped_ = true;
+    }
   }
 
  private:
-  palpate_watch watch_;
+  palpate_watch watch_{};
+  std::string wrong_;
   std::atomic<bool> stopped_{false};
 };
 
@@ -69,7 +102,5 @@ std::int32_t guarded(palpate_error** out, const Watch* watch, Body body) noexcep
     return fail(PALPATE_INTERNAL, "something unknown was thrown", out);
   }
 }
-
-inline Error wrong_call(std::string sentence) { return {ErrorCode::kUsage, std::move(sentence)}; }
 
 }  // namespace palpate::library

@@ -60,6 +60,8 @@ std::string describe(const HostedScene& hosted, const std::string& hash) {
                  {"stiffness", loaded.scene.response.stiffness_n_per_m},
                  {"all_samples", geometry.contact_samples == 0},
                  {"step", geometry.lattice.step_m},
+                 {"origin", row(geometry.lattice.origin_m)},
+                 {"reach", geometry.lattice.step_m * kLatticeReach},
                  {"voxel_size", geometry.lattice.step_m * geometry.mockup_grid.size},
                  {"centre_of_mass", row(geometry.tool_gc_m)},
                  {"start", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}},

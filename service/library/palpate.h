@@ -4,7 +4,7 @@
  *
  * Errors. A function that can fail returns PALPATE_OK or a code, and, where `error` is not null, sets *error
  * to an error that says why in one sentence, or to null. The caller frees it by palpate_error_free. No C++
- * exception leaves the library, and nothing is printed.
+ * exception leaves the library, and nothing is printed. A callback that throws one cancels the call.
  *
  * Threads. Any function may be called by any thread at any time, on the same scene, too, but for
  * palpate_scene_close and palpate_source_free, which must be a handle's last. A call on many poses uses all
@@ -21,7 +21,8 @@
  *
  * Later versions add functions, constants, and members at the ends of the structs that begin with `size`, and
  * change or remove nothing while the library is called libpalpate.so.0. A caller sets `size` to sizeof of its
- * own struct and all members that it does not use to zero.
+ * own struct and all members that it does not use to zero; a library that is older than a member refuses it,
+ * unless it is zero.
  */
 #ifndef PALPATE_H
 #define PALPATE_H
@@ -60,7 +61,8 @@ typedef struct palpate_watch {
   size_t size;
   /* Not 0: stop. May be set by another thread or a signal handler at any time; may be null. */
   const volatile int32_t* cancel;
-  /* Told by the calling thread what goes on and how much of it is done, 0 to 1. Not 0 stops. May be null. */
+  /* Told by the calling thread what goes on and how much of it is done, 0 to 1. Not 0 stops. May be null.
+   * Must not ask the scene that is at work. */
   int32_t (*progress)(void* context, const char* what, double done);
   /* Told by the calling thread what a user should know, a sentence each. May be null. */
   void (*note)(void* context, const char* sentence);
@@ -104,7 +106,7 @@ PALPATE_API int32_t palpate_scene_open_file(const char* path, const palpate_watc
                                             palpate_scene** scene, palpate_error** error);
 PALPATE_API void palpate_scene_close(palpate_scene* scene); /* null is allowed */
 
-/* "gpu", "cpu" or "ref": who answers batches. */
+/* "gpu", "cpu" or "ref": who answers. Should it fail later another does, which the columns `engine` tell. */
 PALPATE_API const char* palpate_scene_engine(const palpate_scene* scene);
 /* 32 hexadecimal digits that stand for all that decides the scene's answers: the triangles on the lattice,
  * samples, profile and stiffness, wherever the files lie. */
@@ -169,13 +171,15 @@ PALPATE_API int32_t palpate_touches(palpate_scene* scene, const double* poses, s
 
 typedef struct palpate_distances {
   size_t size;
-  double* distance;                /* m; 0: they touch; infinite: further than `within` */
+  double* distance;                /* m; 0: they touch; infinite: further than `within`, or beyond reach */
   uint32_t *static_id, *mobile_id; /* the nearest pair, or PALPATE_NO_TRIANGLE */
   double *on_static, *on_mobile; /* (n, 3), its nearest points, world, m; not a number where there are none */
   uint8_t* engine;               /* PALPATE_ENGINE_… */
 } palpate_distances;
 
-/* The smallest distance at each pose. What is further than `within` metres is not measured; infinite: all. */
+/* The smallest distance at each pose. What is further than `within` metres is not measured; infinite: all
+ * that the lattice tells, whose `reach` the description has: a pose with a vertex of the tool beyond has
+ * none. */
 PALPATE_API int32_t palpate_clearance(palpate_scene* scene, const double* poses, size_t count, double within,
                                       const palpate_distances* columns, const palpate_watch* watch,
                                       palpate_error** error);

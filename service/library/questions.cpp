@@ -145,10 +145,11 @@ Result<void> verdicts_allowed(const palpate_scene& scene, double tolerance) {
   return {};
 }
 
-Result<void> given(const palpate_scene* scene, const void* poses, const void* columns, std::size_t count) {
+Result<void> given(const palpate_scene* scene, const void* poses, const void* columns, std::size_t count,
+                   const Watch& watch) {
   if (!scene || (count > 0 && (!poses || !columns)))
     return wrong_call("the scene, the poses or the columns are null");
-  return {};
+  return watch.usable();
 }
 
 /// Whether poses touch under the rule.
@@ -227,8 +228,10 @@ std::int32_t palpate_query(palpate_scene* scene, const double* poses, std::size_
                            palpate_error** error) {
   Watch watching(watch);
   return guarded(error, &watching, [&]() -> Result<void> {
-    if (auto fine = given(scene, poses, columns, count); !fine) return fine;
-    const ColumnsOf to(scene->hosted().loaded, taken(columns));
+    if (auto fine = given(scene, poses, columns, count, watching); !fine) return fine;
+    const auto known = taken(columns, "palpate_columns");
+    if (!known) return known.error();
+    const ColumnsOf to(scene->hosted().loaded, *known);
     ScratchPool pool;
     std::atomic<std::size_t> done{0};
     const auto caller = std::this_thread::get_id();
@@ -261,7 +264,7 @@ std::int32_t palpate_touches(palpate_scene* scene, const double* poses, std::siz
                              std::uint8_t* bits, const palpate_watch* watch, palpate_error** error) {
   Watch watching(watch);
   return guarded(error, &watching, [&]() -> Result<void> {
-    if (auto fine = given(scene, poses, bits, count); !fine) return fine;
+    if (auto fine = given(scene, poses, bits, count, watching); !fine) return fine;
     if (auto fine = verdicts_allowed(*scene, tolerance); !fine) return fine;
     const SceneGeometry& geometry = scene->geometry();
     const auto all = [&](CollisionBackend& backend) {
@@ -276,10 +279,12 @@ std::int32_t palpate_clearance(palpate_scene* scene, const double* poses, std::s
                                palpate_error** error) {
   Watch watching(watch);
   return guarded(error, &watching, [&]() -> Result<void> {
-    if (auto fine = given(scene, poses, columns, count); !fine) return fine;
+    if (auto fine = given(scene, poses, columns, count, watching); !fine) return fine;
     if (auto fine = verdicts_allowed(*scene, 0); !fine) return fine;
     if (!(within >= 0)) return bad_value(fmt::format("`within` is {} m; it must be 0 or more", within));
-    const palpate_distances to = taken(columns);
+    const auto known = taken(columns, "palpate_distances");
+    if (!known) return known.error();
+    const palpate_distances& to = *known;
     const SceneGeometry& geometry = scene->geometry();
     const double step = geometry.lattice.step_m;
     const auto reach = within == std::numeric_limits<double>::infinity()
@@ -316,10 +321,12 @@ std::int32_t palpate_first_contact(palpate_scene* scene, const double* from, con
                                    const palpate_watch* watch, palpate_error** error) {
   Watch watching(watch);
   return guarded(error, &watching, [&]() -> Result<void> {
-    if (auto fine = given(scene, from, columns, count); !fine) return fine;
+    if (auto fine = given(scene, from, columns, count, watching); !fine) return fine;
     if (count > 0 && !to) return wrong_call("the poses that motions go to are null");
     if (auto fine = verdicts_allowed(*scene, tolerance); !fine) return fine;
-    const palpate_motions out = taken(columns);
+    const auto known = taken(columns, "palpate_motions");
+    if (!known) return known.error();
+    const palpate_motions& out = *known;
     const SceneGeometry& geometry = scene->geometry();
     const TouchRule rule = TouchRule::of(geometry, tolerance);
     const auto move = [&](CollisionBackend& backend, std::size_t i) -> Result<void> {

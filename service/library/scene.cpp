@@ -178,6 +178,7 @@ std::int32_t palpate_scene_open(const palpate_source* source, const palpate_watc
   if (scene) *scene = nullptr;
   return guarded(error, &watching, [&]() -> Result<void> {
     if (!source || !scene) return wrong_call("the source, or the place for the scene, is null");
+    if (auto fine = watching.usable(); !fine) return fine;
     Result<Scene> read = scene_of(*source);
     if (!read) return read.error();
     const PrepareWatch prepare{

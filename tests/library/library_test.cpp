@@ -90,6 +90,30 @@ TEST(Library, AShorterStructOfAnOlderCallerIsEnough) {
   EXPECT_EQ(garbage, 0);
 }
 
+TEST(Library, AStructThatThisVersionDoesNotKnowIsRefused) {
+  const BoxScene scene;
+  const std::vector<double> poses = at_heights({0.009});
+  std::uint8_t contact = 9;
+  struct {
+    palpate_columns columns;
+    void* newer;
+  } later{};
+  later.columns.contact = &contact;
+  palpate_error* error = nullptr;
+  const auto ask = [&] { return palpate_query(scene, poses.data(), 1, &later.columns, nullptr, &error); };
+  EXPECT_THAT(sentence_of(ask(), PALPATE_USAGE, error), HasSubstr("the size 0"));
+  later.columns.size = sizeof later;
+  must(ask(), error);  // not used
+  EXPECT_EQ(contact, 1);
+  later.newer = &contact;
+  EXPECT_THAT(sentence_of(ask(), PALPATE_USAGE, error), HasSubstr("does not know"));
+  palpate_watch watch{};
+  later.newer = nullptr;
+  EXPECT_THAT(sentence_of(palpate_query(scene, poses.data(), 1, &later.columns, &watch, &error),
+                          PALPATE_USAGE, error),
+              HasSubstr("palpate_watch"));
+}
+
 TEST(Library, MeasuresDistances) {
   const BoxScene scene;
   const std::vector<double> poses = at_heights({0.03, 0.009, 0.5});

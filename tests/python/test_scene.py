@@ -29,6 +29,13 @@ def test_clearance_is_the_gap(boxes):
     assert palpate.ENGINES[found.engine[0]] == 'cpu'
 
 
+def test_clearance_reaches_as_far_as_the_description_says(boxes):
+    reach, origin = boxes.description['reach'], boxes.description['origin']
+    inside, outside = origin[2] + reach - 0.02, origin[2] + reach + 0.02
+    found = boxes.clearance(at(inside, outside)).distance
+    np.testing.assert_allclose(found, [inside - 0.01, np.inf], atol=1e-6)
+
+
 def test_first_contact_is_never_late(boxes):
     found = boxes.first_contact(at(0.11), at(-0.09, 0.06))
     assert found.clear.tolist() == [False, True]

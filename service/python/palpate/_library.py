@@ -108,7 +108,8 @@ def call(name: str, *arguments: Any) -> None:
 
 def text(name: str, *arguments: Any) -> str:
     """Calls a function that gives text."""
-    return getattr(library, 'palpate_' + name)(*arguments).decode()
+    said: bytes = getattr(library, 'palpate_' + name)(*arguments)
+    return said.decode()
 
 
 def obeying(work: Callable[[], _Result], cancel: ctypes.c_int32) -> _Result:
@@ -116,14 +117,15 @@ def obeying(work: Callable[[], _Result], cancel: ctypes.c_int32) -> _Result:
     another thread does the work meanwhile. `cancel` is what the work's watch looks at."""
     if threading.current_thread() is not threading.main_thread():
         return work()
-    outcome: list[Any] = []
+    results: list[_Result] = []
+    faults: list[BaseException] = []
     finished = threading.Event()
 
     def serve() -> None:
         try:
-            outcome.append((work(), None))
-        except BaseException as thrown:  # noqa: BLE001: raised again by the thread that asked
-            outcome.append((None, thrown))
+            results.append(work())
+        except BaseException as thrown:   # raised again by the thread that asked
+            faults.append(thrown)
         finished.set()
 
     threading.Thread(target=serve, name='palpate', daemon=True).start()
@@ -134,13 +136,12 @@ def obeying(work: Callable[[], _Result], cancel: ctypes.c_int32) -> _Result:
         while not finished.is_set():   # whatever else comes must wait: the library still writes
             try:
                 finished.wait()
-            except BaseException:  # noqa: BLE001
+            except BaseException:
                 continue
         raise
-    result, thrown = outcome[0]
-    if thrown is not None:
-        raise thrown
-    return result
+    if faults:
+        raise faults[0]
+    return results[0]
 
 
 def watch(cancel: ctypes.c_int32, progress: Optional[Callable[[str, float], Any]] = None, note: Optional[Callable[[str], Any]] = None,
@@ -151,7 +152,7 @@ def watch(cancel: ctypes.c_int32, progress: Optional[Callable[[str, float], Any]
     def on_progress(_context: Any, what: bytes, done: float) -> int:
         try:
             return 1 if progress is not None and progress(what.decode(), done) is False else 0
-        except BaseException as thrown:  # noqa: BLE001
+        except BaseException as thrown:
             kept.append(thrown)
             return 1
 
@@ -159,10 +160,8 @@ def watch(cancel: ctypes.c_int32, progress: Optional[Callable[[str, float], Any]
         try:
             if note is not None:
                 note(sentence.decode())
-        except BaseException as thrown:  # noqa: BLE001
+        except BaseException as thrown:
             kept.append(thrown)
             cancel.value = 1
 
-    made = Watch(ctypes.sizeof(Watch), ctypes.pointer(cancel), _PROGRESS(on_progress) if progress else _PROGRESS(),
-                 _NOTE(on_note) if note else _NOTE(), None)
-    return made
+    return Watch(ctypes.sizeof(Watch), ctypes.pointer(cancel), _PROGRESS(on_progress), _NOTE(on_note), None)

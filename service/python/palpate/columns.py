@@ -43,7 +43,7 @@ class _Columns(Mapping[str, 'NDArray[Any]']):
     _struct: type[ctypes.Structure]
 
     def __init__(self, shape: tuple[int, ...], names: Optional[Any] = None, out: Optional[Mapping[str, NDArray[Any]]] = None) -> None:
-        chosen = tuple(self._specification) if names is None and out is None else tuple(out if names is None else names)  # type: ignore[arg-type]
+        chosen = tuple(self._specification) if names is None and out is None else tuple(out if names is None else names)
         self._arrays: dict[str, NDArray[Any]] = {}
         self.shape = shape
         for name in chosen:
@@ -56,14 +56,14 @@ class _Columns(Mapping[str, 'NDArray[Any]']):
     def _at(self, first: int) -> ctypes.Structure:
         """The library's struct for the poses from `first` on."""
         made = self._struct()
-        made.size = ctypes.sizeof(made)  # type: ignore[attr-defined]
+        made.size = ctypes.sizeof(made)
         for name, array in self._flat.items():
             step = array.itemsize * int(np.prod(self._specification[name][1], dtype=int))
             setattr(made, name, array.ctypes.data + first * step)
         return made
 
     def __getattr__(self, name: str) -> NDArray[Any]:
-        arrays = self.__dict__.get('_arrays', {})
+        arrays: dict[str, NDArray[Any]] = self.__dict__.get('_arrays', {})
         if name in arrays:
             return arrays[name]
         if name in self._specification:
@@ -121,7 +121,7 @@ class Columns(_Columns):
 class Distances(_Columns):
     """What `Scene.clearance` finds, a row a pose.
 
-    distance (float64, m): 0: they touch; inf: further than `within`. static_id, mobile_id (uint32): the nearest pair of triangles, or
+    distance (float64, m): 0: they touch; inf: further than `within`, or beyond the lattice's reach (Scene.description). static_id, mobile_id (uint32): the nearest pair of triangles, or
     NO_TRIANGLE. on_static, on_mobile (…, 3; m, world): its nearest points; nan where there are none. engine (uint8): ENGINES[code].
     """
 

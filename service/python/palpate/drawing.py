@@ -20,8 +20,8 @@ def draw(scene: Scene, pose: Optional[ArrayLike] = None, axes: Any = None, margi
     axes: three-dimensional ones to draw on. margin: how far beyond the tool the mock-up is drawn, by the tool's longest side.
     """
     try:
-        from matplotlib import pyplot
-        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+        from matplotlib import pyplot  # type: ignore[import]
+        from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import]
     except ImportError:
         raise PalpateError(2, 'drawing needs matplotlib, which is not installed (Debian: python3-matplotlib)') from None
     found = scene.query(scene.start if pose is None else pose)

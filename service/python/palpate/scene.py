@@ -5,9 +5,8 @@ import copy
 import ctypes
 import json
 import os
-import threading
 import time
-from typing import Any, Callable, Iterable, Iterator, Mapping, Optional, Union
+from typing import Any, Callable, Iterable, Mapping, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +20,9 @@ Progress = Callable[[int, int], Any]
 #: Vertices (V, 3) and faces (F, 3), or anything that has `vertices` and `faces`, as a trimesh has.
 MeshLike = Any
 
-_PIECE_SECONDS = 0.1   # of a batch between two looks at signals (chosen: a hand does not feel it)
+_PIECE_SECONDS = 0.1     # of a batch between two looks at signals (chosen: a hand does not feel it)
+_LONGEST_SECONDS = 0.5   # where poses are slow (chosen: a hand feels it and waits)
+_LEAST_PIECE = 32 * (os.cpu_count() or 1)   # poses, if that takes no longer
 
 
 class _Handle:
@@ -61,7 +62,7 @@ class Scene:
             self._made_of: dict[str, Any] = {'text': json.dumps(written), 'folder': folder, 'meshes': meshes}
         else:
             self._made_of = {'file': os.path.abspath(source)}
-        self._options = {'engine': engine, 'profile': profile, 'all_samples': all_samples, 'cache': cache}
+        self._options: dict[str, Any] = {'engine': engine, 'profile': profile, 'all_samples': all_samples, 'cache': cache}
         self._open(progress)
 
     def _open(self, progress: Optional[Callable[[str, float], Any]]) -> None:
@@ -156,7 +157,11 @@ class Scene:
         return found
 
     def clearance(self, poses: ArrayLike, within: Optional[float] = None, *, progress: Optional[Progress] = None) -> Distances:
-        """The exact smallest distance at poses (N, 7), where, and between which triangles. within (m): further is not measured."""
+        """The exact smallest distance at poses (N, 7), where, and between which triangles.
+
+        within (m): what is further is inf; None: what the lattice reaches, description['reach'] from description['origin'] along each
+        axis, about as far as the scene is large. Poses with a vertex of the tool beyond that are inf, too.
+        """
         asked, shape = _poses(poses)
         found = Distances(shape)
         reach = float('inf') if within is None else within
@@ -238,13 +243,21 @@ class Scene:
         """Asks piece by piece, each about _PIECE_SECONDS long, so that Python sees signals between them."""
         handle, first = self._asked(), 0   # the handle lives as long as this call
         while first < count:
-            size = min(count - first, max(1, int(self._rates.get(question, 160) * _PIECE_SECONDS)))
+            rate = self._rates.get(question, 1 / _PIECE_SECONDS)   # of nothing yet: one pose tells more
+            # Where poses are slow, a piece is long enough that processors seldom wait for the last of it.
+            size = max(1, int(rate * _PIECE_SECONDS), min(_LEAST_PIECE, int(rate * _LONGEST_SECONDS)))
+            size = min(size, count - first)
             begin = time.perf_counter()
-            ask(handle.pointer, first, size, None)
+            if size / rate > _LONGEST_SECONDS:   # a single slow one
+                cancel = ctypes.c_int32()
+                seen = ctypes.byref(watch(cancel))
+                obeying(lambda: ask(handle.pointer, first, size, seen), cancel)
+            else:
+                ask(handle.pointer, first, size, None)
             taken = max(time.perf_counter() - begin, 1e-6)
             first += size
             # A short piece says little of how long a long one takes.
-            self._rates[question] = min(size / taken, 8 * size / _PIECE_SECONDS) if size < count or taken < _PIECE_SECONDS else size / taken
+            self._rates[question] = min(size / taken, 8 * size / _PIECE_SECONDS) if taken < _PIECE_SECONDS else size / taken
             if progress is not None and progress(first, count) is False:
                 raise PalpateError(64, f'cancelled after {first} of {count}')
 
