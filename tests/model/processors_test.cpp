@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstddef>
+
 namespace palpate {
 namespace {
 
@@ -15,7 +17,7 @@ int seen_by_a_process_on(int wanted) {
     cpu_set_t may, some;
     CPU_ZERO(&some);
     if (::sched_getaffinity(0, sizeof may, &may) != 0) ::_exit(255);
-    for (int i = 0; i < CPU_SETSIZE && CPU_COUNT(&some) < wanted; ++i)
+    for (std::size_t i = 0; i < CPU_SETSIZE && CPU_COUNT(&some) < wanted; ++i)
       if (CPU_ISSET(i, &may)) CPU_SET(i, &some);
     if (::sched_setaffinity(0, sizeof some, &some) != 0) ::_exit(255);
     const unsigned before = processors();

@@ -88,6 +88,8 @@ def test_an_engine_that_answers_otherwise_is_told_of_with_chunk_and_pose(swept, 
     with pytest.raises(PalpateError, match=r'chunk 0: pose 0 \(-1.0 -1.0 -1.0 0.0 0.0 0.0 1.0\): touches is False by cpu and True by ref'):
         swept(scene={**BALL, 'wrong': -1.0}, share=1)
     assert not (tmp_path / 'out.zarr/.sweep/0').exists()
+    # Asked at their first poses alone, no chunk notices that poses 2400 to 4799 are wrong.
+    assert swept(scene={**BALL, 'wrong': GRID.axis('x')[1]}, out='b.zarr', share=1, again_poses=1).chunks == 20
 
 
 def test_an_engine_beside_itself_is_refused(swept):

@@ -19,8 +19,8 @@ def main(arguments=None):
         client, connect = _client(asked)
         poses, count = _poses(parser, asked)
         swept = sweep(asked.scene, poses, out=asked.out, count=count, client=client, ask=asked.ask, within=asked.within,
-                      engine=asked.engine, again=asked.again, share=asked.share, workers=asked.workers, size=asked.size,
-                      quiet=asked.quiet, connect=connect)
+                      engine=asked.engine, again=asked.again, share=asked.share, again_poses=asked.again_poses, workers=asked.workers,
+                      size=asked.size, quiet=asked.quiet, connect=connect)
     except PalpateError as error:
         print(f'palpate-sweep: {error}', file=sys.stderr)
         return getattr(error, 'code', 0) or 3
@@ -51,6 +51,7 @@ def _parser():
     parser.add_argument('--engine', choices=('auto', 'gpu', 'cpu', 'ref'), default='auto')
     parser.add_argument('--again', choices=('auto', 'gpu', 'cpu', 'ref'), default='auto', help='the engine that checks')
     parser.add_argument('--share', type=float, default=0.01, help='part of the chunks that it checks (0.01)')
+    parser.add_argument('--again-poses', type=int, default=1024, help='poses of such a chunk, evenly spread (1024)')
     parser.add_argument('--size', type=int, default=1 << 16, help='poses in a chunk (65536)')
     parser.add_argument('--workers', type=int, help='processes on this machine')
     parser.add_argument('--scheduler', metavar='ADDRESS', help="of a Dask cluster, tcp://…:8786, in place of this machine's processes")

@@ -8,7 +8,7 @@ import sys
 import uuid
 
 from . import digest
-from .asking import ASKS, answer, maker
+from .asking import ASKS, answer, maker, second_engine
 from .chunks import SIZE, Chunks
 from .poses import ArrayPoses, source_of
 from .progress import Progress
@@ -42,7 +42,7 @@ class Swept:
 
 
 def sweep(scene, poses, *, out, count=None, client=None, ask='touches', within=None, engine='auto', again='auto', share=0.01,
-          workers=None, size=SIZE, quiet=False, command=None, connect=None):
+          again_poses=1024, workers=None, size=SIZE, quiet=False, command=None, connect=None):
     """Asks a scene at all of `poses` and keeps the answers in the Zarr group `out`.
 
     scene : a palpate.Scene, or what makes one: a file or a dict.
@@ -50,8 +50,8 @@ def sweep(scene, poses, *, out, count=None, client=None, ask='touches', within=N
     client : a distributed.Client whose workers have palpate and see `out` and the scene's files under the same paths. None:
         `workers` processes here, which share the processors out (None: one each, at most 8).
     ask : 'touches' (bool), 'clearance' (distance and nearest points; `within` metres) or 'query' (contact, force, torque).
-    engine : of a scene that is made here. again : the engine that answers `share` of the chunks a second time: 'auto' (gpu
-        where there is one, else ref; cpu beside gpu), 'gpu', 'cpu' or 'ref'.
+    engine : of a scene that is made here. again : the engine that answers `share` of the chunks a second time: 'auto' (ref
+        beside cpu, cpu beside gpu), 'gpu', 'cpu' or 'ref'; at `again_poses` poses of each, evenly spread, for ref is slow.
     quiet : no progress on standard error. command : what to note as the command; connect : makes a lost client anew.
 
     Called again with the same question and `out`, it goes on where it was cut off. Raises PalpateError in one sentence: bad
@@ -65,26 +65,28 @@ def sweep(scene, poses, *, out, count=None, client=None, ask='touches', within=N
         refuse(f'within belongs to clearance; this asks {ask}')
     if not 0 <= share <= 1:
         refuse(f'share is a part of the chunks, from 0 to 1; it is {share!r}')
-    if size < 1:
-        refuse(f'size is the poses in a chunk, 1 or more; it is {size!r}')
+    for name, value in (('size', size), ('again_poses', again_poses)):
+        if value < 1:
+            refuse(f'{name} is a number of poses in a chunk, 1 or more; it is {value!r}')
     source = source_of(poses, count)
     if not isinstance(scene, palpate.Scene):
         scene = palpate.Scene(scene, engine=engine)
     store, chunks = Store(os.path.abspath(out)), Chunks(source.count, size)
     try:
         with store.mine():
-            return _sweep(scene, source, chunks, store, client, ask, within, again, share, workers, quiet, command, connect)
+            return _sweep(scene, source, chunks, store, client, ask, within, again, share, again_poses, workers, quiet, command, connect)
     except Full as full:
         refuse(f'{full}; make room and give the same command again, which goes on from what is done')
 
 
-def _sweep(scene, source, chunks, store, client, ask, within, again, share, workers, quiet, command, connect):
+def _sweep(scene, source, chunks, store, client, ask, within, again, share, again_poses, workers, quiet, command, connect):
     import palpate
 
     from .cluster import local
     from .drive import Driver
     from .worker import Job
 
+    again = second_engine(scene.engine, again)
     first = answer(scene, ask, within, source.poses(0, 1))
     types = {name: [values.dtype.newbyteorder('<').str, list(values.shape[1:])] for name, values in sorted(first.items())}
     asked = {'scene': scene.hash, 'ask': ask, 'within': within, 'columns': types}
@@ -109,7 +111,7 @@ def _sweep(scene, source, chunks, store, client, ask, within, again, share, work
                     if client is None:
                         client, shares = stack.enter_context(local(workers, scene.engine == 'gpu'))
                     job = Job(f'palpate-sweep-{uuid.uuid4().hex}', palpate.__version__, scene.hash, maker(scene), scene.engine, again,
-                              ask, within, None if kept else source, str(store.path), chunks, shares)
+                              again_poses, ask, within, None if kept else source, str(store.path), chunks, shares)
                     driver = Driver(client, job, progress, connect)
                     progress.begin()
                 try:

@@ -4,10 +4,11 @@ import functools
 import os
 import threading
 
+import numpy
 from distributed import WorkerPlugin, get_worker
 
 from . import digest
-from .asking import answer, first_difference, second_engine
+from .asking import answer, first_difference
 from .chunks import Chunks
 from .poses import ArrayPoses
 from .store import Store
@@ -22,7 +23,8 @@ class Job:
     scene: str        # content hash
     make: object      # make(engine=…) gives the scene
     engine: str
-    again: str        # the second engine, or 'auto'
+    again: str        # the second engine
+    again_poses: int  # of a chunk that it is asked of
     ask: str
     within: object
     source: object    # of poses; None: the store keeps them
@@ -96,21 +98,23 @@ def _answer(work, number, twice):
     record = {'chunk': number, 'start': start, 'poses': n, 'posed': digest.of_array(poses), 'answers': digest.of_columns(columns),
               'engine': scene.engine}
     if twice:
+        asked = numpy.unique(numpy.arange(job.again_poses) * n // job.again_poses)   # evenly spread; all of a small chunk
         with _answering:
-            second = _scene(job, job.again, beside=scene.engine)
-            others = answer(second, job.ask, job.within, poses)
-        differs = first_difference(columns, others)
+            second = _scene(job, job.again)
+            others = answer(second, job.ask, job.within, poses[asked])
+        differs = first_difference({name: values[asked] for name, values in columns.items()}, others)
         if differs:
             row, column = differs
-            refuse(f'pose {start + row} ({" ".join(repr(float(x)) for x in poses[row])}): {column} is {columns[column][row]} by '
+            place = asked[row]
+            refuse(f'pose {start + place} ({" ".join(repr(float(x)) for x in poses[place])}): {column} is {columns[column][place]} by '
                    f'{scene.engine} and {others[column][row]} by {second.engine}')
         record['again'] = second.engine
     work.store.write(record, columns)
 
 
-def _scene(job, engine, beside=None):
-    """The job's scene by `engine`, or by one that can be held `beside` another; kept for the next chunk and the next sweep."""
-    key = (job.scene, engine, beside)
+def _scene(job, engine):
+    """The job's scene by `engine`; kept for the next chunk and the next sweep."""
+    key = (job.scene, engine)
     if key not in _scenes:
         import palpate
 
@@ -120,7 +124,7 @@ def _scene(job, engine, beside=None):
             del _scenes[other]
         if palpate.__version__ != job.version:
             refuse(f'worker {get_worker().name} has palpate {palpate.__version__}, the sweep is of {job.version}')
-        _scenes[key] = second_engine(job.make, beside, engine) if beside else job.make(engine=engine)
+        _scenes[key] = job.make(engine=engine)
     return _scenes[key]
 
 
