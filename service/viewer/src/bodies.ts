@@ -57,9 +57,9 @@ export class Bodies {
     this.mockup_mesh.material.color.setHex(theme.mockup);
     this.tool_mesh.material.color.setHex(theme.tool);
   }
-  /** Radius of the tool about its origin, m. */
-  tool_radius(): number {
-    const sphere = this.tool_mesh.geometry.boundingSphere;
-    return sphere ? sphere.radius : 0;
+  /** The smallest sphere about the tool's box, world frame: a tool may lie far from its file's origin. */
+  tool_sphere(): three.Sphere {
+    this.tool.updateMatrixWorld();
+    return (this.tool_mesh.geometry.boundingSphere ?? new three.Sphere()).clone().applyMatrix4(this.tool.matrixWorld);
   }
 }

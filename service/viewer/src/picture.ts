@@ -68,7 +68,7 @@ export class Picture {
     if (scene.bounds) box.set(new three.Vector3(...scene.bounds.min), new three.Vector3(...scene.bounds.max));
     else box.copy(this.bodies.mockup_mesh.geometry.boundingBox ?? new three.Box3());
     this.view.set_bounds(box);
-    this.areas.set_scale(scene.tool_radius ?? this.bodies.tool_radius(), STRONG_N, scene.stiffness ?? 2000);
+    this.areas.set_scale(scene.tool_radius ?? this.bodies.tool_sphere().radius, STRONG_N, scene.stiffness ?? 2000);
     this.following = false;
     this.view.look_at_all(true);
     this.view.make_ready();
@@ -102,9 +102,9 @@ export class Picture {
   }
 
   show(moment: Moment): void {
-    const before = this.bodies.tool.position.clone();
+    const before = this.bodies.tool_sphere().center;
     this.bodies.move(moment.pose);
-    if (this.following && !this.drag.holding) this.view.shift(this.bodies.tool.position.clone().sub(before));
+    if (this.following && !this.drag.holding) this.view.shift(this.bodies.tool_sphere().center.sub(before));
     if (moment.frame !== this.shown_frame) this.set_contact(moment.frame);
     const gc = this.scene?.tool_gc ?? [0, 0, 0];
     this.bodies.tool.updateMatrixWorld();
@@ -137,7 +137,8 @@ export class Picture {
   /** The camera goes to the tool and stays with it, until `look_at_all`. */
   follow_tool(): void {
     this.following = true;
-    this.view.look_at(this.bodies.tool.position, (this.scene?.tool_radius ?? this.bodies.tool_radius()) * 2.3);
+    const { center, radius } = this.bodies.tool_sphere();
+    this.view.look_at(center, radius * 2);
   }
   look_at_all(): void {
     this.following = false;
