@@ -19,6 +19,7 @@ import { Strips, figure } from './strips.js';
 
 type Source = 'live' | 'mouse' | 'run';
 const REFRESH_MS = 3000;
+const FELT: Record<Source, string> = { live: 'to the device', mouse: 'to the hand', run: 'to the device' };
 const LATE: Record<Source, [string, string]> = { live: ['Lateness', 'µs'], mouse: ['There and back', 'ms'], run: ['Age of result', 'ticks'] };
 
 export class App {
@@ -90,15 +91,21 @@ export class App {
 
   private async begin(): Promise<void> {
     const { wish } = this;
+    const run = wish.run;   // until it is known to be here or missing, no other is shown in its place
     try {
       await this.picker.refresh();
       await this.player.refresh();
       const held = this.picker.list.scenes.find((scene) => scene.id === wish.scene);
       if (held) { await this.picker.open_id(held.id); this.picker.path = wish.path ?? ''; this.remember(); }
       else if (wish.path && this.picker.list.available.includes(wish.path)) await this.picker.open_path(wish.path);
-      else if (this.picker.list.scenes.length > 0) await this.picker.open_id(this.picker.list.scenes[0].id);
+      else if (wish.path || wish.scene) {
+        this.picker.show_refusal('The scene of this link is not here', wish.path ? `There is no ${wish.path} below the server's root, and the server holds no scene ${wish.scene ?? ''} either. Choose another:`
+          : `The server holds no scene ${wish.scene}. It may have been started anew since: scenes that were uploaded are gone then. Choose another:`);
+      } else if (this.picker.list.scenes.length > 0) await this.picker.open_id(this.picker.list.scenes[0].id);
       else this.picker.show_empty();
-      if (wish.run) await this.player.load(wish.run);
+      wish.run = '';
+      if (run && this.player.has(run)) await this.player.load(wish.run);
+      else if (run) this.say(`The run of this link, ${run}, is not below the server's root.`, true, true);
     } catch (error) {
       this.picker.show_empty();
       this.failed(error);
@@ -152,7 +159,7 @@ export class App {
   private async refresh(): Promise<void> {
     if (!this.connection.up || document.hidden) return;
     try {
-      if (this.source === 'live' && this.picker.current) await this.sessions.refresh(this.picker.current.id);
+      if (this.source === 'live' && this.picker.current) await this.sessions.refresh(this.picker.current);
       if (this.source === 'run' && !this.player.playback?.playing) await this.player.refresh();
       if (!this.picker.current) await this.picker.refresh();
     } catch (error) { this.failed(error); }
@@ -168,16 +175,17 @@ export class App {
     element('player').hidden = source !== 'run';
     document.body.classList.toggle('recorded', source === 'run');
     this.strips.set_late(...LATE[source]);
+    write(element('felt-title'), FELT[source]);
     this.remember();
     this.touch();
     this.keep_mouse(source === 'mouse' ? this.picker.current : null);
     const scene = this.picker.current;
     try {
-      if (source === 'live' && scene) await this.sessions.refresh(scene.id);
+      if (source === 'live' && scene) await this.sessions.refresh(scene);
       if (source === 'run') {
         await this.player.refresh();
         // A run that was recorded with this scene is shown at once.
-        const fitting = this.player.playback || !scene ? undefined : this.player.runs.find((run) => run.static_triangles !== null && Player.fits(run, scene));
+        const fitting = this.player.playback || !scene || this.wish.run ? undefined : this.player.runs.find((run) => run.static_triangles !== null && Player.fits(run, scene));
         if (fitting && this.source === 'run') await this.player.load(fitting.name);
       }
     } catch (error) { this.failed(error); }

@@ -1,6 +1,7 @@
 // A few words beside each contact area: its depth and force.
 import { Vector3 } from 'three';
 import { element, make, write } from './dom.js';
+import { place_labels, type Box } from './label_layout.js';
 import { length, type Area } from './protocol.js';
 import type { SceneView } from './scene_view.js';
 import { figure } from './strips.js';
@@ -10,6 +11,7 @@ const MOST = 6;
 export class Labels {
   shown = true;
   private readonly host = element('labels');
+  private readonly obstacles = ['readout', 'bottom', 'banner'].map((id) => element(id));
   private areas: Area[] = [];
 
   constructor(private readonly view: SceneView) { view.before_draw = () => this.place(); }
@@ -24,11 +26,16 @@ export class Labels {
     });
   }
   private place(): void {
-    this.areas.forEach((area, i) => {
-      const label = this.host.children[i] as HTMLElement;
-      const place = this.view.project(new Vector3(...area.point));
+    const frame = this.host.getBoundingClientRect();
+    const box_of = (target: Element): Box => { const box = target.getBoundingClientRect(); return { x: box.x - frame.x, y: box.y - frame.y, width: box.width, height: box.height }; };
+    const labels = this.areas.map((_, i) => this.host.children[i] as HTMLElement);
+    for (const label of labels) label.hidden = false;   // to be measured
+    const taken = this.obstacles.filter((obstacle) => !obstacle.hidden).map(box_of);
+    const places = place_labels(this.areas.map((area) => this.view.project(new Vector3(...area.point))), labels.map(box_of), taken, { x: 0, y: 0, width: frame.width, height: frame.height });
+    labels.forEach((label, i) => {
+      const place = places[i];
       label.hidden = !place;
-      if (place) label.style.transform = `translate(${Math.round(place.x + 14)}px, ${Math.round(place.y + 10 + 3 * i)}px)`;
+      if (place) label.style.transform = `translate(${place.x}px, ${place.y}px)`;
     });
   }
 }

@@ -34,7 +34,7 @@ export class LiveSource {
     const now = this.newest;
     if (!now) return null;
     return {
-      time: now.time_s, pose: now.pose, frame: this.frame, force: now.force, torque: now.torque, depth: depth(this.frame), contact: now.contact,
+      time: now.time_s, pose: now.pose, frame: this.frame, force: now.force, torque: now.torque, response: { force: now.response_force, torque: now.response_torque }, depth: depth(this.frame), contact: now.contact,
       frame_us: now.frame_us, late: now.lateness_max_us, stage: now.stage, note: now.paused ? 'paused' : '',
     };
   }

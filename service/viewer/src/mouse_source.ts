@@ -3,6 +3,7 @@ import { Quaternion } from 'three';
 import { Coupling, type Answer } from './coupling.js';
 import { HapticLink } from './haptic_link.js';
 import type { Moment } from './moment.js';
+import { waiting_words } from './waiting.js';
 import { depth, type Frame, type HapticHello, type Pose, type Scene, type Wrench } from './protocol.js';
 
 export class MouseSource {
@@ -20,6 +21,8 @@ export class MouseSource {
   private contact = false;
   private server_us = NaN;
   private round_ms = NaN;
+  private response: Moment['response'] = null;
+  private engine: string;
   private last_pose = '';
   private last_advance = performance.now();
   private readonly began = performance.now();
@@ -28,6 +31,7 @@ export class MouseSource {
   constructor(readonly scene: Scene, at: Pose | null, ready: () => Promise<void>, connect: () => WebSocket, lost: (reason: string) => void) {
     this.coupling.radius = scene.tool_radius ?? 0.05;
     this.coupling.stiffness = scene.stiffness ?? 2000;
+    this.engine = scene.backend ?? '';
     this.restart(at);
     this.link = new HapticLink(ready, connect, {
       hello: (hello) => { this.hello = hello; this.coupling.stiffness = hello.stiffness; this.forget(); this.ask(); },
@@ -47,6 +51,7 @@ export class MouseSource {
   /** What was answered or asked holds no longer: the tool stands still until the next answer. */
   private forget(): void {
     this.answer = null;
+    this.response = null;
     this.asked = null;
     this.last_pose = '';
   }
@@ -58,6 +63,8 @@ export class MouseSource {
     this.asked = null;
     this.server_us = wrench.server_us;
     this.contact = wrench.contact;
+    this.response = { force: wrench.force, torque: wrench.torque };
+    this.engine = wrench.engine ?? this.engine;
     this.frame = wrench.frame ?? this.frame;
     // Of a cut answer nothing is felt; the tool can be drawn back, or it would be stuck where lists are too small.
     this.answer = { gc: wrench.gc, rotation: new Quaternion(pose[3], pose[4], pose[5], pose[6]), areas: wrench.truncated ? [] : wrench.areas };
@@ -92,9 +99,10 @@ export class MouseSource {
     const { force, torque } = this.coupling;
     return {
       time: (performance.now() - this.began) / 1000, pose: this.coupling.pose(), frame: this.frame,
-      force: [force.x, force.y, force.z], torque: [torque.x, torque.y, torque.z], depth: depth(this.frame), contact: this.contact,
-      frame_us: this.server_us, late: this.round_ms, stage: 0, note: this.paused ? 'paused' : this.link.state !== 'open' ? 'connecting' : this.stale || !this.answer ? 'no answer' : '',
+      force: [force.x, force.y, force.z], torque: [torque.x, torque.y, torque.z], response: this.response, depth: depth(this.frame), contact: this.contact,
+      frame_us: this.server_us, late: this.round_ms, stage: 0, note: this.paused ? 'paused' : this.link.state !== 'open' ? 'connecting' : this.stale ? this.waiting() : this.answer ? '' : 'asking',
     };
   }
+  private waiting(): string { return this.asked ? waiting_words(performance.now() - this.asked.at, this.engine, this.round_ms) : ''; }
   close(): void { this.link.close(); }
 }

@@ -22,6 +22,7 @@ export class Player {
     speed.addEventListener('change', () => { if (this.playback) this.playback.speed = Number(speed.value); });
   }
 
+  has(name: string): boolean { return this.runs.some((run) => run.name === name); }
   async refresh(): Promise<void> {
     this.runs = await this.api.runs();
     const list = this.runs.map((run) => ({ value: run.name, text: run.name }));
@@ -87,7 +88,7 @@ export class Player {
     const row = playback.trace.row_at(playback.time);
     const frame = playback.frame(this.changed);
     return {
-      time: playback.time, pose: playback.trace.pose(row), frame, force: playback.trace.force(row), torque: playback.trace.torque(row), depth: depth(frame),
+      time: playback.time, pose: playback.trace.pose(row), frame, force: playback.trace.force(row), torque: playback.trace.torque(row), response: frame && { force: frame.force, torque: frame.torque }, depth: depth(frame),
       contact: playback.trace.contact(row), frame_us: frame?.time_us['total'] ?? NaN, late: playback.trace.result_age(row), stage: playback.trace.stage(row), note: '',
     };
   }

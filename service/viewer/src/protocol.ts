@@ -44,7 +44,7 @@ export interface Telemetry {
 }
 export interface HapticHello { type: 'hello'; scene: string; stiffness: number; watchdog_ms: number; tool_gc: Vec3; start: Pose }
 export interface Wrench {
-  type: 'wrench'; seq: number; time: number; skipped: number; server_us: number; contact: boolean; truncated: boolean; pairs: number; gc: Vec3; force: Vec3; torque: Vec3;
+  type: 'wrench'; seq: number; time: number; skipped: number; server_us: number; contact: boolean; truncated: boolean; engine?: string | null; pairs: number; gc: Vec3; force: Vec3; torque: Vec3;
   areas: Area[]; frame?: Frame;
 }
 export interface Bye { type: 'bye'; reason: string }

@@ -1,15 +1,18 @@
 // Numbers over the picture: what is felt now, the areas, and the legend's counts.
+import { flag_chips, show_areas } from './area_table.js';
 import { element, make, write } from './dom.js';
 import type { Moment } from './moment.js';
 import { KIND_TEXT } from './palette.js';
-import { KINDS, length, type Frame, type Kind } from './protocol.js';
+import { KINDS, length, type Area, type Frame, type Kind, type Vec3 } from './protocol.js';
 import { figure } from './strips.js';
-
-const MOST_ROWS = 8;
 
 export class Readout {
   private readonly counts = {} as Record<Kind, HTMLElement>;
   private table_of: Frame | null | undefined;
+  /** Which parts an area's triangles belong to; '' when nobody knows. */
+  names: (area: Area) => string = () => '';
+  /** Which parts touch in a frame. */
+  touching: (frame: Frame) => string = () => '';
 
   /** `toggled`: a kind's button was pressed. */
   constructor(toggled: (kind: Kind, on: boolean) => void) {
@@ -28,8 +31,8 @@ export class Readout {
   }
 
   show(moment: Moment | null, stages: string[]): void {
-    write(element('force'), moment ? figure(length(moment.force)) : '–');
-    write(element('torque'), moment ? figure(length(moment.torque)) : '–');
+    this.pair('force', moment?.force, moment?.response?.force);
+    this.pair('torque', moment?.torque, moment?.response?.torque);
     write(element('depth'), moment ? figure(moment.depth * 1000) : '–');
     const state = element('contact');
     const frame = moment?.frame ?? null;
@@ -37,22 +40,16 @@ export class Readout {
     const kind_of_state = moment?.note ? 'note' : moment?.contact ? 'contact' : 'free';
     if (state.dataset['state'] !== kind_of_state) state.dataset['state'] = kind_of_state;
     write(element('stage'), moment && moment.stage > 0 ? `${moment.stage}  ${stages[moment.stage - 1] ?? ''}` : '');
-    write(element('warning'), frame?.truncated ? 'A list was too small for this frame: no force.' : (frame?.flags ?? []).join(', '));
     for (const kind of KINDS) write(this.counts[kind], frame ? frame[kind].length.toLocaleString('en') : '');
-    if (frame !== this.table_of) this.table(frame);
-  }
-
-  private table(frame: Frame | null): void {
+    if (frame === this.table_of) return;
     this.table_of = frame;
-    const areas = frame?.contact ? frame.areas : [];
-    const rows = areas.slice(0, MOST_ROWS).map((area) => make('tr', {},
-      make('td', { title: `smallest triangle ${area.id}` }, String(area.id)),
-      make('td', {}, String(area.zones?.length ?? '–')),
-      make('td', {}, figure(area.depth * 1000)),
-      make('td', {}, figure((area.max_depth ?? NaN) * 1000)),
-      make('td', {}, figure(length(area.force))),
-      make('td', { class: 'flags' }, (area.flags ?? []).join(', '))));
-    element('areas').replaceChildren(...rows);
-    element('areas-more').textContent = areas.length === 0 ? 'No contact area.' : areas.length > MOST_ROWS ? `and ${areas.length - MOST_ROWS} more` : '';
+    element('warning').replaceChildren(...(frame?.truncated ? ['A list was too small for this frame: no force.'] : flag_chips(frame?.flags ?? [])));
+    write(element('touching'), frame?.contact ? this.touching(frame) : '');
+    show_areas(frame?.contact ? frame.areas : [], this.names);
+  }
+  /** What the contact answers, and what the hand gets of it: two figures where both are known, else the one. */
+  private pair(name: 'force' | 'torque', felt: Vec3 | undefined, response: Vec3 | undefined): void {
+    write(element(name), felt ? figure(length(felt)) : '–');
+    write(element(`${name}-response`), response ? figure(length(response)) : '–');
   }
 }

@@ -3,7 +3,8 @@ import type { Api } from './api.js';
 import { element, fill } from './dom.js';
 import { LiveSource } from './live_source.js';
 import type { Moment } from './moment.js';
-import { ZERO, type Session } from './protocol.js';
+import { offered_devices } from './offered_devices.js';
+import { ZERO, type Scene, type Session } from './protocol.js';
 
 export class Sessions {
   live: LiveSource | null = null;
@@ -26,9 +27,9 @@ export class Sessions {
   }
 
   /** Lists the devices and joins a session that is running on the scene. */
-  async refresh(scene_id: string): Promise<void> {
-    this.scene_id = scene_id;
-    const devices = (await this.api.devices()).filter((device) => device.kind === 'haptic');
+  async refresh(scene: Scene): Promise<void> {
+    const scene_id = (this.scene_id = scene.id);
+    const devices = offered_devices(await this.api.devices(), scene);
     fill(this.device, devices.map((device) => ({ value: device.name, text: device.usable ? device.name : `${device.name}: ${device.reason}`, disabled: !device.usable, title: device.reason })));
     if (this.device.selectedOptions[0]?.disabled !== false) this.device.value = devices.find((device) => device.usable)?.name ?? '';
     if (!this.live) {
