@@ -1,17 +1,17 @@
 // Ties the parts together: a scene, a source of moments (device, mouse or recorded run), the picture, the strips, the panel.
 import { read_address, write_address } from './address.js';
-import { Api, ApiError } from './api.js';
-import { Connection } from './connection.js';
-import type { Colouring } from './contact_layer.js';
+import { Api, ApiError } from './server/api.js';
+import { Connection } from './server/connection.js';
+import type { Colouring } from './draw/contact_layer.js';
 import { element, make, write } from './dom.js';
 import { listen, type Action } from './keys.js';
-import { Labels } from './labels.js';
+import { Labels } from './draw/labels.js';
 import type { Moment } from './moment.js';
-import { MouseSource } from './mouse_source.js';
-import { Picture } from './picture.js';
-import { Player } from './player.js';
-import type { Scene } from './protocol.js';
-import { Readout } from './readout.js';
+import { MouseSource } from './mouse/mouse_source.js';
+import { Picture } from './draw/picture.js';
+import { Player } from './run/player.js';
+import type { Scene } from './server/protocol.js';
+import { Readout } from './words/readout.js';
 import { Samples } from './samples.js';
 import { ScenePicker } from './scene_picker.js';
 import { Sessions } from './sessions.js';

@@ -1,7 +1,7 @@
 // A session's telemetry: the newest message is kept, frames are kept until the next one.
-import type { Api } from './api.js';
+import type { Api } from './server/api.js';
 import type { Moment } from './moment.js';
-import { depth, type Bye, type Frame, type StreamHello, type Telemetry } from './protocol.js';
+import { depth, type Bye, type Frame, type StreamHello, type Telemetry } from './server/protocol.js';
 
 export class LiveSource {
   hello: StreamHello | null = null;

@@ -1,5 +1,5 @@
 // What is shown at one instant, whoever it comes from: a device, the mouse, a recorded run.
-import type { Frame, Pose, Vec3 } from './protocol.js';
+import type { Frame, Pose, Vec3 } from './server/protocol.js';
 
 export interface Moment {
   time: number;            // s

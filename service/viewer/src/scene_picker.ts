@@ -1,8 +1,8 @@
 // Which scene is shown: those that the server holds, and scene files that it could open. Waits while one is prepared.
-import { ApiError, type Api } from './api.js';
+import { ApiError, type Api } from './server/api.js';
 import { element, fill, make } from './dom.js';
-import type { Scene, SceneList } from './protocol.js';
-import { scene_rows } from './scene_rows.js';
+import type { Scene, SceneList } from './server/protocol.js';
+import { scene_rows } from './words/scene_rows.js';
 
 const POLL_MS = 400;
 

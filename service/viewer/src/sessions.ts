@@ -1,10 +1,10 @@
 // A device of the server's machine: picked, started, paused, stopped; its telemetry shown. A session that others started is joined.
-import type { Api } from './api.js';
+import type { Api } from './server/api.js';
 import { element, fill } from './dom.js';
 import { LiveSource } from './live_source.js';
 import type { Moment } from './moment.js';
-import { offered_devices } from './offered_devices.js';
-import { ZERO, type Scene, type Session } from './protocol.js';
+import { offered_devices } from './words/offered_devices.js';
+import { ZERO, type Scene, type Session } from './server/protocol.js';
 
 export class Sessions {
   live: LiveSource | null = null;

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Scene } from 'three';
-import { Bodies } from '../src/bodies.js';
+import { Bodies } from '../src/draw/bodies.js';
 
 const box_at = (x: number) => {
   const vertices = new Float32Array([x, 0, 0, x + 2, 0, 0, x, 2, 0]);

@@ -1,13 +1,13 @@
 // What the page says and in which order: areas, flags, scenes, devices, labels.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { by_force } from '../src/area_table.js';
-import { KNOWN_FLAGS, flag_words } from '../src/flag_words.js';
-import { place_labels, type Box } from '../src/label_layout.js';
-import { offered_devices } from '../src/offered_devices.js';
-import type { Area, Device, Scene, SceneList, Vec3 } from '../src/protocol.js';
-import { scene_rows } from '../src/scene_rows.js';
-import { waiting_words } from '../src/waiting.js';
+import { by_force } from '../src/words/area_table.js';
+import { KNOWN_FLAGS, flag_words } from '../src/words/flag_words.js';
+import { place_labels, type Box } from '../src/draw/label_layout.js';
+import { offered_devices } from '../src/words/offered_devices.js';
+import type { Area, Device, Scene, SceneList, Vec3 } from '../src/server/protocol.js';
+import { scene_rows } from '../src/words/scene_rows.js';
+import { waiting_words } from '../src/mouse/waiting.js';
 
 const area = (id: number, force: Vec3, depth: number): Area => ({ id, force, depth, normal: [0, 0, 1], point: [0, 0, 0], torque: [0, 0, 0] });
 

@@ -1,5 +1,5 @@
 // Colours of contact, told apart with any colour vision (Okabe and Ito): the mock-up's kinds are warm, the tool's cool. theme.css repeats the kinds for the legend.
-import type { Kind } from './protocol.js';
+import type { Kind } from '../server/protocol.js';
 
 export const KIND_COLOUR: Record<Kind, number> = { cst: 0xd55e00, bst: 0xe69f00, est: 0xf0e442, cmt: 0x0072b2, bmt: 0x56b4e9, imt: 0xcc79a7 };
 /** For areas and zones, by turns. */

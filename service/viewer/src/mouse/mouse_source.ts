@@ -2,9 +2,9 @@
 import { Quaternion } from 'three';
 import { Coupling, type Answer } from './coupling.js';
 import { HapticLink } from './haptic_link.js';
-import type { Moment } from './moment.js';
+import type { Moment } from '../moment.js';
 import { waiting_words } from './waiting.js';
-import { depth, type Frame, type HapticHello, type Pose, type Scene, type Wrench } from './protocol.js';
+import { depth, type Frame, type HapticHello, type Pose, type Scene, type Wrench } from '../server/protocol.js';
 
 export class MouseSource {
   /** Stays the same when the connection is lost and found again: so does the tool, and the hand that holds it. */

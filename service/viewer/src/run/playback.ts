@@ -1,7 +1,7 @@
 // A recorded run: loaded once, then played, paused, scrubbed. Knows nothing of drawing.
-import type { Api } from './api.js';
+import type { Api } from '../server/api.js';
 import { FrameIndex } from './frame_index.js';
-import type { Frame, Run } from './protocol.js';
+import type { Frame, Run } from '../server/protocol.js';
 import { split_lines } from './text_lines.js';
 import { Trace } from './trace.js';
 

@@ -1,8 +1,8 @@
 // The table of contact areas: those that push first, the strongest on top; flags in words below the row that has them.
-import { element, make } from './dom.js';
+import { element, make } from '../dom.js';
 import { flag_words } from './flag_words.js';
-import { length, type Area } from './protocol.js';
-import { figure } from './strips.js';
+import { length, type Area } from '../server/protocol.js';
+import { figure } from '../strips.js';
 
 const MOST_ROWS = 8;
 const COLUMNS = 5;

@@ -1,5 +1,5 @@
 // The rows of the list of scenes: one a scene, whether the server holds it already or would have to read its file.
-import type { SceneList } from './protocol.js';
+import type { SceneList } from '../server/protocol.js';
 
 export interface SceneRow { value: string; text: string }
 

@@ -1,10 +1,10 @@
 // The recorded run's controls: play, scrubber, speed, and the list of runs.
-import type { Api } from './api.js';
-import { element, fill, write } from './dom.js';
-import type { Moment } from './moment.js';
+import type { Api } from '../server/api.js';
+import { element, fill, write } from '../dom.js';
+import type { Moment } from '../moment.js';
 import { Playback } from './playback.js';
-import { depth, type Run, type Scene } from './protocol.js';
-import { Samples } from './samples.js';
+import { depth, type Run, type Scene } from '../server/protocol.js';
+import { Samples } from '../samples.js';
 
 export class Player {
   playback: Playback | null = null;

@@ -1,7 +1,7 @@
 // The connection to the server's remote loop, kept for as long as it is wanted. It is in one state at a time:
 //   off → preparing (the server makes the scene ready) → connecting (until its hello) → open,   and from each of the three, when it fails, → waiting → preparing …
 // A change of state begins a new turn. What an older turn's promise, socket or timer still says is not heard, so there is never a second connection beside the wanted one.
-import type { Bye, Fault, HapticHello, Wrench } from './protocol.js';
+import type { Bye, Fault, HapticHello, Wrench } from '../server/protocol.js';
 
 export type LinkState = 'off' | 'preparing' | 'connecting' | 'open' | 'waiting';
 

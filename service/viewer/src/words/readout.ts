@@ -1,10 +1,10 @@
 // Numbers over the picture: what is felt now, the areas, and the legend's counts.
 import { flag_chips, show_areas } from './area_table.js';
-import { element, make, write } from './dom.js';
-import type { Moment } from './moment.js';
-import { KIND_TEXT } from './palette.js';
-import { KINDS, length, type Area, type Frame, type Kind, type Vec3 } from './protocol.js';
-import { figure } from './strips.js';
+import { element, make, write } from '../dom.js';
+import type { Moment } from '../moment.js';
+import { KIND_TEXT } from '../draw/palette.js';
+import { KINDS, length, type Area, type Frame, type Kind, type Vec3 } from '../server/protocol.js';
+import { figure } from '../strips.js';
 
 export class Readout {
   private readonly counts = {} as Record<Kind, HTMLElement>;

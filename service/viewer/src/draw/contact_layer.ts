@@ -1,7 +1,7 @@
 // Contact triangles, exact at every level of detail, coloured by kind, area or zone. What lies behind other surfaces shows through them, weaker.
 import * as three from 'three';
 import { CYCLE, KIND_COLOUR } from './palette.js';
-import { KINDS, MOBILE_KINDS, STATIC_KINDS, type Frame, type Kind } from './protocol.js';
+import { KINDS, MOBILE_KINDS, STATIC_KINDS, type Frame, type Kind } from '../server/protocol.js';
 import type { TriangleStore } from './triangle_store.js';
 
 export type Colouring = 'kind' | 'area' | 'zone';

@@ -1,10 +1,10 @@
 // A few words beside each contact area: its depth and force.
 import { Vector3 } from 'three';
-import { element, make, write } from './dom.js';
+import { element, make, write } from '../dom.js';
 import { place_labels, type Box } from './label_layout.js';
-import { length, type Area } from './protocol.js';
+import { length, type Area } from '../server/protocol.js';
 import type { SceneView } from './scene_view.js';
-import { figure } from './strips.js';
+import { figure } from '../strips.js';
 
 const MOST = 6;
 

@@ -1,7 +1,7 @@
 // The tool between the mouse and the mock-up: a spring pulls it to where the mouse is, contact pushes it back, and it moves without inertia.
 // The answer is carried on along each area's own line, F = max(0, depth − n·Δx)·K, as docs/SERVICE.md asks of a far loop: held forces would make it jitter.
 import { Quaternion, Vector3 } from 'three';
-import type { Area, Pose, Vec3 } from './protocol.js';
+import type { Area, Pose, Vec3 } from '../server/protocol.js';
 
 export interface Answer { gc: Vec3; rotation: Quaternion; areas: Area[] }
 

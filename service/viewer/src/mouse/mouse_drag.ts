@@ -1,8 +1,8 @@
 // Takes hold of the tool in the picture: drag moves it in the plane of the screen, the wheel nearer or farther, right button or Shift turns it.
 import * as three from 'three';
-import type { Bodies } from './bodies.js';
+import type { Bodies } from '../draw/bodies.js';
 import type { Coupling } from './coupling.js';
-import type { SceneView } from './scene_view.js';
+import type { SceneView } from '../draw/scene_view.js';
 
 const GRAB_PX = 10;   // how far beside the tool a press still takes it
 

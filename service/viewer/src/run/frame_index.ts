@@ -1,5 +1,5 @@
 // frames.jsonl: where each line lies, what the strips need of it, and its text only while it is small enough to keep.
-import { depth, type Frame } from './protocol.js';
+import { depth, type Frame } from '../server/protocol.js';
 
 const KEEP_BYTES = 192 * 1024 * 1024;
 

@@ -1,8 +1,8 @@
 // Where the hand is while contact holds the tool back: the tool's outline there, and a line to it. Its length is the resistance.
 import * as three from 'three';
-import type { Bodies } from './bodies.js';
+import type { Bodies } from '../draw/bodies.js';
 import type { Coupling } from './coupling.js';
-import type { Theme } from './palette.js';
+import type { Theme } from '../draw/palette.js';
 
 const MOST_CORNERS = 150_000;   // an outline of more lines is a blot
 

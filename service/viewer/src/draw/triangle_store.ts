@@ -1,6 +1,6 @@
 // Exact corners of triangles by id: from the drawn geometry when it is whole, else asked of the server and kept.
-import type { Api } from './api.js';
-import { ids_within, type Body } from './binary.js';
+import type { Api } from '../server/api.js';
+import { ids_within, type Body } from '../server/binary.js';
 
 const CHARACTERS_A_REQUEST = 1800;   // of ids: the server takes targets of 2048
 const KEPT = 400_000;

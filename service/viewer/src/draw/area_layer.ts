@@ -3,7 +3,7 @@
 import * as three from 'three';
 import { Arrow } from './arrow.js';
 import type { Theme } from './palette.js';
-import { length, type Area, type Vec3 } from './protocol.js';
+import { length, type Area, type Vec3 } from '../server/protocol.js';
 import { round_down } from './scene_view.js';
 
 const MOST_AREAS = 24;

@@ -1,15 +1,15 @@
 // The picture of a moment: bodies, contact, areas, voxels in one view, at a level of detail that stays smooth.
 import * as three from 'three';
-import { ApiError, type Api } from './api.js';
+import { ApiError, type Api } from '../server/api.js';
 import { AreaLayer } from './area_layer.js';
 import { Bodies } from './bodies.js';
 import { ContactLayer } from './contact_layer.js';
-import { Ghost } from './ghost.js';
+import { Ghost } from '../mouse/ghost.js';
 import { LEVELS, LevelKeeper } from './lod.js';
-import type { Moment } from './moment.js';
-import { MouseDrag } from './mouse_drag.js';
+import type { Moment } from '../moment.js';
+import { MouseDrag } from '../mouse/mouse_drag.js';
 import { DARK, LIGHT } from './palette.js';
-import type { Frame, Pose, Scene } from './protocol.js';
+import type { Frame, Pose, Scene } from '../server/protocol.js';
 import { SceneView } from './scene_view.js';
 import { TriangleStore } from './triangle_store.js';
 import { VoxelLayer } from './voxel_layer.js';

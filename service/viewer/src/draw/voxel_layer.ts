@@ -1,6 +1,6 @@
 // Voxels of one class, as cubes while they are few, else as points. Fetched when they are asked for.
 import * as three from 'three';
-import type { Voxels } from './binary.js';
+import type { Voxels } from '../server/binary.js';
 import type { Theme } from './palette.js';
 
 const MOST_CUBES = 60_000;

@@ -1,5 +1,5 @@
 // trace.csv: a row a tick. Columns are found by their names in the header.
-import type { Pose, Vec3 } from './protocol.js';
+import type { Pose, Vec3 } from '../server/protocol.js';
 
 const COLUMNS = ['time_s', 'x_m', 'y_m', 'z_m', 'qx', 'qy', 'qz', 'qw', 'force_x_N', 'force_y_N', 'force_z_N', 'torque_x_Nm', 'torque_y_Nm', 'torque_z_Nm',
   'result_age_ticks', 'contact', 'stage'] as const;

@@ -1,8 +1,8 @@
 // Mock-up and tool as solids. The tool is a group that moves with the pose; what belongs to its frame is added to it.
 import * as three from 'three';
-import type { Body, Geometry } from './binary.js';
+import type { Body, Geometry } from '../server/binary.js';
 import type { Theme } from './palette.js';
-import type { Pose } from './protocol.js';
+import type { Pose } from '../server/protocol.js';
 
 function mesh_of(body: Body): three.BufferGeometry {
   const geometry = new three.BufferGeometry();
