@@ -1,5 +1,7 @@
 // Ties the parts together: a scene, a source of moments (device, mouse or recorded run), the picture, the strips, the panel.
 import { read_address, write_address } from './address.js';
+import { take_files } from './assembly/file_drop.js';
+import { Workshop } from './assembly/workshop.js';
 import { Api, ApiError } from './server/api.js';
 import { Connection } from './server/connection.js';
 import type { Colouring } from './draw/contact_layer.js';
@@ -35,6 +37,11 @@ export class App {
   private readonly player = new Player(this.api, () => this.run_changed(), (error) => this.failed(error));
   private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.touch(); }, (error) => this.failed(error), (text) => { this.say(text); this.connection.doubt(); });
   private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
+  private readonly workshop = new Workshop(this.api, this.picture, {
+    open: async (make, name) => { this.source = 'mouse'; await this.picker.open_made(make, name); },
+    entered: (building) => { if (building) this.sessions.leave(); else if (!this.picker.current) this.picker.show_empty(); if (building) this.keep_mouse(null); this.remember(); this.touch(); },
+    say: (text, bad) => this.say(text, bad), failed: (error) => this.failed(error),
+  });
   private mouse: MouseSource | null = null;
   private holding: Promise<void> | null = null;
   private source: Source = 'live';
@@ -91,6 +98,7 @@ export class App {
 
   private async begin(): Promise<void> {
     const { wish } = this;
+    if (wish.assembly && !wish.scene && !wish.path && await this.workshop.restore(wish.assembly)) return;
     const run = wish.run;   // until it is known to be here or missing, no other is shown in its place
     try {
       await this.picker.refresh();
@@ -116,6 +124,7 @@ export class App {
     this.keep_mouse(null);
     this.live_samples.clear();
     this.mouse_samples.clear();
+    this.workshop.enter(false);
     await this.picture.open(scene);
     this.show_scene(scene);
     this.remember();
@@ -283,7 +292,7 @@ export class App {
   // ---- words, keys, panel
 
   private remember(): void {
-    write_address({ scene: this.picker.current?.id ?? '', path: this.picker.path, source: this.source, run: this.source === 'run' ? this.player.playback?.run.name ?? '' : '' });
+    write_address({ scene: this.workshop.building ? '' : this.picker.current?.id ?? '', path: this.workshop.building ? '' : this.picker.path, source: this.source, run: this.source === 'run' ? this.player.playback?.run.name ?? '' : '', assembly: this.workshop.assembly?.id ?? '' });
   }
   private failed(error: unknown): void {
     if (error instanceof ApiError && error.status === 0) { this.connection.doubt(); return; }   // it says by itself that the server is gone
@@ -303,6 +312,7 @@ export class App {
   private apply_theme(theme: string): void {
     document.documentElement.dataset['theme'] = theme;
     this.picture.theme(theme === 'dark');
+    this.workshop.theme(theme === 'dark');
     this.strips.theme();
     this.touch();
   }
@@ -310,7 +320,15 @@ export class App {
     const box = element<HTMLInputElement>(id);
     box.addEventListener('change', () => { set(box.checked); this.touch(); this.picture.redraw_contact(); });
   }
+  private wire_files(): void {
+    const [files, folder] = [element<HTMLInputElement>('files-input'), element<HTMLInputElement>('folder-input')];
+    take_files([files, folder], (over) => { element('drop-here').hidden = !over; }, (taken) => void this.workshop.take(taken));
+    for (const id of ['open-files', 'choose-files']) element(id).addEventListener('click', () => files.click());
+    element('choose-folder').addEventListener('click', () => folder.click());
+    document.addEventListener('palpate-saved', () => void this.picker.refresh().catch((error: unknown) => this.failed(error)));
+  }
   private wire_panel(): void {
+    this.wire_files();
     for (const tab of document.querySelectorAll<HTMLElement>('[data-source]')) tab.addEventListener('click', () => void this.choose(tab.dataset['source'] as Source));
     const colouring = element<HTMLSelectElement>('colouring');
     colouring.addEventListener('change', () => { this.picture.contact.colouring = colouring.value as Colouring; this.picture.redraw_contact(); });
@@ -353,8 +371,10 @@ export class App {
         this.apply_theme(theme);
         break;
       }
-      case 'all': this.picture.look_at_all(); break;
-      case 'tool': this.picture.follow_tool(); break;
+      case 'all': if (this.workshop.building) this.workshop.look_at_all(); else this.picture.look_at_all(); break;
+      case 'undo': if (this.workshop.building) this.workshop.undo(); break;
+      case 'redo': if (this.workshop.building) this.workshop.redo(); break;
+      case 'tool': if (this.workshop.building) this.workshop.look_at_selected(); else this.picture.follow_tool(); break;
       case 'up': this.picture.view.turn_up(); break;
       case 'panel': document.body.classList.toggle('no-panel'); this.touch(); break;
       case 'help': element<HTMLDialogElement>('help').showModal(); break;

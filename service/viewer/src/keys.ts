@@ -1,5 +1,5 @@
 // The keyboard. Each key is listed in the help (index.html).
-export type Action = 'play' | 'back' | 'forward' | 'begin' | 'end' | 'theme' | 'all' | 'tool' | 'up' | 'panel' | 'help' | 'voxels' | 'glass' | 'close'
+export type Action = 'play' | 'back' | 'forward' | 'begin' | 'end' | 'theme' | 'all' | 'tool' | 'up' | 'panel' | 'help' | 'voxels' | 'glass' | 'close' | 'undo' | 'redo'
   | 'kind1' | 'kind2' | 'kind3' | 'kind4' | 'kind5' | 'kind6';
 
 const KEYS: Record<string, Action> = {
@@ -9,6 +9,12 @@ const KEYS: Record<string, Action> = {
 
 export function listen(act: (action: Action) => void): void {
   window.addEventListener('keydown', (event) => {
+    const field = (event.target as HTMLElement).matches('input:not([type=range]), select, textarea');
+    if ((event.ctrlKey || event.metaKey) && !event.altKey && !field && (event.key === 'z' || event.key === 'y')) {
+      event.preventDefault();
+      act(event.key === 'z' ? 'undo' : 'redo');
+      return;
+    }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (document.querySelector('dialog[open]')) return;   // it has its own, Escape above all
     const target = event.target as HTMLElement;

@@ -34,6 +34,8 @@ export class ScenePicker {
   open_path(path: string): Promise<void> {
     return this.open(() => this.api.open_scene(path), path, path);
   }
+  /** A scene that is made of an assembly. */
+  open_made(make: () => Promise<Scene>, name: string): Promise<void> { return this.open(make, '', name); }
   open_id(id: string): Promise<void> {
     const name = this.list.scenes.find((scene) => scene.id === id)?.name ?? id;
     // A scene of a file bears the file's name.
@@ -77,6 +79,7 @@ export class ScenePicker {
     element('empty').dataset['state'] = 'bad';
     element('empty-title').textContent = title;
     element('empty-text').textContent = text;
+    element('empty-drop').hidden = true;
     const { current } = this;
     if (current) element('empty-list').prepend(this.choice(`Back to ${current.name}`, () => this.hide(), 'main'));
   }
@@ -88,9 +91,10 @@ export class ScenePicker {
   show_empty(): void {
     element('empty').hidden = false;
     element('empty').dataset['state'] = '';
+    element('empty-drop').hidden = false;
     element('empty-title').textContent = 'No scene is open';
-    element('empty-text').textContent = this.list.available.length + this.list.scenes.length > 0 ? 'Choose a mock-up and its tool:'
-      : 'There is no scene file below the server\'s root. Start it with another --root, or upload a scene (POST /v1/scenes).';
+    element('empty-text').textContent = this.list.available.length + this.list.scenes.length > 0 ? 'Open your own parts, or one of these scenes:'
+      : 'Open your own parts. There is no scene file below the server\'s root.';
     element('empty-progress').hidden = true;
     element('empty-list').replaceChildren(...scene_rows(this.list, '').map(({ value, text }) =>
       this.choice(text, () => void (value.startsWith('id:') ? this.open_id(value.slice(3)) : this.open_path(value.slice(3))))));
@@ -98,6 +102,7 @@ export class ScenePicker {
   private show_progress(scene: Scene): void {
     element('empty').hidden = false;
     element('empty').dataset['state'] = '';
+    element('empty-drop').hidden = true;
     element('empty-title').textContent = scene.name;
     element('empty-text').textContent = scene.state === 'queued' ? 'Waiting for its turn to be prepared' : `Preparing: ${scene.step ?? 'reading'}`;
     const bar = element<HTMLProgressElement>('empty-progress');

@@ -18,7 +18,7 @@ export class Bodies {
   readonly mockup_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   readonly tool_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
 
-  constructor(scene: three.Scene) {
+  constructor(scene: three.Object3D) {
     // Pushed back a little, so that contact triangles, which lie in the same planes, win.
     const material = () => new three.MeshLambertMaterial({ flatShading: true, side: three.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.mockup_mesh = new three.Mesh(new three.BufferGeometry(), material());

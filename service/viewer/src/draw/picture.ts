@@ -30,6 +30,7 @@ export class Picture {
   reduced = false;
   /** Called when another level is drawn. */
   levelled: () => void = () => {};
+  private readonly shown = new three.Group();
   private readonly stores: { mockup: TriangleStore; tool: TriangleStore };
   private shown_frame: Frame | null = null;
   private loading: AbortController | null = null;
@@ -38,12 +39,13 @@ export class Picture {
 
   constructor(private readonly api: Api, host: HTMLElement, private readonly failed: (error: unknown) => void) {
     this.view = new SceneView(host);
-    this.bodies = new Bodies(this.view.scene);
+    this.view.scene.add(this.shown);
+    this.bodies = new Bodies(this.shown);
     this.stores = { mockup: new TriangleStore(api, 'static'), tool: new TriangleStore(api, 'tool') };
     this.contact = new ContactLayer(this.stores.mockup, this.stores.tool);
     this.ghost = new Ghost(this.bodies);
     this.drag = new MouseDrag(this.view, this.bodies);
-    this.view.scene.add(this.contact.mockup.object, this.areas.object, this.voxels.object, this.ghost.object);
+    this.shown.add(this.contact.mockup.object, this.areas.object, this.voxels.object, this.ghost.object);
     this.bodies.tool.add(this.contact.tool.object);
     for (const store of [this.stores.mockup, this.stores.tool]) store.arrived = () => { this.redraw_contact(); };
     this.levels.may_coarsen = this.view.software;
@@ -53,6 +55,11 @@ export class Picture {
     };
   }
 
+  /** Whether the scene is drawn at all. */
+  set_visible(on: boolean): void {
+    this.shown.visible = on;
+    this.view.request();
+  }
   /** Shows a scene that is ready; the camera goes to it. */
   async open(scene: Scene): Promise<void> {
     this.scene = scene;

@@ -10,7 +10,7 @@ export interface Scene {
   id: string; name: string; state: 'queued' | 'preparing' | 'ready' | 'failed' | 'evicted'; step: string | null; progress: number | null; error: Problem | null; memory_bytes: number | null;
   profile: string | null; stiffness: number | null; static_triangles: number | null; tool_triangles: number | null; backend: string | null; device: string | null;
   voxel_size: number | null; bounds: { min: Vec3; max: Vec3 } | null; tool_radius: number | null; tool_gc: Vec3 | null; start: Pose | null; stages: string[] | null;
-  driver: string | null; warnings: string[];
+  driver: string | null; ignores_initial?: boolean | null; warnings: string[];
 }
 export interface SceneList { scenes: Scene[]; available: string[] }
 export interface Device { kind: string; name: string; usable: boolean; reason: string }
@@ -20,6 +20,16 @@ export interface Session {
 export interface Run {
   name: string; files: Record<string, number>; modified: number; static_triangles: number | null; tool_triangles: number | null; backend: string | null; ticks: number | null;
 }
+
+export interface Box { min: Vec3; max: Vec3 }
+/** A part of a scene's body; its first triangle is the sum of those before it. */
+export interface NamedPart { path: string; triangles: number }
+export interface SceneParts { static: NamedPart[]; tool: NamedPart[] }
+
+/** Mesh files that were uploaded together. Coordinates are file units, metres where `states_unit`. */
+export interface AssemblyFile { name: string; bytes: number; mesh: boolean; states_unit: boolean; in_metres: boolean; triangles: number | null; error: string | null; notes: string[] }
+export interface AssemblyPart { file: number; path: string; also: string; first_triangle: number; triangles: number; colour: string | null; box: Box | null }
+export interface Assembly { id: string; state: 'reading' | 'ready' | 'failed'; step: string; progress: number; error: Problem | null; files: AssemblyFile[]; parts: AssemblyPart[] }
 
 /** The contact sets: static triangles first, then those of the tool. */
 export const KINDS = ['cst', 'bst', 'est', 'cmt', 'bmt', 'imt'] as const;
