@@ -10,6 +10,9 @@ import { listen, type Action } from './keys.js';
 import { Labels } from './draw/labels.js';
 import type { Moment } from './moment.js';
 import { MouseSource } from './mouse/mouse_source.js';
+import { PathPanel } from './mouse/path_panel.js';
+import { PartNames } from './words/part_names.js';
+import { StartNote } from './words/start_note.js';
 import { Picture } from './draw/picture.js';
 import { Player } from './run/player.js';
 import type { Scene } from './server/protocol.js';
@@ -42,6 +45,8 @@ export class App {
     entered: (building) => { if (building) this.sessions.leave(); else if (!this.picker.current) this.picker.show_empty(); if (building) this.keep_mouse(null); this.remember(); this.touch(); },
     say: (text, bad) => this.say(text, bad), failed: (error) => this.failed(error),
   });
+  private readonly start_note = new StartNote(this.api);
+  private readonly paths = new PathPanel((rows) => { this.workshop.path = rows; }, () => void this.replay());
   private mouse: MouseSource | null = null;
   private holding: Promise<void> | null = null;
   private source: Source = 'live';
@@ -125,10 +130,37 @@ export class App {
     this.live_samples.clear();
     this.mouse_samples.clear();
     this.workshop.enter(false);
+    this.start_note.hide();
+    this.paths.clear();
     await this.picture.open(scene);
     this.show_scene(scene);
+    void this.look_closer(scene);
     this.remember();
     await this.choose(this.source);
+  }
+  /** What takes longer than a picture: names of parts, and what touches at the start. */
+  private async look_closer(scene: Scene): Promise<void> {
+    const made_here = this.workshop.made === scene.id;
+    const { path } = this.picker;
+    this.paths.replay_refusal = made_here ? '' : 'Only a scene that was made here, from its parts, can be given a path: open the files';
+    this.readout.names = () => '';
+    this.readout.touching = () => '';
+    try {
+      const names = new PartNames(await this.api.scene_parts(scene.id));
+      if (this.picker.current !== scene) return;
+      this.readout.names = (area) => names.of_area(area);
+      this.readout.touching = this.paths.names = (frame) => names.of_frame(frame);
+      const leave_out = made_here ? () => { this.workshop.set_ignore_initial(true); void this.workshop.feel(); } : path ? () => void this.picker.open_made(() => this.api.open_scene(path, true), scene.name) : null;
+      await this.start_note.look(scene, leave_out);
+    } catch (error) { this.failed(error); }
+  }
+  /** The simulated hand follows what was recorded. */
+  private async replay(): Promise<void> {
+    await this.workshop.feel();
+    await this.choose('live');
+    element<HTMLSelectElement>('device').value = 'simulated';
+    this.sessions.show();
+    this.sessions.toggle();
   }
   private async link_changed(up: boolean): Promise<void> {
     element('link').dataset['state'] = up ? 'up' : 'down';
@@ -234,10 +266,15 @@ export class App {
     let moment: Moment | null = null;
     if (this.source === 'mouse') {
       if (this.mouse) {
-        this.mouse.advance();
-        moment = this.mouse.moment();
+        if (this.paths.recorder.playing) {
+          moment = this.paths.recorder.advance(seconds);
+          if (!moment) this.paths.show();
+        } else this.mouse.advance();
+        moment ??= this.mouse.moment();
+        this.paths.take(moment);
+        if (this.paths.recorder.recording) this.paths.show();
         this.mouse_samples.add_moment(moment);
-        this.mouse_rests = this.idle(moment) && this.picture.drag.holding === null;
+        this.mouse_rests = this.idle(moment) && this.picture.drag.holding === null && !this.paths.recorder.recording && !this.paths.recorder.playing;
         this.dirty ||= !this.mouse_rests;
       }
     } else if (this.source === 'run') {
@@ -325,7 +362,10 @@ export class App {
     take_files([files, folder], (over) => { element('drop-here').hidden = !over; }, (taken) => void this.workshop.take(taken));
     for (const id of ['open-files', 'choose-files']) element(id).addEventListener('click', () => files.click());
     element('choose-folder').addEventListener('click', () => folder.click());
-    document.addEventListener('palpate-saved', () => void this.picker.refresh().catch((error: unknown) => this.failed(error)));
+    document.addEventListener('palpate-saved', (event) => {
+      if (this.picker.current && this.picker.current.id === this.workshop.made) { this.picker.path = (event as CustomEvent<string>).detail; this.remember(); }
+      void this.picker.refresh().catch((error: unknown) => this.failed(error));
+    });
   }
   private wire_panel(): void {
     this.wire_files();
@@ -363,6 +403,7 @@ export class App {
       case 'back': case 'forward':
         if (this.source === 'run' && playback) { playback.playing = false; playback.step(action === 'back' ? -1 : 1); this.run_changed(); }
         break;
+      case 'record': if (this.source === 'mouse' && !this.workshop.building) this.paths.toggle(); break;
       case 'begin': playback?.seek(0); this.run_changed(); break;
       case 'end': playback?.seek(playback.duration); this.run_changed(); break;
       case 'theme': {

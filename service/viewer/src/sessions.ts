@@ -21,7 +21,7 @@ export class Sessions {
       this.show();
       work().catch(this.failed).finally(() => { this.busy = false; this.show(); });
     };
-    this.buttons.start.addEventListener('click', act(async () => this.join(await this.api.start(this.scene_id, this.device.value))));
+    this.buttons.start.addEventListener('click', act(async () => this.join(await this.api.start(this.scene_id, this.device.value, element<HTMLInputElement>('record-as').value.trim()))));
     this.buttons.pause.addEventListener('click', act(async () => { if (this.live) await this.api.pause(this.live.session, !this.live.paused); }));
     this.buttons.stop.addEventListener('click', act(async () => { if (this.live) await this.api.stop(this.live.session); }));
   }

@@ -31,6 +31,8 @@ export class Workshop {
   /** A path that was recorded with the tool, for the scene that is saved or replayed. */
   path: { time: number; pose: Pose }[] = [];
   building = false;
+  /** The scene that was made of it last. */
+  made = '';
   private draft: Draft = this.fresh();
   private history = new History('');
   private roots: PartNode[] = [];
@@ -169,6 +171,7 @@ export class Workshop {
   // ---- what is decided
 
   private change(change: Partial<Draft>, redo_geometry = false): void {
+    if (change.tool !== undefined || change.place !== undefined) this.path = [];   // it was another tool's, or began elsewhere
     this.draft = { ...this.draft, ...change };
     this.history.take(JSON.stringify(this.draft));
     this.keep();
@@ -202,7 +205,7 @@ export class Workshop {
     try {
       const order = this.order();
       const { id } = this.assembly!;
-      await this.hooks.open(() => this.api.make_scene(id, { ...order, name: this.name }), this.name);
+      await this.hooks.open(async () => { const scene = await this.api.make_scene(id, { ...order, name: this.name }); this.made = scene.id; return scene; }, this.name);
     } catch (error) { this.hooks.failed(error); }
   }
 
