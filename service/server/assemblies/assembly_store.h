@@ -23,8 +23,8 @@ struct AssemblyFile {
   std::string name;  ///< a plain name (safe_path.h)
   std::uint64_t bytes = 0;
   bool mesh = false;
-  std::string error;                                ///< why it could not be read; empty: it was, or will be
-  std::vector<std::string> notes;                   ///< ImportReport::notes
+  std::string error = {};                           ///< why it could not be read; empty: it was, or will be
+  std::vector<std::string> notes = {};              ///< ImportReport::notes
   std::uint32_t first_triangle = 0, triangles = 0;  ///< in Assembly::mesh
 };
 

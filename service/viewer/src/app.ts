@@ -18,6 +18,10 @@ import { Player } from './run/player.js';
 import type { Scene } from './server/protocol.js';
 import { Readout } from './words/readout.js';
 import { Samples } from './samples.js';
+import { CameraShots } from './tools/camera_shots.js';
+import { Measure } from './tools/measure.js';
+import { Section } from './tools/section.js';
+import { Triad } from './tools/triad.js';
 import { ScenePicker } from './scene_picker.js';
 import { Sessions } from './sessions.js';
 import { Strips, figure } from './strips.js';
@@ -62,7 +66,8 @@ export class App {
 
   constructor() {
     this.wire_panel();
-    listen((action) => this.act(action));
+    listen((action) => this.act(action), (...way) => { if (!this.mouse) return false; this.picture.drag.nudge(...way); this.touch(); return true; });
+    this.wire_tools();
     this.apply_theme(localStorage.getItem('palpate.theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => { if (!localStorage.getItem('palpate.theme')) this.apply_theme(event.matches ? 'dark' : 'light'); });
     // As in theme.css: a narrow panel lies over the picture, and opens when it is asked for.
@@ -356,6 +361,15 @@ export class App {
   private check(id: string, set: (on: boolean) => void): void {
     const box = element<HTMLInputElement>(id);
     box.addEventListener('change', () => { set(box.checked); this.touch(); this.picture.redraw_contact(); });
+  }
+  private wire_tools(): void {
+    const { picture, workshop } = this;
+    const section = new Section(picture.view, () => (workshop.building ? workshop.box() : picture.box()));
+    new CameraShots(picture.view, () => (workshop.building ? workshop.name : this.picker.current?.name ?? ''), (text, bad) => this.say(text, bad));
+    const measure = new Measure(picture.view, (ray) => { const point = workshop.building ? workshop.meet(ray) : picture.meet(ray); return point && section.hides(point) ? null : point; });
+    const triad = new Triad(picture.view);
+    picture.view.before_draw.push(() => { measure.place(); triad.draw(); });
+    picture.view.after_draw.push((ms) => triad.count(ms));
   }
   private wire_files(): void {
     const [files, folder] = [element<HTMLInputElement>('files-input'), element<HTMLInputElement>('folder-input')];

@@ -95,7 +95,7 @@ test('parts are drawn apart though they share vertices, scaled by file, and foun
   picture.show([look, look]);
   const size = (box: Box3): Vec3 => box.getSize(new Vector3()).toArray();
   assert.deepEqual(size(picture.box([0, 1])), [0.5, 0.5, 0]);
-  const down = (x: number, y: number) => picture.pick(new Ray(new Vector3(x, y, 5), new Vector3(0, 0, -1)));
+  const down = (x: number, y: number) => picture.pick(new Ray(new Vector3(x, y, 5), new Vector3(0, 0, -1)))?.part ?? -1;
   assert.deepEqual([down(0.4, 0.1), down(0.1, 0.4), down(0.9, 0.9)], [0, 1, -1]);
   picture.show([{ ...look, hidden: true }, { ...look, with_tool: true }]);
   picture.tool_matrix.copy(new Matrix4().makeTranslation(10, 0, 0));

@@ -118,8 +118,8 @@ export class PartPicture {
     return all;
   }
 
-  /** The part that a ray meets first, -1 for none. */
-  pick(ray: three.Ray): number {
+  /** The part that a ray meets first, and where; null for none. */
+  pick(ray: three.Ray): { part: number; point: three.Vector3 } | null {
     const back = this.tool_matrix.clone().invert();
     const at_home = ray.clone().applyMatrix4(back);
     const entry = new three.Vector3();
@@ -144,7 +144,7 @@ export class PartPicture {
         if (way < nearest) { nearest = way; best = i; }
       }
     }
-    return best;
+    return best < 0 ? null : { part: best, point: ray.at(nearest, new three.Vector3()) };
   }
   clear(): void {
     this.runs = [];

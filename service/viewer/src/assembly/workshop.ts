@@ -161,6 +161,8 @@ export class Workshop {
     this.picture.view.set_bounds(this.parts.box(this.assembly!.parts.map((_, i) => i)));
     this.picture.view.look_at_all(true);
   }
+  box(): three.Box3 { return this.parts.box(this.assembly?.parts.map((_, i) => i) ?? []); }
+  meet(ray: three.Ray): three.Vector3 | null { return this.parts.pick(ray)?.point ?? null; }
   look_at_all(): void { this.picture.view.look_at_all(); }
   look_at_selected(): void {
     const node = find_node(this.roots, this.selected) ?? this.tool;
@@ -330,7 +332,7 @@ export class Workshop {
     const box = this.picture.view.canvas.getBoundingClientRect();
     const caster = new three.Raycaster();
     caster.setFromCamera(new three.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2), this.picture.view.camera);
-    const part = this.parts.pick(caster.ray);
+    const part = this.parts.pick(caster.ray)?.part ?? -1;
     return part < 0 ? '' : `${this.assembly!.parts[part].file}:${this.assembly!.parts[part].path}`;
   }
 

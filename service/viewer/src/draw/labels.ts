@@ -14,7 +14,7 @@ export class Labels {
   private readonly obstacles = ['readout', 'bottom', 'banner'].map((id) => element(id));
   private areas: Area[] = [];
 
-  constructor(private readonly view: SceneView) { view.before_draw = () => this.place(); }
+  constructor(private readonly view: SceneView) { view.before_draw.push(() => this.place()); }
 
   /** The areas to label, the strongest first. */
   set(areas: Area[]): void {

@@ -49,10 +49,10 @@ export class Picture {
     this.bodies.tool.add(this.contact.tool.object);
     for (const store of [this.stores.mockup, this.stores.tool]) store.arrived = () => { this.redraw_contact(); };
     this.levels.may_coarsen = this.view.software;
-    this.view.after_draw = (ms) => {
+    this.view.after_draw.push((ms) => {
       if (this.scene && Number.isFinite(ms) && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
       this.view.coarse = this.levels.coarse;
-    };
+    });
   }
 
   /** Whether the scene is drawn at all. */
@@ -150,6 +150,17 @@ export class Picture {
   look_at_all(): void {
     this.following = false;
     this.view.look_at_all();
+  }
+  /** Where a ray meets the mock-up or the tool first. */
+  meet(ray: three.Ray): three.Vector3 | null {
+    const caster = new three.Raycaster(ray.origin, ray.direction);
+    this.bodies.tool.updateMatrixWorld();
+    return caster.intersectObjects([this.bodies.mockup_mesh, ...(this.bodies.tool.visible ? [this.bodies.tool_mesh] : [])], false)[0]?.point ?? null;
+  }
+  /** The box of all that is drawn. */
+  box(): three.Box3 {
+    const box = (this.bodies.mockup_mesh.geometry.boundingBox ?? new three.Box3()).clone();
+    return this.bodies.tool.visible ? box.union(new three.Box3().setFromObject(this.bodies.tool_mesh)) : box;
   }
   pose_of_tool(): Pose {
     const { position: p, quaternion: q } = this.bodies.tool;

@@ -27,8 +27,8 @@ export class SceneView {
   readonly camera = new three.PerspectiveCamera(38, 1, 0.001, 100);
   readonly controls: OrbitControls;
   /** Called before each picture, and after it with the time since the last one in an unbroken row, ms (NaN for the first). */
-  before_draw: () => void = () => {};
-  after_draw: (ms: number) => void = () => {};
+  readonly before_draw: (() => void)[] = [];
+  readonly after_draw: ((ms: number) => void)[] = [];
   /** Whether pixels are what takes the time. */
   readonly software = drawn_by_processor();
   /** Pictures that follow one another have half the width and height. */
@@ -84,15 +84,20 @@ export class SceneView {
     const ratio = rests || !this.coarse ? this.sharp : Number.isFinite(this.last_draw) ? this.sharp / 2 : before;
     if (ratio !== before) this.renderer.setPixelRatio(ratio);
     this.camera.updateMatrixWorld();   // labels are placed by where it is now
-    this.before_draw();
+    for (const call of this.before_draw) call();
     this.renderer.render(this.scene, this.camera);
-    this.after_draw(now - this.last_draw);
+    for (const call of this.after_draw) call(now - this.last_draw);
     this.last_draw = rests ? NaN : now;
   };
 
   /** Makes the programs of all that may come to be drawn, so that the first contact does not wait for its own in the middle of a motion. */
   make_ready(): void { this.renderer.compile(this.scene, this.camera); }
 
+  /** Draws at once, sharp, for who reads the canvas next. */
+  draw_now(): void {
+    if (this.renderer.getPixelRatio() !== this.sharp) this.renderer.setPixelRatio(this.sharp);
+    this.renderer.render(this.scene, this.camera);
+  }
   get canvas(): HTMLCanvasElement { return this.renderer.domElement; }
 
   private resize(): void {

@@ -6,6 +6,8 @@ import type { SceneView } from '../draw/scene_view.js';
 
 const GRAB_PX = 10;   // how far beside the tool a press still takes it
 
+const NUDGE_MS = 400;   // chosen: a key that repeats keeps the hand closed
+
 export class MouseDrag {
   /** The coupling that is moved; null while the mouse is no device. */
   coupling: Coupling | null = null;
@@ -48,7 +50,7 @@ export class MouseDrag {
     event.stopImmediatePropagation();
     this.view.canvas.setPointerCapture(event.pointerId);
     this.coupling.held = true;
-    this.holding = event.button === 2 || event.shiftKey ? 'turn' : 'move';
+    this.holding = event.button === 2 || event.shiftKey || event.ctrlKey ? 'turn' : 'move';
     this.plane.setFromNormalAndCoplanarPoint(this.view.camera.getWorldDirection(new three.Vector3()), point);
     this.last.copy(point);
     document.body.classList.add('holding');
@@ -84,6 +86,19 @@ export class MouseDrag {
     const moved = coupling.gc(coupling.target_position, coupling.target_rotation);
     coupling.target_position.add(centre.sub(moved));
   }
+  /** A small step by the keyboard: right, up and away as the camera sees it; or turns about these. The hand lets go a moment later. */
+  nudge(right: number, up: number, away: number, turning: boolean): void {
+    const { coupling } = this;
+    if (!coupling || this.holding) return;
+    coupling.held = true;
+    const way = new three.Vector3(right, up, -away).applyQuaternion(this.view.camera.quaternion);
+    if (turning) this.turn(new three.Quaternion().setFromAxisAngle(new three.Vector3(-up, right, -away).applyQuaternion(this.view.camera.quaternion), 0.02));
+    else coupling.target_position.addScaledVector(way, coupling.radius * 0.02);
+    clearTimeout(this.nudged);
+    this.nudged = window.setTimeout(() => { if (!this.holding) this.coupling?.let_go(); }, NUDGE_MS);
+    this.view.request();
+  }
+  private nudged = 0;
   private release(): void {
     if (!this.holding) return;
     this.holding = null;
