@@ -27,6 +27,11 @@ def pump():
     return glb([('block', box((0.2, 0.2, 0.04), (0, 0, -0.02)), (1, 0, 0)), ('ball', moved, (0, 0, 1)), ('lamp', box((0.01, 0.01, 0.01), (0, 0, 0.3)), (1, 1, 1))])
 
 
+def last(parts):
+    """Names without what the importer puts above several roots."""
+    return [p['path'].split('/')[-1] for p in parts]
+
+
 def sent(server, *files):
     body, kind = form({'file': list(files)})
     return server.ask('POST', '/v1/assemblies', body, {'Content-Type': kind})
@@ -46,7 +51,7 @@ def test_parts_have_names_sizes_and_colours():
     with Server() as server:
         pumped = read(server, ('pump.glb', pump()), ('note.txt', b'company'))
         expect(pumped['state'] == 'ready' and [f['mesh'] for f in pumped['files']] == [True, False], pumped)
-        expect([p['path'] for p in pumped['parts']] == ['block', 'ball', 'lamp'], pumped['parts'])
+        expect(last(pumped['parts']) == ['block', 'ball', 'lamp'], pumped['parts'])
         expect([p['colour'] for p in pumped['parts']] == ['#ff0000', '#0000ff', '#ffffff'], pumped['parts'])
         expect(pumped['parts'][1]['first_triangle'] == 12 and pumped['parts'][0]['triangles'] == 12, pumped['parts'])
         expect(all(abs(a - b) < 1e-6 for a, b in zip(pumped['parts'][0]['box']['min'], [-0.1, -0.1, -0.04])), pumped['parts'][0])
@@ -72,9 +77,9 @@ def test_a_part_is_taken_out_and_the_contact_at_the_start_can_be_left_out():
         told = server.ask('GET', f'/v1/scenes/{scene}').json()
         expect(told['name'] == 'pump, ball' and not told['ignores_initial'], told)
         parts = server.ask('GET', f'/v1/scenes/{scene}/parts').json()
-        expect([p['path'] for p in parts['static']] == ['block', 'lamp'] and [p['path'] for p in parts['tool']] == ['ball'], parts)
+        expect(last(parts['static']) == ['block', 'lamp'] and last(parts['tool']) == ['ball'], parts)
         touched = server.ask('POST', f'/v1/scenes/{scene}/query?names=1', {'pose': told['start']}).json()
-        expect(touched['contact'] and touched['parts'] == {'static': ['block'], 'tool': ['ball']}, touched.get('parts'))
+        expect(touched['contact'] and [path.split('/')[-1] for side in ('static', 'tool') for path in touched['parts'][side]] == ['block', 'ball'], touched.get('parts'))
         saved = server.ask('POST', f'/v1/assemblies/{pumped["id"]}/save', {'scene': TAKEN_OUT, 'folder': 'pump'})
         expect(saved.status == 201 and saved.json()['path'] == 'pump/scene.json', saved)
         expect(json.loads((folder.path / 'pump/scene.json').read_text()) == TAKEN_OUT, 'as it was sent')

@@ -91,6 +91,7 @@ export class ScenePicker {
   show_empty(): void {
     element('empty').hidden = false;
     element('empty').dataset['state'] = '';
+    document.body.classList.toggle('no-scene', this.current === null);
     element('empty-drop').hidden = false;
     element('empty-title').textContent = 'No scene is open';
     element('empty-text').textContent = this.list.available.length + this.list.scenes.length > 0 ? 'Open your own parts, or one of these scenes:'
@@ -110,5 +111,8 @@ export class ScenePicker {
     if (scene.progress === null) bar.removeAttribute('value'); else bar.value = scene.progress;
     element('empty-list').replaceChildren();
   }
-  private hide(): void { element('empty').hidden = true; }
+  private hide(): void {
+    element('empty').hidden = true;
+    document.body.classList.remove('no-scene');
+  }
 }

@@ -24,9 +24,9 @@ test('a recording begins at 0, ascends, and plays as it went', () => {
 });
 
 test('a path tells when it touched what, and how much', () => {
-  const rows = [moment(0), moment(0.1, true, 0.001), moment(0.2, true, 0.003), moment(0.3), moment(1, true, 0.002)];
+  const rows = [moment(0), moment(0.1, true, 0.001), moment(0.5, true, 0.003), moment(0.6), moment(1, true, 0.002)];
   const told = touches(rows, () => 'a ↔ b');
-  assert.deepEqual(told.map(({ from, to, depth }) => [from, to, depth]), [[0.1, 0.2, 0.003], [1, 1, 0.002]]);
+  assert.deepEqual(told.map(({ from, to, depth }) => [from, to, depth]), [[0.1, 0.5, 0.003], [1, 1, 0.002]]);
   assert.deepEqual([told[0].parts, told[0].force], ['a ↔ b', 3]);
 });
 

@@ -153,7 +153,7 @@ export class Workshop {
     element('scene-panel').hidden = this.building;
     element('back-to-parts').hidden = this.assembly === null;
     element('save-box').hidden = this.assembly === null;
-    if (this.building) { element('empty').hidden = true; this.draw(); } else this.gizmo.hide();
+    if (this.building) { document.body.classList.remove('no-scene'); element('empty').hidden = true; this.draw(); } else this.gizmo.hide();
     this.hooks.entered(this.building);
     this.picture.view.request();
   }
@@ -292,7 +292,7 @@ export class Workshop {
 
   private wire(): void {
     const click = (id: string, act: () => void) => element(id).addEventListener('click', act);
-    click('take-out', () => this.change({ tool: this.selected, place: AT_HOME, ignore_initial: false }));
+    click('take-out', () => { const tool = this.selected; this.selected = ''; this.change({ tool, place: AT_HOME, ignore_initial: false }); });
     click('hide-part', () => this.toggle(this.selected));
     click('look-part', () => this.look_at_selected());
     click('put-back', () => this.change({ tool: '', place: AT_HOME }));

@@ -43,12 +43,15 @@ const GAP_S = 0.15;   // shorter ones do not end a touch
 /** When and what a path touched, how deep, and the largest response. */
 export function touches(rows: readonly Moment[], names: (frame: Frame) => string): Touch[] {
   const out: Touch[] = [];
+  let unbroken = false;   // the row before was a contact, too, however long ago
   for (const { time, frame, contact, depth, response } of rows) {
-    if (!contact || !frame) continue;
+    if (!contact || !frame) { unbroken = false; continue; }
     const parts = names(frame);
     const last = out.at(-1);
     const force = response ? length(response.force) : 0;
-    if (last && last.parts === parts && time - last.to <= GAP_S) { last.to = time; last.depth = Math.max(last.depth, depth); last.force = Math.max(last.force, force); } else out.push({ from: time, to: time, parts, depth, force });
+    const goes_on = last?.parts === parts && (unbroken || time - last.to <= GAP_S);
+    unbroken = true;
+    if (last && goes_on) { last.to = time; last.depth = Math.max(last.depth, depth); last.force = Math.max(last.force, force); } else out.push({ from: time, to: time, parts, depth, force });
   }
   return out;
 }
