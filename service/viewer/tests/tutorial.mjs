@@ -25,7 +25,7 @@ async function main() {
   await server.start();
   browser = await open_browser();
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: 'light' });
-  page.setDefaultTimeout(120_000);
+  page.setDefaultTimeout(300_000);
   const errors = [];
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
   page.on('pageerror', (error) => errors.push(String(error)));
