@@ -72,8 +72,8 @@ int write(const char* out) {
     }
     const TDF_Label part = called(shapes->AddShape(solid, false), name);
     colours->SetColor(part,
-                      Quantity_Color((rgb >> 16 & 255u) / 255.0, (rgb >> 8 & 255u) / 255.0, (rgb & 255u) / 255.0,
-                                     Quantity_TOC_sRGB),
+                      Quantity_Color((rgb >> 16 & 255u) / 255.0, (rgb >> 8 & 255u) / 255.0,
+                                     (rgb & 255u) / 255.0, Quantity_TOC_sRGB),
                       XCAFDoc_ColorSurf);
     TDF_Label parent = root;
     if (above != "-") {

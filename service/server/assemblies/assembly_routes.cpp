@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostDrawn = 2'000'000;    ///< triangles of one answer; chosen
-constexpr std::size_t kPathBytes = 8 << 20;      ///< of a scene with a recorded path
+constexpr std::size_t kMostDrawn = 2'000'000;  ///< triangles of one answer; chosen
+constexpr std::size_t kPathBytes = 8 << 20;    ///< of a scene with a recorded path
 
 template <class T>
 void put(std::string& out, const T& value) {
@@ -110,9 +110,10 @@ HttpResponse make_scene(const Assembly& assembly, const nlohmann::json& order, S
 HttpResponse save_scene(const Assembly& assembly, const nlohmann::json& order, const fs::path& root) {
   const std::string name = text_of(order, "folder");
   if (!plain_name(name))
-    return bad_request("the folder '" + shown_text(name) +
-                           "' is not letters, digits, '.', '_', '-' only, at most 100, without a dot in front",
-                       "folder");
+    return bad_request(
+        "the folder '" + shown_text(name) +
+            "' is not letters, digits, '.', '_', '-' only, at most 100, without a dot in front",
+        "folder");
   if (root.empty())
     return Problem{404, "not-found", "this server has no folder of scenes (see --root)", "folder"};
   std::error_code error;
@@ -154,23 +155,23 @@ void add_assembly_routes(Router& router, AssemblyStore& assemblies, SceneStore& 
                           reply(HttpResponse(202, assemblies.add(std::move(folder), std::move(files))));
                         });
                   }});
-  router.add({.method = "GET",
-              .pattern = "v1/assemblies/*",
-              .handle = [&assemblies](const HttpRequest& request, const Reply& reply) {
-                const auto json = assemblies.json(request.segments[2]);
-                reply(json ? HttpResponse(200, *json)
-                           : HttpResponse(Problem{404, "not-found",
-                                                  "there is no assembly " + shown_text(request.segments[2]),
-                                                  "id"}));
-              }});
+  router.add(
+      {.method = "GET",
+       .pattern = "v1/assemblies/*",
+       .handle = [&assemblies](const HttpRequest& request, const Reply& reply) {
+         const auto json = assemblies.json(request.segments[2]);
+         reply(json ? HttpResponse(200, *json)
+                    : HttpResponse(Problem{404, "not-found",
+                                           "there is no assembly " + shown_text(request.segments[2]), "id"}));
+       }});
   router.add({.method = "DELETE",
               .pattern = "v1/assemblies/*",
               .handle = [&assemblies, &workers](const HttpRequest& request, const Reply& reply) {
                 workers.post([&assemblies, id = request.segments[2], reply] {
                   reply(assemblies.remove(id)
                             ? HttpResponse(204, "")
-                            : HttpResponse(Problem{404, "not-found",
-                                                   "there is no assembly " + shown_text(id), "id"}));
+                            : HttpResponse(
+                                  Problem{404, "not-found", "there is no assembly " + shown_text(id), "id"}));
                 });
               }});
   router.add({.method = "GET",
@@ -185,18 +186,18 @@ void add_assembly_routes(Router& router, AssemblyStore& assemblies, SceneStore& 
                 .pattern = save ? "v1/assemblies/*/save" : "v1/assemblies/*/scene",
                 .body_limit = kPathBytes,
                 .handle = [&assemblies, &store, &workers, &limits, root, spool, save](HttpRequest request,
-                                                                                     const Reply& reply) {
-                  workers.post([&assemblies, &store, &limits, root, spool, save, request = std::move(request),
-                                reply] {
-                    const auto found = assemblies.ready(request.segments[2]);
-                    if (const auto* problem = std::get_if<Problem>(&found)) return reply(*problem);
-                    const auto order = read_order(request.body, limits, save);
-                    if (const auto* problem = std::get_if<Problem>(&order)) return reply(*problem);
-                    const Assembly& assembly = *std::get<0>(found);
-                    const auto& json = std::get<nlohmann::json>(order);
-                    reply(save ? save_scene(assembly, json, root)
-                               : make_scene(assembly, json, store, limits, spool));
-                  });
+                                                                                      const Reply& reply) {
+                  workers.post(
+                      [&assemblies, &store, &limits, root, spool, save, request = std::move(request), reply] {
+                        const auto found = assemblies.ready(request.segments[2]);
+                        if (const auto* problem = std::get_if<Problem>(&found)) return reply(*problem);
+                        const auto order = read_order(request.body, limits, save);
+                        if (const auto* problem = std::get_if<Problem>(&order)) return reply(*problem);
+                        const Assembly& assembly = *std::get<0>(found);
+                        const auto& json = std::get<nlohmann::json>(order);
+                        reply(save ? save_scene(assembly, json, root)
+                                   : make_scene(assembly, json, store, limits, spool));
+                      });
                 }});
 }
 

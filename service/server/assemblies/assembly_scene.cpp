@@ -12,8 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Names of meshes that the scene has; a path of a device is `path.csv` alone.
-std::variant<std::set<std::string>, Problem> named_meshes(const Assembly& assembly, const nlohmann::json& scene,
-                                                          bool with_path) {
+std::variant<std::set<std::string>, Problem> named_meshes(const Assembly& assembly,
+                                                          const nlohmann::json& scene, bool with_path) {
   std::set<std::string> names;
   std::optional<Problem> problem;
   const auto take = [&](const nlohmann::json& body, const std::string& where) {
@@ -28,7 +28,8 @@ std::variant<std::set<std::string>, Problem> named_meshes(const Assembly& assemb
                             "scene");
     names.insert(name);
   };
-  if (!scene.is_object() || !scene.contains("tool") || !scene.contains("static") || !scene["static"].is_array())
+  if (!scene.is_object() || !scene.contains("tool") || !scene.contains("static") ||
+      !scene["static"].is_array())
     return bad_request("\"scene\" is an object with \"static\", a list, and \"tool\"", "scene");
   for (const nlohmann::json& body : scene["static"]) take(body, "static");
   take(scene["tool"], "tool");
@@ -36,26 +37,27 @@ std::variant<std::set<std::string>, Problem> named_meshes(const Assembly& assemb
     for (const char* key : {"path", "guide"})
       if (scene["device"].contains(key) &&
           !(with_path && std::string(key) == "path" && scene["device"][key] == "path.csv"))
-        problem = bad_request(std::string("\"device\" may have \"path\": \"path.csv\" where \"path\" is sent; its \"") +
-                                  key + "\" is another",
-                              "scene");
+        problem = bad_request(
+            std::string("\"device\" may have \"path\": \"path.csv\" where \"path\" is sent; its \"") + key +
+                "\" is another",
+            "scene");
   if (problem) return *problem;
   return names;
 }
 
 }  // namespace
 
-std::variant<std::uint64_t, Problem> write_assembly_scene(const Assembly& assembly, const nlohmann::json& scene,
+std::variant<std::uint64_t, Problem> write_assembly_scene(const Assembly& assembly,
+                                                          const nlohmann::json& scene,
                                                           const std::string& path, const fs::path& folder,
                                                           bool linked) {
   const auto named = named_meshes(assembly, scene, !path.empty());
   if (const auto* problem = std::get_if<Problem>(&named)) return *problem;
   const auto& names = std::get<std::set<std::string>>(named);
   // Which company a mesh keeps only its reader knows: one that stands alone keeps none.
-  const bool company =
-      std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-        return !stands_alone((assembly.folder->path() / name).string());
-      });
+  const bool company = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return !stands_alone((assembly.folder->path() / name).string());
+  });
   std::uint64_t bytes = 0;
   for (const AssemblyFile& file : assembly.files) {
     if (!names.contains(file.name) && !(company && !file.mesh)) continue;

@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr std::array kMeshEndings = {".stl", ".obj", ".ply",  ".off", ".gltf", ".glb",  ".dae",  ".3mf",
-                                     ".fbx", ".3ds", ".step", ".stp", ".iges", ".igs",  ".brep", ".brp"};
+constexpr std::array kMeshEndings = {".stl", ".obj", ".ply",  ".off", ".gltf", ".glb", ".dae",  ".3mf",
+                                     ".fbx", ".3ds", ".step", ".stp", ".iges", ".igs", ".brep", ".brp"};
 
 std::string random_id() {
   std::random_device source;
@@ -96,7 +96,8 @@ struct AssemblyStore::Entry {
   std::atomic<bool> removed{false};
 };
 
-AssemblyStore::AssemblyStore(const ServerLimits& limits) : limits_(limits), thread_([this] { read_loop(); }) {}
+AssemblyStore::AssemblyStore(const ServerLimits& limits)
+    : limits_(limits), thread_([this] { read_loop(); }) {}
 
 AssemblyStore::~AssemblyStore() {
   stop_ = true;
@@ -155,9 +156,9 @@ std::string AssemblyStore::json_locked(const Entry& entry) const {
                      {"error", file.error.empty() ? ordered_json() : ordered_json(file.error)},
                      {"notes", file.notes}});
   ordered_json out = {{"id", assembly.id},
-                      {"state", ready                                     ? "ready"
+                      {"state", ready                                   ? "ready"
                                 : entry.state == Entry::State::kReading ? "reading"
-                                                                          : "failed"},
+                                                                        : "failed"},
                       {"step", entry.step},
                       {"progress", entry.progress},
                       {"error", entry.error ? ordered_json::parse(entry.error->json()) : ordered_json()},
@@ -202,7 +203,8 @@ void AssemblyStore::read_loop() {
 }
 
 void AssemblyStore::read(Entry& entry) {
-  // Nobody else changes the assembly until it is ready; its files are copied, for json() looks at them meanwhile.
+  // Nobody else changes the assembly until it is ready; its files are copied, for json() looks at them
+  // meanwhile.
   Assembly& assembly = *entry.assembly;
   std::vector<AssemblyFile> files = assembly.files;
   Mesh mesh;
@@ -214,14 +216,14 @@ void AssemblyStore::read(Entry& entry) {
     AssemblyFile& file = files[i];
     if (!file.mesh) continue;
     ImportReport report;
-    const auto read = import_mesh_below(
-        assembly.folder->path().string(), (assembly.folder->path() / file.name).string(), 1, report, {},
-        [&](const char* what, double part) {
-          const std::lock_guard lock(mutex_);
-          entry.step = file.name + ": " + what;
-          entry.progress = (done + part) / static_cast<double>(meshes);
-          return !stop_ && !entry.removed;
-        });
+    const auto read =
+        import_mesh_below(assembly.folder->path().string(), (assembly.folder->path() / file.name).string(), 1,
+                          report, {}, [&](const char* what, double part) {
+                            const std::lock_guard lock(mutex_);
+                            entry.step = file.name + ": " + what;
+                            entry.progress = (done + part) / static_cast<double>(meshes);
+                            return !stop_ && !entry.removed;
+                          });
     done += 1;
     if (!read) {
       file.error = read.error().sentence;
@@ -246,13 +248,12 @@ void AssemblyStore::read(Entry& entry) {
   const std::lock_guard lock(mutex_);
   assembly.files = std::move(files);
   if (mesh.parts.empty() || mesh.parts.size() > kMostParts) {
-    entry.error =
-        mesh.parts.empty()
-            ? bad_request(last_error.empty() ? "none of these files is a mesh" : last_error, "file")
-            : Problem{413, "too-large",
-                      "the assembly has " + std::to_string(mesh.parts.size()) + " parts, at most " +
-                          std::to_string(kMostParts) + " are taken",
-                      "file"};
+    entry.error = mesh.parts.empty()
+                      ? bad_request(last_error.empty() ? "none of these files is a mesh" : last_error, "file")
+                      : Problem{413, "too-large",
+                                "the assembly has " + std::to_string(mesh.parts.size()) + " parts, at most " +
+                                    std::to_string(kMostParts) + " are taken",
+                                "file"};
     entry.state = Entry::State::kFailed;
     return;
   }

@@ -33,7 +33,7 @@ struct Assembly {
   std::string id;  ///< 32 hexadecimal digits, by chance: who knows it may use it
   std::shared_ptr<SpoolFolder> folder;
   std::vector<AssemblyFile> files;
-  Mesh mesh;                                ///< all of them, in file units; metres where a file states its unit
+  Mesh mesh;  ///< all of them, in file units; metres where a file states its unit
   std::vector<std::uint32_t> file_of_part;  ///< place in `files`
 };
 
@@ -44,8 +44,8 @@ bool is_mesh_name(const std::string& name);
 /// there are more than kMost, or more bytes than ServerLimits::disk_bytes. Any thread may call anything.
 class AssemblyStore {
  public:
-  static constexpr std::size_t kMost = 8;           ///< chosen
-  static constexpr std::size_t kMostParts = 20'000; ///< chosen: what a list of parts can show
+  static constexpr std::size_t kMost = 8;            ///< chosen
+  static constexpr std::size_t kMostParts = 20'000;  ///< chosen: what a list of parts can show
 
   explicit AssemblyStore(const ServerLimits& limits);
   ~AssemblyStore();

@@ -47,10 +47,10 @@ class AssemblyUpload final : public BodySink {
       return Problem{413, "too-large",
                      "an assembly may have " + std::to_string(limits_.upload_files) + " files", "body"};
     if (!plain_name(head.filename) || head.filename == "scene.json" || head.filename == "path.csv")
-      return bad_request(
-          "the file name '" + shown_text(head.filename) +
-              "' is not letters, digits, '.', '_', '-' only, at most 100, without a dot in front, or is taken",
-          "file");
+      return bad_request("the file name '" + shown_text(head.filename) +
+                             "' is not letters, digits, '.', '_', '-' only, at most 100, without a dot in "
+                             "front, or is taken",
+                         "file");
     if (!names_.insert(head.filename).second)
       return bad_request("the file name '" + head.filename + "' comes twice", "file");
     files_.push_back({.name = head.filename, .mesh = is_mesh_name(head.filename)});

@@ -12,7 +12,8 @@ namespace palpate {
 /// A multipart upload of parts `file`: written to a folder of its own below `spool` as it comes. `done` gets
 /// the folder and what lies in it.
 std::unique_ptr<BodySink> receive_assembly(
-    const HttpRequest& request, const std::filesystem::path& spool, const ServerLimits& limits, Metrics& metrics,
+    const HttpRequest& request, const std::filesystem::path& spool, const ServerLimits& limits,
+    Metrics& metrics,
     std::function<void(std::shared_ptr<SpoolFolder>, std::vector<AssemblyFile>, const Reply&)> done);
 
 }  // namespace palpate

@@ -69,11 +69,13 @@ DrawnMesh reduced_mesh(const AnyMesh& mesh, const Point& point_of, std::size_t m
 }  // namespace
 
 DrawnMesh reduced(const BodyView& body, std::size_t most) {
-  return reduced_mesh(body.mesh, [&](std::size_t v) { return body.point(v); }, most);
+  return reduced_mesh(
+      body.mesh, [&](std::size_t v) { return body.point(v); }, most);
 }
 
 DrawnMesh reduced(const Mesh& mesh, std::size_t most) {
-  return reduced_mesh(mesh, [&](std::size_t v) { return mesh.vertices[v]; }, most);
+  return reduced_mesh(
+      mesh, [&](std::size_t v) { return mesh.vertices[v]; }, most);
 }
 
 std::optional<std::vector<std::uint32_t>> parse_ids(std::string_view text, std::size_t count,

@@ -155,7 +155,8 @@ HttpResponse scene_parts(SceneStore& store, const HttpRequest& request) {
   if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
   const SceneGeometry& geometry = (*std::get<SceneUse>(use))->loaded.geometry;
   nlohmann::ordered_json out;
-  for (const auto& [name, report] : {std::pair{"static", &geometry.mockup_report}, {"tool", &geometry.tool_report}}) {
+  for (const auto& [name, report] :
+       {std::pair{"static", &geometry.mockup_report}, {"tool", &geometry.tool_report}}) {
     auto& list = out[name] = nlohmann::ordered_json::array();
     for (const MeshReport::Part& part : report->parts)
       list.push_back({{"path", part.path}, {"triangles", part.triangles}});

@@ -58,9 +58,10 @@ const char* name_of(SceneState state) {
   return "";
 }
 
-constexpr std::array kFacts = {"profile", "stiffness", "static_triangles", "tool_triangles", "memory_bytes",
-                               "backend", "device",    "voxel_size",       "bounds",         "tool_radius",
-                               "tool_gc", "start",     "stages",           "driver",           "ignores_initial"};
+constexpr std::array kFacts = {"profile",      "stiffness",   "static_triangles", "tool_triangles",
+                               "memory_bytes", "backend",     "device",           "voxel_size",
+                               "bounds",       "tool_radius", "tool_gc",          "start",
+                               "stages",       "driver",      "ignores_initial"};
 
 /// What is known of a scene once it has been prepared.
 ordered_json facts_of(const HostedScene& prepared, std::uint64_t bytes) {

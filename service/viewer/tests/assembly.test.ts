@@ -29,8 +29,8 @@ test('file names become plain ones, each its own', () => {
 });
 
 test('sizes are said in words, and a unit is proposed', () => {
-  assert.deepEqual([0.0000123, 0.0123, 0.123, 1.5, 1234].map(length_words), ['12 µm', '12 mm', '12 cm', '1.5 m', '1.2 km']);
-  assert.equal(size_words({ min: [0, 0, 0], max: [120, 80, 5] }, 1e-3), '12 cm × 80 mm × 5 mm');
+  assert.deepEqual([0.0000123, 0.0123, 0.123, 1.5, 1234].map(length_words), ['12.3 µm', '12.3 mm', '123 mm', '1.5 m', '1.23 km']);
+  assert.equal(size_words({ min: [0, 0, 0], max: [120, 80, 5] }, 1e-3), '120 × 80 × 5 mm');
   assert.equal(likely_unit(120, false), 'mm');
   assert.equal(likely_unit(0.12, false), 'm');
   assert.equal(likely_unit(3, true), 'm');

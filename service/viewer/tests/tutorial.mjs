@@ -31,7 +31,8 @@ async function main() {
   page.on('pageerror', (error) => errors.push(String(error)));
   const text = (id) => page.textContent(`#${id}`);
   const picture = async (name) => {
-    await page.waitForTimeout(400);
+    for (let i = 0; i < 4; ++i) await shown(page);   // a picture at half the size is followed by a sharp one
+    await page.waitForTimeout(500);
     if (pictures) { mkdirSync(pictures, { recursive: true }); await page.screenshot({ path: join(pictures, `${name}.png`) }); }
   };
   /** As a person drops files on the page. */
@@ -73,12 +74,12 @@ async function main() {
   await no_hindrance(page, 'the first page');
 
   await read('gearbox.glb', as_glb(solids));
-  check(/24 cm × 16 cm × 18 cm/.test(await text('assembly-words')), `its size is said in words: ${await text('assembly-words')}`);
+  check(/240 × 160 × 175 mm/.test(await text('assembly-words')), `its size is said in words: ${await text('assembly-words')}`);
   if (write_step) {
     await page.reload();   // the assembly is still there; another takes its place
     await until('a reload comes back to the parts', async () => /^50 parts/.test(await text('assembly-words')));
     await read('gearbox.step', readFileSync(step_file));
-    check(/24 cm × 16 cm × 18 cm/.test(await text('assembly-words')), 'of the STEP file, too');
+    check(/240 × 160 × 175 mm/.test(await text('assembly-words')), 'of the STEP file, too');
     check(/as the file states/.test(await text('assembly-files')), 'its unit is the file\'s own');
   }
   check((await rows()) >= 5, 'the tree shows its groups');
@@ -95,7 +96,7 @@ async function main() {
     if ((await page.isVisible('#part-card')) && (await text('part-name')) === 'handle') { found = true; break search; }
   }
   check(found, 'a click on the handle chooses it');
-  check(/28 mm × 28 mm × 46 mm/.test(await text('part-words')), `its size: ${await text('part-words')}`);
+  check(/28 × 28 × 46 mm/.test(await text('part-words')), `its size: ${await text('part-words')}`);
   await picture('3_choose');
   await page.click('#take-out');
   await until('it is the tool', async () => (await text('tool-name')) === 'handle');

@@ -4,17 +4,20 @@ import type { Box, Vec3 } from '../server/protocol.js';
 export const UNITS = { m: 1, mm: 1e-3, cm: 1e-2, in: 0.0254 } as const;
 export type Unit = keyof typeof UNITS;
 
-/** A length in metres as one would say it: "12 cm", "1.5 m", "80 µm". */
+const SAID: [number, number, string][] = [[1000, 1e-3, 'km'], [1, 1, 'm'], [1e-3, 1e3, 'mm'], [0, 1e6, 'µm']];
+const digits = (value: number): string => Number(value.toPrecision(3)).toLocaleString('en');
+
+/** A length in metres as one would say it: "120 mm", "1.5 m", "80 µm". */
 export function length_words(metres: number): string {
-  const say = (value: number, unit: string) => `${Number(value.toPrecision(value >= 100 ? 3 : 2)).toLocaleString('en')} ${unit}`;
-  if (metres >= 1000) return say(metres / 1000, 'km');
-  if (metres >= 1) return say(metres, 'm');
-  if (metres >= 0.1) return say(metres * 100, 'cm');
-  return metres >= 1e-3 ? say(metres * 1000, 'mm') : say(metres * 1e6, 'µm');
+  const [, factor, unit] = SAID.find(([from]) => metres >= from)!;
+  return `${digits(metres * factor)} ${unit}`;
 }
-export function size_words(box: Box, scale: number): string {
-  return [0, 1, 2].map((k) => length_words((box.max[k] - box.min[k]) * scale)).join(' × ');
+/** Three lengths in the unit of the longest. */
+export function sides_words(sides: readonly number[]): string {
+  const [, factor, unit] = SAID.find(([from]) => Math.max(...sides) >= from)!;
+  return `${sides.map((side) => digits(side * factor)).join(' × ')} ${unit}`;
 }
+export const size_words = (box: Box, scale: number): string => sides_words([0, 1, 2].map((k) => (box.max[k] - box.min[k]) * scale));
 
 /** The unit to begin with, where a file states none: that in which the longest side is a thing one could hold or lift, millimetres above all. */
 export function likely_unit(longest: number, in_metres: boolean): Unit {

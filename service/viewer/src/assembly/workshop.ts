@@ -12,7 +12,7 @@ import { PartList, type RowLook } from './part_list.js';
 import { find_node, part_tree, type PartNode } from './part_nodes.js';
 import { PartPicture } from './part_picture.js';
 import { SettingsForm } from './settings_form.js';
-import { UNITS, length_words, likely_unit, longest_side, size_words, joined, type Unit } from './units.js';
+import { UNITS, joined, likely_unit, longest_side, sides_words, size_words, type Unit } from './units.js';
 import { zip } from './zip.js';
 
 const POLL_MS = 300;
@@ -219,7 +219,7 @@ export class Workshop {
     const box = this.parts.box(this.assembly.parts.map((_, i) => i));
     const size = box.getSize(new three.Vector3());
     const total = this.assembly.parts.reduce((sum, part) => sum + part.triangles, 0);
-    write(element('assembly-words'), `${this.assembly.parts.length.toLocaleString('en')} parts, ${total.toLocaleString('en')} triangles, ${[size.x, size.y, size.z].map(length_words).join(' × ')}${
+    write(element('assembly-words'), `${this.assembly.parts.length.toLocaleString('en')} parts, ${total.toLocaleString('en')} triangles, ${sides_words(size.toArray())}${
       this.geometry.reduced ? `; ${this.parts.drawn_triangles.toLocaleString('en')} triangles are drawn` : ''}`);
   }
   theme(dark: boolean): void { this.dark = dark; this.colour(); }
