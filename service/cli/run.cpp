@@ -231,7 +231,7 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   RunWatch watch(**recorder, series, console, loaded);
   Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
   console.finish();
-  const Result<void> recorded = (*recorder)->finish();
+  Result<void> recorded = (*recorder)->finish();
   if (!summary) {  // it never began: the device can't be opened, say
     folder->take_back();
     return summary.error();
