@@ -17,6 +17,7 @@ struct HapticDeviceInfo {
   std::string reason;  ///< why it can't be used, one sentence; empty when usable
 };
 
+/// All haptic devices that palpate drives, usable or with the reason why not.
 std::vector<HapticDeviceInfo> list_haptic_devices();
 
 /// Makes a device by name, closed. `settings` and `start` serve the simulated one; `tool_gc_m` is the tool's

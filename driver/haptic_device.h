@@ -12,6 +12,7 @@ namespace palpate {
 /// Period of the control loop and of every device's tick, s.
 inline constexpr double kTickSeconds = 1e-3;
 
+/// What a device says of itself at a tick.
 enum class DeviceState : std::uint8_t { kClosed, kOpening, kLoading, kHoming, kReady, kFault };
 
 /// What a device can sense and exert; axes in the order x y z rx ry rz.
@@ -43,10 +44,14 @@ struct DeviceSample {
 class HapticDevice {
  public:
   virtual ~HapticDevice() = default;
+  /// As `palpate devices` and summaries have it.
   virtual std::string name() const = 0;
+  /// Axes and limits; the same before and after open().
   virtual DeviceCapabilities capabilities() const = 0;
+  /// Finds it and makes it ready, force zero. Error: why it can't be used, in one sentence.
   virtual Result<void> open() = 0;
   virtual void close() noexcept = 0;  ///< forces zero, then closed
+  /// Where it is; once a tick. Never allocates, locks or waits.
   virtual DeviceSample read() noexcept = 0;
   /// What the person at the device should do now (home it, plug it in), or why it is at fault; "" when there
   /// is nothing to say. Text that outlives the device; the thread that reads may ask.

@@ -21,6 +21,7 @@ class Passivity {
   void observe(const Wrench& sent, const Vec3& gc, const Quat& rotation) noexcept;
   /// The damping wrench to add in this tick; zero while the count is ≤ 0.
   Wrench damping() const noexcept;
+  /// Begins the count anew.
   void reset() noexcept { *this = {}; }
   double work() const noexcept { return work_; }  ///< J, done on the hand since the count began
 

@@ -26,12 +26,15 @@ struct SafetySettings {
 /// they don't allocate, lock or throw. Refers to the device; closes it.
 class SafeDevice final : public HapticDevice {
  public:
+  /// `device` outlives it.
   SafeDevice(HapticDevice& device, const SafetySettings& settings);
   ~SafeDevice() override;
   SafeDevice(const SafeDevice&) = delete;
   SafeDevice& operator=(const SafeDevice&) = delete;
 
+  /// The device's own, as are its capabilities.
   std::string name() const override { return device_.name(); }
+  /// The device's own.
   DeviceCapabilities capabilities() const override { return device_.capabilities(); }
   Result<void> open() override;  ///< forgets an earlier fault, fades in anew
   void close() noexcept override;
@@ -52,6 +55,7 @@ class SafeDevice final : public HapticDevice {
   bool faulted() const noexcept { return faulted_; }  ///< latched until open()
   /// Why, one sentence, the device's own where it has one; "" without a fault.
   const char* fault() const noexcept { return fault_; }
+  /// Share of the wrench that is let through, 0 to 1: it fades in after open().
   double gain() const noexcept { return gain_; }
   const Wrench& sent() const noexcept { return sent_; }  ///< by the last write, torque about its gc
   /// Writes with the watchdog run out.

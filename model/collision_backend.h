@@ -34,6 +34,7 @@ struct DeviceWork {
   std::uint64_t bytes_up = 0, bytes_down = 0;
   double host_us = 0;  ///< of the host beside submitting and waiting
 
+  /// Adds every count.
   DeviceWork& operator+=(const DeviceWork& more) {
     submissions += more.submissions;
     dispatches += more.dispatches;

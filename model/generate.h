@@ -23,6 +23,7 @@ struct GeneratedScene {
 Result<GeneratedScene> generate_scene(const std::string& name, std::uint64_t triangles,
                                       std::uint64_t tool_triangles);
 
+/// What generate_scene() takes as a name.
 std::vector<std::string> generator_names();
 
 /// Binary STL of a mesh, in metres. Errors: the file can't be written.

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+/// All of palpate: classes by themselves, functions here.
 namespace palpate {
 
 /// What went wrong, as the command line's exit code says it.
@@ -21,22 +22,34 @@ struct Error {
   std::string sentence;
 };
 
+/// An Error with kBadValue.
 inline Error bad_value(std::string sentence) { return {ErrorCode::kBadValue, std::move(sentence)}; }
 
 /// A value, or the reason there is none. For set-up paths only; the 1 kHz path uses statuses.
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+  /// A value.
+  Result(T value) : state_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
+  /// The reason why there is none.
   Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+  /// Whether there is a value, and no reason. What is not there must not be looked at.
   explicit operator bool() const { return state_.index() == 0; }
+  /// The value.
   T& value() & { return std::get<0>(state_); }
+  /// The value.
   const T& value() const& { return std::get<0>(state_); }
+  /// The value, to be moved from.
   T&& value() && { return std::get<0>(std::move(state_)); }
+  /// A member of the value.
   T* operator->() { return &std::get<0>(state_); }
+  /// A member of the value.
   const T* operator->() const { return &std::get<0>(state_); }
+  /// The value.
   T& operator*() & { return std::get<0>(state_); }
+  /// The value.
   const T& operator*() const& { return std::get<0>(state_); }
+  /// The reason.
   const Error& error() const { return std::get<1>(state_); }
 
  private:
@@ -48,8 +61,11 @@ template <>
 class [[nodiscard]] Result<void> {
  public:
   Result() = default;
+  /// The reason why it was not done.
   Result(Error error) : error_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+  /// Whether it was done.
   explicit operator bool() const { return !error_.has_value(); }
+  /// The reason; only where there is one.
   const Error& error() const { return *error_; }
 
  private:

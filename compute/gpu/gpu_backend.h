@@ -11,6 +11,7 @@
 
 namespace palpate {
 
+/// Options of the engine `gpu`, beside its device's.
 struct GpuOptions : DeviceOptions {
   std::shared_ptr<DiskCache> cache{};  ///< where prepared scenes are kept; may be null
   std::map<std::string, std::uint32_t>
@@ -23,6 +24,7 @@ struct GpuOptions : DeviceOptions {
 /// environment variable.
 Result<std::unique_ptr<CollisionBackend>> make_gpu_backend(const GpuOptions& options);
 
+/// All Vulkan devices, usable or with the reason why not.
 std::vector<VulkanDeviceInfo> list_vulkan_devices();
 
 }  // namespace palpate

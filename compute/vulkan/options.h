@@ -8,11 +8,13 @@ namespace palpate {
 
 /// Makes calls to the device fail, so that tests see what follows. May be set at any time, by any thread.
 struct GpuFault {
+  /// Which kind of call fails.
   enum class Call : std::uint8_t { kNone, kAllocate, kSubmit, kWait };
   std::atomic<Call> call{Call::kNone};  ///< kAllocate: out of device memory; the others: device lost
   std::atomic<std::int64_t> after{0};   ///< so many of these calls succeed; then all fail
 };
 
+/// Which Vulkan device is taken, and how it is watched.
 struct DeviceOptions {
   std::string device;       ///< part of a device's name; empty: the best usable one
   bool validation = false;  ///< validation layer with synchronisation checks; a message is an error

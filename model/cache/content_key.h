@@ -31,6 +31,7 @@ class KeyBuilder {
   KeyBuilder(const KeyBuilder&) = delete;
   KeyBuilder& operator=(const KeyBuilder&) = delete;
 
+  /// `size` bytes from `data`, as they are.
   void bytes(const void* data, std::size_t size);
   /// `T` must have no padding: its bytes are hashed.
   template <PlainValue T>
@@ -39,10 +40,12 @@ class KeyBuilder {
                   "padding would be hashed");
     bytes(&v, sizeof v);
   }
+  /// Its length, then its bytes.
   void text(std::string_view s) {
     value(s.size());
     bytes(s.data(), s.size());
   }
+  /// Its length, then its elements.
   template <PlainValue T>
   void list(const std::vector<T>& v) {
     value(v.size());
@@ -51,6 +54,7 @@ class KeyBuilder {
   /// The whole content of a file. False: it can't be read.
   [[nodiscard]] bool file(const std::string& path);
 
+  /// The key of all that was given so far.
   ContentKey finish() const;
 
  private:

@@ -19,6 +19,7 @@ namespace palpate {
 /// processes at once.
 class DiskCache {
  public:
+  /// Where it is, and how large it may grow.
   struct Settings {
     std::filesystem::path folder;
     std::uint64_t max_bytes = std::uint64_t{8}
@@ -29,6 +30,7 @@ class DiskCache {
   /// An entry, mapped.
   class Entry {
    public:
+    /// What was kept; valid as long as the entry.
     std::string_view payload() const;
 
    private:
@@ -37,6 +39,7 @@ class DiskCache {
     FileView file_;
   };
 
+  /// Touches no file.
   explicit DiskCache(Settings settings) : settings_(std::move(settings)) {}
 
   /// Where the environment wants it: PALPATE_CACHE (a folder; `off`: no cache), else XDG_CACHE_HOME/palpate,

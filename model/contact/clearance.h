@@ -11,6 +11,7 @@ inline constexpr std::uint32_t kNoTriangle = UINT32_MAX;
 /// How far the tool is from the mock-up at a pose (docs/EXACTNESS.md, section 10): integers, the same of
 /// every engine.
 struct Clearance {
+  /// What was found.
   enum class Kind : std::uint8_t {
     kApart,     ///< `steps` and what follows say how far and where
     kTouching,  ///< as `contact` of Contacts: `steps` is 0, there are no witnesses

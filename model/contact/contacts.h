@@ -72,6 +72,7 @@ struct Contacts {
   std::uint32_t flags = 0;
   bool contact_points = true;  ///< false: the plan leaves them out; `paper`: voxel_sum is 0
   bool lists = true;           ///< false: the plan leaves the six sets, zones and mobile_ids out
+  /// How long a stage of the frame took.
   struct StageTime {
     const char* stage;
     double us;

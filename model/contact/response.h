@@ -34,6 +34,7 @@ struct Felt {
   bool settled = true;  ///< false: no balance was found; the wrench is of the nearest to one
 };
 
+/// What a hand feels of a frame: force and torque, and what they are made of.
 struct ContactResponse {
   Vec3 gc{0};     ///< centre of mass of the tool at this pose, world, m
   Wrench wrench;  ///< `paper`: sum over areas. `refined`: of the pressure field at this pose, before any

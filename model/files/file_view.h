@@ -11,12 +11,15 @@ class FileView {
  public:
   /// Error (kBadValue): missing, a directory, unreadable or empty.
   static Result<FileView> open(const std::string& path);
+  /// `other` is left without a file.
   FileView(FileView&& other) noexcept;
+  /// `other` is left without a file.
   FileView& operator=(FileView&& other) noexcept;
   FileView(const FileView&) = delete;
   FileView& operator=(const FileView&) = delete;
   ~FileView();
 
+  /// The whole file; valid as long as the view.
   std::string_view bytes() const { return {data_, size_}; }
 
  private:

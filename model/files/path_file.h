@@ -23,6 +23,7 @@ Result<std::vector<GuidePoint>> read_guide(const std::string& file);
 
 /// What read_path and read_guide read, numbers in the shortest form that reads back as the same double.
 std::string path_text(const std::vector<PathPoint>& path, bool guided);
+/// As path_text, of a guide: a line a point.
 std::string guide_text(const std::vector<GuidePoint>& guide);
 
 /// The frame at a travel: linear between points, held beyond the ends. `guide` is not empty.

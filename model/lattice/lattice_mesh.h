@@ -72,14 +72,17 @@ struct LatticeMesh {
   bool closed = false;                  ///< edges, each with its direction, cancel point for point
   Int3 box_min{0}, box_max{0};          ///< of all triangles that did not collapse
 
+  /// Corner k (0, 1, 2) of a triangle, lattice steps.
   Int3 corner(std::uint32_t triangle, int k) const {
     return vertices[triangles[triangle][static_cast<std::size_t>(k)]];
   }
+  /// Whether snapping left the triangle no area; such a one meets nothing.
   bool collapsed(std::uint32_t triangle) const { return (flags[triangle] & kTriangleCollapsed) != 0; }
 };
 
 /// What import and snapping did to a body, for `info` and for the log.
 struct MeshReport {
+  /// A named part of the body.
   struct Part {
     std::string path;
     std::uint32_t triangles = 0;

@@ -15,6 +15,7 @@ struct VoxelGrid {
   Int3 origin{0};         ///< lattice point of voxel (0,0,0)'s lower corner, a multiple of size
   std::int32_t size = 0;  ///< edge of a voxel in lattice steps, even
   Int3 bricks{0};         ///< bricks along each axis; voxels = 8 × bricks
+  /// Voxels along each axis.
   Int3 voxels() const { return bricks * kBrickSide; }
 };
 

@@ -12,6 +12,7 @@ struct SurfaceMeasure {
   Vec3 volume_centroid{0};   ///< steps; 0 when the volume is not positive
   double triangles = 0;      ///< that did not collapse
 };
+/// Of a mesh, by its triangles.
 SurfaceMeasure measure(const LatticeMesh& mesh);
 
 /// Radius of gyration of the surface about a point, both in steps: √(∫|x − c|² dA / ∫dA). Exact for each

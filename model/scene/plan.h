@@ -6,6 +6,7 @@
 
 namespace palpate {
 
+/// Which response: the chapter's to the letter, or the pressure field.
 enum class Profile : std::uint8_t { kPaper, kRefined };
 
 /// Which stages a scene, tool, device and profile need. Leaving one out never changes what the others answer.
@@ -51,6 +52,7 @@ struct PlanFacts {
   std::optional<bool> internal_voxels;  ///< mock-up has V_int voxels; empty before the back end has prepared
 };
 
+/// A plan, and why each stage is kept or left out.
 struct PlanDecision {
   Plan plan;
   std::vector<PlanStage> stages;  ///< the thirteen stages, in the order of a frame

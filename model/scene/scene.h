@@ -27,17 +27,20 @@ struct MeshSource {
   std::map<std::string, double> generate_parameters;  ///< "triangles", …
 };
 
+/// A body of the mock-up.
 struct StaticBody {
   MeshSource source;
   Pose placement;  ///< world from file
 };
 
+/// The body in the hand.
 struct ToolSettings {
   MeshSource source;
   double mass_kg = 0.3;
   std::optional<Vec3> centre_of_mass_m;  ///< tool frame; empty: auto
 };
 
+/// How contacts become force and torque (scene key `response`).
 struct ResponseSettings {
   Profile profile = Profile::kRefined;
   double stiffness_n_per_m = 2000;  ///< K
@@ -51,8 +54,10 @@ struct ResponseSettings {
   double tessellation_angle_deg = 15;  ///< Tessellation::angle_deg
 };
 
+/// The scene's choice: equation 5 as printed, or with the hand's motion between ticks.
 enum class ForceLaw : std::uint8_t { kPrinted, kCorrected };
 
+/// How the 1 kHz loop uses them (scene key `control`).
 struct ControlSettings {
   ForceLaw law = ForceLaw::kCorrected;  ///< profile `paper` without a law of its own takes printed
   std::optional<int> transitions;       ///< n; empty: auto (measured age of results)
@@ -82,6 +87,7 @@ struct GuidePoint {
   Pose frame;  ///< world from tool when the three rotations are 0
 };
 
+/// Which device, and the hand of the simulated one (scene key `device`).
 struct DeviceSettings {
   std::string driver = "simulated";
   double mass_kg = 0.5;  ///< apparent, of device and tool

@@ -1,12 +1,15 @@
-# At install: copies the Debian copyright file of every library that lies in LIBRARIES (of the machine ARCHITECTURE, as Debian calls it), and of PACKAGES, whose headers or texts are compiled in, to OUT.
+# At install: copies the Debian copyright file of every library that lies in LIBRARIES, if it is set (of the machine ARCHITECTURE, as Debian calls it), and of PACKAGES, whose headers or texts are compiled in, to OUT.
 # Where a machine has no dpkg nothing is copied, and that is said.
 find_program(dpkg_query dpkg-query)
 if(NOT dpkg_query)
   message(STATUS "No dpkg-query here: the bundle gets no copyright files of its libraries")
   return()
 endif()
+file(MAKE_DIRECTORY "${OUT}")
 set(packages ${PACKAGES})
-file(GLOB libraries RELATIVE "${LIBRARIES}" "${LIBRARIES}/*.so*")
+if(LIBRARIES)
+  file(GLOB libraries RELATIVE "${LIBRARIES}" "${LIBRARIES}/*.so*")
+endif()
 foreach(library IN LISTS libraries)
   # Its owner is whoever has a file of that name in a folder of libraries.
   execute_process(COMMAND "${dpkg_query}" --search "*/${ARCHITECTURE}/${library}" OUTPUT_VARIABLE owners ERROR_QUIET)

@@ -24,12 +24,13 @@ CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMem
 const std::vector<std::string> kEngines = {"auto", "gpu", "cpu", "ref"};
 constexpr const char* kEngineHelp = "the engine, as for run (auto)";
 
-/// Looked at before anything is measured, which takes minutes.
+constexpr const char* kResultFiles[] = {"results.csv", "results.json", "report.html"};
+
 void add_out(CLI::App& app, BenchOptions& options) {
   app.add_option("--out", options.out, "directory for results.csv, results.json, report.html")
       ->required()
-      ->check(CLI::Validator([](const std::string& folder) { return cannot_write_to(folder); }, ""))
       ->type_name("DIR");
+  app.add_flag("--overwrite", options.overwrite, "replace the results of a bench that are in --out already");
 }
 
 void add_common(CLI::App& app, BenchOptions& options, bool scenes_required = true) {
@@ -74,6 +75,14 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
+  // --out is looked at before anything is measured, which takes minutes.
+  const auto measure = [&](CLI::App* command, Result<void> (*run)(const BenchOptions&, const Parts&)) {
+    command->callback([&, run] {
+      outcome = check_output_folder(options.out, kResultFiles, "a bench's", options.overwrite);
+      if (outcome) outcome = run(options, parts);
+    });
+  };
+
   CLI::App* latency = bench->add_subcommand("latency",
                                             "a frame's time by stage: p50, p95, p99, p99.9 (of 1,000 frames "
                                             "and more), max; contact and free apart");
@@ -92,7 +101,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "Rows of `total` have what a frame asks of a device, the median of each: submissions, dispatches, "
       "barriers, bytes that the frame writes for it and\n"
       "reads of it, and host_us, the host's time beside submitting and waiting.");
-  latency->callback([&] { outcome = bench_latency(options, parts); });
+  measure(latency, bench_latency);
 
   const auto one_backend = [&options](CLI::App& to) {
     to.add_option("--backend", options.backends, kEngineHelp)
@@ -117,7 +126,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "clock: a batch takes all cores. share_of_single: time\n"
       "of a pose in the batch over that of one asked singly, by as many threads as its engine gives a frame "
       "(cpu: two). Then what a batch asks of a device.");
-  throughput->callback([&] { outcome = bench_throughput(options, parts); });
+  measure(throughput, bench_throughput);
 
   CLI::App* scale = bench->add_subcommand("scale",
                                           "a frame's time against the number of triangles: around the same "
@@ -134,7 +143,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "Without scenes three series are made; with scenes, and --poses, each is measured as it is, with its "
       "edges in two, and in four. Files stay below\n"
       "DIR/scenes. peak_bytes is the most memory that the process had while it read, prepared and measured.");
-  scale->callback([&] { outcome = bench_scale(options, parts); });
+  measure(scale, bench_scale);
 
   CLI::App* prepare = bench->add_subcommand(
       "prepare",
@@ -151,7 +160,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "The first start finds nothing in the cache and keeps what it makes; the second finds it. Shaders that "
       "the driver has compiled before are not compiled again.\n"
       "Trees are built by a build with -DPALPATE_BENCH_PEERS=ON alone.");
-  prepare->callback([&] { outcome = bench_prepare(options, parts); });
+  measure(prepare, bench_prepare);
 
   CLI::App* error = bench->add_subcommand("error",
                                           "error of the response against time, for every knob: four closed "
@@ -168,7 +177,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "contact. Times are whole frames.\n"
       "A scene's truth is the refined profile at a spacing of a 16th of a voxel; the sweep towards it shows "
       "its convergence.");
-  error->callback([&] { outcome = bench_error(options, parts); });
+  measure(error, bench_error);
 
   CLI::App* peers = bench->add_subcommand(
       "peers", "other collision libraries on the same triangles and poses, in turns with palpate");
@@ -182,7 +191,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "palpate's time is a whole frame: sets, areas, zones, rays, wrench. The others' is the pairs alone. "
       "Before anything is timed, each\n"
       "library's pairs are held against the exact ones: `missing` and `extra` count pairs over all poses.");
-  peers->callback([&] { outcome = bench_peers(options, parts); });
+  measure(peers, bench_peers);
 
   CLI::App* stability = bench->add_subcommand(
       "stability", "highest stable stiffness of each force law beside theory; steps and energy of the force");
@@ -196,7 +205,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "freedom, and over the real collision query. critical_k is found by\n"
       "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and "
       "torque, and energy given out.");
-  stability->callback([&] { outcome = bench_stability(options, parts); });
+  measure(stability, bench_stability);
 
   CLI::App* plan = bench->add_subcommand(
       "plan", "scenes that lack something: the whole plan beside their own, the same bits, time and memory");
@@ -214,7 +223,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "all memory. A stage that a plan leaves\n"
       "out has no row. Before anything is written, both plans' answers are held against each other bit by "
       "bit.");
-  plan->callback([&] { outcome = bench_plan(options, parts); });
+  measure(plan, bench_plan);
 
   CLI::App* numerics = bench->add_subcommand("numerics",
                                              "stiff and extreme cases beside the same method in plain single "
@@ -229,7 +238,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "results. The error is of the force, relative; for\n"
       "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; "
       "`breaks` in results.json sums up.");
-  numerics->callback([&] { outcome = bench_numerics(options, parts); });
+  measure(numerics, bench_numerics);
 
   CLI::App* force = bench->add_subcommand("force",
                                           "the force on fits, plates, thin and open parts against symmetry "
@@ -242,7 +251,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "lost round loops, how far ∂F is from symmetric, what is lost\n"
       "while going deeper, turns by more than 90° between neighbours, poses without a direction, and in "
       "words what breaks a limit. A scene's path is divided evenly into --frames poses.");
-  force->callback([&] { outcome = bench_force(options, parts); });
+  measure(force, bench_force);
 
   CLI::App* jitter = bench->add_subcommand(
       "jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
@@ -260,7 +269,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "answers. cyclictest (Debian: rt-tests) runs meanwhile with the same period,\n"
       "priority and processor, where it is installed. What was not allowed is said. A tick that comes a "
       "whole period late is missed.");
-  jitter->callback([&] { outcome = bench_jitter(options, parts); });
+  measure(jitter, bench_jitter);
 }
 
 }  // namespace palpate

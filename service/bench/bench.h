@@ -27,6 +27,7 @@ struct BenchOptions {
   std::uint64_t most_triangles = 1'000'000;  ///< scale: of the largest mock-up
   double seconds = 60;                       ///< jitter: how long
   std::string out;
+  bool overwrite = false;  ///< results of a bench that `out` has already
 };
 
 Result<void> bench_latency(const BenchOptions& options, const Parts& parts);

@@ -369,6 +369,8 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   generate_app->add_option("--out", generate.out, "directory for meshes, path and scene.json")
       ->required()
       ->type_name("DIR");
+  generate_app->add_flag("--overwrite", generate.overwrite,
+                         "replace the files of a scene that are in --out already");
   generate_app->footer(
       "Writes the meshes as files, so that any of them can be exchanged for a part of yours.\n\nExamples:\n"
       "  palpate generate disassembly --out try\n"

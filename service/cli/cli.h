@@ -89,6 +89,7 @@ struct GenerateOptions {
   std::string name;
   std::uint64_t triangles = 0, tool_triangles = 0;  ///< 0: the chapter's
   std::string out;
+  bool overwrite = false;  ///< the files of a scene that `out` has already
 };
 
 struct InfoOptions {

@@ -8,10 +8,19 @@
 #include "model/generate.h"
 #include "service/cli/cli.h"
 #include "service/cli/numbers.h"
+#include "service/cli/output_folder.h"
 
 namespace palpate {
+namespace {
+
+// What people edit, or exchange for parts of theirs.
+constexpr const char* kSceneFiles[] = {"scene.json", "mockup.stl", "tool.stl", "path.csv", "guide.csv"};
+
+}  // namespace
 
 Result<void> generate_command(const GenerateOptions& options) {
+  if (auto done = check_output_folder(options.out, kSceneFiles, "a scene's", options.overwrite); !done)
+    return done;
   const Result<GeneratedScene> scene =
       generate_scene(options.name, options.triangles, options.tool_triangles);
   if (!scene) return scene.error();

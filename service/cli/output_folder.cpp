@@ -25,4 +25,17 @@ std::string cannot_write_to(const std::string& folder) {
   return {};
 }
 
+Result<void> check_output_folder(const std::string& folder, std::span<const char* const> files,
+                                 const char* whose, bool overwrite) {
+  if (const std::string wrong = cannot_write_to(folder); !wrong.empty()) return bad_value("--out " + wrong);
+  if (overwrite) return {};
+  std::error_code ignored;
+  for (const char* file : files)
+    if (std::filesystem::exists(std::filesystem::path(folder) / file, ignored))
+      return bad_value(
+          fmt::format("--out {}: {} files are there already ({}); name another folder, or say --overwrite",
+                      folder, whose, file));
+  return {};
+}
+
 }  // namespace palpate

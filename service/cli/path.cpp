@@ -15,6 +15,7 @@
 #include "model/scene/scene_file.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
+#include "service/cli/output_folder.h"
 #include "service/cli/pose_input.h"
 #include "service/cli/scene_host.h"
 #include "service/queries/path_check.h"
@@ -22,6 +23,8 @@
 
 namespace palpate {
 namespace {
+
+constexpr const char* kPathFiles[] = {"path.csv", "path.json", "path.html"};
 
 using Json = nlohmann::ordered_json;
 
@@ -148,15 +151,13 @@ Result<std::vector<Pose>> poses_of(const PathOptions& options) {
 }
 
 Result<void> path_command(const PathOptions& options, const Parts& parts) {
+  if (!options.out.empty())
+    if (auto done = check_output_folder(options.out, kPathFiles, "a path's", options.overwrite); !done)
+      return done;
   auto poses = poses_of(options);
   if (!poses) return poses.error();
   if (poses->empty())
     return bad_value(options.path + ": the file has no pose, so there is nothing to examine");
-  if (!options.out.empty()) {  // a folder that can't be made costs no work
-    std::error_code error;
-    std::filesystem::create_directories(options.out, error);
-    if (error) return bad_value(options.out + ": the directory can't be made (" + error.message() + ")");
-  }
   catch_interrupts();
   Console console;
   auto prepared = prepare_for_verdicts(options.common, options.tolerance_m, parts, console);
@@ -175,6 +176,9 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
       (backend.measured_by() == backend.name() ? "" : ", distances by " + backend.measured_by());
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return bad_value(options.out + ": the directory can't be made (" + error.message() + ")");
     const auto dump = [](const Json& json, int indent) {
       return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
     };
@@ -229,6 +233,7 @@ void add_path_command(CLI::App& app, PathOptions& options, const Parts& parts, R
       "--within", [&options](double value) { options.within_m = value; },
       "measure no clearance further than this, m");
   path->add_option("--out", options.out, "directory for path.csv, path.json and path.html")->type_name("DIR");
+  path->add_flag("--overwrite", options.overwrite, "replace the files of a path that are in --out already");
   path->footer(kFooter);
   path->callback([&] { outcome = path_command(options, parts); });
 }

@@ -12,7 +12,8 @@ struct PathOptions {
   std::string path;  ///< CSV file of poses
   double tolerance_m = 0;
   std::optional<double> within_m;
-  std::string out;  ///< directory for path.csv, path.json and path.html; empty: none
+  std::string out;         ///< directory for path.csv, path.json and path.html; empty: none
+  bool overwrite = false;  ///< those files of another check that `out` has already
 };
 
 /// Adds `path` to the command line; `options` and `outcome` outlive the parsing.

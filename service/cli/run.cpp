@@ -103,20 +103,6 @@ struct RunFolder {
   }
 };
 
-/// Before anything is read: that files can be written to `wanted`, and that none would be lost.
-Result<void> check_output(const RunOptions& options) {
-  if (options.out.empty()) return {};
-  if (const std::string wrong = cannot_write_to(options.out); !wrong.empty())
-    return bad_value("--out " + wrong);
-  std::error_code ignored;
-  for (const char* file : kRunFiles)
-    if (!options.overwrite && fs::exists(fs::path(options.out) / file, ignored))
-      return bad_value(fmt::format(
-          "--out {}: a run's files are there already ({}); name another folder, or say --overwrite",
-          options.out, file));
-  return {};
-}
-
 /// `wanted`, or a directory palpate-run-SCENE[-N] that did not exist before.
 Result<RunFolder> output_directory(const std::string& wanted, const std::string& scene) {
   std::error_code error;
@@ -179,7 +165,9 @@ Result<std::vector<PlanChange>> read_switches(const RunOptions& options, const L
 }
 
 Result<void> check_options(const RunOptions& options) {
-  if (auto done = check_output(options); !done) return done;
+  if (!options.out.empty())
+    if (auto done = check_output_folder(options.out, kRunFiles, "a run's", options.overwrite); !done)
+      return done;
   if (options.duration_s && !(std::isfinite(*options.duration_s) && *options.duration_s > 0))
     return bad_value(fmt::format("--duration {} is not a positive number of seconds", *options.duration_s));
   return {};
@@ -243,7 +231,7 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   RunWatch watch(**recorder, series, console, loaded);
   Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
   console.finish();
-  const Result<void> recorded = (*recorder)->finish();
+  Result<void> recorded = (*recorder)->finish();
   if (!summary) {  // it never began: the device can't be opened, say
     folder->take_back();
     return summary.error();

@@ -10,12 +10,14 @@ namespace palpate {
 /// Most ticks over which a result is blended in.
 inline constexpr int kMaxTransitions = 1000;
 
+/// The law that runs.
 enum class LawKind : std::uint8_t {
   kHold,       ///< the last result, unchanged: the yardstick
   kPrinted,    ///< equations 4–6 of the chapter as printed
   kCorrected,  ///< per area, never pulling (below)
 };
 
+/// Which law, and its constants.
 struct ForceLawSettings {
   LawKind kind = LawKind::kCorrected;
   double stiffness_n_per_m = 2000;  ///< K of equations 4–6; `corrected` takes κ from each plane instead
@@ -64,6 +66,7 @@ class ForceLawState {
                           kKeepAway = 20e-3;  ///< m (chosen: a wall seldom ends within millimetres)
   static constexpr int kKeepTicks = 250;      ///< (chosen: a bounce that a hand can feel is shorter)
 
+  /// No contact so far.
   explicit ForceLawState(const ForceLawSettings& settings);
 
   /// Force on the tool at this tick, torque about pose.gc. `fresh` is the newest result or null; one that has

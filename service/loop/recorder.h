@@ -17,7 +17,9 @@ class Recorder : public RunObserver {
   static Result<std::unique_ptr<Recorder>> create(const std::string& directory);
 
   ~Recorder() override;
+  /// A row of trace.csv.
   Result<void> on_tick(const TickRecord& tick) override;
+  /// A line of frames.jsonl.
   Result<void> on_frame(const FrameRecord& frame) override;
 
   /// Flushes and closes; the last chance to hear that the disk is full. Call it before the files are used.

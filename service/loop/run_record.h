@@ -44,7 +44,9 @@ struct FrameRecord {
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
+  /// Once a tick, in order. An Error ends the run with zero force.
   virtual Result<void> on_tick(const TickRecord&) { return {}; }
+  /// Once a frame that was answered, in order; as on_tick.
   virtual Result<void> on_frame(const FrameRecord&) { return {}; }
 };
 

@@ -15,6 +15,7 @@
 
 namespace palpate {
 
+/// By the clock, or in virtual time.
 enum class Pace : std::uint8_t {
   kRealtime,  ///< 1 kHz by the clock, collision worker on a thread of its own
   kAsap,      ///< virtual time: one thread, no clock in anything that decides, the same bytes every time
@@ -26,6 +27,7 @@ struct PlanChange {
   PlanTarget target;
 };
 
+/// How run_session() runs.
 struct SessionOptions {
   Pace pace = Pace::kRealtime;
   std::optional<double> duration_s{};  ///< empty: to the end of the device's path; without a path: until stop

@@ -5,10 +5,12 @@
 
 namespace palpate {
 
+/// The spring between tool and device.
 struct CouplingSettings {
   double stiffness_n_per_m = 0;     ///< 0: tool and device are in one place
   double stiffness_nm_per_rad = 0;  ///< 0: they are turned alike
 
+  /// Whether there is one.
   bool on() const { return stiffness_n_per_m > 0 || stiffness_nm_per_rad > 0; }
 };
 
@@ -23,6 +25,7 @@ LawPose apart_from(const LawPose& device, const Vec6& apart, const CouplingSetti
 class Feel {
  public:
   virtual ~Feel() = default;
+  /// `push`: the wrench on a tool at `tool`; `slope`: how it changes with the place.
   virtual void operator()(const LawPose& tool, Wrench& push, StiffnessMatrix& slope) const = 0;
 };
 

@@ -17,6 +17,7 @@ namespace palpate {
 /// force at zero meanwhile.
 class SteadyBackend final : public CollisionBackend, public SharedBackend {
  public:
+  /// Makes the spare, when it is first needed.
   using Make = std::function<std::unique_ptr<CollisionBackend>()>;
 
   /// `make_spare` may be empty: then what the first back end can't do remains an error, or a truncated frame.

@@ -19,6 +19,7 @@ struct TouchRule {
 
 /// When a tool on a screw first touches.
 struct FirstContact {
+  /// What was found.
   enum class Kind : std::uint8_t {
     kNone,  ///< it stays clear all the way
     kContact,
@@ -45,6 +46,7 @@ struct Touch {
   bool touches = false;
   std::int64_t depth = -1;
 };
+/// Whether the tool touches at a pose, and how deep, by a rule.
 Result<Touch> touch_at(CollisionBackend& backend, const LatticePose& pose, const TouchRule& rule);
 
 }  // namespace palpate

@@ -32,6 +32,7 @@ class LoneQuery {
   Result<Felt> ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose,
                    const ContactResponse& at_pose);
 
+  /// The spring whose balance is sought.
   CouplingSettings spring() const { return spring_; }
 
  private:

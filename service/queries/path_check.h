@@ -40,6 +40,7 @@ struct PathReport {
   std::optional<std::size_t> deepest;    ///< moment with the greatest depth
   std::vector<std::string> static_parts, tool_parts;  ///< that touch at any pose
   std::uint64_t screws = 0, evaluations = 0;
+  /// Whether the tool touches nowhere.
   bool clear() const { return !first_screw; }
 };
 

@@ -11,11 +11,13 @@ namespace palpate {
 /// Which named parts of a scene touch. Made once for a scene; `geometry` must outlive it.
 class TouchedParts {
  public:
+  /// `geometry` outlives it.
   explicit TouchedParts(const SceneGeometry& geometry);
 
   /// Paths of the parts whose triangles are in contact: of CST and the areas, of CMT and the areas; each
   /// once, in the order of the scene.
   std::vector<std::string> statics(const Contacts& contacts) const;
+  /// Paths of the tool's parts, likewise.
   std::vector<std::string> mobiles(const Contacts& contacts) const;
 
  private:

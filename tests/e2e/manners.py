@@ -89,6 +89,25 @@ def test_a_run_replaces_no_other_without_being_told():
     expect(palpate(*words[:-1], folder / 'other').code == 0 and (folder / 'other' / 'notes.txt').read_text() == 'mine', 'another folder')
 
 
+def test_no_command_replaces_files_without_being_told():
+    folder = Folder()
+    scene, pose = pressed(folder)
+    folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n0,0,9,0,0,0,1\n0,0,8,0,0,0,1\n')
+    for name, words in (('bench', ('bench', 'latency', scene, '--poses', folder / 'poses.csv', '--frames', '2', '--rounds', '1', '--backend', 'cpu')),
+                        ('path', ('path', scene, folder / 'poses.csv', '--backend', 'cpu')),
+                        ('generate', ('generate', 'contacts', '--triangles', '2000', '--tool-triangles', '1000'))):
+        out = folder / name
+        expect(palpate(*words, '--out', out).code == 0, name)
+        before = {file.name: (file.read_bytes(), file.stat().st_mtime_ns) for file in out.iterdir()}
+        expect_refused(palpate(*words, '--out', out), 3, f'--out {out}: ', 'are there already', 'name another folder, or say --overwrite')
+        expect({file.name: (file.read_bytes(), file.stat().st_mtime_ns) for file in out.iterdir()} == before, f'{name}: files were touched')
+        told = palpate(*words, '--out', out, '--overwrite')
+        expect(told.code == 0 and any(file.stat().st_mtime_ns != before[file.name][1] for file in out.iterdir()), told)
+    # Nothing is read first: a scene that does not exist gives the same sentence.
+    for words in (('bench', 'latency', folder / 'none.json', '--out', folder / 'bench'), ('path', folder / 'none.json', folder / 'none.csv', '--out', folder / 'path')):
+        expect_refused(palpate(*words), 3, '--overwrite')
+
+
 def test_a_device_that_cannot_be_opened_leaves_no_folder():
     folder = Folder()
     scene = folder.save()

@@ -71,6 +71,7 @@ def test_the_report_is_one_self_contained_page():
         expect(canvas in page.ids, f'no figure {canvas}')
     for place in ('@CSS@', '@DATA@', '@SCRIPT@', '@CHART_JS@'):
         expect(place not in text, f'{place} was not filled')
+    expect('Chart.js Contributors' in text and 'Permission is hereby granted' in text, 'the licence of what is embedded')
     data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S).group(1))
     expect({'summary', 'curves', 'highlight', 'stages', 'stage_figures'} <= set(data), list(data))
     expect(len(data['highlight']) > 0 and len(data['curves']['cst']) > 10, 'curves')

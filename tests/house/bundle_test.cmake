@@ -23,6 +23,7 @@ foreach(file share/man/man1/palpate.1 share/man/man1/palpate-run.1 share/bash-co
     message(FATAL_ERROR "missing from the bundle: ${file}")
   endif()
 endforeach()
+must(python3 "${CMAKE_CURRENT_LIST_DIR}/sbom_judge.py" "${root}/share/palpate/sbom.spdx.json" "${SOURCE_DIR}" "${root}/bin/palpate" "${root}/libexec/palpate/palpate-import")
 file(GLOB libraries RELATIVE "${root}/lib/palpate" "${root}/lib/palpate/*.so*")
 foreach(library IN LISTS libraries)
   execute_process(COMMAND dpkg-query --search "*/${ARCHITECTURE}/${library}" OUTPUT_VARIABLE owner)

@@ -24,6 +24,18 @@ TEST(ViewerFiles, AreWhatTheBundlerMade) {
   }
 }
 
+TEST(ViewerFiles, CarryTheLicenceOfThree) {
+  if (viewer_files().empty()) GTEST_SKIP() << viewer_missing();
+  for (const ViewerFile& file : viewer_files()) {
+    if (file.path != "viewer.js") continue;
+    for (const char* words : {"The MIT License", "three.js authors", "Permission is hereby granted",
+                              "shall be included in\nall copies or substantial portions"})
+      EXPECT_NE(file.content.substr(0, 2000).find(words), std::string_view::npos) << words;
+    return;
+  }
+  FAIL() << "no viewer.js";
+}
+
 TEST(ViewerFiles, EitherThereIsAViewerOrAReason) {
   EXPECT_NE(viewer_files().empty(), viewer_missing().empty());
 }
