@@ -91,7 +91,7 @@ def test_engines_give_equal_bits(clamp):
 
 def test_answers_are_those_of_the_command_line_bit_by_bit(clamp, tmp_path):
     scene = palpate.Scene(clamp, engine='cpu')
-    poses = random_poses(scene, int(os.environ.get('PALPATE_TEST_POSES', 300)))
+    poses = random_poses(scene, int(os.environ.get('PALPATE_TEST_POSES', 60)))
     file = tmp_path / 'poses.csv'
     np.savetxt(file, poses, '%.17g', ',', header='x,y,z,qx,qy,qz,qw', comments='')
     done = subprocess.run([os.environ['PALPATE_PROGRAM'], 'query', clamp, '--poses', file, '--json', '--backend', 'cpu'], capture_output=True,
