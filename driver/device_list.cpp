@@ -1,9 +1,14 @@
 #include "driver/device_list.h"
 
 #include <array>
+#include <charconv>
+#include <optional>
 #include <span>
+#include <string_view>
 
 #include "driver/falcon/falcon_device.h"
+#include "driver/inverse3/inverse3_device.h"
+#include "driver/inverse3/inverse3_link.h"
 #include "driver/replay/replay_device.h"
 #include "driver/simulated_device.h"
 #include "driver/spacemouse/report.h"
@@ -43,12 +48,37 @@ HapticDeviceInfo falcon_info() {
   return info;
 }
 
+HapticDeviceInfo inverse3_info() {
+  HapticDeviceInfo info{"inverse3", "Haply Inverse3, 3 forces, through its maker's service", false, ""};
+  const auto service = inverse3::connect(inverse3::kServicePort);
+  info.usable = static_cast<bool>(service);
+  if (service)
+    info.what += service->session.grip.empty() ? "; without a grip" : "; its grip turns the tool";
+  else
+    info.reason = service.error().sentence;
+  return info;
+}
+
+/// The port of "inverse3" or "inverse3:PORT"; nothing where it is neither.
+std::optional<std::uint16_t> inverse3_port(std::string_view name) {
+  constexpr std::string_view driver = "inverse3";
+  if (!name.starts_with(driver)) return std::nullopt;
+  name.remove_prefix(driver.size());
+  if (name.empty()) return inverse3::kServicePort;
+  std::uint16_t port = 0;
+  const char* end = name.data() + name.size();
+  const auto read = std::from_chars(name.data() + 1, end, port);
+  const bool whole = name.front() == ':' && read.ec == std::errc() && read.ptr == end && port != 0;
+  return whole ? std::optional(port) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<HapticDeviceInfo> list_haptic_devices() {
   return {
       {"simulated", "a hand that follows the scene's path, in real or virtual time", true, ""},
       falcon_info(),
+      inverse3_info(),
       usb_info("spacemouse", "3Dconnexion SpaceMouse, 6 axes in, no force", spacemouse::kModels),
       {"replay", "a recorded trace.csv of any device: --device replay:FILE", true, ""},
   };
@@ -64,6 +94,8 @@ Result<std::unique_ptr<HapticDevice>> make_haptic_device(const std::string& name
     falcon.workspace = settings.workspace;
     return falcon::make_falcon(falcon, start);
   }
+  if (const auto port = inverse3_port(name))
+    return inverse3::make_inverse3({.port = *port, .workspace = settings.workspace}, start);
   if (name == "spacemouse")
     return spacemouse::make_spacemouse({.rate = {}, .workspace = settings.workspace}, start);
   if (name == "replay") {
@@ -73,8 +105,8 @@ Result<std::unique_ptr<HapticDevice>> make_haptic_device(const std::string& name
           "beside \"driver\": \"replay\"");
     return replay::make_replay(settings.replay_file, settings.max_force_n, settings.max_torque_nm);
   }
-  return Error{ErrorCode::kUsage,
-               "unknown haptic device '" + name + "', known are simulated, falcon, spacemouse, replay"};
+  return Error{ErrorCode::kUsage, "unknown haptic device '" + name +
+                                      "', known are simulated, falcon, inverse3, spacemouse, replay"};
 }
 
 }  // namespace palpate

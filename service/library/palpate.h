@@ -186,9 +186,8 @@ PALPATE_API int32_t palpate_clearance(palpate_scene* scene, const double* poses,
 
 #define PALPATE_MOTION_CLEAR 0
 #define PALPATE_MOTION_CONTACT 1
-#define PALPATE_MOTION_UNDECIDED                                            \
-  2 /* so near for so long that the search was given up: clear until `time` \
-     */
+/* So near for so long that the search was given up: clear until `time`. */
+#define PALPATE_MOTION_UNDECIDED 2
 
 typedef struct palpate_motions {
   size_t size;
@@ -214,11 +213,11 @@ PALPATE_API int32_t palpate_contact_at(palpate_scene* scene, const double* pose,
 PALPATE_API void palpate_contact_free(palpate_contact* contact);
 
 #define PALPATE_CST 0 /* triangles of the mock-up that the tool's intersect */
-#define PALPATE_BST 1 /* of the mock-up, inside the tool or at its edge */
+#define PALPATE_BST 1 /* of the mock-up, near: in a boundary voxel that the tool touches */
 #define PALPATE_CMT 2 /* triangles of the tool that the mock-up's intersect */
-#define PALPATE_BMT 3
-#define PALPATE_IMT 4
-#define PALPATE_EST 5
+#define PALPATE_BMT 3 /* of the tool, near: touching a boundary voxel of the mock-up */
+#define PALPATE_IMT 4 /* of the tool, inside: touching an internal voxel of the mock-up */
+#define PALPATE_EST 5 /* of the mock-up, inside the tool */
 /* A list of triangles, ascending. Null and *count = 0: there is no such list. */
 PALPATE_API const uint32_t* palpate_contact_list(const palpate_contact* contact, int32_t list, size_t* count);
 /* What `palpate query --names --json` prints for the pose: one JSON object with the lists, areas, force and

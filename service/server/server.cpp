@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "service/cli/console.h"
+#include "service/server/assemblies/assembly_routes.h"
 #include "service/server/info_routes.h"
 #include "service/server/queries/batch_queue.h"
 #include "service/server/queries/query_route.h"
@@ -142,6 +143,7 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   Router router;
   Listener listener(router, rules, limits, metrics, log);
   SceneStore store(parts, options.backend, limits, metrics, log);
+  AssemblyStore assemblies(limits);
   BatchQueue batches(store, limits, metrics);
   RemoteLoops loops(limits, metrics);
   SessionHost sessions(parts, store, limits, metrics, log, root);
@@ -156,6 +158,7 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
                            .stopping = stopping,
                            .backend = options.backend});
   add_scene_routes(router, store, workers, metrics, limits, root, (*spool)->path());
+  add_assembly_routes(router, assemblies, store, workers, metrics, limits, root, (*spool)->path());
   add_query_route(router, store, batches, workers, limits);
   add_session_routes(router, sessions, workers, limits);
   add_haptic_route(router, store, loops);

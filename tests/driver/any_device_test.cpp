@@ -10,6 +10,7 @@
 #include <random>
 #include <thread>
 
+#include "driver/inverse3/inverse3_device.h"
 #include "driver/limits.h"
 #include "driver/replay/replay_device.h"
 #include "driver/safe_device.h"
@@ -17,6 +18,7 @@
 #include "driver/spacemouse/report.h"
 #include "driver/spacemouse/spacemouse_device.h"
 #include "tests/driver/fake_usb/falcon_table.h"
+#include "tests/driver/inverse3_service.h"
 
 namespace palpate {
 namespace {
@@ -75,6 +77,10 @@ class AnyDevice : public testing::TestWithParam<const char*> {
       made = spacemouse::make_spacemouse(
           {}, Pose{}, [this] { return UsbPort::open_descriptor(mouse_->descriptor(), 0); });
     }
+    if (name == "inverse3") {
+      service_ = std::make_unique<fake::Inverse3Service>();
+      made = inverse3::make_inverse3({.port = service_->port()}, Pose{});
+    }
     if (name == "replay") {
       const std::string file = testing::TempDir() + "any_device_" + std::to_string(::getpid()) + ".csv";
       std::ofstream(file) << "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n";
@@ -106,6 +112,7 @@ class AnyDevice : public testing::TestWithParam<const char*> {
   static constexpr SafetySettings kSettings{.fade_in_ticks = 10, .watchdog_ticks = 20, .fade_out_ticks = 20};
   std::unique_ptr<fake::FalconTable> falcon_;
   std::unique_ptr<fake::DescriptorFront> mouse_;
+  std::unique_ptr<fake::Inverse3Service> service_;
   std::unique_ptr<Spy> spy_;
 };
 
@@ -184,7 +191,8 @@ TEST_P(AnyDevice, ItIsLeftAtZeroWhateverEndsTheWrapper) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Driven, AnyDevice, testing::Values("simulated", "falcon", "spacemouse", "replay"),
+INSTANTIATE_TEST_SUITE_P(Driven, AnyDevice,
+                         testing::Values("simulated", "falcon", "inverse3", "spacemouse", "replay"),
                          [](const auto& param) { return std::string(param.param); });
 
 }  // namespace

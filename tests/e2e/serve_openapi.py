@@ -35,6 +35,15 @@ def test_real_answers_fit_their_schemas():
             expect(server.settled(id_)['state'] == state, state)
             take('Scene', 'GET', f'/v1/scenes/{id_}')
         take('Scenes', 'GET', '/v1/scenes')
+        take('SceneParts', 'GET', f'/v1/scenes/{name}/parts')
+        body, kind = form({'file': [('ball.stl', (folder.path / 'ball.stl').read_bytes())]})
+        seen.append(('Assembly', server.ask('POST', '/v1/assemblies', body, {'Content-Type': kind}).json()))
+        assembly = seen[-1][1]['id']
+        until('the assembly is read', lambda: server.ask('GET', f'/v1/assemblies/{assembly}').json()['state'] == 'ready')
+        take('Assembly', 'GET', f'/v1/assemblies/{assembly}')
+        made = {'static': [{'mesh': 'ball.stl', 'units': 'm'}], 'tool': {'mesh': 'ball.stl', 'units': 'm'}}
+        take('Scene', 'POST', f'/v1/assemblies/{assembly}/scene', {'scene': made})
+        take('SavedScene', 'POST', f'/v1/assemblies/{assembly}/save', {'scene': made, 'folder': 'saved'})
         for path in ('', '?sets=0'):
             take('Answer', 'POST', f'/v1/scenes/{name}/query{path}', {'pose': PRESSED})
         session = take('Session', 'POST', '/v1/sessions', {'scene': name, 'record': 'one'})['id']
@@ -64,7 +73,7 @@ def test_real_answers_fit_their_schemas():
             take('Problem', 'GET', path)
     code, text = judged(openapi, seen)
     expect(code == 0, text)
-    unseen = set(openapi['components']['schemas']) - {schema for schema, _ in seen} - {'Vector', 'Pose', 'Run', 'NameScene', 'UploadScene', 'Query', 'StartSession'}
+    unseen = set(openapi['components']['schemas']) - {schema for schema, _ in seen} - {'Vector', 'Pose', 'PartList', 'Run', 'NameScene', 'UploadScene', 'UploadAssembly', 'MakeScene', 'SaveScene', 'Query', 'StartSession'}
     expect(not unseen, f'nothing was held against {unseen}')
 
 

@@ -118,7 +118,7 @@ def test_generate_makes_the_same_bytes_twice():
 def test_devices_lists_both_kinds_with_reasons():
     outcome = palpate('devices')
     expect(outcome.code == 0 and outcome.err == '', outcome)
-    for word in ('Vulkan devices', 'Haptic devices', 'simulated', 'falcon', 'not usable'):
+    for word in ('Vulkan devices', 'Haptic devices', 'simulated', 'falcon', 'inverse3', 'not usable'):
         expect(word in outcome.out, f"no '{word}' in\n{outcome.out}")
 
 

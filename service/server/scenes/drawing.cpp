@@ -18,15 +18,16 @@ struct TripleHash {
   }
 };
 
-DrawnMesh clustered(const BodyView& body, const Vec3& low, double cell) {
-  const LatticeMesh& mesh = body.mesh;
+/// `point`: where a vertex is.
+template <class AnyMesh, class Point>
+DrawnMesh clustered(const AnyMesh& mesh, const Point& point_of, const Vec3& low, double cell) {
   DrawnMesh out;
   std::unordered_map<std::uint64_t, std::uint32_t> of_cell;
   std::vector<std::uint32_t> of_vertex(mesh.vertices.size(), UINT32_MAX);
   std::unordered_set<std::array<std::uint32_t, 3>, TripleHash> seen;
   const auto representative = [&](std::uint32_t v) {
     if (of_vertex[v] != UINT32_MAX) return of_vertex[v];
-    const Vec3 point = body.point(v);
+    const Vec3 point = point_of(v);
     std::uint64_t key = 0;
     for (int k = 0; k < 3; ++k)
       key = key << 21 | static_cast<std::uint64_t>(std::clamp((point[k] - low[k]) / cell, 0.0, 2'000'000.0));
@@ -47,23 +48,34 @@ DrawnMesh clustered(const BodyView& body, const Vec3& low, double cell) {
   return out;
 }
 
-}  // namespace
-
-DrawnMesh reduced(const BodyView& body, std::size_t most) {
+template <class AnyMesh, class Point>
+DrawnMesh reduced_mesh(const AnyMesh& mesh, const Point& point_of, std::size_t most) {
   Vec3 low(INFINITY), high(-INFINITY);
-  for (const auto& triangle : body.mesh.triangles)
+  for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t v : triangle) {
-      low = glm::min(low, body.point(v));
-      high = glm::max(high, body.point(v));
+      low = glm::min(low, point_of(v));
+      high = glm::max(high, point_of(v));
     }
   const Vec3 size = high - low;
   double cell = std::max({size.x, size.y, size.z}) /
                 (2 * std::sqrt(static_cast<double>(std::max<std::size_t>(most, 1))) + 1);
   for (;;) {
-    DrawnMesh out = clustered(body, low, cell);
+    DrawnMesh out = clustered(mesh, point_of, low, cell);
     if (out.triangles.size() <= most || !(cell > 0)) return out;
     cell *= 1.25;
   }
+}
+
+}  // namespace
+
+DrawnMesh reduced(const BodyView& body, std::size_t most) {
+  return reduced_mesh(
+      body.mesh, [&](std::size_t v) { return body.point(v); }, most);
+}
+
+DrawnMesh reduced(const Mesh& mesh, std::size_t most) {
+  return reduced_mesh(
+      mesh, [&](std::size_t v) { return mesh.vertices[v]; }, most);
 }
 
 std::optional<std::vector<std::uint32_t>> parse_ids(std::string_view text, std::size_t count,

@@ -8,6 +8,7 @@
 
 #include "model/lattice/lattice_mesh.h"
 #include "model/lattice/voxel_grid.h"
+#include "model/mesh/mesh.h"
 #include "service/server/http/http_message.h"
 
 namespace palpate {
@@ -31,6 +32,8 @@ struct DrawnMesh {
 /// At most `most` triangles: vertices that share a cell of a grid become one of them, and what collapses or
 /// repeats is left out. The grid is as fine as `most` allows, to a quarter.
 DrawnMesh reduced(const BodyView& body, std::size_t most);
+/// The same of a mesh as it was imported, in its own units.
+DrawnMesh reduced(const Mesh& mesh, std::size_t most);
 
 /// "1,5-9" → 1 5 6 7 8 9. Nothing: not such a list, an id from `count` on, or more than `most`.
 std::optional<std::vector<std::uint32_t>> parse_ids(std::string_view text, std::size_t count,

@@ -149,6 +149,21 @@ HttpResponse triangles(SceneStore& store, const HttpRequest& request) {
   return binary(std::move(out));
 }
 
+/// Which triangles belong to which part: its first is the sum of those before it.
+HttpResponse scene_parts(SceneStore& store, const HttpRequest& request) {
+  auto use = store.use(request.segments[2], false);
+  if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
+  const SceneGeometry& geometry = (*std::get<SceneUse>(use))->loaded.geometry;
+  nlohmann::ordered_json out;
+  for (const auto& [name, report] :
+       {std::pair{"static", &geometry.mockup_report}, {"tool", &geometry.tool_report}}) {
+    auto& list = out[name] = nlohmann::ordered_json::array();
+    for (const MeshReport::Part& part : report->parts)
+      list.push_back({{"path", part.path}, {"triangles", part.triangles}});
+  }
+  return {200, dump(out)};
+}
+
 /// Voxels of the classes that were asked for last.
 class VoxelAnswers {
  public:
@@ -207,6 +222,10 @@ void add_drawing_routes(Router& router, SceneStore& store, WorkerPool& workers, 
   router.add(
       {.method = "GET", .pattern = "v1/scenes/*/triangles", .handle = [&](HttpRequest request, Reply reply) {
          workers.post([&store, request = std::move(request), reply] { reply(triangles(store, request)); });
+       }});
+  router.add(
+      {.method = "GET", .pattern = "v1/scenes/*/parts", .handle = [&](HttpRequest request, Reply reply) {
+         workers.post([&store, request = std::move(request), reply] { reply(scene_parts(store, request)); });
        }});
   router.add({.method = "GET",
               .pattern = "v1/scenes/*/voxels",

@@ -19,6 +19,7 @@ struct SceneContent {
   std::filesystem::path file;    ///< the scene file, real path
   std::filesystem::path folder;  ///< real path; nothing outside may be read for this scene
   std::optional<Profile> profile;
+  bool ignore_initial = false;   ///< contacts at the start are left out, whatever the file says
   bool uploaded = false;         ///< the folder is ours, to be removed with the scene
   std::uint64_t disk_bytes = 0;  ///< of an upload
 };

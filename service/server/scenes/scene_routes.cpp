@@ -7,6 +7,7 @@
 
 #include "service/server/http/json_input.h"
 #include "service/server/http/safe_path.h"
+#include "service/server/scenes/content_hash.h"
 #include "service/server/scenes/upload.h"
 
 namespace palpate {
@@ -154,9 +155,18 @@ HttpResponse added(SceneStore& store, SceneContent content) {
   return response;
 }
 
+/// Another scene than the file's, so another id.
+void leave_out_start(SceneContent& content) {
+  ContentHash hash;
+  hash.add("palpate scene 1, ignore_initial\n" + content.id);
+  content.id = hash.hex().substr(0, 32);
+  content.ignore_initial = true;
+  content.name += ", without the contacts at the start";
+}
+
 HttpResponse add_named(const std::string& body, SceneStore& store, const ServerLimits& limits,
                        const fs::path& root) {
-  const auto read = read_json_object(body, limits.json_depth, {"path", "profile"});
+  const auto read = read_json_object(body, limits.json_depth, {"path", "profile", "start"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
   if (!json.contains("path") || !json["path"].is_string())
@@ -168,6 +178,9 @@ HttpResponse add_named(const std::string& body, SceneStore& store, const ServerL
       return bad_request("\"profile\" is paper or refined", "profile");
     profile = json["profile"] == "paper" ? Profile::kPaper : Profile::kRefined;
   }
+  if (json.contains("start") && json["start"] != "as_written" && json["start"] != "ignore_initial")
+    return bad_request("\"start\" is as_written or ignore_initial", "start");
+  const bool ignore_initial = json.contains("start") && json["start"] == "ignore_initial";
   if (root.empty())
     return Problem{404, "not-found", "this server has no folder of scenes (see --root); upload one", "path"};
   const bool sane = !path.empty() && path.size() <= 1024 && path.find('\0') == std::string::npos;
@@ -188,8 +201,10 @@ HttpResponse add_named(const std::string& body, SceneStore& store, const ServerL
     return Problem{404, "not-found", "'" + shown_text(path) + "' is no file", "path"};
   auto content = read_scene_content(*file, root, profile, limits, Neighbours::kByTime);
   if (const auto* problem = std::get_if<Problem>(&content)) return *problem;
-  std::get<SceneContent>(content).name = fs::relative(*file, root, error).string();
-  return added(store, std::move(std::get<SceneContent>(content)));
+  auto& found = std::get<SceneContent>(content);
+  found.name = fs::relative(*file, root, error).string();
+  if (ignore_initial) leave_out_start(found);
+  return added(store, std::move(found));
 }
 
 }  // namespace

@@ -58,9 +58,10 @@ const char* name_of(SceneState state) {
   return "";
 }
 
-constexpr std::array kFacts = {"profile", "stiffness", "static_triangles", "tool_triangles", "memory_bytes",
-                               "backend", "device",    "voxel_size",       "bounds",         "tool_radius",
-                               "tool_gc", "start",     "stages",           "driver"};
+constexpr std::array kFacts = {"profile",      "stiffness",   "static_triangles", "tool_triangles",
+                               "memory_bytes", "backend",     "device",           "voxel_size",
+                               "bounds",       "tool_radius", "tool_gc",          "start",
+                               "stages",       "driver",      "ignores_initial"};
 
 /// What is known of a scene once it has been prepared.
 ordered_json facts_of(const HostedScene& prepared, std::uint64_t bytes) {
@@ -82,7 +83,8 @@ ordered_json facts_of(const HostedScene& prepared, std::uint64_t bytes) {
           {"tool_gc", json_of(geometry.tool_gc_m)},
           {"start", json_of(loaded.scene.start)},
           {"stages", loaded.scene.stage_names},
-          {"driver", loaded.scene.device.driver}};
+          {"driver", loaded.scene.device.driver},
+          {"ignores_initial", loaded.scene.start_contacts == StartContacts::kIgnoreInitial}};
 }
 
 void remove_folder(const fs::path& folder) {
@@ -417,6 +419,7 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
     if (removed && entry->content.uploaded) remove_folder(entry->content.folder);
     return;
   }
+  if (entry->content.ignore_initial) prepared->loaded.scene.start_contacts = StartContacts::kIgnoreInitial;
   finish(entry, prepared, bytes_of(*prepared));
 }
 

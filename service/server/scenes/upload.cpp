@@ -1,13 +1,8 @@
 #include "service/server/scenes/upload.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <atomic>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
 
@@ -16,6 +11,7 @@
 #include "service/server/http/json_input.h"
 #include "service/server/http/multipart.h"
 #include "service/server/http/safe_path.h"
+#include "service/server/scenes/spool_files.h"
 
 namespace palpate {
 namespace {
@@ -26,67 +22,11 @@ using nlohmann::ordered_json;
 constexpr std::size_t kLongestField = 100;  ///< bytes of a value like "mm"
 constexpr const char* kSceneName = "scene.json";
 
-/// A folder that goes when nobody has taken it.
-class Folder {
- public:
-  explicit Folder(fs::path path) : path_(std::move(path)) {}
-  ~Folder() { drop(); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& path() const { return path_; }
-  fs::path take() { return std::exchange(path_, {}); }
-  void drop() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(take(), ignored);
-  }
-
- private:
-  fs::path path_;
-};
-
-class OpenFile {
- public:
-  ~OpenFile() { close(); }
-  bool open(const fs::path& path) {
-    close();
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
-    return descriptor_ >= 0;
-  }
-  bool write(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t done = ::write(descriptor_, bytes.data(), bytes.size());
-      if (done < 0 && errno == EINTR) continue;
-      if (done <= 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(done));
-    }
-    return true;
-  }
-  bool close() {
-    const int descriptor = std::exchange(descriptor_, -1);
-    return descriptor < 0 || ::close(descriptor) == 0;
-  }
-  bool is_open() const { return descriptor_ >= 0; }
-
- private:
-  int descriptor_ = -1;
-};
-
-Problem storage(const char* what) {
-  const int why = errno;
-  return {507, "storage", std::string("the upload can't be ") + what + ": " + std::strerror(why), ""};
-}
-
-std::optional<Problem> write_file(const fs::path& path, std::string_view text) {
-  OpenFile file;
-  if (!file.open(path) || !file.write(text) || !file.close()) return storage("written");
-  return std::nullopt;
-}
-
 class Upload final : public BodySink {
  public:
   Upload(const std::string& boundary, const fs::path& folder, const ServerLimits& limits, Metrics& metrics,
          WorkerPool& workers, std::function<void(SceneContent, Reply)> done)
-      : folder_(std::make_shared<Folder>(folder)),
+      : folder_(std::make_shared<SpoolFolder>(folder)),
         limits_(limits),
         metrics_(metrics),
         workers_(workers),
@@ -111,7 +51,7 @@ class Upload final : public BodySink {
         folder->drop();
         reply(problem);
       };
-      if (const auto problem = write_file(folder->path() / kSceneName, text)) return refuse(*problem);
+      if (const auto problem = write_new_file(folder->path() / kSceneName, text)) return refuse(*problem);
       auto content = read_scene_content(folder->path() / kSceneName, folder->path(), std::nullopt, limits,
                                         Neighbours::kByContent);
       if (const auto* problem = std::get_if<Problem>(&content)) return refuse(*problem);
@@ -148,7 +88,7 @@ class Upload final : public BodySink {
       if (part_ == "static") statics_.push_back(name);
       if (part_ == "tool" && !tool_.empty()) return bad_request("there are two tools", "tool");
       if (part_ == "tool") tool_ = name;
-      if (!file_.open(folder_->path() / name)) return storage("opened");
+      if (!file_.open(folder_->path() / name)) return storage_problem("opened");
       return std::nullopt;
     }
     static const std::vector<std::string> known = {
@@ -161,7 +101,7 @@ class Upload final : public BodySink {
   }
 
   std::optional<Problem> take(std::string_view data) {
-    if (file_.is_open()) return file_.write(data) ? std::nullopt : std::optional(storage("written"));
+    if (file_.is_open()) return file_.write(data) ? std::nullopt : std::optional(storage_problem("written"));
     const std::size_t limit = part_ == "scene" ? limits_.json_bytes : kLongestField;
     if (text_.size() + data.size() > limit)
       return Problem{413, "too-large",
@@ -171,7 +111,7 @@ class Upload final : public BodySink {
   }
 
   std::optional<Problem> end() {
-    if (file_.is_open()) return file_.close() ? std::nullopt : std::optional(storage("written"));
+    if (file_.is_open()) return file_.close() ? std::nullopt : std::optional(storage_problem("written"));
     if (!fields_.emplace(part_, text_).second)
       return bad_request("the part '" + part_ + "' comes twice", part_);
     return std::nullopt;
@@ -217,7 +157,7 @@ class Upload final : public BodySink {
     return dump(scene);
   }
 
-  std::shared_ptr<Folder> folder_;
+  std::shared_ptr<SpoolFolder> folder_;
   const ServerLimits& limits_;
   Metrics& metrics_;
   WorkerPool& workers_;
@@ -229,7 +169,7 @@ class Upload final : public BodySink {
   std::vector<std::string> statics_;
   std::set<std::string> names_;
   std::map<std::string, std::string> fields_;
-  OpenFile file_;
+  SpoolFile file_;
 };
 
 /// Says no at once, and to every piece.

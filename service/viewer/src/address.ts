@@ -1,5 +1,5 @@
 // What is shown, kept in the address: a link, or a reload, comes back to it. #path=contacts/scene.json&source=run&run=first
-export interface Address { scene?: string; path?: string; source?: string; run?: string }
+export interface Address { scene?: string; path?: string; source?: string; run?: string; assembly?: string }
 
 export function read_address(): Address {
   return Object.fromEntries(new URLSearchParams(location.hash.slice(1))) as Address;

@@ -1,24 +1,34 @@
 // Ties the parts together: a scene, a source of moments (device, mouse or recorded run), the picture, the strips, the panel.
 import { read_address, write_address } from './address.js';
-import { Api, ApiError } from './api.js';
-import { Connection } from './connection.js';
-import type { Colouring } from './contact_layer.js';
+import { take_files } from './assembly/file_drop.js';
+import { Workshop } from './assembly/workshop.js';
+import { Api, ApiError } from './server/api.js';
+import { Connection } from './server/connection.js';
+import type { Colouring } from './draw/contact_layer.js';
 import { element, make, write } from './dom.js';
 import { listen, type Action } from './keys.js';
-import { Labels } from './labels.js';
+import { Labels } from './draw/labels.js';
 import type { Moment } from './moment.js';
-import { MouseSource } from './mouse_source.js';
-import { Picture } from './picture.js';
-import { Player } from './player.js';
-import type { Scene } from './protocol.js';
-import { Readout } from './readout.js';
+import { MouseSource } from './mouse/mouse_source.js';
+import { PathPanel } from './mouse/path_panel.js';
+import { PartNames } from './words/part_names.js';
+import { StartNote } from './words/start_note.js';
+import { Picture } from './draw/picture.js';
+import { Player } from './run/player.js';
+import type { Scene } from './server/protocol.js';
+import { Readout } from './words/readout.js';
 import { Samples } from './samples.js';
+import { CameraShots } from './tools/camera_shots.js';
+import { Measure } from './tools/measure.js';
+import { Section } from './tools/section.js';
+import { Triad } from './tools/triad.js';
 import { ScenePicker } from './scene_picker.js';
 import { Sessions } from './sessions.js';
 import { Strips, figure } from './strips.js';
 
 type Source = 'live' | 'mouse' | 'run';
 const REFRESH_MS = 3000;
+const FELT: Record<Source, string> = { live: 'to the device', mouse: 'to the hand', run: 'to the device' };
 const LATE: Record<Source, [string, string]> = { live: ['Lateness', 'µs'], mouse: ['There and back', 'ms'], run: ['Age of result', 'ticks'] };
 
 export class App {
@@ -34,6 +44,13 @@ export class App {
   private readonly player = new Player(this.api, () => this.run_changed(), (error) => this.failed(error));
   private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.touch(); }, (error) => this.failed(error), (text) => { this.say(text); this.connection.doubt(); });
   private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
+  private readonly workshop = new Workshop(this.api, this.picture, {
+    open: async (make, name) => { this.source = 'mouse'; await this.picker.open_made(make, name); },
+    entered: (building) => { if (building) this.sessions.leave(); else if (!this.picker.current) this.picker.show_empty(); if (building) this.keep_mouse(null); this.remember(); this.touch(); },
+    say: (text, bad) => this.say(text, bad), failed: (error) => this.failed(error),
+  });
+  private readonly start_note = new StartNote(this.api);
+  private readonly paths = new PathPanel((rows) => { this.workshop.path = rows; }, () => void this.replay());
   private mouse: MouseSource | null = null;
   private holding: Promise<void> | null = null;
   private source: Source = 'live';
@@ -49,7 +66,8 @@ export class App {
 
   constructor() {
     this.wire_panel();
-    listen((action) => this.act(action));
+    listen((action) => this.act(action), (...way) => { if (!this.mouse) return false; this.picture.drag.nudge(...way); this.touch(); return true; });
+    this.wire_tools();
     this.apply_theme(localStorage.getItem('palpate.theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => { if (!localStorage.getItem('palpate.theme')) this.apply_theme(event.matches ? 'dark' : 'light'); });
     // As in theme.css: a narrow panel lies over the picture, and opens when it is asked for.
@@ -90,15 +108,22 @@ export class App {
 
   private async begin(): Promise<void> {
     const { wish } = this;
+    if (wish.assembly && !wish.scene && !wish.path && await this.workshop.restore(wish.assembly)) return;
+    const run = wish.run;   // until it is known to be here or missing, no other is shown in its place
     try {
       await this.picker.refresh();
       await this.player.refresh();
       const held = this.picker.list.scenes.find((scene) => scene.id === wish.scene);
       if (held) { await this.picker.open_id(held.id); this.picker.path = wish.path ?? ''; this.remember(); }
       else if (wish.path && this.picker.list.available.includes(wish.path)) await this.picker.open_path(wish.path);
-      else if (this.picker.list.scenes.length > 0) await this.picker.open_id(this.picker.list.scenes[0].id);
+      else if (wish.path || wish.scene) {
+        this.picker.show_refusal('The scene of this link is not here', wish.path ? `There is no ${wish.path} below the server's root, and the server holds no scene ${wish.scene ?? ''} either. Choose another:`
+          : `The server holds no scene ${wish.scene}. It may have been started anew since: scenes that were uploaded are gone then. Choose another:`);
+      } else if (this.picker.list.scenes.length > 0) await this.picker.open_id(this.picker.list.scenes[0].id);
       else this.picker.show_empty();
-      if (wish.run) await this.player.load(wish.run);
+      wish.run = '';
+      if (run && this.player.has(run)) await this.player.load(wish.run);
+      else if (run) this.say(`The run of this link, ${run}, is not below the server's root.`, true, true);
     } catch (error) {
       this.picker.show_empty();
       this.failed(error);
@@ -109,10 +134,38 @@ export class App {
     this.keep_mouse(null);
     this.live_samples.clear();
     this.mouse_samples.clear();
+    this.workshop.enter(false);
+    this.start_note.hide();
+    this.paths.clear();
     await this.picture.open(scene);
     this.show_scene(scene);
+    void this.look_closer(scene);
     this.remember();
     await this.choose(this.source);
+  }
+  /** What takes longer than a picture: names of parts, and what touches at the start. */
+  private async look_closer(scene: Scene): Promise<void> {
+    const made_here = this.workshop.made === scene.id;
+    const { path } = this.picker;
+    this.paths.replay_refusal = made_here ? '' : 'Only a scene that was made here, from its parts, can be given a path: open the files';
+    this.readout.names = () => '';
+    this.readout.touching = () => '';
+    try {
+      const names = new PartNames(await this.api.scene_parts(scene.id));
+      if (this.picker.current !== scene) return;
+      this.readout.names = (area) => names.of_area(area);
+      this.readout.touching = this.paths.names = (frame) => names.of_frame(frame);
+      const leave_out = made_here ? () => { this.workshop.set_ignore_initial(true); void this.workshop.feel(); } : path ? () => void this.picker.open_made(() => this.api.open_scene(path, true), scene.name) : null;
+      await this.start_note.look(scene, leave_out);
+    } catch (error) { this.failed(error); }
+  }
+  /** The simulated hand follows what was recorded. */
+  private async replay(): Promise<void> {
+    await this.workshop.feel();
+    await this.choose('live');
+    element<HTMLSelectElement>('device').value = 'simulated';
+    this.sessions.show();
+    this.sessions.toggle();
   }
   private async link_changed(up: boolean): Promise<void> {
     element('link').dataset['state'] = up ? 'up' : 'down';
@@ -152,7 +205,7 @@ export class App {
   private async refresh(): Promise<void> {
     if (!this.connection.up || document.hidden) return;
     try {
-      if (this.source === 'live' && this.picker.current) await this.sessions.refresh(this.picker.current.id);
+      if (this.source === 'live' && this.picker.current) await this.sessions.refresh(this.picker.current);
       if (this.source === 'run' && !this.player.playback?.playing) await this.player.refresh();
       if (!this.picker.current) await this.picker.refresh();
     } catch (error) { this.failed(error); }
@@ -168,16 +221,17 @@ export class App {
     element('player').hidden = source !== 'run';
     document.body.classList.toggle('recorded', source === 'run');
     this.strips.set_late(...LATE[source]);
+    write(element('felt-title'), FELT[source]);
     this.remember();
     this.touch();
     this.keep_mouse(source === 'mouse' ? this.picker.current : null);
     const scene = this.picker.current;
     try {
-      if (source === 'live' && scene) await this.sessions.refresh(scene.id);
+      if (source === 'live' && scene) await this.sessions.refresh(scene);
       if (source === 'run') {
         await this.player.refresh();
         // A run that was recorded with this scene is shown at once.
-        const fitting = this.player.playback || !scene ? undefined : this.player.runs.find((run) => run.static_triangles !== null && Player.fits(run, scene));
+        const fitting = this.player.playback || !scene || this.wish.run ? undefined : this.player.runs.find((run) => run.static_triangles !== null && Player.fits(run, scene));
         if (fitting && this.source === 'run') await this.player.load(fitting.name);
       }
     } catch (error) { this.failed(error); }
@@ -217,10 +271,15 @@ export class App {
     let moment: Moment | null = null;
     if (this.source === 'mouse') {
       if (this.mouse) {
-        this.mouse.advance();
-        moment = this.mouse.moment();
+        if (this.paths.recorder.playing) {
+          moment = this.paths.recorder.advance(seconds);
+          if (!moment) this.paths.show();
+        } else this.mouse.advance();
+        moment ??= this.mouse.moment();
+        this.paths.take(moment);
+        if (this.paths.recorder.recording) this.paths.show();
         this.mouse_samples.add_moment(moment);
-        this.mouse_rests = this.idle(moment) && this.picture.drag.holding === null;
+        this.mouse_rests = this.idle(moment) && this.picture.drag.holding === null && !this.paths.recorder.recording && !this.paths.recorder.playing;
         this.dirty ||= !this.mouse_rests;
       }
     } else if (this.source === 'run') {
@@ -275,7 +334,7 @@ export class App {
   // ---- words, keys, panel
 
   private remember(): void {
-    write_address({ scene: this.picker.current?.id ?? '', path: this.picker.path, source: this.source, run: this.source === 'run' ? this.player.playback?.run.name ?? '' : '' });
+    write_address({ scene: this.workshop.building ? '' : this.picker.current?.id ?? '', path: this.workshop.building ? '' : this.picker.path, source: this.source, run: this.source === 'run' ? this.player.playback?.run.name ?? '' : '', assembly: this.workshop.assembly?.id ?? '' });
   }
   private failed(error: unknown): void {
     if (error instanceof ApiError && error.status === 0) { this.connection.doubt(); return; }   // it says by itself that the server is gone
@@ -295,6 +354,7 @@ export class App {
   private apply_theme(theme: string): void {
     document.documentElement.dataset['theme'] = theme;
     this.picture.theme(theme === 'dark');
+    this.workshop.theme(theme === 'dark');
     this.strips.theme();
     this.touch();
   }
@@ -302,7 +362,27 @@ export class App {
     const box = element<HTMLInputElement>(id);
     box.addEventListener('change', () => { set(box.checked); this.touch(); this.picture.redraw_contact(); });
   }
+  private wire_tools(): void {
+    const { picture, workshop } = this;
+    const section = new Section(picture.view, () => (workshop.building ? workshop.box() : picture.box()));
+    new CameraShots(picture.view, () => (workshop.building ? workshop.name : this.picker.current?.name ?? ''), (text, bad) => this.say(text, bad));
+    const measure = new Measure(picture.view, (ray) => { const point = workshop.building ? workshop.meet(ray) : picture.meet(ray); return point && section.hides(point) ? null : point; });
+    const triad = new Triad(picture.view);
+    picture.view.before_draw.push(() => { measure.place(); triad.draw(); });
+    picture.view.after_draw.push((ms) => triad.count(ms));
+  }
+  private wire_files(): void {
+    const [files, folder] = [element<HTMLInputElement>('files-input'), element<HTMLInputElement>('folder-input')];
+    take_files([files, folder], (over) => { element('drop-here').hidden = !over; }, (taken) => void this.workshop.take(taken));
+    for (const id of ['open-files', 'choose-files']) element(id).addEventListener('click', () => files.click());
+    element('choose-folder').addEventListener('click', () => folder.click());
+    document.addEventListener('palpate-saved', (event) => {
+      if (this.picker.current && this.picker.current.id === this.workshop.made) { this.picker.path = (event as CustomEvent<string>).detail; this.remember(); }
+      void this.picker.refresh().catch((error: unknown) => this.failed(error));
+    });
+  }
   private wire_panel(): void {
+    this.wire_files();
     for (const tab of document.querySelectorAll<HTMLElement>('[data-source]')) tab.addEventListener('click', () => void this.choose(tab.dataset['source'] as Source));
     const colouring = element<HTMLSelectElement>('colouring');
     colouring.addEventListener('change', () => { this.picture.contact.colouring = colouring.value as Colouring; this.picture.redraw_contact(); });
@@ -337,6 +417,7 @@ export class App {
       case 'back': case 'forward':
         if (this.source === 'run' && playback) { playback.playing = false; playback.step(action === 'back' ? -1 : 1); this.run_changed(); }
         break;
+      case 'record': if (this.source === 'mouse' && !this.workshop.building) this.paths.toggle(); break;
       case 'begin': playback?.seek(0); this.run_changed(); break;
       case 'end': playback?.seek(playback.duration); this.run_changed(); break;
       case 'theme': {
@@ -345,8 +426,10 @@ export class App {
         this.apply_theme(theme);
         break;
       }
-      case 'all': this.picture.look_at_all(); break;
-      case 'tool': this.picture.follow_tool(); break;
+      case 'all': if (this.workshop.building) this.workshop.look_at_all(); else this.picture.look_at_all(); break;
+      case 'undo': if (this.workshop.building) this.workshop.undo(); break;
+      case 'redo': if (this.workshop.building) this.workshop.redo(); break;
+      case 'tool': if (this.workshop.building) this.workshop.look_at_selected(); else this.picture.follow_tool(); break;
       case 'up': this.picture.view.turn_up(); break;
       case 'panel': document.body.classList.toggle('no-panel'); this.touch(); break;
       case 'help': element<HTMLDialogElement>('help').showModal(); break;

@@ -1,7 +1,7 @@
 // A session's telemetry: the newest message is kept, frames are kept until the next one.
-import type { Api } from './api.js';
+import type { Api } from './server/api.js';
 import type { Moment } from './moment.js';
-import { depth, type Bye, type Frame, type StreamHello, type Telemetry } from './protocol.js';
+import { depth, type Bye, type Frame, type StreamHello, type Telemetry } from './server/protocol.js';
 
 export class LiveSource {
   hello: StreamHello | null = null;
@@ -34,7 +34,7 @@ export class LiveSource {
     const now = this.newest;
     if (!now) return null;
     return {
-      time: now.time_s, pose: now.pose, frame: this.frame, force: now.force, torque: now.torque, depth: depth(this.frame), contact: now.contact,
+      time: now.time_s, pose: now.pose, frame: this.frame, force: now.force, torque: now.torque, response: { force: now.response_force, torque: now.response_torque }, depth: depth(this.frame), contact: now.contact,
       frame_us: now.frame_us, late: now.lateness_max_us, stage: now.stage, note: now.paused ? 'paused' : '',
     };
   }

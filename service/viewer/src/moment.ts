@@ -1,5 +1,5 @@
 // What is shown at one instant, whoever it comes from: a device, the mouse, a recorded run.
-import type { Frame, Pose, Vec3 } from './protocol.js';
+import type { Frame, Pose, Vec3 } from './server/protocol.js';
 
 export interface Moment {
   time: number;            // s
@@ -7,6 +7,7 @@ export interface Moment {
   frame: Frame | null;     // the newest one that was judged
   force: Vec3;             // N, as the hand feels it, on the tool
   torque: Vec3;            // N·m, about the centre of mass
+  response: { force: Vec3; torque: Vec3 } | null;   // what the contact answers, before law, limits and the device's axes; null: not known
   depth: number;           // m, the deepest area
   contact: boolean;
   frame_us: number;        // NaN when unknown

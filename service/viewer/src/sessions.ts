@@ -1,9 +1,10 @@
 // A device of the server's machine: picked, started, paused, stopped; its telemetry shown. A session that others started is joined.
-import type { Api } from './api.js';
+import type { Api } from './server/api.js';
 import { element, fill } from './dom.js';
 import { LiveSource } from './live_source.js';
 import type { Moment } from './moment.js';
-import { ZERO, type Session } from './protocol.js';
+import { offered_devices } from './words/offered_devices.js';
+import { ZERO, type Scene, type Session } from './server/protocol.js';
 
 export class Sessions {
   live: LiveSource | null = null;
@@ -20,15 +21,15 @@ export class Sessions {
       this.show();
       work().catch(this.failed).finally(() => { this.busy = false; this.show(); });
     };
-    this.buttons.start.addEventListener('click', act(async () => this.join(await this.api.start(this.scene_id, this.device.value))));
+    this.buttons.start.addEventListener('click', act(async () => this.join(await this.api.start(this.scene_id, this.device.value, element<HTMLInputElement>('record-as').value.trim()))));
     this.buttons.pause.addEventListener('click', act(async () => { if (this.live) await this.api.pause(this.live.session, !this.live.paused); }));
     this.buttons.stop.addEventListener('click', act(async () => { if (this.live) await this.api.stop(this.live.session); }));
   }
 
   /** Lists the devices and joins a session that is running on the scene. */
-  async refresh(scene_id: string): Promise<void> {
-    this.scene_id = scene_id;
-    const devices = (await this.api.devices()).filter((device) => device.kind === 'haptic');
+  async refresh(scene: Scene): Promise<void> {
+    const scene_id = (this.scene_id = scene.id);
+    const devices = offered_devices(await this.api.devices(), scene);
     fill(this.device, devices.map((device) => ({ value: device.name, text: device.usable ? device.name : `${device.name}: ${device.reason}`, disabled: !device.usable, title: device.reason })));
     if (this.device.selectedOptions[0]?.disabled !== false) this.device.value = devices.find((device) => device.usable)?.name ?? '';
     if (!this.live) {

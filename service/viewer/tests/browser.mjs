@@ -1,32 +1,12 @@
 // The viewer in a real browser, against the real program: node browser.mjs PALPATE WORK [SCREENSHOTS]
-// What it needs and does not find (chromium, the viewer's packages, a viewer in the program) is a failure. Environment: CHROMIUM; STAND_IN=SITE uses stand_in.mjs instead of `palpate serve`.
-import { spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { createServer } from 'node:net';
-import { dirname, join } from 'node:path';
-import { fileURLToPath } from 'node:url';
+// What it needs and does not find (chromium, the viewer's packages, a viewer in the program) is a failure. Environment: CHROMIUM.
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { count_drawing } from './count_drawing.mjs';
+import { check, open_browser, palpate_runs, server_of, shown as shown_on, until } from './page_harness.mjs';
 
 const [palpate, work, pictures] = process.argv.slice(2);
-const browser_path = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const missing = (reason) => { console.error(`FAILED  ${reason}`); process.exit(1); };
-if (!existsSync(browser_path)) missing(`no browser at ${browser_path} (Debian: chromium; scripts/install-packages browser)`);
-if (!existsSync('installed')) missing('the viewer\'s packages are not here: `npm ci` failed when the viewer was built');
-const { chromium } = createRequire(join(process.cwd(), 'package.json'))('playwright-core');   // run where the build keeps the packages
-
-function check(truth, sentence) {
-  if (!truth) throw new Error(sentence);
-  console.log(`ok  ${sentence}`);
-}
-async function until(sentence, ask, seconds = 120) {
-  for (const end = Date.now() + 1000 * seconds; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 100))) if (await ask()) return check(true, sentence);
-  throw new Error(`not within ${seconds} s: ${sentence}`);
-}
-const run = (...args) => {
-  const { status, stderr } = spawnSync(palpate, args, { encoding: 'utf8' });
-  if (status !== 0) throw new Error(`palpate ${args.join(' ')}: ${status} ${stderr}`);
-};
+const run = (...args) => palpate_runs(palpate, ...args);
 
 // A small mock-up and four seconds of the task on it; the first contact is in the third.
 rmSync(work, { recursive: true, force: true });
@@ -35,30 +15,19 @@ mkdirSync(root, { recursive: true });
 run('generate', 'disassembly', '--triangles', '4000', '--tool-triangles', '1000', '--out', join(root, 'engine'));
 run('run', join(root, 'engine/scene.json'), '--pace', 'asap', '--backend', 'cpu', '--duration', '4', '--out', join(root, 'first'));
 
-const port = await new Promise((resolve) => { const probe = createServer().listen(0, '127.0.0.1', () => { const { port: free } = probe.address(); probe.close(() => resolve(free)); }); });
-const address = `http://127.0.0.1:${port}/`;
-let server = null;
-async function start() {
-  server = process.env.STAND_IN
-    ? spawn(process.execPath, [join(dirname(fileURLToPath(import.meta.url)), 'stand_in.mjs'), process.env.STAND_IN, join(root, 'engine'), root, String(port)], { stdio: ['ignore', 'inherit', 'inherit'] })
-    : spawn(palpate, ['serve', '--listen', `127.0.0.1:${port}`, '--root', root, '--backend', 'cpu'], { stdio: 'ignore' });
-  for (let i = 0; i < 200; ++i) {
-    if (await fetch(`${address}readyz`).then((answer) => answer.ok, () => false)) return;
-    await new Promise((resolve) => setTimeout(resolve, 100));
-  }
-  throw new Error('the server does not start');
-}
-const stop = () => new Promise((resolve) => { if (!server || server.exitCode !== null) { resolve(); return; } server.once('exit', resolve); server.kill(process.env.STAND_IN ? 'SIGKILL' : 'SIGTERM'); });
+mkdirSync(join(root, 'broken'));
+writeFileSync(join(root, 'broken/scene.json'), '{"static": [{"mesh": "none.stl"}], "tool": {"mesh": "none.stl"}}');
+const server = await server_of(palpate, root);
+const { address } = server;
 
 // Small pictures are drawn sooner by the processor; for the README they are larger.
 const WIDE = pictures ? { width: 1440, height: 900 } : { width: 1000, height: 640 };
 const NARROW = pictures ? { width: 760, height: 900 } : { width: 500, height: 640 };
 let browser = null;
 async function main() {
-  await start();
+  await server.start();
   if (!(await (await fetch(address)).text()).includes('viewer.js')) throw new Error('this program has no viewer');
-  browser = await chromium.launch({ executablePath: browser_path, args: ['--headless', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
-    '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+  browser = await open_browser();
   const page = await browser.newPage({ viewport: WIDE, colorScheme: 'light' });
   page.setDefaultTimeout(120_000);   // a machine without a GPU, busy with other tests, may need seconds a picture
   const errors = [];
@@ -68,7 +37,7 @@ async function main() {
   const picture = async (name) => { if (pictures) { mkdirSync(pictures, { recursive: true }); await page.screenshot({ path: join(pictures, `${name}.png`) }); } };
   /** Pixels of the picture as warm as CST, BST and EST are, also where they shine through a surface; nothing else in it is. */
   const warm = async () => {
-    const others = (visibility) => page.evaluate((value) => { for (const id of ['legend', 'labels', 'readout']) document.getElementById(id).style.visibility = value; }, visibility);
+    const others = (visibility) => page.evaluate((value) => { for (const id of ['legend', 'labels', 'readout', 'corner']) document.getElementById(id).style.visibility = value; }, visibility);
     await others('hidden');   // they lie over the canvas and have such colours, too
     const png = (await page.screenshot({ clip: await page.locator('#canvas').boundingBox() })).toString('base64');
     await others('');
@@ -86,8 +55,7 @@ async function main() {
     }, png);
   };
 
-  /** The page has taken what came before, and drawn it. */
-  const shown = () => page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve, 50))); }));
+  const shown = () => shown_on(page);
 
   // Nothing is open: the page says so and offers the scene file.
   await page.goto(address);
@@ -95,6 +63,26 @@ async function main() {
   await until('the scene opens', async () => /[0-9]/.test(await text('facts')));
   check((await warm()) === 0, 'the picture shows no contact yet');
   await picture('scene');
+
+  // What is not there, or can't be opened, is said by its name, and nothing else is shown in its place.
+  const at = async (hash) => { await page.goto('about:blank'); await page.goto(`${address}#${hash}`); };
+  await at('path=gone/scene.json');
+  await until('a link to a scene that is missing says so', async () => (await page.isVisible('#empty')) && /not here/.test(await text('empty-title')) && /gone\/scene\.json/.test(await text('empty-text')));
+  check((await text('facts')) === '', 'and no other scene is shown');
+  await page.click('#empty-list button:has-text("engine/scene.json")');
+  await until('another can be chosen', async () => /[0-9]/.test(await text('facts')) && !(await page.isVisible('#empty')));
+  const rows = await page.locator('#scene option').allTextContents();
+  check(rows.filter((row) => row.includes('engine/scene.json')).length === 1, `one row for the open scene: ${rows.join(', ')}`);
+  await page.selectOption('#scene', 'at:broken/scene.json');
+  await until('a scene that can\'t be opened is said by its name, not over another\'s picture', async () => (await page.isVisible('#empty')) && /broken\/scene\.json/.test(await text('empty-title')) && /none\.stl/.test(await text('empty-text')));
+  await page.click('#empty-list button:has-text("Back to engine/scene.json")');
+  check(!(await page.isVisible('#empty')), 'and one can go back');
+  check(await page.locator('#device option', { hasText: 'replay' }).first().isDisabled(), 'replay is not offered without a file');
+  await at('path=engine/scene.json&source=run&run=gone');
+  await until('a link to a run that is missing says so', async () => (await page.isVisible('#banner')) && /gone/.test(await text('banner')));
+  check((await text('run-note')) === '' && (await text('duration')) === '', 'and no other run is shown');
+  errors.length = 0;   // the browser's own about the refused scene
+  await page.click('[data-source=live]');
 
   // A recorded run: found, played, scrubbed to a contact.
   await page.click('[data-source=run]');
@@ -110,6 +98,11 @@ async function main() {
   await page.evaluate((time) => { const bar = document.getElementById('scrubber'); bar.value = String(time); bar.dispatchEvent(new Event('input')); }, deepest.tick / 1000);
   await until('the legend counts what the frame holds', async () => (await page.textContent('[data-kind=bst] b')) === deepest.bst.length.toLocaleString('en'));
   check((await text('clock')) !== paused, 'the scrubber moves the clock');
+  const forces = (await page.locator('#areas tr:not(.more) td:last-child').allTextContents()).map((value) => parseFloat(value) || 0);
+  check(forces.length > 0 && forces.every((force, i) => i === 0 || force <= forces[i - 1]), `areas that push come first: ${forces.join(', ')}`);
+  check((await text('felt-title')) === 'to the device' && parseFloat(await text('force-response')) >= 0, 'two forces, each with its name');
+  const boxes = await page.evaluate(() => ['#readout', '#bottom', '#labels div:not([hidden])'].flatMap((query) => [...document.querySelectorAll(query)]).map((one) => { const { x, y, right, bottom } = one.getBoundingClientRect(); return { x, y, right, bottom }; }));
+  check(boxes.every((a, i) => boxes.slice(i + 1).every((b) => a.x >= b.right || b.x >= a.right || a.y >= b.bottom || b.y >= a.bottom)), `${boxes.length - 2} labels, none over another or the readout`);
   await until('contact triangles have their colours in the picture', async () => (await warm()) > 100);
   await picture('contact');
   for (const key of ['1', '2', '3']) await page.keyboard.press(key);
@@ -128,7 +121,7 @@ async function main() {
   // A device of the server's machine: started, watched, with voxels asked for beside it, stopped.
   await page.click('[data-source=live]');
   await page.click('#start');
-  await until('telemetry comes', async () => /free|contact/.test(await text('contact')));
+  await until('telemetry comes', async () => /^(free|contact)$/.test(await text('contact')));
   for (const kind of ['boundary', 'internal', '']) {
     await page.selectOption('#voxels', kind);
     await shown();
@@ -141,7 +134,7 @@ async function main() {
   const drag = async () => {
     await page.click('[data-source=mouse]');
     await page.click('#mouse-reset');
-    await until('the loop answers', async () => /free|contact/.test(await text('contact')));
+    await until('the loop answers', async () => /^(free|contact)$/.test(await text('contact')));
     await page.keyboard.press('f');
     await shown();
     const box = await page.locator('#canvas canvas').boundingBox();
@@ -167,10 +160,10 @@ async function main() {
   await light();
 
   // The server goes and comes back.
-  await stop();
+  await server.stop();
   await until('the page says that the server is gone', async () => (await page.isVisible('#banner')) && /does not answer/.test(await text('banner')));
   await picture('gone');
-  await start();
+  await server.start();
   await until('the page finds the server again', async () => (await page.getAttribute('#link', 'data-state')) === 'up');
   errors.length = 0;   // connections refused while it was away
   await drag();
@@ -227,5 +220,5 @@ try { await main(); status = 0; } catch (error) {
   if (pictures && browser) for (const page of browser.contexts().flatMap((context) => context.pages())) await page.screenshot({ path: join(pictures, 'failed.png') }).catch(() => {});
 }
 await browser?.close();
-await stop();
+await server.stop();
 process.exit(status);

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Quaternion } from 'three';
-import { Coupling, type Answer } from '../src/coupling.js';
+import { Coupling, type Answer } from '../src/mouse/coupling.js';
 
 const STIFFNESS = 2000;   // N/m
 

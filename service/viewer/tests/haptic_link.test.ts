@@ -1,7 +1,7 @@
 // The mouse's connection, with sockets and a clock of our own: one connection at a time, and no word from one that was left.
 import assert from 'node:assert/strict';
 import { afterEach, beforeEach, test } from 'node:test';
-import { HapticLink } from '../src/haptic_link.js';
+import { HapticLink } from '../src/mouse/haptic_link.js';
 
 class FakeSocket {
   readonly CONNECTING = 0;

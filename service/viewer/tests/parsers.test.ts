@@ -1,12 +1,12 @@
 // Readers of what the server sends: they take what docs/SERVICE.md defines and refuse the rest.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { id_ranges, ids_within, read_geometry, read_voxels } from '../src/binary.js';
-import { FrameIndex } from '../src/frame_index.js';
-import { LevelKeeper, next_level } from '../src/lod.js';
+import { id_ranges, ids_within, read_geometry, read_voxels } from '../src/server/binary.js';
+import { FrameIndex } from '../src/run/frame_index.js';
+import { LevelKeeper, next_level } from '../src/draw/lod.js';
 import { Samples, round_up } from '../src/samples.js';
-import { LineSplitter } from '../src/text_lines.js';
-import { Trace } from '../src/trace.js';
+import { LineSplitter } from '../src/run/text_lines.js';
+import { Trace } from '../src/run/trace.js';
 
 function geometry_bytes(corner = 2): ArrayBuffer {
   const bytes = new ArrayBuffer(32 + 2 * (3 * 12 + 16));
