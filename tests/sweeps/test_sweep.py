@@ -81,6 +81,8 @@ def test_a_scene_is_made_once_a_worker_not_once_a_chunk_nor_a_sweep(swept, tmp_p
     swept(scene=logged, out='b.zarr', share=0)
     made = [line for line in (tmp_path / 'log').read_text().splitlines() if line.split()[1] == 'scene']
     assert len(made) == 3   # the worker's, and the caller's of each sweep
+    from palpate.sweeps import worker   # the worker is in this process
+    assert worker._jobs == {}
 
 
 def test_an_engine_that_answers_otherwise_is_told_of_with_chunk_and_pose(swept, tmp_path):

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The questions that a sweep asks of a scene, and the other engine that is asked again."""
 import functools
 

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """A sweep's poses cut into chunks, and which of them two engines answer."""
 import hashlib
 import math

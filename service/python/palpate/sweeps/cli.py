@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The command palpate-sweep."""
 import argparse
 import importlib

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Workers on this machine, for a sweep that was given none."""
 import contextlib
 import logging

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Hashes of poses and of answers. They are of numbers, not of files: compression and machine leave them as they are."""
 import hashlib
 import json

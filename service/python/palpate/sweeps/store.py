@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """A sweep's results on disk: a Zarr group with a column an array, and a marker for each chunk that is done.
 
     OUT.zarr/.zattrs          what was asked, by whom; in the end the sweep's hash

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """How a sweep says no."""
 
 

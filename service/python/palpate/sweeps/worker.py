@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """What a Dask worker does for a sweep: it gets a scene once, by its content, and answers chunks by their numbers."""
 import dataclasses
 import functools
