@@ -77,7 +77,11 @@ async function main() {
   await until('a scene that can\'t be opened is said by its name, not over another\'s picture', async () => (await page.isVisible('#empty')) && /broken\/scene\.json/.test(await text('empty-title')) && /none\.stl/.test(await text('empty-text')));
   await page.click('#empty-list button:has-text("Back to engine/scene.json")');
   check(!(await page.isVisible('#empty')), 'and one can go back');
-  check(await page.locator('#device option', { hasText: 'replay' }).first().isDisabled(), 'replay is not offered without a file');
+  let offered = '';
+  await until('replay is not offered without a file', async () => {
+    offered = await page.evaluate(() => JSON.stringify([...document.querySelectorAll('#device option')].map(({ text, disabled }) => [text, disabled])));
+    return JSON.parse(offered).some(([name, disabled]) => name.startsWith('replay') && disabled);
+  }, 20).catch((error) => { throw new Error(`${error.message}: ${offered}`); });
   await at('path=engine/scene.json&source=run&run=gone');
   await until('a link to a run that is missing says so', async () => (await page.isVisible('#banner')) && /gone/.test(await text('banner')));
   check((await text('run-note')) === '' && (await text('duration')) === '', 'and no other run is shown');
@@ -101,8 +105,11 @@ async function main() {
   const forces = (await page.locator('#areas tr:not(.more) td:last-child').allTextContents()).map((value) => parseFloat(value) || 0);
   check(forces.length > 0 && forces.every((force, i) => i === 0 || force <= forces[i - 1]), `areas that push come first: ${forces.join(', ')}`);
   check((await text('felt-title')) === 'to the device' && parseFloat(await text('force-response')) >= 0, 'two forces, each with its name');
-  const boxes = await page.evaluate(() => ['#readout', '#bottom', '#labels div:not([hidden])'].flatMap((query) => [...document.querySelectorAll(query)]).map((one) => { const { x, y, right, bottom } = one.getBoundingClientRect(); return { x, y, right, bottom }; }));
-  check(boxes.every((a, i) => boxes.slice(i + 1).every((b) => a.x >= b.right || b.x >= a.right || a.y >= b.bottom || b.y >= a.bottom)), `${boxes.length - 2} labels, none over another or the readout`);
+  let boxes = [];
+  await until('labels lie neither over one another nor under the readout', async () => {
+    boxes = await page.evaluate(() => ['#readout', '#bottom', '#labels div:not([hidden])'].flatMap((query) => [...document.querySelectorAll(query)]).map((one) => { const { x, y, right, bottom } = one.getBoundingClientRect(); return { x, y, right, bottom }; }));
+    return boxes.every((a, i) => boxes.slice(i + 1).every((b) => a.x >= b.right || b.x >= a.right || a.y >= b.bottom || b.y >= a.bottom));
+  }, 60).catch((error) => { throw new Error(`${error.message}: ${JSON.stringify(boxes)}`); });
   await until('contact triangles have their colours in the picture', async () => (await warm()) > 100);
   await picture('contact');
   for (const key of ['1', '2', '3']) await page.keyboard.press(key);
