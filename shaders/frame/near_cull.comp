@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // What comes near at the pose. The first workgroups: runs of the tool that come near what is not V_ext;
 // kGroupSize clusters each, an invocation one of them, then one of the runs of those that are near. The others:
-// V_bnd voxels of the mock-up that the tool's solid may reach into, and so samples; kGroupSize bricks each, of
-// those that the tool's fine grid may meet, an invocation one of them, then one of the voxels of those that are
-// near. Reads boxes of the tool, occupied cubes and both partitions; appends near_runs and sample_chunks. Errs
+// V_bnd voxels of the mock-up that the tool's solid may reach into, and so samples; kBrickGroups of them, each in
+// rounds of kGroupSize bricks of those that the tool's fine grid may meet, an invocation one of them, then one of
+// the voxels of those that are near. Reads boxes of the tool, occupied cubes and both partitions; appends near_runs and sample_chunks. Errs
 // towards near.
 #include "shaders/lib/frame.glsl"
 
@@ -132,22 +132,30 @@ void cull_samples(uint32_t lane, uint32_t item) {
   first >>= 3;
   const uvec3 n = any ? uvec3((last >> 3) - first + 1) : uvec3(0u);
   const ivec3 all_bricks = scene.mockup.grid.bricks;
-  if (item < n.x * n.y * n.z) {
-    const ivec3 brick = first + ivec3(item % n.x, item / n.x % n.y, item / (n.x * n.y));
-    const uint32_t number = uint32_t(brick.x + all_bricks.x * (brick.y + all_bricks.y * brick.z));
-    if (mockup_brick_slot[number] < kBrickInternal && grid_near(brick))
-      near_items[atomicAdd(near_count, 1u)] = number;
-  }
-  barrier();
   const int32_t size = scene.mockup.grid.size;
-  for (uint32_t i = 0u; i < near_count; ++i) {
-    const uint32_t slot = mockup_brick_slot[near_items[i]];
-    const ivec3 brick = 8 * brick_at(near_items[i], all_bricks);
-    const uint32_t end = mockup_bricks[slot].first[15] + uint32_t(bitCount(mockup_bricks[slot].boundary[15]));
-    for (uint32_t b = mockup_bricks[slot].first[0] + lane; b < end; b += kGroupSize) {
-      const ivec3 voxel = brick + voxel_at(boundary_place[b] & 511u);
-      if (solid_near(tool_from_world(scene.mockup.grid.origin + size * voxel + size / 2))) append_chunks(voxel, b);
+  const uint32_t count = n.x * n.y * n.z, rounds = (count + kBrickGroups * kGroupSize - 1u) / (kBrickGroups * kGroupSize);
+  for (uint32_t round = 0u; round < rounds; ++round, item += kBrickGroups * kGroupSize) {
+    if (item < count) {
+      const ivec3 brick = first + ivec3(item % n.x, item / n.x % n.y, item / (n.x * n.y));
+      const uint32_t number = uint32_t(brick.x + all_bricks.x * (brick.y + all_bricks.y * brick.z));
+      if (mockup_brick_slot[number] < kBrickInternal && grid_near(brick))
+        near_items[atomicAdd(near_count, 1u)] = number;
     }
+    barrier();
+    const uint32_t near = near_count;
+    for (uint32_t i = 0u; i < near; ++i) {
+      const uint32_t slot = mockup_brick_slot[near_items[i]];
+      const ivec3 brick = 8 * brick_at(near_items[i], all_bricks);
+      const uint32_t end = mockup_bricks[slot].first[15] + uint32_t(bitCount(mockup_bricks[slot].boundary[15]));
+      for (uint32_t b = mockup_bricks[slot].first[0] + lane; b < end; b += kGroupSize) {
+        const ivec3 voxel = brick + voxel_at(boundary_place[b] & 511u);
+        if (solid_near(tool_from_world(scene.mockup.grid.origin + size * voxel + size / 2)))
+          append_chunks(voxel, b);
+      }
+    }
+    barrier();
+    if (lane == 0u) near_count = 0u;
+    barrier();
   }
 }
 

@@ -32,9 +32,11 @@ EDIT(kBindPairs, ContactPair, pairs);
 #include "shaders/lib/mobile_mark.glsl"
 #include "shaders/lib/static_mark.glsl"
 
-// Entries of a round: kPairChunk an invocation. Static triangle, then invocation.
-shared uvec2 found[kPairChunk * kGroupSize];
-shared uint32_t found_count, unfinished;
+// What a round has found among its entries, kPairChunk an invocation, as static triangle + 2^32 · invocation:
+// from the front on what may meet, from the back what is to be marked.
+const uint32_t kRoom = 2u * kPairChunk * kGroupSize;
+shared uint64_t found[kRoom];
+shared uint32_t meet_count, mark_count, unfinished;
 shared int32_t corners[9u * kGroupSize];   // of the invocations' tool triangles
 shared uint32_t places[kGroupSize];
 
@@ -114,8 +116,8 @@ bool is_new(uint32_t id, uint32_t place) {
   return true;
 }
 
-void decide(uvec2 work) {
-  const uint32_t id = work.x, lane = work.y, place = places[lane];
+void decide(uint64_t work) {
+  const uint32_t id = uint32_t(work), lane = uint32_t(work >> 32), place = places[lane];
   if (!is_new(id, place)) return;
   const uvec3 s = mockup_triangles[id];
   if (!triangles_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]),
@@ -131,20 +133,23 @@ void decide(uvec2 work) {
 void main() {
   const uint32_t lane = gl_LocalInvocationIndex;
   begin(lane, flat_invocation());
-  for (uint32_t i = entry; is_first && i < end && !spent(1u); ++i)
-    mark_static(mockup_list_triangles[i], kStaticListed);
   bool again = true;
   while (again) {
-    if (lane == 0u) found_count = unfinished = 0u;
+    if (lane == 0u) meet_count = mark_count = unfinished = 0u;
     barrier();
     const uint32_t last = min(entry + kPairChunk, end);
-    for (; entry < last && !spent(1u); ++entry)
-      if (may_meet(list_boxes[entry])) found[atomicAdd(found_count, 1u)] = uvec2(mockup_list_triangles[entry], lane);
+    for (; entry < last && !spent(1u); ++entry) {
+      const uint64_t work = uint64_t(mockup_list_triangles[entry]) | uint64_t(lane) << 32;
+      if (is_first) found[kRoom - 1u - atomicAdd(mark_count, 1u)] = work;
+      if (may_meet(list_boxes[entry])) found[atomicAdd(meet_count, 1u)] = work;
+    }
     if (entry < end && loop_budget < kLoopBudget) unfinished = 1u;
     barrier();
-    const uint32_t count = found_count;
+    const uint32_t marks = mark_count, meets = meet_count;
     again = unfinished != 0u;
-    for (uint32_t i = lane; i < count && !spent(1u); i += kGroupSize) decide(found[i]);
+    for (uint32_t i = lane; i < marks && !spent(1u); i += kGroupSize)
+      mark_static(uint32_t(found[kRoom - 1u - i]), kStaticListed);
+    for (uint32_t i = lane; i < meets && !spent(1u); i += kGroupSize) decide(found[i]);
     barrier();
   }
 }

@@ -35,7 +35,8 @@ EDIT(kBindSamples, FrameSample, samples);
 #include "shaders/lib/partition.glsl"
 
 const uint32_t kRoom = kListedChunk * kGroupSize;
-shared ivec4 found[kRoom];   // a round's points that are not in V_ext: FrameSample
+shared uint64_t found[kRoom];   // a round's points that are not in V_ext: point + 2^32 · invocation
+shared int32_t lows[3u * kGroupSize];   // of the invocations' voxels
 shared uint32_t inside_count, open_count, unfinished;
 
 ivec3 point_at(uint32_t i) {
@@ -47,24 +48,30 @@ ivec3 point_at(uint32_t i) {
 uint32_t point = 0u, end = 0u;   // of the invocation's chunk
 ivec3 low;                       // its voxel's low corner
 
-void begin(uint32_t item) {
+void begin(uint32_t lane, uint32_t item) {
   if (item >= list_count(kListSampleChunks)) return;
   const SampleChunk work = sample_chunks[item];
   low = scene.mockup.grid.origin + scene.mockup.grid.size * work.voxel;
+  for (uint32_t k = 0u; k < 3u; ++k) lows[3u * lane + k] = low[k];
   point = work.begin;
   end = work.end;
 }
 
-void take(ivec3 at, uint32_t id) {
-  mark_static(id & ~kCornerProbe, kStaticSampled);
-  if ((id & kCornerProbe) != 0u) return;
+FrameSample sample_of(uint64_t work) {
+  const uint32_t i = uint32_t(work), of = 3u * uint32_t(work >> 32);
+  return FrameSample(ivec3(lows[of], lows[of + 1u], lows[of + 2u]) + point_at(i), sample_ids[i]);
+}
+
+void take(FrameSample sample_) {
+  mark_static(sample_.static_id & ~kCornerProbe, kStaticSampled);
+  if ((sample_.static_id & kCornerProbe) != 0u) return;
   uint32_t place;
-  if (take_sample(place)) samples[place] = FrameSample(at, id);
+  if (take_sample(place)) samples[place] = sample_;
 }
 
 void main() {
   const uint32_t lane = gl_LocalInvocationIndex;
-  begin(flat_invocation());
+  begin(lane, flat_invocation());
   bool again = true;
   while (again) {
     if (lane == 0u) inside_count = open_count = unfinished = 0u;
@@ -77,17 +84,14 @@ void main() {
       // Those of V_int from the front on, the others from the back.
       const uint32_t place = voxel_class == kVoxelInternal ? atomicAdd(inside_count, 1u)
                                                            : kRoom - 1u - atomicAdd(open_count, 1u);
-      found[place] = ivec4(at, int32_t(sample_ids[point]));
+      found[place] = uint64_t(point) | uint64_t(lane) << 32;
     }
     if (point < end && loop_budget < kLoopBudget) unfinished = 1u;
     barrier();
     const uint32_t inside = inside_count, open = open_count;
     again = unfinished != 0u;
-    for (uint32_t i = lane; i < inside && !spent(1u); i += kGroupSize) take(found[i].xyz, uint32_t(found[i].w));
-    for (uint32_t i = lane; i < open && !spent(1u); i += kGroupSize) {
-      const ivec4 sample_ = found[kRoom - 1u - i];
-      put_open(FrameSample(sample_.xyz, uint32_t(sample_.w)));
-    }
+    for (uint32_t i = lane; i < inside && !spent(1u); i += kGroupSize) take(sample_of(found[i]));
+    for (uint32_t i = lane; i < open && !spent(1u); i += kGroupSize) put_open(sample_of(found[kRoom - 1u - i]));
     barrier();
   }
 }

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Which voxels the triangles of near runs touch, exactly: IMT and BMT. A workgroup kRunsAGroup NearRuns, an
-// invocation a triangle. Each goes through the voxels of its box that are not V_ext and that its plane may
-// cross, in rounds; what a round has found is shared out and asked. Reads tool_records and the mock-up's
+// invocation a triangle. Each goes through its box for voxels that are not V_ext and that its plane may cross, in
+// rounds; what a round has found is shared out and asked. Reads tool_records and the mock-up's
 // partition; sets kMobileInternal or kMobileBoundary; a touched V_bnd voxel enters touched_voxels once, and
 // its list goes to pair_chunks for each triangle that touches it.
 #include "shaders/lib/frame.glsl"
@@ -37,13 +37,13 @@ GROUP_COUNTS(kBindListedGroups, listed_groups)
 #define PARTITION(name) mockup_##name
 #include "shaders/lib/partition.glsl"
 
-const uint32_t kRoom = 1024u;   // voxels of a round (chosen: 8 KiB); a row of eight always fits
-const uint32_t kStepCost = 5u;   // a row adds up to eight iterations of its own
-const uint32_t kWholeBrick = 1u << 24, kNothing = 1u << 25;
+const uint32_t kRoom = 1024u;   // voxels of a round (chosen: 8 KiB); a word of 32 always fits
+const uint32_t kStepCost = 16u;   // a step adds up to 32 iterations of its own
 
-// A voxel and the triangle that may touch it: x + 2^16 · y, z + 2^16 · invocation. With kWholeBrick: all of a
-// brick of V_int, by its first voxel.
-shared uvec2 found[kRoom];
+// A voxel and the triangle that may touch it: x + 2^16 · y + 2^32 · z + 2^48 · invocation. With kWholeBrick:
+// all of a brick of V_int, by its first voxel.
+const uint64_t kWholeBrick = 1ul << 56, kNothing = 1ul << 57;
+shared uint64_t found[kRoom];
 shared uint32_t found_count, unfinished;
 shared int32_t corners[9u * kGroupSize];   // of the invocations' triangles
 shared uint32_t places[kGroupSize];
@@ -55,16 +55,14 @@ void put_corner(uint32_t lane, uint32_t k, ivec3 p) {
   for (uint32_t i = 0u; i < 3u; ++i) corners[9u * lane + 3u * k + i] = p[i];
 }
 
-// The way of an invocation through the bricks of its triangle's box, row by row.
-ivec3 first, last;          // voxels of the box
+// The way of an invocation through its triangle's box, brick by brick and in those word by word: eight voxels
+// along x, four along y.
+ivec3 first, last;   // voxels of the box
 ivec3 low_brick, high_brick, brick;
-bool more = false;          // there is one, brick
-uint32_t slot;              // of the present mixed brick
-ivec3 row_low, row_high;    // of its voxels those in the box
-ivec2 row;                  // y, z of the next row
-bool in_brick = false;      // there is one
-ivec3 origin;               // a corner
-vec3 facing;                // its raw normal, of size 1 by the sum of its components' sizes
+bool more = false;   // there is one, brick
+int32_t z = -1, half_y;   // of the present word; −1: the brick's first
+ivec3 origin;        // a corner
+vec3 facing;         // its raw normal, of size 1 by the sum of its components' sizes
 
 // Whether a box of this side lies on one side of the plane. facing is off by less than 2^-21; differences,
 // products and sums are rounded: less than 2^-18 of the largest difference in all.
@@ -100,79 +98,79 @@ void begin(uint32_t lane, uint32_t item) {
   more = all(lessThanEqual(low_brick, high_brick));
 }
 
-// Reserves n places, n ≤ 8, for what the present brick or row has. False: there is no room in this round.
-bool take_places(uint32_t n, out uint32_t at) {
-  at = atomicAdd(found_count, n);
-  if (at + n <= kRoom) return true;
-  for (uint32_t i = at; i < kRoom; ++i) found[i] = uvec2(0u, kNothing);
-  return false;
-}
-
-// The next brick. False: no room.
-bool enter_brick(uint32_t lane) {
-  const int32_t side = 8 * scene.mockup.grid.size;
-  const ivec3 low = scene.mockup.grid.origin + side * brick;
-  slot = mockup_slot_of(brick);
-  if (slot != kBrickExternal && !off_plane(low, side)) {
-    if (slot == kBrickInternal) {
-      uint32_t at;
-      if (!take_places(1u, at)) return false;
-      const uvec3 v = uvec3(8 * brick);
-      found[at] = uvec2(v.x | v.y << 16, v.z | lane << 16 | kWholeBrick);
-    } else {
-      row_low = max(first - 8 * brick, ivec3(0));
-      row_high = min(last - 8 * brick, ivec3(7));
-      row = row_low.yz;
-      in_brick = true;
-    }
-  }
-  const bool end_x = brick.x == high_brick.x, end_y = end_x && brick.y == high_brick.y;
-  more = !end_y || brick.z != high_brick.z;
-  return true;
-}
-
-// Of eight voxels from `voxel` on along x, those in whose way the plane lies, a bit each: as off_plane().
-uint32_t on_plane(ivec3 voxel) {
-  const int32_t size = scene.mockup.grid.size;
-  const vec3 d = vec3(scene.mockup.grid.origin + size * voxel - origin), parts = facing * (d + 0.5 * float(size));
-  const float most = max(max(abs(d.x), abs(d.y)), abs(d.z)) + 8.0 * float(size),
-              reach = 0.5 * float(size) + most * (1.0 / 262144.0) + 1.0;
-  const float at = parts.x + parts.y + parts.z, along = facing.x * float(size);
+// Of a word of voxels from `low` on, a lattice point, those in whose way the plane lies: as off_plane().
+uint32_t on_plane(ivec3 low) {
+  const float size = float(scene.mockup.grid.size);
+  const vec3 d = vec3(low - origin), parts = facing * (d + 0.5 * size);
+  const float most = max(max(abs(d.x), abs(d.y)), abs(d.z)) + 8.0 * size,
+              reach = 0.5 * size + most * (1.0 / 262144.0) + 1.0;
+  const float at = parts.x + parts.y + parts.z, along_x = facing.x * size, along_y = facing.y * size;
   uint32_t bits = 0u;
-  for (int x = 0; x < 8; ++x) bits |= uint32_t(abs(at + along * float(x)) <= reach) << x;
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x)
+      bits |= uint32_t(abs(at + along_x * float(x) + along_y * float(y)) <= reach) << (8 * y + x);
   return bits;
 }
 
-// The next row of the present brick. False: no room.
-bool take_row(uint32_t lane) {
-  const uint32_t word = uint32_t(row.x >> 2 | row.y << 1), shift = uint32_t(row.x & 3) * 8u;
-  const uint32_t along_x = (2u << row_high.x) - (1u << row_low.x);
-  const ivec3 voxel = ivec3(8 * brick.x, 8 * brick.yz + row);
-  uint32_t bits = (mockup_bricks[slot].boundary[word] | mockup_bricks[slot].internal_[word]) >> shift & along_x &
-                  on_plane(voxel);
-  uint32_t at;
-  if (bits != 0u && !take_places(uint32_t(bitCount(bits)), at)) return false;
-  for (; bits != 0u; bits &= bits - 1u)
-    found[at++] = uvec2(uint32_t(voxel.x + findLSB(bits)) | uint32_t(voxel.y) << 16,
-                        uint32_t(voxel.z) | lane << 16);
-  row.x += 1;
-  if (row.x > row_high.y) row = ivec2(row_low.y, row.y + 1);
-  in_brick = row.y <= row_high.z;
-  return true;
+// Of a word those between low and high, of the brick's eight, along x and y.
+uint32_t in_box(ivec3 low, ivec3 high) {
+  const uint32_t row = (2u << high.x) - (1u << low.x);
+  const int32_t from = max(low.y - 4 * half_y, 0), to = min(high.y - 4 * half_y, 3);
+  return row * 0x01010101u & 0xFFFFFFFFu << 8 * from & 0xFFFFFFFFu >> 8 * (3 - to);
+}
+
+// Reserves n places. False: there is no room in this round.
+bool take_places(uint32_t n, out uint32_t at) {
+  at = atomicAdd(found_count, n);
+  if (at + n <= kRoom) return true;
+  for (uint32_t i = at; i < kRoom; ++i) found[i] = kNothing;
+  return false;
 }
 
 void next_brick() {
-  if (brick.x < high_brick.x) {
-    brick.x += 1;
-    return;
+  z = -1;
+  more = any(notEqual(brick, high_brick));
+  const bool end_x = brick.x == high_brick.x, end_y = end_x && brick.y == high_brick.y;
+  brick = ivec3(end_x ? low_brick.x : brick.x + 1, end_y ? low_brick.y : brick.y + int32_t(end_x),
+                brick.z + int32_t(end_y));
+}
+
+// The next word, or what of a brick is told at once. False: no room.
+bool step(uint32_t lane) {
+  const int32_t size = scene.mockup.grid.size;
+  const ivec3 low = max(first - 8 * brick, ivec3(0)), high = min(last - 8 * brick, ivec3(7));
+  if (z < 0) {
+    z = low.z;
+    half_y = low.y >> 2;
   }
-  brick.x = low_brick.x;
-  if (brick.y < high_brick.y) {
-    brick.y += 1;
-    return;
+  const uint32_t slot = mockup_slot_of(brick);
+  const ivec3 brick_low = scene.mockup.grid.origin + 8 * size * brick;
+  const bool crossed = slot != kBrickExternal && !off_plane(brick_low, 8 * size),
+             mixed = crossed && slot < kBrickInternal;
+  uvec3 voxel = uvec3(8 * brick);
+  uint32_t bits = uint32_t(crossed);   // of V_int: all of it by its first voxel
+  if (mixed) {
+    const uint32_t word = uint32_t(half_y | z << 1);
+    bits = (mockup_bricks[slot].boundary[word] | mockup_bricks[slot].internal_[word]) & in_box(low, high) &
+           on_plane(brick_low + size * ivec3(0, 4 * half_y, z));
+    voxel += uvec3(0, 4 * half_y, z);
   }
-  brick.y = low_brick.y;
-  brick.z += 1;
+  uint32_t at;
+  if (bits != 0u && !take_places(uint32_t(bitCount(bits)), at)) return false;
+  const uint64_t about = uint64_t(lane) << 48 | (mixed ? 0ul : kWholeBrick) | uint64_t(voxel.z) << 32;
+  for (; bits != 0u; bits &= bits - 1u) {
+    const uint32_t i = uint32_t(findLSB(bits));
+    found[at++] = about | uint64_t(voxel.x + (i & 7u) | (voxel.y + (i >> 3)) << 16);
+  }
+  if (mixed && half_y < high.y >> 2) {
+    half_y += 1;
+  } else if (mixed && z < high.z) {
+    half_y = low.y >> 2;
+    z += 1;
+  } else {
+    next_brick();
+  }
+  return true;
 }
 
 void mark_voxel(uint32_t place, uint32_t boundary, uvec3 voxel) {
@@ -197,12 +195,13 @@ void mark_voxel(uint32_t place, uint32_t boundary, uvec3 voxel) {
                   min(list_begin + (i + 1u) * chunk, list_end), voxel.x | voxel.y << 16, voxel.z, 0u);
 }
 
-void decide(uvec2 work) {
-  if ((work.y & kNothing) != 0u) return;
-  const uint32_t lane = work.y >> 16 & (kGroupSize - 1u), place = places[lane];
-  const bool whole = (work.y & kWholeBrick) != 0u;
+void decide(uint64_t work) {
+  if ((work & kNothing) != 0ul) return;
+  const uint32_t xy = uint32_t(work), rest = uint32_t(work >> 32);
+  const uint32_t lane = rest >> 16 & (kGroupSize - 1u), place = places[lane];
+  const bool whole = (work & kWholeBrick) != 0ul;
   const ivec3 a = corner_of(lane, 0u), b = corner_of(lane, 1u), c = corner_of(lane, 2u);
-  const uvec3 voxel = uvec3(work.x & 0xFFFFu, work.x >> 16, work.y & 0xFFFFu);
+  const uvec3 voxel = uvec3(xy & 0xFFFFu, xy >> 16, rest & 0xFFFFu);
   const int32_t size = scene.mockup.grid.size;
   const ivec3 low = scene.mockup.grid.origin + size * ivec3(voxel);
   if (!triangle_touches_box(a, b, c, raw_normal(a, b, c), low, low + (whole ? 8 * size : size))) return;
@@ -219,11 +218,9 @@ void main() {
   while (again) {
     if (lane == 0u) found_count = unfinished = 0u;
     barrier();
-    while ((in_brick || more) && !spent(kStepCost)) {
-      if (!(in_brick ? take_row(lane) : enter_brick(lane))) break;
-      if (!in_brick) next_brick();
-    }
-    if ((in_brick || more) && loop_budget < kLoopBudget) unfinished = 1u;
+    while (more && !spent(kStepCost))
+      if (!step(lane)) break;
+    if (more && loop_budget < kLoopBudget) unfinished = 1u;
     barrier();
     const uint32_t count = min(found_count, kRoom);
     again = unfinished != 0u;

@@ -258,6 +258,7 @@ struct NearRun {
   uint32_t x, y, z;  // low + 2^16 · high
 };
 PALPATE_CONSTANT uint32_t kRunsAGroup = kGroupSize / kRunSize;
+PALPATE_CONSTANT uint32_t kBrickGroups = 8;  // workgroups that look for bricks with samples (chosen)
 PALPATE_CONSTANT int32_t kBricksAPart = 64;     // of a NearRun (chosen), …
 PALPATE_CONSTANT int32_t kMostParts = 1 << 14;  // … and more where so many parts would not do
 

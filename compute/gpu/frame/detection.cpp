@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 
 #include "compute/gpu/frame/plan.h"
@@ -12,21 +11,6 @@
 namespace palpate {
 
 using namespace gpu;  // names of shaders/shared/frame.h
-
-namespace {
-
-/// The most bricks of the mock-up that the box of the tool's fine grid meets at any pose (near_cull.comp).
-std::uint32_t most_bricks(const SceneConstants& scene) {
-  const GridConstants &fine = scene.fine, &grid = scene.mockup.grid;
-  double diagonal = 0;
-  for (int k = 0; k < 3; ++k) diagonal += std::pow(8.0 * fine.size * fine.bricks[k], 2);
-  const double along = std::sqrt(diagonal) / (8.0 * grid.size) + 3;  // ends, and what rounding adds
-  double bricks = 1;
-  for (int k = 0; k < 3; ++k) bricks *= std::min<double>(std::floor(along), grid.bricks[k]);
-  return static_cast<std::uint32_t>(bricks);
-}
-
-}  // namespace
 
 std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geometry,
                                                      const PreparedScene& scene, const Plan& plan) {
@@ -40,7 +24,6 @@ std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geomet
   out->listed_ = static_cast<bool>(scene.sample_points);
   out->wide_ = scene.constants.mockup.grid.size > kNarrowVoxel;
   out->has_near_ = static_cast<bool>(scene.tool_near);
-  if (out->inside_) out->sample_bricks_ = most_bricks(scene.constants);
   return out;
 }
 
@@ -217,7 +200,7 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.stage("cull");
   const auto clusters = static_cast<std::uint32_t>((order_.size() + kClusterSize - 1) / kClusterSize);
   const auto groups = [](std::uint32_t items) { return (items + kGroupSize - 1) / kGroupSize; };
-  recorder.run(near_cull_, groups(clusters) + groups(sample_bricks_));
+  recorder.run(near_cull_, groups(clusters) + (inside_ ? kBrickGroups : 0));
   recorder.barrier();
 
   recorder.stage(plan_.imt ? "imt" : "bmt");  // one dispatch decides both

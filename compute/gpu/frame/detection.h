@@ -54,7 +54,6 @@ class FrameDetection {
   bool listed_ = false;              ///< samples were listed by preparation …
   bool wide_ = false;                ///< … three words each
   bool has_near_ = false;            ///< tool_near says something
-  std::uint32_t sample_bricks_ = 0;  ///< of the mock-up, that may be near the tool at a pose
   std::vector<std::uint32_t> order_;
   FrameShader near_cull_, voxel_touch_, pair_test_, tool_clusters_place_, sample_scan_, sample_listed_,
       sample_walk_, set_decide_, set_name_, frame_result_;
