@@ -1,15 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // What comes near at the pose. The first workgroups: runs of the tool that come near what is not V_ext;
-// kGroupSize clusters each, an invocation one of them, then one of the runs of those that are near. The others:
-// V_bnd voxels of the mock-up that the tool's solid may reach into, and so samples; kBrickGroups of them, each in
-// rounds of kGroupSize bricks of those that the tool's fine grid may meet, an invocation one of them, then one of
-// the voxels of those that are near. Reads boxes of the tool, occupied cubes and both partitions; appends near_runs and sample_chunks. Errs
-// towards near.
+// kGroupSize clusters each, an invocation one of them, then one of the runs of those that are near. The
+// BRICK_GROUPS others: V_bnd voxels of the mock-up that the tool's solid may reach into, and so samples; in
+// rounds of kGroupSize bricks of those that the tool's fine grid may meet, an invocation one of them, then
+// one of the voxels of those that are near. Reads boxes of the tool, occupied cubes and both partitions;
+// appends near_runs and sample_chunks. Errs towards near.
 #include "shaders/lib/frame.glsl"
 
 layout(constant_id = 0) const uint32_t SAMPLES = 2u;   // 1: chunks of voxels' lists; 2: of listed points
 layout(constant_id = 1) const bool HAS_NEAR = true;    // false: tool_near says nothing
+layout(constant_id = 2) const uint32_t BRICK_GROUPS = 2u;   // workgroups that look for bricks
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
@@ -28,8 +29,8 @@ EDIT(kBindSampleChunks, SampleChunk, sample_chunks);
 
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/list_room.glsl"
-#include "shaders/lib/turned_box.glsl"
-#include "shaders/lib/occupied.glsl"
+#include "shaders/lib/near/turned_box.glsl"
+#include "shaders/lib/near/occupied.glsl"
 #include "shaders/lib/group_count.glsl"
 GROUP_COUNTS(kBindNearGroups, near_groups)
 
@@ -84,7 +85,8 @@ bool grid_near(ivec3 brick) {
   ivec3 reach = ivec3(half_side);
   if (ROTATES)
     for (int c = 0; c < 3; ++c)
-      reach[c] = int32_t((abs(float(frame_input.rotation_q30[c])) + abs(float(frame_input.rotation_q30[3 + c])) +
+      reach[c] = int32_t((abs(float(frame_input.rotation_q30[c])) +
+                          abs(float(frame_input.rotation_q30[3 + c])) +
                           abs(float(frame_input.rotation_q30[6 + c]))) *
                          (float(half_side) * ((1.0 + 1.0 / 1048576.0) / 1073741824.0))) + 4;
   const ivec3 low = scene.fine.origin, high = low + 8 * scene.fine.size * scene.fine.bricks;
@@ -93,7 +95,7 @@ bool grid_near(ivec3 brick) {
 
 // Whether the tool's solid may reach into a voxel of the mock-up with this centre (tool lattice point).
 bool solid_near(ivec3 centre) {
-  // What is beyond the grid has its nearest voxel of the solid seen from the border: the grid is padded by two.
+  // What is beyond the grid sees its nearest voxel of the solid from the border: the grid is padded by two.
   const ivec3 n = 8 * scene.fine.bricks, d = centre - scene.fine.origin;
   if (any(lessThan(d, ivec3(-scene.mockup.grid.size))) ||
       any(greaterThan(d, n * scene.fine.size + scene.mockup.grid.size)))
@@ -117,7 +119,8 @@ void append_chunks(ivec3 voxel, uint32_t boundary) {
     return;
   }
   if (chunks == 0u) return;
-  const uint32_t at = take_room(kListSampleChunks, chunks), capacity = frame_lists[kListSampleChunks].capacity;
+  const uint32_t at = take_room(kListSampleChunks, chunks),
+                 capacity = frame_lists[kListSampleChunks].capacity;
   if (at < capacity && begins_group(at, chunks))
     grow_near_groups(kGroupsSamples, groups_to(min(at + chunks, capacity)));
   for (uint32_t i = 0u; i < chunks && at + i < capacity && !spent(1u); ++i)
@@ -133,8 +136,9 @@ void cull_samples(uint32_t lane, uint32_t item) {
   const uvec3 n = any ? uvec3((last >> 3) - first + 1) : uvec3(0u);
   const ivec3 all_bricks = scene.mockup.grid.bricks;
   const int32_t size = scene.mockup.grid.size;
-  const uint32_t count = n.x * n.y * n.z, rounds = (count + kBrickGroups * kGroupSize - 1u) / (kBrickGroups * kGroupSize);
-  for (uint32_t round = 0u; round < rounds; ++round, item += kBrickGroups * kGroupSize) {
+  const uint32_t count = n.x * n.y * n.z, all = BRICK_GROUPS * kGroupSize,
+                 rounds = (count + all - 1u) / all;
+  for (uint32_t round = 0u; round < rounds; ++round, item += all) {
     if (item < count) {
       const ivec3 brick = first + ivec3(item % n.x, item / n.x % n.y, item / (n.x * n.y));
       const uint32_t number = uint32_t(brick.x + all_bricks.x * (brick.y + all_bricks.y * brick.z));
@@ -146,7 +150,8 @@ void cull_samples(uint32_t lane, uint32_t item) {
     for (uint32_t i = 0u; i < near; ++i) {
       const uint32_t slot = mockup_brick_slot[near_items[i]];
       const ivec3 brick = 8 * brick_at(near_items[i], all_bricks);
-      const uint32_t end = mockup_bricks[slot].first[15] + uint32_t(bitCount(mockup_bricks[slot].boundary[15]));
+      const uint32_t end =
+          mockup_bricks[slot].first[15] + uint32_t(bitCount(mockup_bricks[slot].boundary[15]));
       for (uint32_t b = mockup_bricks[slot].first[0] + lane; b < end; b += kGroupSize) {
         const ivec3 voxel = brick + voxel_at(boundary_place[b] & 511u);
         if (solid_near(tool_from_world(scene.mockup.grid.origin + size * voxel + size / 2)))

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Which triangles that a voxel lists intersect a tool triangle that touches it, exactly: CST and CMT; and what
-// touched voxels list: BST. An invocation a PairChunk. Each goes through its entries in rounds; those whose
-// boxes in the voxel meet the tool triangle's box and plane are shared out, kept once of all voxels
+// Which triangles that a voxel lists intersect a tool triangle that touches it, exactly: CST and CMT; and
+// what touched voxels list: BST. An invocation a PairChunk. Each goes through its entries in rounds; those
+// whose boxes in the voxel meet the tool triangle's box and plane are shared out, kept once of all voxels
 // (pair_table) and asked. Reads both bodies; appends pairs, marks kStaticHit, kStaticListed and kMobileHit.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/triangle_pair.glsl"
@@ -41,7 +41,8 @@ shared int32_t corners[9u * kGroupSize];   // of the invocations' tool triangles
 shared uint32_t places[kGroupSize];
 
 ivec3 corner_at(uint32_t lane, uint32_t k) {
-  return ivec3(corners[9u * lane + 3u * k], corners[9u * lane + 3u * k + 1u], corners[9u * lane + 3u * k + 2u]);
+  const uint32_t at = 9u * lane + 3u * k;
+  return ivec3(corners[at], corners[at + 1u], corners[at + 2u]);
 }
 void put_corner(uint32_t lane, uint32_t k, ivec3 p) {
   for (uint32_t i = 0u; i < 3u; ++i) corners[9u * lane + 3u * k + i] = p[i];
@@ -85,7 +86,8 @@ void begin(uint32_t lane, uint32_t item) {
   plane = (along.x + along.y + along.z) * parts_a_step;
   // facing is off by less than 2^-21, differences, products and sums are rounded: less than 2^-18 of the
   // largest difference, and of the voxel's own parts. A static triangle reaches a part beyond its highs.
-  slack = (max(max(abs(d.x), abs(d.y)), abs(d.z)) * parts_a_step + float(kListParts)) * (1.0 / 262144.0) + 0.0625;
+  const float most = max(max(abs(d.x), abs(d.y)), abs(d.z)) * parts_a_step + float(kListParts);
+  slack = most * (1.0 / 262144.0) + 0.0625;
 }
 
 // Whether entry's box in the voxel meets the tool triangle's box and plane. Errs towards true.

@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // What the tool's fine partition says of listed samples. An invocation a SampleChunk. Each goes through its
 // points in rounds; those not in V_ext are shared out. V_int: counts, appended to samples and marked
-// kStaticSampled; a first corner (kCornerProbe) tells EST and does not count. V_bnd: appended to open_samples.
+// kStaticSampled; a first corner (kCornerProbe) tells EST and does not count. V_bnd: appended to
+// open_samples.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/voxel_range.glsl"
 
@@ -27,7 +28,7 @@ EDIT(kBindSamples, FrameSample, samples);
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
 #include "shaders/lib/sample_room.glsl"
-#include "shaders/lib/open_room.glsl"
+#include "shaders/lib/near/open_room.glsl"
 #define PARTITION_GRID scene.fine
 #define PARTITION_SLOTS fine_brick_slot
 #define PARTITION_BRICKS fine_bricks
@@ -91,7 +92,8 @@ void main() {
     const uint32_t inside = inside_count, open = open_count;
     again = unfinished != 0u;
     for (uint32_t i = lane; i < inside && !spent(1u); i += kGroupSize) take(sample_of(found[i]));
-    for (uint32_t i = lane; i < open && !spent(1u); i += kGroupSize) put_open(sample_of(found[kRoom - 1u - i]));
+    for (uint32_t i = lane; i < open && !spent(1u); i += kGroupSize)
+      put_open(sample_of(found[kRoom - 1u - i]));
     barrier();
   }
 }

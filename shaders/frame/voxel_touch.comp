@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Which voxels the triangles of near runs touch, exactly: IMT and BMT. A workgroup kRunsAGroup NearRuns, an
-// invocation a triangle. Each goes through its box for voxels that are not V_ext and that its plane may cross, in
-// rounds; what a round has found is shared out and asked. Reads tool_records and the mock-up's
+// invocation a triangle. Each goes through its box for voxels that are not V_ext and that its plane may
+// cross, in rounds; what a round has found is shared out and asked. Reads tool_records and the mock-up's
 // partition; sets kMobileInternal or kMobileBoundary; a touched V_bnd voxel enters touched_voxels once, and
 // its list goes to pair_chunks for each triangle that touches it.
 #include "shaders/lib/frame.glsl"
@@ -25,8 +25,8 @@ EDIT(kBindTouchedVoxels, uvec4, touched_voxels);
 EDIT(kBindPairChunks, PairChunk, pair_chunks);
 
 #include "shaders/lib/budget.glsl"
-#include "shaders/lib/turned_box.glsl"
-#include "shaders/lib/occupied.glsl"
+#include "shaders/lib/near/turned_box.glsl"
+#include "shaders/lib/near/occupied.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/mobile_mark.glsl"
@@ -49,7 +49,8 @@ shared int32_t corners[9u * kGroupSize];   // of the invocations' triangles
 shared uint32_t places[kGroupSize];
 
 ivec3 corner_of(uint32_t lane, uint32_t k) {
-  return ivec3(corners[9u * lane + 3u * k], corners[9u * lane + 3u * k + 1u], corners[9u * lane + 3u * k + 2u]);
+  const uint32_t at = 9u * lane + 3u * k;
+  return ivec3(corners[at], corners[at + 1u], corners[at + 2u]);
 }
 void put_corner(uint32_t lane, uint32_t k, ivec3 p) {
   for (uint32_t i = 0u; i < 3u; ++i) corners[9u * lane + 3u * k + i] = p[i];

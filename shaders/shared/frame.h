@@ -102,8 +102,8 @@ PALPATE_CONSTANT int32_t kBindTouchedVoxels =
     43;  // kListTouchedVoxels: FrameVoxel, each V_bnd voxel touched by a mobile triangle once
 PALPATE_CONSTANT int32_t kBindPairChunks = 45;  // kListPairChunks: PairChunk
 PALPATE_CONSTANT int32_t kBindPairTable = 47;   // uint64_t[a power of two]: hash table of pairs to test,
-                                               // (static id + 1) · 2^32 + place; 0 between frames
-PALPATE_CONSTANT int32_t kBindPairs = 48;  // kListPairs: ContactPair, distinct intersecting pairs
+                                                // (static id + 1) · 2^32 + place; 0 between frames
+PALPATE_CONSTANT int32_t kBindPairs = 48;       // kListPairs: ContactPair, distinct intersecting pairs
 PALPATE_CONSTANT int32_t kBindStaticState =
     49;  // uint32_t[static triangles]: kStatic… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindStaticSlot =
@@ -126,7 +126,7 @@ PALPATE_CONSTANT int32_t kBindRunBoxes =
 PALPATE_CONSTANT int32_t kBindPairSlots = 67;   // kListPairCandidates: uint32_t entries of the table in use
 PALPATE_CONSTANT int32_t kBindToolBounds = 68;  // LatticeBox: of each cluster, then of each run, tool lattice
                                                 // frame, without what has collapsed; may be empty
-PALPATE_CONSTANT int32_t kBindOccupied = 69;    // uint32_t: lib/occupied.glsl
+PALPATE_CONSTANT int32_t kBindOccupied = 69;    // uint32_t: lib/near/occupied.glsl
 PALPATE_CONSTANT int32_t kBindListBoxes =
     70;  // uint32_t, by entry of kBindMockupListTriangles: the part of the voxel in which the triangle's box
          // lies, low x, y, z, high x, y, z in kListParts-ths of its side, 5 bits each
@@ -258,7 +258,6 @@ struct NearRun {
   uint32_t x, y, z;  // low + 2^16 · high
 };
 PALPATE_CONSTANT uint32_t kRunsAGroup = kGroupSize / kRunSize;
-PALPATE_CONSTANT uint32_t kBrickGroups = 8;  // workgroups that look for bricks with samples (chosen)
 PALPATE_CONSTANT int32_t kBricksAPart = 64;     // of a NearRun (chosen), …
 PALPATE_CONSTANT int32_t kMostParts = 1 << 14;  // … and more where so many parts would not do
 

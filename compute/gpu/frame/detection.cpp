@@ -160,12 +160,14 @@ Result<void> FrameDetection::upload_bounds(VulkanDevice& device, const LatticeMe
 }
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
+  if (device.shares_memory()) brick_groups_ = 2;  // llvmpipe takes its time for one without work, too
   const std::vector<SpecConstant> plan = plan_constants(plan_);
   const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}}, of_points[] = {{0, wide_ ? 1u : 0u}},
                      of_search[] = {{0, !inside_  ? 0u
                                         : listed_ ? 2u
                                                   : 1u},
-                                    {1, has_near_ ? 1u : 0u}};
+                                    {1, has_near_ ? 1u : 0u},
+                                    {2, brick_groups_}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;
@@ -200,7 +202,7 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.stage("cull");
   const auto clusters = static_cast<std::uint32_t>((order_.size() + kClusterSize - 1) / kClusterSize);
   const auto groups = [](std::uint32_t items) { return (items + kGroupSize - 1) / kGroupSize; };
-  recorder.run(near_cull_, groups(clusters) + (inside_ ? kBrickGroups : 0));
+  recorder.run(near_cull_, groups(clusters) + (inside_ ? brick_groups_ : 0));
   recorder.barrier();
 
   recorder.stage(plan_.imt ? "imt" : "bmt");  // one dispatch decides both

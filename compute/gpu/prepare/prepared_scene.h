@@ -52,9 +52,9 @@ struct PreparedScene {
   VulkanBuffer tool_near;  ///< a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet
                            ///< the tool's solid; may be empty: all may
   VulkanBuffer occupied;   ///< uint32: kBindOccupied
-  VulkanBuffer list_boxes;    ///< uint32, one an entry of the mock-up's lists: kBindListBoxes
-  VulkanBuffer sample_begin;  ///< uint32, by boundary voxel of the mock-up, + 1; with the next two empty
-                              ///< where there is too much of them: frames work samples out
+  VulkanBuffer list_boxes;     ///< uint32, one an entry of the mock-up's lists: kBindListBoxes
+  VulkanBuffer sample_begin;   ///< uint32, by boundary voxel of the mock-up, + 1; with the next two empty
+                               ///< where there is too much of them: frames work samples out
   VulkanBuffer sample_points;  ///< uint32: kBindSamplePoints
   VulkanBuffer sample_ids;     ///< uint32, one a point
   std::uint64_t memory_bytes() const;
