@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "compute/search/tool_order.h"
+#include "compute/scene/tool_order.h"
 #include "model/contact/contact_areas.h"
 
 namespace palpate::native {
@@ -64,19 +64,19 @@ FrameHelper* Frame::helper() {
 bool Frame::enlarge(std::uint32_t list) {
   const auto twice = [](auto& room) { room.resize(2 * room.size()); };
   switch (list) {
-    case gpu::kListTouchCandidates:
+    case kNearTouch:
       twice(touch_);
       return true;
-    case gpu::kListPairCandidates:
+    case kNearPairs:
       twice(near_pairs_);
       return true;
-    case gpu::kListSampleChunks:
+    case kNearChunks:
       twice(chunks_);
       return true;
-    case gpu::kListInsideSamples:
+    case kNearInside:
       twice(inside_);
       return true;
-    case gpu::kListOpenSamples:
+    case kNearOpen:
       twice(open_);
       return true;
     default:

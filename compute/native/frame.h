@@ -55,8 +55,8 @@ class Frame final : public PoseQuery {
   bool solved_ = false;      ///< the last query came to the contact
   std::uint32_t flags_ = 0;  ///< of every frame within the lattice
   // Room for what the search finds.
-  std::vector<gpu::TouchCandidate> touch_;
-  std::vector<gpu::PairCandidate> near_pairs_;
+  std::vector<TouchCandidate> touch_;
+  std::vector<PairCandidate> near_pairs_;
   std::vector<gpu::SampleChunk> chunks_;
   std::vector<gpu::FrameSample> inside_, open_;
 };

@@ -220,8 +220,8 @@ void BroadPhase::find_beside(const Search& search, const Reach* samples_of, Fram
               lane == 0 ? lists : second);
   });
   if (lists.full == gpu::kNone) lists.full = second.full;
-  if (lists.full == gpu::kNone && !append(lists.touch, second.touch)) lists.full = gpu::kListTouchCandidates;
-  if (lists.full == gpu::kNone && !append(lists.pairs, second.pairs)) lists.full = gpu::kListPairCandidates;
+  if (lists.full == gpu::kNone && !append(lists.touch, second.touch)) lists.full = kNearTouch;
+  if (lists.full == gpu::kNone && !append(lists.pairs, second.pairs)) lists.full = kNearPairs;
   if (ahead == 0) return;
   lists.samples = samples.samples;
   lists.inside = samples.inside;

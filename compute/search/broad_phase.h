@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "compute/scene/brick_bits.h"
+#include "compute/scene/occupied_cubes.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/brick_bits.h"
 #include "compute/search/frame_helper.h"
 #include "compute/search/near_lists.h"
 #include "compute/search/near_pairs.h"
 #include "compute/search/near_samples.h"
-#include "compute/search/occupied_cubes.h"
 #include "compute/search/posed_tool.h"
 #include "compute/search/run_tree.h"
 #include "compute/search/turned_boxes.h"
@@ -67,8 +67,8 @@ class BroadPhase {
   NearPairs pairs_;
   std::array<NearPairs::Seen, FrameHelper::kLanes> seen_;  ///< by thread of the frame
   std::uint64_t looks_ = 0;
-  std::vector<gpu::TouchCandidate> second_touch_;  ///< what the helper finds, as large as the lists
-  std::vector<gpu::PairCandidate> second_pairs_;
+  std::vector<TouchCandidate> second_touch_;  ///< what the helper finds, as large as the lists
+  std::vector<PairCandidate> second_pairs_;
   NearSamples samples_;
   double inside_margin_ = 0;     ///< steps
   bool has_inside_ = false;      ///< samples are asked whether they lie inside the tool

@@ -93,7 +93,7 @@ bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t b
           list_triangles_[begin + first + static_cast<std::size_t>(std::countr_zero(rest))];
       if (seen.by_[id] == seen.looker_) continue;  // one pair lies in many voxels
       seen.by_[id] = seen.looker_;
-      if (!lists.push(lists.pairs, gpu::kListPairCandidates, {id, triangle.place})) return false;
+      if (!lists.push(lists.pairs, kNearPairs, {id, triangle.place})) return false;
     }
   return true;
 }
@@ -110,8 +110,8 @@ bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t 
   if (slot == gpu::kBrickInternal) {
     if (off_plane(triangle, origin, 8 * size)) return true;
     return lists.push(
-        lists.touch, gpu::kListTouchCandidates,
-        {triangle.place, gpu::kNoVoxel, brick.x * 8 | brick.y * 8 << 16, brick.z * 8 | gpu::kWholeBrick});
+        lists.touch, kNearTouch,
+        {triangle.place, gpu::kNoVoxel, brick.x * 8 | brick.y * 8 << 16, brick.z * 8 | kWholeBrick});
   }
   Int3 first, last;
   for (int k = 0; k < 3; ++k) {
@@ -138,8 +138,7 @@ bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t 
             listed ? voxels.first[word] + static_cast<std::uint32_t>(std::popcount(boundary & (bit - 1)))
                    : gpu::kNoVoxel;
         const Int3 voxel = 8 * brick + Int3(x, y, z);
-        if (!lists.push(lists.touch, gpu::kListTouchCandidates,
-                        {triangle.place, number, voxel.x | voxel.y << 16, voxel.z}))
+        if (!lists.push(lists.touch, kNearTouch, {triangle.place, number, voxel.x | voxel.y << 16, voxel.z}))
           return false;
         if (listed && !take_list(triangle, voxel, number, seen, lists)) return false;
       }

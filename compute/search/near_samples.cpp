@@ -259,8 +259,7 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
       auto& list = internal ? search.lists.inside : search.lists.open;
       for (const std::uint16_t entry : triangles) {
         sample.static_id = ids[entry] | mark;
-        if (!search.lists.push(list, internal ? gpu::kListInsideSamples : gpu::kListOpenSamples, sample))
-          return false;
+        if (!search.lists.push(list, internal ? kNearInside : kNearOpen, sample)) return false;
       }
     }
   }
@@ -271,7 +270,7 @@ bool NearSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t bo
   if (listed_) return take_listed(search, voxel, boundary);
   const std::uint32_t end = list_begin_[boundary + 1];
   for (std::uint32_t e = list_begin_[boundary]; e < end; e += gpu::kSampleChunk)
-    if (!search.lists.push(search.lists.samples, gpu::kListSampleChunks,
+    if (!search.lists.push(search.lists.samples, kNearChunks,
                            {voxel, e, std::min(e + gpu::kSampleChunk, end)}))
       return false;
   return true;

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "compute/scene/brick_bits.h"
 #include "compute/scene/samples.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/brick_bits.h"
 #include "compute/search/near_lists.h"
 #include "model/lattice/lattice.h"
 #include "model/scene/scene_geometry.h"

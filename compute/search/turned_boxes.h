@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "compute/scene/brick_bits.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/brick_bits.h"
 
 namespace palpate {
 

@@ -1,7 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Whether two triangles intersect, exactly. An invocation a PairCandidate. Reads both bodies; appends pairs,
-// marks CST and CMT.
+// Which triangles that a voxel lists intersect a tool triangle that touches it, exactly: CST and CMT; and
+// what touched voxels list: BST. An invocation a PairChunk. Each goes through its entries in rounds; those
+// whose boxes in the voxel meet the tool triangle's box and plane are shared out, kept once of all voxels
+// (pair_table) and asked. Reads both bodies; appends pairs, marks kStaticHit, kStaticListed and kMobileHit.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/triangle_pair.glsl"
 
@@ -11,33 +13,145 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
+READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
+READ(kBindListBoxes, uint32_t, list_boxes);
 READ(kBindToolRecords, uint64_t, tool_records);
-READ(kBindPairCandidates, uint64_t, pair_candidates);
+READ(kBindPairChunks, PairChunk, pair_chunks);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindContactMobiles, uint32_t, contact_mobiles);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
+EDIT(kBindPairTable, uint64_t, pair_table);
+EDIT(kBindPairSlots, uint32_t, pair_slots);
 EDIT(kBindPairs, ContactPair, pairs);
 
+#include "shaders/lib/budget.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/mobile_mark.glsl"
 #include "shaders/lib/static_mark.glsl"
 
-void decide(uint32_t item) {
-  if (item >= frame_input.pair_candidates) return;
-  const uint64_t work = pair_candidates[item];   // PairCandidate
-  const uint32_t id = uint32_t(work);
-  const RecordCorners r = record_at(uint32_t(work >> 32));
-  const uvec3 s = mockup_triangles[id];
-  if (!triangles_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]),
-                      Triangle(world_from_tool(r.a), world_from_tool(r.b), world_from_tool(r.c))))
-    return;
-  mark_static(id, kStaticHit);
-  mark_mobile(r.id, kMobileHit);
-  const uint32_t at = take_room(kListPairs, 1u);
-  if (at < frame_lists[kListPairs].capacity) pairs[at] = ContactPair(id, r.id);
+// What a round has found among its entries, kPairChunk an invocation, as static triangle + 2^32 · invocation:
+// from the front on what may meet, from the back what is to be marked.
+const uint32_t kRoom = 2u * kPairChunk * kGroupSize;
+shared uint64_t found[kRoom];
+shared uint32_t meet_count, mark_count, unfinished;
+shared int32_t corners[9u * kGroupSize];   // of the invocations' tool triangles
+shared uint32_t places[kGroupSize];
+
+ivec3 corner_at(uint32_t lane, uint32_t k) {
+  const uint32_t at = 9u * lane + 3u * k;
+  return ivec3(corners[at], corners[at + 1u], corners[at + 2u]);
+}
+void put_corner(uint32_t lane, uint32_t k, ivec3 p) {
+  for (uint32_t i = 0u; i < 3u; ++i) corners[9u * lane + 3u * k + i] = p[i];
 }
 
-void main() { decide(flat_invocation()); }
+uint32_t entry = 0u, end = 0u;   // of the invocation's chunk
+bool is_first = false;           // its voxel's list is to be marked
+ivec3 low, high;                 // the tool triangle's box, parts of the voxel from its low corner on
+vec3 facing;                     // its raw normal, of size 1 by the sum of its components' sizes
+float plane, slack;              // along it, parts: from its plane to the voxel's low corner; what may be off
+
+// Parts of a voxel from its low corner on, rounded down; beyond the voxel −1 or kListParts.
+ivec3 parts_of(ivec3 d, int32_t size) {
+  const ivec3 inside = clamp(d, ivec3(-1), ivec3(size));
+  // A float quotient is less than one off; two parts more are looked at for it.
+  return ivec3(floor(vec3(inside) * (float(kListParts) / float(size))));
+}
+
+void begin(uint32_t lane, uint32_t item) {
+  if (item >= list_count(kListPairChunks)) return;
+  const PairChunk work = pair_chunks[item];
+  const uint32_t place = work.place & ~kFirstTouch;
+  const RecordCorners r = record_at(place);
+  const ivec3 a = world_from_tool(r.a), b = world_from_tool(r.b), c = world_from_tool(r.c);
+  places[lane] = place;
+  put_corner(lane, 0u, a);
+  put_corner(lane, 1u, b);
+  put_corner(lane, 2u, c);
+  is_first = (work.place & kFirstTouch) != 0u;
+  entry = work.begin;
+  end = work.end;
+  const int32_t size = scene.mockup.grid.size;
+  const ivec3 voxel = scene.mockup.grid.origin +
+                      size * ivec3(work.xy & 0xFFFFu, work.xy >> 16, work.z);
+  low = parts_of(min(min(a, b), c) - voxel, size) - 1;
+  high = parts_of(max(max(a, b), c) - voxel, size) + 1;
+  const vec3 n = vec3(raw_normal(a, b, c));
+  facing = n / (abs(n.x) + abs(n.y) + abs(n.z));
+  const vec3 d = vec3(voxel - a), along = facing * d;
+  const float parts_a_step = float(kListParts) / float(size);
+  plane = (along.x + along.y + along.z) * parts_a_step;
+  // facing is off by less than 2^-21, differences, products and sums are rounded: less than 2^-18 of the
+  // largest difference, and of the voxel's own parts. A static triangle reaches a part beyond its highs.
+  const float most = max(max(abs(d.x), abs(d.y)), abs(d.z)) * parts_a_step + float(kListParts);
+  slack = most * (1.0 / 262144.0) + 0.0625;
+}
+
+// Whether entry's box in the voxel meets the tool triangle's box and plane. Errs towards true.
+bool may_meet(uint32_t box) {
+  const ivec3 s_low = ivec3(box & 31u, box >> 5 & 31u, box >> 10 & 31u),
+              s_high = ivec3(box >> 15 & 31u, box >> 20 & 31u, box >> 25 & 31u);
+  if (any(greaterThan(s_low, high)) || any(lessThan(s_high, low))) return false;
+  const vec3 middle = 0.5 * vec3(s_low + s_high + 1), reach = 0.5 * vec3(s_high - s_low + 1);
+  const vec3 at = facing * middle, about = abs(facing) * reach;
+  return abs(plane + at.x + at.y + at.z) <= about.x + about.y + about.z + slack;
+}
+
+// Enters a pair in the table. False: it is there.
+bool is_new(uint32_t id, uint32_t place) {
+  const uint64_t key = (uint64_t(id) + 1ul) << 32 | uint64_t(place);   // never 0: an empty entry
+  const uint32_t mask = uint32_t(pair_table.length()) - 1u;
+  uint32_t at = uint32_t((key * 0x9E3779B97F4A7C15ul) >> 32) & mask;
+  while (!spent(1u)) {
+    const uint64_t there = atomicCompSwap(pair_table[at], 0ul, key);
+    if (there == key) return false;
+    if (there == 0ul) break;
+    at = (at + 1u) & mask;
+  }
+  const uint32_t slot = take_room(kListPairCandidates, 1u);
+  if (slot >= frame_lists[kListPairCandidates].capacity) return false;
+  pair_slots[slot] = at;
+  if (begins_group(slot, 1u)) grow_result_groups(0u, groups_to(slot + 1u));
+  return true;
+}
+
+void decide(uint64_t work) {
+  const uint32_t id = uint32_t(work), lane = uint32_t(work >> 32), place = places[lane];
+  if (!is_new(id, place)) return;
+  const uvec3 s = mockup_triangles[id];
+  if (!triangles_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]),
+                      Triangle(corner_at(lane, 0u), corner_at(lane, 1u), corner_at(lane, 2u))))
+    return;
+  const uint32_t mobile = uint32_t(tool_records[6u * place + 1u] >> 32);
+  mark_static(id, kStaticHit);
+  mark_mobile(mobile, kMobileHit);
+  const uint32_t at = take_room(kListPairs, 1u);
+  if (at < frame_lists[kListPairs].capacity) pairs[at] = ContactPair(id, mobile);
+}
+
+void main() {
+  const uint32_t lane = gl_LocalInvocationIndex;
+  begin(lane, flat_invocation());
+  bool again = true;
+  while (again) {
+    if (lane == 0u) meet_count = mark_count = unfinished = 0u;
+    barrier();
+    const uint32_t last = min(entry + kPairChunk, end);
+    for (; entry < last && !spent(1u); ++entry) {
+      const uint64_t work = uint64_t(mockup_list_triangles[entry]) | uint64_t(lane) << 32;
+      if (is_first) found[kRoom - 1u - atomicAdd(mark_count, 1u)] = work;
+      if (may_meet(list_boxes[entry])) found[atomicAdd(meet_count, 1u)] = work;
+    }
+    if (entry < end && loop_budget < kLoopBudget) unfinished = 1u;
+    barrier();
+    const uint32_t marks = mark_count, meets = meet_count;
+    again = unfinished != 0u;
+    for (uint32_t i = lane; i < marks && !spent(1u); i += kGroupSize)
+      mark_static(uint32_t(found[kRoom - 1u - i]), kStaticListed);
+    for (uint32_t i = lane; i < meets && !spent(1u); i += kGroupSize) decide(found[i]);
+    barrier();
+  }
+}

@@ -28,19 +28,12 @@ EDIT(kBindSamples, FrameSample, samples);
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
 #include "shaders/lib/sample_room.glsl"
-GROUP_COUNTS(kBindListedGroups, listed_groups)
+#include "shaders/lib/near/open_room.glsl"
 #define PARTITION_GRID scene.fine
 #define PARTITION_SLOTS tool_brick_slot
 #define PARTITION_BRICKS tool_bricks
 #define PARTITION(name) tool_##name
 #include "shaders/lib/partition.glsl"
-
-void put_open(FrameSample sample_) {
-  const uint32_t at = take_room(kListOpenSamples, 1u);
-  if (at >= frame_lists[kListOpenSamples].capacity) return;
-  open_samples[at] = sample_;
-  if (begins_group(at, 1u)) grow_listed_groups(kGroupsOpen, groups_to(at + 1u));
-}
 
 void take(ivec3 point, uint32_t id) {
   const uint32_t voxel_class = tool_class_of(tool_voxel_of(tool_from_world(point)));
@@ -62,7 +55,7 @@ void probe(ivec3 corner, uint32_t id) {
 }
 
 void decide(uint32_t item) {
-  if (item >= frame_input.sample_chunks) return;
+  if (item >= list_count(kListSampleChunks)) return;
   const SampleChunk work = sample_chunks[item];
   const int32_t spacing = scene.sample_spacing;
   const ivec3 low = scene.mockup.grid.origin + scene.mockup.grid.size * work.voxel;

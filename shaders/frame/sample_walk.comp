@@ -35,8 +35,7 @@ EDIT(kBindSamples, ivec4, samples);
 #include "shaders/lib/body_walks.glsl"
 
 void decide(uint32_t item) {
-  // Of the host, or of the device.
-  if (item >= frame_input.open_samples + list_count(kListOpenSamples)) return;
+  if (item >= list_count(kListOpenSamples)) return;
   const ivec4 work = open_samples[item];   // FrameSample
   const ivec3 at = tool_from_world(work.xyz), voxel = body_voxel_of(at);
   if (!(CLOSED ? tool_winding(work.xyz) != 0 : body_walks_inside(at, voxel))) return;

@@ -6,6 +6,7 @@
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_response.h"
 
+CONSTANT(kBindScene, SceneConstants, scene);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 EDIT_ONE(kBindFrameState, FrameState, frame_state);
 EDIT(kBindDispatches, DispatchArguments, dispatches);
@@ -19,5 +20,7 @@ void main() {
   dispatches[kDispatchContactStatics] = items_for(contact ? list_count(kListContactStatics) : 0u);
   dispatches[kDispatchContactMobiles] = items_for(contact ? list_count(kListContactMobiles) : 0u);
   dispatches[kDispatchTouchedVoxels] = items_for(contact ? list_count(kListTouchedVoxels) : 0u);
+  dispatches[kDispatchContactClusters] =
+      groups_for(contact ? (scene.tool.triangles + kClusterSize - 1u) / kClusterSize : 0u);
   dispatches[kDispatchAreaMembers] = groups_for(0u);
 }

@@ -11,6 +11,8 @@ READ(kBindTouchedVoxels, FrameVoxel, touched_voxels);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindVoxelState, uint32_t, voxel_state);
+READ(kBindPairSlots, uint32_t, pair_slots);
+EDIT(kBindPairTable, uint64_t, pair_table);
 EDIT_ONE(kBindResult, FrameResult, result);
 
 // Entry i of each list.
@@ -18,6 +20,7 @@ void reset_entry(uint32_t i) {
   if (i < list_count(kListContactStatics)) static_state[contact_statics[i]] = 0u;
   if (i < list_count(kListContactMobiles)) mobile_state[contact_mobiles[i]] = 0u;
   if (i < list_count(kListTouchedVoxels)) voxel_state[touched_voxels[i].boundary] = 0u;
+  if (i < list_count(kListPairCandidates)) pair_table[pair_slots[i]] = 0ul;
 }
 
 // Invocation i of the first ones.

@@ -60,12 +60,22 @@ PALPATE_CONSTANT int32_t kBindToolInfo = 18;             // uint32_t: kInfo… b
 PALPATE_CONSTANT int32_t kBindToolNormals = 19;          // ivec3, Q30, tool lattice frame
 PALPATE_CONSTANT int32_t kBindToolWeights = 20;          // uint32_t, Q30: field weights; refined
 PALPATE_CONSTANT int32_t kBindToolExtras = 21;           // ExtraSample, tool lattice frame; refined
+PALPATE_CONSTANT int32_t kBindSampleBegin = 22;  // uint32_t, by boundary voxel of the mock-up, and one more:
+                                                 // the first of its points (of the next three)
 PALPATE_CONSTANT int32_t kBindFineBrickSlot = 23;  // the tool's fine partition (SceneConstants::fine) …
 PALPATE_CONSTANT int32_t kBindFineBricks = 24;
 PALPATE_CONSTANT int32_t kBindFineListBegin = 25;
 PALPATE_CONSTANT int32_t kBindFineListTriangles = 26;
 PALPATE_CONSTANT int32_t kBindFineExit =
     27;  // uint32_t, by V_bnd voxel of it: the axis step (0 … 5: −x, +x, −y …) that leads out to V_ext
+PALPATE_CONSTANT int32_t kBindSamplePoints =
+    28;  // uint32_t: grid samples and first corners of the mock-up's triangles from their voxel's low corner
+         // on: x + 2^20 · y + 2^40 · z as two words where a voxel has no more than kNarrowVoxel steps, else
+         // three
+PALPATE_CONSTANT int32_t kBindSampleIds = 29;  // uint32_t: their triangles, as in FrameSample
+PALPATE_CONSTANT int32_t kBindToolNear =
+    30;  // uint32_t: a bit a voxel of SceneConstants::fine: a mock-up voxel
+         // with its centre there may meet the tool's solid; or one word: all
 PALPATE_CONSTANT int32_t kBindFinePlaces =
     31;  // uint32_t: kBindFineListTriangles as places in the order of clusters; of a closed tool (refined)
 
@@ -85,15 +95,15 @@ PALPATE_CONSTANT int32_t kBindListsAnew =
 PALPATE_CONSTANT int32_t kBindClusterBoxes =
     37;  // LatticeBox[clusters]: of the transformed triangles of a cluster, closed
 PALPATE_CONSTANT int32_t kBindMobileState = 38;  // uint32_t[tool triangles]: kMobile… bits; 0 between frames
-PALPATE_CONSTANT int32_t kBindToolRecords = 40;      // ToolRecord[tool triangles], in the order of clusters
-PALPATE_CONSTANT int32_t kBindTouchCandidates = 41;  // TouchCandidate[FrameInput::touch_candidates]; mapped
+PALPATE_CONSTANT int32_t kBindToolRecords = 40;  // ToolRecord[tool triangles], in the order of clusters
+PALPATE_CONSTANT int32_t kBindNearRuns = 41;     // kListNearRuns: NearRun
 PALPATE_CONSTANT int32_t kBindVoxelState = 42;  // uint32_t[boundary voxels]: kVoxel… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindTouchedVoxels =
     43;  // kListTouchedVoxels: FrameVoxel, each V_bnd voxel touched by a mobile triangle once
-PALPATE_CONSTANT int32_t kBindInsideSamples = 44;   // FrameSample[FrameInput::inside_samples]; mapped
-PALPATE_CONSTANT int32_t kBindStaticChunks = 45;    // kListStaticChunks: StaticChunk
-PALPATE_CONSTANT int32_t kBindPairCandidates = 47;  // PairCandidate[FrameInput::pair_candidates]; mapped
-PALPATE_CONSTANT int32_t kBindPairs = 48;           // kListPairs: ContactPair, distinct intersecting pairs
+PALPATE_CONSTANT int32_t kBindPairChunks = 45;  // kListPairChunks: PairChunk
+PALPATE_CONSTANT int32_t kBindPairTable = 47;   // uint64_t[a power of two]: hash table of pairs to test,
+                                                // (static id + 1) · 2^32 + place; 0 between frames
+PALPATE_CONSTANT int32_t kBindPairs = 48;       // kListPairs: ContactPair, distinct intersecting pairs
 PALPATE_CONSTANT int32_t kBindStaticState =
     49;  // uint32_t[static triangles]: kStatic… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindStaticSlot =
@@ -101,9 +111,9 @@ PALPATE_CONSTANT int32_t kBindStaticSlot =
 PALPATE_CONSTANT int32_t kBindContactStatics = 51;  // kListContactStatics: uint32_t static id = C_s
 PALPATE_CONSTANT int32_t kBindContactMobiles = 52;  // kListContactMobiles: uint32_t tool triangle = C_m
 PALPATE_CONSTANT int32_t kBindSampleChunks =
-    53;  // kListSampleChunks: SampleChunk over voxels that may hold counting samples; mapped
+    53;  // kListSampleChunks: SampleChunk over voxels that may hold counting samples
 PALPATE_CONSTANT int32_t kBindOpenSamples =
-    54;  // kListOpenSamples: FrameSample in V_bnd voxels of the tool: the winding decides; mapped
+    54;  // kListOpenSamples: FrameSample in V_bnd voxels of the tool: the winding decides
 PALPATE_CONSTANT int32_t kBindSamples = 55;        // kListSamples: FrameSample inside the tool; refined only
 PALPATE_CONSTANT int32_t kBindResult = 58;         // FrameResult, one; mapped, read by the host
 PALPATE_CONSTANT int32_t kBindResultStatics = 59;  // StaticResult[C_s], by slot; mapped
@@ -113,22 +123,29 @@ PALPATE_CONSTANT int32_t kBindToolCorners =
     65;  // ToolCorners[tool triangles]: transformed, in the order of clusters
 PALPATE_CONSTANT int32_t kBindRunBoxes =
     66;  // LatticeBox[runs]: of kRunSize triangles that follow each other in a cluster
+PALPATE_CONSTANT int32_t kBindPairSlots = 67;   // kListPairCandidates: uint32_t entries of the table in use
+PALPATE_CONSTANT int32_t kBindToolBounds = 68;  // LatticeBox: of each cluster, then of each run, tool lattice
+                                                // frame, without what has collapsed; may be empty
+PALPATE_CONSTANT int32_t kBindOccupied = 69;    // uint32_t: lib/near/occupied.glsl
+PALPATE_CONSTANT int32_t kBindListBoxes =
+    70;  // uint32_t, by entry of kBindMockupListTriangles: the part of the voxel in which the triangle's box
+         // lies, low x, y, z, high x, y, z in kListParts-ths of its side, 5 bits each
+PALPATE_CONSTANT int32_t kBindNearGroups = 71;  // kGroupsTouch, kGroupsSamples
 PALPATE_CONSTANT int32_t kBindResponseFirst =
     72;  // frame_response.h has this one and above, frame_field.h 96 and above
 
 // ---- lists
 // ---------------------------------------------------------------------------------------------------------------
 
-PALPATE_CONSTANT uint32_t kListTouchCandidates = 2;  // by the host
+PALPATE_CONSTANT uint32_t kListNearRuns = 2;
 PALPATE_CONSTANT uint32_t kListTouchedVoxels = 3;
-PALPATE_CONSTANT uint32_t kListInsideSamples = 4;  // by the host
-PALPATE_CONSTANT uint32_t kListStaticChunks = 5;
-PALPATE_CONSTANT uint32_t kListPairCandidates = 6;  // by the host
+PALPATE_CONSTANT uint32_t kListPairChunks = 5;
+PALPATE_CONSTANT uint32_t kListPairCandidates = 6;
 PALPATE_CONSTANT uint32_t kListPairs = 7;
 PALPATE_CONSTANT uint32_t kListContactStatics = 8;
 PALPATE_CONSTANT uint32_t kListContactMobiles = 9;
-PALPATE_CONSTANT uint32_t kListSampleChunks = 10;  // by the host, where samples are not listed
-PALPATE_CONSTANT uint32_t kListOpenSamples = 11;   // by the host where samples are listed, else by the device
+PALPATE_CONSTANT uint32_t kListSampleChunks = 10;
+PALPATE_CONSTANT uint32_t kListOpenSamples = 11;
 PALPATE_CONSTANT uint32_t kListSamples = 12;
 PALPATE_CONSTANT uint32_t kListMembers =
     13;  // response: mobile triangles of areas; ids only, goes to the host as it is
@@ -154,38 +171,31 @@ struct FrameList {
 };
 
 // Entries of the stages' group counts.
-PALPATE_CONSTANT uint32_t kGroupsStatics = 0;  // an invocation a StaticChunk
+PALPATE_CONSTANT uint32_t kGroupsTouch = 0;    // a workgroup kRunsAGroup NearRuns
+PALPATE_CONSTANT uint32_t kGroupsSamples = 1;  // an invocation a SampleChunk
+PALPATE_CONSTANT uint32_t kGroupsPairs = 0;    // an invocation a PairChunk
 PALPATE_CONSTANT uint32_t kGroupsOpen = 1;     // an invocation an open sample
 PALPATE_CONSTANT uint32_t kGroupsTiles = 0;    // a workgroup a tile
 PALPATE_CONSTANT uint32_t kGroupsMockupPush =
     1;  // an invocation a sample, then an invocation an extra sample
 
 // Group counts; 0 in a frame that does not need them. `One` is a single workgroup.
-PALPATE_CONSTANT uint32_t kDispatchContactOne = 0;      // contact
-PALPATE_CONSTANT uint32_t kDispatchContactStatics = 1;  // contact: an invocation a slot of C_s
-PALPATE_CONSTANT uint32_t kDispatchContactMobiles = 2;  // contact: an invocation a member of C_m
-PALPATE_CONSTANT uint32_t kDispatchTouchedVoxels = 7;   // contact: an invocation a touched V_bnd voxel
-PALPATE_CONSTANT uint32_t kDispatchResponseFirst = 16;  // 16…31: of the response's own making
+PALPATE_CONSTANT uint32_t kDispatchContactOne = 0;       // contact
+PALPATE_CONSTANT uint32_t kDispatchContactStatics = 1;   // contact: an invocation a slot of C_s
+PALPATE_CONSTANT uint32_t kDispatchContactMobiles = 2;   // contact: an invocation a member of C_m
+PALPATE_CONSTANT uint32_t kDispatchContactClusters = 3;  // contact: a workgroup a cluster of the tool
+PALPATE_CONSTANT uint32_t kDispatchTouchedVoxels = 7;    // contact: an invocation a touched V_bnd voxel
+PALPATE_CONSTANT uint32_t kDispatchResponseFirst = 16;   // 16…31: of the response's own making
 PALPATE_CONSTANT uint32_t kDispatchCount = 32;
 
 // ---- what the host gives a frame
 // -----------------------------------------------------------------------------------------
 
 struct FrameInput {
-  int32_t rotation_q30[9];    // row-major, world from tool (LatticePose)
-  ivec3 translation;          // steps
-  uint32_t touch_candidates;  // entries of the lists that the host filled …
-  uint32_t pair_candidates;
-  uint32_t sample_chunks;
-  uint32_t inside_samples;
-  uint32_t open_samples;
-  uint32_t ignores;  // 1: some patch is ignored (refined)
+  int32_t rotation_q30[9];  // row-major, world from tool (LatticePose)
+  ivec3 translation;        // steps
+  uint32_t ignores;         // 1: some patch is ignored (refined)
   uint32_t coarser;  // 256ths of a level by which samples are coarser than the contact asks for (refined)
-  DispatchArguments touch, pairs, found, chunks,
-      open;  // an invocation a touch candidate, a pair, an inside sample, a chunk, an open sample that the
-             // host listed
-  DispatchArguments
-      clusters;  // the bodies may meet (`paper`): a workgroup a cluster of the tool; none otherwise
 };
 
 // ---- what it keeps
@@ -241,15 +251,15 @@ struct ToolRecord {
   uint32_t padding;
 };
 
-// A tool triangle that comes near a voxel that is V_bnd or V_int, found by the host
-// (compute/search/near_pairs.h).
-struct TouchCandidate {
-  uint32_t place;     // in the order of clusters
-  uint32_t boundary;  // number of the V_bnd voxel; kNoVoxel: V_int
-  int32_t xy;         // voxel x + 2^16 · voxel y
-  int32_t z;  // with kWholeBrick: the voxel is the first one of a brick that is all V_int, and stands for it
+// A run of the tool near the mock-up; of its triangles' voxels those in bricks low … high along each axis, so
+// that no invocation walks too many.
+struct NearRun {
+  uint32_t run;
+  uint32_t x, y, z;  // low + 2^16 · high
 };
-PALPATE_CONSTANT int32_t kWholeBrick = 1 << 30;
+PALPATE_CONSTANT uint32_t kRunsAGroup = kGroupSize / kRunSize;
+PALPATE_CONSTANT int32_t kBricksAPart = 64;     // of a NearRun (chosen), …
+PALPATE_CONSTANT int32_t kMostParts = 1 << 14;  // … and more where so many parts would not do
 
 // A V_bnd voxel of the mock-up's grid.
 struct FrameVoxel {
@@ -257,26 +267,28 @@ struct FrameVoxel {
   ivec3 voxel;        // coordinates in the grid
 };
 
-// Parts [begin, end) of the list of static triangles of a V_bnd voxel, so that no invocation walks a long
-// list.
-struct StaticChunk {
-  uint32_t begin, end;  // to be marked as listed in a touched voxel
+// Entries [begin, end) of the list of a V_bnd voxel that a tool triangle touches, so that no invocation walks
+// a long list.
+struct PairChunk {
+  uint32_t place;  // of the tool triangle, in the order of clusters; with kFirstTouch: none touched the voxel
+                   // before, and all that it lists is to be marked
+  uint32_t begin, end;
+  uint32_t xy, z;  // voxel x + 2^16 · voxel y, voxel z
+  uint32_t padding;
 };
+PALPATE_CONSTANT uint32_t kFirstTouch = 1u << 31;
+PALPATE_CONSTANT int32_t kListParts = 32;
 struct SampleChunk {
   ivec3 voxel;          // whose samples are asked for
-  uint32_t begin, end;  // of its list
+  uint32_t begin, end;  // of its list, or of its points, where samples are listed
 };
-PALPATE_CONSTANT uint32_t kStaticChunk = 8;  // entries in a StaticChunk (chosen: most lists are shorter)
-PALPATE_CONSTANT uint32_t kSampleChunk = 2;  // entries in a SampleChunk
+PALPATE_CONSTANT uint32_t kPairChunk = 16;   // entries in a PairChunk (chosen: most lists are shorter)
+PALPATE_CONSTANT uint32_t kSampleChunk = 2;  // entries in a SampleChunk, and points, where they are listed
+PALPATE_CONSTANT uint32_t kListedChunk = 16;
+PALPATE_CONSTANT int32_t kNarrowVoxel = 1 << 20;  // steps
 PALPATE_CONSTANT uint32_t kMostChunks = 1024,
-                          kMostStaticChunks =
-                              8192;  // chunks of one list: where it is very long, chunks are longer
-
-// Two triangles whose boxes meet, found by the host.
-struct PairCandidate {
-  uint32_t static_id;
-  uint32_t place;  // of the tool triangle, in the order of clusters
-};
+                          kMostSampleChunks = 1
+                                              << 14;  // of one list: where it is very long, chunks are longer
 
 struct ContactPair {
   uint32_t static_id;
@@ -337,9 +349,10 @@ struct AreaMember {
 };
 
 PALPATE_ASSERT_SIZE(FrameList, 8);
-PALPATE_ASSERT_SIZE(FrameInput, 148);
+PALPATE_ASSERT_SIZE(FrameInput, 56);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
-PALPATE_ASSERT_SIZE(TouchCandidate, 16);
+PALPATE_ASSERT_SIZE(NearRun, 16);
+PALPATE_ASSERT_SIZE(PairChunk, 24);
 PALPATE_ASSERT_SIZE(AreaResult, 64);
 PALPATE_ASSERT_SIZE(FrameResult, 64 + 4 * kListCount + 64 * kMaxFrameAreas);
 

@@ -1,4 +1,4 @@
-#include "compute/search/brick_bits.h"
+#include "compute/scene/brick_bits.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "compute/search/occupied_cubes.h"
+#include "compute/scene/occupied_cubes.h"
 
 namespace palpate {
 namespace {

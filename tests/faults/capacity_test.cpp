@@ -34,11 +34,11 @@ void PrintTo(const Small& small, std::ostream* out) { *out << small.list; }
 class Capacity : public testing::TestWithParam<Small> {};
 INSTANTIATE_TEST_SUITE_P(
     Each, Capacity,
-    testing::Values(Small{"voxels to touch", ball_on_edge}, Small{"touched voxels", ball_on_edge},
+    testing::Values(Small{"near parts of the tool", ball_on_edge}, Small{"touched voxels", ball_on_edge},
                     Small{"lists of touched voxels", ball_on_edge}, Small{"pairs to test", ball_on_edge},
                     Small{"pairs", ball_on_edge}, Small{"contact triangles of the mock-up", ball_on_edge},
                     Small{"contact triangles of the tool", ball_on_edge},
-                    Small{"samples found inside", ball_on_edge},
+                    Small{"lists with samples", ball_on_edge},
                     Small{"samples near the tool's surface", ball_on_edge}, Small{"samples", ball_on_edge},
                     Small{"tiles of tool samples", ball_on_edge}, Small{"samples of the tool", ball_on_edge}),
     [](const auto& tested) {

@@ -53,8 +53,8 @@ const std::map<std::string, std::vector<std::string>> kAllowed = {
      {"compute/vulkan/", "model/address_space.h", "model/result.h", "shaders/shared/base.h",
       "shaders/shared/shader_code.h"}},  // no word of collision
     {"compute/gpu",
-     {"compute/gpu/", "compute/vulkan/", "compute/search/", "compute/scene/", "model/", "shaders/shared/",
-      "shaders/code.h"}},
+     {"compute/gpu/", "compute/vulkan/", "compute/scene/", "model/", "shaders/shared/",
+      "shaders/code.h"}},  // it searches on the device
     {"compute/native",
      {"compute/native/", "compute/search/", "compute/scene/", "model/",
       "shaders/shared/"}},  // engines do not name each other

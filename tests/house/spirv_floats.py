@@ -21,13 +21,18 @@ SHARED_STORAGE = {'StorageBuffer', 'Uniform', 'UniformConstant', 'PushConstant',
 RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding, contracted or not, and exact tests follow'
 CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
 DEPTH = 'in which cell a coordinate lies (as above), and quotients and roots of lib/distance.glsl: floats estimate them, integer remainders settle them'
+NEAR = 'which runs, voxels and list entries may be near (lib/near/turned_box.glsl, near_cull, voxel_touch, pair_test): margins cover every rounding, contracted or not, and exact tests follow; and in which cell a coordinate lies (as above)'
 CULLS = {
     'centroids_trace': RAYS,
     'field_from_mockup': DEPTH,
     'field_from_tool': DEPTH,
     'field_points': CELL,
+    'near_cull': NEAR,
+    'pair_test': NEAR,
+    'sample_listed': CELL,
     'sample_scan': CELL,
     'sample_walk': CELL,
+    'voxel_touch': NEAR,
 }
 
 

@@ -66,6 +66,11 @@ Result<std::unique_ptr<Frame>> MutableDevice::make_frame(const SceneGeometry& ge
   return Frame::create(*device_, geometry, scene(), room);
 }
 
+void MutableDevice::list_samples(bool listed) {
+  VulkanBuffer &there = kept_of_->scene.sample_points, &aside = kept_of_->points;
+  if (listed ? !there : static_cast<bool>(there)) std::swap(there, aside);
+}
+
 Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& plan,
                                     const Progress& progress) {
   frame_.reset();
@@ -79,7 +84,6 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
       fresh_.emplace(std::move(*scene));
     } else {
       Prepared made{std::move(*scene), {}, {}, {}};
-      made.samples = made.scene.samples;
       for (const bool tool : {false, true}) {
         const PartitionBuffers& of = tool ? made.scene.tool.partition : made.scene.mockup.partition;
         if (!of.brick_slot) continue;  // `paper` has none of the tool
@@ -89,14 +93,14 @@ Result<void> MutableDevice::prepare(const SceneGeometry& geometry, const Plan& p
       }
       kept_of_ = &kept_.emplace(&geometry, std::move(made)).first->second;
       for (const bool without : {true, false}) {  // so that the pipelines of all ways are there to be swapped
-        kept_of_->scene.samples = without ? nullptr : kept_of_->samples;
+        list_samples(!without);
         if (auto other = make_frame(geometry); !other) return other.error();
       }
     }
   } else {
     kept_of_ = &found->second;
   }
-  if (!fresh_) kept_of_->scene.samples = without_samples_ ? nullptr : kept_of_->samples;
+  if (!fresh_) list_samples(!without_samples_);
   auto frame = make_frame(geometry);
   if (!frame) return frame.error();
   frame_ = std::move(*frame);

@@ -58,8 +58,10 @@ class MutableDevice final : public CollisionBackend {
   struct Prepared {
     PreparedScene scene;
     VoxelPartition mockup, tool;
-    std::shared_ptr<const HostSamples> samples;  // the scene's, also while it goes without
+    VulkanBuffer points;  // the scene's samples, while it goes without
   };
+  /// Whether the kept scene has its samples, if it ever had.
+  void list_samples(bool listed);
   Result<std::unique_ptr<Frame>> make_frame(const SceneGeometry& geometry);
   const PreparedScene& scene() const { return fresh_ ? *fresh_ : kept_of_->scene; }
 

@@ -250,14 +250,14 @@ std::string Oracle::first_overflow_difference(
     std::size_t& of, const std::function<void(const char*, std::uint32_t)>& set_room) {
   if (overflows_.empty()) {
     constexpr std::pair<const char*, const char*> kAsked[] = {
-        {"voxels to touch", "ball_on_block"},
+        {"near parts of the tool", "ball_on_block"},
         {"touched voxels", "ball_on_block"},
         {"lists of touched voxels", "ball_on_block"},
         {"pairs to test", "ball_on_block"},
         {"pairs", "ball_on_block"},
         {"contact triangles of the mock-up", "ball_on_block"},
         {"contact triangles of the tool", "ball_on_block"},
-        {"samples found inside", "ball_on_block"},
+        {"lists with samples", "ball_on_block"},
         {"samples near the tool's surface", "ball_on_block"},
         {"samples", "ball_on_block"},
         {"tool triangles of areas", "ball_on_block_paper"},

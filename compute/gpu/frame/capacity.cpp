@@ -9,15 +9,15 @@ namespace {
 using namespace gpu;  // names of shaders/shared/frame.h
 
 // Chosen: a frame of 100,000 by 2,000 triangles in deep contact uses a tenth of it.
-constexpr std::uint64_t kUsual = 1u << 18, kPerTriangle = 16;
+constexpr std::uint64_t kUsual = 1u << 18, kPerTriangle = 16, kLookedAt = 4;
 constexpr std::uint64_t kMostItems =
     1u << 22;  // to begin with; a binding of 128 MiB holds that many of 32 bytes
 
 constexpr std::array<const char*, 20> kListNames = {"",
                                                     "",
-                                                    "voxels to touch",
+                                                    "near parts of the tool",
                                                     "touched voxels",
-                                                    "samples found inside",
+                                                    "",
                                                     "lists of touched voxels",
                                                     "pairs to test",
                                                     "pairs",
@@ -51,8 +51,7 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand,
   const bool refined = scene.refined != 0;
   const std::uint64_t tool = scene.tool.triangles, mockup = scene.mockup.triangles,
                       voxels = scene.mockup.grid.boundary_voxels;
-  const std::uint64_t entries = scene.mockup.grid.list_entries,
-                      all_voxels = voxels + (scene.mockup.has_internal != 0 ? kMostItems : 0);
+  const std::uint64_t entries = scene.mockup.grid.list_entries;
   // Of every list: what is usual, more for a large tool, and never more than there is.
   const auto room = [&](std::uint64_t a_tool_triangle, std::uint64_t most) {
     return items(std::min(std::max(kUsual, a_tool_triangle * tool), most), kMostItems);
@@ -61,15 +60,16 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand,
   const std::uint64_t samples = !refined ? 1 : demand.samples ? *demand.samples + mockup : kMostItems;
   FrameCapacity out;
   auto& l = out.lists;
-  l[kListTouchCandidates] = room(kPerTriangle, tool * all_voxels);
+  l[kListNearRuns] = room(1, ~0u);
   l[kListTouchedVoxels] = room(kPerTriangle, voxels);
-  l[kListStaticChunks] = room(kPerTriangle, voxels + entries / kStaticChunk);
-  l[kListPairCandidates] = room(kPerTriangle, tool * mockup);  // both below 2^32
+  l[kListPairChunks] = room(kLookedAt, tool * (voxels + entries / kPairChunk));  // both below 2^32
+  l[kListPairCandidates] = room(kLookedAt, tool * mockup);
   l[kListPairs] = room(kPerTriangle, tool * mockup);
   l[kListContactStatics] = room(0, mockup);
   l[kListContactMobiles] = items(tool, ~0u);
-  l[kListSampleChunks] = demand.samples || !refined ? 1 : room(kPerTriangle, voxels + entries / kSampleChunk);
-  l[kListInsideSamples] = l[kListOpenSamples] = l[kListSamples] = room(0, samples);
+  l[kListSampleChunks] = room(
+      kLookedAt, !refined ? 1 : voxels + (demand.samples ? samples / kListedChunk : entries / kSampleChunk));
+  l[kListOpenSamples] = l[kListSamples] = room(0, samples);
   l[kListMembers] = room(2, tool * kMaxFrameAreas);
   l[kListFieldTiles] = refined ? room(2, ~0u) : 1;
   l[kListMockupPoints] = room(0, scene.mockup_extras);

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "compute/gpu/frame/plan.h"
-#include "compute/search/tool_order.h"
+#include "compute/scene/tool_order.h"
 #include "shaders/code.h"
 
 namespace palpate {
@@ -21,7 +21,9 @@ std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geomet
   out->inside_ =
       out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
-  out->listed_ = scene.samples && scene.samples->listed();
+  out->listed_ = static_cast<bool>(scene.sample_points);
+  out->wide_ = scene.constants.mockup.grid.size > kNarrowVoxel;
+  out->has_near_ = static_cast<bool>(scene.tool_near);
   return out;
 }
 
@@ -31,7 +33,8 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   const BodyConstants& mockup = scene.constants.mockup;
   const BodyConstants& tool = scene.constants.tool;
   const std::uint64_t voxels = mockup.grid.boundary_voxels, statics = capacity.lists[kListContactStatics];
-  const std::uint64_t clusters = (tool.triangles + kClusterSize - 1) / kClusterSize;
+  const std::uint64_t clusters = (tool.triangles + kClusterSize - 1) / kClusterSize,
+                      runs = (tool.triangles + kRunSize - 1) / kRunSize;
 
   struct List {
     std::uint32_t list;
@@ -40,16 +43,15 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
     BufferKind kind = BufferKind::kDevice;
   };
   const List lists[] = {
-      {kListTouchCandidates, kBindTouchCandidates, sizeof(TouchCandidate), BufferKind::kUpload},
+      {kListNearRuns, kBindNearRuns, sizeof(NearRun)},
       {kListTouchedVoxels, kBindTouchedVoxels, sizeof(FrameVoxel)},
-      {kListStaticChunks, kBindStaticChunks, sizeof(StaticChunk)},
-      {kListPairCandidates, kBindPairCandidates, sizeof(PairCandidate), BufferKind::kUpload},
+      {kListPairChunks, kBindPairChunks, sizeof(PairChunk)},
+      {kListPairCandidates, kBindPairSlots, sizeof(std::uint32_t)},
       {kListPairs, kBindPairs, sizeof(ContactPair)},
       {kListContactStatics, kBindContactStatics, sizeof(std::uint32_t)},
       {kListContactMobiles, kBindContactMobiles, sizeof(std::uint32_t)},
-      {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk), BufferKind::kUpload},
-      {kListInsideSamples, kBindInsideSamples, sizeof(FrameSample), BufferKind::kUpload},
-      {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample), BufferKind::kUpload},
+      {kListSampleChunks, kBindSampleChunks, sizeof(SampleChunk)},
+      {kListOpenSamples, kBindOpenSamples, sizeof(FrameSample)},
       {kListSamples, kBindSamples, sizeof(FrameSample)},
       {kListMembers, kBindResultMembers, sizeof(AreaMember), BufferKind::kReadback},
   };
@@ -72,6 +74,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindListsAnew, "frame lists", sizeof(FrameLists)},
       {kBindResultGroups, "group counts", sizeof(DispatchArguments)},
       {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
+      {kBindToolBounds, "boxes of the tool", sizeof(LatticeBox) * (clusters + runs)},
       {kBindFinePlaces, "lists of the tool's fine voxels",
        closed_ ? 4 * std::uint64_t{scene.constants.fine.list_entries} : 4},
       {kBindClusterBoxes, "boxes of clusters", sizeof(LatticeBox) * clusters},
@@ -90,7 +93,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
 
   if (auto r = buffers.make_table(device, kBindFrameState, "frame state", sizeof(FrameState)); !r) return r;
   for (const std::int32_t binding :
-       {kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
+       {kBindNearGroups, kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
     if (auto r = buffers.make_table(device, binding, "group counts", 2 * sizeof(DispatchArguments)); !r)
       return r;
   if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r)
@@ -104,7 +107,17 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
                                   4 * std::uint64_t{tool.triangles});
       !r)
     return r;
+  for (const std::int32_t binding : {kBindToolNear, kBindSampleBegin})
+    if (buffers.bytes(binding) == 0)  // near_cull asks nobody
+      if (auto r = buffers.make(device, binding, "unused", 4); !r) return r;
+
+  // At most half full.
+  if (auto r = buffers.make_table(device, kBindPairTable, "table of pairs",
+                                  8 * std::bit_ceil(2 * std::uint64_t{capacity.lists[kListPairCandidates]}));
+      !r)
+    return r;
   if (auto r = upload_records(device, geometry.tool, buffers[kBindToolRecords]); !r) return r;
+  if (auto r = upload_bounds(device, geometry.tool, buffers[kBindToolBounds]); !r) return r;
   return closed_ ? upload_places(device, scene, buffers[kBindFinePlaces]) : Result<void>{};
 }
 
@@ -128,9 +141,33 @@ Result<void> FrameDetection::upload_records(VulkanDevice& device, const LatticeM
   return upload(device, to, records.data(), records.size() * sizeof records[0]);
 }
 
+Result<void> FrameDetection::upload_bounds(VulkanDevice& device, const LatticeMesh& tool,
+                                           const VulkanBuffer& to) const {
+  std::vector<LatticeBox> boxes;
+  for (const std::size_t each : {std::size_t{kClusterSize}, std::size_t{kRunSize}})
+    for (std::size_t begin = 0; begin < order_.size(); begin += each) {
+      LatticeBox box{ivec3(INT32_MAX), ivec3(INT32_MIN)};
+      for (std::size_t place = begin; place < std::min(begin + each, order_.size()); ++place) {
+        if (tool.collapsed(order_[place])) continue;
+        for (int corner = 0; corner < 3; ++corner) {
+          box.low = glm::min(box.low, tool.corner(order_[place], corner));
+          box.high = glm::max(box.high, tool.corner(order_[place], corner));
+        }
+      }
+      boxes.push_back(box);
+    }
+  return upload(device, to, boxes.data(), boxes.size() * sizeof boxes[0]);
+}
+
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
+  if (device.shares_memory()) brick_groups_ = 2;  // llvmpipe takes its time for one without work, too
   const std::vector<SpecConstant> plan = plan_constants(plan_);
-  const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}};
+  const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}}, of_points[] = {{0, wide_ ? 1u : 0u}},
+                     of_search[] = {{0, !inside_  ? 0u
+                                        : listed_ ? 2u
+                                                  : 1u},
+                                    {1, has_near_ ? 1u : 0u},
+                                    {2, brick_groups_}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;
@@ -141,9 +178,9 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const Made all[] = {
       {&tool_clusters_place_, &spirv::tool_clusters, !refined_},
       {&voxel_touch_, &spirv::voxel_touch},
-      {&static_list_, &spirv::static_list},
+      {&near_cull_, &spirv::near_cull, true, 0, of_search},
       {&pair_test_, &spirv::pair_test},
-      {&sample_take_, &spirv::sample_take, inside_ && listed_},
+      {&sample_listed_, &spirv::sample_listed, inside_ && listed_, 0, of_points},
       {&sample_walk_, &spirv::sample_walk, inside_, 0, of_tool},
       {&sample_scan_, &spirv::sample_scan, inside_ && !listed_},
       {&set_decide_, &spirv::set_decide, !refined_},
@@ -162,34 +199,26 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
 }
 
 void FrameDetection::record(FrameRecorder& recorder) const {
-  if (!refined_) {
-    recorder.stage("transform");
-    recorder.run_input(tool_clusters_place_, offsetof(FrameInput, clusters));
-  }
-  // What the host found near is decided: voxels that triangles touch (IMT, BMT), pairs, samples where the
-  // tool's partition knows.
+  recorder.stage("cull");
+  const auto clusters = static_cast<std::uint32_t>((order_.size() + kClusterSize - 1) / kClusterSize);
+  const auto groups = [](std::uint32_t items) { return (items + kGroupSize - 1) / kGroupSize; };
+  recorder.run(near_cull_, groups(clusters) + (inside_ ? brick_groups_ : 0));
+  recorder.barrier();
+
   recorder.stage(plan_.imt ? "imt" : "bmt");  // one dispatch decides both
-  recorder.run_input(voxel_touch_, offsetof(FrameInput, touch));
-  recorder.stage("pairs");
-  recorder.run_input(pair_test_, offsetof(FrameInput, pairs));
+  recorder.run_stage(voxel_touch_, kBindNearGroups, kGroupsTouch);
   if (inside_) {
     recorder.stage("est");
-    if (listed_)
-      recorder.run_input(sample_take_, offsetof(FrameInput, found));
-    else
-      recorder.run_input(sample_scan_, offsetof(FrameInput, chunks));
+    recorder.run_stage(listed_ ? sample_listed_ : sample_scan_, kBindNearGroups, kGroupsSamples);
   }
   recorder.barrier();
 
-  // What is listed in touched voxels; samples that the tool's partition leaves open.
-  recorder.stage("bst");
-  recorder.run_stage(static_list_, kBindListedGroups, kGroupsStatics);
+  // Pairs in touched voxels, and what those list; samples that the tool's partition leaves open.
+  recorder.stage("pairs");
+  recorder.run_stage(pair_test_, kBindListedGroups, kGroupsPairs);
   if (inside_) {
     recorder.stage("open");
-    if (listed_)
-      recorder.run_input(sample_walk_, offsetof(FrameInput, open));
-    else
-      recorder.run_stage(sample_walk_, kBindListedGroups, kGroupsOpen);
+    recorder.run_stage(sample_walk_, kBindListedGroups, kGroupsOpen);
   }
 }
 
@@ -197,6 +226,9 @@ void FrameDetection::record_names(FrameRecorder& recorder) const {
   recorder.stage("sets");
   recorder.run(set_decide_, 1);
   recorder.run_stage(set_name_, kBindMembersGroups);
+  recorder.barrier();
+  recorder.stage("transform");
+  recorder.run_dispatch(tool_clusters_place_, kDispatchContactClusters);
 }
 
 void FrameDetection::record_end(FrameRecorder& recorder) const {
@@ -205,8 +237,8 @@ void FrameDetection::record_end(FrameRecorder& recorder) const {
 }
 
 void FrameDetection::record_anew(FrameRecorder& recorder) {
-  for (const std::int32_t binding :
-       {kBindFrameState, kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
+  for (const std::int32_t binding : {kBindFrameState, kBindNearGroups, kBindListedGroups, kBindMembersGroups,
+                                     kBindPlacedGroups, kBindPushedGroups})
     recorder.clear(binding);
   recorder.copy(kBindListsAnew, offsetof(FrameLists, lists), kBindFrameLists, sizeof FrameLists::lists);
   recorder.copy(kBindListsAnew, offsetof(FrameLists, result), kBindResultGroups, sizeof FrameLists::result);

@@ -43,16 +43,20 @@ class FrameDetection {
  private:
   FrameDetection() = default;
   Result<void> upload_records(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const;
+  Result<void> upload_bounds(VulkanDevice& device, const LatticeMesh& tool, const VulkanBuffer& to) const;
   Result<void> upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const;
 
   Plan plan_;
   bool refined_ = false;
   bool inside_ =
       false;  ///< samples are asked whether they lie inside the tool: refined, and it has an inside
-  bool closed_ = false;  ///< the tool's surface, in `refined`: open samples ask for the winding
-  bool listed_ = false;  ///< samples were listed by preparation
+  bool closed_ = false;              ///< the tool's surface, in `refined`: open samples ask for the winding
+  bool listed_ = false;              ///< samples were listed by preparation …
+  bool wide_ = false;                ///< … three words each
+  std::uint32_t brick_groups_ = 64;  ///< of near_cull (chosen)
+  bool has_near_ = false;            ///< tool_near says something
   std::vector<std::uint32_t> order_;
-  FrameShader voxel_touch_, static_list_, pair_test_, tool_clusters_place_, sample_scan_, sample_take_,
+  FrameShader near_cull_, voxel_touch_, pair_test_, tool_clusters_place_, sample_scan_, sample_listed_,
       sample_walk_, set_decide_, set_name_, frame_result_;
 };
 

@@ -17,10 +17,6 @@
 #include "compute/gpu/frame/recorder.h"
 #include "compute/gpu/frame/response.h"
 #include "compute/gpu/frame/stage_memory.h"
-#include "compute/gpu/scene_copies.h"
-#include "compute/search/broad_phase.h"
-#include "compute/search/posed_tool.h"
-#include "compute/search/run_tree.h"
 #include "compute/vulkan/command_recorder.h"
 #include "model/contact/contact_areas.h"
 
@@ -31,13 +27,6 @@ using Clock = std::chrono::steady_clock;
 
 double us_since(Clock::time_point from) {
   return std::chrono::duration<double, std::micro>(Clock::now() - from).count();
-}
-
-/// An answer cut short by a capacity: no force.
-Result<void> truncate(Contacts& out, const char* capacity) {
-  out.truncated = true;
-  out.truncated_capacity = capacity;
-  return {};
 }
 
 bool turned(const LatticePose& pose) {
@@ -62,8 +51,7 @@ class RecordedFrame final : public Frame {
       : device_(device),
         geometry_(geometry),
         scene_(scene),
-        plan_(frame_plan(plan, scene.mockup.partition.has_internal)),
-        posed_(geometry.tool) {}
+        plan_(frame_plan(plan, scene.mockup.partition.has_internal)) {}
 
   Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
   Result<void> finish() override;
@@ -75,13 +63,6 @@ class RecordedFrame final : public Frame {
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
  private:
-  void make_room();
-  /// Hands what the host has listed to the device.
-  template <class T>
-  void give(std::int32_t binding, const HostList<T>& list) {
-    buffers_[binding].write(0, list.room.data(), list.count * sizeof(T));
-    work_.bytes_up += list.count * sizeof(T);
-  }
   void name_scene();
   Result<void> make_pipelines();
   Result<void> make_buffers();
@@ -94,16 +75,12 @@ class RecordedFrame final : public Frame {
   Result<void> answer(const LatticePose& pose, const Ignored* ignored, Contacts& out);
   Result<void> run(CommandRecorder& commands, Contacts& out);
   void read(Contacts& out);
-  void write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near, bool rays);
+  void write_input(const LatticePose& pose, const Ignored* ignored);
 
   VulkanDevice& device_;
   const SceneGeometry& geometry_;
   const PreparedScene& scene_;
   const Plan plan_;
-  PosedTool posed_;
-  SceneCopies copies_;
-  std::optional<RunTree> runs_;
-  std::optional<BroadPhase> broad_phase_;
   FrameCapacity capacity_;
   FrameBuffers buffers_;
   std::unique_ptr<FrameDetection> detection_;
@@ -113,17 +90,11 @@ class RecordedFrame final : public Frame {
   std::unique_ptr<CommandRecorder> commands_;  ///< from the pose to the result. Null after a failed record()
   double waited_us_ = 0, staged_us_ = 0;       ///< of this query's submissions
   DeviceWork work_;
-  std::vector<gpu::TouchCandidate> touch_;
-  std::vector<gpu::PairCandidate> near_pairs_;
-  std::vector<gpu::SampleChunk> chunks_;
-  std::vector<gpu::FrameSample> inside_, open_;
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
   bool finished_ = false;  ///< pipelines are there and commands recorded
   bool tables_clear_ = false;
-  std::uint64_t pairs_ = 0;  ///< that the last query counted
-  std::uint32_t near_full_ =
-      gpu::kNone;  ///< the list for which the last query found more than there is room for on the host
+  std::uint64_t pairs_ = 0;        ///< that the last query counted
   std::uint32_t frame_flags_ = 0;  ///< of every frame within the lattice
 };
 
@@ -160,7 +131,13 @@ void RecordedFrame::name_scene() {
       {kBindFineBricks, &fine.bricks},
       {kBindFineListBegin, &fine.list_begin},
       {kBindFineListTriangles, &fine.list_triangles},
-      {kBindFineExit, &scene_.fine_exit}};
+      {kBindFineExit, &scene_.fine_exit},
+      {kBindOccupied, &scene_.occupied},
+      {kBindListBoxes, &scene_.list_boxes},
+      {kBindToolNear, &scene_.tool_near},
+      {kBindSampleBegin, &scene_.sample_begin},
+      {kBindSamplePoints, &scene_.sample_points},
+      {kBindSampleIds, &scene_.sample_ids}};
   for (const auto& [binding, buffer] : all)
     if (*buffer) buffers_.name(binding, *buffer);  // `paper` has no partition of the tool
 }
@@ -172,15 +149,10 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
 
   detection_ = FrameDetection::make(geometry_, scene_, plan_);
-  // Pipelines are compiled beside what the host builds.
   if (auto r = make_pipelines(); !r) return r;
-  runs_.emplace(geometry_.tool, detection_->order());
-  if (auto r = copies_.read(device_, scene_); !r) return r;
-  broad_phase_.emplace(BroadPhase::make(geometry_, copies_.tables(), *runs_));
   std::optional<std::uint64_t> samples;
-  if (scene_.samples && scene_.samples->listed() &&
-      (constants.tool.closed != 0 || constants.tool.has_internal != 0))
-    samples = scene_.samples->count();
+  if (scene_.sample_ids && (constants.tool.closed != 0 || constants.tool.has_internal != 0))
+    samples = scene_.sample_ids.bytes() / sizeof(std::uint32_t);
   capacity_ = FrameCapacity::first({.scene = constants, .samples = samples}, first_capacity);
   if (auto r = make_buffers(); !r) return r;
   return finish();
@@ -216,18 +188,7 @@ Result<void> RecordedFrame::make_buffers() {
       return r;
   if (field_)
     if (auto r = field_->make_buffers(device_, capacity_, buffers_); !r) return r;
-  make_room();
   return set_capacities();
-}
-
-/// Room on the host for what the search finds: it is written to the device in one go, for memory that is
-/// written is no memory to work in.
-void RecordedFrame::make_room() {
-  touch_.resize(capacity_.lists[gpu::kListTouchCandidates]);
-  near_pairs_.resize(capacity_.lists[gpu::kListPairCandidates]);
-  chunks_.resize(capacity_.lists[gpu::kListSampleChunks]);
-  inside_.resize(capacity_.lists[gpu::kListInsideSamples]);
-  open_.resize(capacity_.lists[gpu::kListOpenSamples]);
 }
 
 Result<void> RecordedFrame::set_capacities() {
@@ -250,19 +211,13 @@ Result<void> RecordedFrame::enlarge() {
   // What was asked for, list by list; the result has not been touched since the frame that overflowed.
   std::array<std::uint32_t, gpu::kListCount> asked{};
   std::copy_n(buffers_[gpu::kBindResult].as<gpu::FrameResult>()->asked, gpu::kListCount, asked.begin());
-  gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
-  if (near_full_ != gpu::kNone) {  // before the frame began: of this one there is no result
-    asked = {};
-    state = {};
-    state.overflow = 1u << near_full_;
-  }
+  const gpu::FrameState state = buffers_[gpu::kBindResult].as<gpu::FrameResult>()->state;
   const FrameCapacity before = capacity_;
   if (!capacity_.grow(state, asked)) return bad_value(fixed_limit(state));
   tables_clear_ = false;
   if (auto made = make_buffers(); !made) {
     // Buffers that have grown already do no harm: the lists' capacities are what counts.
     capacity_ = before;
-    make_room();
     if (auto r = set_capacities(); !r) return r;
     if (auto r = record_again(); !r) return r;
     return made;
@@ -309,33 +264,14 @@ Result<void> RecordedFrame::record() {
   return {};
 }
 
-void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored, const NearLists& near,
-                                bool rays) {
+void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored) {
   gpu::FrameInput input{};
-  input.touch_candidates = near.touch.count;
-  input.pair_candidates = near.pairs.count;
-  input.sample_chunks = near.samples.count;
-  input.inside_samples = near.inside.count;
-  input.open_samples = near.open.count;
-  input.touch = items_for(near.touch.count);
-  input.pairs = items_for(near.pairs.count);
-  input.found = items_for(near.inside.count);
-  input.chunks = items_for(near.samples.count);
-  input.open = items_for(near.open.count);
-  if (response_ && rays)
-    input.clusters =
-        groups_for((scene_.constants.tool.triangles + gpu::kClusterSize - 1) / gpu::kClusterSize);
   for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
   input.translation = pose.translation;
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
   input.coarser = ignored != nullptr ? ignored->coarser : 0;
   buffers_[gpu::kBindFrameInput].write(0, &input, sizeof input);
   work_.bytes_up += sizeof input;
-  give(gpu::kBindTouchCandidates, near.touch);
-  give(gpu::kBindPairCandidates, near.pairs);
-  give(gpu::kBindSampleChunks, near.samples);
-  give(gpu::kBindInsideSamples, near.inside);
-  give(gpu::kBindOpenSamples, near.open);
 }
 
 Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
@@ -347,7 +283,6 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
 }
 
 Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
-  const auto start = Clock::now();
   out.times.clear();
   decoder_.clear(out);
   out.engine = "gpu";
@@ -357,29 +292,13 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
   if (!plan_.transform_rotates && !pose.beyond_lattice && turned(pose))
     return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
   if (!pose.beyond_lattice) out.flags = frame_flags_;
-  near_full_ = gpu::kNone;
-  NearLists near;
-  bool rays = false;
-  if (!pose.beyond_lattice) {
-    posed_.begin(pose);
-    near.touch.room = touch_;
-    near.pairs.room = near_pairs_;
-    near.samples.room = chunks_;
-    near.inside.room = inside_;
-    near.open.room = open_;
-    rays = broad_phase_->find(posed_, nullptr, near);
-  }
-  out.times.push_back({"cull", us_since(start), pose.beyond_lattice ? 0 : broad_phase_->looks()});
-  near_full_ = near.full;
-  if (near_full_ != gpu::kNone) return truncate(out, list_name(near_full_));
-  if (near.touch.count + near.samples.count + near.inside.count + near.open.count == 0)
-    return {};  // every pair lies in a voxel that may be touched
+  if (pose.beyond_lattice) return {};
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
     if (auto r = clear(); !r) return r;
   tables_clear_ = false;  // until the frame has run to its end
   const auto writing = Clock::now();
-  write_input(pose, ignored, near, rays);
+  write_input(pose, ignored);
   out.times.push_back({"upload", us_since(writing)});
 
   if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};

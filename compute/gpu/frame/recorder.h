@@ -84,10 +84,6 @@ class FrameRecorder {
   void run_dispatch(const FrameShader& shader, std::uint32_t which, const Push& push) {
     indirect(shader, gpu::kBindDispatches, which * sizeof(gpu::DispatchArguments), &push, push_bytes<Push>());
   }
-  /// As many workgroups as the DispatchArguments at `offset` of FrameInput say.
-  void run_input(const FrameShader& shader, std::size_t offset) {
-    indirect(shader, gpu::kBindFrameInput, offset, nullptr, 0);
-  }
   /// As entry `which` of a stage's group counts says.
   void run_stage(const FrameShader& shader, std::int32_t groups, std::uint32_t which = 0) {
     indirect(shader, groups, which * sizeof(gpu::DispatchArguments), nullptr, 0);

@@ -3,8 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "compute/scene/archive.h"
-#include "compute/scene/search_tables.h"
 #include "model/cache/archive.h"
 #include "model/cache/geometry_cache.h"
 
@@ -54,12 +52,6 @@ std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cach
     room = made && upload(device, *made, content.data(), content.size());
     if (room) buffer = std::move(*made);
   });
-  auto samples = std::make_shared<HostSamples>();
-  archive_samples(reader, *samples);
-  scene.samples = std::move(samples);
-  auto tables = std::make_shared<SearchTables>();
-  archive_tables(reader, *tables);
-  scene.search = std::move(tables);
   if (!reader.complete()) {
     cache.drop(kKind, key, "does not hold what it should");
     return std::nullopt;
@@ -86,9 +78,6 @@ void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key
       writer.borrow({buffer.as<char>(), buffer.bytes()});
     }
   });
-  static const HostSamples kNone;
-  archive_samples(writer, scene.samples ? *scene.samples : kNone);
-  archive_tables(writer, *scene.search);
   if (whole) cache.keep(kKind, key, writer.pieces(), seconds);
 }
 

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "compute/gpu/partition_copy.h"
 #include "compute/gpu/prepare/partition.h"
 #include "compute/gpu/prepare/samples.h"
+#include "compute/gpu/prepare/search_tables.h"
 #include "compute/gpu/prepare/steps.h"
-#include "compute/gpu/scene_copies.h"
 #include "compute/scene/scene_constants.h"
-#include "compute/scene/search_tables.h"
 #include "shaders/shared/frame_field.h"
 
 namespace palpate {
@@ -83,10 +83,9 @@ void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, Prep
   if (!steps.ok()) return;
   PartitionCopy lists;
   if (auto r = lists.read(steps.device(), out.mockup.partition); !r) return steps.fail(r.error());
-  out.search = SearchTables::make(geometry, lists.view(), [&] {
-    steps.progress("search", 0.95);
-    return steps.ok();
-  });
+  out.occupied = steps.filled("what of the mock-up is not outside", occupied_words(lists.view()));
+  out.list_boxes =
+      steps.filled("boxes of the mock-up's triangles", list_boxes(geometry.mockup, lists.view()));
 }
 
 }  // namespace
@@ -94,7 +93,7 @@ void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, Prep
 std::uint64_t PreparedScene::memory_bytes() const {
   std::uint64_t sum = 0;
   for_each_buffer(*this, [&](const VulkanBuffer& buffer) { sum += buffer.bytes(); });
-  return sum + (samples ? samples->bytes() : 0);
+  return sum;
 }
 
 Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, const Plan& plan,
@@ -109,8 +108,6 @@ Result<void> upload_meshes(VulkanDevice& device, const SceneGeometry& geometry, 
 Result<PreparedScene> share_scene(VulkanDevice& device, const PreparedScene& scene) {
   PreparedScene out;
   out.constants = scene.constants;
-  out.samples = scene.samples;
-  out.search = scene.search;
   std::vector<const PartitionBuffers*> partitions;
   for_each_partition(scene, [&](const PartitionBuffers& p) { partitions.push_back(&p); });
   std::size_t i = 0;

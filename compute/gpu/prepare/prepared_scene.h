@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "compute/scene/partition.h"
-#include "compute/scene/samples.h"
 #include "compute/vulkan/buffer.h"
 #include "compute/vulkan/device.h"
 #include "model/collision_backend.h"
@@ -13,8 +12,6 @@
 #include "shaders/shared/scene.h"
 
 namespace palpate {
-
-struct SearchTables;
 
 /// A voxel partition on the device (docs/EXACTNESS.md section 2); look-ups in shaders/lib/partition.glsl.
 struct PartitionBuffers {
@@ -54,8 +51,12 @@ struct PreparedScene {
   VulkanBuffer fine_exit;  ///< uint32, one a boundary voxel of it: kBindFineExit
   VulkanBuffer tool_near;  ///< a bit a voxel of the fine grid: a mock-up voxel with its centre there may meet
                            ///< the tool's solid; may be empty: all may
-  std::shared_ptr<const HostSamples> samples;  ///< may be null or empty: frames work them out
-  std::shared_ptr<const SearchTables> search;  ///< never null
+  VulkanBuffer occupied;   ///< uint32: kBindOccupied
+  VulkanBuffer list_boxes;     ///< uint32, one an entry of the mock-up's lists: kBindListBoxes
+  VulkanBuffer sample_begin;   ///< uint32, by boundary voxel of the mock-up, + 1; with the next two empty
+                               ///< where there is too much of them: frames work samples out
+  VulkanBuffer sample_points;  ///< uint32: kBindSamplePoints
+  VulkanBuffer sample_ids;     ///< uint32, one a point
   std::uint64_t memory_bytes() const;
 };
 
@@ -77,7 +78,9 @@ void for_each_made_buffer(Scene& scene, Visit visit) {
          {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles})
       visit(*buffer);
   });
-  for (auto* buffer : {&scene.fine_exit, &scene.tool_near}) visit(*buffer);
+  for (auto* buffer : {&scene.fine_exit, &scene.tool_near, &scene.occupied, &scene.list_boxes,
+                       &scene.sample_begin, &scene.sample_points, &scene.sample_ids})
+    visit(*buffer);
 }
 
 /// The same for all buffers: also those that hold the meshes as they are.

@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "compute/gpu/scene_copies.h"
+#include "compute/gpu/partition_copy.h"
 #include "compute/scene/sample_points.h"
+#include "compute/scene/samples.h"
+#include "compute/scene/shares.h"
 #include "compute/scene/tool_solid.h"
 #include "model/scene/geometry_build.h"
 #include "shaders/code.h"
@@ -21,6 +23,68 @@ namespace {
 constexpr std::uint64_t kSamplesARun =
     std::uint64_t{1} << 22;  // listed by one submission (chosen: 16 or 32 MiB; an entry has at most 2^12)
 constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;  // on the host (chosen)
+
+/// Voxel by voxel what has been listed entry by entry, in all. Left out where a buffer would be beyond the
+/// device's limits.
+void upload_points(PrepareSteps& steps, const SceneGeometry& geometry, const PartitionView& lists,
+                   EntrySamples samples, PreparedScene& out) {
+  const LatticeMesh& mesh = geometry.mockup;
+  const std::uint32_t voxels = lists.grid.boundary_voxels;
+  std::vector<std::uint32_t> begin(std::size_t{voxels} + 1);
+  std::uint64_t count = 0;
+  for (std::uint32_t voxel = 0; voxel < voxels; ++voxel) {
+    begin[voxel] = static_cast<std::uint32_t>(count);
+    for (std::uint32_t e = lists.list_begin[voxel]; e < lists.list_begin[voxel + 1]; ++e)
+      count += samples.has_corner(e) ? 1u : 0u;
+    count += samples.first(lists.list_begin[voxel + 1]) - samples.first(lists.list_begin[voxel]);
+  }
+  begin[voxels] = static_cast<std::uint32_t>(count);
+  const std::size_t words = samples.wide ? 3 : 2;
+  if (count * words * 4 > steps.device().limits().storage_range) return;
+
+  HostSamples grid;  // to read them with
+  grid.words = std::move(samples.words);
+  grid.wide = samples.wide;
+  std::vector<std::uint32_t> points(count * words), ids(count);
+  const std::vector<std::uint32_t> shares = entry_shares(lists);
+  const bool written = in_shares(
+      static_cast<std::uint32_t>(shares.size() - 1),
+      [&](std::uint32_t share) {
+        for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) {
+          const HostSamples::Voxel cells(lists.grid.origin + lists.grid.size * lists.boundary_voxel(voxel),
+                                         geometry.sample_spacing);
+          std::size_t at = begin[voxel];
+          const auto put = [&](const Int3& point, std::uint32_t id) {
+            const Int3 d = point - cells.low;
+            if (words == 3) {
+              for (int k = 0; k < 3; ++k)
+                points[3 * at + static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(d[k]);
+            } else {
+              const std::uint64_t packed = static_cast<std::uint64_t>(d.x) |
+                                           static_cast<std::uint64_t>(d.y) << 20 |
+                                           static_cast<std::uint64_t>(d.z) << 40;
+              points[2 * at] = static_cast<std::uint32_t>(packed);
+              points[2 * at + 1] = static_cast<std::uint32_t>(packed >> 32);
+            }
+            ids[at++] = id;
+          };
+          for (std::uint32_t e = lists.list_begin[voxel]; e < lists.list_begin[voxel + 1]; ++e) {
+            const std::uint32_t id = lists.list_triangles[e];
+            if (samples.has_corner(e)) put(mesh.corner(id, 0), id | gpu::kCornerProbe);
+            for (std::uint32_t i = samples.first(e); i < samples.first(e + 1); ++i)
+              put(grid.sample(cells, samples.axis(e), i), id);
+          }
+        }
+      },
+      [&](std::uint32_t) {
+        steps.progress("samples", 0.99);
+        return steps.ok();
+      });
+  if (!written) return;
+  out.sample_begin = steps.filled("samples of voxels", begin);
+  out.sample_points = steps.filled("samples", points);
+  out.sample_ids = steps.filled("triangles of samples", ids);
+}
 
 }  // namespace
 
@@ -76,15 +140,7 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
     return steps.fail(r.error());
   PartitionCopy lists;
   if (auto r = lists.read(steps.device(), p); !r) return steps.fail(r.error());
-  auto by_voxel = std::make_shared<HostSamples>();
-  const auto outcome = list_points(
-      geometry.mockup, lists.view(), geometry.sample_spacing,
-      [&](double share) {
-        steps.progress("samples", 0.99 + 0.01 * share);
-        return steps.ok();
-      },
-      std::move(samples), *by_voxel);
-  if (outcome == Listing::kDone) out.samples = std::move(by_voxel);  // else it is not whole
+  upload_points(steps, geometry, lists.view(), std::move(samples), out);
 }
 
 void refine_tool(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {

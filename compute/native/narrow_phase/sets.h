@@ -66,7 +66,7 @@ class HostSets {
     std::vector<OpenPoint> open;           ///< of the part at hand
     std::vector<gpu::FrameSample> inside;  ///< of this frame: those that lie inside
   };
-  void decide_pairs(const PosedTool& tool, std::span<const gpu::PairCandidate> candidates, Lane& lane) const;
+  void decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& lane) const;
   void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
                   std::vector<OpenPoint>& open) const;
   void decide_open(const LatticePose& pose, std::span<const gpu::FrameSample> samples, Lane& lane);

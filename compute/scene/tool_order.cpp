@@ -1,4 +1,4 @@
-#include "compute/search/tool_order.h"
+#include "compute/scene/tool_order.h"
 
 #include <algorithm>
 #include <utility>

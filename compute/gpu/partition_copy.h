@@ -37,29 +37,4 @@ class PartitionCopy {
   HostCopy<gpu::Brick> bricks_;
 };
 
-/// What the search reads of a scene that lies on the device. The scene outlives this.
-class SceneCopies {
- public:
-  Result<void> read(VulkanDevice& device, const PreparedScene& scene) {
-    tables_.constants = scene.constants;
-    tables_.samples = scene.samples;
-    tables_.search = scene.search;
-    if (auto r = mockup_.read(device, scene.mockup.partition); !r) return r;
-    tables_.mockup = mockup_.view();
-    if (scene.constants.refined == 0) return {};
-    if (auto r = fine_.read(device, scene.fine.brick_slot ? scene.fine : scene.tool.partition); !r) return r;
-    tables_.fine = fine_.view();
-    if (!scene.tool_near) return {};
-    if (auto r = near_.read(device, scene.tool_near, scene.tool_near.bytes() / 4); !r) return r;
-    tables_.tool_near = near_.all();
-    return {};
-  }
-  const SceneTables& tables() const { return tables_; }
-
- private:
-  PartitionCopy mockup_, fine_;
-  HostCopy<std::uint32_t> near_;
-  SceneTables tables_;
-};
-
 }  // namespace palpate

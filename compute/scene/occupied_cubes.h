@@ -5,14 +5,14 @@
 #include <glm/common.hpp>
 #include <vector>
 
-#include "compute/search/brick_bits.h"
-#include "compute/search/turned_boxes.h"
+#include "compute/scene/brick_bits.h"
 
 namespace palpate {
 
 /// A first look at small boxes: for cubes of 1, 2, 4 and 8 voxels, from every voxel of the mock-up's grid on,
 /// whether one of theirs is not V_ext. Most boxes near a mock-up meet nothing; one bit says so, where going
-/// through a box's voxels takes loops whose ends can't be foreseen.
+/// through a box's voxels takes loops whose ends can't be foreseen. Shaders read the same
+/// (shaders/lib/near/occupied.glsl).
 class OccupiedCubes {
  public:
   /// `occupied`: voxels that are not V_ext. Allocates four bytes a brick, and 256 for each that is not V_int
@@ -50,9 +50,11 @@ class OccupiedCubes {
   }
 
   /// Of eight ranges those that may have an occupied voxel, a bit each: whose smallest such cube from their
-  /// first voxel on has one, or which fit into none. `voxels` as voxels_of() leaves them: within the grid,
-  /// also where they may not.
+  /// first voxel on has one, or which fit into none. `voxels` as voxels_of() leaves them (EightRanges of
+  /// compute/search/turned_boxes.h): within the grid, also where they may not.
+  template <class EightRanges>
   unsigned near(const EightRanges& voxels) const {
+    constexpr std::size_t kEight = 8;
     std::array<std::uint32_t, kEight> level, brick, bit, large;
     for (std::size_t i = 0; i < kEight; ++i) {
       const std::int32_t x = voxels.first[0][i], y = voxels.first[1][i], z = voxels.first[2][i];
@@ -72,10 +74,14 @@ class OccupiedCubes {
     return out;
   }
 
- private:
   static constexpr std::size_t kLevels = 4;
   using Cubes =
-      std::array<BrickBits::Block, kLevels>;  // of a brick: a bit for each voxel that such a cube begins at
+      std::array<BrickBits::Block, kLevels>;  ///< of a brick: a bit for each voxel that such a cube begins at
+  /// By brick, in cubes(): 0 none is occupied, nor in the next bricks; 1 all are.
+  const std::vector<std::uint32_t>& places() const { return place_; }
+  const std::vector<Cubes>& cubes() const { return cubes_; }
+
+ private:
   static constexpr std::uint32_t kAll =
       1;  // a place: all voxels are occupied; 0: none, nor in the next bricks
 

@@ -1,0 +1,17 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "compute/scene/scene_tables.h"
+#include "model/lattice/lattice_mesh.h"
+
+namespace palpate {
+
+/// What shaders/lib/near/occupied.glsl reads: for ranges of any size whether a voxel of theirs may not be
+/// V_ext. About 4 bytes a brick and 256 for each near the surface.
+std::vector<std::uint32_t> occupied_words(const PartitionView& mockup);
+
+/// What gpu::kBindListBoxes is.
+std::vector<std::uint32_t> list_boxes(const LatticeMesh& mesh, const PartitionView& mockup);
+
+}  // namespace palpate
