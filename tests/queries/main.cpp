@@ -159,13 +159,13 @@ Pose pose_of(const LatticePose& at, const SceneGeometry& geometry) {
 
 void motions(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
              Counts& counts) {
-  constexpr int kSamples = 24;
+  constexpr int kSamples = 24, kMostTries = 12;  // of starts, the further the more: a free one is wanted
   const auto native = make_native_backend();
   if (failed(native->prepare(geometry, Plan{}, [](const char*, double) { return true; }))) return;
   const TouchRule rule = TouchRule::of(geometry, 0);
   equivalence::Random random(5);
   std::vector<double> us, frame_us, evaluations;
-  std::uint64_t late = 0, early = 0, undecided = 0;
+  std::uint64_t late = 0, early = 0, undecided = 0, from_contact = 0;
   const double voxel = geometry.mockup_grid.size * geometry.lattice.step_m;
   const auto some = [&] { return 2 * random.unit() - 1; };
   std::vector<LatticePose> samples(kSamples);
@@ -174,9 +174,15 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (poses[i].beyond_lattice) continue;
     const Pose to = pose_of(poses[i], geometry);
-    const double reach = std::pow(10, 2 * random.unit() - 0.5);  // a third of a voxel to thirty
-    const Pose from{to.position + reach * voxel * Vec3(some(), some(), some()),
-                    glm::normalize(rotation_by(random.unit() * Vec3(some(), some(), some())) * to.rotation)};
+    double reach = std::pow(10, 2 * random.unit() - 0.5);  // a third of a voxel to thirty
+    Pose from;
+    std::uint8_t starts_in = 1;
+    for (int tries = 0; tries < kMostTries && starts_in != 0; ++tries, reach *= 1.5) {
+      from = {to.position + reach * voxel * Vec3(some(), some(), some()),
+              glm::normalize(rotation_by(random.unit() * Vec3(some(), some(), some())) * to.rotation)};
+      const auto start = to_lattice(from, geometry);
+      if (start && failed(native->touches({&*start, 1}, {&starts_in, 1}))) ++counts.differences;
+    }
     double before = processor_seconds();
     const auto found = first_contact(*native, geometry, from, to, rule);
     if (!found) {
@@ -188,7 +194,10 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
     evaluations.push_back(static_cast<double>(found->evaluations));
     undecided += found->kind == FirstContact::Kind::kUndecided ? 1u : 0u;
     (found->kind == FirstContact::Kind::kNone ? counts.apart : counts.touching) += 1u;
-    if (found->kind == FirstContact::Kind::kContact && found->time == 0) continue;
+    if (found->kind == FirstContact::Kind::kContact && found->time == 0) {
+      ++from_contact;
+      continue;
+    }
     const Screw screw(from, to, geometry);
     // Sparse all along, dense before the contact.
     for (int k = 0; k < kSamples; ++k)
@@ -223,9 +232,11 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
     return v[static_cast<std::size_t>(share * static_cast<double>(v.size() - 1))];
   };
   std::printf(
-      "%s: %zu motions, %llu late, %llu early, %llu undecided; %.1f us p50, %.1f p99, %g evaluations p50, %g "
-      "p99; a frame at its end %.1f us p50\n",
-      name.c_str(), us.size(), static_cast<unsigned long long>(late), static_cast<unsigned long long>(early),
+      "%s: %zu motions (%llu from a contact), %llu late, %llu early, %llu undecided; %.1f us p50, %.1f p99, "
+      "%g "
+      "evaluations p50, %g p99; a frame at its end %.1f us p50\n",
+      name.c_str(), us.size(), static_cast<unsigned long long>(from_contact),
+      static_cast<unsigned long long>(late), static_cast<unsigned long long>(early),
       static_cast<unsigned long long>(undecided), middle(us, 0.5), middle(us, 0.99), middle(evaluations, 0.5),
       middle(evaluations, 0.99), middle(frame_us, 0.5));
 }

@@ -36,23 +36,14 @@ void rooms(const PairLanes& lanes, std::array<double, kLanes>& squared) {
   plain::room_lanes(lanes, squared);
 }
 
-void places_along(const std::array<std::array<double, kLanes>, 9>& points, const double ways[3][3],
-                  double low[3], double high[3]) {
+void turned_gaps(const std::array<double, 9>& corners, const TriangleTree::TurnedBoxes& boxes,
+                 std::array<double, kLanes>& squared) {
 #if PALPATE_TWO_CODES
-  if (has_second_code()) return second::places_along(points, ways, low, high);
+  if (has_second_code()) return second::turned_gaps(corners, boxes, squared);
 #endif
-  plain::places_along(points, ways, low, high);
+  plain::turned_gaps(corners, boxes, squared);
 }
 
-void box_gaps(const BoxOf& box, const EightDoubles& boxes, std::array<double, kLanes>& squared) {
-#if PALPATE_TWO_CODES
-  if (has_second_code())
-    return second::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(),
-                                squared.data());
-#endif
-  plain::gaps_between(box.low.data(), box.high.data(), boxes.low[0].data(), boxes.high[0].data(),
-                      squared.data());
-}
 void box_gaps(const BoxOf& box, const TriangleTree::Boxes& boxes, std::array<double, kLanes>& squared) {
 #if PALPATE_TWO_CODES
   if (has_second_code())

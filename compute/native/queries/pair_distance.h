@@ -40,23 +40,15 @@ inline double distance_error(double shorter_edge, double reach) {
   return shorter_edge * 0x1p-18 + reach * 0x1p-28 + 0x1p-10;
 }
 
-/// The least and the greatest place of eight triangles' corners along three directions; those by coordinate,
-/// as above.
-void places_along(const std::array<std::array<double, kLanes>, 9>& points, const double ways[3][3],
-                  double low[3], double high[3]);
+/// Squares of what a triangle is apart from eight boxes along axes of their own; no more than that. Corners:
+/// k of corner c at [3 c + k].
+void turned_gaps(const std::array<double, 9>& corners, const TriangleTree::TurnedBoxes& boxes,
+                 std::array<double, kLanes>& squared);
 
 struct BoxOf {  ///< a closed box, steps
   std::array<double, 3> low, high;
 };
-/// Eight boxes, by axis.
-struct EightDoubles {
-  std::array<std::array<double, kLanes>, 3> low, high;
-  BoxOf box(std::size_t i) const {
-    return {{low[0][i], low[1][i], low[2][i]}, {high[0][i], high[1][i], high[2][i]}};
-  }
-};
 /// Squared gaps between a box and eight.
-void box_gaps(const BoxOf& box, const EightDoubles& boxes, std::array<double, kLanes>& squared);
 void box_gaps(const BoxOf& box, const TriangleTree::Boxes& boxes, std::array<double, kLanes>& squared);
 
 }  // namespace palpate::native

@@ -159,7 +159,6 @@ static void judge_lanes(const PairLanes& in, std::array<double, kLanes>& out) {
   for (std::size_t begin = 0; begin < kLanes; begin += kWidth) judge_from(in, begin, out);
 }
 
-static void load(const double* from, Doubles& out) { std::memcpy(&out, from, sizeof out); }
 static void load(const std::int32_t* from, Doubles& out) {
   Ints whole;
   std::memcpy(&whole, from, sizeof whole);
@@ -185,26 +184,43 @@ static void gaps_between(const double* low, const double* high, const Number* lo
   }
 }
 
-// Least and greatest place of twenty-four points along three directions.
-static void places_along(const std::array<std::array<double, kLanes>, 9>& points, const double ways[3][3],
-                         double low[3], double high[3]) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    Doubles least = Doubles{} + 1e300, most = -least;
-    for (std::size_t begin = 0; begin < kLanes; begin += kWidth)
-      for (std::size_t c = 0; c < 3; ++c) {
-        Point p;
-        load(points[3 * c].data() + begin, p.x);
-        load(points[3 * c + 1].data() + begin, p.y);
-        load(points[3 * c + 2].data() + begin, p.z);
-        const Doubles at = p.x * ways[a][0] + p.y * ways[a][1] + p.z * ways[a][2];
-        least = at < least ? at : least;
-        most = at > most ? at : most;
-      }
-    low[a] = least[0];
-    high[a] = most[0];
-    for (std::size_t i = 1; i < kWidth; ++i) {
-      low[a] = least[i] < low[a] ? least[i] : low[a];
-      high[a] = most[i] > high[a] ? most[i] : high[a];
+static void load(const float* from, Doubles& out) {
+  float single __attribute__((vector_size(4 * kWidth)));
+  std::memcpy(&single, from, sizeof single);
+  out = __builtin_convertvector(single, Doubles);
+}
+
+// Squared gaps along the axes of eight boxes. Axes are floats, so each gap is taken shorter by 2^-20 of
+// itself and a step, and the sum by 2^-20, which is more than they are off (docs/EXACTNESS.md, section 9).
+static void turned_gaps(const std::array<double, 9>& corners, const TriangleTree::TurnedBoxes& boxes,
+                        std::array<double, kLanes>& squared) {
+  for (std::size_t begin = 0; begin < kLanes; begin += kWidth) {
+    Doubles from[3][3], sum{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      Doubles corner;
+      load(boxes.corner[k].data() + begin, corner);
+      for (std::size_t c = 0; c < 3; ++c) from[c][k] = corners[3 * c + k] - corner;
     }
+    for (std::size_t a = 0; a < 3; ++a) {
+      Doubles x, y, z, low, high;
+      load(boxes.axis[a][0].data() + begin, x);
+      load(boxes.axis[a][1].data() + begin, y);
+      load(boxes.axis[a][2].data() + begin, z);
+      load(boxes.low[a].data() + begin, low);
+      load(boxes.high[a].data() + begin, high);
+      Doubles at = x * from[0][0] + y * from[0][1] + z * from[0][2], first = at, last = at;
+      for (std::size_t c = 1; c < 3; ++c) {
+        at = x * from[c][0] + y * from[c][1] + z * from[c][2];
+        first = at < first ? at : first;
+        last = at > last ? at : last;
+      }
+      const Doubles ahead = first - high, behind = low - last;
+      Doubles sure = (ahead > behind ? ahead : behind) * (1 - 0x1p-20) - 1;
+      const Doubles none{};
+      sure = sure > none ? sure : none;
+      sum += sure * sure;
+    }
+    sum *= 1 - 0x1p-20;
+    std::memcpy(squared.data() + begin, &sum, sizeof sum);
   }
 }

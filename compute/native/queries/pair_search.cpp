@@ -1,6 +1,7 @@
 #include "compute/native/queries/pair_search.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -10,7 +11,6 @@ namespace palpate::native {
 namespace {
 
 constexpr std::uint32_t kWide = kLanes;
-constexpr double kNowhereSteps = 0x1p40;  // where no triangle is
 using Vec = std::array<double, 3>;
 
 Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -29,11 +29,11 @@ Vec vec(const Vec3& p) { return {p.x, p.y, p.z}; }
 double largest(const BoxOf& box) {
   return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
 }
-BoxOf union_of(const TriangleTree::Boxes& boxes, std::uint32_t count) {
+BoxOf box_at(const TriangleTree::Boxes& boxes, std::size_t i) {
   BoxOf out;
   for (std::size_t k = 0; k < 3; ++k) {
-    out.low[k] = *std::min_element(boxes.low[k].begin(), boxes.low[k].begin() + count);
-    out.high[k] = *std::max_element(boxes.high[k].begin(), boxes.high[k].begin() + count);
+    out.low[k] = boxes.low[k][i];
+    out.high[k] = boxes.high[k][i];
   }
   return out;
 }
@@ -121,6 +121,8 @@ PairTrees::PairTrees(const SceneGeometry& of)
           of.mockup, [] { return true; }, kTriangleCollapsed)),
       tool(TriangleTree::make(
           of.tool, [] { return true; }, kTriangleCollapsed)),
+      spheres(of.tool, tool),
+      field(RoomField::of(of)),
       corners((mockup.order.size() + kLanes - 1) / kLanes),
       boxes(corners.size()) {
   for (std::size_t place = 0; place < mockup.order.size(); ++place)
@@ -136,29 +138,11 @@ PairTrees::PairTrees(const SceneGeometry& of)
     }
 }
 
-PairSearch::PairSearch(const PairTrees& trees)
-    : trees_(&trees), runs_(trees.tool.nodes(0)), groups_(trees.tool.boxes.size()) {
-  const auto root = [](const TriangleTree& tree) {
-    return tree.boxes.empty()
-               ? BoxOf{}
-               : union_of(tree.boxes.back(),
-                          children(tree, static_cast<std::uint32_t>(tree.level_begin.size()), 0));
-  };
-  mockup_root_ = root(trees.mockup);
-  tool_root_ = root(trees.tool);
-}
+PairSearch::PairSearch(const PairTrees& trees) : trees_(&trees) {}
 
 void PairSearch::begin(const LatticePose& pose) {
   pose_ = pose;
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c) {
-      rotation_[r][c] = pose.rotation_q30[r][c] * 0x1p-30;
-      size_[r][c] = std::abs(rotation_[r][c]);
-    }
-  if (++now_ != 0) return;
-  for (Run& run : runs_) run.pose = run.placed = 0;  // once in 2^32 poses
-  for (Group& group : groups_) group.pose = 0;
-  now_ = 1;
+  turn_ = trees_->field.turn(pose, trees_->geometry->tool_radius);
 }
 
 exact::Corners PairSearch::mobile(std::uint32_t id) const {
@@ -176,240 +160,233 @@ bool PairSearch::meet(std::uint32_t static_id, std::uint32_t mobile_id) const {
   return !(n == exact::Normal{}) && exact::triangles_meet(fixed(static_id), t, n);
 }
 
-// Turned vertices are rounded by half a step an axis, doubles are off by far less than the other half.
-const EightDoubles& PairSearch::posed_boxes(std::uint32_t number) {
-  Group& group = groups_[number];
-  if (group.pose == now_) return group.boxes;
-  group.pose = now_;
-  const TriangleTree::Boxes& own = trees_->tool.boxes[number];
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      double centre = pose_.translation[static_cast<int>(r)], half = 1;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double low = own.low[c][i], high = own.high[c][i];
-        centre += rotation_[r][c] * (0.5 * (low + high));
-        half += size_[r][c] * (0.5 * (high - low));
-      }
-      group.boxes.low[r][i] = centre - half;
-      group.boxes.high[r][i] = centre + half;
-    }
-  return group.boxes;
-}
-
-const PairSearch::Run& PairSearch::posed_run(std::uint32_t number) {
-  Run& run = runs_[number];
-  if (run.pose == now_) return run;
-  run.pose = now_;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::size_t place = kWide * number + i;
-    for (std::size_t k = 0; k < 3; ++k) run.boxes.low[k][i] = run.boxes.high[k][i] = kNowhereSteps;
-    if (place >= trees_->tool.order.size()) continue;
-    const exact::Corners& t = run.corners[i] = mobile(trees_->tool.order[place]);
-    if (exact::raw_normal(t) == exact::Normal{}) continue;  // collinear at this pose: in no pair
-    const BoxOf box = box_of(t);
-    for (std::size_t k = 0; k < 3; ++k) {
-      run.boxes.low[k][i] = box.low[k];
-      run.boxes.high[k][i] = box.high[k];
-    }
-  }
-  return run;
-}
-
-const PairSearch::Places& PairSearch::posed_places(std::uint32_t number) {
-  Run& run = runs_[number];
-  if (run.placed == now_) return run.places;
-  run.placed = now_;
-  bool first = true;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    if (run.boxes.low[0][i] == kNowhereSteps) continue;  // no triangle
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double at = run.corners[i][c][static_cast<int>(k)];
-        auto& lanes = run.places[3 * c + k];
-        if (first)
-          lanes.fill(at);
-        else
-          lanes[i] = at;
-      }
-    first = false;
-  }
-  return run.places;
-}
-
-/// Calls policy.lanes() for every tool triangle and run of the mock-up between which boxes leave room for
-/// what the policy wants. A policy has
-///   bool keep(squared, tool box, mock-up box): whether what is in them may matter;
-///   bool lanes(number of tool triangle, its id, run, mock-up run, mask): of eight pairs those in the mask
-///     may matter; false: it knows enough.
+/// Runs of the tool whose spheres come so near that the policy may want them: kept in leads_, or asked about
+/// at once, the nearest sphere of each eight first. False: the policy knows enough.
 template <class Policy>
-void PairSearch::descend(Policy& policy) {
-  const TriangleTree &tool = trees_->tool, &mockup = trees_->mockup;
-  if (tool.boxes.empty() || mockup.boxes.empty()) return;
-  open_.clear();
-  BoxOf tool_box;
-  for (std::size_t r = 0; r < 3; ++r) {
-    double centre = pose_.translation[static_cast<int>(r)], half = 1;
-    for (std::size_t c = 0; c < 3; ++c) {
-      centre += rotation_[r][c] * (0.5 * (tool_root_.low[c] + tool_root_.high[c]));
-      half += size_[r][c] * (0.5 * (tool_root_.high[c] - tool_root_.low[c]));
-    }
-    tool_box.low[r] = centre - half;
-    tool_box.high[r] = centre + half;
-  }
-  open_.push_back({{static_cast<std::uint32_t>(tool.level_begin.size()), 0},
-                   {static_cast<std::uint32_t>(mockup.level_begin.size()), 0},
-                   tool_box,
-                   mockup_root_,
-                   gap(tool_box, mockup_root_)});
-  std::array<double, kLanes> gaps;
-  while (!open_.empty()) {
-    const Item item = open_.back();
-    open_.pop_back();
-    if (!policy.keep(item.squared, item.tool_box, item.mockup_box)) continue;
+bool PairSearch::gather(Policy& policy) {
+  leads_.clear();
+  const ToolSpheres& spheres = trees_->spheres;
+  groups_.clear();
+  groups_.push_back({spheres.top(), 0});
+  EightFloats squared;
+  while (!groups_.empty()) {
+    const Group group = groups_.back();
+    groups_.pop_back();
     ++looks_;
-    if (item.tool.level == 0 && item.mockup.level == 0) {
-      if (!leaf(policy, item)) return;
+    const EightSpheres& eight = spheres.group(group.level, group.number);
+    trees_->field.rooms(turn_, eight, squared);
+    Lead lead{std::numeric_limits<double>::infinity(), group.number, 0, {}};
+    std::array<std::uint32_t, kLanes> order;
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < kWide; ++i) {
+      const double room = lead.rooms[i] = trees_->field.room(turn_, squared[i], eight.radius[i]);
+      if (!policy.within(room)) continue;
+      lead.mask |= 1u << i;
+      lead.room = std::min(lead.room, room);
+      std::uint32_t at = count++;
+      for (; at > 0 && lead.rooms[order[at - 1]] < room; --at) order[at] = order[at - 1];
+      order[at] = i;
+    }
+    if (count == 0) continue;
+    if (group.level != 0)
+      for (std::uint32_t n = 0; n < count; ++n)
+        groups_.push_back({group.level - 1, kWide * group.number + order[n]});
+    else if (Policy::kNearestFirst)
+      leads_.push_back(lead);
+    else if (!descend(policy, lead))
+      return false;
+  }
+  return true;
+}
+
+/// Asks about the triangle that seems to be nearest, going down by the nearest sphere of each eight: whatever
+/// is further than what comes of it is left out from the beginning.
+template <class Policy>
+bool PairSearch::dive(Policy& policy) {
+  EightFloats squared;
+  std::uint32_t number = 0;
+  for (std::uint32_t level = trees_->spheres.top() + 1; level-- > 0;) {
+    const EightSpheres& eight = trees_->spheres.group(level, number);
+    trees_->field.rooms(turn_, eight, squared);
+    std::uint32_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < kWide; ++i)
+      if (const double room = trees_->field.room(turn_, squared[i], eight.radius[i]); room < least) {
+        least = room;
+        best = i;
+      }
+    number = kWide * number + best;
+  }
+  if (number >= trees_->tool.order.size()) return true;
+  Lead lead{0, number / kWide, 1u << number % kWide, {}};
+  return descend(policy, lead);
+}
+
+/// Shows a policy the pairs that it may want, the tool's runs with the least room first. A policy has
+///   within(room): whether what is no nearer than so many steps may matter;
+///   near(squared): the same of a square;
+///   keep(squared, tool box, mock-up box): whether what is in them, so far apart, may matter;
+///   met(static id, mobile id): they meet, and the search is over;
+///   pair(…): they are so far apart, but for an error.
+template <class Policy>
+void PairSearch::search(Policy& policy) {
+  if (trees_->tool.order.empty() || trees_->mockup.order.empty()) return;
+  if (Policy::kNearestFirst && !dive(policy)) return;
+  if (!gather(policy)) return;
+  std::sort(leads_.begin(), leads_.end(), [](const Lead& a, const Lead& b) { return a.room < b.room; });
+  for (const Lead& lead : leads_) {
+    if (!policy.within(lead.room)) return;
+    if (!descend(policy, lead)) return;
+  }
+}
+
+/// Of a run's triangles those that the policy may want, at the pose.
+template <class Policy>
+void PairSearch::pose(const Policy& policy, const Lead& lead) {
+  count_ = 0;
+  for (std::uint32_t i = 0; i < kWide; ++i) {
+    if ((lead.mask >> i & 1) == 0 || !policy.within(lead.rooms[i])) continue;
+    Mobile& m = mobiles_[count_];
+    m.id = trees_->tool.order[kWide * lead.run + i];
+    m.at = mobile(m.id);
+    if (exact::raw_normal(m.at) == exact::Normal{}) continue;  // collinear at this pose: in no pair
+    if (trees_->field.all_beyond(m.at, policy.within_steps())) continue;
+    m.box = box_of(m.at);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < 3; ++k) m.corners[3 * c + k] = m.at[c][static_cast<int>(k)];
+    if (count_ == 0) run_box_ = m.box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      run_box_.low[k] = std::min(run_box_.low[k], m.box.low[k]);
+      run_box_.high[k] = std::max(run_box_.high[k], m.box.high[k]);
+    }
+    ++count_;
+  }
+}
+
+/// From the mock-up's root to its runs near a run of the tool. False: the policy knows enough.
+template <class Policy>
+bool PairSearch::descend(Policy& policy, const Lead& lead) {
+  pose(policy, lead);
+  if (count_ == 0) return true;
+  const TriangleTree& mockup = trees_->mockup;
+  open_.clear();
+  open_.push_back({static_cast<std::uint32_t>(mockup.level_begin.size()), 0, 0});
+  std::array<double, kLanes> gaps;
+  std::array<std::uint32_t, kLanes> order;
+  while (!open_.empty()) {
+    const Node node = open_.back();
+    open_.pop_back();
+    if (!policy.near(node.squared)) continue;
+    if (node.level == 1) {
+      for (std::size_t i = 0; i < count_; ++i)
+        if (!group(policy, mobiles_[i], node.index)) return false;
       continue;
     }
-    const bool turn_tool =
-        item.mockup.level == 0 || (item.tool.level != 0 && largest(item.tool_box) > largest(item.mockup_box));
-    std::array<std::uint32_t, kLanes> order;
-    std::uint32_t count = 0, first = 0;
-    // Of those that may matter the furthest first, so that the nearest, or the two that overlap most, are on
-    // top then.
-    const auto sort_in = [&](std::uint32_t all, const BoxOf& box, const auto& boxes) {
-      std::array<double, kLanes> rank;
-      for (std::uint32_t i = 0; i < all; ++i) {
-        if (!policy.near(gaps[i])) continue;
-        rank[i] = gaps[i] > 0 ? gaps[i] : -overlap(box, boxes, i);
-        std::uint32_t at = count++;
-        for (; at > 0 && rank[order[at - 1]] < rank[i]; --at) order[at] = order[at - 1];
-        order[at] = i;
-      }
-    };
-    if (turn_tool) {
-      const EightDoubles& boxes = posed_boxes(group_of(tool, item.tool.level, item.tool.index));
-      first = kWide * item.tool.index;
-      box_gaps(item.mockup_box, boxes, gaps);
-      sort_in(children(tool, item.tool.level, item.tool.index), item.mockup_box, boxes);
-      for (std::uint32_t n = 0; n < count; ++n) {
-        const BoxOf box = boxes.box(order[n]);
-        if (policy.keep(gaps[order[n]], box, item.mockup_box))
-          open_.push_back(
-              {{item.tool.level - 1, first + order[n]}, item.mockup, box, item.mockup_box, gaps[order[n]]});
-      }
-    } else {
-      const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, item.mockup.level, item.mockup.index)];
-      first = kWide * item.mockup.index;
-      box_gaps(item.tool_box, boxes, gaps);
-      sort_in(children(mockup, item.mockup.level, item.mockup.index), item.tool_box, boxes);
-      for (std::uint32_t n = 0; n < count; ++n) {
-        const std::size_t i = order[n];
-        const BoxOf box{{static_cast<double>(boxes.low[0][i]), static_cast<double>(boxes.low[1][i]),
-                         static_cast<double>(boxes.low[2][i])},
-                        {static_cast<double>(boxes.high[0][i]), static_cast<double>(boxes.high[1][i]),
-                         static_cast<double>(boxes.high[2][i])}};
-        if (policy.keep(gaps[i], item.tool_box, box))
-          open_.push_back(
-              {item.tool, {item.mockup.level - 1, first + order[n]}, item.tool_box, box, gaps[i]});
-      }
-    }
+    ++looks_;
+    const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, node.level, node.index)];
+    box_gaps(run_box_, boxes, gaps);
+    const std::uint32_t count =
+        sorted(policy, run_box_, boxes, gaps, children(mockup, node.level, node.index), order);
+    for (std::uint32_t n = 0; n < count; ++n)
+      open_.push_back({node.level - 1, kWide * node.index + order[n], gaps[order[n]]});
   }
+  return true;
 }
 
-/// Square of what a run of the tool is apart from the box of one of the mock-up's runs that lies along its
-/// triangles; no more than that. Axes are floats, so each gap is taken shorter by 2^-20 of itself and a step,
-/// and the sum by 2^-20, which is more than they are off (docs/EXACTNESS.md, section 9).
-double PairSearch::turned_gap(std::uint32_t fixed_run, const Places& places) const {
-  const TriangleTree::TurnedBoxes& turned = trees_->mockup.turned[fixed_run / kWide];
-  const std::size_t i = fixed_run % kWide;
-  double ways[3][3], low[3], high[3], sum = 0;
-  for (std::size_t a = 0; a < 3; ++a)
-    for (std::size_t k = 0; k < 3; ++k) ways[a][k] = turned.axis[a][k][i];
-  places_along(places, ways, low, high);
-  for (std::size_t a = 0; a < 3; ++a) {
-    double origin = 0;
-    for (std::size_t k = 0; k < 3; ++k) origin += ways[a][k] * turned.corner[k][i];
-    const double gap = std::max(low[a] - origin - turned.high[a][i], turned.low[a][i] - (high[a] - origin)),
-                 sure = gap * (1 - 0x1p-20) - 1;
-    if (sure > 0) sum += sure * sure;
+/// Of eight boxes those that may matter, the furthest first, so that the nearest, or the two that overlap
+/// most, are last.
+template <class Policy>
+std::uint32_t PairSearch::sorted(const Policy& policy, const BoxOf& box, const TriangleTree::Boxes& boxes,
+                                 const std::array<double, kLanes>& gaps, std::uint32_t all,
+                                 std::array<std::uint32_t, kLanes>& order) {
+  std::array<double, kLanes> rank;
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < all; ++i) {
+    if (!policy.near(gaps[i]) || !policy.keep(gaps[i], box, box_at(boxes, i))) continue;
+    rank[i] = gaps[i] > 0 ? gaps[i] : -overlap(box, boxes, i);
+    std::uint32_t at = count++;
+    for (; at > 0 && rank[order[at - 1]] < rank[i]; --at) order[at] = order[at - 1];
+    order[at] = i;
   }
-  return sum * (1 - 0x1p-20);
+  return count;
+}
+
+/// A triangle and eight runs.
+template <class Policy>
+bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number) {
+  const TriangleTree& mockup = trees_->mockup;
+  const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, 1, number)];
+  const std::uint32_t all = children(mockup, 1, number);
+  std::array<double, kLanes> gaps, turned;
+  std::array<std::uint32_t, kLanes> order;
+  ++looks_;
+  box_gaps(m.box, boxes, gaps);
+  bool any = false;
+  for (std::uint32_t i = 0; i < all; ++i) any = any || policy.near(gaps[i]);
+  if (!any) return true;
+  turned_gaps(m.corners, mockup.turned[number], turned);
+  for (std::uint32_t n = sorted(policy, m.box, boxes, gaps, all, order); n-- > 0;)
+    if (policy.near(gaps[order[n]]) && !leaf(policy, m, kWide * number + order[n], box_at(boxes, order[n])))
+      return false;
+  return true;
 }
 
 template <class Policy>
-bool PairSearch::leaf(Policy& policy, const Item& item) {
-  const Run& run = posed_run(item.tool.index);
-  if constexpr (Policy::kTurned)
-    if (!policy.near(turned_gap(item.mockup.index, posed_places(item.tool.index)))) return true;
-  const std::uint32_t statics = item.mockup.index,
-                      count = std::min(
-                          kWide, static_cast<std::uint32_t>(trees_->mockup.order.size()) - kWide * statics);
-  const TriangleTree::Boxes& boxes = trees_->boxes[statics];
-  std::array<double, kLanes> gaps, of_triangles;
-  box_gaps(item.mockup_box, run.boxes, of_triangles);
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    if (!policy.near(of_triangles[i])) continue;
-    const BoxOf box = run.boxes.box(i);
-    if (run.boxes.low[0][i] == kNowhereSteps || !policy.keep(of_triangles[i], box, item.mockup_box)) continue;
-    box_gaps(box, boxes, gaps);
-    unsigned mask = 0;
-    for (std::uint32_t lane = 0; lane < count; ++lane)
-      if (policy.near(gaps[lane])) mask |= 1u << lane;
-    ++looks_;
-    if (mask == 0) continue;
-    // Pairs that meet first: their corners and edges may be far from each other.
-    unsigned crossing = 0;
-    for (std::uint32_t lane = 0; lane < count; ++lane)
-      if ((mask >> lane & 1) != 0 && gaps[lane] == 0) crossing |= 1u << lane;
-    const auto& corners = trees_->corners[statics];
-    const std::uint32_t mobile_id = trees_->tool.order[kWide * item.tool.index + i];
-    if (crossing != 0) {
-      std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
-      const auto fixed_corners = [&](std::size_t lane) {
-        return exact::Corners{Int3(corners[0][lane], corners[1][lane], corners[2][lane]),
-                              Int3(corners[3][lane], corners[4][lane], corners[5][lane]),
-                              Int3(corners[6][lane], corners[7][lane], corners[8][lane])};
-      };
-      filter_.put(corners, run.corners[i]);
-      filter_.judge(verdicts);
-      for (std::uint32_t lane = 0; lane < count; ++lane) {
-        if ((crossing >> lane & 1) == 0 || verdicts[lane] == PairFilter::kApart) continue;
-        if (verdicts[lane] == PairFilter::kUnknown &&
-            !exact::triangles_meet(fixed_corners(lane), run.corners[i], exact::raw_normal(run.corners[i])))
-          continue;
-        policy.met(trees_->mockup.order[kWide * statics + lane], mobile_id);
-        return false;
-      }
-    }
-    if (!policy.wants_distances()) continue;
-    PairLanes lanes{.s = &corners};
-    lanes.take(run.corners[i]);
-    std::array<double, kLanes> squared;
-    rooms(lanes, squared);
+bool PairSearch::leaf(Policy& policy, const Mobile& m, std::uint32_t run, const BoxOf& run_box) {
+  const std::uint32_t count =
+      std::min(kWide, static_cast<std::uint32_t>(trees_->mockup.order.size()) - kWide * run);
+  std::array<double, kLanes> gaps;
+  box_gaps(m.box, trees_->boxes[run], gaps);
+  // Pairs that meet first: their corners and edges may be far from each other.
+  unsigned mask = 0, crossing = 0;
+  for (std::uint32_t lane = 0; lane < count; ++lane) {
+    if (policy.near(gaps[lane])) mask |= 1u << lane;
+    if (gaps[lane] == 0) crossing |= 1u << lane;
+  }
+  if (mask == 0) return true;
+  const auto& corners = trees_->corners[run];
+  const std::uint32_t* const ids = &trees_->mockup.order[kWide * run];
+  if (crossing != 0) {
+    std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
+    filter_.put(corners, m.at);
+    filter_.judge(verdicts);
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const double room = std::max(std::sqrt(squared[lane]) - kRoomError, 0.0);
-      if (!policy.near(room * room)) mask &= ~(1u << lane);
+      if ((crossing >> lane & 1) == 0 || verdicts[lane] == PairFilter::kApart) continue;
+      if (verdicts[lane] == PairFilter::kUnknown &&
+          !exact::triangles_meet(fixed(ids[lane]), m.at, exact::raw_normal(m.at)))
+        continue;
+      policy.met(ids[lane], m.id);
+      return false;
     }
-    if (mask == 0) continue;
-    distances(lanes, squared);
-    // No edge is longer than twice its box's longest side.
-    const double edge = 2 * largest(box), reach = edge + 2 * largest(item.mockup_box);
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-      if ((mask >> lane & 1) == 0) continue;
-      const double distance = std::sqrt(squared[lane]);
-      policy.pair(trees_->mockup.order[kWide * statics + lane], mobile_id, run.corners[i], distance,
-                  distance_error(std::min(edge, 2 * largest(item.mockup_box)), reach + distance));
-    }
+  }
+  if (!policy.wants_distances()) return true;
+  PairLanes lanes{.s = &corners};
+  lanes.take(m.at);
+  std::array<double, kLanes> squared;
+  rooms(lanes, squared);
+  for (std::uint32_t lane = 0; lane < count; ++lane) {
+    const double room = std::max(std::sqrt(squared[lane]) - kRoomError, 0.0);
+    if (!policy.near(room * room)) mask &= ~(1u << lane);
+  }
+  if (mask == 0) return true;
+  distances(lanes, squared);
+  // No edge is longer than twice its box's longest side.
+  const double edge = 2 * largest(m.box), reach = edge + 2 * largest(run_box);
+  for (; mask != 0; mask &= mask - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
+    const double distance = std::sqrt(squared[lane]);
+    policy.pair(ids[lane], m.id, m.at, distance,
+                distance_error(std::min(edge, 2 * largest(run_box)), reach + distance));
   }
   return true;
 }
 
 struct PairSearch::Any {
-  static constexpr bool kTurned =
-      false;  ///< whether boxes along the triangles are worth a look: nearer, few are left out
+  static constexpr bool kNearestFirst = false;  ///< one that meets is as good as another
   bool found = false, close = false;
   std::array<std::uint32_t, 2> who{};
+  double within_steps() const { return kCloseSteps; }
+  bool within(double room) const { return room <= kCloseSteps; }
   bool near(double squared) const { return squared <= kCloseSteps * kCloseSteps; }
   bool keep(double squared, const BoxOf&, const BoxOf&) const { return near(squared); }
   void met(std::uint32_t s, std::uint32_t m) {
@@ -430,7 +407,7 @@ PairSearch::Found PairSearch::any(const LatticePose& pose) {
       return Found::kMeet;
     }
   Any policy;
-  descend(policy);
+  search(policy);
   if (!policy.found) return policy.close ? Found::kClose : Found::kNothing;
   met_[1] = met_[0];
   met_[0] = policy.who;
@@ -439,7 +416,7 @@ PairSearch::Found PairSearch::any(const LatticePose& pose) {
 }
 
 struct PairSearch::Nearest {
-  static constexpr bool kTurned = true;
+  static constexpr bool kNearestFirst = true;
   std::vector<Candidate>& candidates;
   double most;              ///< no pair is wanted that is a step further than this
   double most_squared = 0;  ///< (most + 1)², and a little
@@ -448,6 +425,8 @@ struct PairSearch::Nearest {
     most = distance;
     most_squared = (most + 1) * (most + 1) * (1 + 0x1p-40) + 0x1p-20;
   }
+  double within_steps() const { return most + 1; }
+  bool within(double room) const { return room <= most + 1; }
   bool near(double squared) const { return squared <= most_squared; }
   bool keep(double squared, const BoxOf&, const BoxOf&) const { return near(squared); }
   void met(std::uint32_t, std::uint32_t) { found = true; }
@@ -475,7 +454,7 @@ Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
       policy.set(std::min(policy.most, std::sqrt(d.squared) + 1));
     }
   }
-  descend(policy);
+  search(policy);
   if (policy.found) return {.kind = Clearance::Kind::kTouching};
   // Which of those within a step of each other are nearest, and of these the pair with the smallest ids:
   // integers decide.
@@ -506,23 +485,25 @@ Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
 /// time δ, no further than δ v·n + ½ δ² a: v is where it goes now, and a, how much that can turn, is the
 /// angle a time times the speed across the axis, which a screw keeps.
 struct PairSearch::Timed {
-  static constexpr bool kTurned = true;
+  static constexpr bool kNearestFirst = true;
   const PairSearch& search;
   Vec axis, velocity, origin;
-  double angle, time;        ///< the soonest so far
-  double fastest;            ///< speed of the tool's fastest point, at most
-  double reach_squared = 0;  ///< how far that one gets in `time`
+  double angle, time;                   ///< the soonest so far
+  double fastest;                       ///< speed of the tool's fastest point, at most
+  double reach = 0, reach_squared = 0;  ///< how far that one gets in `time`, and a little
   FreeTime out{};
   bool stop = false;
 
   void set(double sooner) {
     time = sooner;
-    const double reach = fastest * time + kMotionSlack;
+    reach = fastest * time + kMotionSlack + 1;
     reach_squared = reach * reach * (1 + 0x1p-40) + 1;
   }
   Vec speed_at(const Vec& p) const { return velocity + cross(axis, p - origin) * angle; }
   double across(const Vec& v) const { return length(v - axis * dot(axis, v)); }
 
+  double within_steps() const { return reach; }
+  bool within(double room) const { return room <= reach; }
   bool near(double squared) const { return squared <= reach_squared; }
   bool keep(double squared, const BoxOf& tool, const BoxOf& mockup) const {
     if (!near(squared)) return false;
@@ -616,7 +597,7 @@ FreeTime PairSearch::free_time(const LatticePose& pose, const Twist& twist, doub
       }
     }
   }
-  descend(policy);
+  search(policy);
   if (policy.out.blocked) blocking_ = {policy.out.static_id, policy.out.mobile_id};
   return policy.out;
 }

@@ -6,6 +6,8 @@
 
 #include "compute/native/narrow_phase/pair_filter.h"
 #include "compute/native/queries/pair_distance.h"
+#include "compute/native/queries/room_field.h"
+#include "compute/native/queries/tool_spheres.h"
 #include "compute/scene/triangle_tree.h"
 #include "model/contact/clearance.h"
 #include "model/lattice/lattice.h"
@@ -14,20 +16,22 @@
 namespace palpate::native {
 
 /// Trees over all triangles of both bodies that did not collapse, sheets too; made once a scene, read by any
-/// number of threads. 68 bytes a triangle of the mock-up.
+/// number of threads. Beside the field 78 bytes a triangle of the mock-up and 37 of the tool.
 struct PairTrees {
   explicit PairTrees(const SceneGeometry& geometry);
 
   const SceneGeometry* geometry;
   TriangleTree mockup, tool;
+  ToolSpheres spheres;  ///< of `tool`
+  RoomField field;      ///< of the mock-up
   /// Of the mock-up's runs: eight triangles by coordinate, k of corner c at [3 c + k], and their boxes.
   std::vector<std::array<std::array<std::int32_t, kLanes>, 9>> corners;
   std::vector<TriangleTree::Boxes> boxes;
 };
 
-/// Asks about pairs of triangles down both trees at once, boxes first, then eight pairs in double precision;
-/// what is left open, integers decide (docs/EXACTNESS.md, sections 9 and 10). One thread; allocates only when
-/// more is near than ever before.
+/// Asks about pairs of triangles: the tool's spheres in the mock-up's field first, then the mock-up's boxes,
+/// then eight pairs in double precision; what is left open, integers decide (docs/EXACTNESS.md, sections 9
+/// and 10). One thread; allocates only when more is near than ever before.
 class PairSearch {
  public:
   explicit PairSearch(const PairTrees& trees);
@@ -48,40 +52,47 @@ class PairSearch {
   std::uint64_t looks() const { return looks_; }  ///< boxes and triangles looked at in all
 
  private:
-  struct Node {
-    std::uint32_t level, index;  ///< level 0: a run
+  struct Node {  ///< of the mock-up's tree
+    std::uint32_t level, index;
+    double squared;  ///< gap of its box
   };
-  struct Item {
-    Node tool, mockup;
-    BoxOf tool_box, mockup_box;
-    double squared;  ///< gap of the boxes
+  struct Group {  ///< of the tool's spheres
+    std::uint32_t level, number;
   };
-  /// Corners of eight triangles, steps, by coordinate: k of corner c at [3 c + k].
-  using Places = std::array<std::array<double, kLanes>, 9>;
-  struct Run {  ///< of the tool, at the pose
-    std::array<exact::Corners, kLanes> corners;
-    EightDoubles boxes;  ///< of no triangle: nowhere
-    Places places{};     ///< of no triangle: another's
-    std::uint32_t pose = 0, placed = 0;
+  struct Lead {
+    double room;              ///< steps that the nearest has, at least
+    std::uint32_t run, mask;  ///< of its triangles those that may matter
+    std::array<double, kLanes> rooms;
   };
-  struct Group {  ///< of the tool's boxes, at the pose
-    EightDoubles boxes;
-    std::uint32_t pose = 0;
+  struct Mobile {  ///< a triangle of the tool at the pose
+    std::uint32_t id;
+    exact::Corners at;
+    BoxOf box;
+    std::array<double, 9> corners;  ///< k of corner c at [3 c + k]
   };
   struct Candidate {
     std::uint32_t static_id, mobile_id;
     double least;  ///< its distance is no smaller
   };
-  template <class Policy>
-  void descend(Policy& policy);
-  template <class Policy>
-  bool leaf(Policy& policy, const Item& item);
   void begin(const LatticePose& pose);
-  const EightDoubles& posed_boxes(std::uint32_t group);
-  const Run& posed_run(std::uint32_t run);
-  /// Of a run that is posed already. For turned_gap() alone: whoever asks for touch needs none.
-  const Places& posed_places(std::uint32_t run);
-  double turned_gap(std::uint32_t fixed_run, const Places& places) const;
+  template <class Policy>
+  void search(Policy& policy);
+  template <class Policy>
+  bool dive(Policy& policy);
+  template <class Policy>
+  bool gather(Policy& policy);
+  template <class Policy>
+  void pose(const Policy& policy, const Lead& lead);
+  template <class Policy>
+  bool descend(Policy& policy, const Lead& lead);
+  template <class Policy>
+  static std::uint32_t sorted(const Policy& policy, const BoxOf& box, const TriangleTree::Boxes& boxes,
+                              const std::array<double, kLanes>& gaps, std::uint32_t all,
+                              std::array<std::uint32_t, kLanes>& order);
+  template <class Policy>
+  bool group(Policy& policy, const Mobile& m, std::uint32_t number);
+  template <class Policy>
+  bool leaf(Policy& policy, const Mobile& m, std::uint32_t run, const BoxOf& run_box);
   exact::Corners mobile(std::uint32_t id) const;
   exact::Corners fixed(std::uint32_t id) const;
   bool meet(std::uint32_t static_id, std::uint32_t mobile_id) const;
@@ -92,14 +103,15 @@ class PairSearch {
 
   const PairTrees* trees_;
   LatticePose pose_{};
-  double rotation_[3][3]{}, size_[3][3]{};
-  std::uint32_t now_ = 0;  ///< number of the pose
-  std::vector<Run> runs_;
+  RoomField::Turn turn_{};
   std::vector<Group> groups_;
-  std::vector<Item> open_;
+  std::vector<Lead> leads_;
+  std::vector<Node> open_;
+  std::array<Mobile, kLanes> mobiles_;  ///< of a run
+  std::size_t count_ = 0;
+  BoxOf run_box_{};  ///< of these
   std::vector<Candidate> candidates_;
   PairFilter filter_;
-  BoxOf mockup_root_{}, tool_root_{};                  ///< the tool's in its own frame
   std::array<std::array<std::uint32_t, 2>, 2> met_{};  ///< pairs that met last
   std::size_t met_count_ = 0;
   std::array<std::uint32_t, 2> near_{kNoTriangle, kNoTriangle},
