@@ -138,7 +138,7 @@
     const { roughness } = data;
     byId('steps-lead').textContent = 'Over the whole run. A hand feels steps of force, not its size: the largest from one tick to the next is ' + number(roughness.without.largest) + ' N without the law and '
       + number(roughness.with.largest) + ' N with it; ' + count(roughness.without.still) + ' and ' + count(roughness.with.still) + ' ticks had none and are not counted in the chart. '
-      + 'The spectrum (Welch, pieces of 1,024 ticks) is of the force as it is; skin feels best from 40 to 400 Hz.';
+      + 'The spectrum (Welch, pieces of 1,024 ticks) is of the force as it is.';
     Plot.draw(byId('steps'), { title: 'Steps of force', unit: 'ticks, by N from one to the next', xName: 'step', xUnit: 'N', xLog: true, kind: 'log', fixed: true, height: 240,
       series: both.map(([key, colour]) => ({ label: key, colour, points: Plot.outline(roughness[key].steps), width: 1.4 })) });
     const spectra = both.map(([key, colour]) => ({ label: key, colour, points: roughness[key].spectrum, width: 1.3 }));
