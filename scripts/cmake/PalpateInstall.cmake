@@ -58,7 +58,7 @@ configure_file(scripts/cmake/palpate.pc.in "${PROJECT_BINARY_DIR}/palpate.pc" @O
 install(FILES "${PROJECT_BINARY_DIR}/palpate.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
 
 # Packages whose headers or texts become part of the program.
-set(palpate_compiled_in libcli11-dev libglm-dev nlohmann-json3-dev libboost1.74-dev libxxhash-dev libjs-chart.js)
+set(palpate_compiled_in libcli11-dev libglm-dev nlohmann-json3-dev libboost1.74-dev libxxhash-dev)
 
 # palpate_install_manual(COMPONENT): manual pages and completions, which the program writes from its own options. A program for another machine can't make them here.
 function(palpate_install_manual component)
@@ -115,6 +115,7 @@ if(TARGET palpate)
     set(OUT \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/palpate/licences\")
     set(ARCHITECTURE \"${CMAKE_LIBRARY_ARCHITECTURE}\")
     set(PACKAGES ${palpate_compiled_in})
+    file(MAKE_DIRECTORY \"\${OUT}\")
     include(\"${PROJECT_SOURCE_DIR}/scripts/cmake/CollectLicences.cmake\")" COMPONENT bundle)
   install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md SECURITY.md CITATION.cff driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
   if(TARGET equivalence)

@@ -167,16 +167,24 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
                                           "forms, and scenes against a converged run");
   add_common(*error, options, false);
   add_poses(*error, options);
-  error->add_option("--backend", options.backends, kEngineHelp)
+  error
+      ->add_option(
+          "--backend", options.backends,
+          "the engine, or several; without it cpu, and beside it gpu (else ref), which answers paper, too")
       ->check(one_of(kEngines))
-      ->expected(1)
+      ->expected(1, 3)
       ->type_name("auto|gpu|cpu|ref");
   error->add_flag("--scenes-only", options.scenes_only, "without the four closed forms");
+  error->add_flag("--quick", options.quick,
+                  "two closed forms, eight poses, six spacings: to see that it works");
   error->footer(
       "Errors are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 over the poses in "
       "contact. Times are whole frames.\n"
       "A scene's truth is the refined profile at a spacing of a 16th of a voxel; the sweep towards it shows "
-      "its convergence.");
+      "its convergence. Without --poses a scene is\n"
+      "measured twice: at the poses of a hand in virtual time, and at its path's, deeper than a hand gets. "
+      "Each engine has "
+      "charts of its own.");
   measure(error, bench_error);
 
   CLI::App* peers = bench->add_subcommand(

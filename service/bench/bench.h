@@ -23,6 +23,7 @@ struct BenchOptions {
   std::uint64_t rounds = 3;        ///< how often all poses are gone through
   bool cpu_clock = false;          ///< time the process's own CPU time instead of the wall's
   bool scenes_only = false;        ///< error: without the closed forms
+  bool quick = false;              ///< error: two closed forms, few poses, few settings
   std::vector<std::string> peers;  ///< names to measure; empty: all
   std::uint64_t most_triangles = 1'000'000;  ///< scale: of the largest mock-up
   double seconds = 60;                       ///< jitter: how long

@@ -1,7 +1,6 @@
 #include "service/bench/output.h"
 
 #include <fmt/format.h>
-#include <sys/utsname.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -15,6 +14,8 @@
 #include "generated/commit.h"
 #include "service/bench/chart_svg.h"
 #include "service/cli/scene_host.h"
+#include "service/report/markup.h"
+#include "service/report/provenance.h"
 #include "service/report/report_assets.h"
 
 namespace palpate {
@@ -22,36 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The value behind `name` in a file of lines "name : value"; empty: none.
-std::string line_of(const char* file, const std::string& name) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with(name)) continue;
-    const std::size_t colon = line.find(':');
-    const std::size_t begin = colon == std::string::npos ? colon : line.find_first_not_of(" \t", colon + 1);
-    if (begin != std::string::npos) return line.substr(begin);
-  }
-  return "";
-}
-
-std::string machine_text() {
-  utsname system{};
-  const bool known = uname(&system) == 0;
-  const std::string cpu = line_of("/proc/cpuinfo", "model name");
-  const double gib = std::strtod(line_of("/proc/meminfo", "MemTotal").c_str(), nullptr) / 1048576;
-  return fmt::format("{}, {} threads, {:.0f} GiB, {} {}", cpu.empty() ? "unknown CPU" : cpu,
-                     std::thread::hardware_concurrency(), gib, known ? system.sysname : "",
-                     known ? system.release : "");
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
+constexpr std::size_t kOpenRows = 40;  // a longer table is folded (chosen)
 
 /// Four figures are more than any repetition keeps.
 std::string plain(const BenchCell& cell) {
@@ -102,25 +74,6 @@ Json json_rows(const BenchTable& table) {
   return rows;
 }
 
-Json json_charts(const std::vector<BenchChart>& charts) {
-  Json out = Json::array();
-  for (const BenchChart& chart : charts) {
-    Json series = Json::array();
-    for (const auto& s : chart.series)
-      series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}, {"expected", s.expected}});
-    out.push_back({{"title", chart.title},
-                   {"unit", chart.unit},
-                   {"labels", chart.labels},
-                   {"series", series},
-                   {"stacked", chart.stacked},
-                   {"log_x", chart.log_x},
-                   {"log_y", chart.log_y},
-                   {"x_title", chart.x_title},
-                   {"picture", chart.map ? chart_svg(chart) : ""}});
-  }
-  return out;
-}
-
 void print(const BenchTable& table) {
   std::vector<std::size_t> widths;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -147,24 +100,56 @@ Result<void> write_text(const std::filesystem::path& path, const std::string& te
   return {};
 }
 
-/// The page with its places filled; nothing inserted is searched again.
-std::string page(const Json& data) {
-  std::string text = data.dump();
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
-    text.insert(at + 1, "\\");  // would end the script
-  const std::vector<std::pair<std::string_view, std::string>> places = {
-      {"@CSS@", std::string(assets::report_css)},
-      {"@CHART_JS@", std::string(assets::chart_js)},
-      {"@DATA@", text},
-      {"@SCRIPT@", std::string(assets::bench_js)}};
-  std::string_view rest = assets::bench_html;
-  std::string out;
-  for (const auto& [name, content] : places) {
-    const std::size_t at = rest.find(name);
-    out.append(rest.substr(0, at)).append(content);
-    rest.remove_prefix(at + name.size());
+std::string anchor(std::size_t chart) { return fmt::format("chart-{}", chart); }
+
+/// A page without scripts: contents, the charts with their captions, what was measured on, the figures
+/// folded.
+std::string page(const Json& head, const BenchTable& table, const std::vector<BenchChart>& charts) {
+  const std::string title = "palpate bench " + head["bench"].get<std::string>();
+  std::string body = "<header><h1>" + markup_text(title) + "</h1><p>" +
+                     markup_text(head["device"].get<std::string>()) + "</p></header>";
+  if (charts.size() > 2) {
+    body += "<nav class=\"contents\" aria-label=\"Contents\">";
+    for (std::size_t i = 0; i < charts.size(); ++i)
+      body += "<a href=\"#" + anchor(i) + "\">" + markup_text(charts[i].title) + "</a>";
+    body += "<a href=\"#facts\">Measured on</a><a href=\"#figures\">Figures</a></nav>";
   }
-  return out.append(rest);
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    body += "<figure class=\"bench\" id=\"" + anchor(i) + "\"><div class=\"picture scroll\">" +
+            chart_svg(charts[i]) + "</div>";
+    if (!charts[i].caption.empty()) body += "<p class=\"note\">" + markup_text(charts[i].caption) + "</p>";
+    body += "</figure>";
+  }
+  body += "<h2 id=\"facts\">Measured on</h2><table class=\"facts\">";
+  for (const auto& [name, value] : head.items()) {
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    body += "<tr><td>" + markup_text(words) + "</td><td>" +
+            markup_text(value.is_string() ? value.get<std::string>() : value.dump()) + "</td></tr>";
+  }
+  body += fmt::format(
+      "</table><h2 id=\"figures\">Figures</h2><details{}><summary>{} rows; results.csv has them, too"
+      "</summary><div class=\"scroll\"><table><tr>",
+      table.rows.size() <= kOpenRows ? " open" : "", table.rows.size());
+  for (std::string column : table.columns) {
+    std::replace(column.begin(), column.end(), '_', ' ');
+    body += "<th>" + markup_text(column) + "</th>";
+  }
+  body += "</tr>";
+  for (const auto& row : table.rows) {
+    body += "<tr>";
+    for (const BenchCell& cell : row) body += "<td>" + markup_text(readable(cell)) + "</td>";
+    body += "</tr>";
+  }
+  body +=
+      "</table></div></details><footer>Other work on the machine moves absolute figures. Whatever stands "
+      "side by "
+      "side was measured in turns: trust the ratios.</footer>";
+  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+         "content=\"width=device-width, initial-scale=1\"><meta name=\"color-scheme\" content=\"light "
+         "dark\"><title>" +
+         markup_text(title) + "</title><style>" + std::string(assets::report_css) +
+         "</style></head>\n<body><main>" + body + "</main></body></html>\n";
 }
 
 }  // namespace
@@ -222,18 +207,10 @@ Result<void> write_bench(const std::string& directory, const BenchFacts& facts, 
   results["rows"] = json_rows(table);
   if (auto done = write_text(root / "results.json", results.dump(1) + "\n"); !done) return done;
 
-  Json rows = Json::array();
-  for (const auto& row : table.rows) {
-    Json cells = Json::array();
-    for (const BenchCell& cell : row) cells.push_back(readable(cell));
-    rows.push_back(cells);
-  }
-  const Json data{
-      {"facts", head}, {"charts", json_charts(charts)}, {"columns", table.columns}, {"rows", rows}};
-  if (auto done = write_text(root / "report.html", page(data)); !done) return done;
+  if (auto done = write_text(root / "report.html", page(head, table, charts)); !done) return done;
   for (std::size_t i = 0; i < charts.size(); ++i)
-    if (const std::string picture = chart_svg(charts[i]); !picture.empty())
-      if (auto done = write_text(root / fmt::format("chart_{}.svg", i), picture); !done) return done;
+    if (auto done = write_text(root / fmt::format("chart_{}.svg", i), chart_svg(charts[i])); !done)
+      return done;
   print(table);
   return {};
 }

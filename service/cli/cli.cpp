@@ -18,6 +18,7 @@
 #include "generated/commit.h"
 #include "model/files/one_line.h"
 #include "service/bench/bench.h"
+#include "service/cli/compare.h"
 #include "service/cli/console.h"
 #include "service/cli/manual.h"
 #include "service/cli/output_folder.h"
@@ -319,6 +320,9 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
 
   PathOptions path;
   add_path_command(app, path, parts, outcome);
+
+  CompareOptions compare;
+  add_compare_command(app, compare, outcome);
 
   SceneOptions plan;
   bool plan_json = false;

@@ -227,7 +227,7 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
     session.plans = &plans;
     session.changes = *switches;
   }
-  ReportSeries series;
+  ReportSeries series(report_focus(loaded));
   RunWatch watch(**recorder, series, console, loaded);
   Result<SessionSummary> summary = run_session(loaded, *(*prepared)->backend, **device, session, &watch);
   console.finish();
@@ -240,8 +240,11 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   summary->static_parts.assign(watch.statics().begin(), watch.statics().end());
   summary->tool_parts.assign(watch.mobiles().begin(), watch.mobiles().end());
 
-  const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s};
-  if (auto done = write_text(directory / "summary.json", summary_json(*summary)); !done) return done;
+  const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s,
+                          provenance_of(loaded.scene, (*prepared)->plan,
+                                        summary->backend + " on " + summary->device, typed_command())};
+  if (auto done = write_text(directory / "summary.json", summary_json(*summary, &facts.provenance)); !done)
+    return done;
   if (auto done = write_text(directory / "report.html", report_page(*summary, loaded, facts, series)); !done)
     return done;
   for (const std::string& note : summary->notes) console.note(note);

@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+#include <string>
+
 #include "service/bench/bench.h"
 
 namespace CLI {
@@ -10,7 +13,8 @@ namespace palpate {
 struct TuneOptions {
   BenchOptions bench;  ///< scene, poses, frames, rounds, back ends
   double budget_us = 0;
-  bool json = false;
+  bool json = false, apply = false;
+  std::optional<std::string> clock{};  ///< "wall" or "cpu"; empty: the one that suits the engine
 };
 
 /// Adds `tune`; all arguments outlive the parsing.

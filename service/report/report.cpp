@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -60,6 +61,26 @@ Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
   return rows;
 }
 
+Json provenance_rows(const Provenance& provenance) {
+  const auto listed = [](const std::vector<std::string>& words) {
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+    return out.empty() ? "none" : out;
+  };
+  Json rows = Json::array();
+  const auto row = [&](const std::string& name, const std::string& value) { rows.push_back({name, value}); };
+  row("palpate", provenance.version + ", commit " + provenance.commit);
+  row("command", provenance.command);
+  row("engine", provenance.engine);
+  row("machine", provenance.machine);
+  row("written", provenance.time_utc);
+  row("stages kept", listed(provenance.kept));
+  row("stages left out", listed(provenance.left_out));
+  for (const auto& [name, hash] : provenance.inputs)
+    row(name, hash.size() == 64 ? "SHA-256 " + hash : hash.empty() ? "can't be read any more" : hash);
+  return rows;
+}
+
 /// In a script element `</` would end it early; in a JSON string the slash may be escaped.
 std::string script_safe(std::string json) {
   for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3)
@@ -68,6 +89,20 @@ std::string script_safe(std::string json) {
 }
 
 }  // namespace
+
+std::string chapter_experiment(const Scene& scene) {
+  std::string name = scene.tool.source.generate;
+  name.resize(std::min(name.find('/'), name.size()));
+  for (const StaticBody& body : scene.statics)
+    if (body.source.generate.substr(0, body.source.generate.find('/')) != name) return "";
+  return name;
+}
+
+ReportFocus report_focus(const LoadedScene& scene) {
+  ReportFocus focus{scene.geometry.tool_gc_m, {}};
+  if (chapter_experiment(scene.scene) == "disassembly") focus.stage = 3;
+  return focus;
+}
 
 std::string report_page(const SessionSummary& summary, const LoadedScene& loaded, const ReportFacts& facts,
                         const ReportSeries& series) {
@@ -78,7 +113,9 @@ std::string report_page(const SessionSummary& summary, const LoadedScene& loaded
   std::string data = "{\"name\":" + dump(scene_name(loaded.scene.file));
   data += ",\"subtitle\":" + dump(subtitle);
   data += ",\"notes\":" + dump(summary.notes);
+  data += ",\"chapter\":" + dump(chapter_experiment(loaded.scene));
   data += ",\"summary\":" + summary_json(summary);
+  data += ",\"provenance\":" + dump(provenance_rows(facts.provenance));
   data += ",\"summary_rows\":" + dump(summary_rows(summary, loaded.scene.stage_names));
   data += ",\"settings\":" + dump(settings_rows(loaded, facts));
   data += "," + series.json(loaded.scene.stage_names) + "}";
@@ -86,7 +123,7 @@ std::string report_page(const SessionSummary& summary, const LoadedScene& loaded
   // The template's places, in one pass, so that nothing inserted is searched again.
   const std::vector<std::pair<std::string_view, std::string>> places = {
       {"@CSS@", std::string(assets::report_css)},
-      {"@CHART_JS@", std::string(assets::chart_js)},
+      {"@PLOT_JS@", std::string(assets::plot_js)},
       {"@DATA@", script_safe(std::move(data))},
       {"@SCRIPT@", std::string(assets::report_js)}};
   std::string_view rest = assets::report_html;

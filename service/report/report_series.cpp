@@ -75,9 +75,11 @@ void Envelope::append_means(std::string& out) const {
 void Highlight::push(const TickRecord& tick) {
   recent_.push_back(tick);
   if (recent_.size() > kTicks) recent_.pop_front();
-  const double force = glm::length(tick.response.force);
-  if (force > strongest_) {
-    strongest_ = force;
+  const double strength = !stage_                 ? glm::length(tick.response.force)
+                          : tick.stage == *stage_ ? std::fabs(tick.response.torque.x)
+                                                  : 0;
+  if (strength > strongest_) {
+    strongest_ = strength;
     until_complete_ = kTicks / 2 + 1;
   }
   if (until_complete_ > 0 && --until_complete_ == 0) best_.assign(recent_.begin(), recent_.end());
@@ -96,6 +98,9 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
     curves_[fmt::format("sent_force_{}", axis)].push(tick.time_s, tick.sent.force[i]);
     curves_[fmt::format("sent_torque_{}", axis)].push(tick.time_s, tick.sent.torque[i]);
   }
+  curves_["energy"].push(tick.time_s, work_.push(tick));
+  steps_sent_.push(tick.sent.force);
+  steps_without_.push(tick.uncontrolled.force);
   highlight_.push(tick);
   if (sections_.empty() || sections_.back().stage != tick.stage)
     sections_.push_back({tick.stage, tick.time_s, tick.time_s});
@@ -121,9 +126,14 @@ Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
   count("cmt", contacts.cmt.size());
   count("bmt", contacts.bmt.size());
   count("imt", contacts.imt.size());
+  count("triangles", contacts.cst.size() + contacts.bst.size() + contacts.est.size() + contacts.cmt.size() +
+                         contacts.bmt.size() + contacts.imt.size());
   const auto with_force = std::count_if(frame.response.areas.begin(), frame.response.areas.end(),
                                         [](const AreaResponse& area) { return area.force != Vec3(0); });
   count("areas", static_cast<std::size_t>(with_force));
+  double depth = 0;
+  for (const AreaResponse& area : frame.response.areas) depth = std::max(depth, area.depth);
+  curves_["depth"].push(time_s, depth);
   curves_["frame_us"].push(time_s, frame.total_us);
   for (const Contacts::StageTime& time : contacts.times) {
     auto [curve, is_new] = stage_us_.try_emplace(time.stage);
@@ -159,10 +169,6 @@ std::string ReportSeries::json(const std::vector<std::string>& stage_names) cons
     name(key);
     curve.append_extremes(out);
   }
-  if (const auto frame_us = curves_.find("frame_us"); frame_us != curves_.end()) {
-    name("frame_us_mean");
-    frame_us->second.append_means(out);
-  }
   out += "},\"stage_us\":{";
   for (const std::string& stage : time_stages_) {
     name(stage);
@@ -178,7 +184,17 @@ std::string ReportSeries::json(const std::vector<std::string>& stage_names) cons
           fmt::format_to(std::back_inserter(out), ",{:.6g}", std::isfinite((*v)[i]) ? (*v)[i] : 0.0);
     out.push_back(']');
   }
-  out += "],\"stages\":";
+  out += "],\"roughness\":{";
+  for (const auto& [key, steps] : {std::pair{"without", &steps_without_}, {"with", &steps_sent_}}) {
+    name(key);
+    fmt::format_to(std::back_inserter(out), "{{\"largest\":{:.5g},\"still\":{},\"steps\":", steps->largest(),
+                   steps->still());
+    steps->append_steps(out);
+    out += ",\"spectrum\":";
+    steps->append_spectrum(out);
+    out.push_back('}');
+  }
+  out += "},\"stages\":";
   nlohmann::json stages = nlohmann::json::array();
   for (const Section& section : sections_)
     stages.push_back({{"stage", section.stage},

@@ -2,10 +2,13 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "service/loop/run_record.h"
+#include "service/report/force_steps.h"
+#include "service/report/work_given.h"
 
 namespace palpate {
 
@@ -33,9 +36,11 @@ class Envelope {
   std::uint32_t bin_size_ = 1;
 };
 
-/// The ticks around the strongest contact response of a run, at full rate.
+/// The ticks around the strongest contact response of a run, at full rate; with a stage those around its
+/// largest torque about x, which the chapter's figure 13 shows of its third.
 class Highlight {
  public:
+  explicit Highlight(std::optional<std::int32_t> stage = {}) : stage_(stage) {}
   void push(const TickRecord& tick);
   /// Empty if the run had no contact.
   std::vector<TickRecord> ticks() const;
@@ -43,9 +48,10 @@ class Highlight {
  private:
   static constexpr std::size_t kTicks = 200;  ///< the chapter's Fig. 13 shows frames 3450–3650
 
+  std::optional<std::int32_t> stage_;
   std::deque<TickRecord> recent_;
   std::vector<TickRecord> best_;
-  double strongest_ = 0;            ///< N, largest response force so far
+  double strongest_ = 0;            ///< N, largest response force so far; with a stage N·m
   std::size_t until_complete_ = 0;  ///< ticks still wanted after the strongest one; 0: nothing pending
 };
 
@@ -57,14 +63,21 @@ struct StageFigures {
   double frame_us_sum = 0, frame_us_max = 0;
 };
 
+/// What a report looks at beside the forces.
+struct ReportFocus {
+  Vec3 tool_gc_m{0};                    ///< tool frame, for work
+  std::optional<std::int32_t> stage{};  ///< of the stretch at full rate (Highlight)
+};
+
 /// Collects the report's curves during a run, in bounded memory.
 class ReportSeries : public RunObserver {
  public:
+  explicit ReportSeries(const ReportFocus& focus = {}) : highlight_(focus.stage), work_(focus.tool_gc_m) {}
   Result<void> on_tick(const TickRecord& tick) override;
   Result<void> on_frame(const FrameRecord& frame) override;
 
-  /// The members "curves", "highlight", "stages" and "stage_figures" of the report's data, without braces
-  /// around.
+  /// The members "curves", "stage_us", "highlight", "roughness", "stages" and "stage_figures" of the report's
+  /// data, without braces around.
   std::string json(const std::vector<std::string>& stage_names) const;
 
  private:
@@ -79,6 +92,8 @@ class ReportSeries : public RunObserver {
   std::map<std::int32_t, StageFigures> figures_;
   StageFigures early_;  ///< of frames before the first tick
   Highlight highlight_;
+  WorkGiven work_;
+  ForceSteps steps_sent_, steps_without_;  ///< with the control law, and without
 };
 
 }  // namespace palpate

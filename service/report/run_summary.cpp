@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-std::string summary_json(const SessionSummary& summary) {
+std::string summary_json(const SessionSummary& summary, const Provenance* provenance) {
   using Json = nlohmann::ordered_json;
   const auto percentiles = [](const Percentiles& p) {
     return Json{{"p50", p.p50}, {"p99", p.p99}, {"max", p.max}};
@@ -62,6 +62,18 @@ std::string summary_json(const SessionSummary& summary) {
   }
   if (!summary.static_parts.empty())
     json["parts"] = {{"static", summary.static_parts}, {"tool", summary.tool_parts}};
+  if (provenance != nullptr) {
+    Json inputs = Json::array();
+    for (const auto& [name, hash] : provenance->inputs) inputs.push_back({{"name", name}, {"sha256", hash}});
+    json["provenance"] = {{"version", provenance->version},
+                          {"commit", provenance->commit},
+                          {"machine", provenance->machine},
+                          {"engine", provenance->engine},
+                          {"command", provenance->command},
+                          {"time", provenance->time_utc},
+                          {"inputs", inputs},
+                          {"plan", {{"kept", provenance->kept}, {"left_out", provenance->left_out}}}};
+  }
   if (!summary.notes.empty()) json["notes"] = summary.notes;
   if (summary.failure) json["failure"] = summary.failure->sentence;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "service/loop/session.h"
+#include "service/report/provenance.h"
 
 namespace palpate {
 
-/// summary.json: the contract's fields in its order; then `notes`, sentences on what went on, and `failure`,
-/// why the run ended before its time, where there are any.
-std::string summary_json(const SessionSummary& summary);
+/// summary.json: the contract's fields in its order; then `provenance`, where it is given; then `notes`,
+/// sentences on what went on, and `failure`, why the run ended before its time, where there are any.
+std::string summary_json(const SessionSummary& summary, const Provenance* provenance = nullptr);
 
 /// The same for a person, as pairs of name and value. `stage_names`: stage i is stage_names[i − 1].
 std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSummary& summary,

@@ -39,11 +39,27 @@ TEST(ChartSvg, AMapHasACellAValueAndDarkensWithIt) {
   EXPECT_EQ(count(chart_svg(chart), "rgb(255,247,203)"), 6u) << "the least of the scale, and what is below";
 }
 
-TEST(ChartSvg, LeavesBarsToTheReport) {
+TEST(ChartSvg, BarsStandBesideOrOnEachOther) {
   BenchChart chart;
-  chart.labels = {"a"};
-  chart.series = {{"x", {}, {1}}};
-  EXPECT_TRUE(chart_svg(chart).empty());
+  chart.labels = {"a", "b"};
+  chart.series = {{"x", {}, {1, 2}}, {"y", {}, {3, 0}}};
+  const std::string beside = chart_svg(chart);
+  EXPECT_EQ(count(beside, "<rect"), 1u + 3u + 2u);  // the ground, a bar a value but for nothing, the legend
+  EXPECT_NE(beside.find("height=\"330.0\""), std::string::npos) << "the largest, 3, fills the plot";
+  chart.stacked = true;
+  const std::string stacked = chart_svg(chart);
+  EXPECT_NE(stacked.find("height=\"247.5\""), std::string::npos) << "3 of 4";
+}
+
+TEST(ChartSvg, WhatDivergedIsMarkedAtTheEdgeAndStretchesNoAxis) {
+  BenchChart chart;
+  chart.log_y = true;
+  chart.y_most = 10;
+  chart.series = {{"a", {1, 2, 3}, {1, 5, 1e104}}};
+  const std::string picture = chart_svg(chart);
+  EXPECT_EQ(count(picture, "<circle"), 2u);
+  EXPECT_EQ(count(picture, "l5 9h-10Z"), 1u);
+  EXPECT_EQ(picture.find("1e+104"), std::string::npos);
 }
 
 }  // namespace

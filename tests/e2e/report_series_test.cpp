@@ -1,9 +1,11 @@
 // The report's curves lose no peak, and its stretch lies round the strongest contact.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "service/report/report_series.h"
+#include "service/report/run_difference.h"
 
 namespace palpate {
 namespace {
@@ -81,6 +83,103 @@ TEST(Highlight, IsEmptyWithoutContact) {
   Highlight highlight;
   for (int i = 0; i < 500; ++i) highlight.push(tick_with_force(i, 0));
   EXPECT_TRUE(highlight.ticks().empty());
+}
+
+TEST(Highlight, OfAStageIsRoundItsLargestTorqueAboutX) {
+  Highlight highlight(3);
+  for (int i = 0; i < 3000; ++i) {
+    TickRecord tick = tick_with_force(i, i == 500 ? 9 : 1);
+    tick.stage = i < 1000 ? 2 : 3;
+    tick.response.torque.x = i == 700 ? 5 : i == 2000 ? -2 : 0.1;  // the first in another stage
+    highlight.push(tick);
+  }
+  const auto ticks = highlight.ticks();
+  ASSERT_EQ(ticks.size(), 200u);
+  EXPECT_EQ(ticks[ticks.size() / 2 - 1].tick, 2000);
+}
+
+nlohmann::json steps_of(const ForceSteps& steps) {
+  std::string text;
+  steps.append_steps(text);
+  return nlohmann::json::parse(text);
+}
+
+TEST(ForceSteps, CountsEveryStepOnceBySize) {
+  ForceSteps steps;
+  for (int i = 0; i < 10; ++i) steps.push(Vec3(i >= 5 ? 0.3 : 0, i >= 8 ? 0.02 : 0, 0));
+  EXPECT_EQ(steps.still(), 7u);
+  EXPECT_DOUBLE_EQ(steps.largest(), 0.3);
+  const auto bins = steps_of(steps);
+  ASSERT_EQ(bins.size(), 2u);
+  EXPECT_LE(bins[0][0], 0.02);
+  EXPECT_GT(bins[0][1], 0.02);
+  EXPECT_LE(bins[1][0], 0.3);
+  EXPECT_GT(bins[1][1], 0.3);
+}
+
+TEST(ForceSteps, TheSpectrumOfASineHasItsPowerAtItsFrequency) {
+  ForceSteps steps;
+  // 125 Hz is bin 128 of 1,024 at 1 kHz; the mean, 3 N, has no place in it. Power of 2 sin: 2 N².
+  for (int i = 0; i < 8192; ++i) steps.push(Vec3(3, 2 * std::sin(2 * 3.14159265358979 * 0.125 * i), 0));
+  std::string text;
+  steps.append_spectrum(text);
+  const auto spectrum = nlohmann::json::parse(text);
+  ASSERT_EQ(spectrum.size(), 512u);
+  double power = 0;
+  std::size_t highest = 0;
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
+    power += spectrum[k][1].get<double>() * 1000.0 / 1024;
+    if (spectrum[k][1] > spectrum[highest][1]) highest = k;
+  }
+  EXPECT_EQ(spectrum[highest][0], 125);
+  EXPECT_NEAR(power, 2, 1e-3);  // four printed digits
+}
+
+TEST(WorkGiven, IsForceTimesWayAndTorqueTimesTurnAboutTheCentreOfMass) {
+  const Vec3 gc(0.1, 0, 0);
+  WorkGiven work(gc);
+  TickRecord tick;
+  tick.sent = {Vec3(0, 2, 0), Vec3(0, 0, 3)};
+  EXPECT_EQ(work.push(tick), 0);
+  tick.pose.position = Vec3(0, 0.5, 0);  // 2 N over half a metre
+  EXPECT_NEAR(work.push(tick), 1, 1e-12);
+  // A turn of 0.2 about z through the centre of mass, which stays: 3 N·m times 0.2.
+  const Quat turn = glm::angleAxis(0.2, Vec3(0, 0, 1));
+  tick.pose = {Vec3(0, 0.5, 0) + gc - turn * gc, turn};
+  EXPECT_NEAR(work.push(tick), 1.6, 1e-12);
+}
+
+RecordedRun run_of(int ticks, double force, const char* summary) {
+  RecordedRun run{"run", summary, {}};
+  for (int i = 0; i < ticks; ++i) {
+    RecordedTick tick;
+    tick.tick = i;
+    tick.time_s = i * 1e-3;
+    tick.sent.force.x = i < 5 ? 1 : force;
+    run.ticks.push_back(tick);
+  }
+  return run;
+}
+
+TEST(RunDifference, TellsWhereAndByHowMuch) {
+  const RecordedRun one =
+      run_of(10, 1, R"({"ticks":10,"force_max_N":2.0,"provenance":{"commit":"a"},"notes":["x"]})");
+  const RunDifference same = difference_of(one, one);
+  EXPECT_TRUE(same.same_trace());
+  EXPECT_TRUE(same.facts.empty());
+  const RunDifference other =
+      difference_of(one, run_of(12, 4, R"({"force_max_N":3.0,"ticks":10,"provenance":{"commit":"b"}})"));
+  EXPECT_FALSE(other.same_trace());
+  EXPECT_EQ(other.common, 10u);
+  EXPECT_EQ(other.only_second, 2u);
+  EXPECT_EQ(other.quantities[4].largest, 3);
+  EXPECT_EQ(other.quantities[4].first_at_s, 0.005);
+  EXPECT_NEAR(other.quantities[4].rms, 3 * std::sqrt(0.5), 1e-12);
+  EXPECT_FALSE(other.quantities[2].first_at_s);
+  ASSERT_EQ(other.facts.size(), 2u);
+  EXPECT_EQ(other.facts[0].name, "provenance commit");
+  EXPECT_EQ(other.facts[1].name, "force max N");
+  EXPECT_EQ(other.facts[1].ratio, 1.5);
 }
 
 }  // namespace

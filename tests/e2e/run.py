@@ -67,13 +67,19 @@ def test_the_report_is_one_self_contained_page():
     expect(not page.links, f'the page reaches outside: {page.links}')
     for sign in ('http://', 'https://', '@import', 'url('):
         expect(sign not in text, f'the page holds {sign}')
-    for canvas in ('torque', 'force', 'triangles', 'areas', 'time', 'law-torque', 'law-force'):
-        expect(canvas in page.ids, f'no figure {canvas}')
-    for place in ('@CSS@', '@DATA@', '@SCRIPT@', '@CHART_JS@'):
+    for figure in ('torque', 'force', 'depth', 'triangles', 'areas', 'time', 'energy', 'law-torque', 'law-force', 'steps', 'spectrum'):
+        expect(figure in page.ids, f'no figure {figure}')
+    for place in ('@CSS@', '@DATA@', '@SCRIPT@', '@PLOT_JS@'):
         expect(place not in text, f'{place} was not filled')
-    expect('Chart.js Contributors' in text and 'Permission is hereby granted' in text, 'the licence of what is embedded')
     data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S).group(1))
-    expect({'summary', 'curves', 'highlight', 'stages', 'stage_figures'} <= set(data), list(data))
+    expect({'summary', 'curves', 'highlight', 'roughness', 'provenance', 'stages', 'stage_figures'} <= set(data), list(data))
+    expect(data['chapter'] == '', 'figure numbers are the chapter\'s scenes\' alone')
+    steps = data['roughness']['with']
+    expect(steps['still'] + sum(n for _, _, n in steps['steps']) == 2999, 'a step between any two of 3,000 ticks')
+    expect(len(steps['spectrum']) == 512 and max(d for _, d in data['curves']['depth']) > 0, 'spectrum and depth')
+    # A hand that presses does work, and a contact that only pushes back gives none.
+    energy = [e for _, e in data['curves']['energy']]
+    expect(min(energy) < 0 and max(energy) < 0.05 * -min(energy), f'{min(energy)} to {max(energy)} J')
     expect(len(data['highlight']) > 0 and len(data['curves']['cst']) > 10, 'curves')
     expect(len(text) < 3_000_000, f'{len(text)} bytes')
 

@@ -19,12 +19,10 @@ def tuned(scene, folder, budget):
     told = json.loads(done.out)
     chosen, measured = told['chosen'], told['measured']
     expect(chosen['time_us']['p95'] <= budget, chosen)
-    own = next(one for one in measured if one['defaults'])
-    if budget >= max(one['time_us']['p95'] for one in measured if one['defaults']):
-        expect(chosen['error_F_N']['p50'] <= own['error_F_N']['p50'], f'{chosen} against {own}')
     for one in measured:
-        better = one['error_F_N']['p50'] < chosen['error_F_N']['p50'] and one['error_F_N']['p99'] <= chosen['error_F_N']['p99'] and one['time_us']['p95'] <= chosen['time_us']['p95']
-        expect(not better, f'{one} beats {chosen}')
+        rank = lambda it: (it['error_F_N']['p95'], it['error_F_N']['p50'])
+        expect(one['time_us']['p95'] > budget or rank(chosen) <= rank(one), f'{one} beats {chosen}')
+    expect(0 < chosen['error_F_N']['p95'] <= chosen['error_F_N']['max'] and told['largest_force_N'] > 0, told)
     return told
 
 
@@ -33,11 +31,28 @@ def test_three_budgets():
     scene = scene_in(folder)
     ample = tuned(scene, folder, 1e7)
     expect(len(ample['measured']) >= 8, ample['measured'])
-    expect(ample['chosen']['error_F_N']['p50'] == min(one['error_F_N']['p50'] for one in ample['measured']), 'with all the time there is, the most accurate')
+    expect(ample['chosen']['error_F_N']['p95'] == min(one['error_F_N']['p95'] for one in ample['measured']), 'with all the time there is, the most accurate')
+    expect(ample['clock'] == 'cpu' and ample['chosen']['unseen_error_F_N']['p95'] > 0, 'the other poses check it')
+    # What is more than the poses' share of luck: the poses that were not looked at keep to the promise.
+    expect(ample['chosen']['unseen_error_F_N']['p95'] < 3 * ample['chosen']['error_F_N']['max'], ample['chosen'])
     own = max(one['time_us']['p95'] for one in ample['measured'] if one['defaults'])
     tuned(scene, folder, 3 * own)
     least = min(one['time_us']['p95'] for one in ample['measured'])
     tuned(scene, folder, 3 * least)
+
+
+def test_apply_writes_the_choice_and_leaves_the_rest():
+    folder = Folder()
+    scene = scene_in(folder)
+    before = json.loads(pathlib.Path(scene).read_text())
+    done = palpate('tune', scene, '--budget-us', '1e7', '--poses', folder / 'poses.csv', '--rounds', '1', '--json', '--apply')
+    expect(done.code == 0, done)
+    chosen, after = json.loads(done.out)['chosen'], json.loads(pathlib.Path(scene).read_text())
+    expect({**after, 'response': before.get('response')} == {**before, 'response': before.get('response')}, 'all else stays')
+    expect(after['response']['profile'] == chosen['profile'], after)
+    for key in ('voxel_size', 'sample_spacing'):
+        expect(abs(after['response'][key] / chosen[key + '_m'] - 1) < 1e-4, after)
+    expect(palpate('query', scene, '--pose', '0 0 0.009 0 0 0 1').code == 0 and not pathlib.Path(str(scene) + '.new').exists(), 'a scene that works')
 
 
 def test_a_budget_that_nothing_keeps_is_refused_with_the_fastest():

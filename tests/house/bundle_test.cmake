@@ -18,7 +18,7 @@ file(GLOB root "${WORK_DIR}/elsewhere/*")
 must(env -i "${root}/bin/palpate" --version)
 # What installs beside the program, and what others' licences ask for: a copyright file for each bundled library's package.
 foreach(file share/man/man1/palpate.1 share/man/man1/palpate-run.1 share/bash-completion/completions/palpate share/zsh/site-functions/_palpate share/fish/vendor_completions.d/palpate.fish
-    share/palpate/THIRD_PARTY_NOTICES.md share/palpate/SECURITY.md share/palpate/licences/libjs-chart.js share/palpate/licences/libcli11-dev)
+    share/palpate/THIRD_PARTY_NOTICES.md share/palpate/SECURITY.md share/palpate/licences/libcli11-dev)
   if(NOT EXISTS "${root}/${file}")
     message(FATAL_ERROR "missing from the bundle: ${file}")
   endif()

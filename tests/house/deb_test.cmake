@@ -21,7 +21,7 @@ set(listing "${output}")
 foreach(file usr/bin/palpate usr/libexec/palpate/palpate-import usr/share/man/man1/palpate.1.gz usr/share/man/man1/palpate-run.1.gz usr/share/bash-completion/completions/palpate
     usr/share/zsh/vendor-completions/_palpate usr/share/fish/vendor_completions.d/palpate.fish usr/lib/systemd/system/palpate.service usr/lib/udev/rules.d/70-palpate.rules
     usr/share/palpate/scenes/contacts.json usr/share/doc/palpate/copyright usr/share/doc/palpate/changelog.gz usr/share/doc/palpate/THIRD_PARTY_NOTICES.md
-    usr/share/doc/palpate/sbom.spdx.json usr/share/doc/palpate/licences/libjs-chart.js usr/share/doc/palpate/licences/libcli11-dev)
+    usr/share/doc/palpate/sbom.spdx.json usr/share/doc/palpate/licences/libcli11-dev)
   if(NOT listing MATCHES " \\./${file}\n")
     message(FATAL_ERROR "missing from the package: ${file}\n${listing}")
   endif()

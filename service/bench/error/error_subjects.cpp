@@ -110,13 +110,12 @@ ErrorSubject plane_subject(PlaneForm form, int cells) {
 
 /// Two equal spheres, the mock-up's about the origin. d is the mean over the mock-up's cap, by area, of the
 /// way down to the tool's lower side: with u = cos θ, h = 2Ru − D for u from D/2R to 1.
-ErrorSubject lens_subject() {
+ErrorSubject lens_subject(std::uint64_t triangles) {
   const double radius = 10 * kMm;
-  constexpr std::uint64_t kTriangles = 80'000;  // of each: 1/N of d is tessellation
   ErrorSubject subject;
   subject.name = "sphere_sphere";
   subject.about = "two spheres of 10 mm, 80,000 triangles each; tessellation included";
-  subject.meshes = {solids::sphere_of(radius, kTriangles), solids::sphere_of(radius, kTriangles)};
+  subject.meshes = {solids::sphere_of(radius, triangles), solids::sphere_of(radius, triangles)};
   subject.settings.voxel_size_m = 2 * kMm;
   subject.settings.centre_of_mass_m = Vec3(0);
   subject.stiffness_n_per_m = kStiffness;
@@ -161,7 +160,7 @@ std::vector<double> tessellation_errors(std::uint64_t triangles) {
   return out;
 }
 
-std::vector<ErrorSubject> closed_form_subjects(int cells) {
+std::vector<ErrorSubject> closed_form_subjects(int cells, std::uint64_t ball_triangles) {
   const double sphere_radius = 10 * kMm, cylinder_radius = 8 * kMm, half = 10 * kMm;
   const Quat upright(1, 0, 0, 0), about_z = glm::angleAxis(0.37, Vec3(0, 0, 1));
   std::vector<ErrorSubject> subjects;
@@ -189,7 +188,7 @@ std::vector<ErrorSubject> closed_form_subjects(int cells) {
                      half * std::sqrt(3.0), [](double h) { return h / 3; }, "a cube of 20 mm on its corner"},
                     cells));
   subjects.back().field_truth = [half](const Pose& pose) { return corner_field(2 * half, pose); };
-  subjects.push_back(lens_subject());
+  subjects.push_back(lens_subject(ball_triangles));
   return subjects;
 }
 

@@ -39,8 +39,8 @@ struct ErrorSubject {
 /// = S/2a with the segment S over the width 2a; a cube on its corner, d = h/3; and a sphere in an equal one.
 /// Round bodies in a plane are judged against the polyhedron's own volume over its section;
 /// `tessellation_error` tells how far that is from the round one's. `cells`: the plane's top face is cut into
-/// cells × cells × 2 triangles (the plane subjects alone).
-std::vector<ErrorSubject> closed_form_subjects(int cells);
+/// cells × cells × 2 triangles (the plane subjects alone); each ball of the last has about `ball_triangles`.
+std::vector<ErrorSubject> closed_form_subjects(int cells, std::uint64_t ball_triangles = 80'000);
 
 /// How far d of a ball of so many triangles in a plane is from the round ball's, at the poses of
 /// `sphere_plane`, m: the tessellation's own error.

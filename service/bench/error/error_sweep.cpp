@@ -1,25 +1,33 @@
 #include "service/bench/error/error_sweep.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "model/contact/response.h"
+#include "service/bench/time/times.h"
 
 namespace palpate {
 namespace {
 
-/// Each triangle cut into four at the middles of its sides: the same surface, four times the triangles.
-Mesh subdivided(const Mesh& mesh) {
+/// Each triangle cut into n² with edges an n-th as long: the same surface.
+Mesh divided(const Mesh& mesh, std::uint32_t n) {
   Mesh out;
   out.parts = mesh.parts;
-  for (MeshPart& part : out.parts) part.first_triangle *= 4, part.triangle_count *= 4;
+  for (MeshPart& part : out.parts) part.first_triangle *= n * n, part.triangle_count *= n * n;
   for (const auto& triangle : mesh.triangles) {
     const auto first = static_cast<std::uint32_t>(out.vertices.size());
     const Vec3 a = mesh.vertices[triangle[0]], b = mesh.vertices[triangle[1]], c = mesh.vertices[triangle[2]];
-    for (const Vec3& v : {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5}) out.vertices.push_back(v);
-    for (const auto& [i, j, k] : {std::array{0u, 3u, 5u}, {3u, 1u, 4u}, {5u, 4u, 2u}, {3u, 4u, 5u}})
-      out.triangles.push_back({first + i, first + j, first + k});
+    // Row i has i + 1 vertices; from a's corner towards the edge from b to c.
+    const auto place = [&](std::uint32_t i, std::uint32_t j) { return first + i * (i + 1) / 2 + j; };
+    for (std::uint32_t i = 0; i <= n; ++i)
+      for (std::uint32_t j = 0; j <= i; ++j)
+        out.vertices.push_back(a + (b - a) * (static_cast<double>(i - j) / n) +
+                               (c - a) * (static_cast<double>(j) / n));
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = 0; j <= i; ++j) {
+        out.triangles.push_back({place(i, j), place(i + 1, j), place(i + 1, j + 1)});
+        if (j < i) out.triangles.push_back({place(i, j), place(i + 1, j + 1), place(i, j + 1)});
+      }
   }
   return out;
 }
@@ -39,11 +47,11 @@ double angle_deg(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& setting, std::uint64_t rounds,
-                            CollisionBackend& backend, const Progress& progress) {
+                            CollisionBackend& backend, const Progress& progress, bool cpu_clock) {
   Mesh finer;
   const Mesh* mockup = &subject.meshes.mockup;
-  for (int i = 0; i < setting.subdivisions; ++i) {
-    finer = subdivided(*mockup);
+  if (setting.pieces > 1) {
+    finer = divided(*mockup, static_cast<std::uint32_t>(setting.pieces));
     mockup = &finer;
   }
   const Result<SceneGeometry> geometry = build_geometry(*mockup, subject.meshes.tool, setting.geometry);
@@ -62,13 +70,12 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
   ContactResponse response;
   for (std::uint64_t round = 0; round <= rounds; ++round)  // the first warms up
     for (std::size_t i = 0; i < subject.poses.size(); ++i) {
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch(cpu_clock);
       const Result<LatticePose> pose = to_lattice(subject.poses[i], *geometry);
       if (!pose) return Error{pose.error().code, subject.name + ": " + pose.error().sentence};
       if (auto done = backend.query(*pose, nullptr, contacts); !done) return done.error();
       respond(contacts, *pose, *geometry, setting.profile, subject.stiffness_n_per_m, response);
-      const double us =
-          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+      const double us = watch.us();
       if (contacts.truncated)
         return Error{ErrorCode::kInternal,
                      subject.name + ": a frame was truncated: " + contacts.truncated_capacity};

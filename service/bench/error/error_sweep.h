@@ -11,10 +11,10 @@ namespace palpate {
 /// A way of working out the response: a profile and what is turned up or down.
 struct ErrorSetting {
   Profile profile = Profile::kRefined;
-  std::string knob;  ///< "sample_spacing", "voxel_size", "triangles"
+  std::string knob;  ///< "sample_spacing", "voxel_size", "contact_samples", "triangles"
   double value = 0;  ///< m, or a number of triangles
   GeometrySettings geometry;
-  int subdivisions = 0;  ///< each triangle of the mock-up is cut into four, so many times
+  int pieces = 1;  ///< each edge of the mock-up is cut into so many, each triangle into its square
 };
 
 /// What is measured at a pose, and its unit in tables.
@@ -30,7 +30,8 @@ struct ErrorResult {
 };
 
 /// The response of the setting at each pose; empty where there is no contact. `rounds`: how often each pose
-/// is asked and timed. Errors: the geometry can't be built or prepared; the back end failed; interrupted.
+/// is asked and timed; `cpu_clock`: by the time that this process itself ran. Errors: the geometry can't be
+/// built or prepared; the back end failed; interrupted.
 struct Answered {
   std::vector<std::optional<ContactTruth>> answers;
   std::vector<double> times_us;             ///< the fastest of the rounds
@@ -38,7 +39,7 @@ struct Answered {
   std::uint64_t samples = 0;
 };
 Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& setting, std::uint64_t rounds,
-                            CollisionBackend& backend, const Progress& progress);
+                            CollisionBackend& backend, const Progress& progress, bool cpu_clock = false);
 
 /// Holds answers against the truth. At a pose with several areas d, n_c and cp are the deepest area's, F and
 /// T the whole pose's.

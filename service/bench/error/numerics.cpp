@@ -310,16 +310,41 @@ class NumericsBench {
                        .log_x = true,
                        .log_y = true,
                        .x_title = all.front().parameter};
+      // A colour a precision; circles where it held, crosses where it is lost, triangles at 100 % where it
+      // refused.
+      std::size_t ink = 0;
       for (const char* precision : {"fp32", "fp64", "palpate"}) {
-        BenchChart::Series series{precision, {}, {}};
-        for (const Seen& seen : all)
-          if (seen.precision == precision && seen.outcome.error > 0 && std::isfinite(seen.outcome.error) &&
-              seen.value > 0 && !seen.outcome.text.starts_with("refused")) {
-            series.x.push_back(seen.value);
-            series.y.push_back(seen.outcome.error);
+        BenchChart::Series line{.label = precision, .x = {}, .y = {}};
+        line.ink = ink;
+        BenchChart::Series lost{.label = std::string(precision) + ", lost", .x = {}, .y = {}}, refused = lost;
+        lost.ink = refused.ink = ink++;
+        lost.line = refused.line = false;
+        lost.marker = BenchChart::Marker::kCross;
+        refused.label = std::string(precision) + ", refused";
+        refused.marker = BenchChart::Marker::kTriangle;
+        for (const Seen& seen : all) {
+          if (seen.precision != precision || !(seen.value > 0)) continue;
+          if (seen.outcome.text.starts_with("refused")) {
+            refused.x.push_back(seen.value);
+            refused.y.push_back(1);
+            continue;
           }
-        chart.series.push_back(std::move(series));
+          if (!(seen.outcome.error > 0) || !std::isfinite(seen.outcome.error)) continue;
+          for (BenchChart::Series* series : {&line, &lost})
+            if (series == &line || seen.outcome.text != "held") {
+              series->x.push_back(seen.value);
+              series->y.push_back(seen.outcome.error);
+            }
+        }
+        chart.series.push_back(std::move(line));
+        if (!lost.x.empty()) chart.series.push_back(std::move(lost));
+        if (!refused.x.empty()) chart.series.push_back(std::move(refused));
       }
+      chart.caption = fmt::format(
+          "Circles: held. Crosses: lost, off by {:.0f} % or more, or nothing found. Triangles: refused, with "
+          "a sentence. "
+          "An error of 0 has no place on the axis.",
+          100 * kLost);
       out.push_back(std::move(chart));
     }
     return out;

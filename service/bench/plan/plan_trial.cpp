@@ -119,6 +119,19 @@ std::string difference(const PlanTrial& whole, const PlanTrial& lean) {
   return {};
 }
 
+PlanRatio time_ratio(const PlanTrial& whole, const PlanTrial& lean) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < whole.frames.size(); ++i)
+    if ((whole.frames[i].contacts.contact || !any_contact(whole)) && whole.frame_us[i] > 0)
+      ratios.push_back(lean.frame_us[i] / whole.frame_us[i]);
+  if (ratios.empty()) return {};
+  std::sort(ratios.begin(), ratios.end());
+  const auto n = static_cast<double>(ratios.size());
+  const double reach = 1.96 * std::sqrt(n) / 2;  // of the binomial that says how many lie below the median
+  const auto at = [&](double rank) { return ratios[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
+  return {at(n / 2), at(std::floor(n / 2 - reach)), at(std::ceil(n / 2 + reach))};
+}
+
 double median_frame_us(const PlanTrial& trial) {
   std::vector<double> times;
   for (std::size_t i = 0; i < trial.frames.size(); ++i)

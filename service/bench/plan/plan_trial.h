@@ -40,6 +40,14 @@ Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, c
 /// the two leaves out isn't compared.
 std::string difference(const PlanTrial& whole, const PlanTrial& lean);
 
+/// The lean plan's time over the whole's, pose by pose: the median, and an interval that holds it in 95 of
+/// 100 cases whatever the times' distribution (order statistics). Over the poses in contact, over all if
+/// there is none.
+struct PlanRatio {
+  double median = 1, low = 1, high = 1;
+};
+PlanRatio time_ratio(const PlanTrial& whole, const PlanTrial& lean);
+
 /// Median over the frames in contact, over all if there is none, µs.
 double median_frame_us(const PlanTrial& trial);
 

@@ -17,10 +17,11 @@ Result<void> write_text(const std::filesystem::path& path, const std::string& te
 
 }  // namespace
 
-Result<std::unique_ptr<Recording>> Recording::create(const std::filesystem::path& folder) {
+Result<std::unique_ptr<Recording>> Recording::create(const std::filesystem::path& folder,
+                                                     const ReportFocus& focus) {
   auto recorder = Recorder::create(folder.string());
   if (!recorder) return recorder.error();
-  auto recording = std::make_unique<Recording>();
+  auto recording = std::make_unique<Recording>(focus);
   recording->folder_ = folder;
   recording->recorder_ = std::move(*recorder);
   return recording;
@@ -40,7 +41,8 @@ Result<void> Recording::finish(const SessionSummary* summary, const LoadedScene&
                                const ReportFacts& facts) {
   if (auto closed = recorder_->finish(); !closed) return closed;
   if (!summary) return {};
-  if (auto done = write_text(folder_ / "summary.json", summary_json(*summary)); !done) return done;
+  if (auto done = write_text(folder_ / "summary.json", summary_json(*summary, &facts.provenance)); !done)
+    return done;
   return write_text(folder_ / "report.html", report_page(*summary, scene, facts, series_));
 }
 

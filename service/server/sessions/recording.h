@@ -12,8 +12,11 @@ namespace palpate {
 /// The folder that a session leaves: the files of `palpate run`. One thread.
 class Recording final : public RunObserver {
  public:
+  explicit Recording(const ReportFocus& focus) : series_(focus) {}
+
   /// Opens the files in `folder`, which exists.
-  static Result<std::unique_ptr<Recording>> create(const std::filesystem::path& folder);
+  static Result<std::unique_ptr<Recording>> create(const std::filesystem::path& folder,
+                                                   const ReportFocus& focus);
 
   Result<void> on_tick(const TickRecord& tick) override;
   Result<void> on_frame(const FrameRecord& frame) override;

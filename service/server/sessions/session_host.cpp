@@ -101,8 +101,11 @@ struct SessionHost::Session {
       why = *outcome->failure;
     if (recording) {
       const HostedScene& hosted = **use;
-      const auto finished = recording->finish(outcome ? &*outcome : nullptr, hosted.loaded,
-                                              {"realtime", hosted.load_s, hosted.prepare_s});
+      const std::string engine = outcome ? outcome->backend + " on " + outcome->device : "";
+      const auto finished =
+          recording->finish(outcome ? &*outcome : nullptr, hosted.loaded,
+                            {"realtime", hosted.load_s, hosted.prepare_s,
+                             provenance_of(hosted.loaded.scene, hosted.plan, engine, "palpate serve")});
       if (!finished && !why) why = finished.error();
     }
     const std::string text = outcome ? summary_json(*outcome) : "null";
@@ -205,7 +208,7 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
                      "the folder '" + request.record + "' " +
                          (error ? "can't be made: " + error.message() : "is there already"),
                      "record"};
-    auto recording = Recording::create(folder);
+    auto recording = Recording::create(folder, report_focus(scene.loaded));
     if (!recording) return Problem{507, "storage", recording.error().sentence, "record"};
     session->recording = std::move(*recording);
     session->record = request.record;

@@ -1,0 +1,127 @@
+#include "service/cli/compare.h"
+
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/output_folder.h"
+#include "service/report/compare_page.h"
+#include "service/report/run_difference.h"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFooter =
+    R"(Ticks are matched by their time. Prints where and by how much place, turn, response and sent forces differ, and the figures of summary.json that differ, provenance first:
+version, commit, machine, engine, command, hashes of scene and meshes, plan. Two runs in virtual time of one scene, device and profile should have the same trace on every engine.
+With --out DIR also compare.json and compare.html, where the forces lie over each other. Exit code 0, whether they differ or not.
+
+Example:
+  palpate compare before after --out difference)";
+
+Json json_of(const CompareOptions& options, const RunDifference& difference) {
+  Json quantities = Json::array(), facts = Json::array();
+  for (const TickDifference& q : difference.quantities) {
+    Json one{{"quantity", q.name},   {"unit", q.unit},
+             {"largest", q.largest}, {"largest_at_s", q.largest_at_s},
+             {"rms", q.rms},         {"first_at_s", nullptr}};
+    if (q.first_at_s) one["first_at_s"] = *q.first_at_s;
+    quantities.push_back(std::move(one));
+  }
+  for (const FactDifference& fact : difference.facts) {
+    Json one{{"figure", fact.name}, {"first", fact.first}, {"second", fact.second}};
+    if (fact.ratio) one["second_over_first"] = *fact.ratio;
+    facts.push_back(std::move(one));
+  }
+  return {{"first", options.first},
+          {"second", options.second},
+          {"same_trace", difference.same_trace()},
+          {"ticks",
+           {{"common", difference.common},
+            {"only_first", difference.only_first},
+            {"only_second", difference.only_second},
+            {"contact_differs", difference.contact_differs}}},
+          {"quantities", quantities},
+          {"differences", facts}};
+}
+
+void print(const RunDifference& difference) {
+  fmt::print(
+      "{}: {} ticks in both, {} in the first alone, {} in the second alone; in {} only one is in contact\n",
+      difference.same_trace() ? "the same trace" : "the traces differ", difference.common,
+      difference.only_first, difference.only_second, difference.contact_differs);
+  for (const TickDifference& q : difference.quantities)
+    fmt::print("  {:<18} {}\n", q.name, difference_text(q));
+  if (difference.facts.empty()) {
+    fmt::print("no figure differs\n");
+    return;
+  }
+  std::size_t name = 0, first = 0;
+  for (const FactDifference& fact : difference.facts)
+    name = std::max(name, fact.name.size()),
+    first = std::max(first, std::min<std::size_t>(40, fact.first.size()));
+  for (const FactDifference& fact : difference.facts)
+    fmt::print("  {:<{}}  {:<{}}  {}{}\n", fact.name, name, fact.first.empty() ? "–" : fact.first, first,
+               fact.second.empty() ? "–" : fact.second,
+               fact.ratio ? fmt::format("  × {:.4g}", *fact.ratio) : "");
+}
+
+Result<void> write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.flush();
+  if (!out) return bad_value(file.string() + ": the file can't be written");
+  return {};
+}
+
+Result<void> compare_command(const CompareOptions& options) {
+  const auto first = read_run(options.first);
+  if (!first) return first.error();
+  const auto second = read_run(options.second);
+  if (!second) return second.error();
+  const RunDifference difference = difference_of(*first, *second);
+  const Json json = json_of(options, difference);
+  const auto dump = [&](int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+  };
+  if (!options.out.empty()) {
+    const std::filesystem::path folder = options.out;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return bad_value(options.out + ": the directory can't be made (" + error.message() + ")");
+    if (auto done = write(folder / "compare.json", dump(1)); !done) return done;
+    if (auto done = write(folder / "compare.html", compare_page(*first, *second, difference)); !done)
+      return done;
+  }
+  if (options.json)
+    fmt::print("{}", dump(-1));
+  else
+    print(difference);
+  return {};
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, CompareOptions& options, Result<void>& outcome) {
+  CLI::App* compare =
+      app.add_subcommand("compare", "tell in what two runs differ: forces tick by tick, figures, provenance");
+  compare->add_option("first", options.first, "folder that a run left")->required()->type_name("RUN");
+  compare->add_option("second", options.second, "another")->required()->type_name("RUN");
+  compare->add_flag("--json", options.json, "one JSON object");
+  compare->add_option("--out", options.out, "directory for compare.json and compare.html")
+      ->check(CLI::Validator([](const std::string& folder) { return cannot_write_to(folder); }, ""))
+      ->type_name("DIR");
+  compare->footer(kFooter);
+  compare->callback([&] { outcome = compare_command(options); });
+}
+
+}  // namespace palpate
