@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compute/scene/occupied_cubes.h"
+#include "compute/search/turned_boxes.h"
 
 namespace palpate {
 namespace {
