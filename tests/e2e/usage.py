@@ -26,7 +26,7 @@ def test_no_command_is_wrong_usage():
 
 
 def test_an_unknown_command_is_told_which_there_are():
-    expect_refused(palpate('qurey', 'x.json'), 2, "'qurey'", 'run, query, path, plan, info, generate, devices', "did you mean 'query'?")
+    expect_refused(palpate('qurey', 'x.json'), 2, "'qurey'", 'run, query, path, compare, plan, info, generate, devices', "did you mean 'query'?")
     expect_refused(palpate('tuen'), 2, "did you mean 'tune'?")
 
 

@@ -82,7 +82,8 @@ def test_a_chunk_that_ends_its_workers_ends_the_sweep_in_a_sentence(command, mon
     # Dask gives up at the fourth worker; for speed here at the first.
     monkeypatch.setitem(ENVIRONMENT, 'DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES', '0')
     code, out, err = command({**BALL, 'crash': -1.0}, '--workers', '1', '--share', '0', '--rz=1', '--size=96000').run()
-    assert code == 3 and 'palpate-sweep: chunk 0 ended every worker that took it' in err and 'Traceback' not in err, err
+    # Dask's dying processes may print tracebacks of theirs; none goes through the sweep.
+    assert code == 3 and 'palpate-sweep: chunk 0 ended every worker that took it' in err and 'palpate/sweeps/' not in err, err
 
 
 def test_a_full_disk_is_said_in_a_sentence_and_the_same_command_goes_on(command, undisturbed):
