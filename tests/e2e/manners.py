@@ -8,7 +8,7 @@ import signal
 
 from harness import *
 
-CLI = ('run', 'query', 'path', 'plan', 'info', 'generate', 'devices', 'serve', 'tune', 'bench', 'completions', 'man')
+CLI = ('run', 'query', 'path', 'compare', 'plan', 'info', 'generate', 'devices', 'serve', 'tune', 'bench', 'completions', 'man')
 
 
 def at_terminal(*arguments, until=None, cwd=None, both=True):

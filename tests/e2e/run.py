@@ -19,7 +19,7 @@ class Page(html.parser.HTMLParser):
 
 
 def small_run(folder, *arguments):
-    expect(palpate('generate', 'contacts', '--triangles', '2000', '--tool-triangles', '1000', '--out', folder / 'scene').code == 0, 'generate')
+    expect(palpate('generate', 'contacts', '--triangles', '2000', '--tool-triangles', '1000', '--out', folder / 'scene', '--overwrite').code == 0, 'generate')
     return run(folder / 'scene' / 'scene.json', folder / 'out', *arguments)
 
 

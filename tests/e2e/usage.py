@@ -5,12 +5,12 @@ from harness import *
 def test_help_lists_every_command_and_the_exit_codes():
     outcome = palpate('--help')
     expect(outcome.code == 0 and outcome.err == '', outcome)
-    for word in ('run', 'query', 'path', 'plan', 'info', 'generate', 'devices', 'tune', 'serve', 'bench', 'Exit codes', 'metres', 'unit quaternion'):
+    for word in ('run', 'query', 'path', 'compare', 'plan', 'info', 'generate', 'devices', 'tune', 'serve', 'bench', 'Exit codes', 'metres', 'unit quaternion'):
         expect(word in outcome.out, f"help lacks '{word}'")
 
 
 def test_every_command_has_help_of_its_own():
-    for command in ('run', 'query', 'path', 'plan', 'info', 'generate', 'devices', 'tune', 'serve', 'bench'):
+    for command in ('run', 'query', 'path', 'compare', 'plan', 'info', 'generate', 'devices', 'tune', 'serve', 'bench'):
         outcome = palpate(command, '--help')
         expect(outcome.code == 0 and outcome.err == '' and command in outcome.out, outcome)
 
