@@ -7,7 +7,7 @@ TRACE = ('time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_
          'response_force_x_N,response_force_y_N,response_force_z_N,response_torque_x_Nm,response_torque_y_Nm,response_torque_z_Nm,'
          'result_age_ticks,contact,stage')
 SUMMARY = ['real_time', 'static_triangles', 'tool_triangles', 'backend', 'device', 'profile', 'law', 'ticks', 'missed_ticks', 'lateness_us', 'result_age_ticks',
-           'frame_us', 'stages_reached', 'areas_max', 'force_max_N', 'torque_max_Nm', 'lateness_histogram_us', 'result_age_histogram_ticks', 'coarse_frames', 'no_direction_frames']
+           'frame_us', 'stages_reached', 'areas_max', 'force_max_N', 'torque_max_Nm', 'lateness_histogram_us', 'result_age_histogram_ticks', 'coarse_frames', 'no_direction_frames', 'provenance']
 
 
 def run(scene, out, *arguments):
