@@ -172,7 +172,6 @@ bool PairSearch::gather(Policy& policy) {
   while (!groups_.empty()) {
     const Group group = groups_.back();
     groups_.pop_back();
-    ++looks_;
     const EightSpheres& eight = spheres.group(group.level, group.number);
     trees_->field.rooms(turn_, eight, squared);
     Lead lead{std::numeric_limits<double>::infinity(), group.number, 0, {}};
@@ -282,7 +281,6 @@ bool PairSearch::descend(Policy& policy, const Lead& lead) {
         if (!group(policy, mobiles_[i], node.index)) return false;
       continue;
     }
-    ++looks_;
     const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, node.level, node.index)];
     box_gaps(run_box_, boxes, gaps);
     const std::uint32_t count =
@@ -319,7 +317,6 @@ bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number) {
   const std::uint32_t all = children(mockup, 1, number);
   std::array<double, kLanes> gaps, turned;
   std::array<std::uint32_t, kLanes> order;
-  ++looks_;
   box_gaps(m.box, boxes, gaps);
   bool any = false;
   for (std::uint32_t i = 0; i < all; ++i) any = any || policy.near(gaps[i]);

@@ -49,7 +49,6 @@ class PairSearch {
   FreeTime free_time(const LatticePose& pose, const Twist& twist, double longest);
 
   static constexpr double kCloseSteps = 8;
-  std::uint64_t looks() const { return looks_; }  ///< boxes and triangles looked at in all
 
  private:
   struct Node {  ///< of the mock-up's tree
@@ -116,7 +115,6 @@ class PairSearch {
   std::size_t met_count_ = 0;
   std::array<std::uint32_t, 2> near_{kNoTriangle, kNoTriangle},
       blocking_{kNoTriangle, kNoTriangle};  ///< of the last answers
-  std::uint64_t looks_ = 0;
 };
 
 }  // namespace palpate::native

@@ -6,6 +6,7 @@
 
 #include "service/server/http/json_input.h"
 #include "service/server/http/multipart.h"
+#include "service/server/http/refusal.h"
 #include "service/server/http/safe_path.h"
 
 namespace palpate {
@@ -73,17 +74,6 @@ class AssemblyUpload final : public BodySink {
   std::vector<AssemblyFile> files_;
   std::set<std::string> names_;
   SpoolFile file_;
-};
-
-/// Says no at once, and to every piece.
-class Refusal final : public BodySink {
- public:
-  explicit Refusal(Problem problem) : problem_(std::move(problem)) {}
-  std::optional<Problem> write(std::string_view) override { return problem_; }
-  void finish(Reply reply) override { reply(problem_); }
-
- private:
-  Problem problem_;
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "model/scene/scene_json.h"
 #include "service/server/http/json_input.h"
 #include "service/server/http/multipart.h"
+#include "service/server/http/refusal.h"
 #include "service/server/http/safe_path.h"
 #include "service/server/scenes/spool_files.h"
 
@@ -170,17 +171,6 @@ class Upload final : public BodySink {
   std::set<std::string> names_;
   std::map<std::string, std::string> fields_;
   SpoolFile file_;
-};
-
-/// Says no at once, and to every piece.
-class Refusal final : public BodySink {
- public:
-  explicit Refusal(Problem problem) : problem_(std::move(problem)) {}
-  std::optional<Problem> write(std::string_view) override { return problem_; }
-  void finish(Reply reply) override { reply(problem_); }
-
- private:
-  Problem problem_;
 };
 
 }  // namespace
