@@ -11,7 +11,7 @@ constexpr double kFarthest = 1e4;  // m
 constexpr double kLatest = 1e6;    // s: eleven days
 
 /// A piece of the file, short enough and plain enough for a sentence.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
   return out + (text.size() > 40 ? "…\"" : "\"");
@@ -48,7 +48,7 @@ Result<double> CsvRow::number(std::size_t column) const {
   double value = 0;
   const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (fault != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-    return bad_value(place() + ": " + quoted(cell) + " is not a finite number");
+    return bad_value(place() + ": " + in_quotes(cell) + " is not a finite number");
   return value;
 }
 
@@ -97,7 +97,7 @@ Result<void> read_csv(const std::string& file, const CsvHeader& header,
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (number == 1) {
       if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-      if (!begins(line, header)) return bad_value(file + ", line 1 is " + quoted(line) + "; " + wanted);
+      if (!begins(line, header)) return bad_value(file + ", line 1 is " + in_quotes(line) + "; " + wanted);
       const std::vector<std::string_view> found = cells_of(line);
       columns = found.size();
       if (names) names(found);

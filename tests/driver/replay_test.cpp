@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr char kHeader[] = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,stage\n";
+const std::string kHeader = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,stage\n";
 
 class TraceFile {
  public:
@@ -44,7 +44,7 @@ std::string fault_of(const std::string& text) {
 }
 
 TEST(Replay, GivesTheRecordedPosesToTheBitAndTheMissedOnesBetween) {
-  const TraceFile file(std::string(kHeader) +
+  const TraceFile file(kHeader +
                        "0,0.1,0.2,0.3,0,0,0,1,5,1\n"
                        "0.001,0.30000000000000004,0.2,0.3,0,0,0.6,0.8,5,1\n"
                        "0.003,0.5,0.2,0.3,0,0,0.6,0.8,5,2\n");  // the recording missed 2 ms
@@ -69,7 +69,7 @@ TEST(Replay, GivesTheRecordedPosesToTheBitAndTheMissedOnesBetween) {
 }
 
 TEST(Replay, ExertsNothingAndSaysWhatADeviceCould) {
-  const TraceFile file(std::string(kHeader) + "0,0,0,0,0,0,0,1,0,0\n");
+  const TraceFile file(kHeader + "0,0,0,0,0,0,0,1,0,0\n");
   auto device = make_replay(file.path(), 8, 1);
   ASSERT_TRUE(device);
   EXPECT_EQ((*device)->capabilities().max_force_n, 8);
@@ -91,13 +91,11 @@ TEST(Replay, WhatIsNoTraceIsRefusedWithItsLine) {
             ", line 3: \"nan\" is not a finite number");
   EXPECT_EQ(fault_of(kHeader + good + "0,0,0,0,0,0,0,1,0,0\n"),
             ", line 3: time 0 s must be above the one before, 0 s");
-  EXPECT_EQ(fault_of(std::string(kHeader) + "-1,0,0,0,0,0,0,1,0,0\n"),
-            ", line 2: time -1 s is not from 0 to 1000000 s");
-  EXPECT_EQ(fault_of(std::string(kHeader) + "0,0,0,0,0,0,0,2,0,0\n"),
+  EXPECT_EQ(fault_of(kHeader + "-1,0,0,0,0,0,0,1,0,0\n"), ", line 2: time -1 s is not from 0 to 1000000 s");
+  EXPECT_EQ(fault_of(kHeader + "0,0,0,0,0,0,0,2,0,0\n"),
             ", line 2: the rotation's length is 2; a unit quaternion has length 1");
-  EXPECT_EQ(fault_of(std::string(kHeader) + "0,1e5,0,0,0,0,0,1,0,0\n"),
-            ", line 2: position 1e+05 m is beyond 10000 m");
-  EXPECT_EQ(fault_of(std::string(kHeader) + "0,0,0,0,0,0,0,1,0,1.5\n"),
+  EXPECT_EQ(fault_of(kHeader + "0,1e5,0,0,0,0,0,1,0,0\n"), ", line 2: position 1e+05 m is beyond 10000 m");
+  EXPECT_EQ(fault_of(kHeader + "0,0,0,0,0,0,0,1,0,1.5\n"),
             ", line 2: stage 1.5 is not a whole number from 0 to 1000000");
   const auto none = read_trace("/nowhere/trace.csv");
   ASSERT_FALSE(none);
