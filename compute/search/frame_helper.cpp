@@ -3,6 +3,8 @@
 #include <system_error>
 #include <utility>
 
+#include "model/processors.h"
+
 namespace palpate {
 namespace {
 
@@ -22,7 +24,7 @@ std::uint32_t next_of(std::uint64_t state) { return static_cast<std::uint32_t>(s
 }  // namespace
 
 std::unique_ptr<FrameHelper> FrameHelper::make() {
-  if (std::thread::hardware_concurrency() < 2) return nullptr;
+  if (processors() < 2) return nullptr;
   std::unique_ptr<FrameHelper> out(new FrameHelper);
   try {
     out->thread_ = std::thread([helper = out.get()] { helper->serve(); });

@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "model/processors.h"
+
 namespace palpate {
 
 struct Compilers::State {
@@ -29,7 +31,7 @@ Compilers::~Compilers() {
 
 /// With the lock held.
 void Compilers::State::take_thread(const std::shared_ptr<State>& state) {
-  static const unsigned kMostThreads = std::clamp(std::thread::hardware_concurrency(), 1u, 8u);  // chosen
+  static const unsigned kMostThreads = std::clamp(processors(), 1u, 8u);  // chosen
   if (state->threads == kMostThreads) return;
   ++state->threads;
   std::thread([state] {
