@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "compute/native/broad_phase/broad_phase.h"
+#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/posed_tool.h"
+#include "compute/native/broad_phase/run_tree.h"
+#include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/contact.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/broad_phase.h"
-#include "compute/search/frame_helper.h"
-#include "compute/search/near_lists.h"
-#include "compute/search/posed_tool.h"
-#include "compute/search/run_tree.h"
 #include "model/collision_backend.h"
 #include "model/contact/contacts.h"
 #include "model/scene/plan.h"

@@ -51,12 +51,12 @@ class OccupiedCubes {
 
   /// Of eight ranges those that may have an occupied voxel, a bit each: whose smallest such cube from their
   /// first voxel on has one, or which fit into none. `voxels` as voxels_of() leaves them (EightRanges of
-  /// compute/search/turned_boxes.h): within the grid, also where they may not.
+  /// compute/native/broad_phase/turned_boxes.h): within the grid, also where they may not.
   template <class EightRanges>
   unsigned near(const EightRanges& voxels) const {
-    constexpr std::size_t kEight = 8;
-    std::array<std::uint32_t, kEight> level, brick, bit, large;
-    for (std::size_t i = 0; i < kEight; ++i) {
+    constexpr std::size_t kRanges = 8;
+    std::array<std::uint32_t, kRanges> level, brick, bit, large;
+    for (std::size_t i = 0; i < kRanges; ++i) {
       const std::int32_t x = voxels.first[0][i], y = voxels.first[1][i], z = voxels.first[2][i];
       const std::int32_t beyond =
           std::max({voxels.last[0][i] - x, voxels.last[1][i] - y, voxels.last[2][i] - z});
@@ -66,7 +66,7 @@ class OccupiedCubes {
       bit[i] = static_cast<std::uint32_t>((x & 7) | (y & 7) << 3 | (z & 7) << 6);
     }
     unsigned out = 0;
-    for (std::size_t i = 0; i < kEight; ++i) {
+    for (std::size_t i = 0; i < kRanges; ++i) {
       const std::uint64_t plane = cubes_[place_[brick[i]]][level[i]][bit[i] >> 6];
       const auto may = static_cast<unsigned>(voxels.may[i]) & 1;
       out |= ((static_cast<unsigned>(plane >> (bit[i] & 63)) & 1) | large[i]) << i & may << i;

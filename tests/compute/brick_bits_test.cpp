@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/scene/occupied_cubes.h"
-#include "compute/search/turned_boxes.h"
 
 namespace palpate {
 namespace {

@@ -48,7 +48,6 @@ const std::map<std::string, std::vector<std::string>> kAllowed = {
     {"model", {"model/"}},
     {"shaders", {"shaders/"}},
     {"compute/scene", {"compute/scene/", "model/", "shaders/shared/"}},
-    {"compute/search", {"compute/search/", "compute/scene/", "model/", "shaders/shared/"}},
     {"compute/vulkan",
      {"compute/vulkan/", "model/address_space.h", "model/result.h", "shaders/shared/base.h",
       "shaders/shared/shader_code.h"}},  // no word of collision
@@ -56,8 +55,7 @@ const std::map<std::string, std::vector<std::string>> kAllowed = {
      {"compute/gpu/", "compute/vulkan/", "compute/scene/", "model/", "shaders/shared/",
       "shaders/code.h"}},  // it searches on the device
     {"compute/native",
-     {"compute/native/", "compute/search/", "compute/scene/", "model/",
-      "shaders/shared/"}},  // engines do not name each other
+     {"compute/native/", "compute/scene/", "model/", "shaders/shared/"}},  // engines do not name each other
     {"cpu_ref", {"cpu_ref/", "model/"}},
     {"driver", {"driver/", "model/"}},
     {"service",

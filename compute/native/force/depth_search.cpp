@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "compute/native/processor.h"
 #include "compute/scene/exact.h"
-#include "compute/search/processor.h"
 
 namespace palpate {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "compute/native/force/depth_search.h"
+#include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/native/narrow_phase/sets.h"
 #include "compute/scene/triangle_tree.h"
-#include "compute/search/frame_helper.h"
 #include "model/contact/contacts.h"
 #include "model/scene/scene_geometry.h"
 

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/scene/exact.h"
-#include "compute/search/turned_boxes.h"
 
 namespace palpate {
 namespace {

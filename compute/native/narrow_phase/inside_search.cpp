@@ -5,9 +5,9 @@
 #include <atomic>
 #include <optional>
 
+#include "compute/native/broad_phase/turned_boxes.h"
+#include "compute/native/processor.h"
 #include "compute/scene/exact.h"
-#include "compute/search/processor.h"
-#include "compute/search/turned_boxes.h"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "compute/search/processor.h"
+#include "compute/native/processor.h"
 
 namespace palpate {
 

@@ -4,15 +4,15 @@
 #include <span>
 #include <vector>
 
+#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/posed_tool.h"
+#include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/cell_memo.h"
 #include "compute/native/narrow_phase/id_marks.h"
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/native/narrow_phase/pair_filter.h"
 #include "compute/scene/partition_lookup.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/frame_helper.h"
-#include "compute/search/near_lists.h"
-#include "compute/search/posed_tool.h"
 #include "model/scene/scene_geometry.h"
 
 namespace palpate {

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "compute/search/processor.h"
+#include "compute/native/processor.h"
 
 namespace palpate::native {
 namespace {

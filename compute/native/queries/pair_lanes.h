@@ -1,4 +1,4 @@
-// Included by pair_distance.cpp alone, once for each processor's code (compute/search/processor.h); so it
+// Included by pair_distance.cpp alone, once for each processor's code (compute/native/processor.h); so it
 // guards nothing and includes nothing. kWidth: doubles in a vector of the processor's.
 
 using Doubles = double __attribute__((vector_size(8 * kWidth)));

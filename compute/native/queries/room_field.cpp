@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "compute/native/prepare/partition_build.h"
+#include "compute/native/processor.h"
 #include "compute/scene/shares.h"
-#include "compute/search/processor.h"
 #include "model/lattice/voxel_size.h"
 #include "model/scene/geometry_build.h"
 

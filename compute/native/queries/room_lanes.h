@@ -1,4 +1,4 @@
-// Included by room_field.cpp alone, once for each processor's code (compute/search/processor.h); so it guards
+// Included by room_field.cpp alone, once for each processor's code (compute/native/processor.h); so it guards
 // nothing and includes nothing. kWidth: floats in a vector of the processor's.
 
 using Floats = float __attribute__((vector_size(4 * kWidth)));

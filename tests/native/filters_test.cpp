@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "compute/native/broad_phase/listed_boxes.h"
+#include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/scene/search_tables.h"
-#include "compute/search/listed_boxes.h"
-#include "compute/search/turned_boxes.h"
 #include "tests/compute/geometry_cases.h"
 
 namespace palpate {

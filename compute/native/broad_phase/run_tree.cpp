@@ -1,4 +1,4 @@
-#include "compute/search/run_tree.h"
+#include "compute/native/broad_phase/run_tree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "compute/search/frame_helper.h"
+#include "compute/native/frame_helper.h"
 
 #include <gtest/gtest.h>
 

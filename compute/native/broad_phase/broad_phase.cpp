@@ -1,12 +1,12 @@
-#include "compute/search/broad_phase.h"
+#include "compute/native/broad_phase/broad_phase.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>
 
+#include "compute/native/processor.h"
 #include "compute/scene/search_tables.h"
-#include "compute/search/processor.h"
 
 namespace palpate {
 namespace {

@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "compute/native/broad_phase/listed_boxes.h"
+#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/scene/exact.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/listed_boxes.h"
-#include "compute/search/near_lists.h"
-#include "compute/search/turned_boxes.h"
 
 namespace palpate {
 

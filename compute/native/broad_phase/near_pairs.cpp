@@ -1,12 +1,12 @@
-#include "compute/search/near_pairs.h"
+#include "compute/native/broad_phase/near_pairs.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "compute/native/broad_phase/listed_boxes.h"
+#include "compute/native/processor.h"
 #include "compute/scene/search_tables.h"
-#include "compute/search/listed_boxes.h"
-#include "compute/search/processor.h"
 
 namespace palpate {
 namespace {

@@ -1,21 +1,21 @@
-#include "compute/search/turned_boxes.h"
+#include "compute/native/broad_phase/turned_boxes.h"
 
 #include <cstring>
 
-#include "compute/search/processor.h"
+#include "compute/native/processor.h"
 
 namespace palpate {
 namespace {
 
 namespace plain {
 constexpr std::size_t kWidth = 4;
-#include "compute/search/turned_boxes_lanes.h"
+#include "compute/native/broad_phase/turned_boxes_lanes.h"
 }  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
 constexpr std::size_t kWidth = 8;
-#include "compute/search/turned_boxes_lanes.h"
+#include "compute/native/broad_phase/turned_boxes_lanes.h"
 }  // namespace second
 PALPATE_SECOND_CODE_END
 #endif

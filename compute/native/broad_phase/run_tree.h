@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/search/turned_boxes.h"
+#include "compute/native/broad_phase/turned_boxes.h"
 #include "model/lattice/lattice_mesh.h"
 
 namespace palpate {

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "compute/native/broad_phase/near_lists.h"
 #include "compute/scene/brick_bits.h"
 #include "compute/scene/samples.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/near_lists.h"
 #include "model/lattice/lattice.h"
 #include "model/scene/scene_geometry.h"
 

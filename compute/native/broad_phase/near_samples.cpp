@@ -1,4 +1,4 @@
-#include "compute/search/near_samples.h"
+#include "compute/native/broad_phase/near_samples.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "compute/search/processor.h"
+#include "compute/native/processor.h"
 
 namespace palpate {
 namespace {
@@ -72,13 +72,13 @@ struct SolidPoints {
 
 namespace plain {
 constexpr std::size_t kWidth = 4;
-#include "compute/search/near_samples_lanes.h"
+#include "compute/native/broad_phase/near_samples_lanes.h"
 }  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
 constexpr std::size_t kWidth = 8;
-#include "compute/search/near_samples_lanes.h"
+#include "compute/native/broad_phase/near_samples_lanes.h"
 }  // namespace second
 PALPATE_SECOND_CODE_END
 #endif

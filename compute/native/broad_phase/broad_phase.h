@@ -4,16 +4,16 @@
 #include <span>
 #include <vector>
 
+#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/near_pairs.h"
+#include "compute/native/broad_phase/near_samples.h"
+#include "compute/native/broad_phase/posed_tool.h"
+#include "compute/native/broad_phase/run_tree.h"
+#include "compute/native/broad_phase/turned_boxes.h"
+#include "compute/native/frame_helper.h"
 #include "compute/scene/brick_bits.h"
 #include "compute/scene/occupied_cubes.h"
 #include "compute/scene/scene_tables.h"
-#include "compute/search/frame_helper.h"
-#include "compute/search/near_lists.h"
-#include "compute/search/near_pairs.h"
-#include "compute/search/near_samples.h"
-#include "compute/search/posed_tool.h"
-#include "compute/search/run_tree.h"
-#include "compute/search/turned_boxes.h"
 #include "model/lattice/lattice.h"
 #include "model/result.h"
 #include "model/scene/scene_geometry.h"
