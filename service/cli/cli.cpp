@@ -294,6 +294,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
                       "one JSON object a pose at a terminal, too; elsewhere that is so anyway");
   query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")
       ->type_name("DIR");
+  query_app->add_flag("--overwrite", query.overwrite, "replace an export that is there already");
   auto* any = query_app->add_flag("--any", query.any,
                                   "touch or not alone, containment included: number, engine and touches");
   auto* clearance = query_app->add_flag("--clearance", query.clearance,

@@ -79,6 +79,7 @@ struct QueryOptions {
   bool names = false;              ///< the parts that touch, by their paths
   bool json = false;               ///< even at a terminal
   std::string export_directory;    ///< empty: none
+  bool overwrite = false;          ///< the files of an export that it has already
   bool any = false;                ///< touch or not, and nothing else
   bool clearance = false;          ///< the smallest distance, and nothing else
   std::optional<double> within_m;  ///< the same, of poses nearer than that

@@ -49,6 +49,15 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
   if (error)
     return bad_value(fmt::format("{}: the directory can't be made ({})", directory, error.message()));
 
+  const auto gone = [&](const std::string& name) {
+    std::error_code ignored;
+    return std::filesystem::remove(root / name, ignored);
+  };
+  for (std::size_t i = 0;; ++i) {  // every pose has left its pairs
+    gone(fmt::format("tool_{}.i32", i));
+    if (!gone(fmt::format("pairs_{}.u32", i))) break;
+  }
+
   const Lattice& lattice = geometry.lattice;
   if (auto done = write_text(root / "lattice.json",
                              fmt::format("{{\"step_m\":{},\"origin_m\":[{},{},{}]}}\n", lattice.step_m,

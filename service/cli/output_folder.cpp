@@ -26,15 +26,16 @@ std::string cannot_write_to(const std::string& folder) {
 }
 
 Result<void> check_output_folder(const std::string& folder, std::span<const char* const> files,
-                                 const char* whose, bool overwrite) {
-  if (const std::string wrong = cannot_write_to(folder); !wrong.empty()) return bad_value("--out " + wrong);
+                                 const char* whose, bool overwrite, const char* option) {
+  if (const std::string wrong = cannot_write_to(folder); !wrong.empty())
+    return bad_value(fmt::format("{} {}", option, wrong));
   if (overwrite) return {};
   std::error_code ignored;
   for (const char* file : files)
     if (std::filesystem::exists(std::filesystem::path(folder) / file, ignored))
       return bad_value(
-          fmt::format("--out {}: {} files are there already ({}); name another folder, or say --overwrite",
-                      folder, whose, file));
+          fmt::format("{} {}: {} files are there already ({}); name another folder, or say --overwrite",
+                      option, folder, whose, file));
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/export_geometry.h"
+#include "service/cli/output_folder.h"
 #include "service/cli/pose_input.h"
 #include "service/cli/query_text.h"
 #include "service/cli/scene_host.h"
@@ -63,6 +64,12 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
   if (options.any || options.clearance || options.within_m) return verdicts_command(options, poses, parts);
   if (options.tolerance_m > 0)
     return Error{ErrorCode::kUsage, "--tolerance goes with --any, --clearance or --within"};
+
+  if (!options.export_directory.empty())
+    if (auto done = check_output_folder(options.export_directory, kExportedFiles, "an export's",
+                                        options.overwrite, "--export-geometry");
+        !done)
+      return done;
 
   catch_interrupts();
   Console console;

@@ -178,6 +178,17 @@ def test_exported_geometry_is_what_was_judged():
     outcome = palpate('query', folder.save(), '--poses', folder / 'poses.csv', '--export-geometry', folder / 'judged')
     expect(outcome.code == 0, outcome)
     judged = folder / 'judged'
+    # Another export's files are not replaced unless somebody says so; then none of them is left.
+    again = ('query', folder / 'scene.json', '--pose', '0 0 0.018 0 0 0 1', '--export-geometry', judged)
+    before = (judged / 'tool_1.i32').read_bytes()
+    refused = palpate(*again)
+    expect(refused.code == 3 and 'lattice.json' in refused.err and '--overwrite' in refused.err and not refused.out, refused)
+    expect((judged / 'tool_1.i32').read_bytes() == before, 'a refusal changes nothing')
+    other = folder / 'other'
+    expect(palpate(*again[:-1], other).code == 0 and palpate('query', folder / 'scene.json', '--poses', folder / 'poses.csv',
+                                                             '--export-geometry', other, '--overwrite').code == 0, 'told to overwrite')
+    expect(palpate(*again[:-1], other, '--overwrite').code == 0, 'told to overwrite')
+    expect(sorted(p.name for p in other.iterdir()) == ['lattice.json', 'pairs_0.u32', 'static.i32', 'tool_0.i32', 'voxels.json', 'voxels.u8'], 'of one pose')
     lattice = json.loads((judged / 'lattice.json').read_text())
     expect(list(lattice) == ['step_m', 'origin_m'], lattice)
     expect(math.frexp(lattice['step_m'])[0] == 0.5, 'the step is a power of two of a metre')
