@@ -51,7 +51,8 @@ function(palpate_compile_options target)
     -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off
     $<$<CXX_COMPILER_ID:GNU>:-Werror> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)   # -Wrestrict: GCC bug 105329
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)   # GCC 12 forgets that precompiled headers are the system's, and finds std::string to copy beyond its end (bug 105329)
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>)
   endif()
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
   # A warning inside a library's template is not ours to mend.
