@@ -49,8 +49,8 @@ const std::map<std::string, std::vector<std::string>> kAllowed = {
     {"shaders", {"shaders/"}},
     {"compute/scene", {"compute/scene/", "model/", "shaders/shared/"}},
     {"compute/vulkan",
-     {"compute/vulkan/", "model/address_space.h", "model/result.h", "shaders/shared/base.h",
-      "shaders/shared/shader_code.h"}},  // no word of collision
+     {"compute/vulkan/", "model/address_space.h", "model/processors.h", "model/result.h",
+      "shaders/shared/base.h", "shaders/shared/shader_code.h"}},  // no word of collision
     {"compute/gpu",
      {"compute/gpu/", "compute/vulkan/", "compute/scene/", "model/", "shaders/shared/",
       "shaders/code.h"}},  // it searches on the device

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -43,14 +46,20 @@ void live_and_die() {
 
 TEST(Leaks, ScenesGiveTheirMemoryBack) {
   const char* const asked = std::getenv("PALPATE_LEAK_SCENES");
-  const int scenes = asked ? std::atoi(asked) : 200;
+  const int scenes = asked ? std::atoi(asked) : 100;
   for (int i = 0; i < 20; ++i) live_and_die();  // what is made once, and arenas of threads
-  const std::size_t before = held();
-  for (int i = 0; i < scenes; ++i) live_and_die();
-  const std::size_t after = held();
-  std::printf("%d scenes: %zu bytes before, %zu after\n", scenes, before, after);
+  // A leak grows in every round; what a busy machine's threads keep for themselves (their arenas, counted as
+  // held) does not.
+  std::ptrdiff_t least = PTRDIFF_MAX;
+  for (int round = 0; round < 3; ++round) {
+    const auto before = static_cast<std::ptrdiff_t>(held());
+    for (int i = 0; i < scenes; ++i) live_and_die();
+    const auto after = static_cast<std::ptrdiff_t>(held());
+    std::printf("%d scenes: %td bytes before, %td after\n", scenes, before, after);
+    least = std::min(least, after - before);
+  }
   // A leak of one byte a scene would not show; one of a vector would: the least is 32 bytes a scene.
-  EXPECT_LT(after, before + 32 * static_cast<std::size_t>(scenes));
+  EXPECT_LT(least, 32 * static_cast<std::ptrdiff_t>(scenes));
 }
 
 }  // namespace
