@@ -100,19 +100,21 @@ bool may_meet(uint32_t box) {
   return abs(plane + at.x + at.y + at.z) <= about.x + about.y + about.z + slack;
 }
 
-// Enters a pair in the table. False: it is there.
+// Enters a pair in the table. False: it is there, or there is no room.
 bool is_new(uint32_t id, uint32_t place) {
   const uint64_t key = (uint64_t(id) + 1ul) << 32 | uint64_t(place);   // never 0: an empty entry
-  const uint32_t mask = uint32_t(pair_table.length()) - 1u;
-  uint32_t at = uint32_t((key * 0x9E3779B97F4A7C15ul) >> 32) & mask;
-  while (!spent(1u)) {
-    const uint64_t there = atomicCompSwap(pair_table[at], 0ul, key);
+  const uint32_t entries = uint32_t(pair_table.length());              // 2^n, n > 0
+  // 2^64 / golden ratio; the highest bits of the product hang on all of the key's.
+  uint32_t at = uint32_t((key * 0x9E3779B97F4A7C15ul) >> uint32_t(64 - findMSB(entries))), probes = 0u;
+  uint64_t there = ~0ul;
+  while (there != 0ul && probes++ < entries && !spent(1u)) {
+    there = atomicCompSwap(pair_table[at], 0ul, key);
     if (there == key) return false;
-    if (there == 0ul) break;
-    at = (at + 1u) & mask;
+    if (there != 0ul) at = (at + 1u) & (entries - 1u);
   }
   const uint32_t slot = take_room(kListPairCandidates, 1u);
-  if (slot >= frame_lists[kListPairCandidates].capacity) return false;
+  if (there != 0ul) atomicOr(frame_state.overflow, 1u << kListPairCandidates);   // the table is full
+  if (there != 0ul || slot >= frame_lists[kListPairCandidates].capacity) return false;
   pair_slots[slot] = at;
   if (begins_group(slot, 1u)) grow_result_groups(0u, groups_to(slot + 1u));
   return true;
