@@ -59,6 +59,10 @@ class QuestionTables {
 
   const native::PairTrees& trees() const { return made().trees; }
   const native::Containment& containment() const { return made().containment; }
+  std::uint64_t bytes() const {
+    const std::lock_guard lock(mutex_);
+    return made_ ? made_->trees.bytes() : 0;
+  }
 
  private:
   struct Made {
@@ -87,7 +91,7 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
     scene_.reset();
     if (plan.profile != Profile::kRefined)
       return bad_value("the cpu engine answers the profile refined alone; gpu and ref answer paper, too");
-    if (const std::uint64_t bytes = estimate_preparation(geometry, plan), most = memory_limit(); bytes > most)
+    if (const std::uint64_t bytes = preparation_bytes(geometry, plan), most = memory_limit(); bytes > most)
       return bad_value("preparing " + std::to_string(geometry.mockup.triangles.size()) +
                        " triangles takes up to " + std::to_string(bytes >> 20) + " MiB, more than the " +
                        std::to_string(most >> 20) + " MiB of memory that this process may have");
@@ -126,8 +130,9 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
     return {};
   }
 
+  /// With what the planner's questions read, too: who asks the first of them has been told.
   std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override {
-    return estimate_preparation(geometry, plan);
+    return estimate_preparation(geometry, plan) + native::PairTrees::most_bytes(geometry);
   }
 
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
@@ -209,7 +214,8 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
   std::string name() const override { return "cpu"; }
   std::string device() const override { return device_; }
   std::uint64_t memory_bytes() const override {
-    std::uint64_t sum = (scene_ ? scene_->bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0);
+    std::uint64_t sum = (scene_ ? scene_->bytes() : 0) + (frame_ ? frame_->memory_bytes() : 0) +
+                        (tables_ ? tables_->bytes() : 0);
     for (const auto& helper : helpers_) sum += helper->memory_bytes();
     return sum;
   }

@@ -96,11 +96,20 @@ TEST(Native, TakesNoMoreMemoryThanForetoldAndKeepsAtMostAHundredBytesATriangle) 
     const std::uint64_t taken = status("VmHWM:") - before;
     EXPECT_LE(taken, foretold);
     EXPECT_LE(native->memory_bytes(), foretold);
+    const std::uint64_t prepared = native->memory_bytes();
     kept[0] = std::exchange(kept[1], native->memory_bytes());
     of[0] = std::exchange(of[1], geometry.mockup.triangles.size());
     std::printf("%llu triangles: %.1f MiB taken, %.1f foretold, %.1f kept\n",
                 static_cast<unsigned long long>(triangles), static_cast<double>(taken) / 1048576,
                 static_cast<double>(foretold) / 1048576,
+                static_cast<double>(native->memory_bytes()) / 1048576);
+    Clearance found;  // what the planner's questions read is made by the first of them, and counts as well
+    ASSERT_TRUE(native->clearance(*to_lattice({}, geometry), INT32_MAX - 2, found));
+    EXPECT_LE(status("VmHWM:") - before, foretold);
+    EXPECT_GT(native->memory_bytes(), prepared + 78 * geometry.mockup.triangles.size());
+    EXPECT_LE(native->memory_bytes(), foretold);
+    std::printf("with questions: %.1f MiB taken, %.1f kept\n",
+                static_cast<double>(status("VmHWM:") - before) / 1048576,
                 static_cast<double>(native->memory_bytes()) / 1048576);
   }
   EXPECT_LE(kept[1] - kept[0], 100 * (of[1] - of[0]));  // what the tool takes is the same for both

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compute/native/prepare/partition_build.h"
+#include "compute/native/prepare/touched_voxels.h"
 #include "compute/scene/exact.h"
 #include "compute/scene/shares.h"
 #include "shaders/shared/prepare.h"
@@ -135,6 +136,26 @@ Result<void> check_grid(const VoxelGrid& grid, const std::string& name) {
   return {};
 }
 
+std::size_t number_of(const Int3& brick, const Int3& bricks) {
+  return static_cast<std::size_t>(brick.x) +
+         static_cast<std::size_t>(bricks.x) *
+             (static_cast<std::size_t>(brick.y) +
+              static_cast<std::size_t>(bricks.y) * static_cast<std::size_t>(brick.z));
+}
+
+/// Calls `take` with every triangle that did not collapse, on all cores.
+template <class Take>
+void for_triangles(const LatticeMesh& mesh, const Take& take) {
+  const auto triangles = static_cast<std::uint32_t>(mesh.triangles.size());
+  const auto serve = [&](std::uint32_t share) {
+    for (std::uint32_t id = share * kTrianglesAShare;
+         id < std::min((share + 1) * kTrianglesAShare, triangles); ++id)
+      if (!mesh.collapsed(id))
+        take(exact::Corners{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)});
+  };
+  in_shares((triangles + kTrianglesAShare - 1) / kTrianglesAShare, serve, [](std::uint32_t) { return true; });
+}
+
 /// Replaces each number by the sum of those before it, and puts the total behind them.
 std::uint64_t sum_up(std::vector<std::uint32_t>& values) {
   std::uint64_t sum = 0;
@@ -148,6 +169,34 @@ std::uint64_t sum_up(std::vector<std::uint32_t>& values) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> touched_bricks(const LatticeMesh& mesh, const VoxelGrid& grid) {
+  VoxelGrid coarse = grid;  // a brick as a voxel
+  coarse.size = kBrickSide * grid.size;
+  const Voxels voxels(coarse, 0);
+  std::vector<std::uint32_t> out(brick_count(grid.bricks));
+  for_triangles(mesh, [&](const exact::Corners& t) {
+    voxels.of(t, [&](const Int3& b) {
+      std::atomic_ref(out[number_of(b, grid.bricks)]).store(1, std::memory_order_relaxed);
+    });
+  });
+  return out;
+}
+
+std::vector<BrickBits> touched_voxels(const LatticeMesh& mesh, const VoxelGrid& grid,
+                                      const std::vector<std::int32_t>& place, std::size_t count) {
+  const Voxels voxels(grid, 0);
+  std::vector<BrickBits> out(count);
+  for_triangles(mesh, [&](const exact::Corners& t) {
+    voxels.of(t, [&](const Int3& v) {
+      const std::int32_t bit = (v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6;
+      std::uint32_t& word = out[static_cast<std::size_t>(place[number_of(v >> 3, grid.bricks)])]
+                               [static_cast<std::size_t>(bit >> 5)];
+      std::atomic_ref(word).fetch_or(1u << (bit & 31), std::memory_order_relaxed);
+    });
+  });
+  return out;
+}
 
 Error cancelled() { return Error{ErrorCode::kInternal, "preparation was cancelled"}; }
 

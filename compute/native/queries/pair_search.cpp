@@ -122,7 +122,7 @@ PairTrees::PairTrees(const SceneGeometry& of)
       tool(TriangleTree::make(
           of.tool, [] { return true; }, kTriangleCollapsed)),
       spheres(of.tool, tool),
-      field(RoomField::of(of)),
+      field(RoomField::of(of, mockup)),
       corners((mockup.order.size() + kLanes - 1) / kLanes),
       boxes(corners.size()) {
   for (std::size_t place = 0; place < mockup.order.size(); ++place)
@@ -136,6 +136,12 @@ PairTrees::PairTrees(const SceneGeometry& of)
         box.high[k][place % kLanes] = c == 0 ? v : std::max(box.high[k][place % kLanes], v);
       }
     }
+}
+
+std::uint64_t PairTrees::most_bytes(const SceneGeometry& geometry) {
+  constexpr std::uint64_t kATriangle = 160, kBesides = 1 << 16;  // what is kept, twice while trees are made
+  return RoomField::most_bytes_made(geometry) + kBesides +
+         kATriangle * (geometry.mockup.triangles.size() + geometry.tool.triangles.size());
 }
 
 PairSearch::PairSearch(const PairTrees& trees) : trees_(&trees) {}
@@ -178,7 +184,10 @@ bool PairSearch::gather(Policy& policy) {
     std::array<std::uint32_t, kLanes> order;
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < kWide; ++i) {
-      const double room = lead.rooms[i] = trees_->field.room(turn_, squared[i], eight.radius[i]);
+      double room = trees_->field.room(turn_, squared[i], eight.radius[i]);
+      if (policy.within(room) && squared[i] >= RoomField::kFarSquared)
+        room = trees_->field.far_room(turn_, eight, i, squared[i]);
+      lead.rooms[i] = room;
       if (!policy.within(room)) continue;
       lead.mask |= 1u << i;
       lead.room = std::min(lead.room, room);
@@ -209,11 +218,14 @@ bool PairSearch::dive(Policy& policy) {
     trees_->field.rooms(turn_, eight, squared);
     std::uint32_t best = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < kWide; ++i)
-      if (const double room = trees_->field.room(turn_, squared[i], eight.radius[i]); room < least) {
-        least = room;
-        best = i;
-      }
+    for (std::uint32_t i = 0; i < kWide; ++i) {
+      double room = trees_->field.room(turn_, squared[i], eight.radius[i]);
+      if (room < least && squared[i] >= RoomField::kFarSquared)
+        room = trees_->field.far_room(turn_, eight, i, squared[i]);
+      if (room >= least) continue;
+      least = room;
+      best = i;
+    }
     number = kWide * number + best;
   }
   if (number >= trees_->tool.order.size()) return true;

@@ -19,6 +19,12 @@ namespace palpate::native {
 /// number of threads. Beside the field 78 bytes a triangle of the mock-up and 37 of the tool.
 struct PairTrees {
   explicit PairTrees(const SceneGeometry& geometry);
+  /// What making and keeping them takes at most, known before.
+  static std::uint64_t most_bytes(const SceneGeometry& geometry);
+  std::uint64_t bytes() const {
+    return mockup.bytes() + tool.bytes() + spheres.bytes() + field.bytes() +
+           sizeof corners[0] * std::uint64_t{corners.size()} + sizeof boxes[0] * std::uint64_t{boxes.size()};
+  }
 
   const SceneGeometry* geometry;
   TriangleTree mockup, tool;

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <utility>
 
-#include "compute/native/prepare/partition_build.h"
+#include "compute/native/prepare/touched_voxels.h"
 #include "compute/native/processor.h"
+#include "compute/scene/partition.h"
 #include "compute/scene/shares.h"
 #include "model/lattice/voxel_size.h"
 #include "model/scene/geometry_build.h"
@@ -33,8 +35,10 @@ constexpr float kPerCell = 16;             // what a byte counts
 constexpr std::size_t kBricksAShare = 64;  // chosen: a millisecond
 constexpr std::int32_t kWindow = 24;       // a brick and its neighbours, cells
 constexpr std::int32_t kCellsAVoxel = 4;   // chosen: with half of them a free pose takes three times as long
-constexpr double kMostBricks = 0x1p20, kMostBytes = 0x1p26, kBytesATriangle = 64;  // chosen
-constexpr double kNearBricks = 2.2;  // for each square of a brick's side that the surface has (measured)
+constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 20;                       // chosen: 4 MiB of places
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26, kBytesATriangle = 64;  // of cells; chosen
+constexpr std::int32_t kNoBrick = 1 << 20;                                          // is touched
+constexpr std::uint64_t kCellBytes = 512;                                           // of a brick
 
 /// What lies in cells that are `steps` apart along an axis is apart by so many cells at least.
 constexpr std::int32_t between(std::int32_t steps) { return steps == 0 ? 0 : std::abs(steps) - 1; }
@@ -125,37 +129,61 @@ void count_bricks(const Int3& size, std::vector<std::int32_t>& bricks) {
   pass(-1);
 }
 
+VoxelGrid grid_of(const LatticeMesh& mesh, std::int32_t cell) {
+  return make_grid(mesh.box_min, mesh.box_max, cell);
+}
+std::int32_t finest_cell(const SceneGeometry& geometry) {
+  return std::max(geometry.mockup_grid.size / kCellsAVoxel & ~1, kSmallestVoxel);
+}
+std::uint64_t most_bricks_near(const LatticeMesh& mesh) {
+  return (kMostBytes + kBytesATriangle * mesh.triangles.size()) / kCellBytes;
+}
+
 }  // namespace
 
-RoomField RoomField::of(const SceneGeometry& geometry) {
+std::uint64_t RoomField::most_bytes(const SceneGeometry& geometry) {
+  const std::uint64_t bricks = std::min<std::uint64_t>(
+      brick_count(grid_of(geometry.mockup, finest_cell(geometry)).bricks), kMostBricks);
+  return kCellBytes * std::min(bricks, most_bricks_near(geometry.mockup)) + sizeof(std::int32_t) * bricks +
+         sizeof(float) * DistanceLattice::kMostNodes;
+}
+
+std::uint64_t RoomField::most_bytes_made(const SceneGeometry& geometry) {
+  const std::uint64_t kept = most_bytes(geometry);
+  return kept + kept / 4 + sizeof(std::uint32_t) * kMostBricks;  // touched voxels, and lists of bricks
+}
+
+/// The finest cells that fit are taken: with cells of twice the side, a quarter of the memory, a pose that is
+/// free and near takes three times as long.
+RoomField RoomField::of(const SceneGeometry& geometry, const TriangleTree& tree) {
   const LatticeMesh& mesh = geometry.mockup;
-  const double most = kMostBytes + kBytesATriangle * static_cast<double>(mesh.triangles.size());
-  for (std::int32_t size = std::max(geometry.mockup_grid.size / kCellsAVoxel & ~1, kSmallestVoxel);;
-       size *= 2) {
-    const VoxelGrid grid = make_grid(mesh.box_min, mesh.box_max, size);
-    const double side = static_cast<double>(kBrickSide) * size,
-                 near = kNearBricks * geometry.mockup_surface.area / (side * side);
-    if (static_cast<double>(brick_count(grid.bricks)) > kMostBricks || sizeof(Cells) * near > most) continue;
-    if (const auto listed = list_voxels(mesh, grid, 0, "mock-up", [] { return true; }))
-      return RoomField(*listed);
+  DistanceLattice lattice(mesh, tree, 2.0 * geometry.tool_radius);
+  for (std::int32_t cell = finest_cell(geometry);; cell *= 2) {
+    const VoxelGrid grid = grid_of(mesh, cell);
+    // Ends: no side has more than 2^30 steps, so cells of 2^25 make 5 bricks along it, and 125 always fit.
+    if (brick_count(grid.bricks) > kMostBricks) continue;
+    std::vector<std::uint32_t> touched = touched_bricks(mesh, grid);
+    std::vector<std::int32_t> away(touched.size());
+    for (std::size_t brick = 0; brick < away.size(); ++brick)
+      away[brick] = touched[brick] != 0 ? 0 : kNoBrick;
+    touched = {};
+    count_bricks(grid.bricks, away);
+    const auto near = static_cast<std::uint64_t>(
+        std::count_if(away.begin(), away.end(), [](std::int32_t bricks) { return bricks <= 1; }));
+    if (near <= most_bricks_near(mesh)) return {mesh, grid, std::move(away), near, std::move(lattice)};
   }
 }
 
-RoomField::RoomField(const Partition& surface)
-    : grid_(surface.grid),
-      per_cell_(1.0 / surface.grid.size),
-      place_(brick_count(surface.grid.bricks), 1 << 20) {
+RoomField::RoomField(const LatticeMesh& mesh, const VoxelGrid& grid, std::vector<std::int32_t> away,
+                     std::size_t count, DistanceLattice lattice)
+    : grid_(grid),
+      per_cell_(1.0 / grid.size),
+      place_(std::move(away)),
+      near_(count),
+      lattice_(std::move(lattice)) {
   const Int3& size = grid_.bricks;
-  const auto number = [&](const Int3& b) {
-    return static_cast<std::size_t>(b.x) +
-           static_cast<std::size_t>(size.x) *
-               (static_cast<std::size_t>(b.y) +
-                static_cast<std::size_t>(size.y) * static_cast<std::size_t>(b.z));
-  };
-  for (std::size_t brick = 0; brick < place_.size(); ++brick)
-    if (surface.brick_slot[brick] < gpu::kBrickInternal) place_[brick] = 0;
-  count_bricks(size, place_);
   std::vector<std::uint32_t> near;
+  near.reserve(count);
   for (std::size_t brick = 0; brick < place_.size(); ++brick) {
     if (place_[brick] > 1) {
       place_[brick] = -8 * (place_[brick] - 1);
@@ -164,21 +192,25 @@ RoomField::RoomField(const Partition& surface)
     place_[brick] = static_cast<std::int32_t>(near.size());
     near.push_back(static_cast<std::uint32_t>(brick));
   }
-  near_.resize(near.size());
+  const std::vector<BrickBits> bits = touched_voxels(mesh, grid, place_, count);
   const auto fill = [&](std::uint32_t share) {
     const auto window = std::make_unique<Window>();
-    for (std::size_t n = share * kBricksAShare; n < std::min((share + 1) * kBricksAShare, near.size()); ++n) {
+    for (std::size_t n = share * kBricksAShare; n < std::min((share + 1) * kBricksAShare, count); ++n) {
       window->rows.fill(0);
       const Int3 at = brick_at(size, near[n]);
       for (std::int32_t k = 0; k < 27; ++k) {
         const Int3 by(k % 3, k / 3 % 3, k / 9), b = at + by - 1;
         if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= size.x || b.y >= size.y || b.z >= size.z) continue;
-        const std::uint32_t slot = surface.brick_slot[number(b)];
-        if (slot >= gpu::kBrickInternal) continue;
+        const std::int32_t place =
+            place_[static_cast<std::size_t>(b.x) +
+                   static_cast<std::size_t>(size.x) *
+                       (static_cast<std::size_t>(b.y) +
+                        static_cast<std::size_t>(size.y) * static_cast<std::size_t>(b.z))];
+        if (place < 0) continue;
         for (std::int32_t z = 0; z < 8; ++z)
           for (std::int32_t y = 0; y < 8; ++y) {
             const std::uint32_t word =
-                surface.bricks[slot].boundary[static_cast<std::size_t>(y >> 2 | z << 1)];
+                bits[static_cast<std::size_t>(place)][static_cast<std::size_t>(y >> 2 | z << 1)];
             window->rows[static_cast<std::size_t>(8 * by.y + y + kWindow * (8 * by.z + z))] |=
                 (word >> (8 * (y & 3)) & 0xFF) << (8 * by.x);
           }
@@ -186,7 +218,7 @@ RoomField::RoomField(const Partition& surface)
       gaps_of(*window, near_[n]);
     }
   };
-  in_shares(static_cast<std::uint32_t>((near.size() + kBricksAShare - 1) / kBricksAShare), fill,
+  in_shares(static_cast<std::uint32_t>((count + kBricksAShare - 1) / kBricksAShare), fill,
             [](std::uint32_t) { return true; });
 }
 
@@ -234,6 +266,19 @@ double RoomField::room(const Turn& turn, float squared, float radius) const {
   return std::sqrt(static_cast<double>(squared)) * grid_.size * (1 - 0x1p-20) - radius - turn.slack;
 }
 
+double RoomField::far_room(const Turn& turn, const EightSpheres& spheres, std::size_t i,
+                           float squared) const {
+  double at[3];
+  for (std::size_t r = 0; r < 3; ++r) {
+    double cells = turn.at[r];
+    for (std::size_t c = 0; c < 3; ++c)
+      cells += static_cast<double>(turn.rotation[r][c]) * spheres.centre[c][i];
+    at[r] = grid_.origin[static_cast<int>(r)] + cells * grid_.size;
+  }
+  const double known = static_cast<double>(squared) * grid_.size * grid_.size;
+  return std::sqrt(std::max(known, lattice_.squared(at))) * (1 - 0x1p-20) - spheres.radius[i] - turn.slack;
+}
+
 /// Steps that a point is from the surface at least.
 double RoomField::room_at(const double (&point)[3]) const {
   double away = 0;
@@ -254,7 +299,9 @@ double RoomField::room_at(const double (&point)[3]) const {
       place >= 0
           ? (1.0 / kPerCell) * near_[static_cast<std::size_t>(place)][cell[0] | cell[1] << 3 | cell[2] << 6]
           : -static_cast<double>(place);
-  return (away == 0 ? gap : std::sqrt(away + gap * gap)) * grid_.size;
+  const double room = (away == 0 ? gap : std::sqrt(away + gap * gap)) * grid_.size;
+  if (away == 0 && place >= 0) return room;
+  return std::max(room, std::sqrt(lattice_.squared(point)));
 }
 
 /// By balls about the middles of longest edges, which a triangle that is not beyond by one is cut at. A

@@ -3,24 +3,29 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute/native/queries/distance_lattice.h"
 #include "compute/native/queries/tool_spheres.h"
 #include "compute/scene/exact.h"
-#include "compute/scene/partition.h"
 #include "model/lattice/lattice.h"
+#include "model/lattice/lattice_mesh.h"
+#include "model/lattice/voxel_grid.h"
 #include "model/scene/scene_geometry.h"
 
 namespace palpate::native {
 
 /// How far what lies in a cell of a grid is from a body's surface at least: a number for each cell of the
-/// bricks near it, and one for each brick elsewhere. Made once a scene, read by any number of threads.
+/// bricks near it, and one for each brick elsewhere; further off a coarse lattice says more. Made once a
+/// scene, read by any number of threads.
 class RoomField {
  public:
-  /// Of a scene's mock-up: in cells of a quarter of its voxel, or of twice, four times … that where the
-  /// bricks near it would take more than 64 MiB and 64 bytes a triangle.
-  static RoomField of(const SceneGeometry& geometry);
-  /// `surface`: whose V_bnd voxels are the cells that the surface touches. Allocates 512 bytes for each brick
-  /// that has one or lies next to it, four for each other; on all cores.
-  explicit RoomField(const Partition& surface);
+  /// Of a scene's mock-up: in cells of a quarter of its voxel, or of twice, four times … that where they
+  /// would take more than most_bytes(). `tree`: of all its triangles that did not collapse.
+  static RoomField of(const SceneGeometry& geometry, const TriangleTree& tree);
+  /// What bytes() of a scene's field is at most, known before it is made: the bricks that its surface may
+  /// touch and those around them, but no more than 64 MiB and 64 bytes a triangle.
+  static std::uint64_t most_bytes(const SceneGeometry& geometry);
+  /// The same while it is made.
+  static std::uint64_t most_bytes_made(const SceneGeometry& geometry);
 
   /// A pose in cells.
   struct Turn {
@@ -34,23 +39,33 @@ class RoomField {
   void rooms(const Turn& turn, const EightSpheres& spheres, EightFloats& squared) const;
   /// Steps that a sphere is from the surface at least, below 0 where that may be inside it.
   double room(const Turn& turn, float squared, float radius) const;
+  /// The same of one of eight, which `squared` says is far: as far as the lattice knows.
+  double far_room(const Turn& turn, const EightSpheres& spheres, std::size_t i, float squared) const;
+  /// Squared cells from which on the lattice may know more.
+  static constexpr float kFarSquared = 64;
 
   /// Whether all of a triangle, in the world, is further from the surface than so many steps, as far as the
   /// field can tell.
   bool all_beyond(const exact::Corners& triangle, double steps) const;
 
   std::uint64_t bytes() const {
-    return sizeof place_[0] * std::uint64_t{place_.size()} + sizeof near_[0] * std::uint64_t{near_.size()};
+    return sizeof place_[0] * std::uint64_t{place_.size()} + sizeof near_[0] * std::uint64_t{near_.size()} +
+           lattice_.bytes();
   }
 
  private:
+  /// `away`: by brick of the grid, how many it is from one that the surface touches; of so many, `count`,
+  /// that is 0 or 1.
+  RoomField(const LatticeMesh& mesh, const VoxelGrid& grid, std::vector<std::int32_t> away, std::size_t count,
+            DistanceLattice lattice);
   double room_at(const double (&point)[3]) const;
   using Cells = std::array<std::uint8_t, 512>;  ///< of a brick: sixteenths of a cell, x + 8 y + 64 z
 
-  gpu::GridConstants grid_{};
+  VoxelGrid grid_{};
   double per_cell_ = 0;              ///< cells a step
   std::vector<std::int32_t> place_;  ///< by brick: in `near_`; below 0: minus so many cells
   std::vector<Cells> near_;
+  DistanceLattice lattice_;
 };
 
 }  // namespace palpate::native
