@@ -33,7 +33,7 @@ function(palpate_precompile name option)
   target_precompile_headers(${name} PRIVATE ${palpate_common_headers} ${ARGN})
 endfunction()
 
-# Warnings are errors on our own targets (GCC's; clang builds the fuzz targets alone). -ffp-contract=off: what both back ends compute on the host must not
+# Warnings are errors on our own targets. -ffp-contract=off: what both back ends compute on the host must not
 # depend on whether the compiler found a fused multiply-add.
 # palpate_compile_options(TARGET [PRECOMPILED]): with the common headers, with another target's, or with none ("").
 function(palpate_compile_options target)
@@ -48,8 +48,8 @@ function(palpate_compile_options target)
     target_precompile_headers(${target} REUSE_FROM ${precompiled})
   endif()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
-    -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off
-    $<$<CXX_COMPILER_ID:GNU>:-Werror> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)   # -Wrestrict: GCC bug 105329
+    -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off -Werror
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)   # -Wrestrict: GCC bug 105329
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
   # A warning inside a library's template is not ours to mend.
   target_compile_definitions(${target} PRIVATE GLM_FORCE_EXPLICIT_CTOR GLM_ENABLE_EXPERIMENTAL)
