@@ -113,7 +113,7 @@ class BrickBits {
   /// this.
   template <class Take>
   bool for_bricks(const Range& range, Take&& take) const {
-    const auto& [first, last] = range;
+    const std::int32_t(&first)[3] = range.first, (&last)[3] = range.last;
     const auto from = [&](std::size_t k, std::int32_t brick) {
       return brick == first[k] >> 3 ? first[k] & 7 : 0;
     };

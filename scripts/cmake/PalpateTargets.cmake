@@ -33,7 +33,7 @@ function(palpate_precompile name option)
   target_precompile_headers(${name} PRIVATE ${palpate_common_headers} ${ARGN})
 endfunction()
 
-# Warnings are errors on our own targets (GCC's; clang builds the fuzz targets alone). -ffp-contract=off: what both back ends compute on the host must not
+# Warnings are errors on our own targets (of GCC). -ffp-contract=off: what both back ends compute on the host must not
 # depend on whether the compiler found a fused multiply-add.
 # palpate_compile_options(TARGET [PRECOMPILED]): with the common headers, with another target's, or with none ("").
 function(palpate_compile_options target)

@@ -309,7 +309,8 @@ Case samples_on_last_rows() {
       small_box(),
       [](const SceneGeometry&, Random& random, Known&) {
         const Int3 on[] = {{63, 63, 512}, {63 - 448, 63 + 448, 512}, {512, 63, 63}, {63, -512, 63 - 448}};
-        return unturned(on[random.below(4)] + any(random, 40));
+        const Int3 beside = any(random, 40);
+        return unturned(on[random.below(4)] + beside);
       },
       {}, 7);
 }

@@ -282,14 +282,14 @@ Case clamp_round_a_rod() {
 
 /// Wholly inside, at points from which several voxels are the nearest way out.
 Case swallowed_at_ties() {
-  return rule(
-      "swallowed_at_ties",
-      "wholly inside, as far from one way out as from another: the voxel of the smallest number", block(),
-      box_of(Int3(-20), Int3(20)), [](const SceneGeometry&, Random& random, Known& known) {
-        known.pairs.emplace();
-        known.contact = true;
-        return unturned(kVoxel / 2 * any(random, 6) + (random.below(4) == 0 ? any(random, 1) : Int3(0)));
-      });
+  return rule("swallowed_at_ties",
+              "wholly inside, as far from one way out as from another: the voxel of the smallest number",
+              block(), box_of(Int3(-20), Int3(20)), [](const SceneGeometry&, Random& random, Known& known) {
+                known.pairs.emplace();
+                known.contact = true;
+                const Int3 beside = random.below(4) == 0 ? any(random, 1) : Int3(0);
+                return unturned(kVoxel / 2 * any(random, 6) + beside);
+              });
 }
 
 /// A tool with a hollow underneath, and one of two overlapping boxes: where the ray's winding first falls to
@@ -463,7 +463,8 @@ Case swallowed_below_a_brick() {
               [](const SceneGeometry&, Random& random, Known& known) {
                 known.pairs.emplace();
                 known.contact = true;
-                const Int3 at = kVoxel * any(random, 3) + (random.below(3) == 0 ? any(random, 1) : Int3(0));
+                const Int3 beside = random.below(3) == 0 ? any(random, 1) : Int3(0),
+                           at = kVoxel * any(random, 3) + beside;
                 return unturned({at.x, at.y, 352 - 21 - random.between(0, 80)});
               });
 }

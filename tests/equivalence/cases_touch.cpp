@@ -11,8 +11,11 @@ namespace {
 
 using Shape = std::function<TouchShape(Random&)>;
 
+/// One number after the other: in which order a call's arguments are drawn is the compiler's choice.
 Int3 any(Random& r, std::int32_t eighths) {
-  return 8 * Int3(r.between(-eighths, eighths), r.between(-eighths, eighths), r.between(-eighths, eighths));
+  Int3 out;
+  for (int k = 3; k-- > 0;) out[k] = 8 * r.between(-eighths, eighths);
+  return out;
 }
 
 bool spans_space(const TouchShape& s) {

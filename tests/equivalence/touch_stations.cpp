@@ -79,13 +79,17 @@ Made cone(Random& r, const Int3& from) {
 }
 
 /// A direction within the plane, not along x.
-Int3 across(Random& r) { return {r.between(-5, 5), r.between(1, 5) * (r.below(2) != 0 ? 1 : -1), 0}; }
+Int3 across(Random& r) {
+  const std::int32_t x = r.between(-5, 5), y = r.between(1, 5);
+  return {x, r.below(2) != 0 ? y : -y, 0};
+}
 
 /// A triangle of z = 0 around a point, by 2 eighths or more on every side: (−8, −8), (8, −8) and (0, 8) at
 /// least.
 Made around(Random& r, const Int3& point) {
-  return {point + Int3(r.between(-16, -8), r.between(-16, -8), 0),
-          point + Int3(r.between(8, 16), r.between(-16, -8), 0), point + Int3(0, r.between(8, 16), 0)};
+  const std::int32_t y0 = r.between(-16, -8), x0 = r.between(-16, -8), y1 = r.between(-16, -8),
+                     x1 = r.between(8, 16), y2 = r.between(8, 16);
+  return {point + Int3(x0, y0, 0), point + Int3(x1, y1, 0), point + Int3(0, y2, 0)};
 }
 
 Made make(Touch touch, Random& r) {

@@ -101,8 +101,8 @@ HostField::Extras::Extras(const LatticeMesh& mesh)
 
 std::span<const ExtraSample> HostField::Extras::of(std::uint32_t triangle) const {
   if ((has_[triangle >> 6] >> (triangle & 63) & 1) == 0) return {};
-  const auto range = std::ranges::equal_range(all_, triangle, {}, &ExtraSample::triangle);
-  return {range.begin(), range.end()};
+  const auto first = std::ranges::lower_bound(all_, triangle, {}, &ExtraSample::triangle);
+  return {first, std::ranges::upper_bound(first, all_.end(), triangle, {}, &ExtraSample::triangle)};
 }
 
 HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& mockup,

@@ -39,7 +39,7 @@ static void above(const Point& corner, const Point face[3], const Point& normal,
     within &= side >= Doubles{};
   }
   const Doubles squared = height * height / size2;
-  best = within & (squared < best) ? squared : best;
+  best = (within & (squared < best)) ? squared : best;
 }
 
 // The corners relative to the one's first.
