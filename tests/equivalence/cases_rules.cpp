@@ -270,12 +270,13 @@ Case clamp_round_a_rod() {
                                     box_of(Int3(-100, -120, -300), Int3(200, 120, -90)),
                                     box_of(Int3(150, -30, 80), Int3(200, 30, 260)),
                                     {{Int3(-100, -80, 100), Int3(-100, 80, 100), Int3(-1500, 0, 20)}}});
-  Case c = rule("clamp_round_a_rod",
-                "a ray that passes its own area's arm may meet another's: only its own counts", rod, clamp,
-                [](const SceneGeometry&, Random& random, Known&) {
-                  const Int3 at(random.between(-90, 90), random.between(-90, 90), random.between(-30, 30));
-                  return random.below(3) == 0 ? unturned(at) : leaning(random, at);
-                });
+  Case c = rule(
+      "clamp_round_a_rod", "a ray that passes its own area's arm may meet another's: only its own counts",
+      rod, clamp, [](const SceneGeometry&, Random& random, Known&) {
+        const int z = random.between(-30, 30), y = random.between(-90, 90), x = random.between(-90, 90);
+        const Int3 at(x, y, z);
+        return random.below(3) == 0 ? unturned(at) : leaning(random, at);
+      });
   c.poses = 24;
   return paper(c);
 }
