@@ -53,9 +53,10 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
     std::error_code ignored;
     return std::filesystem::remove(root / name, ignored);
   };
-  for (std::size_t i = 0;; ++i) {  // every pose has left its pairs
-    gone(fmt::format("tool_{}.i32", i));
-    if (!gone(fmt::format("pairs_{}.u32", i))) break;
+  for (std::size_t i = 0;;
+       ++i) {  // a pose beyond the lattice has no corners, one that was interrupted no pairs
+    const bool corners = gone(fmt::format("tool_{}.i32", i)), pairs = gone(fmt::format("pairs_{}.u32", i));
+    if (!corners && !pairs) break;
   }
 
   const Lattice& lattice = geometry.lattice;
