@@ -3,6 +3,8 @@
 
 usage: PYTHONPATH=build/release/python bench/python_batch.py SCENE.json [--poses N] [--reach M] [--rounds R]
 
+What two processors are worth to a batch: once as it is, once under `taskset -c 0`.
+
 Prints, as the median of R rounds in turns: poses a second of palpate_query in one call and of Scene.query_batch, by the wall clock and by
 processor time; the memory that a batch adds at its peak, beside its columns; poses a second of lone questions by one and by two threads.
 """

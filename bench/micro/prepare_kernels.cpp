@@ -56,8 +56,7 @@ std::map<std::string, Runs> measure(VulkanDevice& device, std::uint64_t triangle
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  GpuOptions options;
-  auto device = VulkanDevice::create(options);
+  auto device = VulkanDevice::create(DeviceOptions{});
   if (!device) {
     std::fprintf(stderr, "%s\n", device.error().sentence.c_str());
     return 4;
@@ -68,10 +67,10 @@ int main(int argc, char** argv) {
        {std::uint64_t{10'000}, std::uint64_t{100'000}, std::uint64_t{300'000}})
     all[triangles] = measure(**device, triangles);
   for (const auto& [triangles, kernels] : all)
-    for (const auto& [kernel, runs] : kernels)
+    for (const auto& [kernel, measured] : kernels)
       benchmark::RegisterBenchmark(
           (kernel + "/" + std::to_string(triangles)).c_str(),
-          [&runs](benchmark::State& state) {
+          [&runs = measured](benchmark::State& state) {
             std::size_t i = 0;
             for ([[maybe_unused]] auto _ : state)
               state.SetIterationTime(runs.seconds[i++ % runs.seconds.size()]);
