@@ -27,7 +27,6 @@ std::vector<Column> columns(const Measured& m, const Figures& f) {
           {"loop_lost", f.loop_lost},
           {"frame_p50_us", f.frame_p50_us},
           {"frame_p99_us", f.frame_p99_us},
-          {"frame_cpu_p50_us", f.frame_cpu_p50_us},
           {"evaluation_p50_us", f.evaluation_p50_us},
           {"unsettled", f.unsettled},
           {"memory_mib", m.memory_mib},

@@ -1,5 +1,6 @@
-// haptic_yardstick OUT [--methods a,b] [--cases TEXT] [--poses N] [--part NAME=FIXED.ply,TOOL.ply,POSES.csv]…
-// Each method meets each case in a process of its own, so that memory is its own and a crash is a row.
+// haptic_yardstick OUT [--methods a,b] [--cases TEXT] [--poses N] [--clock wall|cpu] [--part
+// NAME=FIXED.ply,TOOL.ply,POSES.csv]… Each method meets each case in a process of its own, so that memory is
+// its own and a crash is a row.
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 #include "bench/haptic/csv.h"
 #include "bench/haptic/measure.h"
@@ -23,6 +25,7 @@ constexpr unsigned kMostSeconds = 600;  ///< a method may take for a case
 struct Options {
   std::string out, methods, cases;
   Amount amount;
+  bool cpu_clock = false;
   std::vector<std::string> parts;
 };
 
@@ -40,6 +43,11 @@ Options options_of(int argc, char** argv) {
       out.cases = value();
     } else if (word == "--part") {
       out.parts.push_back(value());
+    } else if (word == "--clock") {
+      const std::string clock = value();
+      if (clock != "wall" && clock != "cpu")
+        throw std::invalid_argument("--clock " + clock + ": must be wall or cpu");
+      out.cpu_clock = clock == "cpu";
     } else if (word == "--poses") {
       const std::string text = value();
       std::size_t n = 0;
@@ -93,7 +101,7 @@ int one(const Options& options, const Case& subject, const AdapterMaker& maker) 
   alarm(kMostSeconds);
   const auto adapter = maker.make();
   try {
-    const Measured measured = measure(*adapter, subject, options.amount.rest);
+    const Measured measured = measure(*adapter, subject, options.amount.rest, options.cpu_clock);
     write_samples(fmt::format("{}/raw/{}.{}.csv", options.out, file_name(subject.name), maker.key), subject,
                   measured);
     append_to(options.out + "/figures.csv",
@@ -120,6 +128,9 @@ int run(const Options& options) {
     subjects << fmt::format("\"{}\",{},{},{},{:.6g},\"{}\"\n", c.name, c.group, c.fixed.triangles.size(),
                             c.tool.triangles.size(), c.gyration, c.truth_from);
   subjects.close();
+  std::ofstream(options.out + "/facts.csv")
+      << fmt::format("clock,cores,poses\n{},{},{}\n", options.cpu_clock ? "cpu" : "wall",
+                     std::thread::hardware_concurrency(), options.amount.path);
   std::ofstream known(options.out + "/methods.csv");
   known << "method,name,version\n";
   for (const AdapterMaker& maker : methods) {

@@ -47,8 +47,9 @@ double normal(std::mt19937_64& random) {
 
 }  // namespace
 
-Measured measure(Adapter& adapter, const Case& subject, std::size_t rest_poses) {
+Measured measure(Adapter& adapter, const Case& subject, std::size_t rest_poses, bool cpu_clock) {
   Measured out;
+  out.cpu_clock = cpu_clock;
   const double memory = resident_mib(), began = seconds(CLOCK_MONOTONIC);
   adapter.prepare(subject);
   out.prepare_s = seconds(CLOCK_MONOTONIC) - began;

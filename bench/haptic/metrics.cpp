@@ -98,17 +98,15 @@ Figures figures_of(const Case& subject, const Measured& measured) {
   out.step = largest_step(subject, measured.path);
   if (!measured.rest.empty()) out.noise = noise_at_rest(subject, measured);
   out.loop_lost = work_lost(measured.loop);
-  std::vector<double> wall, cpu, each;
+  std::vector<double> times, each;
   std::size_t unsettled = 0;
   for (const Sample& s : measured.path) {
-    wall.push_back(s.wall_us);
-    cpu.push_back(s.cpu_us);
-    each.push_back(s.wall_us / std::max(1u, s.answer.evaluations));
+    times.push_back(measured.cpu_clock ? s.cpu_us : s.wall_us);
+    each.push_back(times.back() / std::max(1u, s.answer.evaluations));
     unsettled += s.answer.settled ? 0 : 1;
   }
-  out.frame_p50_us = quantile(wall, 0.5);
-  out.frame_p99_us = quantile(wall, 0.99);
-  out.frame_cpu_p50_us = quantile(cpu, 0.5);
+  out.frame_p50_us = quantile(times, 0.5);
+  out.frame_p99_us = quantile(times, 0.99);
   out.evaluation_p50_us = quantile(each, 0.5);
   if (!measured.path.empty())
     out.unsettled = static_cast<double>(unsettled) / static_cast<double>(measured.path.size());

@@ -18,6 +18,7 @@ struct Measured {
   std::vector<Sample> path, loop, rest;
   double tremble_m = 0;  ///< rms along each axis of the hand's places in `rest`
   double prepare_s = 0, memory_mib = 0;
+  bool cpu_clock = false;  ///< which of a sample's times counts
 };
 
 /// Errors are of the poses of the path whose `Truth::scale` is a tenth of the path's largest or more.
@@ -28,10 +29,9 @@ struct Figures {
   double step = 0;  ///< largest |ΔF| / (K |Δx|) on the path; |Δx|: way + farthest point · turn. A spring: 1
   double noise = 0;  ///< rms of F about its mean, over K and the tremble's rms in three axes. A spring: ≤ 1
   double loop_lost = 0;  ///< |∮ dW| / ∮ |dW|, dW = F · dx + T · dθ by the trapezoid rule
-  double frame_p50_us = 0, frame_p99_us = 0;  ///< wall clock; of whole answers
-  double frame_cpu_p50_us = 0;
-  double evaluation_p50_us = 0;  ///< an answer's time over its evaluations
-  double unsettled = 0;          ///< share of the path's poses
+  double frame_p50_us = 0, frame_p99_us = 0;  ///< of whole answers
+  double evaluation_p50_us = 0;               ///< an answer's time over its evaluations
+  double unsettled = 0;                       ///< share of the path's poses
 };
 
 Figures figures_of(const Case& subject, const Measured& measured);

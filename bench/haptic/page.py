@@ -6,7 +6,6 @@ import csv
 import html
 import io
 import math
-import os
 import platform
 import re
 import subprocess
@@ -36,11 +35,11 @@ MORE = [
     ('direction_p50_deg', 'direction, p50, °', 1),
     ('magnitude_p50', 'magnitude, p50, %', 100),
     ('torque_p50', 'torque, p50, %', 100),
-    ('frame_cpu_p50_us', 'answer, p50, µs of all threads', 1),
     ('unsettled', 'balance not found, %', 100),
     ('prepare_s', 'preparing, s', 1),
 ]
 LOOKS = [('#0072b2', 'o'), ('#d55e00', 's'), ('#009e73', '^'), ('#cc79a7', 'D'), ('#56b4e9', 'v')]
+CLOCKS = {'wall': 'the wall clock', 'cpu': 'processor time, of all threads together,'}
 PARTS = {'closed form': 'Closed forms', 'fit': 'Fits', 'stiff': 'Stiff cases', 'part': 'Real parts'}
 
 
@@ -90,6 +89,7 @@ class Run:
         self.folder = Path(folder)
         self.cases = rows_of(self.folder / 'cases.csv')
         self.methods = rows_of(self.folder / 'methods.csv')
+        self.facts = rows_of(self.folder / 'facts.csv')[0]
         self.failures = rows_of(self.folder / 'failures.csv')
         self.figures = {(row['case'], row['method']): row for row in rows_of(self.folder / 'figures.csv')}
         self.look = {m['method']: LOOKS[i % len(LOOKS)] for i, m in enumerate(self.methods)}
@@ -266,13 +266,14 @@ def everything(run):
     return '\n'.join(out)
 
 
-def machine():
+def machine(facts):
     try:
         text = Path('/proc/cpuinfo').read_text()
         model = re.search(r'model name\s*:\s*(.*)', text).group(1)
     except (OSError, AttributeError):
         model = platform.machine()
-    return f'{len(os.sched_getaffinity(0))} cores of {model}'
+    cores = int(facts['cores'])
+    return f'{cores} core{"s" if cores > 1 else ""} of {model}'
 
 
 def commit():
@@ -315,7 +316,7 @@ def main():
 <title>Haptic yardstick</title><style>{STYLE}</style>
 <h1>Haptic yardstick</h1>
 <p>What a hand is told, and how soon, by {len(run.name)} methods on {len(run.cases)} cases. Each hangs the tool on the hand by the same spring, K and Kρ²;
-truth is a rigid tool on that spring that does not penetrate. <span class="small">{html.escape(machine())}; {platform.system()} {platform.release()}; commit {html.escape(commit())}.</span></p>
+truth is a rigid tool on that spring that does not penetrate. <span class="small">{html.escape(machine(run.facts))}; {platform.system()} {platform.release()}; commit {html.escape(commit())}; {run.facts['poses']} poses a path; times by {CLOCKS[run.facts['clock']].strip(',')}.</span></p>
 <nav><a href="#figures">All figures</a><a href="#curves">Forces</a><a href="#tables">Tables</a><a href="#meaning">What the measures mean</a><a href="#cases">Cases</a></nav>
 {worst_section(run)}
 <h2>Best and worst, by measure</h2>
@@ -340,7 +341,7 @@ truth is a rigid tool on that spring that does not penetrate. <span class="small
 <li><b>Step</b>: largest |ΔF| / (K |Δx|) between neighbours on the path; |Δx| is the way plus the turn times the tool's farthest point. A spring of K: at most 1.</li>
 <li><b>Noise</b>: the hand trembles by 1 µm rms along each axis; rms of F about its mean, over K times the tremble's rms in space. A spring: at most 1.</li>
 <li><b>Work lost</b>: |∮ dW| / ∮ |dW| round a closed loop of poses, dW = F·dx + T·dθ by the trapezoid rule. A conservative force: 0, but for that rule.</li>
-<li><b>Answer</b>: wall clock of one pose, the balance with the spring included, on the path's second walk. <b>Evaluation</b>: that over the number of times that the contact was worked out: about what a frame of a loop takes, where the balance is followed tick by tick.</li>
+<li><b>Answer</b>: {CLOCKS[run.facts['clock']]} of one pose, the balance with the spring included, on the path's second walk. <b>Evaluation</b>: that over the number of times that the contact was worked out: about what a frame of a loop takes, where the balance is followed tick by tick.</li>
 <li><b>Memory</b>: of a process that holds this case and method alone, after preparing and one walk.</li></ul>
 <h2 id="cases">Cases</h2>
 {cases}

@@ -7,7 +7,7 @@
 namespace yardstick {
 namespace {
 
-constexpr std::uint8_t kFree = 0, kSurface = 1, kInside = 2, kUnknown = 255;
+constexpr std::uint8_t kFree = 0, kSurface = 1, kUnknown = 255;
 
 /// Whether a triangle meets a cube about 0 of half edge h: separating axes (the cube's, the triangle's plane,
 /// edges across edges).
@@ -38,6 +38,7 @@ void VoxelMap::build(const TriMesh& mesh, int across) {
   }
   const Vec3 extent = high - low;
   size_ = std::max({extent.x, extent.y, extent.z}) / across;
+  inverse_ = 1 / size_;
   origin_ = low - 1.5 * size_;  // a border of free voxels, where the flood begins
   for (int k = 0; k < 3; ++k) count_[k] = static_cast<int>(std::ceil(extent[k] / size_)) + 3;
   cells_.assign(index(0, 0, count_[2]), kUnknown);
@@ -79,31 +80,36 @@ void VoxelMap::flood() {
 }
 
 void VoxelMap::layer() {
-  std::vector<std::array<int, 3>> front, next;
-  for (int z = 0; z < count_[2]; ++z)
-    for (int y = 0; y < count_[1]; ++y)
-      for (int x = 0; x < count_[0]; ++x)
-        if (cells_[index(x, y, z)] == kSurface) front.push_back({x, y, z});
-  for (std::uint8_t value = kInside; value < kUnknown && !front.empty(); ++value) {
-    next.clear();
-    for (const auto& [x, y, z] : front)
-      for (int k = -1; k <= 1; ++k)
-        for (int j = -1; j <= 1; ++j)
-          for (int i = -1; i <= 1; ++i) {
-            if (!has(x + i, y + j, z + k) || cells_[index(x + i, y + j, z + k)] != kUnknown) continue;
-            cells_[index(x + i, y + j, z + k)] = value;
-            next.push_back({x + i, y + j, z + k});
-          }
-    front.swap(next);
-  }
+  // The 13 neighbours that come before a voxel; those after it are their mirror images. What is inside has
+  // all of them, for the map's border is free.
+  std::vector<std::ptrdiff_t> before;
+  for (int k = -1; k <= 0; ++k)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        const std::ptrdiff_t step = (static_cast<std::ptrdiff_t>(k) * count_[1] + j) * count_[0] + i;
+        if (step < 0) before.push_back(step);
+      }
+  const auto sweep = [&](std::ptrdiff_t at, int sign) {
+    std::uint8_t& cell = cells_[static_cast<std::size_t>(at)];
+    if (cell <= kSurface) return;
+    for (const std::ptrdiff_t step : before) {
+      const std::uint8_t other = std::max(cells_[static_cast<std::size_t>(at + sign * step)], kSurface);
+      if (other < cell) cell = std::min<std::uint8_t>(cell, static_cast<std::uint8_t>(other + 1));
+    }
+  };
+  const auto count = static_cast<std::ptrdiff_t>(cells_.size());
+  for (std::ptrdiff_t at = 0; at < count; ++at) sweep(at, 1);
+  for (std::ptrdiff_t at = count; at-- > 0;) sweep(at, -1);
 }
 
 std::uint8_t VoxelMap::at(const Vec3& point, Vec3& centre) const {
-  const Vec3 place = glm::floor((point - origin_) / size_);
+  const Vec3 place = (point - origin_) * inverse_;
   for (int k = 0; k < 3; ++k)
     if (!(place[k] >= 0 && place[k] < count_[k])) return kFree;
-  centre = origin_ + (place + 0.5) * size_;
-  return cells_[index(static_cast<int>(place.x), static_cast<int>(place.y), static_cast<int>(place.z))];
+  const int x = static_cast<int>(place.x), y = static_cast<int>(place.y), z = static_cast<int>(place.z);
+  const std::uint8_t value = cells_[index(x, y, z)];
+  if (value != kFree) centre = origin_ + (Vec3(x, y, z) + 0.5) * size_;
+  return value;
 }
 
 }  // namespace yardstick

@@ -13,7 +13,7 @@ class VoxelMap {
   /// `across`: voxels along the longest side.
   void build(const TriMesh& mesh, int across);
 
-  /// What holds the point; 0 outside the map. `centre` is the voxel's.
+  /// What holds the point; 0 outside the map. `centre` becomes the voxel's where it isn't free.
   std::uint8_t at(const Vec3& point, Vec3& centre) const;
   double size() const { return size_; }  ///< of a voxel, m
 
@@ -31,7 +31,7 @@ class VoxelMap {
   void layer();
 
   Vec3 origin_{0};
-  double size_ = 0;
+  double size_ = 0, inverse_ = 0;
   int count_[3] = {0, 0, 0};
   std::vector<std::uint8_t> cells_;
 };

@@ -137,7 +137,7 @@ struct Metrics : testing::Test {
   }
   Figures of(std::function<Wrench(const Pose&)> law) {
     Stub stub(std::move(law));
-    return figures_of(subject, measure(stub, subject, 400));
+    return figures_of(subject, measure(stub, subject, 400, true));
   }
 };
 
@@ -187,7 +187,7 @@ TEST_F(Metrics, TellTheWorkThatARubbingForceTakes) {
     const bool back = asked++ > 101 * 2 + 100;  // after two walks along the path, and the way out
     return Wrench{Vec3(back ? -1 : -2, 0, 0), Vec3(0)};
   });
-  const Figures f = figures_of(subject, measure(stub, subject, 0));
+  const Figures f = figures_of(subject, measure(stub, subject, 0, true));
   EXPECT_NEAR(f.loop_lost, 1.0 / 3, 0.005);  // (2 − 1) / (2 + 1); the change lies within one of 200 steps
 }
 
