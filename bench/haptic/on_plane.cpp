@@ -21,10 +21,22 @@ std::vector<Pose> over_the_edge(const TriMesh& tool, const Pose& deep, double li
   }
   const Vec3 up(0, 0, lift);
   const auto at = [&](double x) { return Pose{Vec3(x, deep.position.y, deep.position.z), deep.rotation}; };
-  // A flat contact lets go in its last tenths of a millimetre: a fifth of the poses goes there.
+  // A contact lets go in its last tenths of a millimetre: a fifth of the poses goes there.
   const Pose on = at(edge - high - beside), last = at(edge - low - beside), off = at(edge - low + beside);
   return along({on, last, off, moved(off, up, Vec3(0)), moved(on, up, Vec3(0)), on}, count);
 }
+
+namespace {
+
+/// A rigid face lets go of an edge at once, and no sum over poses sees that work: bodies that stand on a face
+/// are moved and turned on the plane instead.
+std::vector<Pose> on_its_face(const Pose& deep, double lift, std::size_t count) {
+  const Vec3 aside(0.003, 0, 0), yaw(0, 0, 0.2), up(0, 0, lift);
+  return along({deep, moved(deep, aside, yaw), moved(deep, aside + up, yaw), moved(deep, up, Vec3(0)), deep},
+               count);
+}
+
+}  // namespace
 
 Case on_plane(const std::string& name, const std::string& group, TriMesh tool, double depth,
               const Amount& amount) {
@@ -44,7 +56,10 @@ Case on_plane(const std::string& name, const std::string& group, TriMesh tool, d
     out.truths.push_back({Vec3(0, 0, push), Vec3(0), {}, push});
   }
   out.rest = place(depth / 2);
-  out.loop = over_the_edge(out.tool, out.rest, 5 * depth, amount.loop);
+  const auto lowest_ones = std::count_if(out.tool.vertices.begin(), out.tool.vertices.end(),
+                                         [&](const Vec3& v) { return v.z < lowest + 1e-9; });
+  out.loop = lowest_ones > 1 ? on_its_face(out.rest, 5 * depth, amount.loop)
+                             : over_the_edge(out.tool, out.rest, 5 * depth, amount.loop);
   return out;
 }
 

@@ -133,7 +133,7 @@ def worst_section(run):
                 continue
             worst += 1
             cells.append((f'{shown(values[JUDGED])} <span class="best">{shown(min(values.values()))}</span>', 'bad'))
-        rows.append([html.escape(case['case'])] + cells)
+        rows.append([(html.escape(case['case']), 'name')] + cells)
     failed = [f for f in run.failures if f['method'] == JUDGED]
     return f'''<h2>Where {JUDGED} is the worst</h2>
 <p>{JUDGED} is the worst in {worst} of {asked} figures, and gives no answer in {len(failed)} of {len(run.cases)} cases. Red: its figure; grey: the best.
@@ -159,12 +159,14 @@ def counts(run):
 
 
 def dots(run):
-    """A panel a measure, a row a case, a mark a method."""
-    columns, height = 2, 0.27 * len(run.cases) + 0.9
-    lines = math.ceil(len(MEASURES) / columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(11, lines * height), sharey=True, squeeze=False)
+    """A panel a measure, a row a case, a mark a method; two panels a picture, which print keeps together."""
+    return '\n'.join(dot_panels(run, MEASURES[i:i + 2]) for i in range(0, len(MEASURES), 2))
+
+
+def dot_panels(run, measures):
+    figure, axes = plt.subplots(1, 2, figsize=(11, 0.27 * len(run.cases) + 1.2), sharey=True)
     places = list(range(len(run.cases)))[::-1]
-    for (column, head, factor, floor), ax in zip(MEASURES, axes.flat):
+    for (column, head, factor, floor), ax in zip(measures, axes):
         found = [v for c in run.cases for m in run.name
                  if (v := run.figure(c['case'], m, column, factor)) is not None and v > 0]
         low = 10 ** math.floor(math.log10(max(min(found, default=1), (floor or 1e-9) * 1e-3)))
@@ -185,12 +187,14 @@ def dots(run):
         ax.set_axisbelow(True)
         for side in ('top', 'right'):
             ax.spines[side].set_visible(False)
-    for ax in list(axes.flat)[len(MEASURES):]:
-        ax.set_visible(False)
-    handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc='upper center', ncol=len(labels), frameon=False, fontsize=9)
-    figure.tight_layout(rect=(0, 0, 1, 0.985))
-    return svg(figure, 'All figures of all methods on all cases')
+    legend_above(figure, axes[0], 0.25 / figure.get_figheight())
+    return svg(figure, ' and '.join(head for _, head, _, _ in measures) + ' of all methods on all cases')
+
+
+def legend_above(figure, ax, share):
+    handles, labels = ax.get_legend_handles_labels()
+    figure.legend(handles, labels, loc='upper center', ncol=max(1, len(labels)), frameon=False, fontsize=9)
+    figure.tight_layout(rect=(0, 0, 1, 1 - share))
 
 
 def felt(row, kind):
@@ -233,9 +237,7 @@ def curves(run):
             ax.spines[side].set_visible(False)
     for ax in list(axes.flat)[len(run.cases):]:
         ax.set_visible(False)
-    handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc='upper center', ncol=len(labels), frameon=False, fontsize=9)
-    figure.tight_layout(rect=(0, 0, 1, 1 - 0.25 / lines / 2.5 * 1.2))
+    legend_above(figure, axes.flat[0], 0.3 / figure.get_figheight())
     return svg(figure, 'Force along the path of each case')
 
 
@@ -249,7 +251,7 @@ def everything(run):
         rows = []
         for case in cases:
             for i, method in enumerate(run.name):
-                first = html.escape(case['case']) if i == 0 else ''
+                first = (html.escape(case['case']), 'name') if i == 0 else ''
                 if (case['case'], method) not in run.figures:
                     why = next((f['sentence'] for f in run.failures
                                 if f['case'] == case['case'] and f['method'] == method), 'not asked')
@@ -288,12 +290,12 @@ STYLE = '''
 :root { color-scheme: light; }
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 1080px; margin: 24px auto; padding: 0 16px; background: #fff; color: #111; }
 h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 19px; margin: 32px 0 6px; } h3 { font-size: 16px; margin: 20px 0 4px; }
-.wide { overflow-x: auto; } .chart { min-width: 760px; } .chart svg { width: 100%; height: auto; }
-table { border-collapse: collapse; font-size: 13px; margin: 6px 0; }
+.wide { overflow-x: auto; } .chart { min-width: 760px; break-inside: avoid; } .chart svg { width: 100%; height: auto; }
+table { border-collapse: collapse; font-size: 12.5px; margin: 6px 0; }
 th { text-align: left; vertical-align: bottom; font-weight: 600; border-bottom: 1px solid #999; padding: 2px 10px 2px 0; }
 td { padding: 2px 10px 2px 0; border-bottom: 1px solid #eee; font-variant-numeric: tabular-nums; }
-.bad { color: #b00020; font-weight: 600; white-space: nowrap; } .best { color: #666; font-weight: 400; } .small { font-size: 13px; color: #444; } nav a { margin-right: 14px; }
-@media print { .wide { overflow: visible; } .chart { min-width: 0; } table { font-size: 9px; } h2 { break-after: avoid; } }
+.bad { color: #b00020; font-weight: 600; white-space: nowrap; } .best { color: #666; font-weight: 400; } .name { white-space: nowrap; } .small { font-size: 13px; color: #444; } nav a { margin-right: 14px; }
+@media print { .wide { overflow: visible; } .chart { min-width: 0; } table { font-size: 9px; } h2, h3 { break-after: avoid; } tr { break-inside: avoid; } }
 '''
 
 
