@@ -32,11 +32,11 @@ MEASURES = [
     ('memory_mib', 'memory, MiB', 1, None),
 ]
 MORE = [
-    ('direction_p50_deg', 'direction, p50, °', 1),
-    ('magnitude_p50', 'magnitude, p50, %', 100),
-    ('torque_p50', 'torque, p50, %', 100),
-    ('unsettled', 'balance not found, %', 100),
-    ('prepare_s', 'preparing, s', 1),
+    ('direction_p50_deg', 'direction, p50, °', 1, 1),
+    ('magnitude_p50', 'magnitude, p50, %', 100, 1),
+    ('torque_p50', 'torque, p50, %', 100, 1),
+    ('unsettled', 'balance not found, %', 100, 1),
+    ('prepare_s', 'preparing, s', 1, None),
 ]
 LOOKS = [('#0072b2', 'o'), ('#d55e00', 's'), ('#009e73', '^'), ('#cc79a7', 'D'), ('#56b4e9', 'v')]
 CLOCKS = {'wall': 'the wall clock', 'cpu': 'processor time, of all threads together,'}
@@ -243,7 +243,7 @@ def curves(run):
 
 def everything(run):
     out = []
-    columns = [(c, h, f) for c, h, f, _ in MEASURES] + MORE
+    columns = MEASURES + MORE
     for group, title in PARTS.items():
         cases = [c for c in run.cases if c['group'] == group]
         if not cases:
@@ -258,13 +258,12 @@ def everything(run):
                     rows.append([first, html.escape(run.name[method]), html.escape(why)] + [''] * (len(columns) - 1))
                     continue
                 cells = [first, html.escape(run.name[method])]
-                for column, _, factor in columns:
-                    values = [v for m in run.name if (v := run.figure(case['case'], m, column, factor)) is not None]
-                    value = run.figure(case['case'], method, column, factor)
-                    worst = value is not None and len(values) > 1 and value == max(values) > min(values)
-                    cells.append((shown(value), 'bad' if worst else ''))
+                for column, _, factor, floor in columns:
+                    values = by_method(run, case, column, factor, floor)
+                    worst = method in values and values[method] == max(values.values()) > min(values.values())
+                    cells.append((shown(run.figure(case['case'], method, column, factor)), 'bad' if worst else ''))
                 rows.append(cells)
-        out.append(f'<h3>{title}</h3>' + table(['case', 'method'] + [h for _, h, _ in columns], rows))
+        out.append(f'<h3>{title}</h3>' + table(['case', 'method'] + [h for _, h, _, _ in columns], rows))
     return '\n'.join(out)
 
 
@@ -333,7 +332,7 @@ truth is a rigid tool on that spring that does not penetrate. <span class="small
 <p class="small">From just before touch (0) to the deepest pose (1); torque where the truth has no net force. Real parts: along the way out.</p>
 {curves(run)}
 <h2 id="tables">Tables</h2>
-<p class="small">Red: the worst of the row's case. Raw samples of every pose: raw/CASE.METHOD.csv; this table: figures.csv.</p>
+<p class="small">Red: the worst of its case, as above. Raw samples of every pose: raw/CASE.METHOD.csv; this table: figures.csv.</p>
 {everything(run)}
 <h2 id="meaning">What the measures mean</h2>
 <p>Errors are of the poses whose true force is a tenth of the path's largest or more; p50 and p95 are over them. F*, T*: truth.</p>
