@@ -50,8 +50,8 @@ struct Tried {
   double us_p95() const { return percentile(p95s, 0.5); }
 };
 
-constexpr double kClose = 0.15;  ///< of the budget: nearer to it a time is measured again (chosen: what a
-                                 ///< shared machine moves a processor's time by)
+constexpr double kClose = 0.5;  ///< of the budget: nearer to it a time is measured again (like runs on a
+                                ///< shared machine differ by a factor of 1.5, in processor time as well)
 constexpr std::size_t kMeasurements = 5;  ///< then: odd, so that one is the middle
 
 /// Whether a is rather to be chosen: by the tail of the force's error, which is what a hand notices, then by
@@ -382,7 +382,7 @@ void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, R
       "the scene's own settings are among them. The choice is by the p95 of the force's error, then by its "
       "median. A pose's "
       "time is the fastest of its rounds;\n"
-      "settings near the budget are measured five times, and the middle decides.");
+      "settings within half of the budget are measured five times, and the middle decides.");
   tune->callback([&] {
     catch_interrupts();
     outcome = Tune(options, parts).run();
