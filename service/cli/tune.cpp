@@ -36,7 +36,7 @@ Tail tail_of(const std::vector<double>& errors) {
 
 /// A setting that was measured.
 struct Tried {
-  std::string backend;
+  std::string backend, device;  ///< who answered, and on what
   ErrorSetting setting;
   bool defaults = false;        ///< the scene's own
   double d_p50 = 0, d_p99 = 0;  ///< m
@@ -50,15 +50,18 @@ struct Tried {
   double us_p95() const { return percentile(p95s, 0.5); }
 };
 
-constexpr double kClose = 0.15;  ///< of the budget: nearer to it a time is measured again (chosen: what a
-                                 ///< shared machine moves a processor's time by)
+constexpr double kClose = 0.5;  ///< of the budget: nearer to it a time is measured again (like runs on a
+                                ///< shared machine differ by a factor of 1.5, in processor time as well)
 constexpr std::size_t kMeasurements = 5;  ///< then: odd, so that one is the middle
 
-/// Whether a is more accurate: by the tail of the force's error, which is what a hand notices, then by the
-/// median.
+/// Whether a is rather to be chosen: by the tail of the force's error, which is what a hand notices, then by
+/// the median. Settings that differ in voxels alone are equally accurate; then what the scene has stays, or
+/// the least memory wins: no clock, which would choose otherwise each time.
 bool more_accurate(const Tried& a, const Tried& b) {
   if (a.force.p95 != b.force.p95) return a.force.p95 < b.force.p95;
   if (a.force.p50 != b.force.p50) return a.force.p50 < b.force.p50;
+  if (a.defaults != b.defaults) return a.defaults;
+  if (a.memory_bytes != b.memory_bytes) return a.memory_bytes < b.memory_bytes;
   return a.us_p95() < b.us_p95();
 }
 
@@ -74,9 +77,11 @@ class Tune {
     if (!read) return read.error();
     scene_ = std::move(*read);
 
-    // The truth: refined at a spacing beyond all that is offered (bench error shows how far it has
-    // converged).
-    const auto converged = answers(setting(Profile::kRefined, 1, scene_.voxel_m / 16));
+    // The truth: refined at a spacing beyond all that is offered, and with all samples (bench error shows how
+    // far it has converged).
+    ErrorSetting finest = setting(Profile::kRefined, 1, scene_.voxel_m / 16);
+    finest.geometry.contact_samples = 0;
+    const auto converged = answers(finest);
     if (!converged) return converged.error();
     truths_ = converged->answers;
     if (std::none_of(truths_.begin(), truths_.end(), [](const auto& truth) { return truth.has_value(); }))
@@ -138,7 +143,9 @@ class Tune {
   }
 
   /// What a processor ran is not moved by who else wants it; a device's time is no processor's.
-  bool cpu_clock() const { return options_.clock ? *options_.clock == "cpu" : backend_->name() != "gpu"; }
+  bool cpu_clock() const {
+    return options_.clock ? *options_.clock == "cpu" : backend_->name() != "gpu" || !parts_.has_gpu();
+  }
 
   /// p95 over the poses in contact, each at its fastest round.
   static double p95(const Answered& answered, const std::vector<std::optional<ContactTruth>>& truths) {
@@ -163,7 +170,8 @@ class Tune {
     }
     const ErrorResult result = judge(*answered, seen_);
     Tried t;
-    t.backend = backend_->name(), t.setting = s, t.defaults = defaults;
+    t.backend = backend_->name(), t.device = device_text(*backend_, parts_);
+    t.setting = s, t.defaults = defaults;
     t.d_p50 = percentile(result.errors[0], 0.5), t.d_p99 = percentile(result.errors[0], 0.99);
     t.force = tail_of(result.errors[3]), t.unseen = tail_of(judge(*answered, unseen_).errors[3]);
     t.us_p50 = percentile(result.times_us, 0.5), t.p95s = {p95(*answered, seen_)};
@@ -276,7 +284,7 @@ class Tune {
       nlohmann::ordered_json measured = nlohmann::ordered_json::array();
       for (const Tried& t : tried_) measured.push_back(json_of(t));
       fmt::print("{}\n", nlohmann::ordered_json{{"budget_us", options_.budget_us},
-                                                {"device", device_text(*backend_, parts_)},
+                                                {"device", chosen.device},
                                                 {"clock", cpu_clock() ? "cpu" : "wall"},
                                                 {"largest_force_N", largest_force_},
                                                 {"chosen", json_of(chosen)},
@@ -295,7 +303,7 @@ class Tune {
           t.defaults ? "  the scene's own" : "", &t == &chosen ? "  <- chosen" : "");
     fmt::print("\nThe most accurate within {:g} µs for 95 % of the frames, by the {}, on {}:\n",
                options_.budget_us, cpu_clock() ? "processor's time of all threads" : "wall's clock",
-               device_text(*backend_, parts_));
+               chosen.device);
     fmt::print(
         "  \"response\": {{\"profile\": \"{}\", \"voxel_size\": {:.6g}, \"sample_spacing\": {:.6g}}}\n",
         chosen.setting.profile == Profile::kPaper ? "paper" : "refined",
@@ -373,7 +381,7 @@ void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, R
       "the scene's own settings are among them. The choice is by the p95 of the force's error, then by its "
       "median. A pose's "
       "time is the fastest of its rounds;\n"
-      "settings near the budget are measured five times, and the middle decides.");
+      "settings within half of the budget are measured five times, and the middle decides.");
   tune->callback([&] {
     catch_interrupts();
     outcome = Tune(options, parts).run();

@@ -22,6 +22,9 @@ def tuned(scene, folder, budget):
     for one in measured:
         rank = lambda it: (it['error_F_N']['p95'], it['error_F_N']['p50'])
         expect(one['time_us']['p95'] > budget or rank(chosen) <= rank(one), f'{one} beats {chosen}')
+        equal = rank(chosen) == rank(one) and one['time_us']['p95'] <= budget and one['backend'] == chosen['backend']
+        expect(not equal or (chosen['defaults'], -chosen['memory_bytes']) >= (one['defaults'], -one['memory_bytes']), f'{one} is as accurate, and no clock may decide')
+    expect(told['device'].startswith(chosen['backend']), told['device'])
     expect(0 < chosen['error_F_N']['p95'] <= chosen['error_F_N']['max'] and told['largest_force_N'] > 0, told)
     return told
 
