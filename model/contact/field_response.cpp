@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kQ20 = 1048576.0, kQ30 = 1073741824.0;
+constexpr double kQ20 = 1048576.0;
 
 Vec3 to_vector(const std::array<WideSum, 3>& sums) {
   return Vec3(to_double(sums[0]), to_double(sums[1]), to_double(sums[2]));

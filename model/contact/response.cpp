@@ -10,8 +10,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kQ30 = 1073741824.0;  // 2^30
-constexpr double kQ24 = 16777216.0;    // 2^24
+constexpr double kQ24 = 16777216.0;  // 2^24
 
 Vec3 to_metres(const Lattice& lattice, const Vec3& steps) {
   return lattice.origin_m + lattice.step_m * steps;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kFreeHeader = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage";
 constexpr std::string_view kGuidedHeader = "time_s,travel_m,rx_rad,ry_rad,rz_rad,stage";
 constexpr std::string_view kGuideHeader = "travel_m,x_m,y_m,z_m,qx,qy,qz,qw";
-constexpr double kFarthest = 1e4;  ///< m of travel; a scene is below 100 m or warned about
+constexpr double kLongestTravel = 1e4;  ///< m of travel; a scene is below 100 m or warned about
 
 Result<Pose> unit_pose(const CsvRow& row) {
   auto pose = row.pose(1);
@@ -30,7 +30,7 @@ Result<PathPoint> guided_point(const CsvRow& row) {
     const auto value = row.number(i + 1);
     if (!value) return value.error();
     values[i] = *value;
-    if (i == 0 && std::abs(*value) > kFarthest)
+    if (i == 0 && std::abs(*value) > kLongestTravel)
       return bad_value(row.place() + ": travel " + printed(*value) + " m is beyond 10000 m");
     if (i > 0 && std::abs(*value) > 2 * kPi)
       return bad_value(row.place() + ": rotation " + printed(*value) + " rad is beyond a whole turn");

@@ -10,7 +10,6 @@ namespace palpate {
 namespace {
 
 double largest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
-double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
 std::int32_t floor_divide(std::int32_t a, std::int32_t b) { return a / b - (a % b < 0 ? 1 : 0); }  // b > 0
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

@@ -6,12 +6,6 @@
 #include "model/lattice/triangle.h"
 
 namespace palpate {
-namespace {
-
-double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-
-}  // namespace
-
 SurfaceMeasure measure(const LatticeMesh& mesh) {
   SurfaceMeasure out;
   Vec3 area_moment(0), volume_moment(0);

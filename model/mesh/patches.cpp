@@ -91,8 +91,6 @@ Numbering number_smooth(const LatticeMesh& mesh, const Together& together) {
   return out;
 }
 
-double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-
 bool looks_back(const LatticeMesh& mesh, std::uint32_t triangle) {
   return mesh.unit_normal_q30[triangle][mesh.sample_axis[triangle]] < 0;
 }

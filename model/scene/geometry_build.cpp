@@ -16,8 +16,6 @@
 namespace palpate {
 namespace {
 
-double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-
 /// A centre of mass farther from the tool's box than this many half diagonals is a mistake in units (chosen).
 constexpr double kFarthestCentreOfMass = 16;
 

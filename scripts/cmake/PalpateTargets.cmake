@@ -18,6 +18,7 @@ endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 find_package(Threads REQUIRED)
 
+option(PALPATE_TOGETHER "Compile the files of a folder as one: half of a whole build's time, but more for each change, and unknown to ccache in another checkout" ON)
 # The headers that most files include, compiled once for each set of options: a third to a half of the compiling.
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON turns them off, for ccache to know a file from another checkout, and to see that each includes what it uses.
 set(palpate_common_headers <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <map>
@@ -65,12 +66,39 @@ function(palpate_compile_options target)
   endif()
 endfunction()
 
-# palpate_beast_sources(a.cpp): files of Boost.Beast's coroutines. Under the sanitizers GCC 12 takes minutes over each, sees uninitialised
-# values in Boost that are not, and the thread sanitizer does not know Asio's fences, which stand beside mutexes that it does.
-function(palpate_beast_sources)
-  if(PALPATE_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON
-      COMPILE_OPTIONS "-O0;-fno-sanitize=undefined;-Wno-maybe-uninitialized;-Wno-tsan")
+# Boost.Beast's coroutines, of which a file is a minute's compiling: no more optimizing than pays where a socket is waited for. Under the sanitizers
+# GCC 12 takes minutes over each, sees uninitialised values in Boost that are not, and the thread sanitizer does not know Asio's fences, which stand
+# beside mutexes that it does.
+set(palpate_beast_options -O1)
+if(PALPATE_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(palpate_beast_options -O0 -fno-sanitize=undefined -Wno-maybe-uninitialized -Wno-tsan)
+endif()
+
+# palpate_beast_library(name a.cpp): a static library of such files, without the headers that are compiled with other options.
+function(palpate_beast_library name)
+  add_library(${name} STATIC ${ARGN})
+  palpate_compile_options(${name} "")
+  target_compile_options(${name} PRIVATE ${palpate_beast_options})
+  palpate_together(${name})
+endfunction()
+
+# palpate_together(TARGET [EXCEPT "folders"]): compiles the files of a folder as one, since most of the compiling is of what they include. So within a folder a name of
+# an unnamed namespace stands for one thing.
+function(palpate_together target)
+  cmake_parse_arguments(arg "" "EXCEPT" "" ${ARGN})
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" OUTPUT_VARIABLE folder)
+    cmake_path(GET folder PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY "${PROJECT_SOURCE_DIR}")
+    if(NOT arg_EXCEPT OR NOT folder MATCHES "${arg_EXCEPT}")
+      string(MAKE_C_IDENTIFIER "${folder}" folder)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${PALPATE_TOGETHER} UNITY_BUILD_MODE GROUP)
+  if(PALPATE_TOGETHER)   # to GCC an unnamed namespace in an included file is a header's
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
@@ -89,6 +117,15 @@ function(palpate_options_of_tests target)
   if(PALPATE_SANITIZE MATCHES "undefined")
     target_compile_options(${target} PRIVATE -fno-sanitize=undefined)
   endif()
+endfunction()
+
+# palpate_test_objects(name SOURCES a.cpp [LIBS palpate::model]): what several tests share, compiled once.
+function(palpate_test_objects name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  add_library(${name} OBJECT ${arg_SOURCES})
+  palpate_compile_options(${name})
+  palpate_options_of_tests(${name})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS})
 endfunction()
 
 # palpate_test(lattice_test LABEL quick SOURCES lattice_test.cpp LIBS palpate::model [ENV "A=1;B=2"] [TIMEOUT 60])

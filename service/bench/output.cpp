@@ -14,6 +14,7 @@
 #include "generated/commit.h"
 #include "service/bench/chart_svg.h"
 #include "service/cli/scene_host.h"
+#include "service/cli/text_output.h"
 #include "service/report/markup.h"
 #include "service/report/provenance.h"
 #include "service/report/report_assets.h"
@@ -90,14 +91,6 @@ void print(const BenchTable& table) {
                       : fmt::format("{:>{}}", readable(row[i]), widths[i]),
                  i + 1 < widths.size() ? "  " : "\n");
     }
-}
-
-Result<void> write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.flush();
-  if (!out) return bad_value(path.string() + ": the file can't be written");
-  return {};
 }
 
 std::string anchor(std::size_t chart) { return fmt::format("chart-{}", chart); }

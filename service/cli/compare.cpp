@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/output_folder.h"
+#include "service/cli/text_output.h"
 #include "service/report/compare_page.h"
 #include "service/report/run_difference.h"
 
@@ -20,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFooter =
+constexpr const char* kCompareFooter =
     R"(Ticks are matched by their time. Prints where and by how much place, turn, response and sent forces differ, and the figures of summary.json that differ, provenance first:
 version, commit, machine, engine, command, hashes of scene and meshes, plan. Two runs in virtual time of one scene, device and profile should have the same trace on every engine.
 With --out DIR also compare.json and compare.html, where the forces lie over each other. Exit code 0, whether they differ or not.
@@ -75,14 +76,6 @@ void print(const RunDifference& difference) {
                fact.ratio ? fmt::format("  × {:.4g}", *fact.ratio) : "");
 }
 
-Result<void> write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.flush();
-  if (!out) return bad_value(file.string() + ": the file can't be written");
-  return {};
-}
-
 Result<void> compare_command(const CompareOptions& options) {
   const auto first = read_run(options.first);
   if (!first) return first.error();
@@ -98,8 +91,8 @@ Result<void> compare_command(const CompareOptions& options) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return bad_value(options.out + ": the directory can't be made (" + error.message() + ")");
-    if (auto done = write(folder / "compare.json", dump(1)); !done) return done;
-    if (auto done = write(folder / "compare.html", compare_page(*first, *second, difference)); !done)
+    if (auto done = write_text(folder / "compare.json", dump(1)); !done) return done;
+    if (auto done = write_text(folder / "compare.html", compare_page(*first, *second, difference)); !done)
       return done;
   }
   if (options.json)
@@ -120,7 +113,7 @@ void add_compare_command(CLI::App& app, CompareOptions& options, Result<void>& o
   compare->add_option("--out", options.out, "directory for compare.json and compare.html")
       ->check(CLI::Validator([](const std::string& folder) { return cannot_write_to(folder); }, ""))
       ->type_name("DIR");
-  compare->footer(kFooter);
+  compare->footer(kCompareFooter);
   compare->callback([&] { outcome = compare_command(options); });
 }
 

@@ -1,4 +1,5 @@
 #include "service/cli/export_geometry.h"
+#include "service/cli/text_output.h"
 
 #include <fmt/format.h>
 
@@ -10,19 +11,13 @@
 namespace palpate {
 namespace {
 
+/// As a file of them is read.
+template <class Number>
+std::string_view bytes_of(const std::vector<Number>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
+}
+
 static_assert(std::endian::native == std::endian::little, "the exported files are little-endian");
-
-Result<void> write_file(const std::filesystem::path& path, const void* data, std::size_t bytes) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
-  out.flush();
-  if (!out) return bad_value(fmt::format("{}: the file can't be written", path.string()));
-  return {};
-}
-
-Result<void> write_text(const std::filesystem::path& path, const std::string& text) {
-  return write_file(path, text.data(), text.size());
-}
 
 /// Nine integers a triangle, in the order of their ids; a collapsed one keeps its place.
 template <class ToWorld>
@@ -35,7 +30,7 @@ Result<void> write_triangles(const std::filesystem::path& path, const LatticeMes
       const Int3 corner = to_world(mesh.corner(triangle, k));
       words.insert(words.end(), {corner.x, corner.y, corner.z});
     }
-  return write_file(path, words.data(), words.size() * sizeof(std::int32_t));
+  return write_text(path, bytes_of(words));
 }
 
 }  // namespace
@@ -92,7 +87,7 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
       !done)
     return done;
   static_assert(sizeof(VoxelClass) == 1);
-  return write_file(root / "voxels.u8", partition->classes.data(), partition->classes.size());
+  return write_text(root / "voxels.u8", bytes_of(partition->classes));
 }
 
 Result<void> export_pairs(const std::string& directory, const CollisionBackend& backend, std::size_t pose) {
@@ -101,8 +96,7 @@ Result<void> export_pairs(const std::string& directory, const CollisionBackend& 
   std::vector<std::uint32_t> words;
   words.reserve(2 * pairs->size());
   for (const auto& [static_id, mobile_id] : *pairs) words.insert(words.end(), {static_id, mobile_id});
-  return write_file(std::filesystem::path(directory) / fmt::format("pairs_{}.u32", pose), words.data(),
-                    words.size() * sizeof(std::uint32_t));
+  return write_text(std::filesystem::path(directory) / fmt::format("pairs_{}.u32", pose), bytes_of(words));
 }
 
 }  // namespace palpate

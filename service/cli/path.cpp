@@ -18,6 +18,7 @@
 #include "service/cli/output_folder.h"
 #include "service/cli/pose_input.h"
 #include "service/cli/scene_host.h"
+#include "service/cli/text_output.h"
 #include "service/queries/path_check.h"
 #include "service/report/path_page.h"
 
@@ -28,7 +29,7 @@ constexpr const char* kPathFiles[] = {"path.csv", "path.json", "path.html"};
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFooter =
+constexpr const char* kPathFooter =
     R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
 (pose, with its fraction on the way to the next; parts), least clearance, worst depth, the parts that touch by name, and what was examined. A first contact is never late, and early
 by no more than early_m. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
@@ -121,14 +122,6 @@ std::string csv_of(const LoadedScene& scene, const PathReport& report) {
   return out;
 }
 
-Result<void> write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.flush();
-  if (!out) return bad_value(file.string() + ": the file can't be written");
-  return {};
-}
-
 /// World from tool: of a list of poses, or of a path as a scene's device has it, along the scene's guide if
 /// it is guided.
 Result<std::vector<Pose>> poses_of(const PathOptions& options) {
@@ -182,16 +175,15 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
     const auto dump = [](const Json& json, int indent) {
       return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
     };
-    if (auto done = write(folder / "path.json", dump(json_of(scene, *report, engine, true), 1)); !done)
+    if (auto done = write_text(folder / "path.json", dump(json_of(scene, *report, engine, true), 1)); !done)
       return done;
-    if (auto done = write(folder / "path.csv", csv_of(scene, *report)); !done) return done;
-    if (auto done = write(folder / "path.html", path_page(scene, *report, options.path, engine)); !done)
+    if (auto done = write_text(folder / "path.csv", csv_of(scene, *report)); !done) return done;
+    if (auto done = write_text(folder / "path.html", path_page(scene, *report, options.path, engine)); !done)
       return done;
   }
   const std::string line =
       json_of(scene, *report, engine, false).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (std::fwrite(line.data(), 1, line.size(), stdout) != line.size())
-    return Error{ErrorCode::kInternal, "standard output can't be written"};
+  if (auto printed = print_text(line); !printed) return printed;
   if (report->clear()) return {};
   return Error{
       ErrorCode::kNotClear,
@@ -234,7 +226,7 @@ void add_path_command(CLI::App& app, PathOptions& options, const Parts& parts, R
       "measure no clearance further than this, m");
   path->add_option("--out", options.out, "directory for path.csv, path.json and path.html")->type_name("DIR");
   path->add_flag("--overwrite", options.overwrite, "replace the files of a path that are in --out already");
-  path->footer(kFooter);
+  path->footer(kPathFooter);
   path->callback([&] { outcome = path_command(options, parts); });
 }
 

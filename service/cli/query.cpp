@@ -13,6 +13,7 @@
 #include "service/cli/pose_input.h"
 #include "service/cli/query_text.h"
 #include "service/cli/scene_host.h"
+#include "service/cli/text_output.h"
 #include "service/queries/query_json.h"
 #include "service/scene_talk.h"
 
@@ -37,11 +38,6 @@ void share_times(std::vector<Contacts>& batch) {
     }
   for (auto& sum : sums) sum.us /= static_cast<double>(batch.size());
   for (Contacts& contacts : batch) contacts.times = sums;
-}
-
-Result<void> put(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
-  return Error{ErrorCode::kInternal, "standard output can't be written"};
 }
 
 }  // namespace
@@ -147,7 +143,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
       }
       print(first, answer.total_us, answer.contacts, answer.response);
     }
-    if (auto done = put(text); !done) return done;
+    if (auto done = print_text(text); !done) return done;
     if (interrupted())
       return Error{ErrorCode::kInternal,
                    fmt::format("interrupted after {} of {} poses", first + count, poses.size())};

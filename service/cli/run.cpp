@@ -12,6 +12,7 @@
 #include "service/cli/console.h"
 #include "service/cli/output_folder.h"
 #include "service/cli/scene_host.h"
+#include "service/cli/text_output.h"
 #include "service/loop/recorder.h"
 #include "service/loop/session.h"
 #include "service/queries/touched_parts.h"
@@ -124,14 +125,6 @@ Result<RunFolder> output_directory(const std::string& wanted, const std::string&
           fmt::format("{}: the directory can't be made ({})", candidate.string(), error.message()));
   }
   return bad_value(fmt::format("{}-N: there are 10,000 of them already; name one with --out", base));
-}
-
-Result<void> write_text(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.flush();
-  if (!out) return bad_value(fmt::format("{}: the file can't be written", path.string()));
-  return {};
 }
 
 /// The plans that the run goes over to, in the order of time.

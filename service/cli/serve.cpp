@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kServeFooter =
     R"(Answers over HTTP and WebSocket until SIGINT or SIGTERM: then forces go to zero first. docs/SERVICE.md has the protocol.
 Only this machine can connect, unless --listen says otherwise; beyond loopback a token and TLS are required (exit code 2).
 The log goes to standard error: at a terminal the address and what becomes of scenes and sessions, elsewhere a JSON object for each event and request.
@@ -64,7 +64,7 @@ void add_serve_command(CLI::App& app, ServeOptions& options, const Parts& parts,
   serve_app->add_option("--max-poses", options.limits.poses, "of a query; default 100000")->type_name("N");
   serve_app->add_option("--max-connections", options.limits.connections, "at a time; default 1024")
       ->type_name("N");
-  serve_app->footer(kFooter);
+  serve_app->footer(kServeFooter);
   serve_app->callback([&] { outcome = serve(options, parts); });
 }
 

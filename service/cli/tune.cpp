@@ -219,13 +219,12 @@ class Tune {
   /// Writes the three settings into the scene file; all else stays, in its order. A file that is not whole is
   /// never there.
   Result<void> apply(const Tried& chosen) {
-    using Json = nlohmann::ordered_json;
     const std::string& file = options_.bench.scenes.front();
     std::ifstream in(file, std::ios::binary);
-    Json scene = Json::parse(in, nullptr, false);
+    nlohmann::ordered_json scene = nlohmann::ordered_json::parse(in, nullptr, false);
     if (!scene.is_object())
       return bad_value(file + ": the scene can't be read again, so nothing was applied");
-    Json& response = scene["response"];
+    nlohmann::ordered_json& response = scene["response"];
     response["profile"] = chosen.setting.profile == Profile::kPaper ? "paper" : "refined";
     // As they are printed.
     response["voxel_size"] = std::stod(fmt::format("{:.6g}", *chosen.setting.geometry.voxel_size_m));

@@ -7,6 +7,7 @@
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/scene_host.h"
+#include "service/cli/text_output.h"
 #include "service/queries/path_check.h"
 
 namespace palpate {
@@ -15,11 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kAtOnce = 4096;  // poses between two looks at the keyboard (chosen)
-
-Result<void> put(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
-  return Error{ErrorCode::kInternal, "standard output can't be written"};
-}
 
 Json clearance_json(const SceneGeometry& geometry, std::size_t number, const Pose& pose, const Clearance& c,
                     bool touches, const std::string& engine) {
@@ -99,7 +95,7 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
       if (interrupted())
         return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
     }
-    if (auto done = put(text); !done) return done;
+    if (auto done = print_text(text); !done) return done;
     if (interrupted())
       return Error{ErrorCode::kInternal,
                    fmt::format("interrupted after {} of {} poses", first + count, poses.size())};

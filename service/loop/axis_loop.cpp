@@ -5,12 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "driver/haptic_device.h"
 #include "driver/mass_spring.h"
 
 namespace palpate {
 namespace {
-
-constexpr double kTick = 1e-3;  // s
 
 double rounded(double value, double step) { return step > 0 ? step * std::round(value / step) : value; }
 
@@ -26,7 +25,7 @@ AxisLoop::Outcome AxisLoop::run(int ticks) const {
   Outcome out;
   out.least_force_n = std::numeric_limits<double>::infinity();
   ForceLawState state(law);
-  const MassSpring motion(mass_kg, damping + hand_damping, hand_stiffness, kTick);
+  const MassSpring motion(mass_kg, damping + hand_damping, hand_stiffness, kTickSeconds);
   std::array<double, 64> on_its_way{};
   double x = start_x, speed = start_speed, felt = 0, work = 0;
   Range second, last;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "driver/haptic_device.h"
 #include "driver/limits.h"
 #include "model/lattice/rotation.h"
 
@@ -13,7 +14,6 @@ namespace {
 constexpr double kJump = 0.05, kJumpTurn = 0.5;  // m, rad
 constexpr double kLeastLever =
     0.02;  // m: nearer to gc than that, torques are weighed as if it were so far (chosen)
-constexpr double kTick = 1e-3;  // s
 
 double size(const Vec3& v) { return std::sqrt(glm::dot(v, v)); }
 
@@ -107,8 +107,8 @@ Wrench ForceLawState::corrected(const LawPose& pose, const LawResult* fresh) {
   const double gap = std::max(size(after.force - before.force), size(after.torque - before.torque) / lever);
   double step = ticks / transitions_;
   if (settings_.change_n_per_s > 0) {
-    const double may =
-        settings_.change_n_per_s * kTick * ticks + 2 * settings_.stiffness_n_per_m * (went + lever * turned);
+    const double may = settings_.change_n_per_s * kTickSeconds * ticks +
+                       2 * settings_.stiffness_n_per_m * (went + lever * turned);
     // What a ramp of n ticks can't bridge is a change of areas.
     if (fresh) from_grows_ = gap <= may * transitions_;
     step = std::min(step, may / std::max(gap, 1e-12));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "driver/haptic_device.h"
 #include "service/bench/bench.h"
 #include "service/bench/output.h"
 #include "service/bench/stability/stability_bodies.h"
@@ -15,7 +16,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kTick = 1e-3;              // s
 constexpr double kLow = 10, kHigh = 20000;  // N/m: where K is looked for
 constexpr int kTicks = 20000;
 
@@ -67,10 +67,10 @@ double critical(const Cell& cell) {
 /// and made good over c ticks. Corrected: none.
 double theory(const Cell& cell) {
   const double c = cell.delay;
-  const double lag = cell.law == LawKind::kHold      ? (1.5 * c - 0.5) * kTick
-                     : cell.law == LawKind::kPrinted ? (c - 1) / (2 * c) * kTick
+  const double lag = cell.law == LawKind::kHold      ? (1.5 * c - 0.5) * kTickSeconds
+                     : cell.law == LawKind::kPrinted ? (c - 1) / (2 * c) * kTickSeconds
                                                      : 0;
-  return (cell.damping + cell.hand_damping) / (0.5 * kTick + lag);
+  return (cell.damping + cell.hand_damping) / (0.5 * kTickSeconds + lag);
 }
 
 void add_cell(BenchTable& table, const std::string& model, const Cell& cell, double critical_k,
@@ -247,7 +247,7 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
             kLaws[i] == LawKind::kPrinted
                 ? std::nan("")
                 : body_theory(what.device, what.pads,
-                              kLaws[i] == LawKind::kHold ? (1.5 * delay - 0.5) * kTick : 0);
+                              kLaws[i] == LawKind::kHold ? (1.5 * delay - 0.5) * kTickSeconds : 0);
         row("body: " + what.name, kLaws[i], delay, what.device, what.pads.size(), k, expected);
         if (delay == 10) chart.series[i].y.push_back(k);
       }

@@ -16,6 +16,7 @@
 #include "service/queries/query_json.h"
 #include "service/server/http/json_input.h"
 #include "service/server/queries/pose_body.h"
+#include "service/server/sessions/json_text.h"
 
 namespace palpate {
 namespace {
@@ -73,9 +74,6 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
   return out;
 }
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-std::string json(const Vec3& v) { return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z)); }
-
 std::string error_message(const Problem& problem) {
   return R"({"type":"error","problem":)" + problem.json() + "}";
 }
@@ -119,7 +117,7 @@ SocketMessage zero_wrench(const PoseMessage& pose, const Vec3& gc) {
   else
     message.head = fmt::format(
         R"({{"type":"wrench","seq":{},"time":{},"skipped":0,"server_us":0,"contact":false,"truncated":false,"stopped":true,"pairs":0,"gc":{},"force":[0,0,0],"torque":[0,0,0],"areas":[]}})",
-        pose.seq, number(pose.time), json(gc));
+        pose.seq, json_text(pose.time), json_text(gc));
   return message;
 }
 
@@ -339,15 +337,15 @@ void RemoteLoops::answer(Loop& loop) {
     fmt::format_to(
         std::back_inserter(out),
         R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"engine":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
-        pose->seq, number(pose->time), skipped, us, contacts.contact, contacts.truncated,
+        pose->seq, json_text(pose->time), skipped, us, contacts.contact, contacts.truncated,
         *contacts.engine != 0 ? fmt::format("\"{}\"", contacts.engine) : "null", contacts.pairs,
-        json(response.gc), json(response.told().force), json(response.told().torque));
+        json_text(response.gc), json_text(response.told().force), json_text(response.told().torque));
     for (std::size_t i = 0; i < areas.size(); ++i) {
       const AreaResponse& area = areas[i];
       fmt::format_to(std::back_inserter(out),
                      R"({}{{"id":{},"normal":{},"point":{},"depth":{},"force":{},"torque":{}}})",
-                     i ? "," : "", area.id, json(area.normal), json(area.point), number(area.depth),
-                     json(area.force), json(area.torque));
+                     i ? "," : "", area.id, json_text(area.normal), json_text(area.point),
+                     json_text(area.depth), json_text(area.force), json_text(area.torque));
     }
     out += "]";
     if (pose->full) {

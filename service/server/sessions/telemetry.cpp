@@ -10,6 +10,7 @@
 
 #include "service/queries/query_json.h"
 #include "service/server/http/json_input.h"
+#include "service/server/sessions/json_text.h"
 
 namespace palpate {
 namespace {
@@ -33,12 +34,11 @@ void put(std::string& out, const std::vector<std::uint32_t>& list) {
   out.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(std::uint32_t));
 }
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-std::string json(const Vec3& v) { return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z)); }
-std::string json(const Pose& pose) {
+std::string pose_text(const Pose& pose) {
   const Quat& q = pose.rotation;
-  return fmt::format("[{},{},{},{},{},{},{}]", number(pose.position.x), number(pose.position.y),
-                     number(pose.position.z), number(q.x), number(q.y), number(q.z), number(q.w));
+  return fmt::format("[{},{},{},{},{},{},{}]", json_text(pose.position.x), json_text(pose.position.y),
+                     json_text(pose.position.z), json_text(q.x), json_text(q.y), json_text(q.z),
+                     json_text(q.w));
 }
 
 void append_area(const ContactArea& area, const AreaResponse& response, std::string& out) {
@@ -127,10 +127,11 @@ void Telemetry::publish() {
                    "\"response_torque\":{},\"result_age_ticks\":{},"
                    "\"contact\":{},\"stage\":{},\"lateness_us\":{},\"lateness_max_us\":{},\"missed_ticks\":{}"
                    ",\"frame_us\":{},\"paused\":{},\"frame\":{},\"frame_pose\":{}}}",
-                   t.tick, number(t.time_s), json(t.pose), json(t.sent.force), json(t.sent.torque),
-                   json(t.response.force), json(t.response.torque), t.result_age_ticks, t.contact, t.stage,
-                   t.lateness_us, number(lateness_max_us_), t.missed_ticks, number(frame_us_), t.paused,
-                   framed ? frame_json_ : "null", framed ? json(frame_pose_) : "null");
+                   t.tick, json_text(t.time_s), pose_text(t.pose), json_text(t.sent.force),
+                   json_text(t.sent.torque), json_text(t.response.force), json_text(t.response.torque),
+                   t.result_age_ticks, t.contact, t.stage, t.lateness_us, json_text(lateness_max_us_),
+                   t.missed_ticks, json_text(frame_us_), t.paused, framed ? frame_json_ : "null",
+                   framed ? pose_text(frame_pose_) : "null");
     std::string& out = message->binary;
     out = "PTEL";
     put(out, std::uint16_t{1});
