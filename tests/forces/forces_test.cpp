@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <initializer_list>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "compute/native/native_backend.h"
 #include "service/bench/force/force_judge.h"
@@ -16,20 +19,36 @@ namespace {
 bool all() { return std::getenv("PALPATE_ALL_FORCES") != nullptr; }
 
 /// Cases that each rest on something else, for every change.
-bool is_quick(const std::string& name) {
-  for (const char* one :
-       {"peg of 24 sides tilted, play 0.3 mm", "peg of 96 sides off centre askew, play 0.05 mm",
-        "peg of 24 sides round its hole, play 0.3 mm", "press fit of 48 sides", "square peg yawed",
-        "key yawed in its keyway", "tongue between walls", "gears of 20 and 12 teeth",
-        "bracket, leg at 0.1 mm, voxels of 1 mm", "box off a table", "plate on to 2 pads",
-        "thin tool on a thick block", "pin on a plate", "sheet from below", "open box from outside"})
-    if (name == one) return true;
-  return false;
+constexpr std::array kQuick{"peg of 24 sides tilted, play 0.3 mm",
+                            "peg of 96 sides off centre askew, play 0.05 mm",
+                            "peg of 24 sides round its hole, play 0.3 mm",
+                            "press fit of 48 sides",
+                            "square peg yawed",
+                            "key yawed in its keyway",
+                            "tongue between walls",
+                            "gears of 20 and 12 teeth",
+                            "bracket, leg at 0.1 mm, voxels of 1 mm",
+                            "box off a table",
+                            "plate on to 2 pads",
+                            "thin tool on a thick block",
+                            "pin on a plate",
+                            "sheet from below",
+                            "open box from outside"};
+
+/// What runs, chosen beforehand: nothing is skipped.
+std::vector<ForceCaseMaker> asked_cases() {
+  std::vector<ForceCaseMaker> cases = force_cases();
+  if (all()) return cases;
+  std::erase_if(cases, [](const ForceCaseMaker& maker) {
+    return std::ranges::find(kQuick, maker.name) == kQuick.end();
+  });
+  if (cases.size() != kQuick.size()) throw std::logic_error("a quick case is no case of the judge");
+  return cases;
 }
 
-/// What falls short (docs/ACCURACY.md): contacts of few samples have a rough derivative, and where stiff ones
-/// lean on a soft spring, a thousandth of the force is a tenth of how it gives way across; strips much
-/// narrower than a cell lose work. `palpate bench force` reports all of it.
+/// What falls short, and why (docs/ACCURACY.md): the slope of a sum of samples is an order rougher than the
+/// sum, and a spring softer than the contact makes more of that; strips much narrower than a cell lose work.
+/// `palpate bench force` reports all of it.
 bool falls_short(const std::string& name, double voxels, const std::string& sentence) {
   const auto any_of = [&](std::initializer_list<const char*> starts) {
     return std::any_of(starts.begin(), starts.end(), [&](const char* one) { return name.starts_with(one); });
@@ -44,7 +63,6 @@ bool falls_short(const std::string& name, double voxels, const std::string& sent
 class Forces : public testing::TestWithParam<ForceCaseMaker> {};
 
 TEST_P(Forces, AreAsThePartsSay) {
-  if (!all() && !is_quick(GetParam().name)) GTEST_SKIP() << "of the full set";
   const auto backend = make_native_backend();
   const ForceCase subject = GetParam().make();
   for (const double voxels : all() ? std::vector{1.0, 0.5, 2.0} : std::vector{1.0}) {
@@ -68,7 +86,7 @@ std::string test_name(const testing::TestParamInfo<ForceCaseMaker>& info) {
   return out;
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Forces, testing::ValuesIn(force_cases()), test_name);
+INSTANTIATE_TEST_SUITE_P(Cases, Forces, testing::ValuesIn(asked_cases()), test_name);
 
 TEST(ForceJudge, SeesAStepAndALossThatAreThere) {
   // A tool pushed through a thin plate lets go in a step: the judge must see it once the case no longer says

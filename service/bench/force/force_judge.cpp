@@ -111,6 +111,18 @@ Result<double> antisymmetry(Asking& asking, const SceneGeometry& geometry, const
   return even > 0 ? std::sqrt(odd / even) : 0;
 }
 
+/// Which pose is asked for ∂F: that of the largest force. Where the tool slips, that is the brink: a little
+/// further it lets go, and differences are of the step alone (a plate of 0.4 mm: 100, 34, 0.3 and 1 % for
+/// steps of 5, 20, 80 and 320 µm). There it is the largest force up to half as much, on the way to it.
+std::size_t pose_of_slope(const ForceCase& subject, const std::vector<double>& force) {
+  const auto largest = static_cast<std::size_t>(std::max_element(force.begin(), force.end()) - force.begin());
+  if (!subject.slips) return largest;
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < largest; ++i)
+    if (force[i] <= 0.5 * force[largest] && force[i] > force[out]) out = i;
+  return out;
+}
+
 void judge_truths(const ForceCase& subject, const std::vector<Answer>& answers, ForceFigures& out) {
   for (const ForceCase::Truth& truth : subject.truths) {
     const Wrench& wrench = answers[truth.at].wrench;
@@ -199,9 +211,8 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
   }
   if (subject.loop && moved_work > 0) out.loop_share = std::fabs(work) / moved_work;
   if (out.largest_n > 0) {
-    const auto largest = static_cast<std::size_t>(std::max_element(out.force_n.begin(), out.force_n.end()) -
-                                                  out.force_n.begin());
-    const Result<double> odd = antisymmetry(asking, geometry, subject.path[largest]);
+    const Result<double> odd =
+        antisymmetry(asking, geometry, subject.path[pose_of_slope(subject, out.force_n)]);
     if (!odd) return odd.error();
     out.antisymmetry = *odd;
   }

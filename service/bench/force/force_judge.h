@@ -20,8 +20,9 @@ struct ForceFigures {
   std::size_t made_up = 0, unsettled = 0;  ///< poses in contact where no direction is known; where spring and
                                            ///< field were not brought to balance
   double loop_share = 0;                   ///< |∮ dW| / ∮ |dW|, where the case is a loop
-  double antisymmetry =
-      0;  ///< |A − Aᵀ| / |A + Aᵀ| of A = ∂(F, T/ρ)/∂(x, ρθ) at the pose of the largest force
+  /// |A − Aᵀ| / |A + Aᵀ| of A = ∂(F, T/ρ)/∂(x, ρθ) at the pose of the largest force; where the tool slips, of
+  /// the largest up to half of it
+  double antisymmetry = 0;
   double first_along = 0;  ///< F · approach of the first pose with a force, over |F|; above 0: pulled in
   double largest_loss =
       0;  ///< while going deeper: how far below the largest so far |F| falls, of the largest

@@ -131,6 +131,9 @@ std::vector<ContactCase> pressed_contacts() {
        at(mm(1.37, 2.11, 15 * std::sqrt(3.0) - 4), corner_down())},
       {"pad", box({-5, -5, -30}, {5, 5, 0}), box({-30, -30, 0}, {30, 30, 10}), 1, at(mm(0.37, 0.61, -1))},
       {"four", pillars(), box({-30, -30, 0}, {30, 30, 10}), 1, at(mm(0.37, 0.61, -1))},
+      // As large as the four together, so as stiff as they.
+      {"wide pad", box({-10, -10, -30}, {10, 10, 0}), box({-30, -30, 0}, {30, 30, 10}), 1,
+       at(mm(0.37, 0.61, -1))},
       // 20 mm in a hole 30 mm deep with 0.2 mm of play, tilted until both rims press, and 0.1 mm too thick.
       {"peg", hole(10.1), peg(), 1, at(mm(0.6, 0.3, 0), rotation_by(Vec3(0.02, 0.03, 0))), Vec3(1, 1, 0)},
       {"press fit", hole(9.95), peg(), 1, at(mm(0.1, 0.05, 0)), Vec3(1, 1, 0)},

@@ -23,8 +23,8 @@ struct ContactCase {
   Vec3 kick{0, 0, 1}, twist{1, 1, 0};  ///< pressed: the ways that contact holds, along which it is disturbed
 };
 
-/// Contacts that a force loop is closed over: flat, sphere, corner, a pad, four pads, pressed down along −z;
-/// a tilted peg in its hole and a press fit off its middle.
+/// Contacts that a force loop is closed over: flat, sphere, corner, a pad, four pads, one as large as the
+/// four, pressed down along −z; a tilted peg in its hole and a press fit off its middle.
 std::vector<ContactCase> pressed_contacts();
 
 /// Motions at which the chapter's response jumps: corner slide, edge roll-over, peg in hole, four contacts,
