@@ -32,6 +32,7 @@ READ(kBindFineBrickSlot, uint32_t, body_brick_slot);
 READ(kBindFineBricks, Brick, body_bricks);
 READ(kBindFineListBegin, uint32_t, body_list_begin);
 READ(kBindFineListTriangles, uint32_t, body_list);
+READ(kBindFineShells, int32_t, body_shells);
 READ(kBindFinePlaces, uint32_t, fine_places);
 READ(kBindFineExit, uint32_t, fine_exit);
 EDIT(kBindFieldWork, int64_t, field_work);
@@ -55,7 +56,7 @@ bool inside_tool(ivec3 point, ivec3 at) {
   const ivec3 voxel = body_voxel_of(at);
   const uint32_t voxel_class = body_class_of(voxel);
   if (voxel_class != kVoxelBoundary) return voxel_class == kVoxelInternal;
-  return CLOSED ? tool_winding(point) != 0 : body_walks_inside(at, voxel);
+  return CLOSED ? tool_winding(point) != 0 : body_vote_inside(at, voxel);
 }
 
 // False: nothing pushes.

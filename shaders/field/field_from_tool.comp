@@ -29,6 +29,7 @@ READ(kBindMockupBrickSlot, uint32_t, body_brick_slot);
 READ(kBindMockupBricks, Brick, body_bricks);
 READ(kBindMockupListBegin, uint32_t, body_list_begin);
 READ(kBindMockupListTriangles, uint32_t, body_list);
+READ(kBindMockupShells, int32_t, body_shells);
 EDIT(kBindFieldWork, int64_t, field_work);
 EDIT(kBindCarrierWork, int64_t, carrier_work);
 READ(kBindIgnored, uint32_t, ignored);
@@ -47,7 +48,7 @@ bool inside_mockup(ivec3 point) {
   const ivec3 voxel = body_voxel_of(point);
   const uint32_t voxel_class = body_class_of(voxel);
   if (voxel_class != kVoxelBoundary) return voxel_class == kVoxelInternal;
-  return CLOSED ? body_winding_inside(point, voxel) : body_walks_inside(point, voxel);
+  return CLOSED ? body_winding_inside(point, voxel) : body_vote_inside(point, voxel);
 }
 
 // False: nothing pushes.

@@ -73,18 +73,20 @@ void list_tiles(uint32_t mobile, uint32_t info) {
   const ivec3 low = min(min(a, b), c), high = max(max(a, b), c);
   const int32_t s = scene.tool_sample_spacing;
   const int32_t u_first = floor_div(low[u], s), v_first = floor_div(low[v], s);
-  const uint32_t across = uint32_t(floor_div(high[u], s) - u_first) / uint32_t(kFieldTile) + 1u;
-  const uint32_t down = uint32_t(floor_div(high[v], s) - v_first) / uint32_t(kFieldTile) + 1u;
-  if (uint64_t(across) * uint64_t(down) >= uint64_t(kLoopBudget)) {
+  const uint32_t across = uint32_t(floor_div(high[u], s) - u_first) + 1u;
+  const uint32_t down = uint32_t(floor_div(high[v], s) - v_first) + 1u;
+  const uint64_t cells = uint64_t(across) * uint64_t(down);
+  if (cells >= uint64_t(kLoopBudget) * uint64_t(kFieldTile)) {
     atomicOr(frame_state.overflow_other, kOverflowLoop);
     return;
   }
-  const uint32_t first = take_room(kListFieldTiles, across * down);
-  const uint32_t capacity = frame_lists[kListFieldTiles].capacity;
-  if (first < capacity) grow_placed_groups(kGroupsTiles, min(first + across * down, capacity));
-  for (uint32_t t = 0u; t < across * down && first + t < capacity && !spent(1u); ++t)
-    field_tiles[first + t] = FieldTile(mobile, u_first + kFieldTile * int32_t(t % across),
-                                       v_first + kFieldTile * int32_t(t / across));
+  const uint32_t tiles = (uint32_t(cells) + kFieldTile - 1u) / kFieldTile;
+  const uint32_t first = take_room(kListFieldTiles, tiles), capacity = frame_lists[kListFieldTiles].capacity;
+  if (first < capacity)
+    grow_placed_groups(kGroupsTiles, groups_to(min(first + tiles, capacity) * kFieldTileLanes));
+  for (uint32_t t = 0u; t < tiles && first + t < capacity && !spent(1u); ++t)
+    field_tiles[first + t] = FieldTile(mobile, u_first, v_first, across, t * kFieldTile,
+                                       min((t + 1u) * kFieldTile, uint32_t(cells)));
 }
 
 void take_static(uint32_t slot) {

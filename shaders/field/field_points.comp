@@ -1,5 +1,5 @@
 #version 460
-// One workgroup: a tile of a tool triangle's sample grid; one invocation: a cell. Lists the samples that
+// kFieldTileLanes invocations: a tile of a tool triangle's sample grid, a cell each at a time. Lists the samples that
 // weigh something, and lie in a V_bnd or V_int voxel of the mock-up, or with their triangle's first corner
 // where it touches nothing.
 // Reads field_tiles, the tool in its own frame, the mock-up's partition. Writes tool_points.
@@ -37,25 +37,29 @@ GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #include "shaders/lib/sample_levels.glsl"
 SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
-void main() {
-  if (flat_group() >= list_count(kListFieldTiles)) return;
-  const FieldTile tile = field_tiles[flat_group()];
-  const uvec3 corners = tool_triangles[tile.mobile];
-  const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
-  const int32_t axis = int32_t(tool_info[tile.mobile] >> kInfoAxisShift & 3u);
-  const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
-  const ivec2 place =
-      ivec2(gl_LocalInvocationIndex % uint32_t(kFieldTile), gl_LocalInvocationIndex / uint32_t(kFieldTile));
-  const ivec2 ij = ivec2(tile.first_u, tile.first_v) + place,
+void take(FieldTile tile, SampledTriangle triangle, uint32_t cell) {
+  const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
               g = sample_of_cell(ij, scene.tool_sample_spacing);
   if (!grid_point_inside(triangle, g)) return;
   const uint32_t weight = uint32_t(tool_weight(tile.mobile, tool_weights[tile.mobile], ij) >> 4);
   if (weight == 0u) return;
   const ivec3 p = world_from_tool(sample_point(triangle, g));
   const bool hit = (mobile_state[tile.mobile] & kMobileHit) != 0u;
-  if (mockup_class_of(mockup_voxel_of(hit ? p : world_from_tool(a))) == kVoxelExternal) return;
+  if (mockup_class_of(mockup_voxel_of(hit ? p : world_from_tool(triangle.a))) == kVoxelExternal) return;
   const uint32_t at = take_room(kListToolPoints, 1u);
   if (at >= frame_lists[kListToolPoints].capacity) return;
   tool_points[at] = FieldPoint(p, tile.mobile, weight);
   if (begins_group(at, 1u)) grow_pushed_groups(0u, groups_to(at + 1u));
+}
+
+void main() {
+  const uint32_t item = flat_invocation() / kFieldTileLanes;
+  if (item >= list_count(kListFieldTiles)) return;
+  const FieldTile tile = field_tiles[item];
+  const uvec3 corners = tool_triangles[tile.mobile];
+  const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
+  const int32_t axis = int32_t(tool_info[tile.mobile] >> kInfoAxisShift & 3u);
+  const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
+  for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end; cell += kFieldTileLanes)
+    take(tile, triangle, cell);
 }

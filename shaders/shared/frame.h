@@ -175,7 +175,7 @@ PALPATE_CONSTANT uint32_t kGroupsTouch = 0;    // a workgroup kRunsAGroup NearRu
 PALPATE_CONSTANT uint32_t kGroupsSamples = 1;  // an invocation a SampleChunk
 PALPATE_CONSTANT uint32_t kGroupsPairs = 0;    // an invocation a PairChunk
 PALPATE_CONSTANT uint32_t kGroupsOpen = 1;     // an invocation an open sample
-PALPATE_CONSTANT uint32_t kGroupsTiles = 0;    // a workgroup a tile
+PALPATE_CONSTANT uint32_t kGroupsTiles = 0;    // kFieldTileLanes invocations a tile
 PALPATE_CONSTANT uint32_t kGroupsMockupPush =
     1;  // an invocation a sample, then an invocation an extra sample
 

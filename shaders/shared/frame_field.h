@@ -29,6 +29,10 @@ PALPATE_CONSTANT int32_t kBindMockupLevels =
     106;  // a uint32_t a triangle: 1 + place of its side's levels, or 0; then kSideLevelWords a place: the
           // coarsest level, factors (Q30)
 PALPATE_CONSTANT int32_t kBindToolLevels = 107;  // likewise
+PALPATE_CONSTANT int32_t kBindMockupShells =
+    108;  // int32_t, by V_bnd voxel: how many shells its middle is in; of a mock-up that is not closed
+PALPATE_CONSTANT int32_t kBindFineShells =
+    109;  // likewise of the tool's fine partition, where it has an inside
 
 PALPATE_CONSTANT uint32_t kMostSampleLevel = 4u;  // kSampleLevels of model/lattice/lattice_mesh.h
 PALPATE_CONSTANT uint32_t kSideLevelWords = 1u + kMostSampleLevel;
@@ -37,9 +41,10 @@ PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
 PALPATE_CONSTANT uint32_t kListMockupPoints = 17u;
 PALPATE_CONSTANT uint32_t kListToolPoints = 18u;
 
-PALPATE_CONSTANT int32_t kFieldTile =
-    8;  // grid points along an edge of a tile of tool samples: one workgroup
-PALPATE_CONSTANT int32_t kDepthSlack = 16;  // steps by which a distance may be off, and more (section 4)
+PALPATE_CONSTANT uint32_t kFieldTile = 64u;      // most cells of a tile of tool samples
+PALPATE_CONSTANT uint32_t kFieldTileLanes = 8u;  // invocations that go through it (chosen: most triangles
+                                                 // have no more cells, and llvmpipe takes eight at once)
+PALPATE_CONSTANT int32_t kDepthSlack = 16;       // steps by which a distance may be off, and more (section 4)
 
 // ---- structs
 // -------------------------------------------------------------------------------------------------------------
@@ -58,10 +63,13 @@ struct FieldPoint {
   uint32_t weight;    // Q24
 };
 
-// kFieldTile² points of a tool triangle's sample grid, beginning at grid point (first_u, first_v)·spacing.
+// Cells begin … end − 1 of a tool triangle's box, which is `across` cells wide and begins at cell (first_u,
+// first_v), row by row.
 struct FieldTile {
   uint32_t mobile;
   int32_t first_u, first_v;
+  uint32_t across;
+  uint32_t begin, end;
 };
 
 // FieldBin of model/contact/field.h; low and high are those of WideSum.

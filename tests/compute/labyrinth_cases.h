@@ -291,10 +291,12 @@ inline std::vector<ModuleRun> votes() {
         link[s] = first;
         first = s;
       }
-      runs.push_back({"row_link",
-                      {l.slot, Words(rows, kUntouched), Words(l.slots(), kUntouched)},
-                      push_of(grid_of(l, most_of(rows), axis)),
-                      rows + kMore});
+      for (const std::uint32_t from_near : {0u, 1u})
+        runs.push_back({"row_link",
+                        {l.slot, Words(rows, kUntouched), Words(l.slots(), kUntouched)},
+                        push_of(grid_of(l, most_of(rows), axis)),
+                        rows + kMore,
+                        {from_near}});
       const struct {
         gpu::GridPush grid;
         std::uint32_t first_crossing;
@@ -315,6 +317,45 @@ inline std::vector<ModuleRun> votes() {
                       {most_of(l.count())},
                       l.count() + kMore});
     }
+  }
+  return runs;
+}
+
+/// What walks along each axis say, both ways: their ends may be V_int anywhere.
+inline std::vector<ModuleRun> shells() {
+  Numbers random(37);
+  std::vector<ModuleRun> runs;
+  for (const unsigned uniform : {0u, 50u, 90u}) {
+    Labyrinth l = labyrinth(random, {3, 2, 4}, uniform);
+    for (gpu::Brick& brick : l.bricks)
+      for (unsigned w = 0; w < 16; ++w) brick.internal_[w] = random() & ~brick.boundary[w];
+    std::vector<std::int32_t> halves(std::size_t{2} * l.boundary_voxels), least;
+    for (std::int32_t& crossings : halves) crossings = static_cast<std::int32_t>(random() % 5) - 2;
+    for (std::uint32_t i = 0; i < 3 * l.boundary_voxels; ++i)  // by rank
+      least.push_back(4 * static_cast<std::int32_t>(i / l.boundary_voxels) - 6 +
+                      static_cast<std::int32_t>(random() % 4));
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+      for (const std::uint32_t up : {0u, 1u}) {
+        const int u = static_cast<int>(axis + 1) % 3, v = static_cast<int>(axis + 2) % 3;
+        const auto rows = static_cast<std::uint32_t>(l.n[u] * l.n[v]);
+        Words head(rows, gpu::kNoVoxel), link(l.slots(), gpu::kNoVoxel);
+        for (std::uint32_t i = 0; i < l.slots(); ++i) {  // each goes before those met
+          const std::uint32_t s = up != 0 ? i : l.slots() - 1 - i;
+          const Int3 at = l.brick(l.mixed[s]);
+          std::uint32_t& first = head[static_cast<std::size_t>(at[u] + l.n[u] * at[v])];
+          link[s] = first;
+          first = s;
+        }
+        const struct {
+          gpu::GridPush grid;
+          std::uint32_t voxels;
+        } push{grid_of(l, 64 * rows - 9, axis), l.boundary_voxels};
+        runs.push_back({"shell_sweep",
+                        {l.slot, l.mixed, words_of(l.bricks), words_of(halves), head, link, words_of(least)},
+                        push_of(push),
+                        64 * rows + kMore,
+                        {up}});
+      }
   }
   return runs;
 }

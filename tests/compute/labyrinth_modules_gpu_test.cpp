@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <array>
+
 #include "tests/compute/module_test.h"
 
 namespace palpate {
@@ -146,7 +149,7 @@ TEST_F(LabyrinthModules, BricksWithAComponentOffTheBorderAreTold) {
   });
 }
 
-TEST_F(LabyrinthModules, MixedBricksOfARowAreLinkedFromTheFarEnd) {
+TEST_F(LabyrinthModules, MixedBricksOfARowAreLinkedFromEitherEnd) {
   each("row_link", spirv::row_link, [](const ModuleRun& run, std::vector<Words>& want, auto&) {
     const auto push = push_as<gpu::GridPush>(run);
     const int axis = static_cast<int>(push.axis), u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -161,6 +164,7 @@ TEST_F(LabyrinthModules, MixedBricksOfARowAreLinkedFromTheFarEnd) {
             run.buffers[0][static_cast<std::size_t>(at.x + push.bricks.x * (at.y + push.bricks.y * at.z))];
         if (slot < gpu::kBrickInternal) mixed.push_back(slot);
       }
+      if (run.constants[0] != 0) std::reverse(mixed.begin(), mixed.end());
       want[1][static_cast<std::size_t>(row)] = mixed.empty() ? gpu::kNoVoxel : mixed.back();
       for (std::size_t i = 0; i < mixed.size(); ++i)
         want[2][mixed[i]] = i == 0 ? gpu::kNoVoxel : mixed[i - 1];
@@ -205,6 +209,73 @@ TEST_F(LabyrinthModules, EveryEnclosedVoxelVotesByItsWinding) {
     want[6] = words_of(votes);
   });
   EXPECT_GT(rows_shut_in, 10'000u);
+}
+
+TEST_F(LabyrinthModules, TheLeastThatWalksSayIsKept) {
+  std::size_t into_uniform = 0;  // walks that end in a uniform V_int brick
+  each("shell_sweep", spirv::shell_sweep, [&](const ModuleRun& run, std::vector<Words>& want, auto&) {
+    struct Push {
+      gpu::GridPush grid;
+      std::uint32_t voxels;
+    };
+    const auto [push, voxels] = push_as<Push>(run);
+    const Int3 n = push.bricks;
+    const auto bricks = values_of<gpu::Brick>(run.buffers[2]);
+    const auto halves = values_of<std::int32_t>(run.buffers[3]);
+    auto least = values_of<std::int32_t>(run.buffers[6]);
+    const int axis = static_cast<int>(push.axis), u = (axis + 1) % 3, v = (axis + 2) % 3,
+              step = run.constants[0] != 0 ? 1 : -1;
+    struct Place {
+      std::uint32_t slot;
+      std::size_t number;  // of a boundary voxel
+      bool boundary, internal;
+    };
+    const auto look = [&](const Int3& voxel) {
+      const Int3 brick = voxel / 8;
+      Place place{run.buffers[0][static_cast<std::size_t>(brick.x + n.x * (brick.y + n.y * brick.z))], 0,
+                  false, false};
+      if (place.slot >= gpu::kBrickInternal) {
+        place.internal = place.slot == gpu::kBrickInternal;
+        return place;
+      }
+      const gpu::Brick& at = bricks[place.slot];
+      const auto bit = static_cast<unsigned>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
+      place.boundary = bit_of(at.boundary, bit);
+      place.internal = bit_of(at.internal_, bit);
+      place.number = at.first[bit / 32];
+      for (unsigned before = bit / 32 * 32; before < bit; ++before)
+        place.number += bit_of(at.boundary, before) ? 1u : 0u;
+      return place;
+    };
+    for (int row = 0; row < static_cast<int>(push.count); ++row)
+      for (int k = 0; k < 8 * n[axis]; ++k) {
+        Int3 from;
+        from[axis] = k;
+        from[u] = row % (8 * n[u]);
+        from[v] = row / (8 * n[u]);
+        const Place home = look(from);
+        if (!home.boundary) continue;
+        // The half beyond the middle, then both halves of each voxel up to one that is not boundary.
+        std::int32_t said = step * halves[2 * home.number + (step > 0 ? 1 : 0)];
+        Int3 at = from;
+        for (at[axis] += step; at[axis] >= 0 && at[axis] < 8 * n[axis]; at[axis] += step) {
+          const Place place = look(at);
+          if (place.boundary) {
+            said += step * (halves[2 * place.number] + halves[2 * place.number + 1]);
+            continue;
+          }
+          if (place.internal) ++said;
+          if (place.slot == gpu::kBrickInternal) ++into_uniform;
+          break;
+        }
+        std::array<std::int32_t, 4> all{said};
+        for (std::size_t i = 0; i < 3; ++i) all[1 + i] = least[i * voxels + home.number];
+        std::sort(all.begin(), all.end());
+        for (std::size_t i = 0; i < 3; ++i) least[i * voxels + home.number] = all[i];
+      }
+    want[6] = words_of(least);
+  });
+  EXPECT_GT(into_uniform, 100u);
 }
 
 TEST_F(LabyrinthModules, AComponentOffTheBorderWithMoreVotesForIsInternal) {

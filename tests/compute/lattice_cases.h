@@ -179,6 +179,28 @@ inline std::vector<ModuleRun> crossings() {
   return runs;
 }
 
+/// The same lines on both sides of the centres; some triangles bound nothing.
+inline std::vector<ModuleRun> half_crossings() {
+  Numbers random(46);
+  std::vector<ModuleRun> runs;
+  const Entries e = entries(random, 3000, 64, 12, 32);
+  const auto voxels = static_cast<std::uint32_t>(e.place.size()),
+             count = static_cast<std::uint32_t>(e.voxel.size());
+  Words info(count, 0);
+  for (std::uint32_t& flags : info)
+    flags = random() % 2 << gpu::kInfoAxisShift | (random() % 8 == 0 ? gpu::kInfoSheet : 0u) |
+            (random() % 8 == 0 ? gpu::kInfoCollapsed : 0u);
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const gpu::GridPush push{e.origin, e.size, e.bricks, count - 100 - axis, axis};
+    runs.push_back({"half_cross",
+                    {words_of(e.soup.vertices), words_of(e.soup.triangles), info, e.list(), e.voxel, e.place,
+                     e.mixed, Words(2 * voxels, 0)},
+                    push_of(push),
+                    count + kMore});
+  }
+  return runs;
+}
+
 /// Bricks to voxels: marked and counted, and listed.
 inline std::vector<ModuleRun> voxels() {
   Numbers random(43);

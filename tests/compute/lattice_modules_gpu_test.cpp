@@ -155,6 +155,31 @@ TEST_F(LatticeModules, LinesThroughCentresCrossAsTheReferencesRaysDo) {
   EXPECT_GT(crossed, 1000u);
 }
 
+TEST_F(LatticeModules, HalvesOfVoxelsAreCrossedAsTheReferencesRaysAre) {
+  std::size_t crossed = 0;
+  each("half_cross", spirv::half_cross, [&](const ModuleRun& run, std::vector<Words>& want, auto&) {
+    const auto push = push_as<gpu::GridPush>(run);
+    const Soup soup(run);
+    Int3 along(0);
+    along[static_cast<int>(push.axis)] = 1;
+    for (std::uint32_t pair = 0; pair < push.count; ++pair) {
+      const std::uint32_t id = run.buffers[3][pair], voxel = run.buffers[4][pair];
+      if ((run.buffers[2][id] & (gpu::kInfoCollapsed | gpu::kInfoSheet)) != 0) continue;
+      // What a ray from one place meets and one from the next place does not lies between them.
+      const Int3 middle = low_of(push, run.buffers[5], run.buffers[6], voxel) + push.size / 2;
+      const auto ahead = [&](int half) {
+        const auto crossing = cpu_ref::ray_crosses(middle + along * (half * push.size / 2), along, soup[id]);
+        return crossing ? crossing->sign : 0;
+      };
+      const int before = ahead(-1) - ahead(0), behind = ahead(0) - ahead(1);
+      want[7][2 * voxel] += static_cast<std::uint32_t>(before);
+      want[7][2 * voxel + 1] += static_cast<std::uint32_t>(behind);
+      crossed += before != 0 || behind != 0 ? 1 : 0;
+    }
+  });
+  EXPECT_GT(crossed, 500u);
+}
+
 TEST_F(LatticeModules, SamplesOfAVoxelAreTheReferences) {
   std::size_t samples = 0, corners = 0;
   each("sample_list", spirv::sample_list, [&](const ModuleRun& run, std::vector<Words>& want, auto&) {

@@ -123,18 +123,26 @@ int segment_sign(const gpu::RayCase& c) {
 
 TEST_F(Rays, SegmentsCrossWhereTheirPerturbedEndsSay) {
   const auto cases = probe_cases::segments();
-  const auto answers = run_probe<std::int32_t>(spirv::probe_segment, cases);
-  std::size_t crossings = 0;
+  const auto answers = run_probe<gpu::SegmentAnswer>(spirv::probe_segment, cases);
+  constexpr int kUnsure = 2;  // of lib/segment_estimate.glsl
+  std::size_t crossings = 0, sure = 0, sure_crossings = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     SCOPED_TRACE(i);
     const int sign = segment_sign(cases[i]);
-    ASSERT_EQ(answers[i], sign);
+    ASSERT_EQ(answers[i].crossing, sign);
+    if (answers[i].estimate != kUnsure) {
+      ASSERT_EQ(answers[i].estimate, sign);
+      ++sure;
+      sure_crossings += sign != 0 ? 1u : 0u;
+    }
     ASSERT_EQ(exact::segment_crossing(cases[i].point, cases[i].direction,
                                       {cases[i].corner[0], cases[i].corner[1], cases[i].corner[2]}),
               sign);
     crossings += sign != 0 ? 1u : 0u;
   }
   EXPECT_GT(crossings, cases.size() / 50);
+  EXPECT_GT(sure, cases.size() / 2);
+  EXPECT_GT(sure_crossings, crossings / 4);
 }
 
 }  // namespace

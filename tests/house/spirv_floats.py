@@ -20,7 +20,8 @@ SHARED_STORAGE = {'StorageBuffer', 'Uniform', 'UniformConstant', 'PushConstant',
 
 RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding, contracted or not, and exact tests follow'
 CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
-DEPTH = 'in which cell a coordinate lies (as above), and quotients and roots of lib/distance.glsl: floats estimate them, integer remainders settle them'
+DEPTH = 'in which cell a coordinate lies (as above), quotients and roots of lib/distance.glsl, which integer remainders settle, and which triangles a segment crosses or may be nearest (lib/segment_estimate.glsl, lib/distance_estimate.glsl): margins cover every rounding, contracted or not, and exact tests decide the rest'
+WALK = 'in which cell a coordinate lies (as above), and which triangles a segment crosses for sure (lib/segment_estimate.glsl): margins cover every rounding, contracted or not, and the exact test decides the rest'
 NEAR = 'which runs, voxels and list entries may be near (lib/near/turned_box.glsl, near_cull, voxel_touch, pair_test): margins cover every rounding, contracted or not, and exact tests follow; and in which cell a coordinate lies (as above)'
 CULLS = {
     'centroids_trace': RAYS,
@@ -31,7 +32,7 @@ CULLS = {
     'pair_test': NEAR,
     'sample_listed': CELL,
     'sample_scan': CELL,
-    'sample_walk': CELL,
+    'sample_walk': WALK,
     'voxel_touch': NEAR,
 }
 

@@ -25,9 +25,9 @@ ShaderProbes::ShaderProbes(VulkanDevice& device) : device_(device) {
   add<std::int32_t>("probe_triangle_pair", probe_cases::pairs());
   add<std::int32_t>("probe_triangle_voxel", probe_cases::boxes());
   add<gpu::RayAnswer>("probe_ray", probe_cases::rays());
-  add<std::int32_t>("probe_segment", probe_cases::segments());
+  add<gpu::SegmentAnswer>("probe_segment", probe_cases::segments());
   add<gpu::SampleAnswer>("probe_sample", probe_cases::samples());
-  add<std::int32_t>("probe_distance", probe_cases::distances());
+  add<gpu::DistanceAnswer>("probe_distance", probe_cases::distances());
   add<gpu::CellAnswer>("probe_cells", probe_cases::cells());
   add<Int3>("probe_direction", probe_cases::directions());
   add<gpu::PoseAnswer>("probe_pose", probe_cases::poses());

@@ -111,8 +111,9 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
       ignored_.clear();
     }
   }
-  if (buffers.bytes(kBindFineExit) == 0)  // of a tool that is not closed nobody reads it
-    if (auto made = buffers.make(device, kBindFineExit, "unused", 4); !made) return made.error();
+  for (const std::int32_t binding : {kBindFineExit, kBindMockupShells, kBindFineShells})
+    if (buffers.bytes(binding) == 0)  // whether a body is closed says what of them anybody reads
+      if (auto made = buffers.make(device, binding, "unused", 4); !made) return made.error();
   if (auto made = buffers.make_table(device, kBindFieldWork, "pressure field", sizeof(FieldWork)); !made)
     return made.error();
   return buffers.make_table(device, kBindIgnoredState, "states of ignored patches", patches);

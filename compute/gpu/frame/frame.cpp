@@ -131,6 +131,8 @@ void RecordedFrame::name_scene() {
       {kBindFineBricks, &fine.bricks},
       {kBindFineListBegin, &fine.list_begin},
       {kBindFineListTriangles, &fine.list_triangles},
+      {kBindMockupShells, &m.partition.shells},
+      {kBindFineShells, &fine.shells},
       {kBindFineExit, &scene_.fine_exit},
       {kBindOccupied, &scene_.occupied},
       {kBindListBoxes, &scene_.list_boxes},

@@ -77,7 +77,7 @@ void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pa
     if (!steps.ok()) return;
     push.grid.count = static_cast<std::uint32_t>(rows);
     push.grid.axis = axis;
-    steps.run_items(spirv::row_link, {}, {p.brick_slot, head, link}, push.grid, rows);
+    steps.run_items(spirv::row_link, {0u}, {p.brick_slot, head, link}, push.grid, rows);
     push.grid.count = static_cast<std::uint32_t>(rows * 64);
     push.voxels = p.grid.boundary_voxels * axis;  // first crossing of this axis
     steps.progress("votes", 0.85 + 0.05 * axis);

@@ -31,4 +31,7 @@ std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, c
 /// Classes of all voxels that are not boundary: components, votes, V_ext and V_int.
 void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pairs, BodyBuffers& body);
 
+/// Fills `body.partition.shells` of a body that is not closed. After classify().
+void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& body);
+
 }  // namespace palpate

@@ -143,11 +143,13 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   const VoxelPairs pairs =
       build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
+  if (refined && !geometry.mockup.closed) count_shells(steps, pairs, out.mockup);
   make_search_tables(steps, geometry, out);
   if (refined) {
     const VoxelPairs tool_pairs =
         build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);
     classify(steps, geometry.tool, tool_pairs, out.tool);
+    if (!geometry.tool.closed && out.tool.partition.has_internal) count_shells(steps, tool_pairs, out.tool);
     steps.progress("samples", 0.95);
     refine_tool(steps, geometry, out);
     if (geometry.tool.closed || out.tool.partition.has_internal) list_samples(steps, geometry, pairs, out);

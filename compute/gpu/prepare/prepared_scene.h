@@ -22,6 +22,8 @@ struct PartitionBuffers {
   VulkanBuffer boundary_place;  ///< uint32, one a boundary voxel: slot · 512 + bit; ascending
   VulkanBuffer list_begin;      ///< uint32, CSR over boundary voxels, + 1
   VulkanBuffer list_triangles;  ///< uint32 ids, ascending in each voxel
+  VulkanBuffer shells;  ///< int32, one a boundary voxel: how many shells its middle is in (EXACTNESS.md
+                        ///< section 4, "Vote"); empty where nobody asks
   bool has_internal = false;
 };
 
@@ -74,8 +76,8 @@ template <class Scene, class Visit>
 void for_each_made_buffer(Scene& scene, Visit visit) {
   visit(scene.scene);
   for_each_partition(scene, [&](auto& p) {
-    for (auto* buffer :
-         {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin, &p.list_triangles})
+    for (auto* buffer : {&p.brick_slot, &p.bricks, &p.mixed_brick, &p.boundary_place, &p.list_begin,
+                         &p.list_triangles, &p.shells})
       visit(*buffer);
   });
   for (auto* buffer : {&scene.fine_exit, &scene.tool_near, &scene.occupied, &scene.list_boxes,

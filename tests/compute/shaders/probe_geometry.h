@@ -1,5 +1,6 @@
-// Both sides of the probes of lib/triangle_pair.glsl, lib/ray.glsl, lib/segment.glsl, lib/sample.glsl,
-// lib/cells.glsl and lib/voxel_range.glsl.
+// Both sides of the probes of lib/triangle_pair.glsl, lib/ray.glsl, lib/segment.glsl,
+// lib/segment_estimate.glsl, lib/distance.glsl, lib/distance_estimate.glsl, lib/sample.glsl, lib/cells.glsl
+// and lib/voxel_range.glsl.
 #ifndef PALPATE_PROBE_GEOMETRY_H
 #define PALPATE_PROBE_GEOMETRY_H
 #include "shaders/shared/base.h"
@@ -23,6 +24,18 @@ struct RayAnswer {
   int32_t culled;  // 1: it crosses what lib/line_box.glsl leaves out
 };
 PALPATE_ASSERT_SIZE(RayAnswer, 12);
+
+struct SegmentAnswer {
+  int32_t crossing;  // of segment_crossing
+  int32_t estimate;  // of segment_estimate; 2: unsure
+};
+PALPATE_ASSERT_SIZE(SegmentAnswer, 8);
+
+struct DistanceAnswer {
+  int32_t steps;
+  int32_t least, most;  // of distance_bounds, rounded outwards
+};
+PALPATE_ASSERT_SIZE(DistanceAnswer, 12);
 
 struct DistanceCase {
   ivec3 point;
