@@ -44,8 +44,8 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 #define BODY_GRID scene.fine
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/group_count.glsl"
-#include "shaders/lib/body_depth.glsl"
-#include "shaders/lib/body_walks.glsl"
+#include "shaders/lib/body/body_depth.glsl"
+#include "shaders/lib/body/body_walks.glsl"
 #include "shaders/lib/field_sums.glsl"
 #include "shaders/lib/ignored.glsl"
 #include "shaders/lib/tool_winding.glsl"

@@ -34,7 +34,7 @@ EDIT(kBindSamples, ivec4, samples);
 #include "shaders/lib/static_mark.glsl"
 #include "shaders/lib/sample_room.glsl"
 #include "shaders/lib/tool_winding.glsl"
-#include "shaders/lib/body_walks.glsl"
+#include "shaders/lib/body/body_walks.glsl"
 
 void decide(uint32_t item) {
   if (item >= list_count(kListOpenSamples)) return;

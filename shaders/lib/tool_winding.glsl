@@ -1,7 +1,7 @@
 // The winding of the closed tool at its pose round a world lattice point in a V_bnd voxel of its fine
 // partition: what a walk out of the tool crosses, along an axis of that grid, from voxel to voxel, and each
 // voxel lists all that may be crossed in it.
-// The including shader has what lib/body.glsl asks for, of the tool and its fine partition, and
+// The including shader has what lib/body/body.glsl asks for, of the tool and its fine partition, and
 // tool_records[], fine_places[], fine_exit[], frame_input, frame_state (writable).
 //
 // The walk's points on the faces between voxels are lattice points of the tool, moved to the world and
@@ -10,7 +10,7 @@
 // the face of a V_ext voxel the winding is 0.
 #ifndef PALPATE_LIB_TOOL_WINDING
 #define PALPATE_LIB_TOOL_WINDING
-#include "shaders/lib/body.glsl"
+#include "shaders/lib/body/body.glsl"
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/segment.glsl"

@@ -1,9 +1,9 @@
 // Whether a lattice point in a V_bnd voxel lies inside a body that does not move, in its own frame
 // (docs/EXACTNESS.md section 4).
-// The including shader has what lib/body.glsl asks for, int32_t body_shells[] and frame_state (writable).
+// The including shader has what lib/body/body.glsl asks for, int32_t body_shells[] and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_WALKS
 #define PALPATE_LIB_BODY_WALKS
-#include "shaders/lib/body.glsl"
+#include "shaders/lib/body/body.glsl"
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/segment.glsl"
 #include "shaders/lib/segment_estimate.glsl"

@@ -2,11 +2,11 @@
 // (docs/EXACTNESS.md section 4, "Depth"), exact. Floats say which triangles may be the nearest; integers
 // decide among those few when all have been seen, for llvmpipe runs exact distances for all lanes that stand
 // side by side as soon as one asks.
-// The including shader has what lib/body.glsl asks for, ivec3 body_normals[] and frame_state (writable).
+// The including shader has what lib/body/body.glsl asks for, ivec3 body_normals[] and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_DEPTH
 #define PALPATE_LIB_BODY_DEPTH
 #include "shaders/shared/frame_field.h"
-#include "shaders/lib/body.glsl"
+#include "shaders/lib/body/body.glsl"
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/distance.glsl"
 #include "shaders/lib/distance_estimate.glsl"
