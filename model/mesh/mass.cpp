@@ -6,6 +6,7 @@
 #include "model/lattice/triangle.h"
 
 namespace palpate {
+
 SurfaceMeasure measure(const LatticeMesh& mesh) {
   SurfaceMeasure out;
   Vec3 area_moment(0), volume_moment(0);

@@ -18,7 +18,7 @@ endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 find_package(Threads REQUIRED)
 
-option(PALPATE_TOGETHER "Compile the files of a folder as one: half of a whole build's time, but more for each change, and unknown to ccache in another checkout" ON)
+option(PALPATE_TOGETHER "Compile the files of a folder as one: a whole build takes less, a change more, and ccache in another checkout does not know it" ON)
 # The headers that most files include, compiled once for each set of options: a third to a half of the compiling.
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON turns them off, for ccache to know a file from another checkout, and to see that each includes what it uses.
 set(palpate_common_headers <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <map>
@@ -82,8 +82,8 @@ function(palpate_beast_library name)
   palpate_together(${name})
 endfunction()
 
-# palpate_together(TARGET [EXCEPT "folders"]): compiles the files of a folder as one, since most of the compiling is of what they include. So within a folder a name of
-# an unnamed namespace stands for one thing.
+# palpate_together(TARGET [EXCEPT "folders"]): compiles the files of a folder as one, since much of the compiling is of what they include. So within
+# a folder a name of an unnamed namespace stands for one thing. EXCEPT: a regular expression of folders whose files stay apart.
 function(palpate_together target)
   cmake_parse_arguments(arg "" "EXCEPT" "" ${ARGN})
   get_target_property(sources ${target} SOURCES)

@@ -1,23 +1,23 @@
 #include "service/cli/export_geometry.h"
-#include "service/cli/text_output.h"
 
 #include <fmt/format.h>
 
 #include <bit>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+
+#include "service/cli/text_output.h"
 
 namespace palpate {
 namespace {
 
-/// As a file of them is read.
+static_assert(std::endian::native == std::endian::little, "the exported files are little-endian");
+
+/// Numbers as they stand in a file.
 template <class Number>
 std::string_view bytes_of(const std::vector<Number>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
 }
-
-static_assert(std::endian::native == std::endian::little, "the exported files are little-endian");
 
 /// Nine integers a triangle, in the order of their ids; a collapsed one keeps its place.
 template <class ToWorld>

@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// Makes or replaces a file. Error: kBadValue, it can't be written whole.
+/// Makes or replaces a file of these bytes. Error: kBadValue, it can't be written whole.
 Result<void> write_text(const std::filesystem::path& path, std::string_view text);
 
 /// To standard output. Error: kInternal, it can't be written.

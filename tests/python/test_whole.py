@@ -10,6 +10,7 @@ import pytest
 from conftest import at
 
 import palpate
+from palpate._library import library
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
@@ -39,7 +40,7 @@ def test_a_contact_is_drawn(boxes, tmp_path):
 
 
 def test_the_wheel_works_alone(tmp_path):
-    build = pathlib.Path(palpate._library.library._name).resolve().parent.parent
+    build = pathlib.Path(library._name).resolve().parent.parent
     done = subprocess.run([SOURCE / 'scripts/wheel', build, tmp_path], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     wheel = pathlib.Path(done.stdout.strip())
@@ -49,19 +50,20 @@ def test_the_wheel_works_alone(tmp_path):
             os.chmod(target, entry.external_attr >> 16)
     script = '''
 import palpate
+from palpate._library import library
 open("cube.off", "w").write("OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 2 1\\n3 0 1 3\\n3 0 3 2\\n3 1 2 3\\n")
 scene = palpate.Scene({"tool": {"mesh": "cube.off"}, "static": [{"mesh": "cube.off"}]}, engine="cpu")
 loaded = open("/proc/self/maps").read()
-for library in ("libembree3", "libtbb", "libfmt", "libvulkan"):
-    assert f"site/palpate/libs/{library}" in loaded, f"{library} is not the wheel's own"
-print(palpate.__file__, scene.touches(scene.start), palpate._library.library._name)
+for name in ("libembree3", "libtbb", "libfmt", "libvulkan"):
+    assert f"site/palpate/libs/{name}" in loaded, f"{name} is not the wheel's own"
+print(palpate.__file__, scene.touches(scene.start), library._name)
 '''
     plain = {name: value for name, value in os.environ.items() if not name.startswith('PALPATE_')}
     found = subprocess.run([sys.executable, '-c', script], cwd=tmp_path, env={**plain, 'PYTHONPATH': str(tmp_path / 'site'), 'PALPATE_CACHE': 'off'},
                            capture_output=True, text=True)
     assert found.returncode == 0, found.stderr
-    where, touches, library = found.stdout.split()
-    assert touches == 'True' and where.startswith(str(tmp_path)) and library.startswith(str(tmp_path))
+    where, touches, loaded = found.stdout.split()
+    assert touches == 'True' and where.startswith(str(tmp_path)) and loaded.startswith(str(tmp_path))
 
 
 def test_names_of_the_interface_are_those_of_the_header():
