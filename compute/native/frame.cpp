@@ -47,7 +47,7 @@ Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan
       contact_(HostContact::make(geometry, scene, order_)),
       flags_(scene.constants.tool.closed == 0 && scene.constants.tool.has_internal == 0 ? kFlagToolOpen : 0u),
       touch_(kUsualItems),
-      near_pairs_(kUsualItems),
+      candidate_pairs_(kUsualItems),
       chunks_(kUsualItems),
       inside_(kUsualItems),
       open_(kUsualItems) {}
@@ -64,19 +64,19 @@ FrameHelper* Frame::helper() {
 bool Frame::enlarge(std::uint32_t list) {
   const auto twice = [](auto& room) { room.resize(2 * room.size()); };
   switch (list) {
-    case kNearTouch:
+    case kCandidateTouch:
       twice(touch_);
       return true;
-    case kNearPairs:
-      twice(near_pairs_);
+    case kCandidatePairs:
+      twice(candidate_pairs_);
       return true;
-    case kNearChunks:
+    case kCandidateChunks:
       twice(chunks_);
       return true;
-    case kNearInside:
+    case kCandidateInside:
       twice(inside_);
       return true;
-    case kNearOpen:
+    case kCandidateOpen:
       twice(open_);
       return true;
     default:
@@ -85,13 +85,13 @@ bool Frame::enlarge(std::uint32_t list) {
 }
 
 /// What is near, with more room where there is too little. Whether anything is.
-bool Frame::find(NearLists& near) {
+bool Frame::find(Candidates& near) {
   do {
-    near = NearLists{.touch = {touch_},
-                     .pairs = {near_pairs_},
-                     .samples = {chunks_},
-                     .inside = {inside_},
-                     .open = {open_}};
+    near = Candidates{.touch = {touch_},
+                      .pairs = {candidate_pairs_},
+                      .samples = {chunks_},
+                      .inside = {inside_},
+                      .open = {open_}};
     broad_phase_.find(posed_, helper(), near);
   } while (near.full != gpu::kNone && enlarge(near.full));
   return near.touch.count + near.samples.count + near.inside.count + near.open.count !=
@@ -119,7 +119,7 @@ Result<void> Frame::query(const LatticePose& pose, const Ignored* ignored, Conta
     return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
   out.flags = flags_;
   posed_.begin(pose);
-  NearLists near;
+  Candidates near;
   const bool found = find(near);
   stage("cull", broad_phase_.looks());
   if (!found) return {};
@@ -139,7 +139,7 @@ std::span<const gpu::ContactPair> Frame::pairs() const {
 
 std::uint64_t Frame::memory_bytes() const {
   return sizeof touch_[0] * std::uint64_t{touch_.size()} +
-         sizeof near_pairs_[0] * std::uint64_t{near_pairs_.size()} +
+         sizeof candidate_pairs_[0] * std::uint64_t{candidate_pairs_.size()} +
          sizeof chunks_[0] * std::uint64_t{chunks_.size()} +
          sizeof inside_[0] * (std::uint64_t{inside_.size()} + open_.size());
 }

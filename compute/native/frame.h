@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compute/native/broad_phase/broad_phase.h"
-#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/posed_tool.h"
 #include "compute/native/broad_phase/run_tree.h"
 #include "compute/native/frame_helper.h"
@@ -40,7 +40,7 @@ class Frame final : public PoseQuery {
 
  private:
   FrameHelper* helper();
-  bool find(NearLists& near);
+  bool find(Candidates& near);
   bool enlarge(std::uint32_t list);
 
   const SceneGeometry& geometry_;
@@ -56,7 +56,7 @@ class Frame final : public PoseQuery {
   std::uint32_t flags_ = 0;  ///< of every frame within the lattice
   // Room for what the search finds.
   std::vector<TouchCandidate> touch_;
-  std::vector<PairCandidate> near_pairs_;
+  std::vector<PairCandidate> candidate_pairs_;
   std::vector<gpu::SampleChunk> chunks_;
   std::vector<gpu::FrameSample> inside_, open_;
 };

@@ -12,7 +12,7 @@ namespace palpate {
 /// A first look at small boxes: for cubes of 1, 2, 4 and 8 voxels, from every voxel of the mock-up's grid on,
 /// whether one of theirs is not V_ext. Most boxes near a mock-up meet nothing; one bit says so, where going
 /// through a box's voxels takes loops whose ends can't be foreseen. Shaders read the same
-/// (shaders/lib/near/occupied.glsl).
+/// (shaders/lib/broad_phase/occupied.glsl).
 class OccupiedCubes {
  public:
   /// `occupied`: voxels that are not V_ext. Allocates four bytes a brick, and 256 for each that is not V_int

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "model/mesh/mesh_import.h"
-#include "model/scene/near_names.h"
+#include "model/scene/similar_names.h"
 
 namespace palpate {
 namespace {
@@ -82,7 +82,7 @@ Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::str
                                  file, matches.size(), name, matches[0], matches[1]));
   if (const MeshPart* part = numbered(parts, name)) return part->path;
   names.insert(names.end(), nodes.begin(), nodes.end());
-  const std::string near = near_names(name, names);
+  const std::string near = similar_names(name, names);
   return bad_value(fmt::format("'{}' has no node named '{}'{} `palpate info --tree '{}'` lists them", file,
                                name, near.empty() ? ";" : near, file));
 }

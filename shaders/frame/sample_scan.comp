@@ -28,7 +28,7 @@ EDIT(kBindSamples, FrameSample, samples);
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
 #include "shaders/lib/sample_room.glsl"
-#include "shaders/lib/near/open_room.glsl"
+#include "shaders/lib/broad_phase/open_room.glsl"
 #define PARTITION_GRID scene.fine
 #define PARTITION_SLOTS tool_brick_slot
 #define PARTITION_BRICKS tool_bricks

@@ -25,8 +25,8 @@ EDIT(kBindTouchedVoxels, uvec4, touched_voxels);
 EDIT(kBindPairChunks, PairChunk, pair_chunks);
 
 #include "shaders/lib/budget.glsl"
-#include "shaders/lib/near/turned_box.glsl"
-#include "shaders/lib/near/occupied.glsl"
+#include "shaders/lib/broad_phase/turned_box.glsl"
+#include "shaders/lib/broad_phase/occupied.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/mobile_mark.glsl"

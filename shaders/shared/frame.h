@@ -126,7 +126,7 @@ PALPATE_CONSTANT int32_t kBindRunBoxes =
 PALPATE_CONSTANT int32_t kBindPairSlots = 67;   // kListPairCandidates: uint32_t entries of the table in use
 PALPATE_CONSTANT int32_t kBindToolBounds = 68;  // LatticeBox: of each cluster, then of each run, tool lattice
                                                 // frame, without what has collapsed; may be empty
-PALPATE_CONSTANT int32_t kBindOccupied = 69;    // uint32_t: lib/near/occupied.glsl
+PALPATE_CONSTANT int32_t kBindOccupied = 69;    // uint32_t: lib/broad_phase/occupied.glsl
 PALPATE_CONSTANT int32_t kBindListBoxes =
     70;  // uint32_t, by entry of kBindMockupListTriangles: the part of the voxel in which the triangle's box
          // lies, low x, y, z, high x, y, z in kListParts-ths of its side, 5 bits each

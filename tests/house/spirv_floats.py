@@ -22,13 +22,13 @@ RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the marg
 CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
 DEPTH = 'in which cell a coordinate lies (as above), quotients and roots of lib/distance.glsl, which integer remainders settle, and which triangles a segment crosses or may be nearest (lib/segment_estimate.glsl, lib/distance_estimate.glsl): margins cover every rounding, contracted or not, and exact tests decide the rest'
 WALK = 'in which cell a coordinate lies (as above), and which triangles a segment crosses for sure (lib/segment_estimate.glsl): margins cover every rounding, contracted or not, and the exact test decides the rest'
-NEAR = 'which runs, voxels and list entries may be near (lib/near/turned_box.glsl, near_cull, voxel_touch, pair_test): margins cover every rounding, contracted or not, and exact tests follow; and in which cell a coordinate lies (as above)'
+NEAR = 'which runs, voxels and list entries may be near (lib/broad_phase/turned_box.glsl, broad_phase, voxel_touch, pair_test): margins cover every rounding, contracted or not, and exact tests follow; and in which cell a coordinate lies (as above)'
 CULLS = {
     'centroids_trace': RAYS,
     'field_from_mockup': DEPTH,
     'field_from_tool': DEPTH,
     'field_points': CELL,
-    'near_cull': NEAR,
+    'broad_phase': NEAR,
     'pair_test': NEAR,
     'sample_listed': CELL,
     'sample_scan': CELL,

@@ -19,70 +19,13 @@
 #include "service/loop/recorder.h"
 #include "tests/driver/allocation_count.h"
 #include "tests/service/half_space.h"
+#include "tests/service/watched_run.h"
 
 namespace palpate {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// The simulated device, watched: what reached it last, and whether it was closed at zero.
-class WatchedDevice : public HapticDevice {
- public:
-  explicit WatchedDevice(const LoadedScene& scene) {
-    auto made = make_simulated_device(scene.scene.device, scene.scene.start, Vec3(0));
-    if (made) device_ = std::move(made).value();
-  }
-  std::string name() const override { return "simulated"; }
-  double motion_s() const override { return device_->motion_s(); }
-  DeviceCapabilities capabilities() const override { return device_->capabilities(); }
-  Result<void> open() override { return device_->open(); }
-  void close() noexcept override {
-    closed_at_zero = last.force == Vec3(0) && last.torque == Vec3(0);
-    device_->close();
-    closed.store(true);
-  }
-  DeviceSample read() noexcept override {
-    DeviceSample sample = device_->read();
-    if (writes >= fault_after) sample.state = DeviceState::kFault;
-    return sample;
-  }
-  void write(const Wrench& wrench, const Vec3& gc) noexcept override {
-    last = wrench;
-    strongest = std::max(strongest, length(wrench.force));
-    ++writes;
-    device_->write(wrench, gc);
-  }
-
-  Wrench last{Vec3(9), Vec3(9)};
-  double strongest = 0;
-  bool closed_at_zero = false;
-  std::atomic<bool> closed = false;
-  int writes = 0, fault_after = 1 << 30;
-
- private:
-  std::unique_ptr<HapticDevice> device_;
-};
-
-/// Keeps every tick; may fail or throw at one.
-class Watcher : public RunObserver {
- public:
-  Result<void> on_tick(const TickRecord& tick) override {
-    ticks.push_back(tick);
-    if (stop_in_contact && tick.contact) stop_in_contact->store(true);
-    if (static_cast<int>(ticks.size()) == fail_at) return Error{ErrorCode::kInternal, "the disk is full"};
-    if (static_cast<int>(ticks.size()) == throw_at) throw std::runtime_error("out of ink");
-    return {};
-  }
-  Result<void> on_frame(const FrameRecord& frame) override {
-    frame_ticks.push_back(frame.tick);
-    return {};
-  }
-  std::vector<TickRecord> ticks;
-  std::vector<std::int64_t> frame_ticks;
-  int fail_at = -1, throw_at = -1;
-  std::atomic<bool>* stop_in_contact = nullptr;
-};
 
 std::string slurp(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -378,111 +321,6 @@ TEST(ControlTick, DoesNotAllocate) {
   EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
-// --- Every way out ends with zero force ---
-
-class SessionExit : public testing::TestWithParam<Pace> {
- protected:
-  SessionExit() : scene(half_space_scene()) {
-    scene.scene.start.position.z = -0.005;
-    scene.scene.device.path.resize(1);
-    scene.scene.device.path[0].pose = scene.scene.start;
-  }
-  Result<SessionSummary> run(WatchedDevice& device, RunObserver* observer = nullptr,
-                             const std::atomic<bool>* stop = nullptr) {
-    return run_session(scene, backend, device, {.pace = GetParam(), .duration_s = duration_s, .stop = stop},
-                       observer);
-  }
-  LoadedScene scene;
-  HalfSpace backend;
-  double duration_s = 60;  // of which a failing run uses a fraction
-};
-INSTANTIATE_TEST_SUITE_P(BothPaces, SessionExit, testing::Values(Pace::kRealtime, Pace::kAsap),
-                         [](const auto& tested) {
-                           return tested.param == Pace::kAsap ? "asap" : "realtime";
-                         });
-
-TEST_P(SessionExit, IsAtZeroAfterTheLastTick) {
-  WatchedDevice device(scene);
-  duration_s = 0.1;
-  ASSERT_TRUE(run(device));
-  EXPECT_GT(device.strongest, 0.5);
-  EXPECT_TRUE(device.closed_at_zero);
-}
-
-TEST_P(SessionExit, IsAtZeroWhenStopped) {
-  WatchedDevice device(scene);
-  std::atomic<bool> stop = false;
-  Watcher watcher;
-  watcher.stop_in_contact = &stop;
-  const auto summary = run(device, &watcher, &stop);
-  ASSERT_TRUE(summary);
-  EXPECT_TRUE(summary->stopped);
-  EXPECT_GT(device.writes, 0);
-  EXPECT_TRUE(device.closed_at_zero);
-}
-
-TEST_P(SessionExit, IsAtZeroWhenTheBackEndFails) {
-  WatchedDevice device(scene);
-  backend.on_query = [](int n) {
-    return n < 20 ? Result<void>() : Result<void>(Error{ErrorCode::kInternal, "the Vulkan device was lost"});
-  };
-  const auto summary = run(device);
-  ASSERT_TRUE(summary && summary->failure);
-  EXPECT_EQ(summary->failure->sentence, "the Vulkan device was lost; the run has ended with zero force");
-  EXPECT_GT(device.strongest, 0.5);
-  EXPECT_TRUE(device.closed_at_zero);
-}
-
-TEST_P(SessionExit, IsAtZeroWhenTheBackEndThrows) {
-  WatchedDevice device(scene);
-  backend.on_query = [](int n) -> Result<void> {
-    if (n == 20) throw std::runtime_error("bad shader");
-    return {};
-  };
-  const auto summary = run(device);
-  ASSERT_TRUE(summary && summary->failure);
-  EXPECT_THAT(summary->failure->sentence, HasSubstr("bad shader"));
-  EXPECT_TRUE(device.closed_at_zero);
-}
-
-TEST_P(SessionExit, IsAtZeroWhenTheDeviceFails) {
-  WatchedDevice device(scene);
-  device.fault_after = 50;
-  const auto summary = run(device);
-  ASSERT_TRUE(summary && summary->failure);
-  EXPECT_THAT(summary->failure->sentence, HasSubstr("reported a fault"));
-  EXPECT_GT(device.strongest, 0.5);
-  EXPECT_TRUE(device.closed_at_zero);
-}
-
-TEST_P(SessionExit, IsAtZeroWhenTheRecordingFails) {
-  for (const bool throws : {false, true}) {
-    WatchedDevice device(scene);
-    Watcher watcher;
-    (throws ? watcher.throw_at : watcher.fail_at) = 30;
-    const auto summary = run(device, &watcher);
-    ASSERT_TRUE(summary && summary->failure);
-    EXPECT_THAT(summary->failure->sentence, HasSubstr(throws ? "out of ink" : "the disk is full"));
-    EXPECT_TRUE(device.closed_at_zero);
-  }
-}
-
-TEST_P(SessionExit, GivesNoForceForATruncatedFrame) {
-  WatchedDevice device(scene);
-  class Truncating : public HalfSpace {
-    Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
-      auto done = HalfSpace::query(pose, ignored, out);
-      out.truncated = true, out.truncated_capacity = "pairs";
-      return done;
-    }
-  } truncating;
-  const auto summary =
-      run_session(scene, truncating, device, {.pace = GetParam(), .duration_s = 0.05}, nullptr);
-  ASSERT_TRUE(summary);
-  EXPECT_EQ(device.strongest, 0);
-  EXPECT_THAT(summary->notes, testing::Contains(HasSubstr("pairs")));
-}
-
 TEST(Session, SaysThatTheSimulatedHandSwingsUnlessItIsWellDamped) {
   const auto swings = [](double damping, bool touches) {
     LoadedScene scene = half_space_scene();
@@ -568,44 +406,6 @@ TEST(Session, RefusesSettingsInOneSentenceBeforeTheDeviceIsTouched) {
       HasSubstr("control.coupling_nm_per_rad is 2, allowed is 0 with law printed"));
   EXPECT_THAT(refusal([](Scene& s) { s.response.stiffness_n_per_m = -1; }),
               HasSubstr("response.stiffness is -1"));
-}
-
-// --- Recorder ---
-
-TEST(Recorder, NamesADirectoryThatItCannotMake) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "palpate_not_a_directory";
-  std::ofstream(file) << "x";
-  const auto made = Recorder::create((file / "run").string());
-  ASSERT_FALSE(made);
-  EXPECT_THAT(made.error().sentence, HasSubstr("palpate_not_a_directory"));
-  std::filesystem::remove(file);
-}
-
-TEST(Recorder, SaysThatTheDiskIsFull) {
-  const auto root = std::filesystem::path(testing::TempDir()) / "palpate_full_disk";
-  std::filesystem::create_directories(root);
-  std::filesystem::remove(root / "trace.csv");
-  std::filesystem::create_symlink("/dev/full", root / "trace.csv");  // accepts an open, refuses every byte
-  auto recorder = Recorder::create(root.string());
-  ASSERT_TRUE(recorder);
-  Result<void> failed;
-  for (int i = 0; i < 10000 && failed; ++i) failed = (*recorder)->on_tick({});
-  ASSERT_FALSE(failed);
-  EXPECT_THAT(failed.error().sentence, HasSubstr("No space left"));
-  std::filesystem::remove_all(root);
-}
-
-TEST(Recorder, SaysThatTheDiskIsFullAtTheLatestWhenItFinishes) {
-  const auto root = std::filesystem::path(testing::TempDir()) / "palpate_full_disk_2";
-  std::filesystem::create_directories(root);
-  std::filesystem::create_symlink("/dev/full", root / "frames.jsonl");
-  auto recorder = Recorder::create(root.string());
-  ASSERT_TRUE(recorder);
-  ASSERT_TRUE((*recorder)->on_frame({0, Pose{}, LatticePose{}, Contacts{}, ContactResponse{}, 0}));
-  const auto finished = (*recorder)->finish();
-  ASSERT_FALSE(finished);
-  EXPECT_THAT(finished.error().sentence, HasSubstr("frames.jsonl"));
-  std::filesystem::remove_all(root);
 }
 
 }  // namespace

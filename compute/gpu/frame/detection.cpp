@@ -108,7 +108,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       !r)
     return r;
   for (const std::int32_t binding : {kBindToolNear, kBindSampleBegin})
-    if (buffers.bytes(binding) == 0)  // near_cull asks nobody
+    if (buffers.bytes(binding) == 0)  // broad_phase asks nobody
       if (auto r = buffers.make(device, binding, "unused", 4); !r) return r;
 
   // At most half full.
@@ -178,7 +178,7 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const Made all[] = {
       {&tool_clusters_place_, &spirv::tool_clusters, !refined_},
       {&voxel_touch_, &spirv::voxel_touch},
-      {&near_cull_, &spirv::near_cull, true, 0, of_search},
+      {&broad_phase_, &spirv::broad_phase, true, 0, of_search},
       {&pair_test_, &spirv::pair_test},
       {&sample_listed_, &spirv::sample_listed, inside_ && listed_, 0, of_points},
       {&sample_walk_, &spirv::sample_walk, inside_, 0, of_tool},
@@ -202,7 +202,7 @@ void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.stage("cull");
   const auto clusters = static_cast<std::uint32_t>((order_.size() + kClusterSize - 1) / kClusterSize);
   const auto groups = [](std::uint32_t items) { return (items + kGroupSize - 1) / kGroupSize; };
-  recorder.run(near_cull_, groups(clusters) + (inside_ ? brick_groups_ : 0));
+  recorder.run(broad_phase_, groups(clusters) + (inside_ ? brick_groups_ : 0));
   recorder.barrier();
 
   recorder.stage(plan_.imt ? "imt" : "bmt");  // one dispatch decides both

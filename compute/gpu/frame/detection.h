@@ -53,10 +53,10 @@ class FrameDetection {
   bool closed_ = false;              ///< the tool's surface, in `refined`: open samples ask for the winding
   bool listed_ = false;              ///< samples were listed by preparation …
   bool wide_ = false;                ///< … three words each
-  std::uint32_t brick_groups_ = 64;  ///< of near_cull (chosen)
+  std::uint32_t brick_groups_ = 64;  ///< of broad_phase (chosen)
   bool has_near_ = false;            ///< tool_near says something
   std::vector<std::uint32_t> order_;
-  FrameShader near_cull_, voxel_touch_, pair_test_, tool_clusters_place_, sample_scan_, sample_listed_,
+  FrameShader broad_phase_, voxel_touch_, pair_test_, tool_clusters_place_, sample_scan_, sample_listed_,
       sample_walk_, set_decide_, set_name_, frame_result_;
 };
 

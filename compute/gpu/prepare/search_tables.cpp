@@ -10,7 +10,7 @@
 namespace palpate {
 
 std::vector<std::uint32_t> occupied_words(const PartitionView& mockup) {
-  constexpr std::size_t kLevelWords = 5;  // of lib/near/occupied.glsl
+  constexpr std::size_t kLevelWords = 5;  // of lib/broad_phase/occupied.glsl
   std::vector<BrickBits> levels(1);
   levels.front().make(mockup, BrickBits::Of::kOccupied);
   const auto one_brick = [](const BrickBits& bits) { return bits.size() == Int3(1); };

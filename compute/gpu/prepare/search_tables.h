@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// What shaders/lib/near/occupied.glsl reads: for ranges of any size whether a voxel of theirs may not be
-/// V_ext. About 4 bytes a brick and 256 for each near the surface.
+/// What shaders/lib/broad_phase/occupied.glsl reads: for ranges of any size whether a voxel of theirs may not
+/// be V_ext. About 4 bytes a brick and 256 for each near the surface.
 std::vector<std::uint32_t> occupied_words(const PartitionView& mockup);
 
 /// What gpu::kBindListBoxes is.

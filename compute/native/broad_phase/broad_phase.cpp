@@ -49,10 +49,10 @@ BroadPhase BroadPhase::make(const SceneGeometry& geometry, const SceneTables& sc
   out.has_inside_ = scene.constants.refined != 0 &&
                     (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
-  out.pairs_ = NearPairs::make(scene);
+  out.pairs_ = CandidatePairs::make(scene);
   out.seen_[0].resize(geometry.mockup.triangles.size());
   out.statics_ = geometry.mockup.triangles.size();
-  if (out.has_inside_) out.samples_ = NearSamples::make(geometry, scene);
+  if (out.has_inside_) out.samples_ = CandidateSamples::make(geometry, scene);
   out.inside_margin_ = 1.75 * geometry.tool_grid.size + 16;  // a grown voxel's diagonal
   out.make_runs(geometry.tool);
   out.tool_radius_ = geometry.tool_radius;
@@ -138,7 +138,7 @@ bool BroadPhase::meets(BrickBits::Range voxels) const {
 }
 
 void BroadPhase::share() {
-  for (NearPairs::Seen& seen : seen_) seen.resize(statics_);
+  for (CandidatePairs::Seen& seen : seen_) seen.resize(statics_);
 }
 
 /// A bit each: which of eight ranges of voxels have one that is occupied.
@@ -151,8 +151,8 @@ unsigned BroadPhase::occupied(const EightRanges& voxels) const {
 }
 
 /// From some nodes of the tool's tree to runs of triangles.
-void BroadPhase::descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen,
-                         NearLists& lists) const {
+void BroadPhase::descend(const Search& search, const RunTree::Group& from, CandidatePairs::Seen& seen,
+                         Candidates& lists) const {
   on_this_processor([&] {
     tree_->descend(
         search.voxels, from, [&](const EightRanges& voxels) { return occupied(voxels); },
@@ -164,8 +164,8 @@ void BroadPhase::descend(const Search& search, const RunTree::Group& from, NearP
 }
 
 /// The triangles of a run, each by the box of its corners.
-void BroadPhase::take_run(const Search& search, std::size_t run, NearPairs::Seen& seen,
-                          NearLists& lists) const {
+void BroadPhase::take_run(const Search& search, std::size_t run, CandidatePairs::Seen& seen,
+                          Candidates& lists) const {
   const BrickBits& occupied = occupied_.front();
   EightRanges voxels;
   voxels_of(search.voxels, runs_[run], voxels);
@@ -173,7 +173,7 @@ void BroadPhase::take_run(const Search& search, std::size_t run, NearPairs::Seen
     const auto i = static_cast<std::size_t>(std::countr_zero(near));
     const auto place = static_cast<std::uint32_t>(run * gpu::kRunSize + i);
     bool begun = false;
-    NearPairs::Triangle triangle;
+    CandidatePairs::Triangle triangle;
     occupied.for_bricks(voxels.range(i), [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       const Int3 brick(x, y, z);
       const std::uint32_t slot = occupied.slot(occupied.number(x, y, z));
@@ -190,7 +190,7 @@ namespace {
 
 /// Puts what `more` holds behind what `list` holds. False: there is no room.
 template <class T>
-bool append(HostList<T>& list, const HostList<T>& more) {
+bool append(WorkList<T>& list, const WorkList<T>& more) {
   if (more.count > list.room.size() - list.count) return false;
   std::copy_n(more.room.begin(), more.count, list.room.begin() + list.count);
   list.count += more.count;
@@ -201,16 +201,16 @@ bool append(HostList<T>& list, const HostList<T>& more) {
 
 /// Pairs in parts beside each other, and samples, too, where `samples_of` is not null.
 void BroadPhase::find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper,
-                             NearLists& lists) {
+                             Candidates& lists) {
   std::array<RunTree::Group, kMostGroups> groups;
   const std::size_t count = tree_->divide(
       search.voxels, [&](const EightRanges& voxels) { return occupied(voxels); }, groups);
   if (second_touch_.size() != lists.touch.room.size())
     second_touch_.resize(lists.touch.room.size());  // at first, and when the lists have been enlarged
   if (second_pairs_.size() != lists.pairs.room.size()) second_pairs_.resize(lists.pairs.room.size());
-  NearLists samples = lists,
-            second{
-                .touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
+  Candidates samples = lists,
+             second{
+                 .touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
   const std::uint32_t ahead = samples_of != nullptr ? 1 : 0;
   share_parts(&helper, static_cast<std::uint32_t>(count) + ahead, [&](std::uint32_t part, int lane) {
     if (part < ahead)
@@ -220,8 +220,8 @@ void BroadPhase::find_beside(const Search& search, const Reach* samples_of, Fram
               lane == 0 ? lists : second);
   });
   if (lists.full == gpu::kNone) lists.full = second.full;
-  if (lists.full == gpu::kNone && !append(lists.touch, second.touch)) lists.full = kNearTouch;
-  if (lists.full == gpu::kNone && !append(lists.pairs, second.pairs)) lists.full = kNearPairs;
+  if (lists.full == gpu::kNone && !append(lists.touch, second.touch)) lists.full = kCandidateTouch;
+  if (lists.full == gpu::kNone && !append(lists.pairs, second.pairs)) lists.full = kCandidatePairs;
   if (ahead == 0) return;
   lists.samples = samples.samples;
   lists.inside = samples.inside;
@@ -229,7 +229,7 @@ void BroadPhase::find_beside(const Search& search, const Reach* samples_of, Fram
   if (lists.full == gpu::kNone) lists.full = samples.full;
 }
 
-void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const {
+void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, Candidates& lists) const {
   // The tool's inside reaches beyond its triangles by less than a grown voxel of its partition (EXACTNESS.md,
   // section 2).
   const double margin = inside_margin_, brick = 8.0 * grid_.size;
@@ -245,14 +245,14 @@ void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, NearL
   samples_.find(pose, first, last, lists);
 }
 
-bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
+bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, Candidates& lists) {
   const bool meet = search_all(tool, helper, lists);
   looks_ = lists.samples.count + lists.inside.count + lists.open.count;
-  for (NearPairs::Seen& seen : seen_) looks_ += std::exchange(seen.looks, 0);
+  for (CandidatePairs::Seen& seen : seen_) looks_ += std::exchange(seen.looks, 0);
   return meet;
 }
 
-bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, NearLists& lists) {
+bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, Candidates& lists) {
   const LatticePose& pose = tool.pose();
   if (whole_.half[0] < 0) return false;
   const Turn turn(pose);

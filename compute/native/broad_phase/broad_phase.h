@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "compute/native/broad_phase/near_lists.h"
-#include "compute/native/broad_phase/near_pairs.h"
-#include "compute/native/broad_phase/near_samples.h"
+#include "compute/native/broad_phase/candidate_pairs.h"
+#include "compute/native/broad_phase/candidate_samples.h"
+#include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/posed_tool.h"
 #include "compute/native/broad_phase/run_tree.h"
 #include "compute/native/broad_phase/turned_boxes.h"
@@ -35,7 +35,7 @@ class BroadPhase {
   /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may
   /// come, pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside
   /// the tool. True: they may. The pose must not be beyond the lattice. `helper` may be null.
-  bool find(PosedTool& tool, FrameHelper* helper, NearLists& lists);
+  bool find(PosedTool& tool, FrameHelper* helper, Candidates& lists);
   /// Voxels, list entries and samples that the last find() looked at.
   std::uint64_t looks() const { return looks_; }
 
@@ -54,22 +54,22 @@ class BroadPhase {
   Reach reach(const Turn& turn, const Box& box) const;
   bool meets(const Reach& reach) const;
   bool meets(BrickBits::Range voxels) const;
-  bool search_all(PosedTool& tool, FrameHelper* helper, NearLists& lists);
+  bool search_all(PosedTool& tool, FrameHelper* helper, Candidates& lists);
   unsigned occupied(const EightRanges& voxels) const;
-  void descend(const Search& search, const RunTree::Group& from, NearPairs::Seen& seen,
-               NearLists& lists) const;
-  void find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, NearLists& lists);
-  void take_run(const Search& search, std::size_t run, NearPairs::Seen& seen, NearLists& lists) const;
-  void find_samples(const LatticePose& pose, const Reach& whole, NearLists& lists) const;
+  void descend(const Search& search, const RunTree::Group& from, CandidatePairs::Seen& seen,
+               Candidates& lists) const;
+  void find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, Candidates& lists);
+  void take_run(const Search& search, std::size_t run, CandidatePairs::Seen& seen, Candidates& lists) const;
+  void find_samples(const LatticePose& pose, const Reach& whole, Candidates& lists) const;
 
   std::span<const std::uint32_t> order_;
   std::size_t statics_ = 0;  ///< triangles of the mock-up
-  NearPairs pairs_;
-  std::array<NearPairs::Seen, FrameHelper::kLanes> seen_;  ///< by thread of the frame
+  CandidatePairs pairs_;
+  std::array<CandidatePairs::Seen, FrameHelper::kLanes> seen_;  ///< by thread of the frame
   std::uint64_t looks_ = 0;
   std::vector<TouchCandidate> second_touch_;  ///< what the helper finds, as large as the lists
   std::vector<PairCandidate> second_pairs_;
-  NearSamples samples_;
+  CandidateSamples samples_;
   double inside_margin_ = 0;     ///< steps
   bool has_inside_ = false;      ///< samples are asked whether they lie inside the tool
   bool always_samples_ = false;  ///< the tool has an inside that its surface does not close

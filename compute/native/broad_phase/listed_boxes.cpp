@@ -25,7 +25,7 @@ namespace plain {
 constexpr std::size_t kWidth = 4;
 static void spread(const Four& four, Four& out) { out = four; }
 static Four gather(const Four& words) { return words; }
-#include "compute/native/broad_phase/listed_boxes_lanes.h"
+#include "compute/native/broad_phase/listed_boxes_simd.h"
 }  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
@@ -39,7 +39,7 @@ static Four gather(const Twice& words) {
   return __builtin_shufflevector(words, words, 0, 1, 2, 3) |
          __builtin_shufflevector(words, words, 4, 5, 6, 7);
 }
-#include "compute/native/broad_phase/listed_boxes_lanes.h"
+#include "compute/native/broad_phase/listed_boxes_simd.h"
 }  // namespace second
 PALPATE_SECOND_CODE_END
 #endif

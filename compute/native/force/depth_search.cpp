@@ -201,14 +201,14 @@ namespace {
 
 namespace plain {
 constexpr std::size_t kWidth = 4;
-#include "compute/native/force/depth_lanes.h"
+#include "compute/native/force/depth_simd.h"
 }  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 #define PALPATE_SIGN_BITS
 namespace second {
 constexpr std::size_t kWidth = 8;
-#include "compute/native/force/depth_lanes.h"
+#include "compute/native/force/depth_simd.h"
 }  // namespace second
 #undef PALPATE_SIGN_BITS
 PALPATE_SECOND_CODE_END

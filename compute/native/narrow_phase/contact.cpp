@@ -23,7 +23,7 @@ std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, co
   return out;
 }
 
-void HostContact::decide(PosedTool& tool, const NearLists& near, FrameHelper* helper, Contacts& out) {
+void HostContact::decide(PosedTool& tool, const Candidates& near, FrameHelper* helper, Contacts& out) {
   sets_.decide(tool, near, statics_, helper, found_);
   out.contact = found_.state.contact != 0;
   out.pairs = found_.pairs.size();

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/posed_tool.h"
 #include "compute/native/force/field.h"
 #include "compute/native/frame_helper.h"
@@ -27,7 +27,7 @@ class HostContact {
   /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `helper` may be
   /// null. `stage(name, looks)` is called at the end of each stage, as Contacts::StageTime has it.
   template <class Stage>
-  void solve(PosedTool& tool, const Ignored* ignored, const NearLists& near, FrameHelper* helper,
+  void solve(PosedTool& tool, const Ignored* ignored, const Candidates& near, FrameHelper* helper,
              Contacts& out, Stage stage) {
     decide(tool, near, helper, out);
     stage("sets", near.pairs.count + near.touch.count + near.open.count + found_.statics.size() +
@@ -43,7 +43,7 @@ class HostContact {
 
  private:
   HostContact() = default;
-  void decide(PosedTool& tool, const NearLists& near, FrameHelper* helper, Contacts& out);
+  void decide(PosedTool& tool, const Candidates& near, FrameHelper* helper, Contacts& out);
 
   HostPartition mockup_, tool_;
   std::vector<std::uint8_t> tool_boxes_;  ///< SearchTables::boxes_of

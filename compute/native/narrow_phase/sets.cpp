@@ -210,7 +210,7 @@ void HostSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate
 
 /// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is
 /// not asked.
-void HostSets::decide_voxels(PosedTool& tool, const NearLists& near) {
+void HostSets::decide_voxels(PosedTool& tool, const Candidates& near) {
   const GridConstants& grid = mockup_.grid();
   std::uint32_t place = kNone, id = 0, marks = 0;  // candidates of one tool triangle follow each other
   const exact::Corners* corners = nullptr;         // its own, once they are asked for
@@ -269,7 +269,7 @@ void HostSets::list(IdMarks& statics, FoundSets& out) {
   });
 }
 
-void HostSets::decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper,
+void HostSets::decide(PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
                       FoundSets& out) {
   out.state = {};
   out.statics.clear();

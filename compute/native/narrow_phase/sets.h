@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/posed_tool.h"
 #include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/cell_memo.h"
@@ -40,13 +40,13 @@ class HostSets {
 
   /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked
   /// there (kStatic…) and numbered. `helper` may be null.
-  void decide(PosedTool& tool, const NearLists& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
+  void decide(PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
 
   /// Whether a world lattice point lies inside the tool (section 4). Any number of threads.
   bool inside(const LatticePose& pose, const Int3& point) const;
 
  private:
-  void decide_voxels(PosedTool& tool, const NearLists& near);
+  void decide_voxels(PosedTool& tool, const Candidates& near);
   void mark_lists(IdMarks& statics);
   void list(IdMarks& statics, FoundSets& out);
   /// A point in a V_bnd voxel of the fine partition, of one open sample or of several that follow each other:

@@ -5,26 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "compute/native/queries/nearest_points.h"
 #include "compute/native/queries/pair_gap.h"
 
 namespace palpate::native {
 namespace {
 
 constexpr std::uint32_t kWide = kLanes;
-using Vec = std::array<double, 3>;
-
-Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec operator+(const Vec& a, const Vec& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vec operator*(const Vec& a, double f) { return {a[0] * f, a[1] * f, a[2] * f}; }
-double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec cross(const Vec& a, const Vec& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-Vec vec(const Int3& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-Vec vec(const Vec3& p) { return {p.x, p.y, p.z}; }
 
 double largest(const BoxOf& box) {
   return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
@@ -68,49 +55,6 @@ double overlap(const BoxOf& box, const Boxes& boxes, std::size_t i) {
 BoxOf box_of(const exact::Corners& t) {
   const exact::Box box = exact::box_of(t);
   return {vec(box.low), vec(box.high)};
-}
-
-struct NearestPoints {
-  double squared = std::numeric_limits<double>::infinity();
-  Vec on_s{}, on_m{};
-  void take(const Vec& s, const Vec& m) {
-    const Vec way = m - s;
-    const double d = dot(way, way);
-    if (d < squared) *this = {d, s, m};
-  }
-};
-
-/// A direction across which two triangles are apart is all that is wanted: whatever it is worth is measured
-/// along it.
-NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m) {
-  NearestPoints out;
-  const auto above = [&](const Vec& p, const std::array<Vec, 3>& t, bool of_m) {
-    const Vec n = cross(t[1] - t[0], t[2] - t[0]);
-    const double size = dot(n, n);
-    if (!(size > 0)) return;
-    for (std::size_t e = 0; e < 3; ++e)
-      if (dot(cross(n, t[(e + 1) % 3] - t[e]), p - t[e]) < 0) return;
-    const Vec foot = p - n * (dot(n, p - t[0]) / size);
-    if (of_m)
-      out.take(foot, p);
-    else
-      out.take(p, foot);
-  };
-  for (std::size_t c = 0; c < 3; ++c) {
-    above(m[c], s, true);
-    above(s[c], m, false);
-  }
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Vec e = s[(i + 1) % 3] - s[i], f = m[(j + 1) % 3] - m[j], r = s[i] - m[j];
-      const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r),
-                   under = ee * ff - ef * ef;
-      double a = under > 0 ? std::clamp((ef * fr - er * ff) / under, 0.0, 1.0) : 0.0;
-      const double b = std::clamp((ef * a + fr) / ff, 0.0, 1.0);
-      a = std::clamp((ef * b - er) / ee, 0.0, 1.0);
-      out.take(s[i] + e * a, m[j] + f * b);
-    }
-  return out;
 }
 
 }  // namespace

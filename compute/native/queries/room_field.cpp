@@ -19,13 +19,13 @@ namespace {
 
 namespace plain {
 constexpr std::size_t kWidth = 4;
-#include "compute/native/queries/room_lanes.h"
+#include "compute/native/queries/room_simd.h"
 }  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
 constexpr std::size_t kWidth = 8;
-#include "compute/native/queries/room_lanes.h"
+#include "compute/native/queries/room_simd.h"
 }  // namespace second
 PALPATE_SECOND_CODE_END
 #endif

@@ -6,7 +6,7 @@ import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const packages = join(process.cwd(), 'node_modules');
-if (!existsSync('installed')) { console.log('skipped: the viewer\'s packages are not here: `npm ci` failed when the viewer was built'); process.exit(77); }
+if (!existsSync('installed')) { console.error('the viewer\'s packages are not here: `npm ci` failed when the viewer was built'); process.exit(1); }
 const node = (...args) => spawnSync(process.execPath, args, { stdio: 'inherit' }).status ?? 1;
 const types = node(join(packages, 'typescript/bin/tsc'), '--noEmit', '-p', '.');
 if (types !== 0) process.exit(types);

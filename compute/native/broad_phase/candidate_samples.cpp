@@ -1,4 +1,4 @@
-#include "compute/native/broad_phase/near_samples.h"
+#include "compute/native/broad_phase/candidate_samples.h"
 
 #include <algorithm>
 #include <bit>
@@ -72,13 +72,13 @@ struct SolidPoints {
 
 namespace plain {
 constexpr std::size_t kWidth = 4;
-#include "compute/native/broad_phase/near_samples_lanes.h"
+#include "compute/native/broad_phase/candidate_samples_simd.h"
 }  // namespace plain
 #if PALPATE_TWO_CODES
 PALPATE_SECOND_CODE_BEGIN
 namespace second {
 constexpr std::size_t kWidth = 8;
-#include "compute/native/broad_phase/near_samples_lanes.h"
+#include "compute/native/broad_phase/candidate_samples_simd.h"
 }  // namespace second
 PALPATE_SECOND_CODE_END
 #endif
@@ -101,11 +101,11 @@ void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& 
 
 }  // namespace
 
-struct NearSamples::Search {
+struct CandidateSamples::Search {
   const LatticePose& pose;
   double rotation[3][3];  // world from tool
   double translation[3];
-  NearLists& lists;
+  Candidates& lists;
   FineTurn fine{};
 
   /// Tool lattice point of a world lattice point, off by less than 2^-20.
@@ -128,8 +128,8 @@ struct NearSamples::Search {
   }
 };
 
-NearSamples NearSamples::make(const SceneGeometry& geometry, const SceneTables& scene) {
-  NearSamples out;
+CandidateSamples CandidateSamples::make(const SceneGeometry& geometry, const SceneTables& scene) {
+  CandidateSamples out;
   const PartitionView& m = scene.mockup;
   out.mockup_ = m.grid;
   out.fine_ = scene.constants.fine;
@@ -168,7 +168,8 @@ NearSamples NearSamples::make(const SceneGeometry& geometry, const SceneTables& 
   return out;
 }
 
-NearSamples::Level NearSamples::make_level(const std::vector<std::uint8_t>& cubes, double reach) const {
+CandidateSamples::Level CandidateSamples::make_level(const std::vector<std::uint8_t>& cubes,
+                                                     double reach) const {
   Level out;
   out.border = static_cast<std::int32_t>((reach + 2) * per_cube_) + 1;
   out.cells = fine_.bricks + 2 * out.border;
@@ -183,7 +184,7 @@ NearSamples::Level NearSamples::make_level(const std::vector<std::uint8_t>& cube
   return out;
 }
 
-bool NearSamples::near_cube(const Level& level, const double (&p)[3]) const {
+bool CandidateSamples::near_cube(const Level& level, const double (&p)[3]) const {
   Int3 cell;
   for (int k = 0; k < 3; ++k) {
     const double along = (p[k] - fine_.origin[k]) * per_cube_ + level.border;
@@ -195,7 +196,7 @@ bool NearSamples::near_cube(const Level& level, const double (&p)[3]) const {
 
 /// kVoxel… of the fine voxel that holds a point; V_ext beyond the grid. For an open sample the device begins
 /// at the same voxel.
-std::uint32_t NearSamples::fine_class(const Int3& p) const {
+std::uint32_t CandidateSamples::fine_class(const Int3& p) const {
   Int3 v;
   for (int k = 0; k < 3; ++k) {
     // Half a step from the nearest integer quotient, which is far more than a double rounds.
@@ -210,7 +211,7 @@ std::uint32_t NearSamples::fine_class(const Int3& p) const {
                                   : gpu::kVoxelExternal;
 }
 
-bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
+bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
   const HostSamples& from = *sampled_;
   const Int3 lowest = mockup_.origin + mockup_.size * voxel;
   std::optional<HostSamples::Voxel> grid;  // once a point is wanted
@@ -259,24 +260,24 @@ bool NearSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t b
       auto& list = internal ? search.lists.inside : search.lists.open;
       for (const std::uint16_t entry : triangles) {
         sample.static_id = ids[entry] | mark;
-        if (!search.lists.push(list, internal ? kNearInside : kNearOpen, sample)) return false;
+        if (!search.lists.push(list, internal ? kCandidateInside : kCandidateOpen, sample)) return false;
       }
     }
   }
   return true;
 }
 
-bool NearSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const {
+bool CandidateSamples::take_voxel(Search& search, const Int3& voxel, std::uint32_t boundary) const {
   if (listed_) return take_listed(search, voxel, boundary);
   const std::uint32_t end = list_begin_[boundary + 1];
   for (std::uint32_t e = list_begin_[boundary]; e < end; e += gpu::kSampleChunk)
-    if (!search.lists.push(search.lists.samples, kNearChunks,
+    if (!search.lists.push(search.lists.samples, kCandidateChunks,
                            {voxel, e, std::min(e + gpu::kSampleChunk, end)}))
       return false;
   return true;
 }
 
-void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t slot) const {
+void CandidateSamples::take_brick(Search& search, const Int3& brick, std::uint32_t slot) const {
   const std::int32_t size = mockup_.size;
   const Int3 origin = mockup_.origin + 8 * size * brick;
   double q[3];
@@ -333,7 +334,8 @@ void NearSamples::take_brick(Search& search, const Int3& brick, std::uint32_t sl
   }
 }
 
-void NearSamples::find(const LatticePose& pose, const Int3& first, const Int3& last, NearLists& lists) const {
+void CandidateSamples::find(const LatticePose& pose, const Int3& first, const Int3& last,
+                            Candidates& lists) const {
   Search search{pose, {}, {}, lists};
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = pose.rotation_q30[r][c] * 0x1p-30;

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/listed_boxes.h"
-#include "compute/native/broad_phase/near_lists.h"
 #include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/scene/exact.h"
 #include "compute/scene/scene_tables.h"
@@ -15,7 +15,7 @@ namespace palpate {
 /// Goes from tool triangles near a brick to the voxels that they may touch and to the static triangles whose
 /// boxes theirs meet. The device decides both exactly. Any number of threads, each with what it has Seen;
 /// nothing but make() and Seen's resize() allocates.
-class NearPairs {
+class CandidatePairs {
  public:
   /// Which static triangles a thread has taken for its present tool triangle.
   class Seen {
@@ -24,12 +24,12 @@ class NearPairs {
     std::uint64_t looks = 0;  ///< voxels and their list entries that it has looked at
 
    private:
-    friend class NearPairs;
+    friend class CandidatePairs;
     std::vector<std::uint32_t> by_;  ///< by static triangle: the last tool triangle that took it
     std::uint32_t looker_ = 0;       ///< number of the present one
   };
 
-  static NearPairs make(const SceneTables& scene);
+  static CandidatePairs make(const SceneTables& scene);
 
   /// A tool triangle at a pose.
   struct Triangle {
@@ -48,14 +48,14 @@ class NearPairs {
   bool begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes, std::size_t i,
              Seen& seen, Triangle& out) const;
   /// Appends what lies in one brick. False: a list had no room.
-  bool take(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen, NearLists& lists) const;
+  bool take(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen, Candidates& lists) const;
 
  private:
   bool off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const;
   bool take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen,
-                  NearLists& lists) const;
+                  Candidates& lists) const;
   bool take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, Seen& seen,
-                 NearLists& lists) const;
+                 Candidates& lists) const;
 
   gpu::GridConstants grid_{};
   double per_part_ = 0;  ///< parts of a voxel a step

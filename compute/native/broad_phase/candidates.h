@@ -22,13 +22,13 @@ struct PairCandidate {
   std::uint32_t place;  ///< of the tool triangle, in the order of clusters
 };
 
-/// The lists of NearLists, by number.
-inline constexpr std::uint32_t kNearTouch = 0, kNearPairs = 1, kNearChunks = 2, kNearInside = 3,
-                               kNearOpen = 4;
+/// The lists of Candidates, by number.
+inline constexpr std::uint32_t kCandidateTouch = 0, kCandidatePairs = 1, kCandidateChunks = 2,
+                               kCandidateInside = 3, kCandidateOpen = 4;
 
 /// A list that the search fills for one frame, in memory of the engine's.
 template <class T>
-struct HostList {
+struct WorkList {
   std::span<T> room;
   std::uint32_t count = 0;
   /// False: there is no room.
@@ -41,17 +41,17 @@ struct HostList {
 
 /// What the search finds near at a pose: all that the engine then decides exactly. Errs only towards "may
 /// meet".
-struct NearLists {
-  HostList<TouchCandidate> touch;
-  HostList<PairCandidate> pairs;
-  HostList<gpu::SampleChunk> samples;  ///< where samples are not listed
-  HostList<gpu::FrameSample> inside,
+struct Candidates {
+  WorkList<TouchCandidate> touch;
+  WorkList<PairCandidate> pairs;
+  WorkList<gpu::SampleChunk> samples;  ///< where samples are not listed
+  WorkList<gpu::FrameSample> inside,
       open;  ///< where they are: what the tool's fine partition has inside, and what it leaves open
-  std::uint32_t full = gpu::kNone;  ///< the kNear… that had no room; the search ended there
+  std::uint32_t full = gpu::kNone;  ///< the kCandidate… that had no room; the search ended there
 
-  /// As HostList::push; notes `list` as full.
+  /// As WorkList::push; notes `list` as full.
   template <class T>
-  bool push(HostList<T>& to, std::uint32_t list, const T& item) {
+  bool push(WorkList<T>& to, std::uint32_t list, const T& item) {
     if (to.push(item)) return true;
     full = list;
     return false;

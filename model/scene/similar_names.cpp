@@ -1,4 +1,4 @@
-#include "model/scene/near_names.h"
+#include "model/scene/similar_names.h"
 
 #include <algorithm>
 #include <cctype>
@@ -26,7 +26,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string near_names(const std::string& name, const std::vector<std::string>& names) {
+std::string similar_names(const std::string& name, const std::vector<std::string>& names) {
   constexpr std::size_t kLongest = 256;  // a longer name is no slip of the pen, and edits() is quadratic
   std::vector<std::pair<std::size_t, std::string>> near;
   for (const std::string& other : names) {

@@ -29,8 +29,8 @@ EDIT(kBindSampleChunks, SampleChunk, sample_chunks);
 
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/list_room.glsl"
-#include "shaders/lib/near/turned_box.glsl"
-#include "shaders/lib/near/occupied.glsl"
+#include "shaders/lib/broad_phase/turned_box.glsl"
+#include "shaders/lib/broad_phase/occupied.glsl"
 #include "shaders/lib/group_count.glsl"
 GROUP_COUNTS(kBindNearGroups, near_groups)
 

@@ -1,5 +1,5 @@
-// Included by near_samples.cpp alone, once for each processor's code (processor.h); so it guards nothing and
-// includes nothing. kWidth: floats in a vector of the processor's.
+// Included by candidate_samples.cpp alone, once for each processor's code (processor.h); so it guards nothing
+// and includes nothing. kWidth: floats in a vector of the processor's.
 
 using Floats = float __attribute__((vector_size(4 * kWidth)));
 using Doubles = double __attribute__((vector_size(8 * kWidth / 2)));

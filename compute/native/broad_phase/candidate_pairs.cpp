@@ -1,4 +1,4 @@
-#include "compute/native/broad_phase/near_pairs.h"
+#include "compute/native/broad_phase/candidate_pairs.h"
 
 #include <algorithm>
 #include <bit>
@@ -15,8 +15,8 @@ constexpr std::int32_t kFewVoxels = 64;  // beyond, a look at the brick as a who
 
 }  // namespace
 
-NearPairs NearPairs::make(const SceneTables& scene) {
-  NearPairs out;
+CandidatePairs CandidatePairs::make(const SceneTables& scene) {
+  CandidatePairs out;
   const PartitionView& mockup = scene.mockup;
   out.grid_ = mockup.grid;
   out.per_part_ = static_cast<double>(kVoxelParts) / mockup.grid.size;
@@ -31,8 +31,8 @@ NearPairs NearPairs::make(const SceneTables& scene) {
   return out;
 }
 
-bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes,
-                      std::size_t i, Seen& seen, Triangle& out) const {
+bool CandidatePairs::begin(const exact::Corners& corners, std::uint32_t place, const EightRanges& boxes,
+                           std::size_t i, Seen& seen, Triangle& out) const {
   const exact::Normal n = exact::raw_normal(corners);
   if (n == exact::Normal{}) return false;
   out.place = place;
@@ -60,7 +60,7 @@ bool NearPairs::begin(const exact::Corners& corners, std::uint32_t place, const 
 /// Whether all of a box of voxels, grown by kCloseSteps, lies on one side of the triangle's plane. A step is
 /// taken for the rounding of doubles: with distances below 2^30 the sum is off by less than 2^-20 of the
 /// normal's size.
-bool NearPairs::off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const {
+bool CandidatePairs::off_plane(const Triangle& triangle, const Int3& low, std::int32_t side) const {
   const double half = 0.5 * side;
   const Int3& a = triangle.corner;
   const double distance = triangle.normal[0] * (low.x - a.x + half) +
@@ -72,8 +72,8 @@ bool NearPairs::off_plane(const Triangle& triangle, const Int3& low, std::int32_
 /// Of the static triangles that a voxel lists, those whose boxes there meet the triangle's and its plane.
 /// Where two triangles are within kCloseSteps of each other, the static one is so in some voxel that lists
 /// it, and there all of this lets it pass.
-bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, Seen& seen,
-                          NearLists& lists) const {
+bool CandidatePairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t boundary, Seen& seen,
+                               Candidates& lists) const {
   ListLook& look = triangle.look;
   double distance = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -93,24 +93,24 @@ bool NearPairs::take_list(Triangle& triangle, const Int3& voxel, std::uint32_t b
           list_triangles_[begin + first + static_cast<std::size_t>(std::countr_zero(rest))];
       if (seen.by_[id] == seen.looker_) continue;  // one pair lies in many voxels
       seen.by_[id] = seen.looker_;
-      if (!lists.push(lists.pairs, kNearPairs, {id, triangle.place})) return false;
+      if (!lists.push(lists.pairs, kCandidatePairs, {id, triangle.place})) return false;
     }
   return true;
 }
 
-bool NearPairs::take(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen,
-                     NearLists& lists) const {
+bool CandidatePairs::take(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen,
+                          Candidates& lists) const {
   return on_this_processor([&] { return take_brick(triangle, brick, slot, seen, lists); });
 }
 
-bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen,
-                           NearLists& lists) const {
+bool CandidatePairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t slot, Seen& seen,
+                                Candidates& lists) const {
   const std::int32_t size = grid_.size;
   const Int3 origin = grid_.origin + 8 * size * brick;
   if (slot == gpu::kBrickInternal) {
     if (off_plane(triangle, origin, 8 * size)) return true;
     return lists.push(
-        lists.touch, kNearTouch,
+        lists.touch, kCandidateTouch,
         {triangle.place, gpu::kNoVoxel, brick.x * 8 | brick.y * 8 << 16, brick.z * 8 | kWholeBrick});
   }
   Int3 first, last;
@@ -138,7 +138,8 @@ bool NearPairs::take_brick(Triangle& triangle, const Int3& brick, std::uint32_t 
             listed ? voxels.first[word] + static_cast<std::uint32_t>(std::popcount(boundary & (bit - 1)))
                    : gpu::kNoVoxel;
         const Int3 voxel = 8 * brick + Int3(x, y, z);
-        if (!lists.push(lists.touch, kNearTouch, {triangle.place, number, voxel.x | voxel.y << 16, voxel.z}))
+        if (!lists.push(lists.touch, kCandidateTouch,
+                        {triangle.place, number, voxel.x | voxel.y << 16, voxel.z}))
           return false;
         if (listed && !take_list(triangle, voxel, number, seen, lists)) return false;
       }

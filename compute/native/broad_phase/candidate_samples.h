@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/native/broad_phase/near_lists.h"
+#include "compute/native/broad_phase/candidates.h"
 #include "compute/scene/brick_bits.h"
 #include "compute/scene/samples.h"
 #include "compute/scene/scene_tables.h"
@@ -16,13 +16,13 @@ namespace palpate {
 /// Which samples of the mock-up may lie inside the tool: those in V_bnd voxels near its solid, found in ever
 /// smaller cubes. Where samples are listed, the tool's fine partition answers for most of them here; the
 /// device decides about the rest. One thread; find() does not allocate.
-class NearSamples {
+class CandidateSamples {
  public:
   /// Geometry and scene outlive this.
-  static NearSamples make(const SceneGeometry& geometry, const SceneTables& scene);
+  static CandidateSamples make(const SceneGeometry& geometry, const SceneTables& scene);
   /// Appends to lists.inside and open, or to lists.samples, for bricks first … last of the mock-up's grid.
   /// Where it has no room, the search ends.
-  void find(const LatticePose& pose, const Int3& first, const Int3& last, NearLists& lists) const;
+  void find(const LatticePose& pose, const Int3& first, const Int3& last, Candidates& lists) const;
 
  private:
   /// Cubes of 8³ fine voxels, with a border: whether the centre of a cube of mock-up voxels there has one of
