@@ -52,9 +52,12 @@ install(FILES "${PROJECT_BINARY_DIR}/palpateConfig.cmake" "${PROJECT_BINARY_DIR}
 # The shared library for C: palpate.h stands by itself, so that `#include <palpate.h>` finds it without a folder.
 install(TARGETS palpate_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 install(FILES service/library/palpate.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
-# From lib/pkgconfig, or lib/x86_64-linux-gnu/pkgconfig, up to the prefix, wherever that is moved.
-file(RELATIVE_PATH PALPATE_PC_UP "/${CMAKE_INSTALL_LIBDIR}" "/")
-configure_file(scripts/cmake/palpate.pc.in "${PROJECT_BINARY_DIR}/palpate.pc" @ONLY)
+# palpate_write_pkg_config(FILE LIBDIR): from LIBDIR/pkgconfig, in lib or lib/x86_64-linux-gnu, up to the prefix, wherever that is moved.
+function(palpate_write_pkg_config file PALPATE_PC_LIBDIR)
+  file(RELATIVE_PATH PALPATE_PC_UP "/${PALPATE_PC_LIBDIR}" "/")
+  configure_file(scripts/cmake/palpate.pc.in "${file}" @ONLY)
+endfunction()
+palpate_write_pkg_config("${PROJECT_BINARY_DIR}/palpate.pc" ${CMAKE_INSTALL_LIBDIR})
 install(FILES "${PROJECT_BINARY_DIR}/palpate.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
 
 # Packages whose headers or texts become part of the program.
