@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
 #ifdef PALPATE_BENCH_PEERS
   parts.make_peers = palpate::make_peers;
   parts.make_judge = palpate::make_judge;
+  parts.make_question_peers = palpate::make_question_peers;
 #endif
   return palpate::command_line(argc, argv, parts);
 }

@@ -13,4 +13,11 @@ std::vector<std::unique_ptr<Peer>> make_peers() {
   return out;
 }
 
+std::vector<std::unique_ptr<QuestionPeer>> make_question_peers() {
+  std::vector<std::unique_ptr<QuestionPeer>> out;
+  out.push_back(peers::make_fcl_obbrss());
+  out.push_back(peers::make_fcl_rss());
+  return out;
+}
+
 }  // namespace palpate

@@ -69,9 +69,10 @@ void add_poses(CLI::App& app, BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
-  CLI::App* bench = app.add_subcommand("bench",
-                                       "measure: a frame, batches, growth, preparation, other libraries, "
-                                       "plans, the force's error and stability, the loop's punctuality");
+  CLI::App* bench =
+      app.add_subcommand("bench",
+                         "measure: a frame, batches, growth, preparation, other libraries, questions, "
+                         "plans, the force's error and stability, the loop's punctuality");
   bench->require_subcommand(1);
   bench->footer(kFooter);
 
@@ -200,6 +201,29 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "Before anything is timed, each\n"
       "library's pairs are held against the exact ones: `missing` and `extra` count pairs over all poses.");
   measure(peers, bench_peers);
+
+  CLI::App* questions = bench->add_subcommand(
+      "questions", "touch or not, distance and first contact: a pose's time, beside other libraries'");
+  add_common(*questions, options);
+  add_poses(*questions, options);
+  questions
+      ->add_option(
+          "--reach", options.reach,
+          "poses are moved and turned at random, by up to so many radii of the tool and radians, mostly "
+          "by far less; 0: as they are (0.5)")
+      ->check(CLI::Range(0.0, 1000.0).description(""))
+      ->type_name("X");
+  one_backend(*questions);
+  questions->footer(
+      "Other libraries are there in a build with -DPALPATE_BENCH_PEERS=ON. Each is asked at the same poses, "
+      "in "
+      "turns. `poses_different`\n"
+      "counts where it disagrees with palpate, a distance by more than two lattice steps; a tool wholly "
+      "inside "
+      "is left out, for they see\n"
+      "surfaces alone. `first contact` goes from each pose to the next; `frame` is a whole frame, for "
+      "comparison.");
+  measure(questions, bench_questions);
 
   CLI::App* stability = bench->add_subcommand(
       "stability", "highest stable stiffness of each force law beside theory; steps and energy of the force");

@@ -25,6 +25,7 @@ struct BenchOptions {
   bool scenes_only = false;        ///< error: without the closed forms
   bool quick = false;              ///< error: two closed forms, few poses, few settings
   std::vector<std::string> peers;  ///< names to measure; empty: all
+  double reach = 0.5;              ///< questions: poses are moved by up to so many radii of the tool
   std::uint64_t most_triangles = 1'000'000;  ///< scale: of the largest mock-up
   double seconds = 60;                       ///< jitter: how long
   std::string out;
@@ -37,6 +38,7 @@ Result<void> bench_scale(const BenchOptions& options, const Parts& parts);
 Result<void> bench_prepare(const BenchOptions& options, const Parts& parts);
 Result<void> bench_error(const BenchOptions& options, const Parts& parts);
 Result<void> bench_peers(const BenchOptions& options, const Parts& parts);
+Result<void> bench_questions(const BenchOptions& options, const Parts& parts);
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts);
 Result<void> bench_plan(const BenchOptions& options, const Parts& parts);
 Result<void> bench_numerics(const BenchOptions& options, const Parts& parts);

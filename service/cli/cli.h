@@ -45,6 +45,7 @@ struct Parts {
   /// empty where they were not built.
   std::function<std::vector<std::unique_ptr<Peer>>()> make_peers;
   std::function<std::unique_ptr<Peer>()> make_judge;
+  std::function<std::vector<std::unique_ptr<QuestionPeer>>()> make_question_peers;
 };
 
 /// What several commands share.

@@ -209,4 +209,27 @@ def test_bench_scale_refines_a_scene_of_ones_own():
     expect('cull' in (folder / 'latency' / 'report.html').read_text(), 'the chart shows every stage')
 
 
+def test_bench_questions_times_all_that_a_planner_asks():
+    folder = Folder()
+    folder.write('block.stl', stl(box((0.06, 0.06, 0.03), (0, 0, -0.015))))
+    folder.write('ball.stl', stl(sphere(0.01)))
+    folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n' + ''.join(f'0,0,{0.004 + 0.002 * i},0,0,0,1\n' for i in range(8)))
+    scene = folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
+    asked = ('bench', 'questions', scene, '--poses', folder / 'poses.csv', '--rounds', '1', '--backend', 'cpu')
+    done = palpate(*asked, '--reach', '0', '--out', folder / 'out')
+    expect(done.code == 0, done)
+    rows = json.loads((folder / 'out' / 'results.json').read_text())['rows']
+    ours = {(row['question'], row['frames']): row for row in rows if row['library'] == 'palpate cpu'}
+    # A ball of 10 mm over a block's face: at 4, 6 and 8 mm it meets the block, at 10 mm its lowest corner just does, and five are free.
+    touching = ours['any', 'contact']['count']
+    expect(touching in (3, 4) and ours['any', 'all']['count'] == 8, ours['any', 'all'])
+    expect({question for question, kind in ours if kind == 'all'} == {'any', 'distance', 'first contact', 'frame'}, ours)
+    expect(ours['first contact', 'all']['count'] == 7 and all(row['p50_us'] > 0 for row in ours.values()), 'a motion from each pose to the next')
+    moved = palpate(*asked, '--reach', '50', '--out', folder / 'moved')
+    expect(moved.code == 0, moved)
+    rows = json.loads((folder / 'moved' / 'results.json').read_text())['rows']
+    expect(sum(row['count'] for row in rows if row['question'] == 'any' and row['frames'] in ('free', 'apart')) > 0, rows)
+    expect_refused(palpate(*asked, '--reach', '-1', '--out', folder / 'none'), 3, '--reach')
+
+
 main(globals())

@@ -1,7 +1,8 @@
 // Holds clearance() of the native engine against CGAL's exact kernel: no pair is nearer, the named pair is as
 // near, and both witnesses lie on their triangles but for rounding. CGAL finds the pairs whose boxes are near
 // enough by itself.
-//   distance_judge --poses N [SCENE...]
+//   distance_judge --poses N [--apart] [SCENE...]
+// --apart: N poses a scene at which it does not touch, from near the mock-up to far from it.
 // Without SCENE: the cases of tests/equivalence that together reach every rule.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
@@ -84,6 +85,26 @@ std::string judge(const SceneGeometry& geometry, Body& mockup, const LatticePose
   return "";
 }
 
+/// Poses at which the tool does not touch: along the scene's path as far as it is free, and about the
+/// mock-up, ever further away. Fewer than `count` where they are rare.
+std::vector<LatticePose> apart_poses(const Subject& subject, std::size_t count, double reach) {
+  constexpr std::uint64_t kRounds = 32, kFurther = 8;
+  const auto native = make_native_backend();
+  std::vector<LatticePose> out;
+  if (!native->prepare(subject.geometry, Plan{}, [](const char*, double) { return true; })) return out;
+  for (std::uint64_t round = 0; round < kRounds && out.size() < count; ++round) {
+    const double far = reach * static_cast<double>(1u << round % kFurther);
+    const std::vector<LatticePose> drawn = round == 0 && subject.path.size() > 1
+                                               ? poses_along(subject, count, far / 8, 3)
+                                               : poses_near(subject.geometry, count / 4 + 1, far, 3 + round);
+    std::vector<std::uint8_t> bits(drawn.size());
+    if (!native->touches(drawn, bits)) return out;
+    for (std::size_t i = 0; i < drawn.size() && out.size() < count; ++i)
+      if (bits[i] == 0 && !drawn[i].beyond_lattice) out.push_back(drawn[i]);
+  }
+  return out;
+}
+
 void ask(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
          Counts& counts) {
   const auto native = make_native_backend();
@@ -117,6 +138,8 @@ int run(int argc, char** argv) {
   std::vector<std::string> scenes;
   std::size_t poses = 8;
   double reach = 4;
+  bool apart = false;
+  app.add_flag("--apart", apart);
   app.add_option("scenes", scenes);
   app.add_option("--poses", poses);
   app.add_option("--reach", reach);
@@ -129,8 +152,9 @@ int run(int argc, char** argv) {
       return 1;
     }
     ask(file, subject->geometry,
-        subject->path.size() > 1 ? poses_along(*subject, poses, reach / 8, 3)
-                                 : poses_near(subject->geometry, poses, reach, 3),
+        apart                      ? apart_poses(*subject, poses, reach)
+        : subject->path.size() > 1 ? poses_along(*subject, poses, reach / 8, 3)
+                                   : poses_near(subject->geometry, poses, reach, 3),
         counts);
   }
   if (scenes.empty())

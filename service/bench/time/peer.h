@@ -27,10 +27,25 @@ class Peer {
   virtual void find(const LatticePose& pose, std::vector<TrianglePair>& pairs) = 0;
 };
 
+/// Another collision library, asked what a planner asks. One thread. Of a tool wholly inside a closed mock-up
+/// such libraries say that it does not touch, and how far the surfaces are apart.
+class QuestionPeer {
+ public:
+  virtual ~QuestionPeer() = default;
+  virtual std::string name() const = 0;     ///< "FCL OBBRSS"
+  virtual std::string version() const = 0;  ///< "0.7.0"
+  /// As Peer::build().
+  virtual void build(const SceneGeometry& geometry) = 0;
+  virtual bool touches(const LatticePose& pose) = 0;
+  /// Metres between the two surfaces; 0 or less where they meet.
+  virtual double distance(const LatticePose& pose) = 0;
+};
+
 /// The peers of this build, in the order of their columns, and last the judge: palpate's own integers
 /// ("exact"), slow, never timed. Defined in bench/peers, which is built only when asked for
 /// (PALPATE_BENCH_PEERS).
 std::vector<std::unique_ptr<Peer>> make_peers();
 std::unique_ptr<Peer> make_judge();
+std::vector<std::unique_ptr<QuestionPeer>> make_question_peers();
 
 }  // namespace palpate
