@@ -164,18 +164,4 @@ InsideCells::InsideCells(const LatticeMesh& mesh, const PartitionView& view,
   }
 }
 
-std::optional<bool> InsideCells::find(const Int3& point, const Int3& voxel, std::uint32_t boundary) const {
-  if (octants_.empty()) return std::nullopt;
-  std::uint32_t octant = 0, bit = 0;
-  for (int k = 2; k >= 0; --k) {
-    const auto cell = static_cast<std::uint32_t>((point[k] - origin_[k] - size_ * voxel[k]) *
-                                                 per_cell_);  // below 8: a step is more than a double rounds
-    octant = octant << 1 | cell / kSide;
-    bit = bit << 2 | cell % kSide;
-  }
-  const Octant& cells = octants_[8 * std::size_t{boundary} + octant];
-  if ((cells.touched >> bit & 1) != 0) return std::nullopt;
-  return (cells.inside >> bit & 1) != 0;
-}
-
 }  // namespace palpate

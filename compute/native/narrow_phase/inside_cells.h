@@ -26,6 +26,13 @@ class InsideCells {
   /// Of a point in a V_bnd voxel, of number `boundary`; none: a triangle may pass through its cell.
   std::optional<bool> find(const Int3& point, const Int3& voxel, std::uint32_t boundary) const;
 
+  /// Calls for what find() reads of a voxel.
+  void prefetch(std::uint32_t boundary) const {
+    if (octants_.empty()) return;
+    __builtin_prefetch(&octants_[8 * std::size_t{boundary}]);
+    __builtin_prefetch(&octants_[8 * std::size_t{boundary} + 4]);
+  }
+
  private:
   static constexpr int kSide = 4;  ///< cells of an octant of a voxel along an axis
   /// A bit a cell, x + 4 y + 16 z.
@@ -40,5 +47,20 @@ class InsideCells {
   double per_cell_ = 0;          ///< cells a step
   std::vector<Octant> octants_;  ///< eight a V_bnd voxel; empty: there are no cells
 };
+
+inline std::optional<bool> InsideCells::find(const Int3& point, const Int3& voxel,
+                                             std::uint32_t boundary) const {
+  if (octants_.empty()) return std::nullopt;
+  std::uint32_t octant = 0, bit = 0;
+  for (int k = 2; k >= 0; --k) {
+    const auto cell = static_cast<std::uint32_t>((point[k] - origin_[k] - size_ * voxel[k]) *
+                                                 per_cell_);  // below 8: a step is more than a double rounds
+    octant = octant << 1 | cell / kSide;
+    bit = bit << 2 | cell % kSide;
+  }
+  const Octant& cells = octants_[8 * std::size_t{boundary} + octant];
+  if ((cells.touched >> bit & 1) != 0) return std::nullopt;
+  return (cells.inside >> bit & 1) != 0;
+}
 
 }  // namespace palpate

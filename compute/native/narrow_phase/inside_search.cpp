@@ -40,6 +40,27 @@ bool InsideSearch::inside(const Int3& point) {
   return on_this_processor([&] { return inside_boundary(point, voxel, at.boundary); });
 }
 
+void InsideSearch::inside(std::span<const Int3> points, std::span<std::uint8_t> answers) {
+  struct Place {
+    Int3 voxel;
+    std::uint32_t boundary;
+  };
+  std::array<Place, kMostPoints> places;
+  on_this_processor([&] {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Int3 voxel = partition_->voxel_of(points[i]);
+      const HostPartition::Voxel at = partition_->at(voxel);
+      places[i] = {voxel, at.boundary};
+      answers[i] = at.kind == kVoxelInternal ? 1 : 0;
+      if (at.boundary != kNoVoxel) cells_.prefetch(at.boundary);
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (places[i].boundary == kNoVoxel) continue;
+      answers[i] = inside_boundary(points[i], places[i].voxel, places[i].boundary) ? 1 : 0;
+    }
+  });
+}
+
 /// In a V_bnd voxel.
 bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary) {
   if (mesh_->closed) {

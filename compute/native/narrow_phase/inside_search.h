@@ -21,6 +21,10 @@ class InsideSearch {
   InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes);
 
   bool inside(const Int3& point);
+  /// The same of many points of a body that is not closed: answers[i] is 1 where points[i] lies inside. What
+  /// all of them read is called for before the first is answered, for it lies far apart. At most kMostPoints.
+  void inside(std::span<const Int3> points, std::span<std::uint8_t> answers);
+  static constexpr std::size_t kMostPoints = 256;
   /// For a body that is not closed and is asked much.
   void keep_cells(const PartitionView& partition);
 

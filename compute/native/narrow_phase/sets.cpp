@@ -160,8 +160,18 @@ bool HostSets::walks_out(const LatticePose& pose, const Int3& point) const {
 /// EST of open samples.
 void HostSets::decide_open(const LatticePose& pose, std::span<const FrameSample> samples, Lane& lane) {
   if (!geometry_->tool.closed) {
-    for (const FrameSample& sample : samples)
-      if (in_tool_->inside(tool_point(pose, sample.point))) lane.inside.push_back(sample);
+    static_assert(kOpenPart <= InsideSearch::kMostPoints);
+    std::array<std::uint8_t, kOpenPart> inside;
+    lane.points.clear();  // each once: those at one place follow each other
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (i == 0 || samples[i].point != samples[i - 1].point)
+        lane.points.push_back(tool_point(pose, samples[i].point));
+    in_tool_->inside(lane.points, inside);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (i != 0 && samples[i].point != samples[i - 1].point) ++at;
+      if (inside[at] != 0) lane.inside.push_back(samples[i]);
+    }
     return;
   }
   on_this_processor([&] { find_cells(pose, samples, lane.open); });

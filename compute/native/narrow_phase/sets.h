@@ -64,6 +64,7 @@ class HostSets {
     PairFilter filter;
     std::vector<gpu::ContactPair> pairs;   ///< of this frame: those that meet
     std::vector<OpenPoint> open;           ///< of the part at hand
+    std::vector<Int3> points;              ///< likewise, in the tool's frame
     std::vector<gpu::FrameSample> inside;  ///< of this frame: those that lie inside
   };
   void decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& lane) const;
