@@ -74,7 +74,7 @@ std::string pictures(const LoadedScene& scene, const PathMoment& moment, const s
   };
   return "<h2>" + title + "</h2><p class=\"lead\">" + pair_text(moment.tool_part, moment.static_part) +
          "</p><div class=\"pair\">" +
-         figure(whole, "Section <span>the whole tool; mock-up red, tool blue</span>") +
+         figure(whole, "Section <span>the whole tool; mock-up orange, tool blue</span>") +
          figure(near, "Section <span>enlarged</span>") + "</div>";
 }
 

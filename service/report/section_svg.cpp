@@ -91,8 +91,9 @@ std::string section_svg(const SceneGeometry& geometry, const LatticePose& pose, 
   const auto world = [&](const Int3& p) {
     return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p);
   };
-  std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http:{}\">", kWidth, kHeight,
-                                "//www.w3.org/2000/svg");
+  std::string out =
+      fmt::format("<svg style=\"overflow:hidden\" viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http:{}\">",
+                  kWidth, kHeight, "//www.w3.org/2000/svg");
   out += outline(geometry.mockup.triangles.size(), "var(--cst, #c2453f)", view,
                  [&](std::uint32_t t, int k) { return world(geometry.mockup.corner(t, k)); });
   out += outline(geometry.tool.triangles.size(), "var(--cmt, #2f6fd6)", view,

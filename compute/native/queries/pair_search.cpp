@@ -279,7 +279,8 @@ bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number) {
   if (!any) return true;
   turned_gaps(m.corners, mockup.turned[number], turned);
   for (std::uint32_t n = sorted(policy, m.box, boxes, gaps, all, order); n-- > 0;)
-    if (policy.near(gaps[order[n]]) && !leaf(policy, m, kWide * number + order[n], box_at(boxes, order[n])))
+    if (policy.near(std::max(gaps[order[n]], turned[order[n]])) &&
+        !leaf(policy, m, kWide * number + order[n], box_at(boxes, order[n])))
       return false;
   return true;
 }
