@@ -6,6 +6,9 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
+#include <optional>
+#include <type_traits>
+
 #include "bench/peers/fcl_model.h"
 #include "bench/peers/make.h"
 
@@ -25,7 +28,9 @@ class FclQuestions final : public QuestionPeer {
     load(geometry.tool, step_m_, tool_);
   }
 
-  bool touches(const LatticePose& pose) override {
+  /// With rectangles swept by a ball alone FCL moves the whole tool first, a hundred times as slow.
+  std::optional<bool> touches(const LatticePose& pose) override {
+    if constexpr (std::is_same_v<Box, fcl::RSSd>) return std::nullopt;
     const fcl::CollisionRequestd request(1, false);  // ends at the first pair
     fcl::CollisionResultd result;
     fcl::collide<double>(&mockup_, fcl::Transform3d::Identity(), &tool_, world_from_tool(pose, step_m_),

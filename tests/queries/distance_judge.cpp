@@ -88,7 +88,7 @@ std::string judge(const SceneGeometry& geometry, Body& mockup, const LatticePose
 /// Poses at which the tool does not touch: along the scene's path as far as it is free, and about the
 /// mock-up, ever further away. Fewer than `count` where they are rare.
 std::vector<LatticePose> apart_poses(const Subject& subject, std::size_t count, double reach) {
-  constexpr std::uint64_t kRounds = 32, kFurther = 8;
+  constexpr std::uint64_t kRounds = 32, kFurther = 4;
   const auto native = make_native_backend();
   std::vector<LatticePose> out;
   if (!native->prepare(subject.geometry, Plan{}, [](const char*, double) { return true; })) return out;

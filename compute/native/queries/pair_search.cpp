@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "compute/native/queries/nearest_points.h"
 #include "compute/native/queries/pair_gap.h"
@@ -57,6 +58,36 @@ BoxOf box_of(const exact::Corners& t) {
   return {vec(box.low), vec(box.high)};
 }
 
+/// The lowest place of a box along a direction.
+double lowest(const Vec& way, const BoxOf& box) {
+  double out = 0;
+  for (std::size_t k = 0; k < 3; ++k) out += way[k] * (way[k] > 0 ? box.low[k] : box.high[k]);
+  return out;
+}
+
+/// The highest of a triangle's corners along it.
+double highest(const Vec& way, const std::array<double, 9>& corners) {
+  double out = -std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < 9; c += 3)
+    out = std::max(out, way[0] * corners[c] + way[1] * corners[c + 1] + way[2] * corners[c + 2]);
+  return out;
+}
+
+/// A bit for each of eight triangles that does not lie wholly above a place along it.
+unsigned up_to(const Vec& way, const std::array<std::array<std::int32_t, kLanes>, 9>& corners, double place) {
+  std::array<double, kLanes> low;
+  for (std::size_t c = 0; c < 9; c += 3)
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double at = way[0] * corners[c][i] + way[1] * corners[c + 1][i] + way[2] * corners[c + 2][i];
+      low[i] = c == 0 ? at : std::min(low[i], at);
+    }
+  unsigned out = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) out |= low[i] <= place ? 1u << i : 0u;
+  return out;
+}
+
+constexpr double kAlongSlack = 0x1p-8;  // more than places along a way are off by, steps
+
 }  // namespace
 
 PairTrees::PairTrees(const SceneGeometry& of)
@@ -104,6 +135,34 @@ exact::Corners PairSearch::fixed(std::uint32_t id) const {
   const LatticeMesh& mesh = trees_->geometry->mockup;
   return {mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
 }
+/// The lowest place of the mock-up's runs' boxes along a direction.
+double PairSearch::floor_along(const std::array<double, 3>& way) const {
+  const TriangleTree& mockup = trees_->mockup;
+  double out = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kMostOpen = 8 * 32;  // eight a level
+  std::array<Node, kMostOpen> open;
+  std::size_t count = 0;
+  open[count++] = {static_cast<std::uint32_t>(mockup.level_begin.size()), 0, -out};
+  while (count != 0) {
+    const Node node = open[--count];
+    if (node.squared >= out) continue;
+    const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, node.level, node.index)];
+    const std::uint32_t all = children(mockup, node.level, node.index);
+    const std::size_t first = count;
+    for (std::uint32_t i = 0; i < all; ++i) {
+      const double low = lowest(way, box_at(boxes, i));
+      if (node.level == 1)
+        out = std::min(out, low);
+      else if (low < out)
+        open[count++] = {node.level - 1, kWide * node.index + i, low};
+    }
+    // The lowest last, which is looked into first.
+    for (std::size_t i = first; i + 1 < count; ++i)
+      if (open[i].squared < open[count - 1].squared) std::swap(open[i], open[count - 1]);
+  }
+  return out;
+}
+
 bool PairSearch::meet(std::uint32_t static_id, std::uint32_t mobile_id) const {
   const exact::Corners t = mobile(mobile_id);
   const exact::Normal n = exact::raw_normal(t);
@@ -131,6 +190,9 @@ bool PairSearch::gather(Policy& policy) {
       double room = trees_->field.room(turn_, squared[i], eight.radius[i]);
       if (policy.within(room) && squared[i] >= RoomField::kFarSquared)
         room = trees_->field.far_room(turn_, eight, i, squared[i]);
+      if (policy.within(room) && policy.known())
+        room = std::max(room, policy.room_along(trees_->field.centre(turn_, eight, i)) -
+                                  static_cast<double>(eight.radius[i]) - turn_.slack);
       lead.rooms[i] = room;
       if (!policy.within(room)) continue;
       lead.mask |= 1u << i;
@@ -205,7 +267,8 @@ void PairSearch::pose(const Policy& policy, const Lead& lead) {
     m.id = trees_->tool.order[kWide * lead.run + i];
     m.at = mobile(m.id);
     if (exact::raw_normal(m.at) == exact::Normal{}) continue;  // collinear at this pose: in no pair
-    if (trees_->field.all_beyond(m.at, policy.within_steps())) continue;
+    if (lead.rooms[i] < trees_->field.detail_steps() && trees_->field.all_beyond(m.at, policy.within_steps()))
+      continue;
     m.box = box_of(m.at);
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t k = 0; k < 3; ++k) m.corners[3 * c + k] = m.at[c][static_cast<int>(k)];
@@ -239,6 +302,7 @@ bool PairSearch::descend(Policy& policy, const Lead& lead) {
     }
     const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, node.level, node.index)];
     box_gaps(run_box_, boxes, gaps);
+    policy.aim({mobiles_.data(), count_});
     const std::uint32_t count =
         sorted(policy, run_box_, boxes, gaps, children(mockup, node.level, node.index), order);
     for (std::uint32_t n = 0; n < count; ++n)
@@ -278,6 +342,7 @@ bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number) {
   for (std::uint32_t i = 0; i < all; ++i) any = any || policy.near(gaps[i]);
   if (!any) return true;
   turned_gaps(m.corners, mockup.turned[number], turned);
+  policy.aim({&m, 1});
   for (std::uint32_t n = sorted(policy, m.box, boxes, gaps, all, order); n-- > 0;)
     if (policy.near(std::max(gaps[order[n]], turned[order[n]])) &&
         !leaf(policy, m, kWide * number + order[n], box_at(boxes, order[n])))
@@ -314,6 +379,8 @@ bool PairSearch::leaf(Policy& policy, const Mobile& m, std::uint32_t run, const 
     }
   }
   if (!policy.wants_distances()) return true;
+  mask &= policy.near_along(corners);
+  if (mask == 0) return true;
   PairLanes lanes{.s = &corners};
   lanes.take(m.at);
   std::array<double, kLanes> squared;
@@ -343,6 +410,10 @@ struct PairSearch::Any {
   bool within(double room) const { return room <= kCloseSteps; }
   bool near(double squared) const { return squared <= kCloseSteps * kCloseSteps; }
   bool keep(double squared, const BoxOf&, const BoxOf&) const { return near(squared); }
+  static bool known() { return false; }
+  static double room_along(const Vec&) { return 0; }
+  void aim(std::span<const Mobile>) {}
+  static unsigned near_along(const Lanes&) { return ~0u; }
   void met(std::uint32_t s, std::uint32_t m) {
     found = true;
     who = {s, m};
@@ -369,33 +440,66 @@ PairSearch::Found PairSearch::any(const LatticePose& pose) {
   return Found::kMeet;
 }
 
+/// What is nearest. What is far from each other is told apart best along the way between the two that are
+/// nearest so far: no box and no normal knows it.
 struct PairSearch::Nearest {
   static constexpr bool kNearestFirst = true;
+  const PairSearch& search;
   std::vector<Candidate>& candidates;
   double most;              ///< no pair is wanted that is a step further than this
   double most_squared = 0;  ///< (most + 1)², and a little
   bool found = false;
+  Vec way{};                           ///< from the tool to the mock-up, of length 1
+  double top = 0;                      ///< of what is looked at, along it
+  double floor = 0;                    ///< of all of the mock-up, along it
+  bool aimed = false, turned = false;  ///< whether there are a top and a way
   void set(double distance) {
     most = distance;
     most_squared = (most + 1) * (most + 1) * (1 + 0x1p-40) + 0x1p-20;
   }
+  void turn_to(const NearestPoints& points) {
+    aimed = turned = false;
+    if (!(points.squared > 1)) return;
+    way = (points.on_s - points.on_m) * (1 / std::sqrt(points.squared));
+    floor = search.floor_along(way);
+    turned = true;
+  }
+  bool known() const { return turned; }
+  /// Of a place, to all of the mock-up.
+  double room_along(const Vec& at) const { return floor - dot(way, at) - kAlongSlack; }
   double within_steps() const { return most + 1; }
   bool within(double room) const { return room <= most + 1; }
   bool near(double squared) const { return squared <= most_squared; }
-  bool keep(double squared, const BoxOf&, const BoxOf&) const { return near(squared); }
+  bool keep(double squared, const BoxOf&, const BoxOf& mockup) const {
+    return near(squared) && (!aimed || lowest(way, mockup) - top <= most + 1 + kAlongSlack);
+  }
+  void aim(std::span<const Mobile> tool) {
+    aimed = turned;
+    if (!turned) return;
+    top = -std::numeric_limits<double>::infinity();
+    for (const Mobile& m : tool) top = std::max(top, highest(way, m.corners));
+  }
+  /// A bit for each of eight triangles that may be near, as far as the way tells.
+  unsigned near_along(const Lanes& corners) const {
+    if (!aimed) return ~0u;
+    return up_to(way, corners, top + most + 1 + kAlongSlack);
+  }
   void met(std::uint32_t, std::uint32_t) { found = true; }
   bool wants_distances() const { return true; }
-  void pair(std::uint32_t s, std::uint32_t m, const exact::Corners&, double distance, double error) {
+  void pair(std::uint32_t s, std::uint32_t m, const exact::Corners& tool, double distance, double error) {
     if (distance - error >= most + 1) return;
     candidates.push_back({s, m, distance - error});
-    if (distance + error < most) set(distance + error);
+    if (distance + error >= most) return;
+    set(distance + error);
+    const exact::Corners at = search.fixed(s);
+    turn_to(nearest_points({vec(at[0]), vec(at[1]), vec(at[2])}, {vec(tool[0]), vec(tool[1]), vec(tool[2])}));
   }
 };
 
 Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
   begin(pose);
   candidates_.clear();
-  Nearest policy{candidates_, 0};
+  Nearest policy{*this, candidates_, 0};
   policy.set(static_cast<double>(within) + 1);
   // The pair that was nearest last is about as near now: further ones need not be looked at.
   if (near_[0] != kNoTriangle) {
@@ -406,6 +510,7 @@ Clearance PairSearch::nearest(const LatticePose& pose, std::int32_t within) {
           nearest_points({vec(s[0]), vec(s[1]), vec(s[2])},
                          {vec(m[0]), vec(m[1]), vec(m[2])});  // true points: no pair is nearer than it is
       policy.set(std::min(policy.most, std::sqrt(d.squared) + 1));
+      policy.turn_to(d);
     }
   }
   search(policy);
@@ -446,7 +551,10 @@ struct PairSearch::Timed {
   double fastest;                       ///< speed of the tool's fastest point, at most
   double reach = 0, reach_squared = 0;  ///< how far that one gets in `time`, and a little
   FreeTime out{};
-  bool stop = false;
+  Vec way{};       ///< from the tool to the mock-up, of length 1: between the pair that is met soonest so far
+  double top = 0;  ///< of what is looked at, along it
+  double closed = 0;                   ///< how far that gets along it in `time`, and a little
+  bool aimed = false, turned = false;  ///< whether there are these, and a way
 
   void set(double sooner) {
     time = sooner;
@@ -459,24 +567,51 @@ struct PairSearch::Timed {
   double within_steps() const { return reach; }
   bool within(double room) const { return room <= reach; }
   bool near(double squared) const { return squared <= reach_squared; }
-  bool keep(double squared, const BoxOf& tool, const BoxOf& mockup) const {
-    if (!near(squared)) return false;
-    const double distance = std::sqrt(squared), need = distance - kMotionSlack - 1;
-    if (need <= 0) return true;
-    Vec way, centre, half;
+  /// How far what lies in a box may get along a direction in `time`.
+  double gets(const Vec& n, const BoxOf& tool) const {
+    Vec centre, half;
     for (std::size_t k = 0; k < 3; ++k) {
-      way[k] = (std::max(mockup.low[k] - tool.high[k], 0.0) - std::max(tool.low[k] - mockup.high[k], 0.0)) /
-               distance;
       centre[k] = 0.5 * (tool.low[k] + tool.high[k]);
       half[k] = 0.5 * (tool.high[k] - tool.low[k]);
     }
-    const Vec v = speed_at(centre), across_axis = cross(way, axis);
-    const double turned = angle * length(half);
-    if (time * (length(v) + turned) < need) return false;
+    const Vec v = speed_at(centre), across_axis = cross(n, axis);
+    const double swing = angle * length(half);
     const double along =
-        dot(v, way) + angle * (std::abs(across_axis[0]) * half[0] + std::abs(across_axis[1]) * half[1] +
-                               std::abs(across_axis[2]) * half[2]);
-    return time * along + 0.5 * time * time * angle * (across(v) + turned) >= need;
+        dot(v, n) + angle * (std::abs(across_axis[0]) * half[0] + std::abs(across_axis[1]) * half[1] +
+                             std::abs(across_axis[2]) * half[2]);
+    return std::min(time * (length(v) + swing),
+                    time * along + 0.5 * time * time * angle * (across(v) + swing));
+  }
+  bool keep(double squared, const BoxOf& tool, const BoxOf& mockup) const {
+    if (!near(squared)) return false;
+    if (aimed && lowest(way, mockup) - top > closed) return false;
+    const double distance = std::sqrt(squared), need = distance - kMotionSlack - 1;
+    if (need <= 0) return true;
+    Vec n;
+    for (std::size_t k = 0; k < 3; ++k)
+      n[k] = (std::max(mockup.low[k] - tool.high[k], 0.0) - std::max(tool.low[k] - mockup.high[k], 0.0)) /
+             distance;
+    return gets(n, tool) >= need;
+  }
+  static bool known() { return false; }
+  static double room_along(const Vec&) { return 0; }
+  void aim(std::span<const Mobile> tool) {
+    aimed = turned;
+    if (!turned) return;
+    top = -std::numeric_limits<double>::infinity();
+    BoxOf box = tool.front().box;
+    for (const Mobile& m : tool) {
+      top = std::max(top, highest(way, m.corners));
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.low[k] = std::min(box.low[k], m.box.low[k]);
+        box.high[k] = std::max(box.high[k], m.box.high[k]);
+      }
+    }
+    closed = std::max(gets(way, box), 0.0) + kMotionSlack + 1 + kAlongSlack;
+  }
+  unsigned near_along(const Lanes& corners) const {
+    if (!aimed) return ~0u;
+    return up_to(way, corners, top + closed);
   }
   void met(std::uint32_t s, std::uint32_t m) {
     out = {.time = 0, .blocked = true, .steps = 0, .static_id = s, .mobile_id = m};
@@ -488,25 +623,26 @@ struct PairSearch::Timed {
     const double sure = distance - error;
     if (sure - kMotionSlack > fastest * time) return;
     double sooner = 0;
+    Vec found{};
     if (sure > kMotionSlack) {
       const exact::Corners s_corners = search.fixed(s_id);
       const std::array<Vec, 3> s{vec(s_corners[0]), vec(s_corners[1]), vec(s_corners[2])},
           m{vec(m_corners[0]), vec(m_corners[1]), vec(m_corners[2])};
       const NearestPoints near = nearest_points(s, m);
-      const Vec way = (near.on_s - near.on_m) * (1 / std::sqrt(near.squared));
+      const Vec n = (near.on_s - near.on_m) * (1 / std::sqrt(near.squared));
+      found = n;
       double room = std::numeric_limits<double>::infinity(), front = -room, along = -room, faster = 0,
              turning = 0;
       for (std::size_t c = 0; c < 3; ++c) {
         const Vec v = speed_at(m[c]);
-        room = std::min(room, dot(way, s[c] - near.on_m));
-        front = std::max(front, dot(way, m[c] - near.on_m));
-        along = std::max(along, dot(way, v));
+        room = std::min(room, dot(n, s[c] - near.on_m));
+        front = std::max(front, dot(n, m[c] - near.on_m));
+        along = std::max(along, dot(n, v));
         faster = std::max(faster, length(v));
         turning = std::max(turning, across(v));
       }
-      const double need =
-          room - front - error -
-          kMotionSlack;  // along `way` there is so much room between them, whatever `way` is worth
+      const double need = room - front - error -
+                          kMotionSlack;  // along n there is so much room between them, whatever n is worth
       if (need > 0) {
         const double a = angle * turning;
         const double under = std::sqrt(along * along + 2 * a * need);
@@ -524,6 +660,9 @@ struct PairSearch::Timed {
            .static_id = s_id,
            .mobile_id = m_id};
     set(sooner);
+    way = found;
+    turned = sooner > 0;
+    aimed = false;
   }
 };
 

@@ -75,6 +75,8 @@ class PairSearch {
     BoxOf box;
     std::array<double, 9> corners;  ///< k of corner c at [3 c + k]
   };
+  /// Corners of eight triangles: k of corner c at [3 c + k].
+  using Lanes = std::array<std::array<std::int32_t, kLanes>, 9>;
   struct Candidate {
     std::uint32_t static_id, mobile_id;
     double least;  ///< its distance is no smaller
@@ -101,6 +103,7 @@ class PairSearch {
   exact::Corners mobile(std::uint32_t id) const;
   exact::Corners fixed(std::uint32_t id) const;
   bool meet(std::uint32_t static_id, std::uint32_t mobile_id) const;
+  double floor_along(const std::array<double, 3>& way) const;
 
   struct Any;
   struct Nearest;

@@ -266,17 +266,23 @@ double RoomField::room(const Turn& turn, float squared, float radius) const {
   return std::sqrt(static_cast<double>(squared)) * grid_.size * (1 - 0x1p-20) - radius - turn.slack;
 }
 
-double RoomField::far_room(const Turn& turn, const EightSpheres& spheres, std::size_t i,
-                           float squared) const {
-  double at[3];
+std::array<double, 3> RoomField::centre(const Turn& turn, const EightSpheres& spheres, std::size_t i) const {
+  std::array<double, 3> at{};
   for (std::size_t r = 0; r < 3; ++r) {
     double cells = turn.at[r];
     for (std::size_t c = 0; c < 3; ++c)
       cells += static_cast<double>(turn.rotation[r][c]) * spheres.centre[c][i];
     at[r] = grid_.origin[static_cast<int>(r)] + cells * grid_.size;
   }
-  const double known = static_cast<double>(squared) * grid_.size * grid_.size;
-  return std::sqrt(std::max(known, lattice_.squared(at))) * (1 - 0x1p-20) - spheres.radius[i] - turn.slack;
+  return at;
+}
+
+double RoomField::far_room(const Turn& turn, const EightSpheres& spheres, std::size_t i,
+                           float squared) const {
+  const std::array<double, 3> at = centre(turn, spheres, i);
+  const double point[3] = {at[0], at[1], at[2]},
+               known = static_cast<double>(squared) * grid_.size * grid_.size;
+  return std::sqrt(std::max(known, lattice_.squared(point))) * (1 - 0x1p-20) - spheres.radius[i] - turn.slack;
 }
 
 /// Steps that a point is from the surface at least.
@@ -303,6 +309,8 @@ double RoomField::room_at(const double (&point)[3]) const {
   if (away == 0 && place >= 0) return room;
   return std::max(room, std::sqrt(lattice_.squared(point)));
 }
+
+double RoomField::detail_steps() const { return static_cast<double>(kFar) * grid_.size; }
 
 /// By balls about the middles of longest edges, which a triangle that is not beyond by one is cut at. A
 /// ball's middle is a point of the triangle: where it is not beyond, no smaller ball about it will be.

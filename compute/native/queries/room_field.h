@@ -39,7 +39,9 @@ class RoomField {
   void rooms(const Turn& turn, const EightSpheres& spheres, EightFloats& squared) const;
   /// Steps that a sphere is from the surface at least, below 0 where that may be inside it.
   double room(const Turn& turn, float squared, float radius) const;
-  /// The same of one of eight, which `squared` says is far: as far as the lattice knows.
+  /// Where the centre of one of eight is, in the world, but for turn.slack.
+  std::array<double, 3> centre(const Turn& turn, const EightSpheres& spheres, std::size_t i) const;
+  /// The same as room() of one of eight, which `squared` says is far: as far as the lattice knows.
   double far_room(const Turn& turn, const EightSpheres& spheres, std::size_t i, float squared) const;
   /// Squared cells from which on the lattice may know more.
   static constexpr float kFarSquared = 64;
@@ -47,6 +49,9 @@ class RoomField {
   /// Whether all of a triangle, in the world, is further from the surface than so many steps, as far as the
   /// field can tell.
   bool all_beyond(const exact::Corners& triangle, double steps) const;
+
+  /// Steps beyond which all_beyond() knows little that room() does not.
+  double detail_steps() const;
 
   std::uint64_t bytes() const {
     return sizeof place_[0] * std::uint64_t{place_.size()} + sizeof near_[0] * std::uint64_t{near_.size()} +

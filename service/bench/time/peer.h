@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,7 +37,8 @@ class QuestionPeer {
   virtual std::string version() const = 0;  ///< "0.7.0"
   /// As Peer::build().
   virtual void build(const SceneGeometry& geometry) = 0;
-  virtual bool touches(const LatticePose& pose) = 0;
+  /// None: it is not made for this question.
+  virtual std::optional<bool> touches(const LatticePose& pose) = 0;
   /// Metres between the two surfaces; 0 or less where they meet.
   virtual double distance(const LatticePose& pose) = 0;
 };

@@ -101,8 +101,10 @@ Result<void> ask_ours(Inquiry& inquiry, std::size_t i, const BenchOptions& optio
 void ask_peer(const Inquiry& inquiry, std::size_t i, const BenchOptions& options, Asked& asked) {
   {
     const Stopwatch watch(options.cpu_clock);
-    asked.answers.touches[i] = asked.peer->touches(inquiry.lattice[i]) ? 1 : 0;
-    asked.times[kAny].add(inquiry.kinds[i], watch.us());
+    if (const std::optional<bool> touches = asked.peer->touches(inquiry.lattice[i])) {
+      asked.times[kAny].add(inquiry.kinds[i], watch.us());
+      asked.answers.touches[i] = *touches ? 1 : 0;
+    }
   }
   const Stopwatch watch(options.cpu_clock);
   asked.answers.distance_m[i] = asked.peer->distance(inquiry.lattice[i]);
