@@ -27,10 +27,11 @@ constexpr double kConverged = 48;  ///< of a voxel: samples of a run that stands
                                    ///< close (chosen: three times as close as the closest that is judged)
 constexpr std::uint32_t kSampleCounts[] = {32, 64, 128, 256, 512, 1024, 2048};  ///< a contact; 512 is usual
 constexpr double kVoxelTimes[] = {2.0, 1.4, 1.0, 0.7, 0.5, 0.35};               ///< of the scene's own
-constexpr int kCuts = 6;                             ///< finenesses of the mock-up in `paper`
-constexpr std::uint64_t kMostTriangles = 1'000'000;  ///< of the finest of them (chosen: minutes)
-constexpr double kMostFiner = 16;      ///< of the finest, times the mock-up's own triangles (chosen)
-constexpr double kTruthTriangles = 2;  ///< times the finest: paper's own truth
+constexpr int kCuts = 6;  ///< finenesses of the mock-up in `paper`
+constexpr double kMostFiner = 16, kAnyTriangles = 40'000,
+                 kMostTriangles = 600'000;  ///< of the finest: times the mock-up's own, but so many in any
+                                            ///< case, and no more than so many (chosen: minutes)
+constexpr double kTruthTriangles = 2;       ///< times the finest: paper's own truth
 
 /// Cases of `bench force` whose force has no closed form for its size.
 constexpr const char* kForceCases[] = {"peg of 96 sides off centre askew, play 0.3 mm", "plate on to 4 pads",
@@ -285,7 +286,7 @@ class ErrorBench {
     subject.settings.voxel_size_m = voxel;
     subject.settings.sample_spacing_m = geometry->sample_spacing * step;
     subject.poses =
-        thinned(made.path, 4 * options_.frames);  // some touch nothing, or lie in the middle of it
+        thinned(made.path, 2 * options_.frames);  // some touch nothing, or lie in the middle of it
     return converged_subject(subject, {{name, 0, subject.poses.size(), {}, {}, {}, {}}}, voxel);
   }
 
@@ -322,7 +323,7 @@ class ErrorBench {
     if (!converged) return converged.error();
     Engine* paper_by = options_.quick ? nullptr : paper_engine();
     const auto own = static_cast<double>(subject.meshes.mockup.triangles.size());
-    const double finest = std::max(own, std::min(kMostFiner * own, static_cast<double>(kMostTriangles)));
+    const double finest = std::max(own, std::min(kMostTriangles, std::max(kMostFiner * own, kAnyTriangles)));
     std::optional<Answered> paper_truth;
     if (paper_by != nullptr) {
       const auto answered =

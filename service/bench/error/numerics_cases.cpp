@@ -54,7 +54,7 @@ NumericsScene long_patch(double aspect) {
   out.mockup = solids::box(Vec3(-block, -block, -20 * kMm), Vec3(block, block, 0));
   out.tool = solids::box(Vec3(-length / 2, -width / 2, 0), Vec3(length / 2, width / 2, tall));
   out.pose = {kAside + Vec3(0, 0, -deep), glm::angleAxis(0.61, Vec3(0, 0, 1))};
-  out.voxel = 1 * kMm;
+  out.voxel = std::max(1.0, aspect / 64) * kMm;  // as many along the patch, however long it is
   out.reference_area = area_of(std::max(length, tall));
   out.force = Vec3(
       0, 0, out.stiffness / (2 * out.reference_area) * (sunk(length, width, deep) + length * width * deep));
