@@ -31,6 +31,7 @@ constexpr int kCuts = 6;  ///< finenesses of the mock-up in `paper`
 constexpr double kMostFiner = 16, kAnyTriangles = 40'000,
                  kMostTriangles = 600'000;  ///< of the finest: times the mock-up's own, but so many in any
                                             ///< case, and no more than so many (chosen: minutes)
+constexpr std::uint64_t kAskedPoses = 200;  ///< of a path or file, to find those in contact (chosen)
 constexpr double kTruthTriangles = 2;       ///< times the finest: paper's own truth
 
 /// Cases of `bench force` whose force has no closed form for its size.
@@ -122,17 +123,26 @@ class ErrorBench {
     facts_.more.emplace_back(
         "clock", options_.cpu_clock ? "this process's own time, of all its threads" : "the wall's");
     if (auto done = find_engines(); !done) return done;
+    // What one subject lacks, or an interruption, does not lose what the others have told.
+    std::optional<Error> failed;
+    const auto take = [&](const std::string& name, Result<void> done) {
+      if (done || interrupted()) return;
+      failed = done.error();
+      console_.note(failed->sentence);
+      facts_.more.emplace_back("left out: " + name, failed->sentence);
+    };
     if (!options_.scenes_only) {
-      if (auto done = closed_forms(); !done) return done;
+      take("closed forms", closed_forms());
       if (!options_.quick)
         for (const char* name : kForceCases)
-          if (auto done = force_case(name); !done) return done;
+          if (!interrupted()) take(name, force_case(name));
     }
     for (const std::string& scene : options_.scenes)
-      if (auto done = scene_file(scene); !done) return done;
+      if (!interrupted()) take(scene, scene_file(scene));
+    if (failed && table_.rows.empty()) return *failed;
     for (const auto& [engine, leads] : leads_)
       facts_.findings.emplace(facts_.findings.begin(), "", lead_summary(engine, leads));
-    if (!options_.scenes_only) {
+    if (!options_.scenes_only && !interrupted()) {
       ErrorApart apart{table_, charts_, facts_};
       apart.tessellation();
       apart.control();
@@ -145,6 +155,10 @@ class ErrorBench {
                              "settings that a back end refuses (each with its reason); control over real "
                              "queries (bench stability has it)");
     console_.finish();
+    if (interrupted()) {
+      if (table_.rows.empty()) return Error{ErrorCode::kInternal, "interrupted"};
+      facts_.more.emplace_back("interrupted", "before all subjects were measured; these are whole");
+    }
     return write_bench(options_.out, facts_, table_, charts_);
   }
 
@@ -285,8 +299,7 @@ class ErrorBench {
     const double step = geometry->lattice.step_m, voxel = geometry->mockup_grid.size * step;
     subject.settings.voxel_size_m = voxel;
     subject.settings.sample_spacing_m = geometry->sample_spacing * step;
-    subject.poses =
-        thinned(made.path, 2 * options_.frames);  // some touch nothing, or lie in the middle of it
+    subject.poses = std::move(made.path);
     return converged_subject(subject, {{name, 0, subject.poses.size(), {}, {}, {}, {}}}, voxel);
   }
 
@@ -298,6 +311,7 @@ class ErrorBench {
                       own = sign == std::string::npos ? options_.poses : text.substr(sign + 1);
     BenchOptions options = options_;
     options.poses = own;
+    options.frames = kAskedPoses;
     const bool both = own.empty() && !options_.quick;
     if (both) options.poses = "run";
     auto read = scene_subject(file, options, engines_.front().name, parts_, console_);
@@ -318,7 +332,8 @@ class ErrorBench {
   }
 
   /// A subject without closed forms: each method is judged against itself, converged.
-  Result<void> converged_subject(const ErrorSubject& subject, std::vector<PoseSet> sets, double voxel) {
+  Result<void> converged_subject(ErrorSubject subject, std::vector<PoseSet> sets, double voxel) {
+    if (auto done = keep_touching(subject, sets, voxel); !done) return done;
     const auto converged = answers(subject, spacing(subject.settings, voxel / 16), engines_.front());
     if (!converged) return converged.error();
     Engine* paper_by = options_.quick ? nullptr : paper_engine();
@@ -341,11 +356,7 @@ class ErrorBench {
       if (paper_truth) set.paper_truths = part_of(*paper_truth, set.first, set.count).answers;
       const std::size_t in_contact = contacts_of(set.truths);
       if (in_contact == 0) {
-        const std::string sentence =
-            fmt::format("{}: none of the {} poses is in contact", subject.name, set.count);
-        if (sets.size() == 1) return bad_value(sentence);
-        console_.note(set.name + ": " + sentence);
-        facts_.more.emplace_back("left out of " + set.name, sentence);
+        facts_.more.emplace_back("left out of " + set.name, "none of its poses is in contact");
         continue;
       }
       const std::string about = fmt::format(
@@ -381,6 +392,28 @@ class ErrorBench {
         if (auto done = measure(subject, paper, engine, touched); !done) return done;
     }
     for (PoseSet& set : touched) report(set);
+    return {};
+  }
+
+  /// Leaves of each set as many poses in contact as were asked for, evenly.
+  Result<void> keep_touching(ErrorSubject& subject, std::vector<PoseSet>& sets, double voxel) {
+    const auto asked = answers(
+        subject, voxels(Profile::kRefined, subject.settings, voxel, subject.settings.sample_spacing_m),
+        engines_.front());
+    if (!asked) return asked.error();
+    std::vector<Pose> kept;
+    for (PoseSet& set : sets) {
+      std::vector<Pose> touching;
+      for (std::size_t i = set.first; i < set.first + set.count; ++i)
+        if (asked->answers[i]) touching.push_back(subject.poses[i]);
+      touching = thinned(touching, options_.frames);
+      set.first = kept.size(), set.count = touching.size();
+      kept.insert(kept.end(), touching.begin(), touching.end());
+    }
+    if (kept.empty())
+      return bad_value(
+          fmt::format("{}: none of the {} poses is in contact", subject.name, subject.poses.size()));
+    subject.poses = std::move(kept);
     return {};
   }
 
