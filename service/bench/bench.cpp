@@ -236,11 +236,16 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
                    "times that all poses are gone through, the two plans in turns (3)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))
       ->type_name("N");
+  plan->add_option_function<std::string>(
+          "--clock", [&options](const std::string& word) { options.cpu_clock = word == "cpu"; },
+          "wall, or cpu: time that this process itself ran (wall)")
+      ->check(one_of({"wall", "cpu"}))
+      ->type_name("wall|cpu");
   plan->footer(
       "A row a scene, plan and stage; `total` is the whole frame, its median over the poses in contact, and "
       "all memory. A stage that a plan leaves\n"
       "out has no row. Before anything is written, both plans' answers are held against each other bit by "
-      "bit.");
+      "bit. The report begins with what each thing left out gives, and where.");
   measure(plan, bench_plan);
 
   CLI::App* numerics = bench->add_subcommand("numerics",
