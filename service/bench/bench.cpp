@@ -165,7 +165,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
 
   CLI::App* error = bench->add_subcommand("error",
                                           "error of the response against time, for every knob: four closed "
-                                          "forms, and scenes against a converged run");
+                                          "forms, fits and plates, and scenes against a converged run");
   add_common(*error, options, false);
   add_poses(*error, options);
   error
@@ -175,18 +175,28 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       ->check(one_of(kEngines))
       ->expected(1, 3)
       ->type_name("auto|gpu|cpu|ref");
-  error->add_flag("--scenes-only", options.scenes_only, "without the four closed forms");
+  error->add_flag("--scenes-only", options.scenes_only,
+                  "without the closed forms and the cases of bench force");
   error->add_flag("--quick", options.quick,
                   "two closed forms, eight poses, six spacings: to see that it works");
   error->footer(
-      "Errors are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 over the poses in "
-      "contact. Times are whole frames.\n"
-      "A scene's truth is the refined profile at a spacing of a 16th of a voxel; the sweep towards it shows "
-      "its convergence. Without --poses a scene is\n"
-      "measured twice: at the poses of a hand in virtual time, and at its path's, deeper than a hand gets. "
-      "Each engine has "
-      "charts of its own.");
-  measure(error, bench_error);
+      "Errors in results.csv are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 over "
+      "the poses in contact; truth_p50 is the truth's median. Times are whole frames.\n"
+      "Each method is judged against its own truth: a closed form, else itself with samples a 16th of a "
+      "voxel "
+      "apart (refined), or with the mock-up cut finer than in\n"
+      "the sweep (paper). Without --poses a scene is measured at the poses of a hand in virtual time and at "
+      "its "
+      "path's, deeper than a hand gets; SCENE=POSES.csv\n"
+      "gives a scene poses of its own. Poses and rounds are 12 and 1 unless said otherwise. The report "
+      "begins "
+      "with what the figures say in sentences.");
+  error->callback([&, error] {
+    if (error->count("--frames") == 0) options.frames = 12;
+    if (error->count("--rounds") == 0) options.rounds = 1;
+    outcome = check_output_folder(options.out, kResultFiles, "a bench's", options.overwrite);
+    if (outcome) outcome = bench_error(options, parts);
+  });
 
   CLI::App* peers = bench->add_subcommand(
       "peers", "other collision libraries on the same triangles and poses, in turns with palpate");
@@ -250,11 +260,16 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
                    "times that all poses are gone through, the two plans in turns (3)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10000}).description(""))
       ->type_name("N");
+  plan->add_option_function<std::string>(
+          "--clock", [&options](const std::string& word) { options.cpu_clock = word == "cpu"; },
+          "wall, or cpu: time that this process itself ran (wall)")
+      ->check(one_of({"wall", "cpu"}))
+      ->type_name("wall|cpu");
   plan->footer(
       "A row a scene, plan and stage; `total` is the whole frame, its median over the poses in contact, and "
       "all memory. A stage that a plan leaves\n"
       "out has no row. Before anything is written, both plans' answers are held against each other bit by "
-      "bit.");
+      "bit. The report begins with what each thing left out gives, and where.");
   measure(plan, bench_plan);
 
   CLI::App* numerics = bench->add_subcommand("numerics",
@@ -266,8 +281,12 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       ->expected(1)
       ->type_name("auto|gpu|cpu|ref");
   numerics->footer(
-      "Swept: K, scale, offset from the origin, aspect of triangles, depth, sample spacing, gaps, age of "
-      "results. The error is of the force, relative; for\n"
+      "Swept: K, scale, offset from the origin, aspect of triangles and of patches, number of patches, "
+      "depth, "
+      "sample spacing, play, interference, stiffness of the\n"
+      "contact beside the spring's, gaps, age of results, ticks of the law. The error is of the force, "
+      "relative; "
+      "for\n"
       "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; "
       "`breaks` in results.json sums up.");
   measure(numerics, bench_numerics);

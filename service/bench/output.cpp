@@ -94,33 +94,54 @@ void print(const BenchTable& table) {
 
 std::string anchor(std::size_t chart) { return fmt::format("chart-{}", chart); }
 
-/// A page without scripts: contents, the charts with their captions, what was measured on, the figures
-/// folded.
-std::string page(const Json& head, const BenchTable& table, const std::vector<BenchChart>& charts) {
+std::string findings_of(const BenchFacts& facts, const std::string& group) {
+  std::string out;
+  for (const auto& [where, sentence] : facts.findings)
+    if (where == group) out += "<li>" + markup_text(sentence) + "</li>";
+  return out.empty() ? out : "<ul class=\"findings\">" + out + "</ul>";
+}
+
+std::string figure(const BenchChart& chart, std::size_t number) {
+  std::string out = "<figure class=\"bench\" id=\"" + anchor(number) + "\"><div class=\"picture scroll\">" +
+                    chart_svg(chart) + "</div>";
+  if (!chart.caption.empty()) out += "<p class=\"note\">" + markup_text(chart.caption) + "</p>";
+  return out + "</figure>";
+}
+
+/// A page without scripts: contents, what the figures say, the charts with their captions, what was measured
+/// on, the figures folded. Where charts have chapters, the contents name those.
+std::string page(const BenchFacts& facts, const Json& head, const BenchTable& table,
+                 const std::vector<BenchChart>& charts) {
   const std::string title = "palpate bench " + head["bench"].get<std::string>();
   std::string body = "<header><h1>" + markup_text(title) + "</h1><p>" +
                      markup_text(head["device"].get<std::string>()) + "</p></header>";
-  if (charts.size() > 2) {
-    body += "<nav class=\"contents\" aria-label=\"Contents\">";
-    for (std::size_t i = 0; i < charts.size(); ++i)
-      body += "<a href=\"#" + anchor(i) + "\">" + markup_text(charts[i].title) + "</a>";
-    body += "<a href=\"#facts\">Measured on</a><a href=\"#figures\">Figures</a></nav>";
-  }
+  std::string entries, chapters, group;
   for (std::size_t i = 0; i < charts.size(); ++i) {
-    body += "<figure class=\"bench\" id=\"" + anchor(i) + "\"><div class=\"picture scroll\">" +
-            chart_svg(charts[i]) + "</div>";
-    if (!charts[i].caption.empty()) body += "<p class=\"note\">" + markup_text(charts[i].caption) + "</p>";
-    body += "</figure>";
+    if (charts[i].group.empty()) {
+      entries += "<a href=\"#" + anchor(i) + "\">" + markup_text(charts[i].title) + "</a>";
+    } else if (charts[i].group != group) {
+      const std::string place = "chapter-" + anchor(i);
+      entries += "<a href=\"#" + place + "\">" + markup_text(charts[i].group) + "</a>";
+      chapters += "<h2 id=\"" + place + "\">" + markup_text(charts[i].group) + "</h2>" +
+                  findings_of(facts, charts[i].group);
+    }
+    group = charts[i].group;
+    chapters += figure(charts[i], i);
   }
-  body += "<h2 id=\"facts\">Measured on</h2><table class=\"facts\">";
+  if (charts.size() > 2)
+    body += "<nav class=\"contents\" aria-label=\"Contents\">" + entries +
+            "<a href=\"#facts\">Measured on</a><a href=\"#figures\">Figures</a></nav>";
+  body += findings_of(facts, "") + chapters;
+  body += "<h2 id=\"facts\">Measured on</h2><div class=\"scroll\"><table class=\"facts\">";
   for (const auto& [name, value] : head.items()) {
+    if (!value.is_string()) continue;
     std::string words = name;
     std::replace(words.begin(), words.end(), '_', ' ');
-    body += "<tr><td>" + markup_text(words) + "</td><td>" +
-            markup_text(value.is_string() ? value.get<std::string>() : value.dump()) + "</td></tr>";
+    body +=
+        "<tr><td>" + markup_text(words) + "</td><td>" + markup_text(value.get<std::string>()) + "</td></tr>";
   }
   body += fmt::format(
-      "</table><h2 id=\"figures\">Figures</h2><details{}><summary>{} rows; results.csv has them, too"
+      "</table></div><h2 id=\"figures\">Figures</h2><details{}><summary>{} rows; results.csv has them, too"
       "</summary><div class=\"scroll\"><table><tr>",
       table.rows.size() <= kOpenRows ? " open" : "", table.rows.size());
   for (std::string column : table.columns) {
@@ -135,8 +156,7 @@ std::string page(const Json& head, const BenchTable& table, const std::vector<Be
   }
   body +=
       "</table></div></details><footer>Other work on the machine moves absolute figures. Whatever stands "
-      "side by "
-      "side was measured in turns: trust the ratios.</footer>";
+      "side by side was measured in turns: trust the ratios.</footer>";
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width, initial-scale=1\"><meta name=\"color-scheme\" content=\"light "
          "dark\"><title>" +
@@ -196,10 +216,15 @@ Result<void> write_bench(const std::string& directory, const BenchFacts& facts, 
             {"time", utc_now()},      {"machine", machine},         {"device", facts.device}};
   for (const auto& [name, value] : facts.more) head[name] = value;
   Json results = head;
+  if (!facts.findings.empty()) {
+    results["findings"] = Json::array();
+    for (const auto& [where, sentence] : facts.findings)
+      results["findings"].push_back(where.empty() ? sentence : where + ": " + sentence);
+  }
   results["rows"] = json_rows(table);
   if (auto done = write_text(root / "results.json", results.dump(1) + "\n"); !done) return done;
 
-  if (auto done = write_text(root / "report.html", page(head, table, charts)); !done) return done;
+  if (auto done = write_text(root / "report.html", page(facts, head, table, charts)); !done) return done;
   for (std::size_t i = 0; i < charts.size(); ++i)
     if (auto done = write_text(root / fmt::format("chart_{}.svg", i), chart_svg(charts[i])); !done)
       return done;

@@ -61,6 +61,7 @@ struct BenchChart {
   std::string caption = {};          ///< below it in the report: what is shown, and how it is meant
   std::vector<Rule> rules = {};      ///< upright lines
   double y_most = 0;  ///< what lies above is marked at the upper edge, as diverged; 0: everything is shown
+  std::string group = {};  ///< chapter of the report that it stands in; empty: none
 };
 
 /// What figures belong to.
@@ -69,6 +70,8 @@ struct BenchFacts {
   std::string device;   ///< the back ends' devices and drivers
   std::vector<std::pair<std::string, std::string>>
       more;  ///< of this bench: scenes, poses, versions of libraries
+  std::vector<std::pair<std::string, std::string>> findings =
+      {};  ///< sentences that the figures say, with the chapter they stand in; empty: at the top
 };
 
 /// The engine, and name and driver of its device: "gpu on llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe

@@ -82,6 +82,7 @@ Result<std::vector<Pose>> bench_poses(const BenchOptions& options, HostedScene& 
   if (summary->stopped) return Error{ErrorCode::kInternal, "interrupted"};
 
   const std::vector<Pose> poses = thinned(keeper.poses, options.frames);
+  if (options.out.empty()) return poses;
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (auto done = write_poses(std::filesystem::path(options.out) / "poses.csv", poses); !done)

@@ -31,7 +31,7 @@ Result<SceneSubject> scene_subject(const std::string& file, const BenchOptions& 
   out.subject.meshes = std::move(*meshes);
   out.subject.stiffness_n_per_m = read.response.stiffness_n_per_m;
   out.subject.settings = {out.voxel_m, out.spacing_m, read.response.smooth_angle_deg,
-                          read.tool.centre_of_mass_m};
+                          read.tool.centre_of_mass_m, read.response.contact_samples};
   out.subject.poses = std::move(*poses);
   return out;
 }

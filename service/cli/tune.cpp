@@ -20,10 +20,13 @@
 #include "service/bench/output.h"
 #include "service/bench/scene_subject.h"
 #include "service/cli/numbers.h"
+#include "service/cli/promise.h"
 #include "service/cli/scene_host.h"
 
 namespace palpate {
 namespace {
+
+using Truths = std::vector<std::optional<ContactTruth>>;
 
 /// Of the force's error, N.
 struct Tail {
@@ -38,12 +41,12 @@ Tail tail_of(const std::vector<double>& errors) {
 struct Tried {
   std::string backend, device;  ///< who answered, and on what
   ErrorSetting setting;
-  bool defaults = false;        ///< the scene's own
-  double d_p50 = 0, d_p99 = 0;  ///< m
-  Tail force, unseen;           ///< at the poses that decide, and at those that only check
-  std::vector<double> p95s;     ///< µs, one a measurement
-  double us_p50 = 0;            ///< of the first
-  double unseen_us_p95 = 0;     ///< of the last
+  bool defaults = false;                         ///< the scene's own
+  double d_p50 = 0, d_p99 = 0;                   ///< m
+  Tail force, unseen;                            ///< at the poses that decide, and at those that only check
+  std::vector<double> p95s;                      ///< µs, one a measurement
+  double us_p50 = 0;                             ///< of the first
+  std::vector<double> unseen_errors, unseen_us;  ///< by pose, N and µs; the times of the last measurement
   std::uint64_t memory_bytes = 0;
 
   /// The middle one of the measurements.
@@ -55,14 +58,20 @@ constexpr double kClose = 0.5;  ///< of the budget: nearer to it a time is measu
 constexpr std::size_t kMeasurements = 5;  ///< then: odd, so that one is the middle
 
 /// Whether a is rather to be chosen: by the tail of the force's error, which is what a hand notices, then by
-/// the median. Settings that differ in voxels alone are equally accurate; then what the scene has stays, or
-/// the least memory wins: no clock, which would choose otherwise each time.
+/// the median. Settings that differ in voxels alone are equally accurate, and so are bounds of samples that
+/// no contact reaches; then what the scene has stays, or the least memory wins, or the lower bound: no clock,
+/// which would choose otherwise each time.
 bool more_accurate(const Tried& a, const Tried& b) {
   if (a.force.p95 != b.force.p95) return a.force.p95 < b.force.p95;
   if (a.force.p50 != b.force.p50) return a.force.p50 < b.force.p50;
   if (a.defaults != b.defaults) return a.defaults;
   if (a.memory_bytes != b.memory_bytes) return a.memory_bytes < b.memory_bytes;
-  return a.us_p95() < b.us_p95();
+  return a.setting.geometry.contact_samples - 1 < b.setting.geometry.contact_samples - 1;  // 0: all of them
+}
+
+/// How many samples push in a contact at most, in words.
+std::string bound_text(const ErrorSetting& s) {
+  return s.geometry.contact_samples == 0 ? "all" : std::to_string(s.geometry.contact_samples);
 }
 
 class Tune {
@@ -79,9 +88,8 @@ class Tune {
 
     // The truth: refined at a spacing beyond all that is offered, and with all samples (bench error shows how
     // far it has converged).
-    ErrorSetting finest = setting(Profile::kRefined, 1, scene_.voxel_m / 16);
-    finest.geometry.contact_samples = 0;
-    const auto converged = answers(finest);
+    finest_ = setting(Profile::kRefined, 1, scene_.voxel_m / 16, 0);
+    const auto converged = answers(scene_.subject, finest_);
     if (!converged) return converged.error();
     truths_ = converged->answers;
     if (std::none_of(truths_.begin(), truths_.end(), [](const auto& truth) { return truth.has_value(); }))
@@ -108,7 +116,9 @@ class Tune {
         if (auto done = use(first); !done) return done;
     }
     for (const double part : {1.0, 2.0, 4.0, 8.0})
-      if (auto done = measure(setting(Profile::kRefined, 1, scene_.voxel_m / part)); !done) return done;
+      for (const std::uint32_t bound : {128u, 512u, 2048u, 0u})
+        if (auto done = measure(setting(Profile::kRefined, 1, scene_.voxel_m / part, bound)); !done)
+          return done;
     for (const double times : {1.5, 0.7})
       for (const double spacing : {scene_.spacing_m, scene_.voxel_m / 8})
         if (auto done = measure(setting(Profile::kRefined, times, spacing)); !done) return done;
@@ -125,20 +135,23 @@ class Tune {
     return {};
   }
 
-  ErrorSetting setting(Profile profile, double times, double spacing) const {
-    ErrorSetting out{profile, "", 0, scene_.subject.settings, 0};
+  ErrorSetting setting(Profile profile, double times, double spacing,
+                       std::optional<std::uint32_t> bound = {}) const {
+    ErrorSetting out{profile, "", 0, scene_.subject.settings};
+    if (bound) out.geometry.contact_samples = *bound;
     out.geometry.voxel_size_m = scene_.voxel_m * times;
     out.geometry.sample_spacing_m = std::max(spacing, scene_.voxel_m * times / kMaxSamplesPerVoxelSide);
     return out;
   }
 
-  Result<Answered> answers(const ErrorSetting& s) {
-    console_.step(fmt::format("{} on {}, voxels of {:.4g} mm, samples {:.4g} mm apart",
+  Result<Answered> answers(const ErrorSubject& subject, const ErrorSetting& s) {
+    console_.step(fmt::format("{} on {}, voxels of {:.4g} mm, samples {:.4g} mm apart, {} to a contact",
                               s.profile == Profile::kPaper ? "paper" : "refined", backend_->name(),
-                              1000 * *s.geometry.voxel_size_m, 1000 * *s.geometry.sample_spacing_m)
+                              1000 * *s.geometry.voxel_size_m, 1000 * *s.geometry.sample_spacing_m,
+                              bound_text(s))
                       .c_str());
     return answer_all(
-        scene_.subject, s, options_.bench.rounds, *backend_,
+        subject, s, options_.bench.rounds, *backend_,
         [this](const char* what, double done) { return console_.progress(what, done); }, cpu_clock());
   }
 
@@ -147,12 +160,15 @@ class Tune {
     return options_.clock ? *options_.clock == "cpu" : backend_->name() != "gpu" || !parts_.has_gpu();
   }
 
-  /// p95 over the poses in contact, each at its fastest round.
-  static double p95(const Answered& answered, const std::vector<std::optional<ContactTruth>>& truths) {
+  /// Of the poses in contact, each at its fastest round.
+  static std::vector<double> times_of(const Answered& answered, const Truths& truths) {
     std::vector<double> times;
     for (std::size_t i = 0; i < truths.size(); ++i)
       if (truths[i]) times.push_back(answered.times_us[i]);
-    return percentile(std::move(times), 0.95);
+    return times;
+  }
+  static double p95(const Answered& answered, const Truths& truths) {
+    return percentile(times_of(answered, truths), 0.95);
   }
 
   Result<void> measure(const ErrorSetting& s, bool defaults = false) {
@@ -160,9 +176,10 @@ class Tune {
       if (t.backend == backend_->name() && t.setting.profile == s.profile &&
           t.setting.geometry.voxel_size_m == s.geometry.voxel_size_m &&
           (s.profile == Profile::kPaper ||
-           t.setting.geometry.sample_spacing_m == s.geometry.sample_spacing_m))
+           (t.setting.geometry.sample_spacing_m == s.geometry.sample_spacing_m &&
+            t.setting.geometry.contact_samples == s.geometry.contact_samples)))
         return {};
-    const auto answered = answers(s);
+    const auto answered = answers(scene_.subject, s);
     if (!answered) {
       if (interrupted() || defaults) return answered.error();
       console_.note(answered.error().sentence + "; this setting is left out");
@@ -173,9 +190,10 @@ class Tune {
     t.backend = backend_->name(), t.device = device_text(*backend_, parts_);
     t.setting = s, t.defaults = defaults;
     t.d_p50 = percentile(result.errors[0], 0.5), t.d_p99 = percentile(result.errors[0], 0.99);
-    t.force = tail_of(result.errors[3]), t.unseen = tail_of(judge(*answered, unseen_).errors[3]);
+    t.unseen_errors = judge(*answered, unseen_).errors[3];
+    t.force = tail_of(result.errors[3]), t.unseen = tail_of(t.unseen_errors);
     t.us_p50 = percentile(result.times_us, 0.5), t.p95s = {p95(*answered, seen_)};
-    t.unseen_us_p95 = p95(*answered, unseen_);
+    t.unseen_us = times_of(*answered, unseen_);
     t.memory_bytes = backend_->memory_bytes();
     tried_.push_back(std::move(t));
     return {};
@@ -212,19 +230,50 @@ class Tune {
       }
       if (backend_->name() != candidate->backend)
         if (auto used = use(candidate->backend); !used) return used;
-      const auto again = answers(candidate->setting);
+      const auto again = answers(scene_.subject, candidate->setting);
       if (!again) return again.error();
       candidate->p95s.push_back(p95(*again, seen_));
-      candidate->unseen_us_p95 = p95(*again, unseen_);
+      candidate->unseen_us = times_of(*again, unseen_);
     }
   }
 
   Result<void> done(const Tried& chosen) {
+    if (auto checked = check(chosen); !checked) return checked;
     if (auto printed = print(chosen); !printed || !options_.apply) return printed;
     return apply(chosen);
   }
 
-  /// Writes the three settings into the scene file; all else stays, in its order. A file that is not whole is
+  static std::size_t contacts_of(const Truths& truths) {
+    return static_cast<std::size_t>(
+        std::count_if(truths.begin(), truths.end(), [](const auto& truth) { return truth.has_value(); }));
+  }
+
+  /// Holds the choice to its promise at poses that had no part in it: every second one of those it was chosen
+  /// at, and, where it was chosen at the path's, those of a hand in virtual time.
+  Result<void> check(const Tried& chosen) {
+    const std::size_t decided = contacts_of(seen_);
+    if (!chosen.unseen_errors.empty())
+      kept_.push_back(promise_kept("beside those that decided", chosen.unseen_errors, chosen.unseen_us,
+                                   options_.budget_us, chosen.force.p95, decided));
+    if (!options_.bench.poses.empty()) return {};
+    if (backend_->name() != chosen.backend)
+      if (auto used = use(chosen.backend); !used) return used;
+    BenchOptions hand = options_.bench;
+    hand.poses = "run";
+    auto read = scene_subject(hand.scenes.front(), hand, chosen.backend, parts_, console_);
+    if (!read) return read.error();
+    const auto truths = answers(read->subject, finest_);
+    if (!truths) return truths.error();
+    if (contacts_of(truths->answers) == 0) return {};
+    const auto told = answers(read->subject, chosen.setting);
+    if (!told) return told.error();
+    kept_.push_back(promise_kept("of a hand in virtual time", judge(*told, truths->answers).errors[3],
+                                 times_of(*told, truths->answers), options_.budget_us, chosen.force.p95,
+                                 decided));
+    return {};
+  }
+
+  /// Writes the settings into the scene file; all else stays, in its order. A file that is not whole is
   /// never there.
   Result<void> apply(const Tried& chosen) {
     const std::string& file = options_.bench.scenes.front();
@@ -237,6 +286,7 @@ class Tune {
     // As they are printed.
     response["voxel_size"] = std::stod(fmt::format("{:.6g}", *chosen.setting.geometry.voxel_size_m));
     response["sample_spacing"] = std::stod(fmt::format("{:.6g}", *chosen.setting.geometry.sample_spacing_m));
+    response["contact_samples"] = chosen.setting.geometry.contact_samples;
     const std::filesystem::path target = file, beside = file + ".new";
     {
       std::ofstream out(beside, std::ios::binary | std::ios::trunc);
@@ -257,9 +307,10 @@ class Tune {
   }
 
   static std::string text_of(const Tried& t) {
-    return fmt::format("{}, voxel_size {:.6g} m, sample_spacing {:.6g} m, {}",
+    return fmt::format("{}, voxel_size {:.6g} m, sample_spacing {:.6g} m, contact_samples {}, {}",
                        t.setting.profile == Profile::kPaper ? "paper" : "refined",
-                       *t.setting.geometry.voxel_size_m, *t.setting.geometry.sample_spacing_m, t.backend);
+                       *t.setting.geometry.voxel_size_m, *t.setting.geometry.sample_spacing_m,
+                       t.setting.geometry.contact_samples, t.backend);
   }
 
   static nlohmann::ordered_json json_of(const Tried& t) {
@@ -267,6 +318,7 @@ class Tune {
             {"profile", t.setting.profile == Profile::kPaper ? "paper" : "refined"},
             {"voxel_size_m", *t.setting.geometry.voxel_size_m},
             {"sample_spacing_m", *t.setting.geometry.sample_spacing_m},
+            {"contact_samples", t.setting.geometry.contact_samples},
             {"defaults", t.defaults},
             {"error_d_m", {{"p50", t.d_p50}, {"p99", t.d_p99}}},
             {"error_F_N",
@@ -274,7 +326,7 @@ class Tune {
             {"unseen_error_F_N",
              {{"p50", t.unseen.p50}, {"p95", t.unseen.p95}, {"p99", t.unseen.p99}, {"max", t.unseen.max}}},
             {"time_us", {{"p50", t.us_p50}, {"p95", t.us_p95()}}},
-            {"unseen_time_us", {{"p95", t.unseen_us_p95}}},
+            {"unseen_time_us", {{"p95", percentile(t.unseen_us, 0.95)}}},
             {"memory_bytes", t.memory_bytes}};
   }
 
@@ -283,42 +335,51 @@ class Tune {
     if (options_.json) {
       nlohmann::ordered_json measured = nlohmann::ordered_json::array();
       for (const Tried& t : tried_) measured.push_back(json_of(t));
+      nlohmann::ordered_json promise = nlohmann::ordered_json::array();
+      for (const PromiseKept& kept : kept_)
+        promise.push_back({{"poses", kept.poses},
+                           {"count", kept.count},
+                           {"over_p95", kept.off},
+                           {"over_budget", kept.slow},
+                           {"error_kept", kept.error},
+                           {"time_kept", kept.time},
+                           {"error_F_N", {{"p95", kept.error_p95}, {"max", kept.error_max}}},
+                           {"time_us", {{"p95", kept.us_p95}}}});
       fmt::print("{}\n", nlohmann::ordered_json{{"budget_us", options_.budget_us},
                                                 {"device", chosen.device},
                                                 {"clock", cpu_clock() ? "cpu" : "wall"},
                                                 {"largest_force_N", largest_force_},
                                                 {"chosen", json_of(chosen)},
+                                                {"promise", promise},
                                                 {"measured", measured}}
                              .dump());
       return {};
     }
-    fmt::print("{:<8} {:<4} {:>10} {:>10}  {:>9} {:>9} {:>9}  {:>9} {:>9}  {:>9}\n", "profile", "on",
-               "voxel mm", "samples mm", "F off p50", "p95", "p99 N", "µs p50", "µs p95", "memory");
+    fmt::print("{:<8} {:<4} {:>10} {:>10} {:>6}  {:>9} {:>9} {:>9}  {:>9} {:>9}  {:>9}\n", "profile", "on",
+               "voxel mm", "samples mm", "most", "F off p50", "p95", "p99 N", "µs p50", "µs p95", "memory");
     for (const Tried& t : tried_)
       fmt::print(
-          "{:<8} {:<4} {:>10.4g} {:>10.4g}  {:>9.3g} {:>9.3g} {:>9.3g}  {:>9.1f} {:>9.1f}  {:>9}{}{}\n",
+          "{:<8} {:<4} {:>10.4g} {:>10.4g} {:>6}  {:>9.3g} {:>9.3g} {:>9.3g}  {:>9.1f} {:>9.1f}  {:>9}{}{}\n",
           t.setting.profile == Profile::kPaper ? "paper" : "refined", t.backend,
-          1000 * *t.setting.geometry.voxel_size_m, 1000 * *t.setting.geometry.sample_spacing_m, t.force.p50,
-          t.force.p95, t.force.p99, t.us_p50, t.us_p95(), bytes_text(t.memory_bytes),
-          t.defaults ? "  the scene's own" : "", &t == &chosen ? "  <- chosen" : "");
+          1000 * *t.setting.geometry.voxel_size_m, 1000 * *t.setting.geometry.sample_spacing_m,
+          bound_text(t.setting), t.force.p50, t.force.p95, t.force.p99, t.us_p50, t.us_p95(),
+          bytes_text(t.memory_bytes), t.defaults ? "  the scene's own" : "",
+          &t == &chosen ? "  <- chosen" : "");
     fmt::print("\nThe most accurate within {:g} µs for 95 % of the frames, by the {}, on {}:\n",
                options_.budget_us, cpu_clock() ? "processor's time of all threads" : "wall's clock",
                chosen.device);
     fmt::print(
-        "  \"response\": {{\"profile\": \"{}\", \"voxel_size\": {:.6g}, \"sample_spacing\": {:.6g}}}\n",
+        "  \"response\": {{\"profile\": \"{}\", \"voxel_size\": {:.6g}, \"sample_spacing\": {:.6g}, "
+        "\"contact_samples\": {}}}\n",
         chosen.setting.profile == Profile::kPaper ? "paper" : "refined",
-        *chosen.setting.geometry.voxel_size_m, *chosen.setting.geometry.sample_spacing_m);
+        *chosen.setting.geometry.voxel_size_m, *chosen.setting.geometry.sample_spacing_m,
+        chosen.setting.geometry.contact_samples);
     fmt::print(
         "It takes {:.0f} µs a frame in contact at p95 and {} of memory. Its force is off by {:.3g} N at the "
         "median, {:.3g} at p95, {:.3g} at p99 and {:.3g} at most, where the task's largest is {:.3g} N.\n",
         chosen.us_p95(), bytes_text(chosen.memory_bytes), chosen.force.p50, chosen.force.p95,
         chosen.force.p99, chosen.force.max, largest_force_);
-    if (std::any_of(unseen_.begin(), unseen_.end(), [](const auto& truth) { return truth.has_value(); }))
-      fmt::print(
-          "At as many poses that had no part in the choice: off by {:.3g} N at p95, {:.3g} at most, {:.0f} "
-          "µs at "
-          "p95.\n",
-          chosen.unseen.p95, chosen.unseen.max, chosen.unseen_us_p95);
+    for (const PromiseKept& kept : kept_) fmt::print("{}\n", promise_text(kept));
     if (chosen.force.p95 > 0.25 * largest_force_)
       console_.note(fmt::format(
           "the choice is off by more than a quarter of the largest force in one frame of twenty; no "
@@ -332,7 +393,9 @@ class Tune {
   Console console_;
   std::unique_ptr<CollisionBackend> backend_;
   SceneSubject scene_;
-  std::vector<std::optional<ContactTruth>> truths_, seen_, unseen_;
+  ErrorSetting finest_;  ///< the truth's
+  Truths truths_, seen_, unseen_;
+  std::vector<PromiseKept> kept_;
   double largest_force_ = 0;  ///< N, of the truth
   std::vector<Tried> tried_;
 };
@@ -376,12 +439,18 @@ void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, R
   tune->add_flag("--apply", options.apply, "write the choice into the scene file");
   tune->add_flag("--json", options.json, "one JSON object: chosen, measured");
   tune->footer(
-      "Measures voxel size, sample spacing and profile as bench error does: errors are of the force, against "
-      "the refined profile at a spacing of a 16th of a voxel;\n"
+      "Measures voxel size, sample spacing, contact_samples and profile as bench error does: errors are of "
+      "the "
+      "force, against the refined profile at a spacing of a 16th of a voxel;\n"
       "the scene's own settings are among them. The choice is by the p95 of the force's error, then by its "
       "median. A pose's "
       "time is the fastest of its rounds;\n"
-      "settings within half of the budget are measured five times, and the middle decides.");
+      "settings within half of the budget are measured five times, and the middle decides. The choice is "
+      "then "
+      "held to its promise, the budget and the p95 of the\n"
+      "error, at poses that had no part in it: the other half, and those of a hand in virtual time. A "
+      "promise is "
+      "broken where luck would look so bad in fewer than one case of twenty.");
   tune->callback([&] {
     catch_interrupts();
     outcome = Tune(options, parts).run();

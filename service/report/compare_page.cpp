@@ -98,7 +98,8 @@ std::string compare_page(const RecordedRun& first, const RecordedRun& second,
       "alone; in {} only one is in contact.</p>",
       difference.common, difference.only_first, difference.only_second, difference.contact_differs);
   body +=
-      "<h2>Tick by tick</h2><div class=\"scroll\"><table><tr><th>quantity</th><th>largest, "
+      "<h2>Tick by tick</h2><div class=\"scroll\"><table "
+      "class=\"differences\"><tr><th>quantity</th><th>largest, "
       "first</th><th>largest, "
       "second</th><th>difference</th></tr>";
   for (const TickDifference& q : difference.quantities) {
@@ -113,11 +114,11 @@ std::string compare_page(const RecordedRun& first, const RecordedRun& second,
     for (const FactDifference& fact : difference.facts)
       if (fact.provenance == provenance)
         rows += row(fact.name, fact.first, fact.second, fact.ratio ? fmt::format("{:.4g}", *fact.ratio) : "");
-    body += rows.empty()
-                ? "<p class=\"lead\">None.</p>"
-                : "<table class=\"facts\"><tr><th>figure</th><th>first</th><th>second</th><th>second over "
-                  "first</th></tr>" +
-                      rows + "</table>";
+    body += rows.empty() ? "<p class=\"lead\">None.</p>"
+                         : "<div class=\"scroll\"><table class=\"facts "
+                           "differences\"><tr><th>figure</th><th>first</th><th>second</th><th>second over "
+                           "first</th></tr>" +
+                               rows + "</table></div>";
   }
   body +=
       "<h2>Forces</h2><p class=\"lead help\">Drag to look closer, double-click for the whole.</p><div "

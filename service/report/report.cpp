@@ -11,6 +11,7 @@
 #include "service/loop/virtual_coupling.h"
 #include "service/report/report_assets.h"
 #include "service/report/run_summary.h"
+#include "service/report/scene_picture.h"
 
 namespace palpate {
 namespace {
@@ -81,6 +82,24 @@ Json provenance_rows(const Provenance& provenance) {
   return rows;
 }
 
+/// The scene at each numbered stage; of a run without stages at its strongest contact.
+Json pictures(const LoadedScene& loaded, const ReportSeries& series) {
+  const bool numbered = series.stages().upper_bound(0) != series.stages().end();
+  std::vector<Pose> poses;
+  Json out = Json::array();
+  for (const auto& [stage, figures] : series.stages()) {
+    if (numbered && stage <= 0) continue;
+    poses.push_back(figures.pose);
+    out.push_back({{"stage", stage},
+                   {"name", stage > 0 ? stage_text(stage, loaded.scene.stage_names) : "strongest contact"},
+                   {"at", figures.at_s},
+                   {"force", figures.force_max_n}});
+  }
+  const std::vector<Image> images = scene_pictures(loaded.geometry, poses);
+  for (std::size_t i = 0; i < images.size(); ++i) out[i]["image"] = png_address(images[i]);
+  return out;
+}
+
 /// In a script element `</` would end it early; in a JSON string the slash may be escaped.
 std::string script_safe(std::string json) {
   for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3)
@@ -118,6 +137,7 @@ std::string report_page(const SessionSummary& summary, const LoadedScene& loaded
   data += ",\"provenance\":" + dump(provenance_rows(facts.provenance));
   data += ",\"summary_rows\":" + dump(summary_rows(summary, loaded.scene.stage_names));
   data += ",\"settings\":" + dump(settings_rows(loaded, facts));
+  data += ",\"pictures\":" + dump(pictures(loaded, series));
   data += "," + series.json(loaded.scene.stage_names) + "}";
 
   // The template's places, in one pass, so that nothing inserted is searched again.

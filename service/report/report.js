@@ -56,6 +56,18 @@
   for (const [name, value] of settings) row(byId('settings-table'), [name, value]);
   for (const [name, value] of data.provenance) row(byId('provenance-table'), [name, value]);
 
+  // ---- the scene at its stages ----------------------------------------------------------------------------------------
+  for (const p of data.pictures.filter((p) => p.image)) {
+    byId('places').hidden = false;
+    const figure = byId('pictures').appendChild(document.createElement('figure')), caption = document.createElement('figcaption');
+    caption.textContent = p.name;
+    caption.appendChild(document.createElement('span')).textContent = ' at ' + number(p.at, 4) + ' s' + (p.force > 0 ? ', ' + number(p.force) + ' N' : ', free');
+    const image = figure.appendChild(document.createElement('img'));
+    image.src = p.image;
+    image.alt = 'The tool and the mock-up around it, ' + caption.textContent;
+    figure.append(caption);
+  }
+
   // ---- charts over the run's time -------------------------------------------------------------------------------------
   const begin = data.stages.length ? data.stages[0].begin : 0;
   const end = data.stages.length ? data.stages[data.stages.length - 1].end : 1;

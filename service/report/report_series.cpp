@@ -109,6 +109,9 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
   if (figures_.empty()) figures_[tick.stage] = early_;
   StageFigures& figures = figures_[tick.stage];
   ++figures.ticks;
+  if (const double force = glm::length(tick.response.force);
+      force > figures.force_max_n || figures.force_max_n == 0)
+    figures.pose = tick.pose, figures.at_s = tick.time_s;
   figures.force_max_n = std::max(figures.force_max_n, glm::length(tick.response.force));
   figures.torque_max_nm = std::max(figures.torque_max_nm, glm::length(tick.response.torque));
   return {};

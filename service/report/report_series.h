@@ -59,6 +59,8 @@ class Highlight {
 struct StageFigures {
   std::int64_t ticks = 0, frames = 0;
   double force_max_n = 0, torque_max_nm = 0;  ///< of the response
+  Pose pose;                                  ///< at the largest force; without any at its last tick
+  double at_s = 0;
   std::size_t areas_max = 0, triangles_max = 0;
   double frame_us_sum = 0, frame_us_max = 0;
 };
@@ -79,6 +81,9 @@ class ReportSeries : public RunObserver {
   /// The members "curves", "stage_us", "highlight", "roughness", "stages" and "stage_figures" of the report's
   /// data, without braces around.
   std::string json(const std::vector<std::string>& stage_names) const;
+
+  /// By number of the stage; 0 is what lies between.
+  const std::map<std::int32_t, StageFigures>& stages() const { return figures_; }
 
  private:
   struct Section {

@@ -38,6 +38,12 @@ def test_three_budgets():
     expect(ample['clock'] == 'cpu' and ample['chosen']['unseen_error_F_N']['p95'] > 0, 'the other poses check it')
     # What is more than the poses' share of luck: the poses that were not looked at keep to the promise.
     expect(ample['chosen']['unseen_error_F_N']['p95'] < 3 * ample['chosen']['error_F_N']['max'], ample['chosen'])
+    # The bound of samples is a knob: all of them are no worse than a few, at the same spacing.
+    at = lambda spacing: {one['contact_samples']: one['error_F_N']['p95'] for one in ample['measured'] if one['profile'] == 'refined' and one['sample_spacing_m'] == spacing}
+    finest = at(min(one['sample_spacing_m'] for one in ample['measured'] if one['profile'] == 'refined'))
+    expect({0, 128, 512, 2048} <= set(finest) and finest[0] <= finest[128], finest)
+    promise = ample['promise']
+    expect([one['poses'] for one in promise] == ['beside those that decided'] and promise[0]['time_kept'] and promise[0]['over_budget'] == 0, promise)
     own = max(one['time_us']['p95'] for one in ample['measured'] if one['defaults'])
     tuned(scene, folder, 3 * own)
     least = min(one['time_us']['p95'] for one in ample['measured'])
@@ -53,6 +59,7 @@ def test_apply_writes_the_choice_and_leaves_the_rest():
     chosen, after = json.loads(done.out)['chosen'], json.loads(pathlib.Path(scene).read_text())
     expect({**after, 'response': before.get('response')} == {**before, 'response': before.get('response')}, 'all else stays')
     expect(after['response']['profile'] == chosen['profile'], after)
+    expect(after['response']['contact_samples'] == chosen['contact_samples'], after)
     for key in ('voxel_size', 'sample_spacing'):
         expect(abs(after['response'][key] / chosen[key + '_m'] - 1) < 1e-4, after)
     expect(palpate('query', scene, '--pose', '0 0 0.009 0 0 0 1').code == 0 and not pathlib.Path(str(scene) + '.new').exists(), 'a scene that works')

@@ -47,17 +47,20 @@ std::vector<ForceCaseMaker> asked_cases() {
 }
 
 /// What falls short, and why (docs/ACCURACY.md): the slope of a sum of samples is an order rougher than the
-/// sum, and a spring softer than the contact makes more of that; strips much narrower than a cell lose work.
-/// `palpate bench force` reports all of it.
+/// sum, and a spring softer than the contact makes more of that; strips much narrower than a cell lose work;
+/// a cone's tip holds a few samples, which lie to one side of its axis. `palpate bench force` reports all of
+/// it.
 bool falls_short(const std::string& name, double voxels, const std::string& sentence) {
   const auto any_of = [&](std::initializer_list<const char*> starts) {
     return std::any_of(starts.begin(), starts.end(), [&](const char* one) { return name.starts_with(one); });
   };
   if (sentence.starts_with("∂F is"))
-    return any_of({"sphere over an edge", "plate of", "pin on a plate", "plate on a pin", "needle",
-                   "tool wholly swallowed", "peg of 240 sides tilted, play 3 mm"}) ||
+    return any_of({"sphere over an edge", "cone's tip", "plate of", "pin on a plate", "plate on a pin",
+                   "needle", "tool wholly swallowed", "peg of 240 sides tilted, play 3 mm"}) ||
            (voxels != 1 && any_of({"peg of", "shaft in two bearings", "gears", "sheet", "open box"}));
-  return name == "box off a table" && voxels >= 1 && sentence.ends_with("of the work is lost round the loop");
+  if (sentence.ends_with("of the work is lost round the loop"))
+    return name == "cone's tip over an edge" || (name == "box off a table" && voxels >= 1);
+  return name == "cone's tip on a block" && sentence.find("from the way it must push") != std::string::npos;
 }
 
 class Forces : public testing::TestWithParam<ForceCaseMaker> {};

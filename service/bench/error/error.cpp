@@ -1,17 +1,20 @@
 // `palpate bench error`: error of the response against the time of a frame, for every knob, against closed
-// forms and a converged run.
+// forms and converged runs.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <span>
 
-#include "model/generate/solids.h"
 #include "model/scene/geometry_build.h"
 #include "service/bench/bench.h"
+#include "service/bench/error/error_apart.h"
 #include "service/bench/error/error_charts.h"
-#include "service/bench/error/error_control.h"
+#include "service/bench/error/error_findings.h"
 #include "service/bench/error/error_sweep.h"
-#include "service/bench/error/plain_response.h"
+#include "service/bench/force/force_cases.h"
 #include "service/bench/output.h"
 #include "service/bench/scene_subject.h"
 #include "service/cli/numbers.h"
@@ -23,8 +26,93 @@ namespace {
 constexpr double kConverged = 48;  ///< of a voxel: samples of a run that stands in for a closed form lie so
                                    ///< close (chosen: three times as close as the closest that is judged)
 constexpr std::uint32_t kSampleCounts[] = {32, 64, 128, 256, 512, 1024, 2048};  ///< a contact; 512 is usual
-constexpr std::size_t kMostTriangles =
-    4'000'000;  ///< of a mock-up cut finer (chosen: minutes of preparation)
+constexpr double kVoxelTimes[] = {2.0, 1.4, 1.0, 0.7, 0.5, 0.35};               ///< of the scene's own
+constexpr int kCuts = 6;  ///< finenesses of the mock-up in `paper`
+constexpr double kMostFiner = 16, kAnyTriangles = 40'000,
+                 kMostTriangles = 600'000;  ///< of the finest: times the mock-up's own, but so many in any
+                                            ///< case, and no more than so many (chosen: minutes)
+constexpr std::uint64_t kAskedPoses = 200;  ///< of a path or file, to find those in contact (chosen)
+constexpr double kTruthTriangles = 2;       ///< times the finest: paper's own truth
+
+/// Cases of `bench force` whose force has no closed form for its size.
+constexpr const char* kForceCases[] = {"peg of 96 sides off centre askew, play 0.3 mm", "plate on to 4 pads",
+                                       "plate on six waves", "plate of 2 mm pierced"};
+
+using Truths = std::vector<std::optional<ContactTruth>>;
+
+ErrorSetting spacing(const GeometrySettings& base, double value) {
+  ErrorSetting setting{Profile::kRefined, "sample_spacing", value, base};
+  setting.geometry.sample_spacing_m = value;
+  setting.geometry.contact_samples =
+      0;  // all of them: else a large contact would be sampled as coarsely as before
+  return setting;
+}
+
+ErrorSetting voxels(Profile profile, const GeometrySettings& base, double value,
+                    std::optional<double> sample_spacing) {
+  ErrorSetting setting{profile, "voxel_size", value, base};
+  setting.geometry.voxel_size_m = value;
+  setting.geometry.sample_spacing_m = sample_spacing;
+  return setting;
+}
+
+/// The program's own spacing, and about so many samples a contact.
+ErrorSetting samples(const GeometrySettings& base, std::uint32_t count) {
+  ErrorSetting setting{Profile::kRefined, "contact_samples", static_cast<double>(count), base};
+  setting.geometry.contact_samples = count;
+  return setting;
+}
+
+/// The mock-up cut so fine.
+ErrorSetting cut(const GeometrySettings& base, double voxel, std::uint64_t triangles) {
+  ErrorSetting setting = voxels(Profile::kPaper, base, voxel, std::nullopt);
+  setting.knob = "triangles";
+  setting.value = static_cast<double>(triangles);
+  setting.triangles = triangles;
+  return setting;
+}
+
+/// Every so manyeth, `count` at most.
+template <class T>
+std::vector<T> thinned(const std::vector<T>& all, std::size_t count) {
+  if (all.size() <= count) return all;
+  std::vector<T> out;
+  for (std::size_t i = 0; i < count; ++i) out.push_back(all[i * all.size() / count]);
+  return out;
+}
+
+Answered part_of(const Answered& all, std::size_t first, std::size_t count) {
+  const auto cut_out = [&](const auto& from) {
+    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::decay_t<decltype(from)>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  return {cut_out(all.answers), cut_out(all.times_us), cut_out(all.all_us), all.samples};
+}
+
+std::size_t contacts_of(const Truths& truths) {
+  return static_cast<std::size_t>(
+      std::count_if(truths.begin(), truths.end(), [](const auto& truth) { return truth.has_value(); }));
+}
+
+std::vector<double> sizes_of(const Truths& truths, std::size_t quantity) {
+  std::vector<double> out;
+  for (const auto& truth : truths)
+    if (truth)
+      out.push_back(quantity == 0   ? truth->depth
+                    : quantity == 3 ? glm::length(truth->wrench.force)
+                    : quantity == 4 ? glm::length(truth->wrench.torque)
+                                    : 0.0);
+  return out;
+}
+
+/// Poses of a subject that belong together, and what is judged at them.
+struct PoseSet {
+  std::string name;  ///< of the subject and of these poses
+  std::size_t first = 0, count = 0;
+  Truths truths, paper_truths;  ///< of `refined` and of `paper`
+  ErrorTruths about;
+  std::vector<ErrorCurves> curves;
+};
 
 class ErrorBench {
  public:
@@ -35,21 +123,42 @@ class ErrorBench {
     facts_.more.emplace_back(
         "clock", options_.cpu_clock ? "this process's own time, of all its threads" : "the wall's");
     if (auto done = find_engines(); !done) return done;
-    if (!options_.scenes_only)
-      if (auto done = closed_forms(); !done) return done;
-    for (const std::string& file : options_.scenes)
-      if (auto done = scene(file); !done) return done;
+    // What one subject lacks, or an interruption, does not lose what the others have told.
+    std::optional<Error> failed;
+    const auto take = [&](const std::string& name, Result<void> done) {
+      if (done || interrupted()) return;
+      failed = done.error();
+      console_.note(failed->sentence);
+      facts_.more.emplace_back("left out: " + name, failed->sentence);
+    };
     if (!options_.scenes_only) {
-      tessellation();
-      control();
-      if (auto done = lattice_step(); !done) return done;
+      take("closed forms", closed_forms());
+      if (!options_.quick)
+        for (const char* name : kForceCases)
+          if (!interrupted()) take(name, force_case(name));
+    }
+    for (const std::string& scene : options_.scenes)
+      if (!interrupted()) take(scene, scene_file(scene));
+    if (failed && table_.rows.empty()) return *failed;
+    for (const auto& [engine, leads] : leads_)
+      facts_.findings.emplace(facts_.findings.begin(), "", lead_summary(engine, leads));
+    if (!options_.scenes_only && !interrupted()) {
+      ErrorApart apart{table_, charts_, facts_};
+      apart.tessellation();
+      apart.control();
+      if (auto done = apart.lattice_step(*engines_.front().backend, options_.cpu_clock, console_); !done)
+        return done;
     }
     facts_.more.emplace_back("left out",
                              "poses without contact; preparation and first-run compilation, which no time "
                              "here holds; errors of 0, for which a logarithm has no place; "
-                             "spacings that a back end refuses (each with its reason); control over real "
+                             "settings that a back end refuses (each with its reason); control over real "
                              "queries (bench stability has it)");
     console_.finish();
+    if (interrupted()) {
+      if (table_.rows.empty()) return Error{ErrorCode::kInternal, "interrupted"};
+      facts_.more.emplace_back("interrupted", "before all subjects were measured; these are whole");
+    }
     return write_bench(options_.out, facts_, table_, charts_);
   }
 
@@ -66,7 +175,7 @@ class ErrorBench {
     std::vector<std::string> names = options_.backends;
     const bool chosen = !names.empty() && names.front() != "auto";
     if (!chosen) names = {"cpu", "gpu"};
-    for (std::string name : names) {
+    for (const std::string& name : names) {
       auto made = choose_backend(name, std::nullopt, parts_, console_);
       if (!made && !chosen && name == "gpu") {
         facts_.more.emplace_back("paper", made.error().sentence + ": the engine ref answers it");
@@ -80,71 +189,70 @@ class ErrorBench {
     return {};
   }
 
-  static double largest(const std::vector<std::optional<ContactTruth>>& truths, std::size_t quantity) {
-    double out = 0;
-    for (const auto& truth : truths)
-      if (truth)
-        out = std::max(out, quantity == 0   ? truth->depth
-                            : quantity == 3 ? glm::length(truth->wrench.force)
-                            : quantity == 4 ? glm::length(truth->wrench.torque)
-                                            : 0.0);
-    return out;
+  Engine* paper_engine() {
+    const auto found =
+        std::find_if(engines_.begin(), engines_.end(), [](const Engine& engine) { return engine.paper; });
+    return found == engines_.end() ? nullptr : &*found;
   }
 
-  static ErrorTruths truths_of(const std::vector<std::optional<ContactTruth>>& truths,
-                               const std::string& about, std::optional<double> spacing_m) {
+  static ErrorTruths truths_of(const PoseSet& set, const std::string& about,
+                               std::optional<double> spacing_m) {
     ErrorTruths out{.about = about, .spacing_m = spacing_m};
-    for (std::size_t q = 0; q < out.largest.size(); ++q) out.largest[q] = largest(truths, q);
+    for (std::size_t q = 0; q < kErrorQuantities.size(); ++q) {
+      const std::vector<double> refined = sizes_of(set.truths, q), paper = sizes_of(set.paper_truths, q);
+      out.largest[q] = percentile(refined, 1);
+      out.typical[0][q] = percentile(refined, 0.5);
+      out.typical[1][q] = percentile(paper, 0.5);
+    }
     return out;
   }
 
   Result<void> closed_forms() {
     std::vector<ErrorSubject> coarse = closed_form_subjects(1);
-    if (options_.quick) coarse.erase(coarse.begin() + 1), coarse.pop_back();
-    const double converged_part = options_.quick ? 12 : kConverged;
-    struct Work {
-      std::vector<std::optional<ContactTruth>> truths;
-      ErrorTruths about;
-      std::vector<ErrorCurves> curves;
+    const auto fewer = [this](std::vector<ErrorSubject>& subjects) {
+      if (options_.quick) subjects.erase(subjects.begin() + 1), subjects.pop_back();
+      for (ErrorSubject& subject : subjects)
+        subject.poses = thinned(subject.poses, options_.quick ? 8 : options_.frames);
     };
-    std::vector<Work> all(coarse.size());
+    fewer(coarse);
+    const double converged_part = options_.quick ? 12 : kConverged;
+    std::vector<PoseSet> all(coarse.size());
     for (std::size_t k = 0; k < coarse.size(); ++k) {
-      if (options_.quick) coarse[k].poses.resize(8);
       const double voxel = *coarse[k].settings.voxel_size_m;
-      Work& work = all[k];
+      PoseSet& set = all[k];
+      set.name = coarse[k].name, set.count = coarse[k].poses.size();
       std::optional<double> stand_in;
+      for (const Pose& pose : coarse[k].poses) set.paper_truths.emplace_back(coarse[k].truth(pose));
       if (coarse[k].field_truth) {
-        for (const Pose& pose : coarse[k].poses) work.truths.emplace_back(coarse[k].field_truth(pose));
+        for (const Pose& pose : coarse[k].poses) set.truths.emplace_back(coarse[k].field_truth(pose));
       } else {
         const auto converged =
             answers(coarse[k], spacing(coarse[k].settings, voxel / converged_part), engines_.front());
         if (!converged) return converged.error();
-        work.truths = converged->answers;
+        set.truths = converged->answers;
         stand_in = voxel / converged_part;
       }
       const std::string about = fmt::format(
           "{}; paper is judged against its closed form, refined against {}; d of the triangles themselves is "
-          "off by "
-          "{:.2g} of d at most",
+          "off by {:.2g} of d at most",
           coarse[k].about,
           stand_in ? fmt::format("itself at a spacing of {:.3g} mm", 1000 * *stand_in) : "the field's",
           coarse[k].tessellation_error);
       facts_.more.emplace_back(coarse[k].name, about);
-      work.about = truths_of(work.truths, about, stand_in);
+      set.about = truths_of(set, about, stand_in);
       std::vector<ErrorSetting> settings;
       const std::vector<double> parts = options_.quick ? std::vector<double>{1, 1.5, 2, 3, 4, 6}
                                                        : std::vector<double>{1, 1.5, 2, 3, 4, 6, 8, 12, 16};
       for (const double part : parts) settings.push_back(spacing(coarse[k].settings, voxel / part));
       if (!options_.quick) {
-        for (const double part : {0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0})
-          settings.push_back(voxels(Profile::kRefined, coarse[k].settings, voxel / part, voxel / 4));
+        for (const double times : kVoxelTimes)
+          settings.push_back(voxels(Profile::kRefined, coarse[k].settings, voxel * times, voxel / 4));
         for (const std::uint32_t count : kSampleCounts)
           settings.push_back(samples(coarse[k].settings, count));
       }
       for (Engine& engine : engines_) {
-        work.curves.push_back({engine.name, {}});
-        if (auto done = measure(coarse[k], settings, work.truths, engine, work.curves.back().points); !done)
-          return done;
+        set.curves.push_back({engine.name, {}});
+        if (auto done = measure(coarse[k], settings, engine, std::span(&set, 1)); !done) return done;
       }
     }
     // The chapter's knob is the tessellation: its samples are centroids. The ball in a ball has its own
@@ -155,265 +263,158 @@ class ErrorBench {
       if (!engines_[e].paper) continue;
       for (const auto& [cells, triangles] : meshes) {
         std::vector<ErrorSubject> fine = closed_form_subjects(cells, triangles);
-        if (options_.quick) fine.erase(fine.begin() + 1), fine.pop_back();
+        fewer(fine);
         for (std::size_t k = 0; k < fine.size(); ++k) {
-          if (options_.quick) fine[k].poses.resize(8);
-          std::vector<std::optional<ContactTruth>> truths;
-          for (const Pose& pose : fine[k].poses) truths.emplace_back(fine[k].truth(pose));
           std::vector<ErrorSetting> settings{{Profile::kPaper, "triangles",
                                               static_cast<double>(fine[k].meshes.mockup.triangles.size()),
-                                              fine[k].settings, 1}};
-          if (cells == 108 && !options_.quick)
-            for (const double size : {5.6e-3, 4e-3, 2.8e-3, 2e-3, 1.4e-3, 1e-3})
-              settings.push_back(voxels(Profile::kPaper, fine[k].settings, size, std::nullopt));
-          if (auto done = measure(fine[k], settings, truths, engines_[e], all[k].curves[e].points); !done)
+                                              fine[k].settings}};
+          if (cells == 36 && !options_.quick)
+            for (const double times : kVoxelTimes)
+              settings.push_back(voxels(Profile::kPaper, fine[k].settings,
+                                        times * *fine[k].settings.voxel_size_m, std::nullopt));
+          if (auto done = measure(fine[k], settings, engines_[e], std::span(&all[k], 1), e); !done)
             return done;
         }
       }
     }
-    for (std::size_t k = 0; k < coarse.size(); ++k) report(coarse[k].name, all[k].curves, all[k].about);
+    for (PoseSet& set : all) report(set);
     return {};
   }
 
-  void rows(const std::string& scene, const std::string& method, const std::string& knob, double value,
-            const char* quantity, const std::vector<double>& errors, double us_p50, double us_p99) {
-    table_.rows.push_back({scene, method, knob, value, quantity, percentile(errors, 0.5),
-                           percentile(errors, 0.99), us_p50, us_p99, std::string(), errors.size(),
-                           std::uint64_t{0}});
+  /// A case of the judge of forces, at poses of its path.
+  Result<void> force_case(const std::string& name) {
+    const std::vector<ForceCaseMaker> makers = force_cases();
+    const auto maker =
+        std::find_if(makers.begin(), makers.end(), [&](const ForceCaseMaker& m) { return m.name == name; });
+    if (maker == makers.end()) return Error{ErrorCode::kInternal, "no case of bench force: " + name};
+    ForceCase made = maker->make();
+    ErrorSubject subject;
+    subject.name = name;
+    subject.meshes = {std::move(made.mockup), std::move(made.tool)};
+    if (made.voxel_m > 0) subject.settings.voxel_size_m = made.voxel_m;
+    subject.stiffness_n_per_m = kForceStiffness;
+    const Result<SceneGeometry> geometry =
+        build_geometry(subject.meshes.mockup, subject.meshes.tool, subject.settings);
+    if (!geometry) return geometry.error();
+    const double step = geometry->lattice.step_m, voxel = geometry->mockup_grid.size * step;
+    subject.settings.voxel_size_m = voxel;
+    subject.settings.sample_spacing_m = geometry->sample_spacing * step;
+    subject.poses = std::move(made.path);
+    return converged_subject(subject, {{name, 0, subject.poses.size(), {}, {}, {}, {}}}, voxel);
   }
 
-  /// What a ball's triangles cost by themselves: no method can be nearer to the round ball than its mesh is.
-  void tessellation() {
-    BenchChart chart{.title = "sphere_plane: error of d by tessellation alone",
-                     .unit = "m",
-                     .labels = {},
-                     .series = {{"p50", {}, {}}, {"p99", {}, {}}},
-                     .log_x = true,
-                     .log_y = true,
-                     .x_title = "triangles of the ball"};
-    std::vector<std::pair<double, double>> curve;
-    for (const std::uint64_t triangles : {80u, 320u, 1280u, 5120u, 20480u, 81920u}) {
-      const std::vector<double> errors = tessellation_errors(triangles);
-      rows("sphere_plane", "tessellation", "tool_triangles", static_cast<double>(triangles), "d_m", errors, 0,
-           0);
-      for (std::size_t k = 0; k < 2; ++k) {
-        chart.series[k].x.push_back(static_cast<double>(triangles));
-        chart.series[k].y.push_back(percentile(errors, k == 0 ? 0.5 : 0.99));
-      }
-      curve.emplace_back(static_cast<double>(triangles), percentile(errors, 0.5));
-    }
-    facts_.more.emplace_back("order of d, tessellation",
-                             order_text(*fitted_order(curve), "numbers of triangles") +
-                                 ": the mesh against the round ball, no method in it");
-    chart.caption =
-        "How far the depth of a ball's triangles is from the round ball's: no method can be nearer than its "
-        "mesh.";
-    charts_.push_back(std::move(chart));
-  }
-
-  /// What a hand feels against what it should, for results of all ages, by the shipped laws in virtual time.
-  void control() {
-    const auto add = [&](LawKind law, int age, int n, const char* knob, double value, BenchChart& chart) {
-      const ControlError result = control_error(law, age, n);
-      const char* name = law == LawKind::kHold ? "hold" : law == LawKind::kPrinted ? "printed" : "corrected";
-      rows("control", name, knob, value, "F_N", result.errors_n, result.step_us, result.step_us);
-      for (const double fraction : {0.5, 0.99}) {
-        const std::string label = fmt::format("{}, {}", name, fraction == 0.5 ? "p50" : "p99");
-        auto series = std::find_if(chart.series.begin(), chart.series.end(),
-                                   [&](const auto& s) { return s.label == label; });
-        if (series == chart.series.end()) series = chart.series.insert(series, {label, {}, {}});
-        const double error = percentile(result.errors_n, fraction);
-        if (error <= 0) continue;
-        series->x.push_back(value);
-        series->y.push_back(error);
-      }
-    };
-    BenchChart ages{.title = "control: force felt against force at zero delay, n = age",
-                    .unit = "N",
-                    .labels = {},
-                    .series = {},
-                    .log_x = true,
-                    .log_y = true,
-                    .x_title = "age of results, ticks"};
-    BenchChart ramps{.title = "control: the same with results 10 ticks old, over n",
-                     .unit = "N",
-                     .labels = {},
-                     .series = {},
-                     .log_x = true,
-                     .log_y = true,
-                     .x_title = "n, ticks"};
-    for (const LawKind law : {LawKind::kHold, LawKind::kPrinted, LawKind::kCorrected}) {
-      for (const int age : {1, 2, 3, 5, 10, 20, 50}) add(law, age, age, "age", age, ages);
-      if (law == LawKind::kHold) continue;
-      for (const int n : {1, 2, 5, 10, 20, 50}) add(law, 10, n, "n", n, ramps);
-    }
-    ages.caption =
-        "A hand presses a ball of 20 mm 3 mm deep into a plane, twice. The force felt is held against the "
-        "force without any "
-        "delay; closed form. Each law takes as many ticks to a new result as results are old.";
-    ramps.caption = "The same press with results 10 ticks old: what more or fewer transitions do.";
-    charts_.push_back(std::move(ages));
-    charts_.push_back(std::move(ramps));
-  }
-
-  /// The mock-up grows by a small box ever further away, so that the lattice's step grows; beside it single
-  /// and double precision, whose numbers lie as far apart as the contact is far from the origin.
-  Result<void> lattice_step() {
-    ErrorSubject corner = closed_form_subjects(1)[2];
-    corner.poses.resize(10);
-    const Mesh near = corner.meshes.mockup;
-    const double voxel = *corner.settings.voxel_size_m;
-    std::vector<std::optional<ContactTruth>> truths;
-    for (const Pose& pose : corner.poses) truths.emplace_back(corner.field_truth(pose));
-    const double reference_area = 0.02 * 0.02 / 64;  // of a cube of 20 mm
-    BenchChart chart{.title = "corner_plane: error of d over the step between numbers",
-                     .unit = "m",
-                     .labels = {},
-                     .series = {{"palpate", {}, {}}, {"fp32", {}, {}}, {"fp64", {}, {}}},
-                     .log_x = true,
-                     .log_y = true,
-                     .x_title = "step, m"};
-    const auto put = [&](std::size_t k, const char* method, double step, const std::vector<double>& errors,
-                         double us50, double us99) {
-      rows("corner_plane", method, "lattice_step", step, "d_m", errors, us50, us99);
-      chart.series[k].x.push_back(step);
-      chart.series[k].y.push_back(percentile(errors, 0.5));
-    };
-    for (const double far : {0.1, 1.0, 10.0, 100.0}) {
-      corner.meshes.mockup = near;
-      solids::append(corner.meshes.mockup,
-                     solids::box(Vec3(far, -1e-3, -1e-2), Vec3(far + 2e-3, 1e-3, -8e-3)), "far");
-      ErrorSetting setting = spacing(corner.settings, voxel / 16);
-      setting.knob = "lattice_step";
-      const auto geometry = build_geometry(corner.meshes.mockup, corner.meshes.tool, setting.geometry);
-      if (!geometry) return geometry.error();
-      if (const auto answered = answers(corner, setting, engines_.front())) {
-        const ErrorResult result = judge(*answered, truths);
-        put(0, "palpate", geometry->lattice.step_m, result.errors[0], percentile(result.times_us, 0.5),
-            percentile(result.times_us, 0.99));
-      } else if (interrupted()) {
-        return answered.error();
-      } else {
-        facts_.more.emplace_back(fmt::format("left out of the lattice's step, {:g} m", far),
-                                 answered.error().sentence);
-      }
-      std::vector<double> single, twice;
-      Mesh moved = near;
-      for (Vec3& v : moved.vertices) v.x += far;
-      for (std::size_t i = 0; i < corner.poses.size(); ++i) {
-        Pose pose = corner.poses[i];
-        pose.position.x += far;
-        single.push_back(std::fabs(plain_response<float>(moved, corner.meshes.tool, pose, voxel / 16,
-                                                         corner.stiffness_n_per_m, reference_area)
-                                       .depth -
-                                   truths[i]->depth));
-        twice.push_back(std::fabs(plain_response<double>(moved, corner.meshes.tool, pose, voxel / 16,
-                                                         corner.stiffness_n_per_m, reference_area)
-                                      .depth -
-                                  truths[i]->depth));
-      }
-      put(1, "fp32", std::ldexp(1.0, std::ilogb(far) - 23), single, 0, 0);
-      put(2, "fp64", std::ldexp(1.0, std::ilogb(far) - 52), twice, 0, 0);
-    }
-    chart.caption =
-        "A cube on its corner in a plane, the same poses, ever further from the origin: palpate's lattice "
-        "grows with the "
-        "scene, plain numbers lie further apart. Median over ten poses, closed form.";
-    charts_.push_back(std::move(chart));
-    return {};
-  }
-
-  /// A hand's poses and, apart, the path's, which are deeper than a hand gets; or those of a file.
-  Result<void> scene(const std::string& file) {
-    if (!options_.poses.empty() || options_.quick) return scene(file, options_.poses, "");
-    if (auto done = scene(file, "run", ", hand's poses"); !done) return done;
-    return scene(file, "", ", path's depths");
-  }
-
-  Result<void> scene(const std::string& file, const std::string& poses, const std::string& suffix) {
+  /// A hand's poses and, apart, the path's, which are deeper than a hand gets; or those of a file:
+  /// "scene.json=poses.csv".
+  Result<void> scene_file(const std::string& text) {
+    const std::size_t sign = text.find('=');
+    const std::string file = text.substr(0, sign),
+                      own = sign == std::string::npos ? options_.poses : text.substr(sign + 1);
     BenchOptions options = options_;
-    options.poses = poses;
+    options.poses = own;
+    options.frames = kAskedPoses;
+    const bool both = own.empty() && !options_.quick;
+    if (both) options.poses = "run";
     auto read = scene_subject(file, options, engines_.front().name, parts_, console_);
     if (!read) return read.error();
     ErrorSubject& subject = read->subject;
-    subject.name += suffix;
-    const double voxel = read->voxel_m, fine = read->spacing_m;
+    const std::string name = subject.name;
+    std::vector<PoseSet> sets{
+        {both ? name + ", hand's poses" : name, 0, subject.poses.size(), {}, {}, {}, {}}};
+    if (both) {
+      options.poses.clear();
+      auto path = scene_subject(file, options, engines_.front().name, parts_, console_);
+      if (!path) return path.error();
+      sets.push_back(
+          {name + ", path's depths", subject.poses.size(), path->subject.poses.size(), {}, {}, {}, {}});
+      subject.poses.insert(subject.poses.end(), path->subject.poses.begin(), path->subject.poses.end());
+    }
+    return converged_subject(subject, std::move(sets), read->voxel_m);
+  }
 
-    // What stands in for the truth. Poses without contact have nothing to judge.
+  /// A subject without closed forms: each method is judged against itself, converged.
+  Result<void> converged_subject(ErrorSubject subject, std::vector<PoseSet> sets, double voxel) {
+    if (auto done = keep_touching(subject, sets, voxel); !done) return done;
     const auto converged = answers(subject, spacing(subject.settings, voxel / 16), engines_.front());
     if (!converged) return converged.error();
-    const std::vector<std::optional<ContactTruth>>& truths = converged->answers;
-    const auto in_contact = static_cast<std::size_t>(
-        std::count_if(truths.begin(), truths.end(), [](const auto& truth) { return truth.has_value(); }));
-    if (in_contact == 0) {
-      const std::string sentence = fmt::format("{}: none of the {} poses is in contact", file, truths.size());
-      if (suffix.empty()) return bad_value(sentence);
-      console_.note(sentence + suffix);
-      facts_.more.emplace_back("left out of " + subject.name, sentence);
-      return {};
+    Engine* paper_by = options_.quick ? nullptr : paper_engine();
+    const auto own = static_cast<double>(subject.meshes.mockup.triangles.size());
+    const double finest = std::max(own, std::min(kMostTriangles, std::max(kMostFiner * own, kAnyTriangles)));
+    std::optional<Answered> paper_truth;
+    if (paper_by != nullptr) {
+      const auto answered =
+          answers(subject, cut(subject.settings, voxel, static_cast<std::uint64_t>(kTruthTriangles * finest)),
+                  *paper_by);
+      if (!answered && interrupted()) return answered.error();
+      if (answered)
+        paper_truth = *answered;
+      else
+        facts_.more.emplace_back("left out of " + subject.name, "paper: " + answered.error().sentence);
     }
-    const std::string about = fmt::format(
-        "{} of {} poses in contact; judged against refined at a spacing of {:.3g} mm, {} samples in all",
-        in_contact, truths.size(), 1000 * voxel / 16, count_text(converged->samples));
-    facts_.more.emplace_back(subject.name, about);
-    std::vector<ErrorSetting> settings;
+    std::vector<PoseSet> touched;
+    for (PoseSet& set : sets) {
+      set.truths = part_of(*converged, set.first, set.count).answers;
+      if (paper_truth) set.paper_truths = part_of(*paper_truth, set.first, set.count).answers;
+      const std::size_t in_contact = contacts_of(set.truths);
+      if (in_contact == 0) {
+        facts_.more.emplace_back("left out of " + set.name, "none of its poses is in contact");
+        continue;
+      }
+      const std::string about = fmt::format(
+          "{} of {} poses in contact; refined is judged against itself at a spacing of {:.3g} mm{}",
+          in_contact, set.count, 1000 * voxel / 16,
+          paper_truth ? fmt::format(", paper against itself with its mock-up cut into {} triangles",
+                                    count_text(static_cast<std::uint64_t>(kTruthTriangles * finest)))
+                      : std::string());
+      facts_.more.emplace_back(set.name, about);
+      set.about = truths_of(set, about, voxel / 16);
+      touched.push_back(std::move(set));
+    }
+    if (touched.empty()) return bad_value(fmt::format("{}: none of its poses is in contact", subject.name));
+
+    std::vector<ErrorSetting> settings, paper;
     for (const double part : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0})
       settings.push_back(spacing(subject.settings, voxel / part));
-    std::vector<ErrorSetting> paper;
     if (!options_.quick) {
-      for (const double times : {2.0, 1.4, 1.0, 0.7, 0.5, 0.35}) {
-        settings.push_back(voxels(Profile::kRefined, subject.settings, voxel * times, fine));
+      for (const double times : kVoxelTimes) {
+        settings.push_back(
+            voxels(Profile::kRefined, subject.settings, voxel * times, subject.settings.sample_spacing_m));
         paper.push_back(voxels(Profile::kPaper, subject.settings, voxel * times, std::nullopt));
       }
       for (const std::uint32_t count : kSampleCounts) settings.push_back(samples(subject.settings, count));
-      const std::size_t triangles = subject.meshes.mockup.triangles.size();
-      for (int pieces = 1; pieces <= 6; ++pieces) {
-        const std::size_t cut =
-            triangles * static_cast<std::size_t>(pieces) * static_cast<std::size_t>(pieces);
-        if (cut > kMostTriangles) {
-          facts_.more.emplace_back(
-              "left out of " + subject.name,
-              fmt::format("paper with more than {} triangles", count_text(kMostTriangles)));
-          break;
-        }
-        ErrorSetting finer = voxels(Profile::kPaper, subject.settings, voxel, std::nullopt);
-        finer.knob = "triangles";
-        finer.pieces = pieces;
-        finer.value = static_cast<double>(cut);
-        paper.push_back(finer);
-      }
+      for (int i = 0; i < kCuts; ++i)
+        paper.push_back(cut(subject.settings, voxel,
+                            static_cast<std::uint64_t>(own * std::pow(finest / own, i / (kCuts - 1.0)))));
     }
-    std::vector<ErrorCurves> curves;
     for (Engine& engine : engines_) {
-      curves.push_back({engine.name, {}});
-      if (auto done = measure(subject, settings, truths, engine, curves.back().points); !done) return done;
-      if (engine.paper)
-        if (auto done = measure(subject, paper, truths, engine, curves.back().points); !done) return done;
+      for (PoseSet& set : touched) set.curves.push_back({engine.name, {}});
+      if (auto done = measure(subject, settings, engine, touched); !done) return done;
+      if (engine.paper && paper_truth)
+        if (auto done = measure(subject, paper, engine, touched); !done) return done;
     }
-    report(subject.name, curves, truths_of(truths, about, voxel / 16));
+    for (PoseSet& set : touched) report(set);
     return {};
   }
 
-  static ErrorSetting spacing(const GeometrySettings& base, double value) {
-    ErrorSetting setting{Profile::kRefined, "sample_spacing", value, base, 1};
-    setting.geometry.sample_spacing_m = value;
-    setting.geometry.contact_samples =
-        0;  // all of them: else a large contact would be sampled as coarsely as before
-    return setting;
-  }
-  static ErrorSetting voxels(Profile profile, const GeometrySettings& base, double value,
-                             std::optional<double> sample_spacing) {
-    ErrorSetting setting{profile, "voxel_size", value, base, 1};
-    setting.geometry.voxel_size_m = value;
-    setting.geometry.sample_spacing_m = sample_spacing;
-    return setting;
-  }
-
-  /// The program's own spacing, and about so many samples a contact.
-  static ErrorSetting samples(const GeometrySettings& base, std::uint32_t count) {
-    ErrorSetting setting{Profile::kRefined, "contact_samples", static_cast<double>(count), base, 1};
-    setting.geometry.contact_samples = count;
-    return setting;
+  /// Leaves of each set as many poses in contact as were asked for, evenly.
+  Result<void> keep_touching(ErrorSubject& subject, std::vector<PoseSet>& sets, double voxel) {
+    const auto asked = answers(
+        subject, voxels(Profile::kRefined, subject.settings, voxel, subject.settings.sample_spacing_m),
+        engines_.front());
+    if (!asked) return asked.error();
+    std::vector<Pose> kept;
+    for (PoseSet& set : sets) {
+      std::vector<Pose> touching;
+      for (std::size_t i = set.first; i < set.first + set.count; ++i)
+        if (asked->answers[i]) touching.push_back(subject.poses[i]);
+      touching = thinned(touching, options_.frames);
+      set.first = kept.size(), set.count = touching.size();
+      kept.insert(kept.end(), touching.begin(), touching.end());
+    }
+    if (kept.empty())
+      return bad_value(
+          fmt::format("{}: none of the {} poses is in contact", subject.name, subject.poses.size()));
+    subject.poses = std::move(kept);
+    return {};
   }
 
   Result<Answered> answers(const ErrorSubject& subject, const ErrorSetting& setting, Engine& engine) {
@@ -428,9 +429,9 @@ class ErrorBench {
     return answered;
   }
 
-  Result<void> measure(const ErrorSubject& subject, const std::vector<ErrorSetting>& settings,
-                       const std::vector<std::optional<ContactTruth>>& truths, Engine& engine,
-                       std::vector<ErrorPoint>& points) {
+  /// Adds a point a setting to the newest curves of each set, or to those of a number.
+  Result<void> measure(const ErrorSubject& subject, const std::vector<ErrorSetting>& settings, Engine& engine,
+                       std::span<PoseSet> sets, std::optional<std::size_t> curves = {}) {
     for (const ErrorSetting& setting : settings) {
       const auto answered = answers(subject, setting, engine);
       if (!answered) {
@@ -439,79 +440,77 @@ class ErrorBench {
         facts_.more.emplace_back("left out of " + subject.name, answered.error().sentence);
         continue;
       }
-      points.push_back({setting, judge(*answered, truths)});
+      for (PoseSet& set : sets)
+        (curves ? set.curves[*curves] : set.curves.back())
+            .points.push_back(
+                {setting, judge(part_of(*answered, set.first, set.count),
+                                setting.profile == Profile::kPaper ? set.paper_truths : set.truths)});
     }
     return {};
   }
 
-  void report(const std::string& name, const std::vector<ErrorCurves>& engines, const ErrorTruths& truths) {
-    for (const ErrorCurves& curves : engines) {
+  void report(const PoseSet& set) {
+    for (const ErrorCurves& curves : set.curves) {
       for (const ErrorPoint& point : curves.points) {
         const double p50 = percentile(point.result.times_us, 0.5),
                      p99 = percentile(point.result.times_us, 0.99);
+        const std::size_t method = point.setting.profile == Profile::kPaper ? 1 : 0;
         for (std::size_t q = 0; q < kErrorQuantities.size(); ++q)
-          table_.rows.push_back({name, method(point), point.setting.knob, point.setting.value,
-                                 kErrorQuantities[q], percentile(point.result.errors[q], 0.5),
-                                 percentile(point.result.errors[q], 0.99), p50, p99, curves.engine,
-                                 point.result.times_us.size(), point.result.lost});
+          table_.rows.push_back(
+              {set.name, kMethods[method], point.setting.knob, point.setting.value, kErrorQuantities[q],
+               percentile(point.result.errors[q], 0.5), percentile(point.result.errors[q], 0.99), p50, p99,
+               curves.engine, point.result.times_us.size(), point.result.lost, set.about.typical[method][q]});
         if (point.result.lost > 0)
           facts_.more.emplace_back(
-              fmt::format("{}, {} {} {:.4g}, {}", name, method(point), point.setting.knob,
+              fmt::format("{}, {} {} {:.4g}, {}", set.name, kMethods[method], point.setting.knob,
                           point.setting.value, curves.engine),
               fmt::format("finds nothing at {} of {} poses; their d, F and T count as lost whole",
                           point.result.lost, point.result.times_us.size()));
       }
       for (const std::size_t q : {std::size_t{3}, std::size_t{0}})
-        charts_.push_back(error_time_chart(name, curves, truths, q));
-      add_lead(name, curves);
+        charts_.push_back(error_time_chart(set.name, curves, set.about, q));
+      const auto lead = lead_of(curves, set.about, 3);
+      if (!lead) continue;
+      leads_[curves.engine].emplace_back(set.name, *lead);
+      const std::string by = "Force, by the engine " + curves.engine + ": ";
+      facts_.findings.emplace_back(set.name, by + lead_sentence(*lead) + ".");
+      facts_.findings.emplace_back(
+          set.name, by + where_wins(curves, set.about, 3) + " (medians, each method against its own truth).");
+      if (const auto of_depth = lead_of(curves, set.about, 0))
+        facts_.more.emplace_back(fmt::format("refined against paper in d, {}, {}", set.name, curves.engine),
+                                 lead_sentence_of_depth(*of_depth));
     }
     for (const std::size_t q : {std::size_t{3}, std::size_t{0}})
-      charts_.push_back(convergence_chart(name, engines.front(), truths, q));
-    if (engines.size() > 1) charts_.push_back(engines_chart(name, engines));
+      charts_.push_back(convergence_chart(set.name, set.curves.front(), set.about, q));
+    if (set.curves.size() > 1) charts_.push_back(engines_chart(set.name, set.curves));
     std::vector<std::pair<double, double>> curve;
-    for (const ErrorPoint& point : engines.front().points)
+    for (const ErrorPoint& point : set.curves.front().points)
       if (point.setting.knob == "sample_spacing")
         curve.emplace_back(point.setting.value, percentile(point.result.errors[0], 0.5));
     if (const auto fit = fitted_order(curve))
-      facts_.more.emplace_back("order of d, " + name, order_text(*fit, "spacings"));
+      facts_.more.emplace_back("order of d, " + set.name, order_text(*fit, "spacings"));
   }
 
-  static std::string method(const ErrorPoint& point) {
-    return point.setting.profile == Profile::kPaper ? "paper" : "refined";
+  static std::string lead_sentence_of_depth(const MethodLead& lead) {
+    return lead.us ? fmt::format(
+                         "paper's best median error is {:.3g} m in {:.0f} µs; refined has {:.3g} m in "
+                         "{:.0f} µs, {:.1f} times sooner",
+                         lead.paper_error, lead.paper_us, *lead.error, *lead.us, lead.factor())
+                   : fmt::format("paper's best median error, {:.3g} m in {:.0f} µs, is not reached",
+                                 lead.paper_error, lead.paper_us);
   }
 
-  /// How much sooner refined is as good in d as the best of paper, on one engine.
-  void add_lead(const std::string& name, const ErrorCurves& curves) {
-    const ErrorPoint *best = nullptr, *rival = nullptr;
-    const auto error = [](const ErrorPoint& p) { return percentile(p.result.errors[0], 0.5); };
-    const auto time = [](const ErrorPoint& p) { return percentile(p.result.times_us, 0.5); };
-    for (const ErrorPoint& p : curves.points)
-      if (p.setting.profile == Profile::kPaper && (best == nullptr || error(p) < error(*best))) best = &p;
-    if (best == nullptr) return;
-    for (const ErrorPoint& p : curves.points)
-      if (p.setting.profile == Profile::kRefined && error(p) <= error(*best) &&
-          (rival == nullptr || time(p) < time(*rival)))
-        rival = &p;
-    facts_.more.emplace_back(
-        fmt::format("refined against paper, {}, {}", name, curves.engine),
-        rival == nullptr
-            ? fmt::format("paper's best median error of d, {:.3g} m in {:.0f} µs, is not reached",
-                          error(*best), time(*best))
-            : fmt::format("paper's best median error of d is {:.3g} m in {:.0f} µs; refined has {:.3g} m in "
-                          "{:.0f} µs, {:.1f} times sooner",
-                          error(*best), time(*best), error(*rival), time(*rival), time(*best) / time(*rival),
-                          time(*best) < 10 * time(*rival)
-                              ? ": less than ten times, for here paper is fast at what little it can"
-                              : ""));
-  }
+  static constexpr const char* kMethods[] = {"refined", "paper"};
 
   const BenchOptions& options_;
   const Parts& parts_;
   Console console_;
   std::vector<Engine> engines_;
+  std::map<std::string, std::vector<std::pair<std::string, MethodLead>>>
+      leads_;  ///< by engine that knows paper: of each subject and its poses
   BenchFacts facts_{.command = "error", .device = {}, .more = {}};
   BenchTable table_{{"scene", "method", "knob", "value", "quantity", "error_p50", "error_p99", "time_us_p50",
-                     "time_us_p99", "engine", "poses", "lost"},
+                     "time_us_p99", "engine", "poses", "lost", "truth_p50"},
                     {}};
   std::vector<BenchChart> charts_;
 };

@@ -40,6 +40,15 @@ double error_of(const ErrorPoint& point, std::size_t quantity, double fraction) 
   return percentile(point.result.errors[quantity], fraction);
 }
 
+/// As the charts have it: F and T in hundredths of the truth's median.
+double shown(const ErrorPoint& point, const ErrorTruths& truths, std::size_t quantity, double fraction) {
+  return relative_error(point, truths, quantity, fraction) * (quantity >= 3 ? 100 : 1);
+}
+
+std::string unit_of(std::size_t quantity) {
+  return quantity >= 3 ? fmt::format("% of the median |{}|", kNames[quantity]) : kUnits[quantity];
+}
+
 std::vector<std::pair<double, double>> over_spacing(const ErrorCurves& curves, std::size_t quantity,
                                                     double fraction) {
   std::vector<std::pair<double, double>> out;
@@ -62,6 +71,13 @@ std::string truth_text(const ErrorCurves& curves, const ErrorTruths& truths, std
 }
 
 }  // namespace
+
+double relative_error(const ErrorPoint& point, const ErrorTruths& truths, std::size_t quantity,
+                      double fraction) {
+  const double error = error_of(point, quantity, fraction);
+  if (quantity < 3) return error;
+  return error / truths.typical[point.setting.profile == Profile::kPaper ? 1 : 0][quantity];
+}
 
 std::optional<FittedOrder> fitted_order(const std::vector<std::pair<double, double>>& curve) {
   double n = 0, sx = 0, sy = 0;
@@ -98,14 +114,16 @@ BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curve
                             std::size_t quantity) {
   BenchChart chart{.title = fmt::format("{}, engine {}: error of {} against time", subject, curves.engine,
                                         kNames[quantity]),
-                   .unit = kUnits[quantity],
+                   .unit = unit_of(quantity),
                    .labels = {},
                    .series = {},
                    .log_x = true,
                    .log_y = true,
                    .x_title = "median time of a frame, µs"};
   chart.rules = {{kMillisecond, "1 ms"}};
+  chart.group = subject;
   chart.y_most = 10 * truths.largest[quantity];
+  if (quantity >= 3) chart.y_most *= 100 / truths.typical[0][quantity];
   bool diverged = false;
   for (const double fraction : {0.5, 0.99})
     for (const ErrorPoint& point : curves.points) {
@@ -120,7 +138,7 @@ BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curve
         fresh.dashed = fraction > 0.5;
         series = chart.series.insert(series, fresh);
       }
-      const double error = error_of(point, quantity, fraction);
+      const double error = shown(point, truths, quantity, fraction);
       if (!(error > 0)) continue;  // a logarithm has no place for it
       diverged = diverged || !(error <= chart.y_most);
       series->x.push_back(percentile(point.result.times_us, 0.5));
@@ -130,7 +148,7 @@ BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curve
   // What no other setting beats in both.
   std::vector<std::pair<double, double>> medians;
   for (const ErrorPoint& point : curves.points)
-    if (const double error = error_of(point, quantity, 0.5); error > 0 && error <= chart.y_most)
+    if (const double error = shown(point, truths, quantity, 0.5); error > 0 && error <= chart.y_most)
       medians.emplace_back(percentile(point.result.times_us, 0.5), error);
   std::sort(medians.begin(), medians.end());
   BenchChart::Series front{.label = "Pareto front of the medians", .x = {}, .y = {}};
@@ -161,6 +179,7 @@ BenchChart convergence_chart(const std::string& subject, const ErrorCurves& curv
                    .log_x = true,
                    .log_y = true,
                    .x_title = "sample spacing h, mm"};
+  chart.group = subject;
   std::string orders;
   double coarsest = 0, from = 0, to = HUGE_VAL;
   for (const double fraction : {0.5, 0.99}) {
@@ -202,6 +221,7 @@ BenchChart engines_chart(const std::string& subject, const std::vector<ErrorCurv
                    .log_y = true,
                    .x_title = "median time of a frame, µs"};
   chart.rules = {{kMillisecond, "1 ms"}};
+  chart.group = subject;
   for (const ErrorCurves& curves : engines) {
     BenchChart::Series series{.label = curves.engine, .x = {}, .y = {}};
     for (const ErrorPoint& point : curves.points) {

@@ -28,7 +28,14 @@ struct ErrorTruths {
   std::optional<double> spacing_m{};  ///< of a converged run that stands in; empty: a closed form
   std::array<double, kErrorQuantities.size()>
       largest{};  ///< of the truth: an error of ten times as much has diverged
+  /// Median of the truth over the poses, of `refined` and of `paper`, whose forces are two things: errors of
+  /// F and T are shown as parts of it.
+  std::array<std::array<double, kErrorQuantities.size()>, 2> typical{};
 };
+
+/// A percentile of a setting's error of F or T as a part of its method's truth; of the others as it is.
+double relative_error(const ErrorPoint& point, const ErrorTruths& truths, std::size_t quantity,
+                      double fraction);
 
 /// error ~ knob^order by least squares over the logarithms; errors of 0 are left out.
 struct FittedOrder {

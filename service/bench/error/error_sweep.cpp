@@ -4,33 +4,11 @@
 #include <cmath>
 
 #include "model/contact/response.h"
+#include "service/bench/error/cut_mesh.h"
 #include "service/bench/time/times.h"
 
 namespace palpate {
 namespace {
-
-/// Each triangle cut into n² with edges an n-th as long: the same surface.
-Mesh divided(const Mesh& mesh, std::uint32_t n) {
-  Mesh out;
-  out.parts = mesh.parts;
-  for (MeshPart& part : out.parts) part.first_triangle *= n * n, part.triangle_count *= n * n;
-  for (const auto& triangle : mesh.triangles) {
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    const Vec3 a = mesh.vertices[triangle[0]], b = mesh.vertices[triangle[1]], c = mesh.vertices[triangle[2]];
-    // Row i has i + 1 vertices; from a's corner towards the edge from b to c.
-    const auto place = [&](std::uint32_t i, std::uint32_t j) { return first + i * (i + 1) / 2 + j; };
-    for (std::uint32_t i = 0; i <= n; ++i)
-      for (std::uint32_t j = 0; j <= i; ++j)
-        out.vertices.push_back(a + (b - a) * (static_cast<double>(i - j) / n) +
-                               (c - a) * (static_cast<double>(j) / n));
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (std::uint32_t j = 0; j <= i; ++j) {
-        out.triangles.push_back({place(i, j), place(i + 1, j), place(i + 1, j + 1)});
-        if (j < i) out.triangles.push_back({place(i, j), place(i + 1, j + 1), place(i, j + 1)});
-      }
-  }
-  return out;
-}
 
 std::optional<ContactTruth> summary_of(const ContactResponse& response) {
   const AreaResponse* deepest = nullptr;
@@ -50,8 +28,8 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
                             CollisionBackend& backend, const Progress& progress, bool cpu_clock) {
   Mesh finer;
   const Mesh* mockup = &subject.meshes.mockup;
-  if (setting.pieces > 1) {
-    finer = divided(*mockup, static_cast<std::uint32_t>(setting.pieces));
+  if (setting.triangles > mockup->triangles.size()) {
+    finer = cut_to(*mockup, setting.triangles);
     mockup = &finer;
   }
   const Result<SceneGeometry> geometry = build_geometry(*mockup, subject.meshes.tool, setting.geometry);

@@ -14,7 +14,7 @@ struct ErrorSetting {
   std::string knob;  ///< "sample_spacing", "voxel_size", "contact_samples", "triangles"
   double value = 0;  ///< m, or a number of triangles
   GeometrySettings geometry;
-  int pieces = 1;  ///< each edge of the mock-up is cut into so many, each triangle into its square
+  std::uint64_t triangles = 0;  ///< the mock-up is cut into about so many; 0: as it is
 };
 
 /// What is measured at a pose, and its unit in tables.

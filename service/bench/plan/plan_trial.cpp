@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 
 #include "model/contact/response.h"
+#include "service/bench/time/times.h"
 
 namespace palpate {
 namespace {
@@ -49,7 +49,6 @@ const char* difference(const ContactArea& a, const AreaResponse& ra, const Conta
 
 Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, const Plan& plan,
                       std::uint64_t rounds, PlanTrial& trial) {
-  using Clock = std::chrono::steady_clock;
   if (auto done = backend.replan(plan); !done) return done;
   const bool first = trial.frames.empty();
   if (first) {
@@ -61,13 +60,13 @@ Result<void> try_plan(CollisionBackend& backend, const PlanQuestion& question, c
   ContactResponse response;
   for (std::uint64_t round = 0; round <= rounds; ++round) {
     for (std::size_t i = 0; i < question.poses.size(); ++i) {
-      const auto start = Clock::now();
+      const Stopwatch watch(question.cpu_clock);
       const Result<LatticePose> pose = to_lattice(question.poses[i], *question.geometry);
       if (!pose) return pose.error();
       contacts = Contacts{};
       if (auto done = backend.query(*pose, nullptr, contacts); !done) return done;
       respond(contacts, *pose, *question.geometry, plan.profile, question.stiffness_n_per_m, response);
-      const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+      const double us = watch.us();
       if (contacts.truncated)
         return Error{ErrorCode::kInternal,
                      std::string("a frame was truncated: ") + contacts.truncated_capacity};

@@ -28,6 +28,7 @@ struct PlanQuestion {
   const SceneGeometry* geometry = nullptr;
   std::vector<Pose> poses;
   double stiffness_n_per_m = 2000;
+  bool cpu_clock = false;  ///< by the time that this process itself ran
 };
 
 /// Goes through the poses once more under `plan`, and adds what it sees to `trial`. The back end has been
