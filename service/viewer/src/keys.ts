@@ -1,9 +1,10 @@
 // The keyboard. Each key is listed in the help (index.html).
-export type Action = 'play' | 'back' | 'forward' | 'begin' | 'end' | 'theme' | 'all' | 'tool' | 'up' | 'panel' | 'help' | 'voxels' | 'glass' | 'close' | 'undo' | 'redo' | 'record'
+export type Action = 'play' | 'back' | 'forward' | 'begin' | 'end' | 'theme' | 'all' | 'tool' | 'up' | 'panel' | 'help' | 'voxels' | 'glass' | 'close' | 'undo' | 'redo' | 'record' | 'clearance'
+  | 'turn-left' | 'turn-right' | 'turn-up' | 'turn-down' | 'nearer' | 'farther'
   | 'kind1' | 'kind2' | 'kind3' | 'kind4' | 'kind5' | 'kind6';
 
 const KEYS: Record<string, Action> = {
-  ' ': 'play', ArrowLeft: 'back', ArrowRight: 'forward', Home: 'begin', End: 'end', t: 'theme', a: 'all', f: 'tool', u: 'up', p: 'panel', '?': 'help', h: 'help', v: 'voxels', g: 'glass', r: 'record', Escape: 'close',
+  ' ': 'play', ArrowLeft: 'back', ArrowRight: 'forward', Home: 'begin', End: 'end', t: 'theme', a: 'all', f: 'tool', u: 'up', p: 'panel', '?': 'help', h: 'help', v: 'voxels', g: 'glass', r: 'record', c: 'clearance', j: 'turn-left', l: 'turn-right', i: 'turn-up', k: 'turn-down', '+': 'nearer', '-': 'farther', Escape: 'close',
   '1': 'kind1', '2': 'kind2', '3': 'kind3', '4': 'kind4', '5': 'kind5', '6': 'kind6',
 };
 

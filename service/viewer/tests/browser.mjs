@@ -105,6 +105,8 @@ async function main() {
   const forces = (await page.locator('#areas tr:not(.more) td:last-child').allTextContents()).map((value) => parseFloat(value) || 0);
   check(forces.length > 0 && forces.every((force, i) => i === 0 || force <= forces[i - 1]), `areas that push come first: ${forces.join(', ')}`);
   check((await text('felt-title')) === 'to the device' && parseFloat(await text('force-response')) >= 0, 'two forces, each with its name');
+  check((await text('areas-force')) === 'field N' && (await page.getAttribute('#areas-force', 'title')).length > 40, 'the areas\' figures are not taken for the response');
+  check((await page.locator('#labels div:not([hidden])').allTextContents()).every((label) => / mm$/.test(label)), 'nor does a label say another force');
   let boxes = [];
   await until('labels lie neither over one another nor under the readout', async () => {
     boxes = await page.evaluate(() => ['#readout', '#bottom', '#labels div:not([hidden])'].flatMap((query) => [...document.querySelectorAll(query)]).map((one) => { const { x, y, right, bottom } = one.getBoundingClientRect(); return { x, y, right, bottom }; }));

@@ -22,14 +22,14 @@ export function palpate_runs(palpate, ...args) {
 }
 
 /** `palpate serve` on a free port; `start` and `stop` may be called again and again, and the address stays. */
-export async function server_of(palpate, root) {
+export async function server_of(palpate, root, backend = 'cpu') {
   const port = await new Promise((resolve) => { const probe = createServer().listen(0, '127.0.0.1', () => { const { port: free } = probe.address(); probe.close(() => resolve(free)); }); });
   const address = `http://127.0.0.1:${port}/`;
   let process_ = null;
   return {
     address,
     async start() {
-      process_ = spawn(palpate, ['serve', '--listen', `127.0.0.1:${port}`, '--root', root, '--backend', 'cpu'], { stdio: 'ignore' });
+      process_ = spawn(palpate, ['serve', '--listen', `127.0.0.1:${port}`, '--root', root, '--backend', backend], { stdio: 'ignore' });
       for (let i = 0; i < 200; ++i) {
         if (await fetch(`${address}readyz`).then((answer) => answer.ok, () => false)) return;
         await new Promise((resolve) => setTimeout(resolve, 100));
@@ -50,3 +50,13 @@ export async function open_browser() {
 
 /** The page has taken what came before, and drawn it. */
 export const shown = (page) => page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve, 50))); }));
+
+/** Files, each a name and bytes, as a person drops them on the page. */
+export async function drop(page, files) {
+  const data = await page.evaluateHandle((list) => {
+    const transfer = new DataTransfer();
+    for (const [name, base64] of list) transfer.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
+    return transfer;
+  }, files.map(([name, bytes]) => [name, bytes.toString('base64')]));
+  for (const kind of ['dragenter', 'dragover', 'drop']) await page.dispatchEvent('body', kind, { dataTransfer: data });
+}
