@@ -12,7 +12,7 @@ export function check(truth, sentence) {
   if (!truth) throw new Error(sentence);
   console.log(`ok  ${sentence}`);
 }
-export async function until(sentence, ask, seconds = 300) {
+export async function until(sentence, ask, seconds = Number(process.env.UNTIL ?? 300)) {
   for (const end = Date.now() + 1000 * seconds; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 100))) if (await ask()) return check(true, sentence);
   throw new Error(`not within ${seconds} s: ${sentence}`);
 }
