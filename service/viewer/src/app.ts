@@ -163,12 +163,12 @@ export class App {
     this.labels.with_force = scene.profile === 'paper';
     this.readout.set_profile(scene.profile);
     this.show_scene(scene);
-    void this.look_closer(scene);
+    void this.look_closer(scene, stay !== null);
     this.remember();
     await this.choose(this.source);
   }
   /** What takes longer than a picture: names of parts, and what touches at the start. */
-  private async look_closer(scene: Scene): Promise<void> {
+  private async look_closer(scene: Scene, stays: boolean): Promise<void> {
     const made_here = this.workshop.made === scene.id;
     const { path } = this.picker;
     this.workshop.offer_settings(made_here);
@@ -180,7 +180,7 @@ export class App {
       if (this.picker.current !== scene) return;
       const names = new PartNames(parts);
       this.scene_parts = parts;
-      this.part_panel.set(parts, made_here ? this.workshop.hidden_paths : []);
+      this.part_panel.set(parts, stays ? null : (made_here ? this.workshop.hidden_paths : []));
       this.readout.names = (area) => names.of_area(area);
       this.readout.touching = this.paths.names = (frame) => names.of_frame(frame);
       const leave_out = made_here ? () => { this.workshop.set_ignore_initial(true); void this.workshop.feel(); } : path ? () => void this.picker.open_made(() => this.api.open_scene(path, true), scene.name) : null;
@@ -438,6 +438,8 @@ export class App {
     const drag = element<HTMLSelectElement>('drag-mode');
     drag.addEventListener('change', () => { this.picture.drag.plain = drag.value as Drag; });
     element('mouse-pause').addEventListener('click', () => this.pause_mouse());
+    element('look-tool').addEventListener('click', () => this.act('tool'));
+    element('look-all').addEventListener('click', () => this.act('all'));
     element('theme').addEventListener('click', () => this.act('theme'));
     element('panel-button').addEventListener('click', () => this.act('panel'));
     element('help-button').addEventListener('click', () => this.act('help'));

@@ -18,9 +18,10 @@ export class ScenePartsPanel {
     this.filter.addEventListener('input', () => this.draw());
     element('show-all-parts').addEventListener('click', () => { this.hidden.mockup.clear(); this.hidden.tool.clear(); this.draw(); this.changed(this.hidden); });
   }
-  /** `paths`: what was hidden when the scene was made; parts at these paths, and below, begin hidden. */
-  set(parts: SceneParts, paths: readonly string[] = []): void {
+  /** `paths`: what was hidden when the scene was made; parts at these paths, and below, begin hidden. Null: the scene before with other settings, and what is hidden stays so. */
+  set(parts: SceneParts, paths: readonly string[] | null): void {
     this.parts = parts;
+    if (!paths) { this.changed(this.hidden); return; }
     const starts = (list: SceneParts['static']) => new Set(list.flatMap(({ path }, i) => (paths.some((above) => path === above || path.startsWith(`${above}/`)) ? [i] : [])));
     this.hidden.mockup = starts(parts.static);
     this.hidden.tool = starts(parts.tool);

@@ -41,7 +41,7 @@ export class ClearanceLine {
   /** The tool is at `pose` of `scene`; in contact there is nothing to measure. */
   want(scene: string, pose: Pose, contact: boolean): void {
     if (!this.on) return;
-    if (contact) { if (this.answer) this.forget(); return; }
+    if (contact) { if (this.answer || this.busy) this.forget(); return; }   // an answer that is still under way is of where it was
     const text = pose.join();
     if (this.busy || text === this.asked) return;
     this.busy = true;
