@@ -1,12 +1,13 @@
 // How many pictures a second, and how old the answers in them, while a tool is moved by the mouse where it lies in contact.
 // node rates.mjs PALPATE WORK SCENE.json …, in the build's service/viewer/work. Prints a line of JSON for each scene; no test, since it is the machine that decides.
 // The meshes that a scene names are copied below WORK. The tool is taken where it starts and led in a circle of 25 pixels at every picture. Of SECONDS (10): the time between pictures;
-// how old the force of a picture is, from the question for it, and how old its contact triangles; the way to the server and back, and the server's own time.
+// how old the force of a picture is, from the question for it, and how old its contact triangles; the way to the server and back, and the server's own time; and the processor time that each kind of process used for a picture.
 // Environment: CHROMIUM; BACKEND (cpu); SECONDS; PICTURES (a folder for a screenshot of each).
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, isAbsolute, join } from 'node:path';
 import { count_drawing } from './count_drawing.mjs';
 import { open_browser, server_of, shown } from './page_harness.mjs';
+import { processor_times, used_since } from './processor_time.mjs';
 
 const [palpate, work, ...scenes] = process.argv.slice(2);
 const seconds = Number(process.env.SECONDS ?? 10);
@@ -95,15 +96,17 @@ try {
     if (!grip) throw new Error(`${name}: the tool is not found in the picture`);
     await lead(page, grip, 3);   // levels of detail settle
     await page.evaluate(() => { window.drawing.take(); window.answers.take(); });
+    const before = processor_times();
     await lead(page, grip, seconds);
     const { pictures } = await page.evaluate(() => window.drawing.take());
     const { trips, pictures: ages, contacts, answers } = await page.evaluate(() => window.answers.take());
+    const processor = used_since(before, pictures.length);
     const between = pictures.map((picture) => picture.between);
     console.log(JSON.stringify({
       scene: name, triangles: await page.textContent('#facts'), engine: process.env.BACKEND ?? 'cpu', pictures_a_second: Math.round(pictures.length / seconds * 10) / 10, between_ms_p50_p95_max: spread(between),
       drawn: Math.max(0, ...pictures.map((picture) => picture.triangles)), script_ms_p50_p95_max: spread(pictures.map((picture) => picture.script)),
       age_of_force_ms_p50_p95_max: spread(ages.map(([force]) => force)), age_of_triangles_ms_p50_p95_max: spread(ages.map(([, frame]) => frame)),
-      there_and_back_ms_p50_p95_max: spread(trips.map(([trip]) => trip)), server_ms_p50_p95_max: spread(trips.map(([, own]) => own)), answers_a_second: Math.round(answers / seconds), contact_share: Math.round(100 * contacts / Math.max(1, answers)) / 100,
+      there_and_back_ms_p50_p95_max: spread(trips.map(([trip]) => trip)), server_ms_p50_p95_max: spread(trips.map(([, own]) => own)), processor_ms_a_picture: processor, answers_a_second: Math.round(answers / seconds), contact_share: Math.round(100 * contacts / Math.max(1, answers)) / 100,
     }));
     if (process.env.PICTURES) { mkdirSync(process.env.PICTURES, { recursive: true }); await page.screenshot({ path: join(process.env.PICTURES, `${name}.png`) }); }
     await page.close();

@@ -159,8 +159,12 @@ async function from_file_to_report(name, bytes, folder, shows) {
 async function main() {
   await server.start();
   browser = await open_browser();
+  if (write_step) {
+    await from_file_to_report('gearbox.step', readFileSync(step_file), 'my_gearbox', true);
+    await server.stop();   // it forgets what was uploaded
+    await server.start();
+  }
   await from_file_to_report('gearbox.glb', as_glb(solids), 'my_gearbox_glb', !write_step);
-  if (write_step) await from_file_to_report('gearbox.step', readFileSync(step_file), 'my_gearbox', true);
 }
 
 let status = 1;
