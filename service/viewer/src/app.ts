@@ -156,6 +156,7 @@ export class App {
     this.mouse_samples.clear();
     const { stay } = this;
     this.workshop.enter(false);
+    if (!stay) element('panel').scrollTop = 0;   // what is to be said of a scene stands on top
     this.start_note.hide();
     this.clearance.forget();
     if (!stay) this.paths.clear();

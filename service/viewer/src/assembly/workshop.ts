@@ -155,6 +155,7 @@ export class Workshop {
     document.body.classList.toggle('building', this.building);
     element('workshop').hidden = !this.building;
     element('scene-panel').hidden = this.building;
+    if (this.building) element('panel').scrollTop = 0;
     this.offer_settings(this.building);
     this.picture.view.name(this.building ? 'The parts' : 'The scene', this.building ? 'assembly-words part-name tool-name' : 'facts contact touching clearance-words');
     element('back-to-parts').hidden = this.assembly === null;

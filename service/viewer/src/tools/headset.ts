@@ -62,6 +62,7 @@ export class Headset {
       view.camera.scale.setScalar(1);
       view.camera.updateProjectionMatrix();
       view.presenting = false;
+      document.body.classList.remove('in-headset');
       view.resize();
       write(this.button, 'Look with the headset');
       this.hooks.ended();
@@ -76,6 +77,7 @@ export class Headset {
     rig.add(view.camera);
     Object.assign(view.camera, { near: 0.02, far: 50 });
     view.presenting = true;
+    document.body.classList.add('in-headset');
     view.renderer.setPixelRatio(1);
     view.renderer.xr.enabled = true;
     view.renderer.xr.setReferenceSpaceType('local');
