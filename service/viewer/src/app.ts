@@ -243,7 +243,11 @@ export class App {
   // ---- sources
 
   private async choose(source: Source): Promise<void> {
-    if (source !== this.source) { this.readout.show(null, []); this.picture.redraw_contact(); }
+    if (source !== this.source) {
+      this.readout.show(null, []);
+      this.picture.redraw_contact();
+      if (this.connection.up) this.hide_banner();   // it was about what was shown before
+    }
     this.source = source;
     for (const tab of document.querySelectorAll<HTMLElement>('[data-source]')) tab.setAttribute('aria-selected', String(tab.dataset['source'] === source));
     for (const part of document.querySelectorAll<HTMLElement>('[data-for]')) part.hidden = part.dataset['for'] !== source;

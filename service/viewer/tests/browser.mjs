@@ -37,7 +37,7 @@ async function main() {
   const picture = async (name) => { if (pictures) { mkdirSync(pictures, { recursive: true }); await page.screenshot({ path: join(pictures, `${name}.png`) }); } };
   /** Pixels of the picture as warm as CST, BST and EST are, also where they shine through a surface; nothing else in it is. */
   const warm = async () => {
-    const others = (visibility) => page.evaluate((value) => { for (const id of ['legend', 'labels', 'readout', 'corner']) document.getElementById(id).style.visibility = value; }, visibility);
+    const others = (visibility) => page.evaluate((value) => { for (const id of ['legend', 'labels', 'readout', 'corner', 'banner']) document.getElementById(id).style.visibility = value; }, visibility);
     await others('hidden');   // they lie over the canvas and have such colours, too
     const png = (await page.screenshot({ clip: await page.locator('#canvas').boundingBox() })).toString('base64');
     await others('');
@@ -87,6 +87,7 @@ async function main() {
   check((await text('run-note')) === '' && (await text('duration')) === '', 'and no other run is shown');
   errors.length = 0;   // the browser's own about the refused scene
   await page.click('[data-source=live]');
+  check(!(await page.isVisible('#banner')), 'what was said of the link goes with what was shown');
 
   // A recorded run: found, played, scrubbed to a contact.
   await page.click('[data-source=run]');

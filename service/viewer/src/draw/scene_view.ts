@@ -52,6 +52,7 @@ export class SceneView {
     this.renderer.setPixelRatio(this.sharp);
     host.append(this.renderer.domElement);
     this.canvas.setAttribute('role', 'img');
+    this.name('The picture', 'empty-title');   // until there is one
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.request());
