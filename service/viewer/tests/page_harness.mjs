@@ -60,3 +60,18 @@ export async function drop(page, files) {
   }, files.map(([name, bytes]) => [name, bytes.toString('base64')]));
   for (const kind of ['dragenter', 'dragover', 'drop']) await page.dispatchEvent('body', kind, { dataTransfer: data });
 }
+
+/** Red, green and blue of the middle of the picture, added up. */
+export async function middle_colour(page) {
+  const { x, y, width, height } = await page.locator('#canvas canvas').boundingBox();
+  const png = (await page.screenshot({ clip: { x: x + width / 2, y: y + height / 2, width: 1, height: 1 } })).toString('base64');
+  return page.evaluate(async (data) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${data}`;
+    await image.decode();
+    const pen = Object.assign(document.createElement('canvas'), { width: 1, height: 1 }).getContext('2d');
+    pen.drawImage(image, 0, 0);
+    const [red, green, blue] = pen.getImageData(0, 0, 1, 1).data;
+    return red + green + blue;
+  }, png);
+}

@@ -5,7 +5,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { as_glb, as_text, gearbox } from './gearbox.mjs';
 import { no_hindrance } from './hindrances.mjs';
-import { check, drop, open_browser, server_of, shown, until } from './page_harness.mjs';
+import { check, drop, middle_colour, open_browser, server_of, shown, until } from './page_harness.mjs';
 
 const [palpate, work, write_step, pictures] = process.argv.slice(2);
 rmSync(work, { recursive: true, force: true });
@@ -68,6 +68,8 @@ async function from_file_to_report(name, bytes, folder, shows) {
   await page.reload();
   await until('a reload comes back to the parts', async () => /^50 parts/.test(await text('assembly-words')));
   check((await page.locator('#part-tree [role=treeitem]').count()) >= 5, 'the tree shows its groups');
+  await until('the picture shows them before anybody has pointed at it', async () => (await middle_colour(page)) < 640);   // paper is 739, a line of the grid 664
+  check(await page.evaluate(() => [...document.querySelectorAll('#part-tree .size')].every((size) => size.scrollWidth <= size.clientWidth)), 'no size is cut');
   await picture('2_parts');
 
   // A part is clicked in the picture: its middle, where the page draws it.

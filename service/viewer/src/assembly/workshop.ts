@@ -145,7 +145,8 @@ export class Workshop {
     element<HTMLInputElement>('save-name').value = (assembly.files.find((file) => file.mesh)?.name ?? 'assembly').replace(/\.[^.]*$/, '');
     if (enter) this.enter(true);
     this.load();
-    if (enter) this.focus_all(); else this.draw();
+    this.draw();   // what was just loaded is drawn by nobody else
+    if (enter) this.focus_all();
   }
   /** To the parts, or away from them to a scene. */
   enter(on: boolean): void {
