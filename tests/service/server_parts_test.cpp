@@ -106,7 +106,7 @@ TEST(Turns, SeveralBatchesAndALoopAreServedOneAtATime) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 2; ++i)
     threads.emplace_back([&] {
-      for (int k = 0; k < 500; ++k) work(TurnGuard::Kind::kBatch, batches);
+      for (int k = 0; k < 100; ++k) work(TurnGuard::Kind::kBatch, batches);
     });
   std::thread loop([&] {
     while (!over) work(TurnGuard::Kind::kLoop, loops);
@@ -115,7 +115,7 @@ TEST(Turns, SeveralBatchesAndALoopAreServedOneAtATime) {
     thread.join();  // neither is forgotten, though the loop always wants more
   over = true;
   loop.join();
-  EXPECT_EQ(batches, 1000);
+  EXPECT_EQ(batches, 200);
   EXPECT_EQ(worst, 1);
   EXPECT_GT(loops, 0);
 }

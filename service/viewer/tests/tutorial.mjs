@@ -47,7 +47,7 @@ async function from_file_to_report(name, bytes, folder, shows) {
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
         check(wide <= width, `${what}, ${look}, ${width} px: nothing is wider (${wide})`);
         await page.screenshot({ path: join(work, `${what}_${look}_${width}_closed.png`.replaceAll(' ', '_')) });
-        if (await page.isVisible('#panel-button')) await page.click('#panel-button');
+        if ((await page.isVisible('#panel-button')) && !(await page.isVisible('#panel'))) await page.click('#panel-button');
       }
       await page.screenshot({ path: join(work, `${what}_${look}_${width}.png`.replaceAll(' ', '_')) });
       await no_hindrance(page, `${what}, ${look}, ${width} px`);
