@@ -177,7 +177,9 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
     if (auto done = write_text(folder / "path.json", dump(json_of(scene, *report, engine, true), 1)); !done)
       return done;
     if (auto done = write_text(folder / "path.csv", csv_of(scene, *report)); !done) return done;
-    if (auto done = write_text(folder / "path.html", path_page(scene, *report, options.path, engine)); !done)
+    if (auto done = write_text(folder / "path.html",
+                               path_page(scene, *report, options.path, scene.scene.file, engine));
+        !done)
       return done;
   }
   const std::string line =

@@ -2,44 +2,18 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
 #include "service/cli/scene_host.h"
 #include "service/cli/text_output.h"
 #include "service/queries/path_check.h"
+#include "service/queries/query_json.h"
 
 namespace palpate {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kAtOnce = 4096;  // poses between two looks at the keyboard (chosen)
-
-Json clearance_json(const SceneGeometry& geometry, std::size_t number, const Pose& pose, const Clearance& c,
-                    bool touches, const std::string& engine) {
-  const double step = geometry.lattice.step_m;
-  const auto point = [&](const Int3& p) {
-    const Vec3 at = geometry.lattice.origin_m + step * Vec3(p);
-    return Json{at.x, at.y, at.z};
-  };
-  const Vec3& p = pose.position;
-  const Quat& q = pose.rotation;
-  Json out{{"number", number},
-           {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}},
-           {"engine", engine},
-           {"touches", touches}};
-  out["clearance"] = c.kind == Clearance::Kind::kFurther ? Json(nullptr) : Json(c.steps * step);
-  if (c.kind != Clearance::Kind::kApart) return out;
-  out["static"] = c.static_id;
-  out["mobile"] = c.mobile_id;
-  out["on_static"] = point(c.on_static);
-  out["on_mobile"] = point(c.on_mobile);
-  out["parts"] = {{"static", part_of(geometry.mockup_report, c.static_id)},
-                  {"mobile", part_of(geometry.tool_report, c.mobile_id)}};
-  return out;
-}
 
 }  // namespace
 
@@ -88,10 +62,8 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
       else if (auto done = backend.clearance(lattice[i], within, clearance); !done)
         return done;
       if (options.within_m && clearance.kind == Clearance::Kind::kFurther) continue;
-      text += clearance_json(geometry, i, poses[i], clearance, touches,
-                             bits[i - first] != 0 ? engine : backend.measured_by())
-                  .dump(-1, ' ', false, Json::error_handler_t::replace) +
-              "\n";
+      append_clearance_line(geometry, i, poses[i], clearance, touches,
+                            bits[i - first] != 0 ? engine : backend.measured_by(), text);
       if (interrupted())
         return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
     }

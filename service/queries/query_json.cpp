@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "service/queries/path_check.h"
+
 namespace palpate {
 namespace {
 
@@ -205,6 +207,32 @@ void append_query_line(const QueryLine& line, const Contacts& contacts, const Co
   }
   json.close('}');
   out.push_back('\n');
+}
+
+void append_clearance_line(const SceneGeometry& geometry, std::size_t number, const Pose& pose,
+                           const Clearance& c, bool touches, const std::string& engine, std::string& out) {
+  using Json = nlohmann::ordered_json;
+  const double step = geometry.lattice.step_m;
+  const auto point = [&](const Int3& p) {
+    const Vec3 at = geometry.lattice.origin_m + step * Vec3(p);
+    return Json{at.x, at.y, at.z};
+  };
+  const Vec3& p = pose.position;
+  const Quat& q = pose.rotation;
+  Json line{{"number", number},
+            {"pose", {p.x, p.y, p.z, q.x, q.y, q.z, q.w}},
+            {"engine", engine},
+            {"touches", touches}};
+  line["clearance"] = c.kind == Clearance::Kind::kFurther ? Json(nullptr) : Json(c.steps * step);
+  if (c.kind == Clearance::Kind::kApart) {
+    line["static"] = c.static_id;
+    line["mobile"] = c.mobile_id;
+    line["on_static"] = point(c.on_static);
+    line["on_mobile"] = point(c.on_mobile);
+    line["parts"] = {{"static", part_of(geometry.mockup_report, c.static_id)},
+                     {"mobile", part_of(geometry.tool_report, c.mobile_id)}};
+  }
+  out += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace palpate

@@ -3,9 +3,11 @@
 #include <optional>
 #include <string>
 
+#include "model/contact/clearance.h"
 #include "model/contact/contacts.h"
 #include "model/contact/response.h"
 #include "model/lattice/pose.h"
+#include "model/scene/scene_geometry.h"
 #include "service/queries/touched_parts.h"
 
 namespace palpate {
@@ -29,5 +31,12 @@ struct QueryLine {
 /// becomes null. Allocates only when `out` has to grow. Not for the 1 kHz thread.
 void append_query_line(const QueryLine& line, const Contacts& contacts, const ContactResponse& response,
                        std::string& out);
+
+/// Appends how far the tool is from the mock-up at `pose`, as one JSON object and a line feed: `number`,
+/// `pose`, `engine`, `touches`, `clearance` in m (null: further than was asked), and of two that are apart
+/// the nearest triangles, points and parts.
+void append_clearance_line(const SceneGeometry& geometry, std::size_t number, const Pose& pose,
+                           const Clearance& clearance, bool touches, const std::string& engine,
+                           std::string& out);
 
 }  // namespace palpate

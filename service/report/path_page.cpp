@@ -93,12 +93,12 @@ std::string chart(const PathReport& report, const char* title, const char* label
 
 }  // namespace
 
-std::string path_page(const LoadedScene& scene, const PathReport& report, const std::string& path_file,
-                      const std::string& engine) {
+std::string path_page(const LoadedScene& scene, const PathReport& report, const std::string& path_name,
+                      const std::string& scene_name, const std::string& engine) {
   const double step = scene.geometry.lattice.step_m;
   std::string body = "<header><h1>" +
                      std::string(report.clear() ? "The path is clear" : "The path is not clear") +
-                     "</h1><p>" + markup_text(path_file) + " in " + markup_text(scene.scene.file) +
+                     "</h1><p>" + markup_text(path_name) + " in " + markup_text(scene_name) +
                      ", examined by the engine " + markup_text(engine) + "</p></header>";
   body += "<div class=\"tiles\">";
   if (report.first_screw)

@@ -7,8 +7,8 @@
 namespace palpate {
 
 /// A path report as one self-contained page: verdict, clearance and depth along the way, sections through the
-/// closest moments.
-std::string path_page(const LoadedScene& scene, const PathReport& report, const std::string& path_file,
-                      const std::string& engine);
+/// closest moments. `path_name`, `scene_name`: what the page calls them.
+std::string path_page(const LoadedScene& scene, const PathReport& report, const std::string& path_name,
+                      const std::string& scene_name, const std::string& engine);
 
 }  // namespace palpate

@@ -15,6 +15,7 @@
 #include "service/server/assemblies/assembly_routes.h"
 #include "service/server/info_routes.h"
 #include "service/server/queries/batch_queue.h"
+#include "service/server/queries/path_route.h"
 #include "service/server/queries/query_route.h"
 #include "service/server/queries/worker_pool.h"
 #include "service/server/scenes/drawing_routes.h"
@@ -160,6 +161,7 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   add_scene_routes(router, store, workers, metrics, limits, root, (*spool)->path());
   add_assembly_routes(router, assemblies, store, workers, metrics, limits, root, (*spool)->path());
   add_query_route(router, store, batches, workers, limits);
+  add_path_route(router, store, workers, limits, stopping);
   add_session_routes(router, sessions, workers, limits);
   add_haptic_route(router, store, loops);
   add_drawing_routes(router, store, workers, limits);

@@ -1,13 +1,11 @@
 """`palpate serve`: what a client sees when all goes well."""
 import base64
-import random
 import shutil
 import subprocess
 
 from harness import *
 from server import *
 
-HEADER = 'x,y,z,qx,qy,qz,qw\n'
 STATES = ('queued', 'preparing', 'ready')
 
 
@@ -22,36 +20,6 @@ def glb(triangles):
     head += b' ' * (-len(head) % 4)
     points += b'\0' * (-len(points) % 4)
     return struct.pack('<4sII', b'glTF', 2, 28 + len(head) + len(points)) + struct.pack('<I4s', len(head), b'JSON') + head + struct.pack('<I4s', len(points), b'BIN\0') + points
-
-
-def poses(count, seed=7):
-    """Near the block of a Folder, some touching; `seed` can be overridden to look for more."""
-    chance = random.Random(seed)
-    rows = []
-    for _ in range(count):
-        q = [chance.gauss(0, 1) for _ in range(4)]
-        size = math.sqrt(sum(x * x for x in q))
-        rows.append([chance.uniform(-0.1, 0.1), chance.uniform(-0.1, 0.1), chance.uniform(0.01, 0.04), *(x / size for x in q)])
-    return rows
-
-
-def csv(rows):
-    return HEADER + ''.join(','.join(map(repr, row)) + '\n' for row in rows)
-
-
-def without_times(text):
-    return re.sub(rb'"time_us":\{[^}]*\}', b'', text.encode() if isinstance(text, str) else text)
-
-
-def rooted():
-    """A folder with a scene below, and the server's arguments."""
-    folder = Folder()
-    folder.save()
-    return folder, ('--root', folder.path)
-
-
-def named(server, path='scene.json'):
-    return server.ready(server.ask('POST', '/v1/scenes', {'path': path}))
 
 
 def simulated(folder):

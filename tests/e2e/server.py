@@ -2,7 +2,9 @@
 import base64
 import http.client
 import json
+import math
 import os
+import random
 import re
 import signal
 import socket
@@ -11,7 +13,7 @@ import subprocess
 import tempfile
 import time
 
-from harness import PROGRAM, expect
+from harness import PROGRAM, Folder, expect
 
 WAIT_S = 900   # a busy machine is slow, and its slowness is no failure; a hang is
 
@@ -26,6 +28,39 @@ def until(what, ask, every_s=0.1):
             return told
         expect(time.monotonic() < end, f'not within {WAIT_S} s: {what}; the last that was seen: {told}')
         time.sleep(every_s)
+
+
+HEADER = 'x,y,z,qx,qy,qz,qw\n'
+
+
+def poses(count, seed=7):
+    """Near the block of a Folder, some touching; `seed` can be overridden to look for more."""
+    chance = random.Random(seed)
+    rows = []
+    for _ in range(count):
+        q = [chance.gauss(0, 1) for _ in range(4)]
+        size = math.sqrt(sum(x * x for x in q))
+        rows.append([chance.uniform(-0.1, 0.1), chance.uniform(-0.1, 0.1), chance.uniform(0.01, 0.04), *(x / size for x in q)])
+    return rows
+
+
+def csv(rows):
+    return HEADER + ''.join(','.join(map(repr, row)) + '\n' for row in rows)
+
+
+def without_times(text):
+    return re.sub(rb'"time_us":\{[^}]*\}', b'', text.encode() if isinstance(text, str) else text)
+
+
+def rooted():
+    """A folder with a scene below, and the server's arguments."""
+    folder = Folder()
+    folder.save()
+    return folder, ('--root', folder.path)
+
+
+def named(server, path='scene.json'):
+    return server.ready(server.ask('POST', '/v1/scenes', {'path': path}))
 
 
 class Answer:

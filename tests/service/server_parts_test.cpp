@@ -2,13 +2,16 @@
 // only now and then.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <thread>
+#include <vector>
 
 #include "service/loop/control_loop.h"
 #include "service/server/queries/batch_queue.h"
+#include "service/server/queries/turns.h"
 #include "service/server/sessions/pausable_device.h"
 #include "service/server/sessions/telemetry.h"
 #include "tests/service/half_space.h"
@@ -88,6 +91,35 @@ class Hand final : public HapticDevice {
 
 // "paused" was told beside poses from before the pause, which a recording thread that got no processor had
 // not told yet.
+TEST(Turns, SeveralBatchesAndALoopAreServedOneAtATime) {
+  Turns turns;
+  std::atomic<int> inside{0}, worst{0}, batches{0}, loops{0};
+  std::atomic<bool> over{false};
+  const auto work = [&](TurnGuard::Kind kind, std::atomic<int>& done) {
+    const TurnGuard turn(turns, kind);
+    const int now = ++inside;
+    if (now > worst) worst = now;
+    std::this_thread::yield();
+    ++done;
+    --inside;
+  };
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 2; ++i)
+    threads.emplace_back([&] {
+      for (int k = 0; k < 100; ++k) work(TurnGuard::Kind::kBatch, batches);
+    });
+  std::thread loop([&] {
+    while (!over) work(TurnGuard::Kind::kLoop, loops);
+  });
+  for (std::thread& thread : threads)
+    thread.join();  // neither is forgotten, though the loop always wants more
+  over = true;
+  loop.join();
+  EXPECT_EQ(batches, 200);
+  EXPECT_EQ(worst, 1);
+  EXPECT_GT(loops, 0);
+}
+
 TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
   Hand sliding(1e-3);
   PausableDevice pausable(sliding, true);

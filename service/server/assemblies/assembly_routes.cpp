@@ -57,11 +57,13 @@ HttpResponse geometry(const AssemblyStore& assemblies, const HttpRequest& reques
   return response;
 }
 
-/// {"scene": {…}, "path": "time_s,x_m,…"}, with `folder` where it is to be saved.
+/// {"scene": {…}, "path": "time_s,x_m,…"}, with `folder` where it is to be saved, `name` and `engine` else.
 std::variant<nlohmann::json, Problem> read_order(const std::string& body, const ServerLimits& limits,
                                                  bool save) {
   std::vector<std::string> keys = {"scene", "path"};
-  keys.emplace_back(save ? "folder" : "name");
+  for (const char* key :
+       save ? std::vector<const char*>{"folder"} : std::vector<const char*>{"name", "engine"})
+    keys.emplace_back(key);
   auto read = read_json_object(body, limits.json_depth, keys);
   if (std::holds_alternative<Problem>(read)) return read;
   const auto& json = std::get<nlohmann::json>(read);
@@ -96,6 +98,8 @@ HttpResponse make_scene(const Assembly& assembly, const nlohmann::json& order, S
   made.name = name.empty() ? assembly.files.front().name : name;
   made.uploaded = true;
   made.disk_bytes = std::get<std::uint64_t>(bytes);
+  if (order.contains("engine"))
+    if (auto problem = choose_engine(order["engine"], made)) return *problem;
   const std::string id = made.id;
   folder.take();
   auto answer = store.add(std::move(made));

@@ -9,6 +9,7 @@
 #include "service/cli/answer.h"
 #include "service/loop/thread_share.h"
 #include "service/queries/query_json.h"
+#include "service/server/queries/polite_backend.h"
 
 namespace palpate {
 namespace {
@@ -214,24 +215,30 @@ Result<void> BatchQueue::touch_slice(Batch& batch) {
     poses.push_back(*pose);
   }
   std::vector<std::uint8_t> bits(poses.size());
-  std::string engine;
-  {
-    const Aside aside = request.scene->loops() > 0 ? store_.aside(*request.scene) : Aside{};
-    const auto ask = [&](CollisionBackend& backend) {
-      auto done = backend.touches(poses, bits);
-      engine = backend.measured_by();
-      return done;
-    };
-    if (aside.backend) {
-      if (auto done = ask(*aside.backend); !done) return done;
-    } else {
-      const TurnGuard turn(request.scene->turns(), TurnGuard::Kind::kBatch);
-      if (auto done = ask(*scene.backend); !done) return done;
-    }
-  }
+  PoliteBackend backend(store_, *request.scene);
+  if (auto done = backend.touches(poses, bits); !done) return done;
   for (const std::uint8_t bit : bits) {
-    batch.made += "{\"number\":" + std::to_string(batch.next++) + ",\"engine\":\"" + engine +
+    batch.made += "{\"number\":" + std::to_string(batch.next++) + ",\"engine\":\"" + backend.measured_by() +
                   (bit != 0 ? "\",\"touches\":true}\n" : "\",\"touches\":false}\n");
+    ++metrics_.poses;
+  }
+  return {};
+}
+
+/// How far, of as many poses as fit a slice.
+Result<void> BatchQueue::clearance_slice(Batch& batch, std::chrono::steady_clock::time_point start) {
+  const BatchRequest& request = batch.request;
+  const SceneGeometry& geometry = (*request.scene)->loaded.geometry;
+  PoliteBackend backend(store_, *request.scene);
+  for (std::size_t i = 0; i < kSlicePoses && batch.next < request.poses.size(); ++i, ++batch.next) {
+    if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
+    const Pose& pose = request.poses[batch.next];
+    const auto lattice = to_lattice(pose, geometry);
+    if (!lattice) return lattice.error();
+    Clearance clearance;
+    if (auto done = backend.clearance(*lattice, INT32_MAX - 2, clearance); !done) return done;
+    append_clearance_line(geometry, batch.next, pose, clearance, clearance.kind == Clearance::Kind::kTouching,
+                          backend.measured_by(), batch.made);
     ++metrics_.poses;
   }
   return {};
@@ -242,8 +249,8 @@ void BatchQueue::answer_slice(Batch& batch) {
   const BatchRequest& request = batch.request;
   HostedScene& scene = **request.scene;
   try {
-    if (request.any) {
-      const Result<void> answered = touch_slice(batch);
+    if (request.any || request.clearance) {
+      const Result<void> answered = request.any ? touch_slice(batch) : clearance_slice(batch, start);
       if (answered) return;
       ++metrics_.backend_errors;
       batch.failed = true;

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -23,9 +24,10 @@ struct BatchRequest {
   SceneUse scene;
   std::vector<Pose> poses;
   bool sets = true;
-  bool names = false;   ///< the parts that touch, by their paths
-  bool any = false;     ///< touch or not, a line a pose, and nothing else
-  bool binary = false;  ///< 64 bytes a pose instead of JSON lines
+  bool names = false;      ///< the parts that touch, by their paths
+  bool any = false;        ///< touch or not, a line a pose, and nothing else
+  bool clearance = false;  ///< how far it is, a line a pose, and nothing else
+  bool binary = false;     ///< 64 bytes a pose instead of JSON lines
 };
 
 /// Answers the poses of all queries on one thread, a slice of each by turns. Beside loops on the same scene
@@ -47,6 +49,7 @@ class BatchQueue {
   void run();
   void answer_slice(Batch& batch);
   Result<void> touch_slice(Batch& batch);
+  Result<void> clearance_slice(Batch& batch, std::chrono::steady_clock::time_point start);
   void resume(const std::shared_ptr<Batch>& batch);
 
   SceneStore& store_;

@@ -17,6 +17,12 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
     const std::string any = request.query_or("any", "0");
     if (any != "0" && any != "1")
       return reply(bad_request("any is '" + shown_text(any) + "', allowed is 0 or 1", "any"));
+    const std::string clearance = request.query_or("clearance", "0");
+    if (clearance != "0" && clearance != "1")
+      return reply(
+          bad_request("clearance is '" + shown_text(clearance) + "', allowed is 0 or 1", "clearance"));
+    if (any == "1" && clearance == "1")
+      return reply(bad_request("any and clearance are two questions: ask one", "clearance"));
     auto scene = store.use(request.segments[2], false);
     if (const auto* problem = std::get_if<Problem>(&scene)) return reply(*problem);
     auto poses = read_pose_body(request.content_type, request.body, limits);
@@ -26,7 +32,8 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
                  .sets = sets == "1",
                  .names = names == "1",
                  .any = any == "1",
-                 .binary = any == "0" &&
+                 .clearance = clearance == "1",
+                 .binary = any == "0" && clearance == "0" &&
                            request.accept.find("application/vnd.palpate.wrenches") != std::string::npos},
                 reply);
   };

@@ -5,18 +5,19 @@ namespace palpate {
 void Turns::enter_loop() {
   std::unique_lock lock(mutex_);
   const std::uint64_t ticket = tail_++;
-  loops_.wait(lock, [&] { return !busy_ && ticket == head_ && !(batch_waits_ && passed_ >= kLoopTurns); });
+  loops_.wait(lock,
+              [&] { return !busy_ && ticket == head_ && !(batches_waiting_ > 0 && passed_ >= kLoopTurns); });
   ++head_;
-  if (batch_waits_) ++passed_;
+  if (batches_waiting_ > 0) ++passed_;
   busy_ = true;
 }
 
 void Turns::enter_batch() {
   std::unique_lock lock(mutex_);
-  batch_waits_ = true;
-  passed_ = 0;
+  if (batches_waiting_++ == 0) passed_ = 0;
   batches_.wait(lock, [&] { return !busy_ && (head_ == tail_ || passed_ >= kLoopTurns); });
-  batch_waits_ = false;
+  --batches_waiting_;
+  passed_ = 0;
   busy_ = true;
 }
 
@@ -25,8 +26,8 @@ void Turns::leave() {
     const std::lock_guard lock(mutex_);
     busy_ = false;
   }
-  loops_.notify_all();  // a few at most; each looks whether it is its turn
-  batches_.notify_one();
+  loops_.notify_all();    // a few at most; each looks whether it is its turn
+  batches_.notify_one();  // which of them is all the same
 }
 
 }  // namespace palpate

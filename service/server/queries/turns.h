@@ -20,15 +20,16 @@ class Turns {
       4;  ///< chosen: loops keep four fifths of the time, and a batch goes on
 
   void enter_loop();
-  void enter_batch();  ///< one thread at a time
+  void enter_batch();
   void leave();
 
  private:
   std::mutex mutex_;
   std::condition_variable loops_, batches_;
-  bool busy_ = false, batch_waits_ = false;
+  bool busy_ = false;
+  int batches_waiting_ = 0;
   std::uint64_t head_ = 0, tail_ = 0;  ///< tickets of loops: next to be served, next to be given
-  std::uint64_t passed_ = 0;           ///< loop turns since a batch began to wait
+  std::uint64_t passed_ = 0;           ///< loop turns since a batch began to wait, or had its turn
 };
 
 /// A loop's or a batch's turn, given back at the end of its scope.

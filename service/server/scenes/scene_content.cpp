@@ -1,6 +1,7 @@
 #include "service/server/scenes/scene_content.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -60,6 +61,17 @@ bool add_neighbours(ContentHash& hash, const fs::path& mesh) {
 }
 
 }  // namespace
+
+std::optional<Problem> choose_engine(const nlohmann::json& wanted, SceneContent& content) {
+  constexpr std::array kEngines = {"auto", "gpu", "cpu", "ref"};
+  if (!wanted.is_string() || std::find(kEngines.begin(), kEngines.end(), wanted) == kEngines.end())
+    return bad_request("\"engine\" is auto, gpu, cpu or ref", "engine");
+  content.engine = wanted.get<std::string>();
+  ContentHash hash;
+  hash.add("palpate scene 1, engine " + content.engine + "\n" + content.id);
+  content.id = hash.hex().substr(0, 32);
+  return std::nullopt;
+}
 
 std::variant<SceneContent, Problem> read_scene_content(const fs::path& file, const fs::path& folder,
                                                        std::optional<Profile> profile,

@@ -122,8 +122,20 @@ class SceneEvents final : public BodySource, public std::enable_shared_from_this
   std::uint64_t seen_ = UINT64_MAX;
 };
 
-/// Scene files below the root: small JSON files that speak of "static" and "tool".
-std::vector<std::string> available(const fs::path& root) {
+/// Whether a file is a scene's, to judge by its two bodies: a run's summary.json speaks of both as well.
+bool is_scene(const fs::path& file, const ServerLimits& limits) {
+  std::error_code error;
+  if (fs::file_size(file, error) > limits.json_bytes || error) return false;
+  std::ifstream in(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const auto read = read_json_object(text, limits.json_depth);
+  const auto* json = std::get_if<nlohmann::json>(&read);
+  return json && json->contains("static") && (*json)["static"].is_array() && json->contains("tool") &&
+         (*json)["tool"].is_object();
+}
+
+/// Scene files below the root.
+std::vector<std::string> available(const fs::path& root, const ServerLimits& limits) {
   std::vector<std::string> found;
   std::error_code error;
   if (root.empty()) return found;
@@ -133,12 +145,7 @@ std::vector<std::string> available(const fs::path& root) {
     if (it->path().extension() != ".json" || it->path().filename().string().ends_with(".schema.json") ||
         !it->is_regular_file(error))
       continue;
-    std::ifstream in(it->path(), std::ios::binary);
-    std::string start(4096, '\0');
-    in.read(start.data(), static_cast<std::streamsize>(start.size()));
-    start.resize(static_cast<std::size_t>(in.gcount()));
-    if (start.find("\"static\"") != std::string::npos || start.find("\"tool\"") != std::string::npos)
-      found.push_back(fs::relative(it->path(), root, error).string());
+    if (is_scene(it->path(), limits)) found.push_back(fs::relative(it->path(), root, error).string());
     if (found.size() == kMostListed) break;
   }
   std::sort(found.begin(), found.end());
@@ -166,7 +173,7 @@ void leave_out_start(SceneContent& content) {
 
 HttpResponse add_named(const std::string& body, SceneStore& store, const ServerLimits& limits,
                        const fs::path& root) {
-  const auto read = read_json_object(body, limits.json_depth, {"path", "profile", "start"});
+  const auto read = read_json_object(body, limits.json_depth, {"path", "profile", "start", "engine"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
   if (!json.contains("path") || !json["path"].is_string())
@@ -204,6 +211,8 @@ HttpResponse add_named(const std::string& body, SceneStore& store, const ServerL
   auto& found = std::get<SceneContent>(content);
   found.name = fs::relative(*file, root, error).string();
   if (ignore_initial) leave_out_start(found);
+  if (json.contains("engine"))
+    if (auto problem = choose_engine(json["engine"], found)) return *problem;
   return added(store, std::move(found));
 }
 
@@ -211,16 +220,17 @@ HttpResponse add_named(const std::string& body, SceneStore& store, const ServerL
 
 void add_scene_routes(Router& router, SceneStore& store, WorkerPool& workers, Metrics& metrics,
                       const ServerLimits& limits, const fs::path& root, const fs::path& spool) {
-  router.add(
-      {.method = "GET", .pattern = "v1/scenes", .handle = [&store, &workers, root](HttpRequest, Reply reply) {
-         workers.post([&store, root, reply] {
-           std::string text = "{\"scenes\":[";
-           for (const auto& view : store.all()) text += (text.back() == '[' ? "" : ",") + view.json;
-           nlohmann::ordered_json names = nlohmann::ordered_json::array();
-           for (const std::string& name : available(root)) names.push_back(name);
-           reply(HttpResponse(200, text + "],\"available\":" + dump(names) + "}"));
-         });
-       }});
+  router.add({.method = "GET",
+              .pattern = "v1/scenes",
+              .handle = [&store, &workers, &limits, root](HttpRequest, Reply reply) {
+                workers.post([&store, &limits, root, reply] {
+                  std::string text = "{\"scenes\":[";
+                  for (const auto& view : store.all()) text += (text.back() == '[' ? "" : ",") + view.json;
+                  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+                  for (const std::string& name : available(root, limits)) names.push_back(name);
+                  reply(HttpResponse(200, text + "],\"available\":" + dump(names) + "}"));
+                });
+              }});
   router.add({.method = "POST",
               .pattern = "v1/scenes",
               .body_limit = limits.json_bytes,

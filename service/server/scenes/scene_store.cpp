@@ -237,6 +237,12 @@ std::optional<SceneStore::View> SceneStore::view(const std::string& id) const {
   return view_of(*entry);
 }
 
+std::string SceneStore::name(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto entry = find_locked(id);
+  return entry ? entry->content.name : id;
+}
+
 std::vector<SceneStore::View> SceneStore::all() const {
   const std::lock_guard lock(mutex_);
   std::vector<View> views;
@@ -332,7 +338,7 @@ void SceneStore::prepare_loop() {
 void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
   SceneOptions options;
   options.scene = entry->content.file.string();
-  options.backend = backend_;
+  options.backend = entry->content.engine.empty() ? backend_ : entry->content.engine;
   options.profile = entry->content.profile;
   auto last = Clock::now() - kProgressEvery;
   std::vector<std::string> warnings;
@@ -461,8 +467,9 @@ Aside SceneStore::aside(const SceneLease& lease) {
   const auto note = [&](const std::string& sentence) {
     log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}});
   };
+  const std::string engine = entry->content.engine.empty() ? backend_ : entry->content.engine;
   auto made =
-      choose_backend(backend_, scene.loaded.scene.response.profile, parts_, note, !entry->content.uploaded);
+      choose_backend(engine, scene.loaded.scene.response.profile, parts_, note, !entry->content.uploaded);
   Result<void> prepared = made ? Result<void>() : made.error();
   if (made)
     prepared = (*made)->prepare(scene.loaded.geometry, scene.plan.plan,

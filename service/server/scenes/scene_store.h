@@ -85,6 +85,7 @@ class SceneStore {
   std::variant<View, Problem> add(SceneContent content);
   std::optional<View> view(const std::string& id) const;
   std::vector<View> all() const;
+  std::string name(const std::string& id) const;  ///< for people; the id of a scene that is not known
   std::optional<Problem> remove(const std::string& id);
   /// The scene, if it is ready. An evicted one is queued again: 503.
   std::variant<SceneUse, Problem> use(const std::string& id, bool loop);

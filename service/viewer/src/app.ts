@@ -9,25 +9,32 @@ import { element, make, write } from './dom.js';
 import { listen, type Action } from './keys.js';
 import { Labels } from './draw/labels.js';
 import type { Moment } from './moment.js';
+import type { Drag } from './mouse/mouse_drag.js';
 import { MouseSource } from './mouse/mouse_source.js';
 import { PathPanel } from './mouse/path_panel.js';
+import { SpaceMouse } from './mouse/space_mouse.js';
 import { PartNames } from './words/part_names.js';
 import { StartNote } from './words/start_note.js';
+import { DARK, LIGHT } from './draw/palette.js';
 import { Picture } from './draw/picture.js';
 import { Player } from './run/player.js';
-import type { Scene } from './server/protocol.js';
+import type { Pose, Scene, SceneParts } from './server/protocol.js';
 import { Readout } from './words/readout.js';
 import { Samples } from './samples.js';
 import { CameraShots } from './tools/camera_shots.js';
+import { ClearanceLine } from './tools/clearance_line.js';
+import { Headset } from './tools/headset.js';
 import { Measure } from './tools/measure.js';
 import { Section } from './tools/section.js';
 import { Triad } from './tools/triad.js';
+import { ScenePartsPanel } from './scene_parts_panel.js';
 import { ScenePicker } from './scene_picker.js';
 import { Sessions } from './sessions.js';
 import { Strips, figure } from './strips.js';
 
 type Source = 'live' | 'mouse' | 'run';
 const REFRESH_MS = 3000;
+const TURN = 0.1;   // rad of a key that turns the view; chosen
 const FELT: Record<Source, string> = { live: 'to the device', mouse: 'to the hand', run: 'to the device' };
 const LATE: Record<Source, [string, string]> = { live: ['Lateness', 'µs'], mouse: ['There and back', 'ms'], run: ['Age of result', 'ticks'] };
 
@@ -45,15 +52,26 @@ export class App {
   private readonly sessions = new Sessions(this.api, (moment) => { this.live_samples.add_moment(moment); this.touch(); }, (error) => this.failed(error), (text) => { this.say(text); this.connection.doubt(); });
   private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
   private readonly workshop = new Workshop(this.api, this.picture, {
-    open: async (make, name) => { this.source = 'mouse'; await this.picker.open_made(make, name); },
+    open: async (make, name, stay) => {
+      if (!stay) this.source = 'mouse';
+      this.stay = stay ? this.picture.pose_of_tool() : null;
+      await this.picker.open_made(make, name).finally(() => { this.stay = null; });
+    },
+    may_change: () => { if (this.sessions.live) this.say('A device runs on this scene: stop it, then change it.', true); return !this.sessions.live; },
     entered: (building) => { if (building) this.sessions.leave(); else if (!this.picker.current) this.picker.show_empty(); if (building) this.keep_mouse(null); this.remember(); this.touch(); },
     say: (text, bad) => this.say(text, bad), failed: (error) => this.failed(error),
   });
   private readonly start_note = new StartNote(this.api);
-  private readonly paths = new PathPanel((rows) => { this.workshop.path = rows; }, () => void this.replay());
+  private readonly paths = new PathPanel((rows) => { this.workshop.path = rows; }, () => void this.replay(), (poses) => this.api.path_page(this.picker.current!.id, poses));
+  private readonly clearance = new ClearanceLine(this.api, this.picture.view, () => this.touch(), (error) => this.failed(error));
+  private readonly space_mouse = new SpaceMouse(() => this.touch(), (error) => this.failed(error));
+  private readonly part_panel: ScenePartsPanel = new ScenePartsPanel((hidden) => { this.picture.bodies.hide(this.scene_parts, hidden); this.picture.view.request(); });
+  private scene_parts: SceneParts = { static: [], tool: [] };
+  private stay: Pose | null = null;   // where the tool is to go on when the scene that is felt is made anew
   private mouse: MouseSource | null = null;
   private holding: Promise<void> | null = null;
   private source: Source = 'live';
+  private kept = '';   // the scene that was saved
   private readonly wish = read_address();   // as the page was called, before it is kept up to date
   private live_samples = new Samples();
   private mouse_samples = new Samples();
@@ -76,6 +94,7 @@ export class App {
     fold();
     narrow.addEventListener('change', fold);
     this.picture.levelled = () => this.show_scales();
+    this.picture.add(this.clearance.object);
     new ResizeObserver(() => { this.touch(); }).observe(element('strips'));
     this.strips.seek = (time) => { this.player.playback?.seek(time); this.run_changed(); };
     void this.choose(['live', 'mouse', 'run'].includes(this.wish.source ?? '') ? (this.wish.source as Source) : 'live');
@@ -92,7 +111,7 @@ export class App {
   }
   private wake(): void {
     clearTimeout(this.rest_timer);
-    if (this.awake) return;
+    if (this.awake || this.picture.view.presenting) return;
     this.awake = true;
     requestAnimationFrame((now) => {
       this.awake = false;
@@ -108,7 +127,8 @@ export class App {
 
   private async begin(): Promise<void> {
     const { wish } = this;
-    if (wish.assembly && !wish.scene && !wish.path && await this.workshop.restore(wish.assembly)) return;
+    const in_parts = !wish.scene && !wish.path;
+    if (wish.assembly && await this.workshop.restore(wish.assembly, in_parts) && in_parts) return;
     const run = wish.run;   // until it is known to be here or missing, no other is shown in its place
     try {
       await this.picker.refresh();
@@ -134,25 +154,34 @@ export class App {
     this.keep_mouse(null);
     this.live_samples.clear();
     this.mouse_samples.clear();
+    const { stay } = this;
     this.workshop.enter(false);
+    if (!stay) element('panel').scrollTop = 0;   // what is to be said of a scene stands on top
     this.start_note.hide();
-    this.paths.clear();
-    await this.picture.open(scene);
+    this.clearance.forget();
+    if (!stay) this.paths.clear();
+    await this.picture.open(scene, stay);
+    this.labels.with_force = scene.profile === 'paper';
+    this.readout.set_profile(scene.profile);
     this.show_scene(scene);
-    void this.look_closer(scene);
+    void this.look_closer(scene, stay !== null);
     this.remember();
     await this.choose(this.source);
   }
   /** What takes longer than a picture: names of parts, and what touches at the start. */
-  private async look_closer(scene: Scene): Promise<void> {
+  private async look_closer(scene: Scene, stays: boolean): Promise<void> {
     const made_here = this.workshop.made === scene.id;
     const { path } = this.picker;
+    this.workshop.offer_settings(made_here);
     this.paths.replay_refusal = made_here ? '' : 'Only a scene that was made here, from its parts, can be given a path: open the files';
     this.readout.names = () => '';
     this.readout.touching = () => '';
     try {
-      const names = new PartNames(await this.api.scene_parts(scene.id));
+      const parts = await this.api.scene_parts(scene.id);
       if (this.picker.current !== scene) return;
+      const names = new PartNames(parts);
+      this.scene_parts = parts;
+      this.part_panel.set(parts, stays ? null : (made_here ? this.workshop.hidden_paths : []));
       this.readout.names = (area) => names.of_area(area);
       this.readout.touching = this.paths.names = (frame) => names.of_frame(frame);
       const leave_out = made_here ? () => { this.workshop.set_ignore_initial(true); void this.workshop.feel(); } : path ? () => void this.picker.open_made(() => this.api.open_scene(path, true), scene.name) : null;
@@ -214,7 +243,11 @@ export class App {
   // ---- sources
 
   private async choose(source: Source): Promise<void> {
-    if (source !== this.source) { this.readout.show(null, []); this.picture.redraw_contact(); }
+    if (source !== this.source) {
+      this.readout.show(null, []);
+      this.picture.redraw_contact();
+      if (this.connection.up) this.hide_banner();   // it was about what was shown before
+    }
     this.source = source;
     for (const tab of document.querySelectorAll<HTMLElement>('[data-source]')) tab.setAttribute('aria-selected', String(tab.dataset['source'] === source));
     for (const part of document.querySelectorAll<HTMLElement>('[data-for]')) part.hidden = part.dataset['for'] !== source;
@@ -274,7 +307,10 @@ export class App {
         if (this.paths.recorder.playing) {
           moment = this.paths.recorder.advance(seconds);
           if (!moment) this.paths.show();
-        } else this.mouse.advance();
+        } else {
+          if (this.picture.drag.steer(this.space_mouse.wish(), seconds)) this.dirty = true;
+          this.mouse.advance();
+        }
         moment ??= this.mouse.moment();
         this.paths.take(moment);
         if (this.paths.recorder.recording) this.paths.show();
@@ -292,6 +328,7 @@ export class App {
     if (this.source === 'run' && moment && this.player.playback && this.picker.current && !Player.fits(this.player.playback.run, this.picker.current)) moment = { ...moment, frame: null };
 
     if (moment) this.picture.show(moment);
+    if (moment && this.picker.current && !this.workshop.building) this.clearance.want(this.picker.current.id, moment.pose, moment.contact);
     this.labels.set(moment?.frame?.contact ? moment.frame.areas : []);
     this.readout.show(moment, this.picker.current?.stages ?? []);
     this.player.show();
@@ -324,7 +361,7 @@ export class App {
     const rows: [string, string][] = [
       ['mock-up', `${whole(scene.static_triangles)} triangles`], ['tool', `${whole(scene.tool_triangles)} triangles`], ['profile', scene.profile ?? '–'],
       ['stiffness', scene.stiffness === null ? '–' : `${figure(scene.stiffness)} N/m`], ['voxel', scene.voxel_size === null ? '–' : `${figure(scene.voxel_size * 1000)} mm`],
-      ['memory', scene.memory_bytes === null || scene.memory_bytes === undefined ? '–' : `${figure(scene.memory_bytes / 1048576)} MiB`], ['found by', scene.device ?? scene.backend ?? '–'],
+      ['memory', scene.memory_bytes === null || scene.memory_bytes === undefined ? '–' : `${figure(scene.memory_bytes / 1048576)} MiB`], ['engine', scene.backend ? `${scene.backend} on ${scene.device}` : '–'],
     ];
     element('scene-facts').replaceChildren(make('h2', {}, scene.name), make('dl', {}, ...rows.flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)])),
       ...(scene.warnings ?? []).map((warning) => make('p', { class: 'warn' }, warning)));
@@ -334,7 +371,9 @@ export class App {
   // ---- words, keys, panel
 
   private remember(): void {
-    write_address({ scene: this.workshop.building ? '' : this.picker.current?.id ?? '', path: this.workshop.building ? '' : this.picker.path, source: this.source, run: this.source === 'run' ? this.player.playback?.run.name ?? '' : '', assembly: this.workshop.assembly?.id ?? '' });
+    // Of a scene that was saved the file counts: it has the path as well.
+    const { current } = this.picker;
+    write_address({ scene: this.workshop.building || current?.id === this.kept ? '' : current?.id ?? '', path: this.workshop.building ? '' : this.picker.path, source: this.source, run: this.source === 'run' ? this.player.playback?.run.name ?? '' : '', assembly: this.workshop.assembly?.id ?? '' });
   }
   private failed(error: unknown): void {
     if (error instanceof ApiError && error.status === 0) { this.connection.doubt(); return; }   // it says by itself that the server is gone
@@ -355,6 +394,7 @@ export class App {
     document.documentElement.dataset['theme'] = theme;
     this.picture.theme(theme === 'dark');
     this.workshop.theme(theme === 'dark');
+    this.clearance.theme(theme === 'dark' ? DARK : LIGHT);
     this.strips.theme();
     this.touch();
   }
@@ -366,6 +406,7 @@ export class App {
     const { picture, workshop } = this;
     const section = new Section(picture.view, () => (workshop.building ? workshop.box() : picture.box()));
     new CameraShots(picture.view, () => (workshop.building ? workshop.name : this.picker.current?.name ?? ''), (text, bad) => this.say(text, bad));
+    new Headset(picture.view, { bounds: () => picture.view.bounds, coupling: () => this.mouse?.coupling ?? null, frame: (now) => this.tick(now), ended: () => this.touch(), failed: (error) => this.failed(error) });
     const measure = new Measure(picture.view, (ray) => { const point = workshop.building ? workshop.meet(ray) : picture.meet(ray); return point && section.hides(point) ? null : point; });
     const triad = new Triad(picture.view);
     picture.view.before_draw.push(() => { measure.place(); triad.draw(); });
@@ -377,7 +418,7 @@ export class App {
     for (const id of ['open-files', 'choose-files']) element(id).addEventListener('click', () => files.click());
     element('choose-folder').addEventListener('click', () => folder.click());
     document.addEventListener('palpate-saved', (event) => {
-      if (this.picker.current && this.picker.current.id === this.workshop.made) { this.picker.path = (event as CustomEvent<string>).detail; this.remember(); }
+      if (this.picker.current && this.picker.current.id === this.workshop.made) { this.picker.path = (event as CustomEvent<string>).detail; this.kept = this.workshop.made; this.remember(); }
       void this.picker.refresh().catch((error: unknown) => this.failed(error));
     });
   }
@@ -394,11 +435,16 @@ export class App {
     this.check('show-normals', (on) => { this.picture.areas.show.normals = on; });
     this.check('show-heights', (on) => { this.picture.areas.show.heights = on; });
     this.check('show-wrench', (on) => { this.picture.areas.show.wrench = on; });
+    this.check('show-clearance', (on) => this.clearance.set_on(on));
     this.check('show-labels', (on) => { this.labels.shown = on; });
     this.check('glass-mockup', (on) => this.picture.bodies.glass('mockup', on));
     this.check('glass-tool', (on) => this.picture.bodies.glass('tool', on));
     element('mouse-reset').addEventListener('click', () => { this.mouse?.restart(); this.touch(); });
+    const drag = element<HTMLSelectElement>('drag-mode');
+    drag.addEventListener('change', () => { this.picture.drag.plain = drag.value as Drag; });
     element('mouse-pause').addEventListener('click', () => this.pause_mouse());
+    element('look-tool').addEventListener('click', () => this.act('tool'));
+    element('look-all').addEventListener('click', () => this.act('all'));
     element('theme').addEventListener('click', () => this.act('theme'));
     element('panel-button').addEventListener('click', () => this.act('panel'));
     element('help-button').addEventListener('click', () => this.act('help'));
@@ -431,9 +477,16 @@ export class App {
       case 'redo': if (this.workshop.building) this.workshop.redo(); break;
       case 'tool': if (this.workshop.building) this.workshop.look_at_selected(); else this.picture.follow_tool(); break;
       case 'up': this.picture.view.turn_up(); break;
+      case 'turn-left': this.picture.view.step(-TURN, 0, 0); break;
+      case 'turn-right': this.picture.view.step(TURN, 0, 0); break;
+      case 'turn-up': this.picture.view.step(0, TURN, 0); break;
+      case 'turn-down': this.picture.view.step(0, -TURN, 0); break;
+      case 'nearer': this.picture.view.step(0, 0, 0.1); break;
+      case 'farther': this.picture.view.step(0, 0, -0.1); break;
       case 'panel': document.body.classList.toggle('no-panel'); this.touch(); break;
       case 'help': element<HTMLDialogElement>('help').showModal(); break;
       case 'glass': element('glass-mockup').click(); break;
+      case 'clearance': element('show-clearance').click(); break;
       case 'voxels': {
         const voxels = element<HTMLSelectElement>('voxels');
         voxels.selectedIndex = (voxels.selectedIndex + 1) % voxels.options.length;

@@ -48,6 +48,7 @@ export class Strips {
       const plot = document.createElement('div');
       plot.className = 'strip-plot';
       const canvas = document.createElement('canvas');
+      canvas.setAttribute('role', 'img');
       const mark = document.createElement('i');
       caption.append(title, value);
       plot.append(canvas, mark);
@@ -72,6 +73,7 @@ export class Strips {
     this.seek(Math.min(1, Math.max(0, (event.clientX - box.left) / box.width)) * this.recorded!.duration);
   }
   private name(index: number, definition: Definition): void {
+    this.canvases[index].setAttribute('aria-label', `${definition.title} over time, ${definition.unit}`);
     this.titles[index].replaceChildren(definition.title, ...definition.lines.filter((line) => line.label).map((line) => {
       const key = document.createElement('i');
       key.className = `key-${line.label}`;

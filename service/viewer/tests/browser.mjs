@@ -37,7 +37,7 @@ async function main() {
   const picture = async (name) => { if (pictures) { mkdirSync(pictures, { recursive: true }); await page.screenshot({ path: join(pictures, `${name}.png`) }); } };
   /** Pixels of the picture as warm as CST, BST and EST are, also where they shine through a surface; nothing else in it is. */
   const warm = async () => {
-    const others = (visibility) => page.evaluate((value) => { for (const id of ['legend', 'labels', 'readout', 'corner']) document.getElementById(id).style.visibility = value; }, visibility);
+    const others = (visibility) => page.evaluate((value) => { for (const id of ['legend', 'labels', 'readout', 'corner', 'banner']) document.getElementById(id).style.visibility = value; }, visibility);
     await others('hidden');   // they lie over the canvas and have such colours, too
     const png = (await page.screenshot({ clip: await page.locator('#canvas').boundingBox() })).toString('base64');
     await others('');
@@ -87,6 +87,7 @@ async function main() {
   check((await text('run-note')) === '' && (await text('duration')) === '', 'and no other run is shown');
   errors.length = 0;   // the browser's own about the refused scene
   await page.click('[data-source=live]');
+  check(!(await page.isVisible('#banner')), 'what was said of the link goes with what was shown');
 
   // A recorded run: found, played, scrubbed to a contact.
   await page.click('[data-source=run]');
@@ -105,6 +106,8 @@ async function main() {
   const forces = (await page.locator('#areas tr:not(.more) td:last-child').allTextContents()).map((value) => parseFloat(value) || 0);
   check(forces.length > 0 && forces.every((force, i) => i === 0 || force <= forces[i - 1]), `areas that push come first: ${forces.join(', ')}`);
   check((await text('felt-title')) === 'to the device' && parseFloat(await text('force-response')) >= 0, 'two forces, each with its name');
+  check((await text('areas-force')) === 'field N' && (await page.getAttribute('#areas-force', 'title')).length > 40, 'the areas\' figures are not taken for the response');
+  check((await page.locator('#labels div:not([hidden])').allTextContents()).every((label) => / mm$/.test(label)), 'nor does a label say another force');
   let boxes = [];
   await until('labels lie neither over one another nor under the readout', async () => {
     boxes = await page.evaluate(() => ['#readout', '#bottom', '#labels div:not([hidden])'].flatMap((query) => [...document.querySelectorAll(query)]).map((one) => { const { x, y, right, bottom } = one.getBoundingClientRect(); return { x, y, right, bottom }; }));

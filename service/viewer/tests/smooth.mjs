@@ -1,13 +1,14 @@
 // How smooth the viewer is on a large mock-up, with its levels of detail and with everything drawn: while the scene loads, while the camera turns, while a recorded run plays.
 // node smooth.mjs PALPATE WORK [TRIANGLES [SCREENSHOTS]], in the build's service/viewer/work. Prints a line of JSON for each; no test, since it is the machine that decides.
 // Of each phase: times between pictures and of the page's own work for each; triangles and bytes handed to WebGL for a picture, the largest; the page's main thread when it was
-// busy for more than 50 ms (longtask). WORK is used again where it holds the scene. Environment: CHROMIUM; BACKEND (gpu); SECONDS (20) of turning before what counts, and 10 that count.
+// busy for more than 50 ms (longtask); and the processor time that each kind of process used for a picture (gpu-process: SwiftShader). WORK is used again where it holds the scene. Environment: CHROMIUM; BACKEND (gpu); SECONDS (20) of turning before what counts, and 10 that count.
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { count_drawing } from './count_drawing.mjs';
+import { processor_times, used_since } from './processor_time.mjs';
 
 const [palpate, work, triangles = '1000000', pictures] = process.argv.slice(2);
 const settle_s = Number(process.env.SECONDS ?? 20);
@@ -60,13 +61,16 @@ try {
     let bytes = 0;
     page.on('response', (answer) => { if (answer.url().includes('/geometry')) bytes += Number(answer.headers()['content-length']); });
     if (all) await page.route('**/geometry*', (route) => route.continue({ url: route.request().url().replace(/max_triangles=\d+/, 'max_triangles=10000000') }));
+    let before = processor_times();
     const rounded = (value) => Math.round(10 * value) / 10;
     const told = async (phase) => {
       const { pictures: list, tasks } = await page.evaluate(() => window.drawing.take());
       const times = (key) => { const all_times = list.map((picture) => picture[key]).filter(Number.isFinite).sort((a, b) => a - b); return [0.5, 0.95, 1].map((share) => rounded(all_times[Math.min(all_times.length - 1, Math.floor(share * all_times.length))] ?? NaN)); };
       const most = (key) => Math.max(0, ...list.map((picture) => picture[key]));
       console.log(JSON.stringify({ levels: !all, mockup: Number(triangles), phase, pictures: list.length, between_ms_p50_p95_max: times('between'), script_ms_p50_p95_max: times('script'),
-        triangles: most('triangles'), uploaded: most('uploaded'), longtasks: tasks.length, longest_task_ms: rounded(Math.max(0, ...tasks)), geometry_bytes: bytes }));
+        triangles: most('triangles'), uploaded: most('uploaded'), longtasks: tasks.length, longest_task_ms: rounded(Math.max(0, ...tasks)), geometry_bytes: bytes,
+        processor_ms_a_picture: used_since(before, list.length) }));
+      before = processor_times();
       bytes = 0;
     };
     const photo = async (name) => { if (pictures) { mkdirSync(pictures, { recursive: true }); await page.screenshot({ path: join(pictures, `${all ? 'all' : 'levels'}_${name}.png`) }); } };

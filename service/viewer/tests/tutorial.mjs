@@ -5,7 +5,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { as_glb, as_text, gearbox } from './gearbox.mjs';
 import { no_hindrance } from './hindrances.mjs';
-import { check, open_browser, server_of, shown, until } from './page_harness.mjs';
+import { check, drop, middle_colour, open_browser, server_of, shown, until } from './page_harness.mjs';
 
 const [palpate, work, write_step, pictures] = process.argv.slice(2);
 rmSync(work, { recursive: true, force: true });
@@ -21,31 +21,24 @@ if (write_step) {
 const server = await server_of(palpate, root);
 let browser = null;
 
-async function main() {
-  await server.start();
-  browser = await open_browser();
-  const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: 'light' });
+/** The whole way with one file: dropped, a part clicked, taken out, dragged into contact, recorded, examined, saved, loaded anew, replayed. `shows`: each step has its picture and is looked at in every look. */
+async function from_file_to_report(name, bytes, folder, shows) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: 'light' });
+  const page = await context.newPage();
   page.setDefaultTimeout(300_000);
   const errors = [];
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
   page.on('pageerror', (error) => errors.push(String(error)));
   const text = (id) => page.textContent(`#${id}`);
-  const picture = async (name) => {
-    for (let i = 0; i < 4; ++i) await shown(page);   // a picture at half the size is followed by a sharp one
-    await page.waitForTimeout(500);
-    if (pictures) { mkdirSync(pictures, { recursive: true }); await page.screenshot({ path: join(pictures, `${name}.png`) }); }
-  };
-  /** As a person drops files on the page. */
-  const drop = async (files) => {
-    const data = await page.evaluateHandle((list) => {
-      const transfer = new DataTransfer();
-      for (const [name, base64] of list) transfer.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
-      return transfer;
-    }, files.map(([name, bytes]) => [name, bytes.toString('base64')]));
-    for (const kind of ['dragenter', 'dragover', 'drop']) await page.dispatchEvent('body', kind, { dataTransfer: data });
+  const picture = async (step, of = page) => {
+    if (!shows) return;
+    for (let i = 0; i < 4; ++i) await shown(of);   // a picture at half the size is followed by a sharp one
+    await of.waitForTimeout(500);
+    if (pictures) { mkdirSync(pictures, { recursive: true }); await of.screenshot({ path: join(pictures, `${step}.png`) }); }
   };
   /** Light, dark and as narrow as a telephone: nothing hinders, and nothing is wider than the page. */
   const in_all_looks = async (what) => {
+    if (!shows) return;
     for (const [look, width, height] of [['light', 1280, 800], ['dark', 1280, 800], ['dark', 390, 760], ['light', 390, 760]]) {
       await page.setViewportSize({ width, height });
       if ((await page.getAttribute('html', 'data-theme')) !== look) await page.keyboard.press('t');
@@ -54,7 +47,7 @@ async function main() {
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
         check(wide <= width, `${what}, ${look}, ${width} px: nothing is wider (${wide})`);
         await page.screenshot({ path: join(work, `${what}_${look}_${width}_closed.png`.replaceAll(' ', '_')) });
-        await page.click('#panel-button');
+        if ((await page.isVisible('#panel-button')) && !(await page.isVisible('#panel'))) await page.click('#panel-button');
       }
       await page.screenshot({ path: join(work, `${what}_${look}_${width}.png`.replaceAll(' ', '_')) });
       await no_hindrance(page, `${what}, ${look}, ${width} px`);
@@ -62,27 +55,21 @@ async function main() {
     await page.setViewportSize({ width: 1280, height: 800 });
     await page.waitForTimeout(300);
   };
-  const rows = () => page.locator('#part-tree [role=treeitem]').count();
-  const read = async (name, bytes) => {
-    await drop([[name, bytes]]);
-    await until(`${name} is read: 50 parts`, async () => /^50 parts/.test(await text('assembly-words')) && (await page.isVisible('#part-tree')) && (await text('assembly-files')).includes(name));
-  };
 
   await page.goto(server.address);
   await until('the first page asks for files', () => page.isVisible('#empty-drop'));
   await picture('1_first_page');
-  await no_hindrance(page, 'the first page');
+  await in_all_looks('the first page');
 
-  await read('gearbox.glb', as_glb(solids));
+  await drop(page, [[name, bytes]]);
+  await until(`${name} is read: 50 parts`, async () => /^50 parts/.test(await text('assembly-words')) && (await page.isVisible('#part-tree')) && (await text('assembly-files')).includes(name));
   check(/240 × 160 × 175 mm/.test(await text('assembly-words')), `its size is said in words: ${await text('assembly-words')}`);
-  if (write_step) {
-    await page.reload();   // the assembly is still there; another takes its place
-    await until('a reload comes back to the parts', async () => /^50 parts/.test(await text('assembly-words')));
-    await read('gearbox.step', readFileSync(step_file));
-    check(/240 × 160 × 175 mm/.test(await text('assembly-words')), 'of the STEP file, too');
-    check(/as the file states/.test(await text('assembly-files')), 'its unit is the file\'s own');
-  }
-  check((await rows()) >= 5, 'the tree shows its groups');
+  if (name.endsWith('.step')) check(/as the file states/.test(await text('assembly-files')), 'its unit is the file\'s own');
+  await page.reload();
+  await until('a reload comes back to the parts', async () => /^50 parts/.test(await text('assembly-words')));
+  check((await page.locator('#part-tree [role=treeitem]').count()) >= 5, 'the tree shows its groups');
+  await until('the picture shows them before anybody has pointed at it', async () => (await middle_colour(page)) < 640);   // paper is 739, a line of the grid 664
+  check(await page.evaluate(() => [...document.querySelectorAll('#part-tree .size')].every((size) => size.scrollWidth <= size.clientWidth)), 'no size is cut');
   await picture('2_parts');
 
   // A part is clicked in the picture: its middle, where the page draws it.
@@ -133,33 +120,53 @@ async function main() {
   await page.click('#play-path');
   await until('it plays', async () => (await text('contact')) === 'played');
   await until('and ends', async () => (await text('contact')) !== 'played');
+  await page.click('#examine-path');
+  await until('the path is examined', async () => /^The path is not clear: open the report$/.test(await text('path-verdict')));
   await picture('6_path');
+  const [report] = await Promise.all([page.waitForEvent('popup'), page.click('#path-verdict a')]);
+  await report.waitForLoadState();
+  const told = await report.textContent('body');
+  check(/First to come together/.test(told) && /handle/.test(told) && /cover/.test(told), 'its report names the parts that come together first');
+  await report.setViewportSize({ width: 1280, height: 800 });
+  await picture('7_path_report', report);
+  await report.close();
 
   await in_all_looks('a scene');
-  await page.fill('#save-name', 'my_gearbox');
+  await page.fill('#save-name', folder);
   await page.click('#save');
-  await until('it is saved', async () => /my_gearbox\/scene\.json/.test(await text('banner')));
-  for (const name of ['scene.json', 'path.csv']) check(existsSync(join(root, 'my_gearbox', name)), `${name} lies below the root`);
+  await until('it is saved', async () => (await text('banner')).includes(`${folder}/scene.json`));
+  for (const file of ['scene.json', 'path.csv']) check(existsSync(join(root, folder, file)), `${file} lies below the root`);
   await page.reload();
-  await until('after a reload the scene is there again', async () => /^(free|contact)$/.test(await text('contact')));
+  await until('after a reload the saved scene is there', async () => (await page.isVisible('#scene-facts h2')) && (await page.textContent('#scene-facts h2')) === `${folder}/scene.json` && /^(free|contact)$/.test(await text('contact')));
 
-  await page.goto('about:blank');
-  await page.goto(`${server.address}#path=my_gearbox/scene.json&source=live`);
-  await until('a link opens the saved scene', async () => /[0-9]/.test(await text('facts')));
-  await page.fill('#record-as', 'my_first_run');
+  await page.click('[data-source=live]');
+  await page.fill('#record-as', `${folder}_run`);
   await page.selectOption('#device', 'simulated');
   await page.click('#start');
   await until('the simulated hand follows the path into contact', async () => (await text('contact')) === 'contact');
-  await picture('7_replay');
+  await picture('8_replay');
+  await in_all_looks('a session');
   await page.click('#stop');
   await until('it has ended', async () => (await text('contact')) === 'ended');
   await page.click('[data-source=run]');
   await until('the run is shown', async () => /ticks/.test(await text('run-note')));
   check(await page.isVisible('#run-report a'), 'with a link to its report');
-  const report = await page.getAttribute('#run-report a', 'href');
-  check((await fetch(new URL(report, server.address))).ok, 'which is there');
-  await picture('8_run');
+  check((await fetch(new URL(await page.getAttribute('#run-report a', 'href'), server.address))).ok, 'which is there');
+  await picture('9_run');
+  await in_all_looks('a run');
   check(errors.length === 0, `no error on the console${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
+  await context.close();
+}
+
+async function main() {
+  await server.start();
+  browser = await open_browser();
+  if (write_step) {
+    await from_file_to_report('gearbox.step', readFileSync(step_file), 'my_gearbox', true);
+    await server.stop();   // it forgets what was uploaded
+    await server.start();
+  }
+  await from_file_to_report('gearbox.glb', as_glb(solids), 'my_gearbox_glb', !write_step);
 }
 
 let status = 1;

@@ -8,6 +8,8 @@ import { offered_devices } from '../src/words/offered_devices.js';
 import type { Area, Device, Scene, SceneList, Vec3 } from '../src/server/protocol.js';
 import { scene_rows } from '../src/words/scene_rows.js';
 import { waiting_words } from '../src/mouse/waiting.js';
+import { places_of, shown_corners } from '../src/draw/shown_parts.js';
+import { clearance_words } from '../src/words/clearance_words.js';
 
 const area = (id: number, force: Vec3, depth: number): Area => ({ id, force, depth, normal: [0, 0, 1], point: [0, 0, 0], torque: [0, 0, 0] });
 
@@ -54,4 +56,20 @@ test('replay is offered for a scene that names a file alone', () => {
 test('an answer that is away is said as a time and an engine', () => {
   assert.equal(waiting_words(1340, 'cpu', 2210), 'this contact takes more than 1.3 s on cpu; the last one took 2.2 s');
   assert.equal(waiting_words(310, '', NaN), 'this contact takes more than 310 ms');
+});
+
+test('a clearance is said as a length, with the parts and who measured', () => {
+  assert.equal(clearance_words({ engine: 'cpu', touches: false, clearance: 0.0123, parts: { static: 'case/cover', mobile: 'handle' } }), '12.3 mm apart: handle ↔ cover (measured by cpu)');
+  assert.equal(clearance_words({ engine: 'cpu', touches: true, clearance: 0 }), '');
+  assert.equal(clearance_words({ engine: 'cpu', touches: false, clearance: null }), '');
+});
+
+test('hidden parts leave no triangle, whatever level is drawn', () => {
+  const parts = [{ path: 'a', triangles: 2 }, { path: 'b', triangles: 3 }, { path: 'c', triangles: 1 }];
+  const place = places_of(parts);
+  assert.deepEqual([0, 1, 2, 4, 5].map(place), [0, 0, 1, 1, 2]);
+  const body = { vertices: new Float32Array(9), corners: Uint32Array.from([0, 1, 2, 1, 2, 0, 2, 0, 1, 0, 2, 1]), ids: Uint32Array.from([1, 2, 4, 5]) };   // two are left out by the level
+  assert.equal(shown_corners(body, parts, new Set()), body.corners);
+  assert.deepEqual([...shown_corners(body, parts, new Set([1]))], [0, 1, 2, 0, 2, 1]);
+  assert.deepEqual([...shown_corners(body, parts, new Set([0, 1, 2]))], []);
 });

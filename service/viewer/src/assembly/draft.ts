@@ -3,7 +3,9 @@ import type { Assembly, Pose } from '../server/protocol.js';
 import type { PartNode } from './part_nodes.js';
 import type { Unit } from './units.js';
 
-export interface Settings { stiffness: number; voxel_mm: number | null; profile: 'refined' | 'paper'; law: 'corrected' | 'printed'; budget_us: number }
+/** Which engine answers; '': the server's choice. */
+export type Engine = '' | 'gpu' | 'cpu' | 'ref';
+export interface Settings { stiffness: number; voxel_mm: number | null; profile: 'refined' | 'paper'; law: 'corrected' | 'printed'; budget_us: number; engine: Engine }
 export interface Draft {
   units: Record<number, Unit>;   // of files that state none
   tool: string;                  // a node's key; '' none
@@ -13,7 +15,7 @@ export interface Draft {
   settings: Settings;
 }
 export const AT_HOME: Pose = [0, 0, 0, 0, 0, 0, 1];
-export const USUAL: Settings = { stiffness: 2000, voxel_mm: null, profile: 'refined', law: 'corrected', budget_us: 4000 };
+export const USUAL: Settings = { stiffness: 2000, voxel_mm: null, profile: 'refined', law: 'corrected', budget_us: 4000, engine: '' };
 
 const HEADER = 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n';
 /** A path file of what was recorded, or of a tool that rests. */

@@ -20,7 +20,10 @@ const MOST_DRAWN = 1_500_000;
 const MOST_DRAWN_BY_PROCESSOR = 250_000;   // chosen: where WebGL is drawn without a GPU
 
 export interface WorkshopHooks {
-  open: (make: () => Promise<Scene>, name: string) => Promise<void>;
+  /** `stay`: the scene that is felt with other settings, the tool where it is. */
+  open: (make: () => Promise<Scene>, name: string, stay: boolean) => Promise<void>;
+  /** Whether the scene that is felt may be made anew now; says why not. */
+  may_change: () => boolean;
   entered: (building: boolean) => void;
   say: (text: string, bad?: boolean) => void;
   failed: (error: unknown) => void;
@@ -47,7 +50,7 @@ export class Workshop {
     select: (node) => this.select(node.key), hover: (node) => this.hover(node?.key ?? ''), toggle: (node) => this.toggle(node.key),
   });
   private readonly gizmo: Gizmo;
-  private readonly settings = new SettingsForm((settings) => this.change({ settings }));
+  private readonly settings = new SettingsForm((settings) => { if (this.building) this.change({ settings }); else if (this.hooks.may_change()) { this.change({ settings }); void this.feel(true); } else this.draw(); });
 
   constructor(private readonly api: Api, private readonly picture: Picture, private readonly hooks: WorkshopHooks) {
     const fields = ['place-x', 'place-y', 'place-z', 'place-rx', 'place-ry', 'place-rz'].map((id) => element<HTMLInputElement>(id));
@@ -90,14 +93,15 @@ export class Workshop {
       if (!cancel.signal.aborted) this.refused(what, error instanceof Error ? error.message : String(error));
     } finally { if (this.cancel === cancel) this.cancel = null; }
   }
-  /** An assembly that the server still has, as after a reload. False: it has not. */
-  async restore(id: string): Promise<boolean> {
+  /** An assembly that the server still has, as after a reload; `enter`: it is shown. False: the server has it no longer. */
+  async restore(id: string, enter: boolean): Promise<boolean> {
     try {
       const assembly = await this.api.assembly(id);
       if (assembly.state !== 'ready') return false;
       const kept = sessionStorage.getItem(`palpate.draft.${id}`);
       this.draft = kept ? { ...this.fresh(), ...(JSON.parse(kept) as Draft) } : this.fresh();
-      await this.show(assembly);
+      this.made = sessionStorage.getItem(`palpate.made.${id}`) ?? '';
+      await this.show(assembly, enter);
       return true;
     } catch { return false; }
   }
@@ -132,16 +136,17 @@ export class Workshop {
   private box_of_file(assembly: Assembly, file: number) { return joined(assembly.parts.filter((part) => part.file === file).map((part) => part.box)); }
   private scale(file: number): number { return this.assembly?.files[file].states_unit ? 1 : UNITS[this.draft.units[file] ?? 'm']; }
 
-  private async show(assembly: Assembly): Promise<void> {
+  private async show(assembly: Assembly, enter = true): Promise<void> {
     this.assembly = assembly;
     this.geometry = await this.api.assembly_geometry(assembly.id, this.picture.view.software ? MOST_DRAWN_BY_PROCESSOR : MOST_DRAWN);
     this.roots = part_tree(assembly);
     this.selected = this.hovered = '';
     this.history = new History(JSON.stringify(this.draft));
     element<HTMLInputElement>('save-name').value = (assembly.files.find((file) => file.mesh)?.name ?? 'assembly').replace(/\.[^.]*$/, '');
-    this.enter(true);
+    if (enter) this.enter(true);
     this.load();
-    this.focus_all();
+    this.draw();   // what was just loaded is drawn by nobody else
+    if (enter) this.focus_all();
   }
   /** To the parts, or away from them to a scene. */
   enter(on: boolean): void {
@@ -151,11 +156,20 @@ export class Workshop {
     document.body.classList.toggle('building', this.building);
     element('workshop').hidden = !this.building;
     element('scene-panel').hidden = this.building;
+    if (this.building) element('panel').scrollTop = 0;
+    this.offer_settings(this.building);
+    this.picture.view.name(this.building ? 'The parts' : 'The scene', this.building ? 'assembly-words part-name tool-name' : 'facts contact touching clearance-words');
     element('back-to-parts').hidden = this.assembly === null;
     element('save-box').hidden = this.assembly === null;
     if (this.building) { document.body.classList.remove('no-scene'); element('empty').hidden = true; this.draw(); } else this.gizmo.hide();
     this.hooks.entered(this.building);
     this.picture.view.request();
+  }
+  /** Whether the numbers of the contact can be changed: of the scene to be, or of one that was made here. */
+  offer_settings(on: boolean): void {
+    element('contact-settings').hidden = !on;
+    element('feel-row').hidden = !this.building;
+    element('settings-note').hidden = this.building;
   }
   private focus_all(): void {
     this.picture.view.set_bounds(this.parts.box(this.assembly!.parts.map((_, i) => i)));
@@ -197,17 +211,24 @@ export class Workshop {
     this.parts.tool_matrix.compose(new three.Vector3(place[0], place[1], place[2]), new three.Quaternion(place[3], place[4], place[5], place[6]), new three.Vector3(1, 1, 1));
     this.picture.view.request();
   }
+  /** The paths, in their files, of what is not drawn. */
+  get hidden_paths(): string[] { return this.draft.hidden.flatMap((key) => { const node = find_node(this.roots, key); return node && node.path !== '' ? [node.path] : []; }); }
   set_ignore_initial(on: boolean): void { this.change({ ignore_initial: on }); }
   order(): Order {
     const { assembly, tool } = this;
     if (!assembly || !tool) throw new Error('First take a part out: that is the tool.');
     return scene_of(assembly, this.draft, tool, this.path);
   }
-  async feel(): Promise<void> {
+  async feel(stay = false): Promise<void> {
     try {
       const order = this.order();
       const { id } = this.assembly!;
-      await this.hooks.open(async () => { const scene = await this.api.make_scene(id, { ...order, name: this.name }); this.made = scene.id; return scene; }, this.name);
+      const { engine } = this.draft.settings;
+      await this.hooks.open(async () => {
+        const scene = await this.api.make_scene(id, { ...order, name: this.name, ...(engine ? { engine } : {}) });
+        sessionStorage.setItem(`palpate.made.${id}`, this.made = scene.id);
+        return scene;
+      }, this.name, stay);
     } catch (error) { this.hooks.failed(error); }
   }
 

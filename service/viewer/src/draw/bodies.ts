@@ -1,8 +1,10 @@
 // Mock-up and tool as solids. The tool is a group that moves with the pose; what belongs to its frame is added to it.
 import * as three from 'three';
+import type { HiddenParts } from '../scene_parts_panel.js';
 import type { Body, Geometry } from '../server/binary.js';
 import type { Theme } from './palette.js';
-import type { Pose } from '../server/protocol.js';
+import type { Pose, SceneParts } from '../server/protocol.js';
+import { shown_corners } from './shown_parts.js';
 
 function mesh_of(body: Body): three.BufferGeometry {
   const geometry = new three.BufferGeometry();
@@ -17,6 +19,9 @@ export class Bodies {
   readonly tool = new three.Group();
   readonly mockup_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   readonly tool_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
+  private drawn: Geometry | null = null;
+  private parts: SceneParts = { static: [], tool: [] };
+  private hidden: HiddenParts = { mockup: new Set(), tool: new Set() };
 
   constructor(scene: three.Object3D) {
     // Pushed back a little, so that contact triangles, which lie in the same planes, win.
@@ -35,9 +40,26 @@ export class Bodies {
       mesh.geometry.dispose();
       mesh.geometry = mesh_of(body);
     }
+    this.drawn = geometry;
+    this.leave_out();
     this.tool.visible = true;
   }
+  /** Of these parts those that are hidden are not drawn; boxes and spheres stay those of the whole. */
+  hide(parts: SceneParts, hidden: HiddenParts): void {
+    this.parts = parts;
+    this.hidden = { mockup: new Set(hidden.mockup), tool: new Set(hidden.tool) };
+    this.leave_out();
+  }
+  private leave_out(): void {
+    if (!this.drawn) return;
+    for (const [mesh, body, parts, hidden] of [[this.mockup_mesh, this.drawn.mockup, this.parts.static, this.hidden.mockup], [this.tool_mesh, this.drawn.tool, this.parts.tool, this.hidden.tool]] as const) {
+      const corners = shown_corners(body, parts, hidden);
+      if (mesh.geometry.index?.array !== corners) mesh.geometry.setIndex(new three.BufferAttribute(corners, 1));
+    }
+  }
   clear(): void {
+    this.drawn = null;
+    this.hidden = { mockup: new Set(), tool: new Set() };
     this.mockup_mesh.geometry = new three.BufferGeometry();
     this.tool_mesh.geometry = new three.BufferGeometry();
     this.tool.visible = false;

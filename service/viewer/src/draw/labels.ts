@@ -1,4 +1,4 @@
-// A few words beside each contact area: its depth and force.
+// A few words beside each contact area: its depth, and its force where the response is the sum of those. (In profile refined the tool's spring is between: areas tell what the field would push.)
 import { Vector3 } from 'three';
 import { element, make, write } from '../dom.js';
 import { place_labels, type Box } from './label_layout.js';
@@ -10,6 +10,7 @@ const MOST = 6;
 
 export class Labels {
   shown = true;
+  with_force = false;
   private readonly host = element('labels');
   private readonly obstacles = ['readout', 'bottom', 'banner'].map((id) => element(id));
   private areas: Area[] = [];
@@ -22,7 +23,7 @@ export class Labels {
     while (this.host.childElementCount < this.areas.length) this.host.append(make('div'));
     [...this.host.children].forEach((label, i) => {
       (label as HTMLElement).hidden = i >= this.areas.length;
-      if (i < this.areas.length) write(label as HTMLElement, `${figure(this.areas[i].depth * 1000)} mm · ${figure(length(this.areas[i].force))} N`);
+      if (i < this.areas.length) write(label as HTMLElement, `${figure(this.areas[i].depth * 1000)} mm${this.with_force ? ` · ${figure(length(this.areas[i].force))} N` : ''}`);
     });
   }
   private place(): void {

@@ -55,13 +55,15 @@ export class Picture {
     });
   }
 
+  /** Something else that belongs to the scene. */
+  add(object: three.Object3D): void { this.shown.add(object); }
   /** Whether the scene is drawn at all. */
   set_visible(on: boolean): void {
     this.shown.visible = on;
     this.view.request();
   }
-  /** Shows a scene that is ready; the camera goes to it. */
-  async open(scene: Scene): Promise<void> {
+  /** Shows a scene that is ready; the camera goes to it. `stay`: it is the one before with other settings, the tool is here and the camera stays. */
+  async open(scene: Scene, stay: Pose | null = null): Promise<void> {
     this.scene = scene;
     this.bodies.clear();   // what is shown of another scene is no longer true
     this.stores.mockup.reset(scene.id);
@@ -70,14 +72,16 @@ export class Picture {
     this.set_contact(null);
     this.areas.set([], this.centre, [0, 0, 0], [0, 0, 0]);
     await this.load_level(scene);
-    this.bodies.move(scene.start ?? [0, 0, 0, 0, 0, 0, 1]);
+    this.bodies.move(stay ?? scene.start ?? [0, 0, 0, 0, 0, 0, 1]);
     const box = new three.Box3();
     if (scene.bounds) box.set(new three.Vector3(...scene.bounds.min), new three.Vector3(...scene.bounds.max));
     else box.copy(this.bodies.mockup_mesh.geometry.boundingBox ?? new three.Box3());
     this.view.set_bounds(box);
     this.areas.set_scale(scene.tool_radius ?? this.bodies.tool_sphere().radius, STRONG_N, scene.stiffness ?? 2000);
-    this.following = false;
-    this.view.look_at_all(true);
+    if (!stay) {
+      this.following = false;
+      this.view.look_at_all(true);
+    }
     this.view.make_ready();
   }
   close(): void {

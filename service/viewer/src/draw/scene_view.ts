@@ -33,6 +33,8 @@ export class SceneView {
   readonly software = drawn_by_processor();
   /** Pictures that follow one another have half the width and height. */
   coarse = false;
+  /** A headset has the pictures: here none is drawn. */
+  presenting = false;
   /** The grid's cell, m. */
   grid_cell = 0;
   private grid: three.GridHelper | null = null;
@@ -49,6 +51,8 @@ export class SceneView {
     this.sharp = this.software ? 1 : Math.min(window.devicePixelRatio, 2);
     this.renderer.setPixelRatio(this.sharp);
     host.append(this.renderer.domElement);
+    this.canvas.setAttribute('role', 'img');
+    this.name('The picture', 'empty-title');   // until there is one
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.request());
@@ -66,13 +70,14 @@ export class SceneView {
   /** A picture is due. The row of pictures goes on for a while after the last that was asked for, then rests until the next. */
   request(): void {
     this.dirty = true;
-    if (this.running) return;
+    if (this.running || this.presenting) return;
     this.running = true;
     this.quiet = 0;
     this.last_draw = NaN;
     requestAnimationFrame(this.draw);
   }
   private readonly draw = (now: number): void => {
+    if (this.presenting) { this.running = false; return; }
     this.quiet = this.dirty ? 0 : this.quiet + 1;
     this.running = this.quiet < 20;
     if (this.running) requestAnimationFrame(this.draw);
@@ -100,9 +105,10 @@ export class SceneView {
   }
   get canvas(): HTMLCanvasElement { return this.renderer.domElement; }
 
-  private resize(): void {
+  /** Fits the picture to its place on the page. */
+  resize(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
-    if (width === 0 || height === 0) return;
+    if (width === 0 || height === 0 || this.presenting) return;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -138,8 +144,25 @@ export class SceneView {
     this.controls.update();
     this.request();
   }
+  get bounds(): three.Sphere { return new three.Sphere(this.focus.centre.clone(), this.focus.radius); }
   look_at_all(from_usual = false): void { this.look_at(this.focus.centre, this.focus.radius * 1.02, from_usual); }
 
+  /** What the picture is of, and which elements of the page say it in words. */
+  name(text: string, described_by: string): void {
+    this.canvas.setAttribute('aria-label', text);
+    this.canvas.setAttribute('aria-describedby', described_by);
+  }
+  /** Turns about what it looks at, to the right and upwards, rad; goes nearer, as a share of the way. For keys. */
+  step(right: number, up: number, nearer: number): void {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    offset.applyAxisAngle(this.camera.up, right);
+    const side = new three.Vector3().crossVectors(this.camera.up, offset).normalize();
+    const steep = offset.angleTo(this.camera.up);
+    offset.applyAxisAngle(side, three.MathUtils.clamp(steep - up, 0.02, Math.PI - 0.02) - steep);
+    this.camera.position.copy(this.controls.target).addScaledVector(offset, 1 - nearer);
+    this.controls.update();
+    this.request();
+  }
   /** Moves camera and what it looks at. */
   shift(by: three.Vector3): void {
     this.camera.position.add(by);

@@ -6,12 +6,17 @@ import type { SceneView } from '../draw/scene_view.js';
 
 const GRAB_PX = 10;   // how far beside the tool a press still takes it
 
+const RADII_A_SECOND = 0.8, RADIANS_A_SECOND = 1.2;   // of a cap that is pushed as far as it goes; chosen
 const NUDGE_MS = 400;   // chosen: a key that repeats keeps the hand closed
+
+export type Drag = 'move' | 'turn' | 'depth';
 
 export class MouseDrag {
   /** The coupling that is moved; null while the mouse is no device. */
   coupling: Coupling | null = null;
-  holding: 'move' | 'turn' | null = null;
+  holding: Drag | null = null;
+  /** What a plain drag does: fingers have no other keys. */
+  plain: Drag = 'move';
   private readonly plane = new three.Plane();
   private readonly last = new three.Vector3();
   private readonly ray = new three.Raycaster();
@@ -50,7 +55,7 @@ export class MouseDrag {
     event.stopImmediatePropagation();
     this.view.canvas.setPointerCapture(event.pointerId);
     this.coupling.held = true;
-    this.holding = event.button === 2 || event.shiftKey || event.ctrlKey ? 'turn' : 'move';
+    this.holding = event.button === 2 || event.shiftKey || event.ctrlKey ? 'turn' : this.plain;
     this.plane.setFromNormalAndCoplanarPoint(this.view.camera.getWorldDirection(new three.Vector3()), point);
     this.last.copy(point);
     document.body.classList.add('holding');
@@ -67,6 +72,8 @@ export class MouseDrag {
       if (!point) return;
       this.coupling.target_position.add(point.clone().sub(this.last));
       this.last.copy(point);
+    } else if (this.holding === 'depth') {
+      this.deepen(-event.movementY * this.coupling.radius * 0.01);
     } else {
       const turn = new three.Quaternion();
       const camera = this.view.camera.quaternion;
@@ -94,9 +101,27 @@ export class MouseDrag {
     const way = new three.Vector3(right, up, -away).applyQuaternion(this.view.camera.quaternion);
     if (turning) this.turn(new three.Quaternion().setFromAxisAngle(new three.Vector3(-up, right, -away).applyQuaternion(this.view.camera.quaternion), 0.02));
     else coupling.target_position.addScaledVector(way, coupling.radius * 0.02);
+    this.let_go_later();
+    this.view.request();
+  }
+  /** A cap that is pushed moves the hand on for `seconds`: right, up, away and turns about these, −1 … 1 each. Returns whether it is pushed. */
+  steer(wish: readonly number[], seconds: number): boolean {
+    const { coupling } = this;
+    if (!coupling || this.holding || wish.every((value) => value === 0)) return false;
+    coupling.held = true;
+    const camera = this.view.camera.quaternion;
+    const seen = (first: number) => new three.Vector3(wish[first], wish[first + 1], -wish[first + 2]).applyQuaternion(camera);
+    coupling.target_position.addScaledVector(seen(0), coupling.radius * RADII_A_SECOND * seconds);
+    const turn = seen(3);
+    const angle = turn.length();
+    if (angle > 0) this.turn(new three.Quaternion().setFromAxisAngle(turn.divideScalar(angle), angle * RADIANS_A_SECOND * seconds));
+    this.let_go_later();
+    this.view.request();
+    return true;
+  }
+  private let_go_later(): void {
     clearTimeout(this.nudged);
     this.nudged = window.setTimeout(() => { if (!this.holding) this.coupling?.let_go(); }, NUDGE_MS);
-    this.view.request();
   }
   private nudged = 0;
   private release(): void {
@@ -110,8 +135,12 @@ export class MouseDrag {
     if (!this.coupling || !this.holding) return;
     event.preventDefault();
     event.stopImmediatePropagation();
-    const away = this.view.camera.getWorldDirection(new three.Vector3()).multiplyScalar(-Math.sign(event.deltaY) * this.coupling.radius * 0.08);
-    this.coupling.target_position.add(away);
+    this.deepen(-Math.sign(event.deltaY) * this.coupling.radius * 0.08);
+  }
+  /** Moves what is held away from the eye, m. */
+  private deepen(metres: number): void {
+    const away = this.view.camera.getWorldDirection(new three.Vector3()).multiplyScalar(metres);
+    this.coupling?.target_position.add(away);
     this.plane.translate(away);
     this.last.add(away);
   }

@@ -6,6 +6,9 @@ import type { Moment } from '../moment.js';
 import { waiting_words } from './waiting.js';
 import { depth, type Frame, type HapticHello, type Pose, type Scene, type Wrench } from '../server/protocol.js';
 
+const ASK_MS = 8;         // from one question to the next where the answer is sooner; chosen: with the answer's own time it is not 20 ms old in any picture
+const UNWATCHED_MS = 100;  // without a picture for so long nobody looks, and between pictures nothing moves
+
 export class MouseSource {
   /** Stays the same when the connection is lost and found again: so does the tool, and the hand that holds it. */
   readonly coupling = new Coupling();
@@ -24,6 +27,10 @@ export class MouseSource {
   private response: Moment['response'] = null;
   private engine: string;
   private last_pose = '';
+  private wants_frame = true;   // a picture has come since the last frame was asked for
+  private framed = true;        // the newest answer has its frame
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private last_picture = performance.now();
   private last_advance = performance.now();
   private readonly began = performance.now();
 
@@ -62,11 +69,14 @@ export class MouseSource {
     this.round_ms = performance.now() - this.asked.at;
     this.asked = null;
     this.server_us = wrench.server_us;
-    this.contact = wrench.contact;
+    this.framed = wrench.frame !== undefined;
+    if (this.framed) this.contact = wrench.contact;   // with the frame that shows it
     this.response = { force: wrench.force, torque: wrench.torque };
     this.engine = wrench.engine ?? this.engine;
     this.frame = wrench.frame ?? this.frame;
     // Of a cut answer nothing is felt; the tool can be drawn back, or it would be stuck where lists are too small.
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => { if (performance.now() - this.last_picture < UNWATCHED_MS) this.move(); }, Math.max(0, ASK_MS - this.round_ms));
     this.answer = { gc: wrench.gc, rotation: new Quaternion(pose[3], pose[4], pose[5], pose[6]), areas: wrench.truncated ? [] : wrench.areas };
   }
 
@@ -75,15 +85,21 @@ export class MouseSource {
     const pose = this.coupling.pose();
     const text = pose.join();
     // At rest nothing is asked, but once in 20 s: the server closes a connection that says nothing for a minute.
-    if (text === this.last_pose && performance.now() - this.asked_at < 20_000) return;
+    if (text === this.last_pose && (this.framed || !this.wants_frame) && performance.now() - this.asked_at < 20_000) return;
     this.last_pose = text;
     this.asked_at = performance.now();
     this.asked = { seq: ++this.seq, pose, at: this.asked_at };
-    this.link.send(JSON.stringify({ type: 'pose', seq: this.seq, time: (this.asked_at - this.began) / 1000, pose, full: true }));
+    this.link.send(JSON.stringify({ type: 'pose', seq: this.seq, time: (this.asked_at - this.began) / 1000, pose, full: this.wants_frame }));
+    this.wants_frame = false;
   }
 
-  /** Moves on to now, and asks about where the tool is. */
+  /** Before each picture: moves on to now, and asks about where the tool is. Between pictures it goes on by itself as soon as an answer is there. */
   advance(): void {
+    this.last_picture = performance.now();
+    this.wants_frame = true;
+    this.move();
+  }
+  private move(): void {
     const now = performance.now();
     const seconds = (now - this.last_advance) / 1000;
     this.last_advance = now;
@@ -104,5 +120,8 @@ export class MouseSource {
     };
   }
   private waiting(): string { return this.asked ? waiting_words(performance.now() - this.asked.at, this.engine, this.round_ms) : ''; }
-  close(): void { this.link.close(); }
+  close(): void {
+    clearTimeout(this.timer);
+    this.link.close();
+  }
 }

@@ -3,7 +3,7 @@ import { path_text } from '../assembly/draft.js';
 import { save_as } from '../assembly/workshop.js';
 import { element, make, write } from '../dom.js';
 import type { Moment } from '../moment.js';
-import type { Frame } from '../server/protocol.js';
+import type { Frame, Pose } from '../server/protocol.js';
 import { figure } from '../strips.js';
 import { PathRecorder, touches } from './path_recorder.js';
 
@@ -14,11 +14,12 @@ export class PathPanel {
   replay_refusal = '';
   private shown_rows = -1;
 
-  /** `changed`: it was recorded anew; `replay`: the simulated hand is to follow it. */
-  constructor(private readonly changed: (rows: Moment[]) => void, replay: () => void) {
+  /** `changed`: it was recorded anew; `replay`: the simulated hand is to follow it; `examine`: gives the page of what the path is like. */
+  constructor(private readonly changed: (rows: Moment[]) => void, replay: () => void, private readonly examine: (poses: Pose[]) => Promise<Blob>) {
     element('record').addEventListener('click', () => this.toggle());
     element('play-path').addEventListener('click', () => { if (this.recorder.playing) this.recorder.stop(); else this.recorder.play(); this.show(); });
     element('replay-path').addEventListener('click', replay);
+    element('examine-path').addEventListener('click', () => void this.report());
     element('download-path').addEventListener('click', () => save_as(new Blob([path_text(this.recorder.rows)], { type: 'text/csv' }), 'path.csv'));
     this.show();
   }
@@ -26,6 +27,22 @@ export class PathPanel {
   toggle(): void {
     if (this.recorder.recording) { this.recorder.stop(); this.changed(this.recorder.rows); } else this.recorder.start();
     this.show();
+  }
+  /** The report opens as a page of its own; what it says in a line is its link. */
+  private async report(): Promise<void> {
+    const { rows } = this.recorder;
+    const verdict = element('path-verdict');
+    const button = element<HTMLButtonElement>('examine-path');
+    button.disabled = true;
+    verdict.replaceChildren('Examining the path…');
+    try {
+      const page = await this.examine(rows.map(({ pose }) => pose));
+      if (rows !== this.recorder.rows) return;
+      const title = new DOMParser().parseFromString(await page.text(), 'text/html').querySelector('h1')?.textContent ?? 'The path';
+      verdict.replaceChildren(make('a', { href: URL.createObjectURL(page), target: '_blank' }, `${title}: open the report`));
+    } catch (error) {
+      verdict.replaceChildren(error instanceof Error ? error.message : String(error));
+    } finally { button.disabled = false; }
   }
   take(moment: Moment): void { if (!this.recorder.take(moment)) this.changed(this.recorder.rows); }
   show(): void {
@@ -43,6 +60,7 @@ export class PathPanel {
     const shown = recording ? 0 : rows.length;
     if (shown === this.shown_rows) return;
     this.shown_rows = shown;
+    element('path-verdict').replaceChildren();
     const told = ready ? touches(rows, this.names) : [];
     element('path-report').hidden = !ready;
     element('path-touches').replaceChildren(...told.map(({ from, to, parts, depth, force }) => make('li', {}, `${from.toFixed(1)}–${to.toFixed(1)} s: ${parts || 'contact'}, ${figure(depth * 1000)} mm, ${figure(force)} N`)));

@@ -1,5 +1,5 @@
 // The server's HTTP endpoints. Every failure is an ApiError: a problem of the server's, or `status` 0 when nobody answered.
-import type { Assembly, Device, Frame, Pose, Problem, Run, Scene, SceneList, SceneParts, Session } from './protocol.js';
+import type { Assembly, ClearanceAnswer, Device, Frame, Pose, Problem, Run, Scene, SceneList, SceneParts, Session } from './protocol.js';
 import { read_geometry, read_voxels, type Geometry, type Voxels } from './binary.js';
 
 export class ApiError extends Error {
@@ -46,10 +46,14 @@ export class Api {
   }
 
   scenes(): Promise<SceneList> { return this.json('v1/scenes'); }
-  open_scene(path: string, ignore_initial = false): Promise<Scene> { return this.json('v1/scenes', { method: 'POST', body: { path, ...(ignore_initial ? { start: 'ignore_initial' } : {}) } }); }
+  open_scene(path: string, ignore_initial = false, engine = ''): Promise<Scene> { return this.json('v1/scenes', { method: 'POST', body: { path, ...(ignore_initial ? { start: 'ignore_initial' } : {}), ...(engine ? { engine } : {}) } }); }
   scene_parts(id: string): Promise<SceneParts> { return this.json(`v1/scenes/${id}/parts`); }
   /** What touches at a pose, and which parts. */
   query(id: string, pose: Pose): Promise<Frame & { parts?: { static: string[]; tool: string[] } }> { return this.json(`v1/scenes/${id}/query?names=1`, { method: 'POST', body: { pose } }); }
+  /** How far the tool is from the mock-up at a pose, exactly. */
+  clearance(id: string, pose: Pose): Promise<ClearanceAnswer> { return this.json(`v1/scenes/${id}/query?clearance=1`, { method: 'POST', body: { pose } }); }
+  /** The page that says whether a path is clear, where it first touches and how near it passes. */
+  async path_page(id: string, poses: Pose[]): Promise<Blob> { return (await this.fetch(`v1/scenes/${id}/path`, { method: 'POST', body: { poses } })).blob(); }
   scene(id: string): Promise<Scene> { return this.json(`v1/scenes/${id}`); }
   async geometry(id: string, max_triangles: number, signal?: AbortSignal): Promise<Geometry> {
     return read_geometry(await this.bytes(`v1/scenes/${id}/geometry?max_triangles=${max_triangles}`, signal));
@@ -82,7 +86,7 @@ export class Api {
   }
   assembly(id: string): Promise<Assembly> { return this.json(`v1/assemblies/${id}`); }
   async assembly_geometry(id: string, max_triangles: number): Promise<Geometry> { return read_geometry(await this.bytes(`v1/assemblies/${id}/geometry?max_triangles=${max_triangles}`)); }
-  make_scene(id: string, order: { scene: unknown; path?: string; name: string }): Promise<Scene> { return this.json(`v1/assemblies/${id}/scene`, { method: 'POST', body: order }); }
+  make_scene(id: string, order: { scene: unknown; path?: string; name: string; engine?: string }): Promise<Scene> { return this.json(`v1/assemblies/${id}/scene`, { method: 'POST', body: order }); }
   save_scene(id: string, order: { scene: unknown; path?: string; folder: string }): Promise<{ path: string; bytes: number }> { return this.json(`v1/assemblies/${id}/save`, { method: 'POST', body: order }); }
 
   async devices(): Promise<Device[]> { return (await this.json<{ devices: Device[] }>('v1/devices')).devices; }

@@ -26,6 +26,9 @@ export interface Box { min: Vec3; max: Vec3 }
 export interface NamedPart { path: string; triangles: number }
 export interface SceneParts { static: NamedPart[]; tool: NamedPart[] }
 
+/** A line of a query for clearance, m; null: further than is measured. The points and parts: of two that are apart. */
+export interface ClearanceAnswer { engine: string; touches: boolean; clearance: number | null; on_static?: Vec3; on_mobile?: Vec3; parts?: { static: string; mobile: string } }
+
 /** Mesh files that were uploaded together. Coordinates are file units, metres where `states_unit`. */
 export interface AssemblyFile { name: string; bytes: number; mesh: boolean; states_unit: boolean; in_metres: boolean; triangles: number | null; error: string | null; notes: string[] }
 export interface AssemblyPart { file: number; path: string; also: string; first_triangle: number; triangles: number; colour: string | null; box: Box | null }

@@ -1,4 +1,5 @@
 // Which parts touch: triangles' ids belong to parts in the order of the scene.
+import { places_of } from '../draw/shown_parts.js';
 import type { Area, Frame, NamedPart, SceneParts } from '../server/protocol.js';
 
 const MOST = 3;
@@ -10,18 +11,11 @@ export function short_names(paths: readonly string[]): string[] {
 }
 
 class Body {
-  private readonly ends: number[] = [];
-  readonly names: string[];
+  private readonly at: (triangle: number) => number;
+  private readonly names: string[];
   constructor(parts: readonly NamedPart[]) {
-    let end = 0;
-    for (const { triangles } of parts) this.ends.push(end += triangles);
+    this.at = places_of(parts);
     this.names = short_names(parts.map(({ path }) => path));
-  }
-  at(triangle: number): number {
-    let low = 0;
-    let high = this.ends.length;
-    while (low < high) { const middle = (low + high) >> 1; if (this.ends[middle] <= triangle) low = middle + 1; else high = middle; }
-    return low;
   }
   touched(...lists: (readonly number[] | undefined)[]): string[] {
     const places = new Set<number>();

@@ -11,6 +11,12 @@ export class Readout {
   private table_of: Frame | null | undefined;
   /** Which parts an area's triangles belong to; '' when nobody knows. */
   names: (area: Area) => string = () => '';
+  /** What the areas' forces are: of the response its parts, or of the field, which the tool's spring passes on softened. */
+  set_profile(profile: string | null): void {
+    const [word, sentence] = profile === 'paper' ? ['force N', 'What the area adds to the response'] : ['field N', 'What the field would push where the tool is asked about. The response is less: the tool hangs on a spring, and gives way'];
+    write(element('areas-force'), word);
+    element('areas-force').title = sentence;
+  }
   /** Which parts touch in a frame. */
   touching: (frame: Frame) => string = () => '';
 

@@ -1,0 +1,75 @@
+// The mouse's end of the remote loop: how often it asks, and for what.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { MouseSource } from '../src/mouse/mouse_source.js';
+import type { Scene } from '../src/server/protocol.js';
+
+const SCENE = { id: 's', start: [0, 0, 0, 0, 0, 0, 1], tool_gc: [0, 0, 0], tool_radius: 0.05, stiffness: 2000, backend: 'cpu' } as unknown as Scene;
+interface Asked { seq: number; full: boolean; pose: number[] }
+
+/** A server that answers when it is told to. */
+class Socket {
+  readonly CONNECTING = 0;
+  readyState = 1;
+  asked: Asked[] = [];
+  onmessage: (event: { data: string }) => void = () => {};
+  onclose = (): void => {};
+  send(text: string): void { this.asked.push(JSON.parse(text) as Asked); }
+  close(): void { this.onclose(); }
+  say(message: unknown): void { this.onmessage({ data: JSON.stringify(message) }); }
+  answer(): void {
+    const { seq, full } = this.asked.at(-1)!;
+    const empty = { contact: false, areas: [], force: [0, 0, 0], torque: [0, 0, 0] };
+    this.say({ type: 'wrench', seq, server_us: 100, truncated: false, gc: [0, 0, 0], engine: 'cpu', ...empty, ...(full ? { frame: empty } : {}) });
+  }
+}
+const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
+async function begun() {
+  const socket = new Socket();
+  const mouse = new MouseSource(SCENE, null, async () => {}, () => socket as unknown as WebSocket, () => {});
+  await pause(0);
+  socket.say({ type: 'hello', scene: 's', stiffness: 2000, watchdog_ms: 20, tool_gc: [0, 0, 0], start: SCENE.start });
+  return { socket, mouse };
+}
+
+test('between two pictures a moving tool is asked about again, and a picture alone asks for its frame', async () => {
+  const { socket, mouse } = await begun();
+  assert.deepEqual(socket.asked.map(({ full }) => full), [true]);
+  socket.answer();
+  mouse.coupling.held = true;
+  mouse.coupling.target_position.set(0.1, 0, 0);
+  await pause(40);   // no picture meanwhile
+  assert.ok(socket.asked.length === 2, `${socket.asked.length} questions`);
+  assert.equal(socket.asked[1].full, false);
+  assert.ok(socket.asked[1].pose[0] > 0);
+  mouse.close();
+});
+
+test('a tool that has come to rest is shown with its own frame', async () => {
+  const { socket, mouse } = await begun();
+  socket.answer();
+  mouse.coupling.held = true;
+  mouse.coupling.target_position.set(0.001, 0, 0);
+  await pause(40);
+  socket.answer();          // without a frame
+  mouse.coupling.let_go();  // and nothing moves any more
+  mouse.advance();
+  assert.deepEqual([socket.asked.length, socket.asked.at(-1)!.full], [3, true]);
+  socket.answer();
+  mouse.advance();
+  assert.equal(socket.asked.length, 3);   // at rest nothing is asked
+  mouse.close();
+});
+
+test('without pictures nothing goes on', async () => {
+  const { socket, mouse } = await begun();
+  mouse.advance();
+  mouse.coupling.held = true;
+  mouse.coupling.target_position.set(0.1, 0, 0);
+  await pause(150);
+  const before = socket.asked.length;
+  socket.answer();
+  await pause(50);
+  assert.equal(socket.asked.length, before);
+  mouse.close();
+});
