@@ -64,7 +64,8 @@ TEST(MethodLead, IsOfTheSoonestSettingThatIsNoWorse) {
   EXPECT_NE(lead_sentence(*none).find("no nearer than 30 %"), std::string::npos) << lead_sentence(*none);
   EXPECT_EQ(where_wins(curves, truths, 3),
             "from 20 µs on refined alone answers, from 100 µs on paper is nearer");
-  EXPECT_NE(lead_summary("gpu", {{"a", *lead}, {"b", *none}}).find("sooner or more on 1 of 2: a (20 ×)."),
+  EXPECT_NE(lead_summary("By one engine, gpu", {{"a", *lead}, {"b", *none}})
+                .find("sooner or more on 1 of 2: a (20 ×)."),
             std::string::npos);
 }
 

@@ -469,9 +469,17 @@ class ErrorBench {
       }
       for (const std::size_t q : {std::size_t{3}, std::size_t{0}})
         charts_.push_back(error_time_chart(set.name, curves, set.about, q));
+      if (judged_by_itself(curves)) {
+        facts_.findings.emplace_back(
+            set.name,
+            "paper is not judged by the engine " + curves.engine +
+                ": the triangles that touch are smaller than what its truth cuts, so at half of the "
+                "poses or more it would be held against itself.");
+        continue;
+      }
       const auto lead = lead_of(curves, set.about, 3);
       if (!lead) continue;
-      leads_[curves.engine].emplace_back(set.name, *lead);
+      leads_["By one engine, " + curves.engine].emplace_back(set.name, *lead);
       const std::string by = "Force, by the engine " + curves.engine + ": ";
       facts_.findings.emplace_back(set.name, by + lead_sentence(*lead) + ".");
       facts_.findings.emplace_back(
@@ -479,6 +487,19 @@ class ErrorBench {
       if (const auto of_depth = lead_of(curves, set.about, 0))
         facts_.more.emplace_back(fmt::format("refined against paper in d, {}, {}", set.name, curves.engine),
                                  lead_sentence_of_depth(*of_depth));
+    }
+    // As this machine has it: each method by the engine that answers it soonest here.
+    if (set.curves.size() > 1 && !set.curves.front().points.empty() &&
+        std::none_of(set.curves.begin(), set.curves.end(), judged_by_itself)) {
+      ErrorCurves each = set.curves.front();
+      for (const ErrorCurves& curves : set.curves)
+        for (const ErrorPoint& point : curves.points)
+          if (point.setting.profile == Profile::kPaper)
+            each.points.push_back(point), each.engine = curves.engine;
+      if (const auto lead = lead_of(each, set.about, 3))
+        leads_[fmt::format("Each by an engine of its own, refined by {} and paper by {}",
+                           set.curves.front().engine, each.engine)]
+            .emplace_back(set.name, *lead);
     }
     for (const std::size_t q : {std::size_t{3}, std::size_t{0}})
       charts_.push_back(convergence_chart(set.name, set.curves.front(), set.about, q));
@@ -489,6 +510,13 @@ class ErrorBench {
         curve.emplace_back(point.setting.value, percentile(point.result.errors[0], 0.5));
     if (const auto fit = fitted_order(curve))
       facts_.more.emplace_back("order of d, " + set.name, order_text(*fit, "spacings"));
+  }
+
+  /// Whether a coarser cut than the truth's has its very force at the median: then the truth is none.
+  static bool judged_by_itself(const ErrorCurves& curves) {
+    return std::any_of(curves.points.begin(), curves.points.end(), [](const ErrorPoint& point) {
+      return point.setting.knob == "triangles" && percentile(point.result.errors[3], 0.5) == 0;
+    });
   }
 
   static std::string lead_sentence_of_depth(const MethodLead& lead) {

@@ -90,11 +90,7 @@ std::string lead_sentence(const MethodLead& lead) {
                                 share_text(*lead.error), time_text(*lead.us), lead.factor());
   if (lead.factor() >= kTenfold) return out;
   if (*lead.us <= 1.2 * lead.refined_least_us)  // within a fifth, which like runs differ by
-    return out +
-           fmt::format(
-               ": less than ten times, for its soonest frame is as near already and takes no less: what is "
-               "left is the search and the sets, which paper's frame of {} holds as well",
-               time_text(lead.paper_us));
+    return out + ": less than ten times, for that is its soonest frame: no setting of it takes less";
   return out +
          fmt::format(
              ": less than ten times, for so small an error takes it more samples than its soonest frame "
@@ -102,7 +98,7 @@ std::string lead_sentence(const MethodLead& lead) {
              time_text(lead.refined_least_us));
 }
 
-std::string lead_summary(const std::string& engine,
+std::string lead_summary(const std::string& engines,
                          const std::vector<std::pair<std::string, MethodLead>>& leads) {
   std::string tenfold, less, none;
   std::size_t count = 0;
@@ -113,10 +109,9 @@ std::string lead_summary(const std::string& engine,
     if (lead.us && lead.factor() >= kTenfold) ++count;
   }
   std::string out = fmt::format(
-      "On {}, both methods by the same engine: refined has an error of the force as small as paper's "
-      "smallest ten "
-      "times sooner or more on {} of {}",
-      engine, count, leads.size());
+      "{}: refined has an error of the force as small as paper's smallest ten times sooner or more on {} of "
+      "{}",
+      engines, count, leads.size());
   out += tenfold.empty() ? "." : ": " + tenfold + ".";
   if (!less.empty()) out += " Sooner by less, or later (below 1): " + less + ".";
   if (!none.empty()) out += " Not as small at all: " + none + ".";

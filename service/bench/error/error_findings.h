@@ -28,8 +28,9 @@ std::string where_wins(const ErrorCurves& curves, const ErrorTruths& truths, std
 /// A lead of one subject in a sentence, with the reason where it is less than tenfold.
 std::string lead_sentence(const MethodLead& lead);
 
-/// All subjects of an engine: on how many refined is ten times sooner, and what the others lack.
-std::string lead_summary(const std::string& engine,
+/// All subjects: on how many refined is ten times sooner, and what the others lack. `engines`: who answered,
+/// "By one engine, gpu".
+std::string lead_summary(const std::string& engines,
                          const std::vector<std::pair<std::string, MethodLead>>& leads);
 
 }  // namespace palpate
