@@ -23,11 +23,27 @@ class Socket {
     this.say({ type: 'wrench', seq, server_us: 100, truncated: false, gc: [0, 0, 0], engine: 'cpu', ...empty, ...(full ? { frame: empty } : {}) });
   }
 }
-const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
+
+// A clock of our own: what is due then is called then, however busy the machine is.
+let clock = 0;
+let due: { at: number; call: () => void; id: number }[] = [];
+let ids = 0;
+Object.defineProperty(globalThis, 'performance', { value: { now: () => clock }, configurable: true });
+globalThis.setTimeout = ((call: () => void, ms = 0) => { due.push({ at: clock + ms, call, id: ++ids }); return ids; }) as unknown as typeof setTimeout;
+globalThis.clearTimeout = ((id: number) => { due = due.filter((one) => one.id !== id); }) as unknown as typeof clearTimeout;
+function pass(ms: number): void {
+  for (const end = clock + ms; ;) {
+    const next = due.filter(({ at }) => at <= end).sort((a, b) => a.at - b.at)[0];
+    if (!next) { clock = end; return; }
+    due = due.filter((one) => one !== next);
+    clock = Math.max(clock, next.at);
+    next.call();
+  }
+}
 async function begun() {
   const socket = new Socket();
   const mouse = new MouseSource(SCENE, null, async () => {}, () => socket as unknown as WebSocket, () => {});
-  await pause(0);
+  for (let i = 0; i < 5; ++i) await Promise.resolve();   // the scene is ready
   socket.say({ type: 'hello', scene: 's', stiffness: 2000, watchdog_ms: 20, tool_gc: [0, 0, 0], start: SCENE.start });
   return { socket, mouse };
 }
@@ -38,7 +54,7 @@ test('between two pictures a moving tool is asked about again, and a picture alo
   socket.answer();
   mouse.coupling.held = true;
   mouse.coupling.target_position.set(0.1, 0, 0);
-  await pause(40);   // no picture meanwhile
+  pass(40);   // no picture meanwhile
   assert.ok(socket.asked.length === 2, `${socket.asked.length} questions`);
   assert.equal(socket.asked[1].full, false);
   assert.ok(socket.asked[1].pose[0] > 0);
@@ -50,7 +66,7 @@ test('a tool that has come to rest is shown with its own frame', async () => {
   socket.answer();
   mouse.coupling.held = true;
   mouse.coupling.target_position.set(0.001, 0, 0);
-  await pause(40);
+  pass(40);
   socket.answer();          // without a frame
   mouse.coupling.let_go();  // and nothing moves any more
   mouse.advance();
@@ -66,10 +82,10 @@ test('without pictures nothing goes on', async () => {
   mouse.advance();
   mouse.coupling.held = true;
   mouse.coupling.target_position.set(0.1, 0, 0);
-  await pause(150);
+  pass(150);
   const before = socket.asked.length;
   socket.answer();
-  await pause(50);
+  pass(50);
   assert.equal(socket.asked.length, before);
   mouse.close();
 });

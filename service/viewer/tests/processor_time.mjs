@@ -11,8 +11,8 @@ export function processor_times() {
     try {
       const stat = readFileSync(`/proc/${pid}/stat`, 'utf8');
       const fields = stat.slice(stat.lastIndexOf(')') + 2).split(' ');   // the name before it may hold blanks
-      const args = readFileSync(`/proc/${pid}/cmdline`, 'utf8').split('\0');
-      found.set(Number(pid), { parent: Number(fields[1]), ms: ((Number(fields[11]) + Number(fields[12])) * 1000) / TICKS_A_SECOND, kind: args.find((arg) => arg.startsWith('--type='))?.slice(7) ?? basename(args[0] ?? '') });
+      const line = readFileSync(`/proc/${pid}/cmdline`, 'utf8').replaceAll('\0', ' ');   // chromium's processes write theirs with blanks
+      found.set(Number(pid), { parent: Number(fields[1]), ms: ((Number(fields[11]) + Number(fields[12])) * 1000) / TICKS_A_SECOND, kind: /--type=([a-z-]+)/.exec(line)?.[1] ?? basename(line.split(' ')[0]) });
     } catch { /* it has ended meanwhile */ }
   }
   const ours = (pid) => { for (let at = pid, i = 0; at > 1 && i < 20; at = found.get(at)?.parent ?? 0, ++i) if (at === process.pid) return true; return false; };
