@@ -95,34 +95,41 @@ bool looks_back(const LatticeMesh& mesh, std::uint32_t triangle) {
   return mesh.unit_normal_q30[triangle][mesh.sample_axis[triangle]] < 0;
 }
 
-std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
-  const std::int64_t quotient = value / divisor;
-  return value % divisor < 0 ? quotient - 1 : quotient;
-}
-
 /// A weight, at least 2^-24, with which the field counts: an extra sample that weighs nothing would be none.
 std::uint32_t weight_q30(double weight) {
   return static_cast<std::uint32_t>(std::clamp(std::nearbyint(weight * 0x1p30), 64.0, 4294967295.0));
 }
 
-/// Cuts a triangle from its longest edge to the opposite corner into `count` of equal area; the centroid of
-/// number i of them, rounded down.
-Int3 middle_of_share(const LatticeMesh& mesh, std::uint32_t triangle, std::int64_t i, std::int64_t count) {
+/// Cuts a triangle across its longest edge into `count` strips of equal area; the centroid of number i of
+/// them. (So what reaches into a long triangle from either end meets as much of its samples as of its area.)
+Int3 middle_of_strip(const LatticeMesh& mesh, std::uint32_t triangle, std::int64_t i, std::int64_t count) {
   double longest = -1;
   int first = 0;
   for (int k = 0; k < 3; ++k) {
     const Vec3 edge = Vec3(mesh.corner(triangle, (k + 1) % 3)) - Vec3(mesh.corner(triangle, k));
-    const double length = edge.x * edge.x + edge.y * edge.y + edge.z * edge.z;
-    if (length > longest) longest = length, first = k;
+    if (const double square = glm::dot(edge, edge); square > longest) longest = square, first = k;
   }
-  const Int3 p = mesh.corner(triangle, first), q = mesh.corner(triangle, (first + 1) % 3),
-             apex = mesh.corner(triangle, (first + 2) % 3);
+  const Vec3 p(mesh.corner(triangle, first)), q(mesh.corner(triangle, (first + 1) % 3)),
+      apex(mesh.corner(triangle, (first + 2) % 3));
+  // The apex stands over this part of the way from p to q. Before it the strips widen, behind it they narrow.
+  const double foot = std::clamp(glm::dot(apex - p, q - p) / longest, 0.0, 1.0);
+  const auto place_at = [&](double area) {  // on the way, that much of the triangle's area before it
+    return area <= foot ? std::sqrt(area * foot) : 1 - std::sqrt((1 - area) * (1 - foot));
+  };
+  const auto number = static_cast<double>(count);
+  const double begin = place_at(static_cast<double>(i) / number),
+               end = place_at(static_cast<double>(i + 1) / number);
+  Vec3 middle(0);
+  const auto add = [&](const Vec3& tip, const Vec3& other, double base, double from, double to) {
+    if (!(to > from && base > 0)) return;
+    const double area = (to * to - from * from) / base,
+                 moment = 2 * (to * to * to - from * from * from) / (3 * base);
+    middle += area * tip + (moment / 2) * ((other - tip) + (apex - tip) / base);
+  };
+  add(p, q, foot, begin, std::min(end, foot));
+  add(q, p, 1 - foot, 1 - end, 1 - std::max(begin, foot));
   Int3 out;
-  for (int k = 0; k < 3; ++k) {  // count ≤ 2^10: within 2^42
-    const std::int64_t along = (std::int64_t{q[k]} - p[k]) * (2 * i + 1);
-    out[k] = static_cast<std::int32_t>(
-        floor_divide(count * (std::int64_t{apex[k]} + 2 * std::int64_t{p[k]}) + along, 3 * count));
-  }
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<std::int32_t>(std::nearbyint(number * middle[k]));
   return out;
 }
 
@@ -265,7 +272,7 @@ void place_extras(LatticeMesh& mesh, double square, const Side& side) {
     const auto whole = static_cast<std::int64_t>(count);
     for (std::int64_t share = 0; share < whole; ++share)
       mesh.extra_samples.push_back(
-          {largest, middle_of_share(mesh, largest, share, whole), weight_q30(weight / count)});
+          {largest, middle_of_strip(mesh, largest, share, whole), weight_q30(weight / count)});
     gathered = 0;
     most = -1;
     low = Vec3(INFINITY);

@@ -330,6 +330,37 @@ TEST(ExtraSamples, LieOnTheirTrianglesAndAscend) {
   EXPECT_GT(count, 20u);
 }
 
+// Of a long face of two triangles, what reaches in from either end meets as much of its samples as of its
+// area: each triangle's strips are off by less than one. Strips' centroids have the face's own middle; each
+// is rounded by half a step an axis.
+TEST(ExtraSamples, OfALongFaceLieAsDenselyAtItsEndsAsInItsMiddle) {
+  const double length = 0.04;
+  const LatticeMesh rod = build(solids::box(Vec3(0), Vec3(0.0004, 0.0004, length), Int3(1)));
+  int faces = 0;
+  for (std::uint32_t patch = 0; patch < rod.patch_count; ++patch) {
+    std::vector<std::pair<double, double>> along;  // place, weight
+    double whole = 0, moment = 0;
+    for (const ExtraSample& extra : rod.extra_samples) {
+      if (rod.patch[extra.triangle] != patch) continue;
+      if (std::abs(normal_of(rod, extra.triangle).z) > 0.5) continue;
+      along.emplace_back(extra.point.z * kStep, extra.weight_q30);
+      whole += along.back().second;
+      moment += along.back().first * along.back().second;
+    }
+    if (along.empty()) continue;
+    ++faces;
+    ASSERT_GT(along.size(), 40u);
+    EXPECT_NEAR(moment / whole, length / 2, 0.5 * kStep);
+    for (double part = 0.05; part < 1; part += 0.05) {
+      double before = 0;
+      for (const auto& [z, weight] : along)
+        if (z < part * length) before += weight;
+      EXPECT_NEAR(before / whole, part, 2.0 / static_cast<double>(along.size())) << part;
+    }
+  }
+  EXPECT_EQ(faces, 4);
+}
+
 // A fine comb: 0.3 mm teeth under samples 1.4 mm apart.
 TEST(ExtraSamples, OfCoarserLevelsAreFewerAndStandForTheSameAreaPatchByPatch) {
   Mesh comb = needle(0.0003, 0.0006, 0.05);
