@@ -16,6 +16,12 @@ namespace {
 
 constexpr auto kLongest = std::chrono::minutes(2);  ///< chosen: a browser that waits longer has gone
 
+/// Whatever happens meanwhile, the next may come.
+struct Freed {
+  std::atomic<bool>& busy;
+  ~Freed() { busy = false; }
+};
+
 HttpResponse examined(SceneStore& store, SceneLease& scene, const std::vector<Pose>& poses,
                       const std::string& name, const std::atomic<bool>& stopping) {
   const LoadedScene& loaded = scene->loaded;
@@ -61,10 +67,11 @@ void add_path_route(Router& router, SceneStore& store, WorkerPool& workers, cons
                   if (const auto* problem = std::get_if<Problem>(&poses)) return reply(*problem);
                   if (busy->exchange(true))
                     return reply(Problem{503, "busy", "another path is being examined; ask again", ""});
-                  HttpResponse answer =
-                      examined(store, *std::get<SceneUse>(scene), std::get<std::vector<Pose>>(poses),
-                               store.name(id), stopping);
-                  *busy = false;
+                  HttpResponse answer = [&] {
+                    const Freed freed{*busy};
+                    return examined(store, *std::get<SceneUse>(scene), std::get<std::vector<Pose>>(poses),
+                                    store.name(id), stopping);
+                  }();
                   reply(std::move(answer));
                 });
               }});
