@@ -11,7 +11,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kWidth = 420, kHeight = 300;             // pixels (chosen: three beside each other)
+constexpr std::uint32_t kPictureWidth = 420,
+                        kPictureHeight = 300;                    // pixels (chosen: three beside each other)
 constexpr int kFiner = 2;                                        // each pixel is the mean of so many squared
 const Vec3 kTowardsEye = glm::normalize(Vec3(0.35, -1.0, 0.6));  // x to the right, from above
 const Vec3 kLight = glm::normalize(Vec3(-0.4, -0.7, 1.0));
@@ -24,15 +25,16 @@ struct Look {
   double pixels_per_m = 1;
   Vec3 at(const Vec3& p) const {
     const Vec3 from = p - middle;
-    return Vec3(kFiner * kWidth / 2.0 + pixels_per_m * glm::dot(from, right),
-                kFiner * kHeight / 2.0 - pixels_per_m * glm::dot(from, up), glm::dot(from, kTowardsEye));
+    return Vec3(kFiner * kPictureWidth / 2.0 + pixels_per_m * glm::dot(from, right),
+                kFiner * kPictureHeight / 2.0 - pixels_per_m * glm::dot(from, up),
+                glm::dot(from, kTowardsEye));
   }
 };
 
 /// How near the nearest surface is at each fine pixel, and how bright.
 struct Layer {
-  std::vector<float> nearness = std::vector<float>(std::size_t{kFiner} * kFiner * kWidth * kHeight,
-                                                   -std::numeric_limits<float>::infinity());
+  std::vector<float> nearness = std::vector<float>(
+      std::size_t{kFiner} * kFiner * kPictureWidth * kPictureHeight, -std::numeric_limits<float>::infinity());
   std::vector<float> light = std::vector<float>(nearness.size(), 0.0f);
 
   void draw(const std::array<Vec3, 3>& corners, const Look& look) {
@@ -42,7 +44,8 @@ struct Layer {
     const std::array<Vec3, 3> p{look.at(corners[0]), look.at(corners[1]), look.at(corners[2])};
     const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
     if (area == 0) return;
-    constexpr int kColumns = kFiner * static_cast<int>(kWidth), kRows = kFiner * static_cast<int>(kHeight);
+    constexpr int kPixelColumns = kFiner * static_cast<int>(kPictureWidth),
+                  kPixelRows = kFiner * static_cast<int>(kPictureHeight);
     const auto range = [&](int axis, int most, int& first, int& last) {
       const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
                    high = std::max({p[0][axis], p[1][axis], p[2][axis]});
@@ -50,8 +53,8 @@ struct Layer {
       last = static_cast<int>(std::clamp(std::floor(high - 0.5), -1.0, most - 1.0));
     };
     int x0, x1, y0, y1;
-    range(0, kColumns, x0, x1);
-    range(1, kRows, y0, y1);
+    range(0, kPixelColumns, x0, x1);
+    range(1, kPixelRows, y0, y1);
     const auto bright = static_cast<float>(0.35 + 0.65 * std::fabs(glm::dot(normal, kLight)) / size);
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
@@ -63,21 +66,22 @@ struct Layer {
         }
         if (share[0] < 0 || share[1] < 0 || share[2] < 0) continue;
         const auto near = static_cast<float>(share[0] * p[0].z + share[1] * p[1].z + share[2] * p[2].z);
-        const std::size_t at = static_cast<std::size_t>(y) * kColumns + static_cast<std::size_t>(x);
+        const std::size_t at = static_cast<std::size_t>(y) * kPixelColumns + static_cast<std::size_t>(x);
         if (near > nearness[at]) nearness[at] = near, light[at] = bright;
       }
   }
 };
 
 Image merged(const Layer& mockup, const Layer& tool) {
-  Image out{kWidth, kHeight, {}};
+  Image out{kPictureWidth, kPictureHeight, {}};
   constexpr float kNothing = -std::numeric_limits<float>::infinity();
-  for (std::size_t row = 0; row < kHeight; ++row)
-    for (std::size_t column = 0; column < kWidth; ++column) {
+  for (std::size_t row = 0; row < kPictureHeight; ++row)
+    for (std::size_t column = 0; column < kPictureWidth; ++column) {
       std::array<double, 3> sum{};
       int covered = 0;
       for (std::size_t k = 0; k < std::size_t{kFiner} * kFiner; ++k) {
-        const std::size_t at = (row * kFiner + k / kFiner) * kFiner * kWidth + column * kFiner + k % kFiner;
+        const std::size_t at =
+            (row * kFiner + k / kFiner) * kFiner * kPictureWidth + column * kFiner + k % kFiner;
         const bool fixed = mockup.nearness[at] > kNothing, moving = tool.nearness[at] > kNothing;
         if (!fixed && !moving) continue;
         ++covered;
@@ -171,8 +175,8 @@ std::vector<Image> scene_pictures(const SceneGeometry& geometry, const std::vect
   const Vec3 middle = 0.5 * (low + high), size = high - low;
   look.middle = middle.x * look.right + middle.y * look.up + middle.z * kTowardsEye;
   const double room = 4.0 / 3;
-  look.pixels_per_m =
-      kFiner * std::min(kWidth / std::max(room * size.x, 1e-9), kHeight / std::max(room * size.y, 1e-9));
+  look.pixels_per_m = kFiner * std::min(kPictureWidth / std::max(room * size.x, 1e-9),
+                                        kPictureHeight / std::max(room * size.y, 1e-9));
   Layer mockup;
   for (std::uint32_t t = 0; t < geometry.mockup.triangles.size(); ++t)
     mockup.draw({world(geometry.mockup.corner(t, 0)), world(geometry.mockup.corner(t, 1)),
