@@ -28,7 +28,8 @@ class FclQuestions final : public QuestionPeer {
     load(geometry.tool, step_m_, tool_);
   }
 
-  /// With rectangles swept by a ball alone FCL moves the whole tool first, a hundred times as slow.
+  /// With rectangles swept by a ball alone FCL takes a hundred times as long and more: nobody would ask it
+  /// so.
   std::optional<bool> touches(const LatticePose& pose) override {
     if constexpr (std::is_same_v<Box, fcl::RSSd>) return std::nullopt;
     const fcl::CollisionRequestd request(1, false);  // ends at the first pair

@@ -44,7 +44,7 @@ Pose at(const Vec3& position, const Vec3& turn = Vec3(0)) { return {position, ro
 constexpr std::uint32_t kSides = 64;
 constexpr double kBore = 0.01, kPin = 0.0097, kHalfLength = 0.01;
 
-/// How far a pin's nearest corner is from the nearest plane of the bore's; below 0: through it.
+/// How far a pin's nearest corner is from the nearest plane of the bore's, m; below 0: through it.
 double room(const Pose& pose) {
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t k = 0; k < kSides; ++k)

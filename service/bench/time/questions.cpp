@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "model/lattice/rotation.h"
@@ -28,7 +29,7 @@ constexpr double kAgreeSteps = 2;
 
 struct Answers {
   std::vector<std::uint8_t> touches;  ///< a pose
-  std::vector<double> distance_m;
+  std::vector<double> distance_m;     ///< likewise; palpate's is no number where it measures none
 };
 
 struct Asked {
@@ -94,7 +95,9 @@ Result<void> ask_ours(Inquiry& inquiry, std::size_t i, const BenchOptions& optio
   if (auto done = answer_frame(*inquiry.scene, inquiry.poses[i], frame); !done) return done;
   ours.times[kFrame].add(inquiry.kinds[i], watch.us());
   ours.answers.touches[i] = bit;
-  ours.answers.distance_m[i] = clearance.steps * geometry.lattice.step_m;
+  ours.answers.distance_m[i] = clearance.kind == Clearance::Kind::kFurther
+                                   ? std::numeric_limits<double>::quiet_NaN()
+                                   : clearance.steps * geometry.lattice.step_m;
   return {};
 }
 
@@ -121,6 +124,7 @@ void compare(Inquiry& inquiry, const std::vector<std::uint8_t>& has_pairs) {
     for (std::size_t i = 0; i < inquiry.poses.size(); ++i) {
       if (inquiry.kinds[i] == FrameKind::kContact && has_pairs[i] == 0) continue;
       asked.wrong_touch += asked.answers.touches[i] != ours.touches[i] ? 1u : 0u;
+      if (std::isnan(ours.distance_m[i])) continue;  // beyond the lattice, where palpate measures nothing
       const double error = std::abs(std::max(asked.answers.distance_m[i], 0.0) - ours.distance_m[i]);
       asked.wrong_distance += error > kAgreeSteps * step_m ? 1u : 0u;
       asked.largest_error_m = std::max(asked.largest_error_m, error);
