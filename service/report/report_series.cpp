@@ -143,11 +143,11 @@ Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
     if (is_new) time_stages_.emplace_back(time.stage);
     curve->second.push(time_s, time.us);
   }
-  for (auto& [stage, curve] :
-       stage_us_)  // no time spent is a time, too: a curve must not run straight on to the stage's next turn
+  // no time spent is a time, too: a curve must not run straight on to the stage's next turn
+  for (auto& stage : stage_us_)
     if (std::none_of(contacts.times.begin(), contacts.times.end(),
-                     [&](const Contacts::StageTime& time) { return time.stage == stage; }))
-      curve.push(time_s, 0);
+                     [&](const Contacts::StageTime& time) { return time.stage == stage.first; }))
+      stage.second.push(time_s, 0);
 
   // A frame belongs to the stage of its tick, whose record may still be on its way: the newest stage stands
   // in, the first one for now.

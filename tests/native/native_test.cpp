@@ -72,8 +72,8 @@ TEST(Native, AllocatesNothingInAFrameOnceItHasSeenOneLikeIt) {
   EXPECT_TRUE(out.contact);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which take memory of their own
-std::uint64_t status(const std::string& key) {                       // of /proc/self/status, bytes
+#ifndef PALPATE_SANITIZED                       // sanitizers take memory of their own
+std::uint64_t status(const std::string& key) {  // of /proc/self/status, bytes
   std::ifstream in("/proc/self/status");
   for (std::string line; std::getline(in, line);)
     if (line.starts_with(key)) return std::stoull(line.substr(key.size() + 1)) << 10;
