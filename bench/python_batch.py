@@ -1,12 +1,14 @@
 #!/usr/bin/python3
-"""What the Python package costs beside one call of the C interface for the whole batch, and what two threads are worth.
+"""What the Python package costs beside one call of the C interface for the whole batch, and what two threads
+are worth.
 
 usage: PYTHONPATH=build/release/python bench/python_batch.py SCENE.json [--poses N] [--reach M] [--rounds R]
 
 What two processors are worth to a batch: once as it is, once under `taskset -c 0`.
 
-Prints, as the median of R rounds in turns: poses a second of palpate_query in one call and of Scene.query_batch, by the wall clock and by
-processor time; the memory that a batch adds at its peak, beside its columns; poses a second of lone questions by one and by two threads.
+Prints, as the median of R rounds in turns: poses a second of palpate_query in one call and of
+Scene.query_batch, by the wall clock and by processor time; the memory that a batch adds at its peak, beside
+its columns; poses a second of lone questions by one and by two threads.
 """
 import argparse
 import ctypes
@@ -58,11 +60,13 @@ def whole():
     return found
 
 
-scene.query_batch(poses[:2000], names)   # threads and lists are there
+scene.query_batch(poses[:2000], names)  # threads and lists are there
 before = resident_kib()
 peak_kib(reset=True)
 found = scene.query_batch(poses, names)
-print(f'memory: {(peak_kib() - before) / 1024:.1f} MiB at the peak, of which the columns are {found.nbytes / 2**20:.1f} MiB')
+print(
+    f'memory: {(peak_kib() - before) / 1024:.1f} MiB at the peak, of which the columns are {found.nbytes / 2**20:.1f} MiB'
+)
 
 one, other = [], []
 for _ in range(options.rounds):
@@ -70,14 +74,23 @@ for _ in range(options.rounds):
     other.append(timed(lambda: scene.query_batch(poses, names)))
 for what, times in (('one call of palpate_query', one), ('Scene.query_batch', other)):
     wall, processor = (statistics.median(column) for column in zip(*times))
-    print(f'{what}: {options.poses / wall:.0f} poses/s by the clock, {1e6 * processor / options.poses:.2f} us of processor time a pose')
+    print(
+        f'{what}: {options.poses / wall:.0f} poses/s by the clock, {1e6 * processor / options.poses:.2f} us of processor time a pose'
+    )
 assert all((whole()[name] == scene.query_batch(poses, names)[name]).all() for name in names)
 
 lone = poses[:20_000]
 for question in (lambda pose: scene.touches(pose), lambda pose: scene.query_batch(pose, names)):
     rates = []
     for threads in (1, 2):
-        workers = [threading.Thread(target=lambda part: [question(pose) for pose in part], args=(lone[k::threads],)) for k in range(threads)]
-        taken = timed(lambda: ([worker.start() for worker in workers], [worker.join() for worker in workers]))[0]
+        workers = [
+            threading.Thread(target=lambda part: [question(pose) for pose in part], args=(lone[k::threads],))
+            for k in range(threads)
+        ]
+        taken = timed(
+            lambda: ([worker.start() for worker in workers], [worker.join() for worker in workers])
+        )[0]
         rates.append(len(lone) / taken)
-    print(f'lone poses: {rates[0]:.0f}/s by one thread, {rates[1]:.0f}/s by two: {rates[1] / rates[0]:.2f} times')
+    print(
+        f'lone poses: {rates[0]:.0f}/s by one thread, {rates[1]:.0f}/s by two: {rates[1] / rates[0]:.2f} times'
+    )

@@ -2,12 +2,13 @@
 
     sweep_faults.py [--poses 2e7] [--folder DIR] [--tmpfs]
 
-Sweeps a generated scene (contacts, 5,000 and 1,000 triangles) three times: by one Dask worker, by two, each on a processor of
-its own, and by two again while a worker is killed with -9 in mid-chunk, the scheduler is killed with -9 and started again, and
-the disk is filled until the sweep stops, emptied, and the sweep called again. Prints seconds and rates, and fails unless all
-three have the same hash, every chunk one marker, and the answers the same bytes. A quiet machine gives the times; load does
-not change the hash. --tmpfs: DIR is a small file system of its own, mounted here (needs the right to: unshare -rm), so that
-full is full; else a limit on the workers' files stands for it. PYTHONPATH names palpate, as of a build tree: BUILD/python.
+Sweeps a generated scene (contacts, 5,000 and 1,000 triangles) three times: by one Dask worker, by two, each
+on a processor of its own, and by two again while a worker is killed with -9 in mid-chunk, the scheduler is
+killed with -9 and started again, and the disk is filled until the sweep stops, emptied, and the sweep called
+again. Prints seconds and rates, and fails unless all three have the same hash, every chunk one marker, and
+the answers the same bytes. A quiet machine gives the times; load does not change the hash. --tmpfs: DIR is a
+small file system of its own, mounted here (needs the right to: unshare -rm), so that full is full; else a
+limit on the workers' files stands for it. PYTHONPATH names palpate, as of a build tree: BUILD/python.
 """
 import argparse
 import hashlib
@@ -33,7 +34,17 @@ class Sweep:
 
     def __init__(self, scene, axes, out, address):
         self.out = out
-        self._words = [sys.executable, '-m', 'palpate.sweeps', scene, '--out', str(out), '--scheduler', address, *axes]
+        self._words = [
+            sys.executable,
+            '-m',
+            'palpate.sweeps',
+            scene,
+            '--out',
+            str(out),
+            '--scheduler',
+            address,
+            *axes,
+        ]
 
     def start(self):
         return subprocess.Popen(self._words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -51,6 +62,7 @@ class Sweep:
     def bytes(self):
         """A hash of all answers, by their numbers alone."""
         import zarr
+
         return hashlib.sha256(zarr.open_group(str(self.out), mode='r')['touches'][:].tobytes()).hexdigest()
 
 
@@ -58,7 +70,12 @@ def undisturbed(scene, axes, folder, workers, processors):
     """Seconds from a warm cluster's first chunk to the end, and the sweep."""
     with Cluster(folder / f'cluster-{workers}', workers, processors) as cluster:
         # The workers start and prepare the scene: one short sweep that isn't timed.
-        warm = Sweep(scene, ['--x=0:0.01:64', '--size=1', '--share=0'], folder / f'warm-{workers}.zarr', cluster.address)
+        warm = Sweep(
+            scene,
+            ['--x=0:0.01:64', '--size=1', '--share=0'],
+            folder / f'warm-{workers}.zarr',
+            cluster.address,
+        )
         code, _, said = warm.result(warm.start())
         assert code == 0, said
         sweep = Sweep(scene, axes, folder / f'whole-{workers}.zarr', cluster.address)
@@ -66,7 +83,9 @@ def undisturbed(scene, axes, folder, workers, processors):
         code, value, said = sweep.result(sweep.start())
         seconds = time.monotonic() - began
         assert code == 0, said
-        print(f'{workers} worker(s): {seconds:.1f} s in all; {said.splitlines()[0].split("; ")[-1]}', flush=True)
+        print(
+            f'{workers} worker(s): {seconds:.1f} s in all; {said.splitlines()[0].split("; ")[-1]}', flush=True
+        )
         return sweep, value, float(re.search(r'([\d,]+) poses a second', said).group(1).replace(',', ''))
 
 
@@ -82,7 +101,9 @@ def fill(folder, cluster, whole):
     pids = [cluster.pid(name) for name in ('worker-0', 'worker-1')]
     for pid in pids:
         resource.prlimit(pid, resource.RLIMIT_FSIZE, (1, resource.RLIM_INFINITY))
-    return lambda: [resource.prlimit(pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY,) * 2) for pid in pids]
+    return lambda: [
+        resource.prlimit(pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY,) * 2) for pid in pids
+    ]
 
 
 def disturbed(scene, axes, folder, processors, chunks, tmpfs):
@@ -90,7 +111,7 @@ def disturbed(scene, axes, folder, processors, chunks, tmpfs):
         sweep = Sweep(scene, axes, folder / 'disturbed.zarr', cluster.address)
         process = sweep.start()
         wait_for('a tenth of the chunks', lambda: sweep.markers() >= max(1, chunks // 10), 3600)
-        cluster.kill('worker-0')   # a worker is always in a chunk: writing one takes a hundredth of asking it
+        cluster.kill('worker-0')  # a worker is always in a chunk: writing one takes a hundredth of asking it
         print(f'a worker is killed after {sweep.markers()} chunks', flush=True)
         wait_for('a quarter', lambda: sweep.markers() >= chunks // 4, 3600)
         cluster.kill('scheduler')
@@ -123,7 +144,10 @@ def main():
     # Round where the tool starts, at the mock-up's surface: some touch, most of those that don't are near.
     start = palpate.Scene(scene).start
     side = round((asked.poses / 5) ** (1 / 3))
-    axes = [f'--{name}={centre - 0.03}:{centre + 0.03}:{side}' for name, centre in zip('xyz', start)] + ['--rx=0:40:5', f'--size={asked.size}']
+    axes = [f'--{name}={centre - 0.03}:{centre + 0.03}:{side}' for name, centre in zip('xyz', start)] + [
+        '--rx=0:40:5',
+        f'--size={asked.size}',
+    ]
     count = 5 * side**3
     chunks = -(-count // asked.size)
     processors = sorted(os.sched_getaffinity(0))[:2]

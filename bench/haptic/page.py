@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Draws OUT/index.html from what haptic_yardstick left in OUT: figures, samples, failures. Nothing is measured here.
+"""Draws OUT/index.html from what haptic_yardstick left in OUT: figures, samples, failures. Nothing is
+measured here.
 
 usage: page.py OUT"""
 import csv
@@ -69,8 +70,13 @@ def table(head, rows):
     out = ['<div class="wide"><table><tr>' + ''.join(f'<th>{cell}</th>' for cell in head) + '</tr>']
     for row in rows:
         cells = [cell if isinstance(cell, tuple) else (cell, '') for cell in row]
-        out.append('<tr>' + ''.join(f'<td class="{kind}">{text}</td>' if kind else f'<td>{text}</td>'
-                                    for text, kind in cells) + '</tr>')
+        out.append(
+            '<tr>'
+            + ''.join(
+                f'<td class="{kind}">{text}</td>' if kind else f'<td>{text}</td>' for text, kind in cells
+            )
+            + '</tr>'
+        )
     return '\n'.join(out) + '</table></div>'
 
 
@@ -79,7 +85,7 @@ def svg(figure, label):
     figure.savefig(text, format='svg', bbox_inches='tight', metadata={'Date': None})
     plt.close(figure)
     body = text.getvalue()
-    body = body[body.index('<svg'):]
+    body = body[body.index('<svg') :]
     body = re.sub(r'<svg ', f'<svg role="img" aria-label="{html.escape(label)}" ', body, count=1)
     return f'<div class="wide"><div class="chart">{body}</div></div>'
 
@@ -109,7 +115,8 @@ class Run:
 
 
 def rounded_up(value, floor):
-    """What is as good as nobody feels is equally good: a silent method has no noise, and earns nothing by it."""
+    """What is as good as nobody feels is equally good: a silent method has no noise, and earns nothing by
+    it."""
     return value if value is None or floor is None else max(value, floor)
 
 
@@ -128,11 +135,17 @@ def worst_section(run):
         for column, _, factor, floor in MEASURES:
             values = by_method(run, case, column, factor, floor)
             asked += JUDGED in values and len(values) > 1
-            if JUDGED not in values or values[JUDGED] < max(values.values()) or min(values.values()) == values[JUDGED]:
+            if (
+                JUDGED not in values
+                or values[JUDGED] < max(values.values())
+                or min(values.values()) == values[JUDGED]
+            ):
                 cells.append('')
                 continue
             worst += 1
-            cells.append((f'{shown(values[JUDGED])} <span class="best">{shown(min(values.values()))}</span>', 'bad'))
+            cells.append(
+                (f'{shown(values[JUDGED])} <span class="best">{shown(min(values.values()))}</span>', 'bad')
+            )
         rows.append([(html.escape(case['case']), 'name')] + cells)
     failed = [f for f in run.failures if f['method'] == JUDGED]
     return f'''<h2>Where {JUDGED} is the worst</h2>
@@ -160,22 +173,37 @@ def counts(run):
 
 def dots(run):
     """A panel a measure, a row a case, a mark a method; two panels a picture, which print keeps together."""
-    return '\n'.join(dot_panels(run, MEASURES[i:i + 2]) for i in range(0, len(MEASURES), 2))
+    return '\n'.join(dot_panels(run, MEASURES[i : i + 2]) for i in range(0, len(MEASURES), 2))
 
 
 def dot_panels(run, measures):
     figure, axes = plt.subplots(1, 2, figsize=(11, 0.27 * len(run.cases) + 1.2), sharey=True)
     places = list(range(len(run.cases)))[::-1]
     for (column, head, factor, floor), ax in zip(measures, axes):
-        found = [v for c in run.cases for m in run.name
-                 if (v := run.figure(c['case'], m, column, factor)) is not None and v > 0]
+        found = [
+            v
+            for c in run.cases
+            for m in run.name
+            if (v := run.figure(c['case'], m, column, factor)) is not None and v > 0
+        ]
         low = 10 ** math.floor(math.log10(max(min(found, default=1), (floor or 1e-9) * 1e-3)))
         for nudge, method in enumerate(run.name):
             colour, marker = run.look[method]
-            points = [(max(v, low), y) for c, y in zip(run.cases, places)
-                      if (v := run.figure(c['case'], method, column, factor)) is not None]
-            ax.plot([x for x, _ in points], [y + 0.16 * (1 - nudge) for _, y in points], linestyle='', marker=marker,
-                    color=colour, markersize=5, label=run.name[method], alpha=0.9)
+            points = [
+                (max(v, low), y)
+                for c, y in zip(run.cases, places)
+                if (v := run.figure(c['case'], method, column, factor)) is not None
+            ]
+            ax.plot(
+                [x for x, _ in points],
+                [y + 0.16 * (1 - nudge) for _, y in points],
+                linestyle='',
+                marker=marker,
+                color=colour,
+                markersize=5,
+                label=run.name[method],
+                alpha=0.9,
+            )
         if floor:
             ax.axvline(floor, color='#888', linewidth=0.8, linestyle=':')
         ax.set_xscale('log')
@@ -224,18 +252,29 @@ def curves(run):
                     kind, unit, scale = 't', '|T|, N·mm', 1000
                 right = [truth(row, kind) for row in rows]
                 if all(v is not None for v in right):
-                    ax.plot([i / (len(rows) - 1) for i in range(len(rows))], [v * scale for v in right],
-                            color='black', linewidth=2.4, alpha=0.35, label='rigid truth')
+                    ax.plot(
+                        [i / (len(rows) - 1) for i in range(len(rows))],
+                        [v * scale for v in right],
+                        color='black',
+                        linewidth=2.4,
+                        alpha=0.35,
+                        label='rigid truth',
+                    )
                 drawn = True
-            ax.plot([i / (len(rows) - 1) for i in range(len(rows))], [felt(row, kind) * scale for row in rows],
-                    color=run.look[method][0], linewidth=1, label=run.name[method])
+            ax.plot(
+                [i / (len(rows) - 1) for i in range(len(rows))],
+                [felt(row, kind) * scale for row in rows],
+                color=run.look[method][0],
+                linewidth=1,
+                label=run.name[method],
+            )
         ax.set_title(case['case'], fontsize=9, loc='left')
         ax.set_ylabel(unit, fontsize=8)
         ax.tick_params(labelsize=8)
         ax.grid(True, color='#e4e4e4', linewidth=0.6)
         for side in ('top', 'right'):
             ax.spines[side].set_visible(False)
-    for ax in list(axes.flat)[len(run.cases):]:
+    for ax in list(axes.flat)[len(run.cases) :]:
         ax.set_visible(False)
     legend_above(figure, axes.flat[0], 0.3 / figure.get_figheight())
     return svg(figure, 'Force along the path of each case')
@@ -253,15 +292,25 @@ def everything(run):
             for i, method in enumerate(run.name):
                 first = (html.escape(case['case']), 'name') if i == 0 else ''
                 if (case['case'], method) not in run.figures:
-                    why = next((f['sentence'] for f in run.failures
-                                if f['case'] == case['case'] and f['method'] == method), 'not asked')
-                    rows.append([first, html.escape(run.name[method]), html.escape(why)] + [''] * (len(columns) - 1))
+                    why = next(
+                        (
+                            f['sentence']
+                            for f in run.failures
+                            if f['case'] == case['case'] and f['method'] == method
+                        ),
+                        'not asked',
+                    )
+                    rows.append(
+                        [first, html.escape(run.name[method]), html.escape(why)] + [''] * (len(columns) - 1)
+                    )
                     continue
                 cells = [first, html.escape(run.name[method])]
                 for column, _, factor, floor in columns:
                     values = by_method(run, case, column, factor, floor)
                     worst = method in values and values[method] == max(values.values()) > min(values.values())
-                    cells.append((shown(run.figure(case['case'], method, column, factor)), 'bad' if worst else ''))
+                    cells.append(
+                        (shown(run.figure(case['case'], method, column, factor)), 'bad' if worst else '')
+                    )
                 rows.append(cells)
         out.append(f'<h3>{title}</h3>' + table(['case', 'method'] + [h for _, h, _, _ in columns], rows))
     return '\n'.join(out)
@@ -279,8 +328,13 @@ def machine(facts):
 
 def commit():
     try:
-        return subprocess.run(['git', 'describe', '--always', '--dirty'], cwd=Path(__file__).parent, text=True,
-                              capture_output=True, check=True).stdout.strip()
+        return subprocess.run(
+            ['git', 'describe', '--always', '--dirty'],
+            cwd=Path(__file__).parent,
+            text=True,
+            capture_output=True,
+            check=True,
+        ).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
         return 'unknown'
 
@@ -304,14 +358,37 @@ def main():
         return 2
     plt.rcParams['svg.hashsalt'] = 'yardstick'
     run = Run(sys.argv[1])
-    methods = table(['method', 'version and settings'],
-                    [[html.escape(m['name']), html.escape(m['version'])] for m in run.methods])
-    cases = table(['case', 'triangles, fixed × tool', 'ρ, mm', 'truth'],
-                  [[html.escape(c['case']), f'{int(c["fixed_triangles"]):,} × {int(c["tool_triangles"]):,}',
-                    f'{float(c["gyration_m"]) * 1000:.1f}', html.escape(c['truth'])] for c in run.cases])
-    failures = table(['case', 'method', 'what happened'],
-                     [[html.escape(f['case']), html.escape(run.name.get(f['method'], f['method'])),
-                       html.escape(f['sentence'])] for f in run.failures]) if run.failures else '<p>None.</p>'
+    methods = table(
+        ['method', 'version and settings'],
+        [[html.escape(m['name']), html.escape(m['version'])] for m in run.methods],
+    )
+    cases = table(
+        ['case', 'triangles, fixed × tool', 'ρ, mm', 'truth'],
+        [
+            [
+                html.escape(c['case']),
+                f'{int(c["fixed_triangles"]):,} × {int(c["tool_triangles"]):,}',
+                f'{float(c["gyration_m"]) * 1000:.1f}',
+                html.escape(c['truth']),
+            ]
+            for c in run.cases
+        ],
+    )
+    failures = (
+        table(
+            ['case', 'method', 'what happened'],
+            [
+                [
+                    html.escape(f['case']),
+                    html.escape(run.name.get(f['method'], f['method'])),
+                    html.escape(f['sentence']),
+                ]
+                for f in run.failures
+            ],
+        )
+        if run.failures
+        else '<p>None.</p>'
+    )
     page = f'''<!doctype html>
 <html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Haptic yardstick</title><style>{STYLE}</style>

@@ -1,7 +1,8 @@
-# Toolchain: 64-bit ARM, compiled on Debian for x86-64 with the libraries in PALPATE_SYSROOT (tests/equivalence/sysroot makes that folder).
-# Tests run in qemu.
+# Toolchain: 64-bit ARM, compiled on Debian for x86-64 with the libraries in PALPATE_SYSROOT
+# (tests/equivalence/sysroot makes that folder). Tests run in qemu.
 if(NOT EXISTS "${PALPATE_SYSROOT}/complete")
-  message(FATAL_ERROR "PALPATE_SYSROOT, '${PALPATE_SYSROOT}', is no folder that tests/equivalence/sysroot has made")
+  message(FATAL_ERROR
+    "PALPATE_SYSROOT, '${PALPATE_SYSROOT}', is no folder that tests/equivalence/sysroot has made")
 endif()
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)

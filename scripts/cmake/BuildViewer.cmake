@@ -1,12 +1,14 @@
-# Builds the viewer and writes it as C++: OUT/viewer_files.cpp, OUT/viewer_assets.cpp. Called by service/viewer/CMakeLists.txt:
-# MODE (AUTO, ON, OFF), MISSING (why it can't be built, or empty), NODE, NPM, SOURCE, WORK (where packages and bundle go), OUT.
-# With MODE=AUTO a failure (no network, say) leaves a program without a viewer that says so; with ON it is an error.
+# Builds the viewer and writes it as C++: OUT/viewer_files.cpp, OUT/viewer_assets.cpp. Called by
+# service/viewer/CMakeLists.txt: MODE (AUTO, ON, OFF), MISSING (why it can't be built, or empty), NODE, NPM,
+# SOURCE, WORK (where packages and bundle go), OUT. With MODE=AUTO a failure (no network, say) leaves a
+# program without a viewer that says so; with ON it is an error.
 set(names index_html viewer_js viewer_css)
 set(types text/html text/javascript text/css)
 set(files index.html viewer.js viewer.css)
 
 function(step what)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${WORK}" RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${WORK}" RESULT_VARIABLE status OUTPUT_VARIABLE output
+    ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
     set(MISSING "${what} failed when this program was built; the build's log says why." PARENT_SCOPE)
     if(MODE STREQUAL "ON")
@@ -19,7 +21,8 @@ endfunction()
 if(NOT MISSING)
   file(MAKE_DIRECTORY "${WORK}")
   file(REMOVE_RECURSE "${WORK}/src" "${WORK}/out")
-  file(COPY "${SOURCE}/src" "${SOURCE}/build.mjs" "${SOURCE}/package.json" "${SOURCE}/package-lock.json" "${SOURCE}/.npmrc" "${SOURCE}/tsconfig.json" DESTINATION "${WORK}")
+  file(COPY "${SOURCE}/src" "${SOURCE}/build.mjs" "${SOURCE}/package.json" "${SOURCE}/package-lock.json"
+    "${SOURCE}/.npmrc" "${SOURCE}/tsconfig.json" DESTINATION "${WORK}")
   file(SHA256 "${SOURCE}/package-lock.json" wanted)
   set(installed "")
   if(EXISTS "${WORK}/installed")

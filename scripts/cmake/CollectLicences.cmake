@@ -1,4 +1,5 @@
-# At install: copies the Debian copyright file of every library that lies in LIBRARIES, if it is set (of the machine ARCHITECTURE, as Debian calls it), and of PACKAGES, whose headers or texts are compiled in, to OUT.
+# At install: copies the Debian copyright file of every library that lies in LIBRARIES, if it is set (of the
+# machine ARCHITECTURE, as Debian calls it), and of PACKAGES, whose headers or texts are compiled in, to OUT.
 # Where a machine has no dpkg nothing is copied, and that is said.
 find_program(dpkg_query dpkg-query)
 if(NOT dpkg_query)
@@ -12,7 +13,8 @@ if(LIBRARIES)
 endif()
 foreach(library IN LISTS libraries)
   # Its owner is whoever has a file of that name in a folder of libraries.
-  execute_process(COMMAND "${dpkg_query}" --search "*/${ARCHITECTURE}/${library}" OUTPUT_VARIABLE owners ERROR_QUIET)
+  execute_process(COMMAND "${dpkg_query}" --search "*/${ARCHITECTURE}/${library}" OUTPUT_VARIABLE owners
+    ERROR_QUIET)
   if(owners MATCHES "^([^:, ]+)[:,]")
     list(APPEND packages "${CMAKE_MATCH_1}")
   else()

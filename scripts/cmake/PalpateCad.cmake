@@ -1,5 +1,6 @@
-# palpate_find_cad([REQUIRED|QUIET]): OpenCASCADE's imported targets TK…, OpenCASCADE_FOUND and OpenCASCADE_INCLUDE_DIR, in the folder that calls.
-# Its targets name what its viewer is linked with (X11, GL, fontconfig, …), whose development files its packages don't bring and nobody here needs: its shared libraries
+# palpate_find_cad([REQUIRED|QUIET]): OpenCASCADE's imported targets TK…, OpenCASCADE_FOUND and
+# OpenCASCADE_INCLUDE_DIR, in the folder that calls. Its targets name what its viewer is linked with (X11, GL,
+# fontconfig, …), whose development files its packages don't bring and nobody here needs: its shared libraries
 # find theirs by themselves.
 macro(palpate_find_cad)
   find_package(OpenCASCADE ${ARGN})

@@ -21,10 +21,14 @@ endif()
 foreach(importer ${palpate_importers})
   target_link_options(${importer} PRIVATE -Wl,--disable-new-dtags)
 endforeach()
-set_target_properties(${palpate_importers} PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate" BUILD_RPATH "$ORIGIN/libs")   # the latter: a wheel
-install(TARGETS ${palpate_importers} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpate COMPONENT library)
+# The latter: a wheel.
+set_target_properties(${palpate_importers} PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate" BUILD_RPATH
+  "$ORIGIN/libs")
+install(TARGETS ${palpate_importers} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpate COMPONENT
+  library)
 set(PALPATE_IMPORT_PATH "${CMAKE_INSTALL_LIBEXECDIR}/palpate/palpate-import")
-install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
+install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT
+  library)
 
 # The public headers keep their folders, so that "model/lattice/pose.h" means the same here and there.
 include(PublicHeaders)
@@ -40,30 +44,36 @@ configure_file("${CMAKE_CURRENT_LIST_DIR}/Doxyfile.in" "${PROJECT_BINARY_DIR}/Do
 find_program(PALPATE_DOXYGEN doxygen)
 mark_as_advanced(PALPATE_DOXYGEN)
 if(PALPATE_DOXYGEN)
-  add_custom_target(api_docs COMMAND "${PALPATE_DOXYGEN}" "${PROJECT_BINARY_DIR}/Doxyfile" WORKING_DIRECTORY "${PROJECT_BINARY_DIR}" VERBATIM)
+  add_custom_target(api_docs COMMAND "${PALPATE_DOXYGEN}" "${PROJECT_BINARY_DIR}/Doxyfile" WORKING_DIRECTORY
+    "${PROJECT_BINARY_DIR}" VERBATIM)
 endif()
 
 configure_package_config_file(scripts/cmake/palpateConfig.cmake.in "${PROJECT_BINARY_DIR}/palpateConfig.cmake"
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate PATH_VARS PALPATE_IMPORT_PATH)
-write_basic_package_version_file("${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake" COMPATIBILITY
+  SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/palpateConfig.cmake" "${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake"
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate COMPONENT library)
 
-# The shared library for C: palpate.h stands by itself, so that `#include <palpate.h>` finds it without a folder.
+# The shared library for C: palpate.h stands by itself, so that `#include <palpate.h>` finds it without a
+# folder.
 install(TARGETS palpate_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 install(FILES service/library/palpate.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
-# palpate_write_pkg_config(FILE LIBDIR): from LIBDIR/pkgconfig, in lib or lib/x86_64-linux-gnu, up to the prefix, wherever that is moved.
+# palpate_write_pkg_config(FILE LIBDIR): from LIBDIR/pkgconfig, in lib or lib/x86_64-linux-gnu, up to the
+# prefix, wherever that is moved.
 function(palpate_write_pkg_config file PALPATE_PC_LIBDIR)
   file(RELATIVE_PATH PALPATE_PC_UP "/${PALPATE_PC_LIBDIR}" "/")
   configure_file(scripts/cmake/palpate.pc.in "${file}" @ONLY)
 endfunction()
 palpate_write_pkg_config("${PROJECT_BINARY_DIR}/palpate.pc" ${CMAKE_INSTALL_LIBDIR})
-install(FILES "${PROJECT_BINARY_DIR}/palpate.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
+install(FILES "${PROJECT_BINARY_DIR}/palpate.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT
+  library)
 
 # Packages whose headers or texts become part of the program.
 set(palpate_compiled_in libcli11-dev libglm-dev nlohmann-json3-dev libboost1.74-dev libxxhash-dev)
 
-# palpate_install_manual(COMPONENT): manual pages and completions, which the program writes from its own options. A program for another machine can't make them here.
+# palpate_install_manual(COMPONENT): manual pages and completions, which the program writes from its own
+# options. A program for another machine can't make them here.
 function(palpate_install_manual component)
   if(CMAKE_CROSSCOMPILING)
     return()
@@ -85,12 +95,15 @@ function(palpate_install_manual component)
     set(zsh share/zsh/vendor-completions)
   endif()
   install(DIRECTORY "${manual}/man1" DESTINATION share/man COMPONENT ${component} OPTIONAL)
-  install(FILES "${manual}/completions/palpate" DESTINATION share/bash-completion/completions COMPONENT ${component} OPTIONAL)
+  install(FILES "${manual}/completions/palpate" DESTINATION share/bash-completion/completions COMPONENT
+    ${component} OPTIONAL)
   install(FILES "${manual}/completions/_palpate" DESTINATION ${zsh} COMPONENT ${component} OPTIONAL)
-  install(FILES "${manual}/completions/palpate.fish" DESTINATION share/fish/vendor_completions.d COMPONENT ${component} OPTIONAL)
+  install(FILES "${manual}/completions/palpate.fish" DESTINATION share/fish/vendor_completions.d COMPONENT
+    ${component} OPTIONAL)
 endfunction()
 
-# palpate_install_sbom(COMPONENT FOLDER): the list of what went into the programs, at the versions of this machine.
+# palpate_install_sbom(COMPONENT FOLDER): the list of what went into the programs, at the versions of this
+# machine.
 function(palpate_install_sbom component folder)
   set(programs "")
   foreach(program palpate ${palpate_importers})
@@ -102,12 +115,16 @@ function(palpate_install_sbom component folder)
 endfunction()
 
 if(TARGET palpate)
-  # DT_RPATH, not DT_RUNPATH: it also serves the libraries that our libraries need, which carry no path of their own.
+  # DT_RPATH, not DT_RUNPATH: it also serves the libraries that our libraries need, which carry no path of
+  # their own.
   target_link_options(palpate PRIVATE -Wl,--disable-new-dtags)
   set_target_properties(palpate PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/palpate")
-  install(TARGETS palpate RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bundle)
-  install(TARGETS ${palpate_importers} RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION libexec/palpate COMPONENT bundle)
-  # The C library and the loader belong to the machine; everything else travels, the Vulkan loader too (drivers do not).
+  install(TARGETS palpate RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+  COMPONENT bundle)
+  install(TARGETS ${palpate_importers} RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION
+  libexec/palpate COMPONENT bundle)
+  # The C library and the loader belong to the machine; everything else travels, the Vulkan loader too
+  # (drivers do not).
   install(RUNTIME_DEPENDENCY_SET palpate_runtime COMPONENT bundle DESTINATION lib/palpate
     PRE_EXCLUDE_REGEXES "^ld-linux" "^libc\\.so" "^libm\\.so" "^libpthread" "^libdl\\.so" "^librt\\.so"
     POST_EXCLUDE_REGEXES "/ld-linux" "/libc\\.so" "/libm\\.so")
@@ -120,16 +137,19 @@ if(TARGET palpate)
     set(PACKAGES ${palpate_compiled_in})
     file(MAKE_DIRECTORY \"\${OUT}\")
     include(\"${PROJECT_SOURCE_DIR}/scripts/cmake/CollectLicences.cmake\")" COMPONENT bundle)
-  install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md SECURITY.md CITATION.cff driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
+  install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md SECURITY.md CITATION.cff
+  driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
   if(TARGET equivalence)
     # For a GPU that nobody here has had: asks it for all stored answers, and how fast it is.
     set_target_properties(equivalence PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate")
     target_link_options(equivalence PRIVATE -Wl,--disable-new-dtags)
-    install(TARGETS equivalence RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION libexec/palpate COMPONENT bundle)
+    install(TARGETS equivalence RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION libexec/palpate
+    COMPONENT bundle)
     install(FILES tests/equivalence/hashes.json DESTINATION share/palpate COMPONENT bundle)
     install(PROGRAMS scripts/gpu-check DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bundle)
   endif()
-  install(FILES service/deploy/palpate.service service/deploy/nginx.conf DESTINATION share/palpate/deploy COMPONENT bundle)
+  install(FILES service/deploy/palpate.service service/deploy/nginx.conf DESTINATION share/palpate/deploy
+  COMPONENT bundle)
   palpate_install_sbom(bundle share/palpate)
   include(PalpateDebian)
 endif()

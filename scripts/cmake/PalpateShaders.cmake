@@ -1,8 +1,9 @@
 # GLSL to SPIR-V to C++, at build time.
 #
-# palpate_shaders(palpate_shaders shaders/code.h a.comp b.comp): a static library with one `ShaderCode` a file, named
-# like the file, in namespace palpate::spirv, declared in the header "shaders/code.h" of the build tree. Each module
-# passes spirv-val; depfiles make a change in an included file rebuild what it touches and nothing else.
+# palpate_shaders(palpate_shaders shaders/code.h a.comp b.comp): a static library with one `ShaderCode` a
+# file, named like the file, in namespace palpate::spirv, declared in the header "shaders/code.h" of the build
+# tree. Each module passes spirv-val; depfiles make a change in an included file rebuild what it touches and
+# nothing else.
 
 find_program(PALPATE_GLSLANG glslangValidator REQUIRED)
 find_program(PALPATE_SPIRV_VAL spirv-val REQUIRED)
@@ -18,9 +19,11 @@ function(palpate_shaders target header)
     set(spirv "${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.spv")
     set(source "${generated}/${name}.cpp")
     add_custom_command(OUTPUT "${spirv}" "${source}"
-      COMMAND "${PALPATE_GLSLANG}" --quiet --target-env vulkan1.3 "-I${PROJECT_SOURCE_DIR}" --depfile "${spirv}.d" -o "${spirv}" "${path}"
+      COMMAND "${PALPATE_GLSLANG}" --quiet --target-env vulkan1.3 "-I${PROJECT_SOURCE_DIR}" --depfile
+      "${spirv}.d" -o "${spirv}" "${path}"
       COMMAND "${PALPATE_SPIRV_VAL}" --target-env vulkan1.3 --scalar-block-layout "${spirv}"
-      COMMAND "${CMAKE_COMMAND}" -D "spirv=${spirv}" -D "source=${source}" -D "name=${name}" -D "header=${header}" -P "${PALPATE_EMBED_SCRIPT}"
+      COMMAND "${CMAKE_COMMAND}" -D "spirv=${spirv}" -D "source=${source}" -D "name=${name}" -D
+      "header=${header}" -P "${PALPATE_EMBED_SCRIPT}"
       DEPENDS "${path}" "${PALPATE_EMBED_SCRIPT}" DEPFILE "${spirv}.d"
       COMMENT "Compiling shader ${name}" VERBATIM)
     list(APPEND sources "${source}")
@@ -37,5 +40,6 @@ ${declarations}}  // namespace palpate::spirv
 " @ONLY)
   add_library(${target} STATIC ${sources})
   palpate_compile_options(${target})
-  target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" "$<BUILD_INTERFACE:${generated}>")
+  target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
+    "$<BUILD_INTERFACE:${generated}>")
 endfunction()

@@ -8,8 +8,9 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
-# Every build keeps its assertions, for every build is tested. Not -O3, but for compute/: elsewhere it gains nothing, builds longer, and
-# GCC 12 then warns of overlaps in the standard library's strings that are not there.
+# Every build keeps its assertions, for every build is tested. Not -O3, but for compute/: elsewhere it gains
+# nothing, builds longer, and GCC 12 then warns of overlaps in the standard library's strings that are not
+# there.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2")
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g")
 if(PALPATE_SANITIZE)   # half the compiling; a report still names its lines
@@ -18,25 +19,33 @@ endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 find_package(Threads REQUIRED)
 
-option(PALPATE_TOGETHER "Compile the files of a folder as one: a whole build takes less, a change more, and ccache in another checkout does not know it" ON)
-# The headers that most files include, compiled once for each set of options: a third to a half of the compiling.
-# -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON turns them off, for ccache to know a file from another checkout, and to see that each includes what it uses.
-set(palpate_common_headers <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <map>
-  <memory> <mutex> <optional> <random> <set> <span> <string> <string_view> <thread> <utility> <variant> <vector>
+option(PALPATE_TOGETHER
+  "Compile the files of a folder as one: a whole build takes less, a change more, and ccache in another checkout does not know it"
+  ON)
+# The headers that most files include, compiled once for each set of options: a third to a half of the
+# compiling. -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON turns them off, for ccache to know a file from another
+# checkout, and to see that each includes what it uses.
+set(palpate_common_headers <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem>
+  <fstream> <functional> <map>
+  <memory> <mutex> <optional> <random> <set> <span> <string> <string_view> <thread> <utility> <variant>
+  <vector>
   <glm/gtc/quaternion.hpp> <glm/mat3x3.hpp> <glm/vec3.hpp>)
 
-# palpate_precompile(NAME OPTION [more headers]): an object library of nothing but them, with -fPIC for libraries or -fPIE for programs.
+# palpate_precompile(NAME OPTION [more headers]): an object library of nothing but them, with -fPIC for
+# libraries or -fPIE for programs.
 function(palpate_precompile name option)
   add_library(${name} OBJECT "${PROJECT_SOURCE_DIR}/scripts/cmake/precompiled.cpp")
   palpate_compile_options(${name} "")
   target_compile_options(${name} PRIVATE ${option})
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)   # CMake's own option, which for an object library is -fPIC
+  # CMake's own option, which for an object library is -fPIC.
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_precompile_headers(${name} PRIVATE ${palpate_common_headers} ${ARGN})
 endfunction()
 
-# Warnings are errors on our own targets (of GCC). -ffp-contract=off: what both back ends compute on the host must not
-# depend on whether the compiler found a fused multiply-add.
-# palpate_compile_options(TARGET [PRECOMPILED]): with the common headers, with another target's, or with none ("").
+# Warnings are errors on our own targets (of GCC). -ffp-contract=off: what both back ends compute on the host
+# must not depend on whether the compiler found a fused multiply-add.
+# palpate_compile_options(TARGET [PRECOMPILED]): with the common headers, with another target's, or with none
+# ("").
 function(palpate_compile_options target)
   get_target_property(type ${target} TYPE)
   set(precompiled palpate_precompiled_library)
@@ -51,8 +60,11 @@ function(palpate_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off
     $<$<CXX_COMPILER_ID:GNU>:-Werror> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)   # -Wrestrict: GCC bug 105329
-  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)   # GCC 12 forgets that precompiled headers are the system's, and finds std::string to copy beyond its end (bug 105329)
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
+  # GCC 12 forgets that precompiled headers are the system's, and finds std::string to copy beyond its end
+  # (bug 105329)
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
       $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>)
   endif()
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
@@ -60,8 +72,10 @@ function(palpate_compile_options target)
   target_compile_definitions(${target} PRIVATE GLM_FORCE_EXPLICIT_CTOR GLM_ENABLE_EXPERIMENTAL)
   if(PALPATE_SANITIZE)
     string(REPLACE ";" "," sanitizers "${PALPATE_SANITIZE}")
-    target_compile_options(${target} PRIVATE -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all
-      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)   # GCC bug 105616: std::regex under the address sanitizer
+    target_compile_options(${target} PRIVATE -fsanitize=${sanitizers} -fno-omit-frame-pointer
+      -fno-sanitize-recover=all
+      # GCC bug 105616: std::regex under the address sanitizer.
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(${target} PRIVATE -fsanitize=${sanitizers})
     target_compile_definitions(${target} PRIVATE PALPATE_SANITIZED)
     if(PALPATE_SANITIZE STREQUAL "thread")
@@ -70,18 +84,23 @@ function(palpate_compile_options target)
   endif()
 endfunction()
 
-# Boost.Beast's coroutines, of which a file is a minute's compiling: no more optimizing than pays where a socket is waited for, and under the sanitizers
-# none: clang takes three minutes over what is half a one so, and GCC 12 sees uninitialised values in Boost that are not. -fsanitize=undefined can't
-# be had: clang 14 writes objects that its assembler refuses. The thread sanitizer does not know Asio's fences, which stand beside mutexes that it does.
+# Boost.Beast's coroutines, of which a file is a minute's compiling: no more optimizing than pays where a
+# socket is waited for, and under the sanitizers none: clang takes three minutes over what is half a one so,
+# and GCC 12 sees uninitialised values in Boost that are not. -fsanitize=undefined can't be had: clang 14
+# writes objects that its assembler refuses. The thread sanitizer does not know Asio's fences, which stand
+# beside mutexes that it does.
 set(palpate_beast_options -O1)
 if(PALPATE_SANITIZE)
-  set(palpate_beast_options -O0 -fno-sanitize=undefined $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
+  set(palpate_beast_options -O0 -fno-sanitize=undefined $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
 endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15)   # it has C++20's coroutines and does not say so
+# It has C++20's coroutines and does not say so.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15)
   list(APPEND palpate_beast_options -D__cpp_impl_coroutine=201902L -DBOOST_ASIO_HAS_CO_AWAIT=1)
 endif()
 
-# palpate_beast_library(name a.cpp): a static library of such files, without the headers that are compiled with other options.
+# palpate_beast_library(name a.cpp): a static library of such files, without the headers that are compiled
+# with other options.
 function(palpate_beast_library name)
   add_library(${name} STATIC ${ARGN})
   palpate_compile_options(${name} "")
@@ -89,8 +108,9 @@ function(palpate_beast_library name)
   palpate_together(${name})
 endfunction()
 
-# palpate_together(TARGET [EXCEPT "folders"]): compiles the files of a folder as one, since much of the compiling is of what they include. So within
-# a folder a name of an unnamed namespace stands for one thing. EXCEPT: a regular expression of folders whose files stay apart.
+# palpate_together(TARGET [EXCEPT "folders"]): compiles the files of a folder as one, since much of the
+# compiling is of what they include. So within a folder a name of an unnamed namespace stands for one thing.
+# EXCEPT: a regular expression of folders whose files stay apart.
 function(palpate_together target)
   cmake_parse_arguments(arg "" "EXCEPT" "" ${ARGN})
   get_target_property(sources ${target} SOURCES)
@@ -135,7 +155,8 @@ function(palpate_test_objects name)
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
 endfunction()
 
-# palpate_test(lattice_test LABEL quick SOURCES lattice_test.cpp LIBS palpate::model [ENV "A=1;B=2"] [TIMEOUT 60])
+# palpate_test(lattice_test LABEL quick SOURCES lattice_test.cpp LIBS palpate::model [ENV "A=1;B=2"] [TIMEOUT
+# 60])
 function(palpate_test name)
   cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LIBS;ENV" ${ARGN})
   if(NOT arg_LABEL)
@@ -149,7 +170,8 @@ function(palpate_test name)
   palpate_options_of_tests(${name})
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name})
-  # Host code runs under the sanitizers in CI too: asan_tests and tsan_tests build just those, the labels run them.
+  # Host code runs under the sanitizers in CI too: asan_tests and tsan_tests build just those, the labels run
+  # them.
   get_filename_component(folder "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
   if(arg_LABEL STREQUAL "quick" AND folder MATCHES "^(model|driver|service|library)$")
     list(APPEND arg_LABEL asan)
@@ -159,5 +181,6 @@ function(palpate_test name)
     list(APPEND arg_LABEL tsan)
     add_dependencies(tsan_tests ${name})
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABEL}" TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${arg_ENV}")
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABEL}" TIMEOUT ${arg_TIMEOUT} ENVIRONMENT
+    "${arg_ENV}")
 endfunction()

@@ -1,4 +1,5 @@
-# palpate_public_headers(VARIABLE): the headers that docs/API.md lists, and those that they include, relative to the source tree.
+# palpate_public_headers(VARIABLE): the headers that docs/API.md lists, and those that they include, relative
+# to the source tree.
 function(palpate_public_headers variable)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/API.md")
   file(STRINGS "${PROJECT_SOURCE_DIR}/docs/API.md" rows REGEX "^\\| `[a-z_0-9/]+\\.h`")

@@ -1,4 +1,5 @@
-"""Bad values in files and arguments: one sentence that names file and value, exit code 3, nothing on standard output."""
+"""Bad values in files and arguments: one sentence that names file and value, exit code 3, nothing on standard
+output."""
 from harness import *
 
 POSE = ('--pose', '0 0 0.1 0 0 0 1')
@@ -114,7 +115,10 @@ def test_a_bad_line_of_a_poses_file_is_named_by_its_number():
     good = '0,0,0.1,0,0,0,1'
 
     def refuse(text, *words):
-        expect_refused(palpate('query', path, '--poses', folder.write('poses.csv', text)), 3, 'poses.csv', *words)
+        expect_refused(
+            palpate('query', path, '--poses', folder.write('poses.csv', text)), 3, 'poses.csv', *words
+        )
+
     header = 'x,y,z,qx,qy,qz,qw'
     refuse(f'{header}\n{good}\n0,0,nan,0,0,0,1\n', 'line 3')
     refuse(f'{header}\n{good}\n\n{good},4\n', 'line 4', '8 values')
@@ -128,7 +132,9 @@ def test_a_bad_line_of_a_poses_file_is_named_by_its_number():
 
 def test_generate_refuses_unknown_names_and_counts():
     folder = Folder()
-    expect_refused(palpate('generate', 'teapot', '--out', folder / 'g'), 3, 'teapot', 'contacts', 'disassembly')
+    expect_refused(
+        palpate('generate', 'teapot', '--out', folder / 'g'), 3, 'teapot', 'contacts', 'disassembly'
+    )
     expect_refused(palpate('generate', 'contacts', '--triangles', '12', '--out', folder / 'g'), 3, '12')
     expect_refused(palpate('generate', 'contacts', '--triangles', 'many', '--out', folder / 'g'), 3, 'many')
     expect_refused(palpate('generate', 'contacts'), 2, '--out')
@@ -137,7 +143,13 @@ def test_generate_refuses_unknown_names_and_counts():
 def test_a_directory_that_cannot_be_made():
     folder = Folder()
     folder.write('file', 'x')
-    expect_refused(palpate('run', folder.save(), '--pace', 'asap', '--duration', '0.01', '--out', folder / 'file' / 'out'), 3, 'file')
+    expect_refused(
+        palpate(
+            'run', folder.save(), '--pace', 'asap', '--duration', '0.01', '--out', folder / 'file' / 'out'
+        ),
+        3,
+        'file',
+    )
 
 
 def test_an_unknown_haptic_device():

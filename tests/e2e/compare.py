@@ -8,10 +8,17 @@ def runs(folder):
     """The same run twice, and once with half the stiffness."""
     folder.write('block.stl', stl(box((0.06, 0.06, 0.03), (0, 0, -0.015))))
     folder.write('ball.stl', stl(sphere(0.01)))
-    folder.write('path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.012,0,0,0,1,1\n0.5,0.001,0,0.009,0,0,0,1,2\n1,0.002,0,0.012,0,0,0,1,3\n')
+    folder.write(
+        'path.csv',
+        'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.012,0,0,0,1,1\n0.5,0.001,0,0.009,0,0,0,1,2\n1,0.002,0,0.012,0,0,0,1,3\n',
+    )
     for name, stiffness in (('a', 2000), ('b', 2000), ('soft', 1000)):
-        scene = folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'},
-                            response={'stiffness': stiffness}, device={'driver': 'simulated', 'path': 'path.csv'})
+        scene = folder.save(
+            static=[{'mesh': 'block.stl', 'units': 'm'}],
+            tool={'mesh': 'ball.stl', 'units': 'm'},
+            response={'stiffness': stiffness},
+            device={'driver': 'simulated', 'path': 'path.csv'},
+        )
         done = palpate('run', scene, '--pace', 'asap', '--backend', 'cpu', '--out', folder / name)
         expect(done.code == 0, done)
     return [folder / name for name in ('a', 'b', 'soft')]
@@ -31,7 +38,8 @@ def test_like_runs_have_the_same_trace_and_others_say_where_they_part():
     told = json.loads(same.out)
     expect(same.code == 0 and told['same_trace'] and told['ticks']['only_first'] == 0, told)
     differ = {one['figure'] for one in told['differences']}
-    expect('provenance command' in differ and not any('inputs' in name for name in differ), differ)   # --out alone
+    # --out alone.
+    expect('provenance command' in differ and not any('inputs' in name for name in differ), differ)
 
     other = palpate('compare', a, soft, '--json', '--out', folder / 'out')
     told = json.loads(other.out)
@@ -39,21 +47,32 @@ def test_like_runs_have_the_same_trace_and_others_say_where_they_part():
     force = next(one for one in told['quantities'] if one['quantity'] == 'sent force')
     expect(force['largest'] > 0.01 and 0 < force['first_at_s'] <= force['largest_at_s'] < 1, force)
     figures = {one['figure']: one for one in told['differences']}
-    expect(figures['force max N']['second_over_first'] < 1 and 'provenance inputs scene' in figures, list(figures))
+    expect(
+        figures['force max N']['second_over_first'] < 1 and 'provenance inputs scene' in figures,
+        list(figures),
+    )
     expect(json.loads((folder / 'out' / 'compare.json').read_text()) == told, 'the file is what is printed')
     page = (folder / 'out' / 'compare.html').read_text()
     expect('Two runs compared' in page and 'src=' not in page and 'http' not in page, 'a self-contained page')
     text = palpate('compare', a, soft)
-    expect(text.code == 0 and text.out.startswith('the traces differ') and 'sent force' in text.out and '× ' in text.out, text)
+    expect(
+        text.code == 0
+        and text.out.startswith('the traces differ')
+        and 'sent force' in text.out
+        and '× ' in text.out,
+        text,
+    )
 
 
 def test_what_is_no_run_is_refused_with_file_and_line():
     folder = Folder()
     a = runs(folder)[0]
     expect_refused(palpate('compare', a, folder / 'nothing'), 3, 'nothing', 'no run')
-    for change, words in ((lambda text: text.replace('time_s', 'time', 1), ('time_s', 'is missing')),
-                          (lambda text: text.replace('\n0.001,', '\n0.001,abc,', 1), ('line 3', 'values instead of')),
-                          (lambda text: text[:-30] + '\n', ('values instead of',))):
+    for change, words in (
+        (lambda text: text.replace('time_s', 'time', 1), ('time_s', 'is missing')),
+        (lambda text: text.replace('\n0.001,', '\n0.001,abc,', 1), ('line 3', 'values instead of')),
+        (lambda text: text[:-30] + '\n', ('values instead of',)),
+    ):
         shutil.rmtree(folder / 'bad', ignore_errors=True)
         shutil.copytree(a, folder / 'bad')
         (folder / 'bad' / 'trace.csv').write_text(change((a / 'trace.csv').read_text()))

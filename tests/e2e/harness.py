@@ -1,4 +1,5 @@
-"""Runs the palpate program as a person or a script would, and says what was seen. Python's standard library only.
+"""Runs the palpate program as a person or a script would, and says what was seen. Python's standard library
+only.
 
 usage of a test script: SCRIPT.py PROGRAM SOURCE_DIRECTORY [PART_OF_A_CASE'S_NAME]
 """
@@ -15,8 +16,8 @@ import traceback
 
 PROGRAM = os.path.abspath(sys.argv[1])
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-os.environ.setdefault('PALPATE_CACHE', 'off')   # what is tested is worked out here and now
-TIMEOUT_S = 900   # a hang is a failure, not a wait; a whole scene on a busy machine takes minutes
+os.environ.setdefault('PALPATE_CACHE', 'off')  # what is tested is worked out here and now
+TIMEOUT_S = 900  # a hang is a failure, not a wait; a whole scene on a busy machine takes minutes
 
 
 class Outcome:
@@ -28,8 +29,14 @@ class Outcome:
 
 
 def palpate(*arguments, cwd=None, **environment):
-    done = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT_S, cwd=cwd,
-                          env={**os.environ, **environment})
+    done = subprocess.run(
+        [PROGRAM, *map(str, arguments)],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        timeout=TIMEOUT_S,
+        cwd=cwd,
+        env={**os.environ, **environment},
+    )
     return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
@@ -39,11 +46,13 @@ def expect(condition, message):
 
 
 def expect_refused(outcome, code, *words):
-    """One sentence on standard error that holds all `words`, nothing on standard output, and this exit code."""
+    """One sentence on standard error that holds all `words`, nothing on standard output, and this exit
+    code."""
     expect(outcome.code == code, f'expected exit {code}: {outcome}')
     expect(outcome.out == '', f'standard output should be empty: {outcome}')
     lines = outcome.err.strip().split('\n')
-    # A machine without a Vulkan device says first that the CPU answers; progress is plain lines of `palpate: <step>`.
+    # A machine without a Vulkan device says first that the CPU answers; progress is plain lines of `palpate:
+    # <step>`.
     expect(lines[-1].startswith('palpate: '), f'no sentence: {outcome}')
     for word in words:
         expect(word in lines[-1], f"the sentence lacks '{word}': {lines[-1]}")
@@ -67,11 +76,16 @@ def box(size, centre=(0, 0, 0)):
 def sphere(radius, rows=12, centre=(0, 0, 0)):
     def point(i, j):
         t, p = math.pi * i / rows, math.pi * j / rows
-        if i in (0, rows):   # one point, to the bit, at the poles
+        if i in (0, rows):  # one point, to the bit, at the poles
             return (centre[0], centre[1], centre[2] + (radius if i == 0 else -radius))
         j %= 2 * rows
         p = math.pi * j / rows
-        return (centre[0] + radius * math.sin(t) * math.cos(p), centre[1] + radius * math.sin(t) * math.sin(p), centre[2] + radius * math.cos(t))
+        return (
+            centre[0] + radius * math.sin(t) * math.cos(p),
+            centre[1] + radius * math.sin(t) * math.sin(p),
+            centre[2] + radius * math.cos(t),
+        )
+
     faces = []
     for i in range(rows):
         for j in range(2 * rows):
@@ -89,28 +103,54 @@ def stl(triangles):
 
 
 def gltf(nodes, triangles):
-    """One mesh of `triangles`, named 'solid', for all nodes (dictionaries) that say "mesh": 0; the first node is the root."""
+    """One mesh of `triangles`, named 'solid', for all nodes (dictionaries) that say "mesh": 0; the first node
+    is the root."""
     import base64
+
     points = [point for triangle in triangles for point in triangle]
     data = b''.join(struct.pack('<3f', *point) for point in points)
-    return json.dumps({'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0]}], 'nodes': nodes,
-                       'meshes': [{'name': 'solid', 'primitives': [{'attributes': {'POSITION': 0}}]}],
-                       'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': len(points), 'type': 'VEC3',
-                                      'min': [min(p[k] for p in points) for k in range(3)], 'max': [max(p[k] for p in points) for k in range(3)]}],
-                       'bufferViews': [{'buffer': 0, 'byteLength': len(data)}],
-                       'buffers': [{'byteLength': len(data), 'uri': 'data:application/octet-stream;base64,' + base64.b64encode(data).decode()}]})
+    return json.dumps(
+        {
+            'asset': {'version': '2.0'},
+            'scene': 0,
+            'scenes': [{'nodes': [0]}],
+            'nodes': nodes,
+            'meshes': [{'name': 'solid', 'primitives': [{'attributes': {'POSITION': 0}}]}],
+            'accessors': [
+                {
+                    'bufferView': 0,
+                    'componentType': 5126,
+                    'count': len(points),
+                    'type': 'VEC3',
+                    'min': [min(p[k] for p in points) for k in range(3)],
+                    'max': [max(p[k] for p in points) for k in range(3)],
+                }
+            ],
+            'bufferViews': [{'buffer': 0, 'byteLength': len(data)}],
+            'buffers': [
+                {
+                    'byteLength': len(data),
+                    'uri': 'data:application/octet-stream;base64,' + base64.b64encode(data).decode(),
+                }
+            ],
+        }
+    )
 
 
 class Folder:
-    """A scene's folder: a block of 200 × 200 × 40 mm below z = 0 as mock-up, a sphere of 20 mm as tool, unless told otherwise."""
+    """A scene's folder: a block of 200 × 200 × 40 mm below z = 0 as mock-up, a sphere of 20 mm as tool,
+    unless told otherwise."""
 
     def __init__(self):
         self._folder = tempfile.TemporaryDirectory(prefix='palpate-test-')
         self.path = pathlib.Path(self._folder.name)
         self.write('block.stl', stl(box((0.2, 0.2, 0.04), (0, 0, -0.02))))
         self.write('ball.stl', stl(sphere(0.02)))
-        self.scene = {'static': [{'mesh': 'block.stl', 'units': 'm'}], 'tool': {'mesh': 'ball.stl', 'units': 'm'},
-                      'response': {'stiffness': 2000}}
+        self.scene = {
+            'static': [{'mesh': 'block.stl', 'units': 'm'}],
+            'tool': {'mesh': 'ball.stl', 'units': 'm'},
+            'response': {'stiffness': 2000},
+        }
 
     def write(self, name, content):
         path = self.path / name

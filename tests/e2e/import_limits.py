@@ -1,4 +1,5 @@
-"""A mesh file that makes its importer crash, hang or take all memory: one sentence, exit code 3, nothing left running.
+"""A mesh file that makes its importer crash, hang or take all memory: one sentence, exit code 3, nothing left
+running.
 
 palpate runs here beside palpate-import-faulty, which does what the first word of a file says."""
 import atexit
@@ -29,7 +30,7 @@ def running(path):
             if str(path).encode() in (process / 'cmdline').read_bytes():
                 found.append(process.name)
         except OSError:
-            pass   # it is gone
+            pass  # it is gone
     return found
 
 
@@ -43,7 +44,9 @@ def wait_for(count, mesh):
 
 
 def faulty(*arguments):
-    done = subprocess.run([FAULTY, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT_S)
+    done = subprocess.run(
+        [FAULTY, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT_S
+    )
     return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
@@ -52,8 +55,15 @@ def expect_contained(word, *sentence, options=()):
     mesh = folder.write(f'{word}.stl', word)
     expect_refused(faulty('info', mesh, *options), 3, f'{word}.stl', *sentence)
     wait_for(0, mesh)
-    scene = folder.save(tool={'mesh': f'{word}.stl'}, static=[{'generate': {'name': 'contacts', 'triangles': 1000}}])
-    expect_refused(faulty('query', scene, '--pose', '0 0 0 0 0 0 1', '--backend', 'cpu', *options), 3, f'{word}.stl', *sentence)
+    scene = folder.save(
+        tool={'mesh': f'{word}.stl'}, static=[{'generate': {'name': 'contacts', 'triangles': 1000}}]
+    )
+    expect_refused(
+        faulty('query', scene, '--pose', '0 0 0 0 0 0 1', '--backend', 'cpu', *options),
+        3,
+        f'{word}.stl',
+        *sentence,
+    )
     wait_for(0, mesh)
 
 
@@ -64,12 +74,17 @@ def test_an_import_that_crashes():
 
 
 def test_a_real_file_that_makes_the_library_abort():
-    # A 3MF whose root names a model that is not in it: an assertion of assimp 5.2.5. Should it learn to refuse it, so much the better.
+    # A 3MF whose root names a model that is not in it: an assertion of assimp 5.2.5. Should it learn to
+    # refuse it, so much the better.
     import zipfile
+
     folder = Folder()
     with zipfile.ZipFile(folder / 'no_root.3mf', 'w') as archive:
-        archive.writestr('_rels/.rels', '<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
-                         'Target="/3D/gone.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+        archive.writestr(
+            '_rels/.rels',
+            '<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
+            'Target="/3D/gone.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>',
+        )
     expect_refused(palpate('info', folder / 'no_root.3mf'), 3, 'no_root.3mf', "can't be read")
 
 
@@ -93,8 +108,12 @@ def test_an_importer_that_is_missing_is_named():
     atexit.register(shutil.rmtree, folder)
     os.link(PROGRAM, folder / 'palpate')
     mesh = Folder()
-    done = subprocess.run([folder / 'palpate', 'info', mesh / 'block.stl'], capture_output=True, timeout=TIMEOUT_S)
-    expect_refused(Outcome(done.returncode, done.stdout.decode(), done.stderr.decode()), 1, 'palpate-import', 'missing')
+    done = subprocess.run(
+        [folder / 'palpate', 'info', mesh / 'block.stl'], capture_output=True, timeout=TIMEOUT_S
+    )
+    expect_refused(
+        Outcome(done.returncode, done.stdout.decode(), done.stderr.decode()), 1, 'palpate-import', 'missing'
+    )
 
 
 def test_a_build_without_a_reader_of_cad_files_says_what_is_missing():
@@ -104,8 +123,17 @@ def test_a_build_without_a_reader_of_cad_files_says_what_is_missing():
     os.link(BINARIES / 'palpate-import', folder / 'palpate-import')
     for name in ('a.step', 'a.STP', 'a.iges', 'a.brep'):
         (folder / name).write_text('whatever')
-        done = subprocess.run([folder / 'palpate', 'info', folder / name], capture_output=True, timeout=TIMEOUT_S)
-        expect_refused(Outcome(done.returncode, done.stdout.decode(), done.stderr.decode()), 3, name, 'palpate-import-cad', 'OpenCASCADE', 'libocct-data-exchange-dev')
+        done = subprocess.run(
+            [folder / 'palpate', 'info', folder / name], capture_output=True, timeout=TIMEOUT_S
+        )
+        expect_refused(
+            Outcome(done.returncode, done.stdout.decode(), done.stderr.decode()),
+            3,
+            name,
+            'palpate-import-cad',
+            'OpenCASCADE',
+            'libocct-data-exchange-dev',
+        )
 
 
 def test_killing_palpate_ends_its_importer():
@@ -122,10 +150,25 @@ def test_files_that_refer_to_others_are_read_from_another_folder():
     folder = Folder()
     data = b''.join(struct.pack('<3f', *p) for p in ((0, 0, 0), (1, 0, 0), (0, 1, 0)))
     folder.write('parts/a b.bin', data)
-    document = {'asset': {'version': '2.0'}, 'scenes': [{'nodes': [0]}], 'scene': 0, 'nodes': [{'mesh': 0, 'name': 'plate'}],
-                'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}],
-                'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3', 'min': [0, 0, 0], 'max': [1, 1, 0]}],
-                'bufferViews': [{'buffer': 0, 'byteLength': 36}], 'buffers': [{'byteLength': 36, 'uri': 'a b.bin'}]}
+    document = {
+        'asset': {'version': '2.0'},
+        'scenes': [{'nodes': [0]}],
+        'scene': 0,
+        'nodes': [{'mesh': 0, 'name': 'plate'}],
+        'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}],
+        'accessors': [
+            {
+                'bufferView': 0,
+                'componentType': 5126,
+                'count': 3,
+                'type': 'VEC3',
+                'min': [0, 0, 0],
+                'max': [1, 1, 0],
+            }
+        ],
+        'bufferViews': [{'buffer': 0, 'byteLength': 36}],
+        'buffers': [{'byteLength': 36, 'uri': 'a b.bin'}],
+    }
     folder.write('parts/plate.gltf', json.dumps(document))
     folder.write('parts/colour.mtl', 'newmtl red\nKd 1 0 0\n')
     folder.write('parts/plate.obj', 'mtllib colour.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
@@ -143,7 +186,12 @@ def test_a_file_without_names_is_one_part_named_like_the_file():
 
 def test_limits_that_are_none_are_refused():
     folder = Folder()
-    for options in (('--import-memory', '0'), ('--import-memory', '-1'), ('--import-seconds', '0'), ('--import-seconds', 'nan')):
+    for options in (
+        ('--import-memory', '0'),
+        ('--import-memory', '-1'),
+        ('--import-seconds', '0'),
+        ('--import-seconds', 'nan'),
+    ):
         expect_refused(palpate('info', folder / 'block.stl', *options), 3, options[0])
 
 

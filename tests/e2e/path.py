@@ -12,7 +12,11 @@ def ball_over_a_block(folder):
     (folder / 'block.stl').write_bytes(stl(box((0.1, 0.1, 0.02), (0, 0, -0.01))))
     (folder / 'ball.stl').write_bytes(stl(sphere(0.01)))
     scene = folder / 'scene.json'
-    scene.write_text(json.dumps({'static': [{'mesh': 'block.stl', 'units': 'm'}], 'tool': {'mesh': 'ball.stl', 'units': 'm'}}))
+    scene.write_text(
+        json.dumps(
+            {'static': [{'mesh': 'block.stl', 'units': 'm'}], 'tool': {'mesh': 'ball.stl', 'units': 'm'}}
+        )
+    )
     return scene
 
 
@@ -30,22 +34,35 @@ def test_a_clear_path_says_so_and_how_near_it_came():
         report = json.loads(done.out)
         expect(report['clear'] and report['first_contact'] is None and report['closest_pose'] == 1, report)
         expect(abs(report['least_clearance_m'] - 0.002) < 1e-7, report)
-        expect(report['examined']['poses'] == 3 and report['examined']['screws'] == 2 and report['examined']['evaluations'] > 3, report)
+        expect(
+            report['examined']['poses'] == 3
+            and report['examined']['screws'] == 2
+            and report['examined']['evaluations'] > 3,
+            report,
+        )
         rows = list(csv.DictReader(open(folder + '/out/path.csv')))
         expect(len(rows) == 3 and all(row['touches'] == '0' for row in rows) and rows[1]['tool_part'], rows)
         page = open(folder + '/out/path.html').read()
-        expect('The path is clear' in page and page.count('<svg') >= 3 and 'src=' not in page, 'a self-contained page')
+        expect(
+            'The path is clear' in page and page.count('<svg') >= 3 and 'src=' not in page,
+            'a self-contained page',
+        )
         expect(len(json.load(open(folder + '/out/path.json'))['poses']) == 3, 'a pose each')
 
 
 def test_a_path_through_the_block_is_not_clear_though_its_poses_are():
     with tempfile.TemporaryDirectory() as folder:
         scene = ball_over_a_block(folder)
-        done = palpate('path', scene, poses(folder, 0.05, -0.05))   # from above to below
+        done = palpate('path', scene, poses(folder, 0.05, -0.05))  # from above to below
         expect(done.code == 5 and 'touches between pose 0 and pose 1' in done.err, done)
         report = json.loads(done.out)
         expect(not report['clear'] and abs(report['first_contact']['pose'] - 0.4) < 2e-5, report)
-        expect(report['first_contact']['pose'] <= 0.4 and report['first_contact']['tool_part'] and report['worst_depth_m'] is None, report)
+        expect(
+            report['first_contact']['pose'] <= 0.4
+            and report['first_contact']['tool_part']
+            and report['worst_depth_m'] is None,
+            report,
+        )
 
 
 def test_a_scenes_own_path_is_taken_as_its_device_takes_it():
@@ -53,19 +70,33 @@ def test_a_scenes_own_path_is_taken_as_its_device_takes_it():
         scene = ball_over_a_block(folder)
         path, guide = pathlib.Path(folder) / 'own.csv', pathlib.Path(folder) / 'guide.csv'
         # The guide goes down along z, from 0.05 to -0.05; half of the way and less is travelled.
-        guide.write_text('travel_m,x_m,y_m,z_m,qx,qy,qz,qw\n0,0.001,0.002,0.05,0,0,0,1\n0.1,0.001,0.002,-0.05,0,0,0,1\n')
+        guide.write_text(
+            'travel_m,x_m,y_m,z_m,qx,qy,qz,qw\n0,0.001,0.002,0.05,0,0,0,1\n0.1,0.001,0.002,-0.05,0,0,0,1\n'
+        )
         path.write_text('time_s,travel_m,rx_rad,ry_rad,rz_rad,stage\n0,0,0,0,0,1\n1,0.03,0,0,0,1\n')
         done = palpate('path', scene, path)
         expect(done.code == 3 and 'along a guide, and' in done.err and 'names none' in done.err, done)
-        scene.write_text(json.dumps({**json.loads(scene.read_text()),
-                                     'device': {'driver': 'simulated', 'path': 'own.csv', 'guide': 'guide.csv'}}))
+        scene.write_text(
+            json.dumps(
+                {
+                    **json.loads(scene.read_text()),
+                    'device': {'driver': 'simulated', 'path': 'own.csv', 'guide': 'guide.csv'},
+                }
+            )
+        )
         done = palpate('path', scene, path)
         expect(done.code == 0, done)
         expect(abs(json.loads(done.out)['least_clearance_m'] - 0.01) < 1e-7, done)
         free = pathlib.Path(folder) / 'free.csv'
-        free.write_text('time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0.001,0.002,0.05,0,0,0,1,1\n1,0.001,0.002,0.02,0,0,0,1,1\n')
+        free.write_text(
+            'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0.001,0.002,0.05,0,0,0,1,1\n1,0.001,0.002,0.02,0,0,0,1,1\n'
+        )
         again = palpate('path', scene, free)
-        expect(again.code == 0 and json.loads(again.out)['least_clearance_m'] == json.loads(done.out)['least_clearance_m'], again)
+        expect(
+            again.code == 0
+            and json.loads(again.out)['least_clearance_m'] == json.loads(done.out)['least_clearance_m'],
+            again,
+        )
 
 
 def test_a_scene_of_profile_paper_gets_the_same_verdicts():
@@ -88,7 +119,11 @@ def test_a_tolerance_lets_shallow_contact_pass():
         expect(palpate('path', scene, shallow).code == 5, 'without tolerance')
         expect(palpate('path', scene, shallow, '--tolerance', '0.001').code == 0, 'with more than it is deep')
         for backend in ('cpu', 'ref'):
-            lines = lines_of(palpate('query', scene, '--poses', shallow, '--any', '--tolerance', '0.001', '--backend', backend))
+            lines = lines_of(
+                palpate(
+                    'query', scene, '--poses', shallow, '--any', '--tolerance', '0.001', '--backend', backend
+                )
+            )
             expect([line['touches'] for line in lines] == [False, False, False], lines)
 
 
@@ -99,14 +134,28 @@ def test_verdicts_of_poses_are_the_same_of_both_engines():
         told = {}
         for backend in ('cpu', 'ref'):
             any_lines = lines_of(palpate('query', scene, '--poses', asked, '--any', '--backend', backend))
-            expect([(line['number'], line['engine'], line['touches']) for line in any_lines] == [(i, backend, i in (1, 2)) for i in range(5)], any_lines)
-            told[backend] = lines_of(palpate('query', scene, '--poses', asked, '--clearance', '--backend', backend))
-            near = lines_of(palpate('query', scene, '--poses', asked, '--within', '0.001', '--backend', backend))
+            expect(
+                [(line['number'], line['engine'], line['touches']) for line in any_lines]
+                == [(i, backend, i in (1, 2)) for i in range(5)],
+                any_lines,
+            )
+            told[backend] = lines_of(
+                palpate('query', scene, '--poses', asked, '--clearance', '--backend', backend)
+            )
+            near = lines_of(
+                palpate('query', scene, '--poses', asked, '--within', '0.001', '--backend', backend)
+            )
             expect([line['number'] for line in near] == [1, 2, 3], near)
         expect(all(line.pop('engine') == backend for backend, lines in told.items() for line in lines), told)
         expect(told['cpu'] == told['ref'], told)
         lines = told['cpu']
-        expect(abs(lines[0]['clearance'] - 0.005) < 1e-7 and lines[1]['clearance'] == 0 and 'static' not in lines[1] and lines[4]['clearance'] is None, lines)
+        expect(
+            abs(lines[0]['clearance'] - 0.005) < 1e-7
+            and lines[1]['clearance'] == 0
+            and 'static' not in lines[1]
+            and lines[4]['clearance'] is None,
+            lines,
+        )
         gap = [a - b for a, b in zip(lines[0]['on_static'], lines[0]['on_mobile'])]
         expect(abs(math.hypot(*gap) - 0.005) < 1e-7 and lines[0]['parts']['static'], lines[0])
 
@@ -118,7 +167,9 @@ def test_what_examines_nothing_is_an_error_and_never_clear():
         expect_refused(palpate('path', scene, poses(folder, 'nan')), 3, 'path.csv')
         expect_refused(palpate('path', scene, folder + '/none.csv'), 3, 'none.csv')
         expect_refused(palpate('path', scene, poses(folder, 0.05), '--tolerance', '-1'), 3, '--tolerance')
-        expect_refused(palpate('query', scene, '--poses', poses(folder, 0.05), '--tolerance', '0.001'), 2, '--any')
+        expect_refused(
+            palpate('query', scene, '--poses', poses(folder, 0.05), '--tolerance', '0.001'), 2, '--any'
+        )
 
 
 main(globals())

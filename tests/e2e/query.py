@@ -4,12 +4,31 @@ import subprocess
 
 from harness import *
 
-FIELDS = ['number', 'pose', 'contact', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est', 'areas', 'force', 'torque', 'flags', 'tool', 'evaluations', 'truncated', 'engine', 'time_us']
+FIELDS = [
+    'number',
+    'pose',
+    'contact',
+    'pairs',
+    'cst',
+    'bst',
+    'cmt',
+    'bmt',
+    'imt',
+    'est',
+    'areas',
+    'force',
+    'torque',
+    'flags',
+    'tool',
+    'evaluations',
+    'truncated',
+    'engine',
+    'time_us',
+]
 AREA_FIELDS = ['id', 'zones', 'static', 'mobile', 'normal', 'depth', 'point', 'force', 'torque', 'flags']
 SETS = ['cst', 'bst', 'cmt', 'bmt', 'imt', 'est']
 HEADER = 'x,y,z,qx,qy,qz,qw\n'
-PRESSED = '0 0 0.018 0 0 0 1'   # the ball of 20 mm, 2 mm deep in the block
-
+PRESSED = '0 0 0.018 0 0 0 1'  # the ball of 20 mm, 2 mm deep in the block
 
 
 def without_time(line):
@@ -20,7 +39,13 @@ def test_a_line_has_the_contracts_fields_in_its_order():
     folder = Folder()
     (line,) = lines_of(palpate('query', folder.save(), '--pose', PRESSED))
     expect(list(line) == FIELDS, list(line))
-    expect(line['number'] == 0 and len(line['pose']) == 7 and line['contact'] is True and line['truncated'] is False, line)
+    expect(
+        line['number'] == 0
+        and len(line['pose']) == 7
+        and line['contact'] is True
+        and line['truncated'] is False,
+        line,
+    )
     (area,) = line['areas']
     expect(list(area) == AREA_FIELDS, list(area))
     expect(list(line['time_us'])[0] == 'total' and line['time_us']['total'] > 0, line['time_us'])
@@ -36,22 +61,36 @@ def test_a_ball_pressed_into_a_block_is_pushed_out_by_the_spring():
     (area,) = line['areas']
     h, r = 2e-3, 0.02
     a2 = 2 * r * h - h * h
-    mean = (r * a2 - 2 / 3 * (r ** 3 - (r - h) ** 3)) / a2   # of the depth below the sphere, over the disc
-    expect(abs(area['depth'] / mean - 1) < 0.10, f"d {area['depth']} m instead of {mean} m; 12 rows of facets and samples allow 10 %")
+    mean = (r * a2 - 2 / 3 * (r**3 - (r - h) ** 3)) / a2  # of the depth below the sphere, over the disc
+    expect(
+        abs(area['depth'] / mean - 1) < 0.10,
+        f"d {area['depth']} m instead of {mean} m; 12 rows of facets and samples allow 10 %",
+    )
     expect(area['normal'][2] > math.cos(math.radians(0.5)), area['normal'])
-    expect(0 < line['force'][2] <= 2000 * h, line['force'])   # no stiffer than the spring
+    expect(0 < line['force'][2] <= 2000 * h, line['force'])  # no stiffer than the spring
     expect(abs(line['force'][0]) + abs(line['force'][1]) < 0.01 * line['force'][2], line['force'])
-    expect(abs(2000 * line['tool'][2] - 2000 * 0.018 - line['force'][2]) < 0.02 * line['force'][2], line['tool'])   # the spring's own length, but for what the tool turned
+    # The spring's own length, but for what the tool turned.
+    expect(
+        abs(2000 * line['tool'][2] - 2000 * 0.018 - line['force'][2]) < 0.02 * line['force'][2], line['tool']
+    )
 
 
 def test_free_near_and_far():
     folder = Folder()
-    folder.write('poses.csv', HEADER + '0,0,0.03,0,0,0,1\n1,0,0,0,0,0,1\n1e6,0,0,0,0,0,1\n-1e300,1e300,0,0.6,0,0,0.8\n')
+    folder.write(
+        'poses.csv', HEADER + '0,0,0.03,0,0,0,1\n1,0,0,0,0,0,1\n1e6,0,0,0,0,0,1\n-1e300,1e300,0,0.6,0,0,0.8\n'
+    )
     lines = lines_of(palpate('query', folder.save(), '--poses', folder / 'poses.csv'))
     expect(len(lines) == 4, len(lines))
     for i, line in enumerate(lines):
         expect(line['number'] == i and line['contact'] is False and line['pairs'] == 0, line)
-        expect(line['areas'] == [] and line['force'] == [0, 0, 0] and line['torque'] == [0, 0, 0] and line['cst'] == [], line)
+        expect(
+            line['areas'] == []
+            and line['force'] == [0, 0, 0]
+            and line['torque'] == [0, 0, 0]
+            and line['cst'] == [],
+            line,
+        )
 
 
 def test_a_negative_number_may_come_first():
@@ -65,7 +104,8 @@ def test_a_tool_equal_to_the_mock_up_is_answered():
     path = folder.save(tool={'mesh': 'block.stl', 'units': 'm'})
     (line,) = lines_of(palpate('query', path, '--pose', '0 0 0 0 0 0 1'))
     expect(line['contact'] and not line['truncated'], line)
-    expect(line['cst'] == list(range(12)) and line['cmt'] == list(range(12)), line)   # every face lies on its twin
+    # Every face lies on its twin.
+    expect(line['cst'] == list(range(12)) and line['cmt'] == list(range(12)), line)
     expect(line['pairs'] >= 12, line['pairs'])
     expect(all(math.isfinite(v) for v in line['force'] + line['torque']), line['force'])
 
@@ -73,7 +113,10 @@ def test_a_tool_equal_to_the_mock_up_is_answered():
 def test_a_batch_on_all_cores_prints_what_single_queries_do():
     folder = Folder()
     scene = generated(folder)
-    folder.write('poses.csv', HEADER + ''.join(f'{0.002 * (i % 100) - 0.1},{0.001 * (i % 13)},0,0,0,0,1\n' for i in range(200)))
+    folder.write(
+        'poses.csv',
+        HEADER + ''.join(f'{0.002 * (i % 100) - 0.1},{0.001 * (i % 13)},0,0,0,0,1\n' for i in range(200)),
+    )
     alone = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv'))
     batch = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--batch', '200'))
     expect(any(line['contact'] for line in alone), 'some touch')
@@ -84,10 +127,16 @@ def test_a_batch_on_all_cores_prints_what_single_queries_do():
 
 def test_an_interrupt_ends_preparation():
     folder = Folder()
-    made = palpate('generate', 'contacts', '--triangles', '300000', '--tool-triangles', '1000', '--out', folder / 'large')
+    made = palpate(
+        'generate', 'contacts', '--triangles', '300000', '--tool-triangles', '1000', '--out', folder / 'large'
+    )
     expect(made.code == 0, made)
-    process = subprocess.Popen([PROGRAM, 'query', folder / 'large' / 'scene.json', '--pose', '0 0 0 0 0 0 1'], stdin=subprocess.DEVNULL,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        [PROGRAM, 'query', folder / 'large' / 'scene.json', '--pose', '0 0 0 0 0 0 1'],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     said = b''
     while b'preparing the scene' not in said:
         line = process.stderr.readline()
@@ -119,8 +168,17 @@ def test_profile_paper_has_no_est():
 
 def test_names_tell_which_parts_touch():
     folder = Folder()
-    folder.write('engine.gltf', gltf([{'name': 'engine', 'children': [1, 2]}, {'name': 'left', 'mesh': 0, 'translation': [-1, 0, 0]}, {'name': 'right', 'mesh': 0, 'translation': [1, 0, 0]}],
-                                     box((0.5, 0.5, 0.04), (0, 0, -0.02))))
+    folder.write(
+        'engine.gltf',
+        gltf(
+            [
+                {'name': 'engine', 'children': [1, 2]},
+                {'name': 'left', 'mesh': 0, 'translation': [-1, 0, 0]},
+                {'name': 'right', 'mesh': 0, 'translation': [1, 0, 0]},
+            ],
+            box((0.5, 0.5, 0.04), (0, 0, -0.02)),
+        ),
+    )
     scene = folder.save(static=[{'mesh': 'engine.gltf'}])
     folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n1,0,0.019,0,0,0,1\n-1,0,0.019,0,0,0,1\n0,0,0.019,0,0,0,1\n')
     right, left, free = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--names'))
@@ -130,34 +188,67 @@ def test_names_tell_which_parts_touch():
 
 
 def generated(folder):
-    outcome = palpate('generate', 'contacts', '--triangles', '2000', '--tool-triangles', '1000', '--out', folder / 'contacts')
+    outcome = palpate(
+        'generate',
+        'contacts',
+        '--triangles',
+        '2000',
+        '--tool-triangles',
+        '1000',
+        '--out',
+        folder / 'contacts',
+    )
     expect(outcome.code == 0, outcome)
     return folder / 'contacts' / 'scene.json'
 
 
 def test_both_back_ends_and_both_plans_answer_alike_to_the_bit():
     folder = Folder()
-    folder.write('poses.csv', HEADER + ''.join(f'{0.001 * i},0.0007,{0.0205 - 0.0011 * i},{0.6 * (i % 2)},0,0,{1 - 0.2 * (i % 2)}\n' for i in range(12)))
+    folder.write(
+        'poses.csv',
+        HEADER
+        + ''.join(
+            f'{0.001 * i},0.0007,{0.0205 - 0.0011 * i},{0.6 * (i % 2)},0,0,{1 - 0.2 * (i % 2)}\n'
+            for i in range(12)
+        ),
+    )
     scene = folder.save()
     for profile in ('refined', 'paper'):
         answers = {}
         for backend in ('ref', 'cpu', 'gpu'):
             for plan in ('auto', 'full'):
-                outcome = palpate('query', scene, '--poses', folder / 'poses.csv', '--backend', backend, '--plan', plan, '--profile', profile)
+                outcome = palpate(
+                    'query',
+                    scene,
+                    '--poses',
+                    folder / 'poses.csv',
+                    '--backend',
+                    backend,
+                    '--plan',
+                    plan,
+                    '--profile',
+                    profile,
+                )
                 if backend == 'gpu' and outcome.code == 4:
-                    raise AssertionError('no Vulkan device: install mesa-vulkan-drivers (scripts/packages.txt)')
+                    raise AssertionError(
+                        'no Vulkan device: install mesa-vulkan-drivers (scripts/packages.txt)'
+                    )
                 answers[backend, plan] = [without_time(line) for line in lines_of(outcome)]
         expect(any(line['contact'] for line in answers['ref', 'full']), 'the poses should touch')
         for key, lines in answers.items():
             for reference, line in zip(answers['ref', 'full'], lines, strict=True):
                 for field in reference:
-                    expect(line[field] == reference[field], f"{profile} {key}, pose {line['number']}, {field}: {line[field]} instead of {reference[field]}")
+                    expect(
+                        line[field] == reference[field],
+                        f"{profile} {key}, pose {line['number']}, {field}: {line[field]} instead of {reference[field]}",
+                    )
 
 
 def test_both_back_ends_agree_along_a_generated_scenes_path():
     folder = Folder()
     scene = generated(folder)
-    run = palpate('run', scene, '--pace', 'asap', '--duration', '4', '--out', folder / 'run')   # reaches the first contacts
+    # Reaches the first contacts.
+    run = palpate('run', scene, '--pace', 'asap', '--duration', '4', '--out', folder / 'run')
     expect(run.code == 0, run)
     rows = [row.split(',') for row in (folder / 'run' / 'trace.csv').read_text().splitlines()]
     touching = [row for row in rows[1:] if row[rows[0].index('contact')] not in ('0', 'false')]
@@ -169,26 +260,53 @@ def test_both_back_ends_agree_along_a_generated_scenes_path():
     expect(any(line['areas'] for line in cpu), 'some pose should have an area')
     for a, b in zip(cpu, gpu, strict=True):
         for field in a:
-            expect(field in ('time_us', 'engine') or a[field] == b[field], f"pose {a['number']}, {field}: cpu {a[field]}, gpu {b[field]}")
+            expect(
+                field in ('time_us', 'engine') or a[field] == b[field],
+                f"pose {a['number']}, {field}: cpu {a[field]}, gpu {b[field]}",
+            )
 
 
 def test_exported_geometry_is_what_was_judged():
     folder = Folder()
     folder.write('poses.csv', HEADER + '0,0,0.018,0,0,0,1\n0.01,0,0.019,0.6,0,0,0.8\n1e9,0,0,0,0,0,1\n')
-    outcome = palpate('query', folder.save(), '--poses', folder / 'poses.csv', '--export-geometry', folder / 'judged')
+    outcome = palpate(
+        'query', folder.save(), '--poses', folder / 'poses.csv', '--export-geometry', folder / 'judged'
+    )
     expect(outcome.code == 0, outcome)
     judged = folder / 'judged'
     # Another export's files are not replaced unless somebody says so; then none of them is left.
     again = ('query', folder / 'scene.json', '--pose', '0 0 0.018 0 0 0 1', '--export-geometry', judged)
     before = (judged / 'tool_1.i32').read_bytes()
     refused = palpate(*again)
-    expect(refused.code == 3 and 'lattice.json' in refused.err and '--overwrite' in refused.err and not refused.out, refused)
+    expect(
+        refused.code == 3
+        and 'lattice.json' in refused.err
+        and '--overwrite' in refused.err
+        and not refused.out,
+        refused,
+    )
     expect((judged / 'tool_1.i32').read_bytes() == before, 'a refusal changes nothing')
     other = folder / 'other'
-    expect(palpate(*again[:-1], other).code == 0 and palpate('query', folder / 'scene.json', '--poses', folder / 'poses.csv',
-                                                             '--export-geometry', other, '--overwrite').code == 0, 'told to overwrite')
+    expect(
+        palpate(*again[:-1], other).code == 0
+        and palpate(
+            'query',
+            folder / 'scene.json',
+            '--poses',
+            folder / 'poses.csv',
+            '--export-geometry',
+            other,
+            '--overwrite',
+        ).code
+        == 0,
+        'told to overwrite',
+    )
     expect(palpate(*again[:-1], other, '--overwrite').code == 0, 'told to overwrite')
-    expect(sorted(p.name for p in other.iterdir()) == ['lattice.json', 'pairs_0.u32', 'static.i32', 'tool_0.i32', 'voxels.json', 'voxels.u8'], 'of one pose')
+    expect(
+        sorted(p.name for p in other.iterdir())
+        == ['lattice.json', 'pairs_0.u32', 'static.i32', 'tool_0.i32', 'voxels.json', 'voxels.u8'],
+        'of one pose',
+    )
     lattice = json.loads((judged / 'lattice.json').read_text())
     expect(list(lattice) == ['step_m', 'origin_m'], lattice)
     expect(math.frexp(lattice['step_m'])[0] == 0.5, 'the step is a power of two of a metre')
@@ -196,16 +314,26 @@ def test_exported_geometry_is_what_was_judged():
     def metres(name):
         words = (judged / name).read_bytes()
         values = struct.unpack(f'<{len(words) // 4}i', words)
-        return [tuple(lattice['origin_m'][i % 3] + lattice['step_m'] * v for i, v in enumerate(values[k:k + 3])) for k in range(0, len(values), 3)]
+        return [
+            tuple(lattice['origin_m'][i % 3] + lattice['step_m'] * v for i, v in enumerate(values[k : k + 3]))
+            for k in range(0, len(values), 3)
+        ]
+
     block, ball = box((0.2, 0.2, 0.04), (0, 0, -0.02)), sphere(0.02)
     # Corners: half a step of snapping an axis, once more for a pose, and float32 in the file (6e-9 of 0.1 m).
     for name, triangles, shift in (('static.i32', block, (0, 0, 0)), ('tool_0.i32', ball, (0, 0, 0.018))):
         seen = metres(name)
         expect(len(seen) == 3 * len(triangles), f'{name}: {len(seen)} corners')
         for corner, given in zip(seen, (c for t in triangles for c in t), strict=True):
-            expect(all(abs(corner[i] - given[i] - shift[i]) < 2 * lattice['step_m'] + 2e-8 for i in range(3)), f'{name}: {corner} {given}')
+            expect(
+                all(abs(corner[i] - given[i] - shift[i]) < 2 * lattice['step_m'] + 2e-8 for i in range(3)),
+                f'{name}: {corner} {given}',
+            )
     expect((judged / 'tool_1.i32').stat().st_size == 36 * len(ball), 'one file a pose')
-    expect(not (judged / 'tool_2.i32').exists() and 'pose 2' in outcome.err, 'a pose beyond the lattice has no coordinates')
+    expect(
+        not (judged / 'tool_2.i32').exists() and 'pose 2' in outcome.err,
+        'a pose beyond the lattice has no coordinates',
+    )
 
     voxels = json.loads((judged / 'voxels.json').read_text())
     expect(list(voxels) == ['size', 'origin', 'counts'], voxels)
@@ -214,8 +342,15 @@ def test_exported_geometry_is_what_was_judged():
     expect(len(classes) == nx * ny * nz and set(classes) == {0, 1, 2}, 'a block has all three classes')
 
     def class_at(point):
-        i, j, k = (math.floor(((point[a] - lattice['origin_m'][a]) / lattice['step_m'] - voxels['origin'][a]) / voxels['size']) for a in range(3))
+        i, j, k = (
+            math.floor(
+                ((point[a] - lattice['origin_m'][a]) / lattice['step_m'] - voxels['origin'][a])
+                / voxels['size']
+            )
+            for a in range(3)
+        )
         return classes[i + nx * (j + ny * k)]
+
     expect(class_at((0.01, 0.02, -0.02)) == 2, 'the middle of the block is inside')
     expect(class_at((0.0123, 0.0077, -1e-9)) == 1, 'its top is boundary')
     expect(classes[0] == 0 and classes[-1] == 0, 'the corners of the grid are outside')

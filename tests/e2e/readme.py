@@ -1,4 +1,5 @@
-"""Runs every command of README.md, in its order, in one empty folder (all but the two scripts), and holds its scene file against the program's reader."""
+"""Runs every command of README.md, in its order, in one empty folder (all but the two scripts), and holds its
+scene file against the program's reader."""
 import re
 import shlex
 
@@ -6,7 +7,11 @@ from harness import *
 from server import Server
 
 TEXT = (SOURCE / 'README.md').read_text()
-COMMANDS = [line.split('#')[0].strip() for block in re.findall(r'```sh\n(.*?)```', TEXT, re.S) for line in block.splitlines()]
+COMMANDS = [
+    line.split('#')[0].strip()
+    for block in re.findall(r'```sh\n(.*?)```', TEXT, re.S)
+    for line in block.splitlines()
+]
 
 
 def test_every_command_of_the_readme_works():
@@ -19,14 +24,19 @@ def test_every_command_of_the_readme_works():
             words = shlex.split(command)
             if command.endswith('&'):
                 expect(words[:2] == ['palpate', 'serve'] and server is None, command)
-                server = Server(*words[2:-1])   # on a free port in place of the usual one
+                server = Server(*words[2:-1])  # on a free port in place of the usual one
             elif words[:1] == ['palpate']:
                 outcome = palpate(*words[1:])
                 expect(outcome.code == 0, f'{command}: {outcome}')
             elif words[:1] == ['curl']:
                 # ID stands for what the upload answered.
-                asked = [word.replace('localhost:8090', f'localhost:{server.port}').replace('/ID/', f'/{scene}/') for word in words[1:]]
-                done = subprocess.run(['curl', '-sS', '--fail', '--max-time', '300', *asked], capture_output=True, timeout=400)
+                asked = [
+                    word.replace('localhost:8090', f'localhost:{server.port}').replace('/ID/', f'/{scene}/')
+                    for word in words[1:]
+                ]
+                done = subprocess.run(
+                    ['curl', '-sS', '--fail', '--max-time', '300', *asked], capture_output=True, timeout=400
+                )
                 expect(done.returncode == 0, f'{command}: {done}')
                 scene = scene or json.loads(done.stdout)['id']
                 served += 1

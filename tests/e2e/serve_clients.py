@@ -14,11 +14,14 @@ def run(*command):
 
 def with_scene(client):
     folder = Folder()
-    folder.write('path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.0345,0,0,0,1,1\n1,0,0,0.03,0,0,0,1,1\n')
+    folder.write(
+        'path.csv', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0,0,0,0.0345,0,0,0,1,1\n1,0,0,0.03,0,0,0,1,1\n'
+    )
     folder.save(device={'driver': 'simulated', 'path': 'path.csv'})
     with Server('--root', folder.path) as server:
         lines = run(*client, f'http://127.0.0.1:{server.port}', 'scene.json')
-    expect([line.split()[1].lower() for line in lines] == ['false', 'false', 'true'], lines)   # 34.5, 24.5 and 14.5 mm above a block, a ball of 20 mm
+    # 34.5, 24.5 and 14.5 mm above a block, a ball of 20 mm.
+    expect([line.split()[1].lower() for line in lines] == ['false', 'false', 'true'], lines)
     return lines
 
 

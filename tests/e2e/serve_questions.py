@@ -15,11 +15,16 @@ def test_clearance_is_what_the_command_line_says():
         expect(answer.status == 200, answer)
         for wrong in ('?clearance=2', '?clearance=1&any=1'):
             expect(server.ask('POST', query + wrong, {'poses': rows}).status == 400, wrong)
-    told = palpate('query', folder / 'scene.json', '--poses', folder / 'poses.csv', '--clearance', '--backend', 'cpu')
+    told = palpate(
+        'query', folder / 'scene.json', '--poses', folder / 'poses.csv', '--clearance', '--backend', 'cpu'
+    )
     expect(told.code == 0, told)
     expect(answer.body.decode() == told.out, f'{answer.body[:300]} instead of {told.out[:300]}')
     lines = [json.loads(line) for line in told.out.splitlines()]
-    expect(any(line['touches'] for line in lines) and any(line['clearance'] for line in lines), 'touching and apart')
+    expect(
+        any(line['touches'] for line in lines) and any(line['clearance'] for line in lines),
+        'touching and apart',
+    )
 
 
 def test_a_path_is_examined_beside_a_loop_on_the_scene():
@@ -28,20 +33,35 @@ def test_a_path_is_examined_beside_a_loop_on_the_scene():
     with Server(*arguments) as server:
         name = named(server)
         clear = server.ask('POST', f'/v1/scenes/{name}/path', {'poses': down[:5]})
-        expect(clear.status == 200 and clear.headers['Content-Type'].startswith('text/html') and 'The path is clear' in clear.body.decode(), clear)
+        expect(
+            clear.status == 200
+            and clear.headers['Content-Type'].startswith('text/html')
+            and 'The path is clear' in clear.body.decode(),
+            clear,
+        )
         expect('sandbox' in clear.headers['Content-Security-Policy'], 'it runs nothing')
         with WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
             loop.json()
             pages = {}
-            asked = threading.Thread(target=lambda: pages.update(one=server.ask('POST', f'/v1/scenes/{name}/path', {'poses': down})))
+            asked = threading.Thread(
+                target=lambda: pages.update(
+                    one=server.ask('POST', f'/v1/scenes/{name}/path', {'poses': down})
+                )
+            )
             asked.start()
             for seq in range(1, 200):
                 loop.send({'type': 'pose', 'seq': seq, 'time': 0, 'pose': down[seq % 50]})
                 expect(loop.json()['seq'] == seq, 'the loop is answered meanwhile')
             asked.join()
         text = pages['one'].body.decode()
-        expect('The path is not clear' in text and 'scene.json' in text and folder.path.name not in text, text[:500])
-        expect(server.ask('POST', f'/v1/scenes/{name}/path', {'poses': []}).status == 400, 'a path without a pose')
+        expect(
+            'The path is not clear' in text and 'scene.json' in text and folder.path.name not in text,
+            text[:500],
+        )
+        expect(
+            server.ask('POST', f'/v1/scenes/{name}/path', {'poses': []}).status == 400,
+            'a path without a pose',
+        )
         paper = server.ready(server.ask('POST', '/v1/scenes', {'path': 'scene.json', 'profile': 'paper'}))
         expect(server.ask('POST', f'/v1/scenes/{paper}/path', {'poses': down}).status == 409, 'paper')
 
@@ -50,14 +70,33 @@ def test_a_scene_has_the_engine_that_it_is_opened_with():
     folder, arguments = rooted()
     rows = poses(20)
     with Server(*arguments) as server:
-        names = {engine: server.ready(server.ask('POST', '/v1/scenes', {'path': 'scene.json', **({'engine': engine} if engine else {})})) for engine in ('', 'cpu', 'ref')}
+        names = {
+            engine: server.ready(
+                server.ask(
+                    'POST', '/v1/scenes', {'path': 'scene.json', **({'engine': engine} if engine else {})}
+                )
+            )
+            for engine in ('', 'cpu', 'ref')
+        }
         expect(len(set(names.values())) == 3, 'three scenes')
-        answers = {engine: server.ask('POST', f'/v1/scenes/{name}/query', {'poses': rows}).body for engine, name in names.items()}
-        expect({json.loads(answers['ref'].splitlines()[0])['engine'], json.loads(answers['cpu'].splitlines()[0])['engine']} == {'ref', 'cpu'}, 'each by its own')
+        answers = {
+            engine: server.ask('POST', f'/v1/scenes/{name}/query', {'poses': rows}).body
+            for engine, name in names.items()
+        }
+        expect(
+            {
+                json.loads(answers['ref'].splitlines()[0])['engine'],
+                json.loads(answers['cpu'].splitlines()[0])['engine'],
+            }
+            == {'ref', 'cpu'},
+            'each by its own',
+        )
         strip = lambda body: without_times(body).replace(b'"engine":"ref"', b'"engine":"cpu"')
         expect(strip(answers['ref']) == strip(answers['cpu']), 'and all alike')
         for wrong in ('none', 3, ''):
-            expect(server.ask('POST', '/v1/scenes', {'path': 'scene.json', 'engine': wrong}).status == 400, wrong)
+            expect(
+                server.ask('POST', '/v1/scenes', {'path': 'scene.json', 'engine': wrong}).status == 400, wrong
+            )
 
 
 def test_what_is_listed_is_a_scene():

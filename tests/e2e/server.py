@@ -15,11 +15,12 @@ import time
 
 from harness import PROGRAM, Folder, expect
 
-WAIT_S = 900   # a busy machine is slow, and its slowness is no failure; a hang is
+WAIT_S = 900  # a busy machine is slow, and its slowness is no failure; a hang is
 
 
 def until(what, ask, every_s=0.1):
-    """Asks until the answer, or the first of a tuple, is true, and gives the answer, or the rest of the tuple."""
+    """Asks until the answer, or the first of a tuple, is true, and gives the answer, or the rest of the
+    tuple."""
     end = time.monotonic() + WAIT_S
     while True:
         answer = ask()
@@ -40,7 +41,14 @@ def poses(count, seed=7):
     for _ in range(count):
         q = [chance.gauss(0, 1) for _ in range(4)]
         size = math.sqrt(sum(x * x for x in q))
-        rows.append([chance.uniform(-0.1, 0.1), chance.uniform(-0.1, 0.1), chance.uniform(0.01, 0.04), *(x / size for x in q)])
+        rows.append(
+            [
+                chance.uniform(-0.1, 0.1),
+                chance.uniform(-0.1, 0.1),
+                chance.uniform(0.01, 0.04),
+                *(x / size for x in q),
+            ]
+        )
     return rows
 
 
@@ -75,16 +83,26 @@ class Answer:
 
 
 class Server:
-    """`with Server('--root', folder) as server:` — stopped by SIGTERM at the end, which must give exit 0. `before`: a command that becomes the program."""
+    """`with Server('--root', folder) as server:` — stopped by SIGTERM at the end, which must give exit 0.
+    `before`: a command that becomes the program."""
 
     def __init__(self, *arguments, environment=None, preexec=None, before=()):
         self.log = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([*before, PROGRAM, 'serve', '--listen', '127.0.0.1:0', '--backend', 'cpu', *map(str, arguments)], stdin=subprocess.DEVNULL,
-                                        stdout=subprocess.DEVNULL, stderr=self.log, env={**os.environ, **(environment or {})}, preexec_fn=preexec)
+        self.process = subprocess.Popen(
+            [*before, PROGRAM, 'serve', '--listen', '127.0.0.1:0', '--backend', 'cpu', *map(str, arguments)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=self.log,
+            env={**os.environ, **(environment or {})},
+            preexec_fn=preexec,
+        )
         self.port = None
         end = time.monotonic() + WAIT_S
         while self.port is None:
-            expect(self.process.poll() is None and time.monotonic() < end, f'the server did not start: {self.log_text()}')
+            expect(
+                self.process.poll() is None and time.monotonic() < end,
+                f'the server did not start: {self.log_text()}',
+            )
             found = re.search(r'"event":"listening","address":"127.0.0.1:(\d+)"', self.log_text())
             self.port = int(found[1]) if found else time.sleep(0.02)
 
@@ -147,9 +165,11 @@ class Server:
 
     def settled(self, name, headers=None):
         """The scene, once it is ready or failed."""
+
         def ended():
             scene = self.ask('GET', f'/v1/scenes/{name}?wait=20', headers=headers).json()
             return scene['state'] in ('ready', 'failed'), scene
+
         return until(f'scene {name} is ready or failed', ended, every_s=0)
 
     def metric(self, name):
@@ -176,8 +196,10 @@ class WebSocket:
     def __init__(self, server, path, headers=''):
         self.link = server.connect()
         key = base64.b64encode(os.urandom(16)).decode()
-        self.link.sendall(f'GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n'
-                          f'Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n{headers}\r\n'.encode())
+        self.link.sendall(
+            f'GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n'
+            f'Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n{headers}\r\n'.encode()
+        )
         self.buffer = b''
         while b'\r\n\r\n' not in self.buffer:
             piece = self.link.recv(65536)
@@ -211,8 +233,13 @@ class WebSocket:
 
     def _frame(self, code, payload):
         length = len(payload)
-        head = bytes([0x80 | code]) + (bytes([0x80 | length]) if length < 126 else bytes([0x80 | 126]) + struct.pack('>H', length) if length < 65536
-                                       else bytes([0x80 | 127]) + struct.pack('>Q', length))
+        head = bytes([0x80 | code]) + (
+            bytes([0x80 | length])
+            if length < 126
+            else bytes([0x80 | 126]) + struct.pack('>H', length)
+            if length < 65536
+            else bytes([0x80 | 127]) + struct.pack('>Q', length)
+        )
         mask = os.urandom(4)
         self.link.sendall(head + mask + bytes(b ^ mask[i % 4] for i, b in enumerate(payload)))
 
@@ -237,7 +264,7 @@ class WebSocket:
                 self.closed_with = struct.unpack('>H', payload[:2])[0] if len(payload) >= 2 else 1005
                 try:
                     self._frame(8, payload)
-                except ConnectionError:   # gone already
+                except ConnectionError:  # gone already
                     pass
                 return None
             elif code in (0, 1, 2):

@@ -5,12 +5,39 @@ from harness import *
 def test_help_lists_every_command_and_the_exit_codes():
     outcome = palpate('--help')
     expect(outcome.code == 0 and outcome.err == '', outcome)
-    for word in ('run', 'query', 'path', 'compare', 'plan', 'info', 'generate', 'devices', 'tune', 'serve', 'bench', 'Exit codes', 'metres', 'unit quaternion'):
+    for word in (
+        'run',
+        'query',
+        'path',
+        'compare',
+        'plan',
+        'info',
+        'generate',
+        'devices',
+        'tune',
+        'serve',
+        'bench',
+        'Exit codes',
+        'metres',
+        'unit quaternion',
+    ):
         expect(word in outcome.out, f"help lacks '{word}'")
 
 
 def test_every_command_has_help_of_its_own():
-    for command in ('run', 'query', 'path', 'compare', 'plan', 'info', 'generate', 'devices', 'tune', 'serve', 'bench'):
+    for command in (
+        'run',
+        'query',
+        'path',
+        'compare',
+        'plan',
+        'info',
+        'generate',
+        'devices',
+        'tune',
+        'serve',
+        'bench',
+    ):
         outcome = palpate(command, '--help')
         expect(outcome.code == 0 and outcome.err == '' and command in outcome.out, outcome)
 
@@ -26,7 +53,13 @@ def test_no_command_is_wrong_usage():
 
 
 def test_an_unknown_command_is_told_which_there_are():
-    expect_refused(palpate('qurey', 'x.json'), 2, "'qurey'", 'run, query, path, compare, plan, info, generate, devices', "did you mean 'query'?")
+    expect_refused(
+        palpate('qurey', 'x.json'),
+        2,
+        "'qurey'",
+        'run, query, path, compare, plan, info, generate, devices',
+        "did you mean 'query'?",
+    )
     expect_refused(palpate('tuen'), 2, "did you mean 'tune'?")
 
 

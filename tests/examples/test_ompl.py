@@ -1,4 +1,5 @@
-"""The example for OMPL builds against the installed library and finds a way that `palpate path` finds clear."""
+"""The example for OMPL builds against the installed library and finds a way that `palpate path` finds
+clear."""
 import os
 import subprocess
 
@@ -9,7 +10,13 @@ BUILD, PROGRAM = os.environ['PALPATE_BUILD'], os.environ['PALPATE_PROGRAM']
 
 
 def must(*words, **environment):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=900, env={**os.environ, **environment})
+    done = subprocess.run(
+        [str(word) for word in words],
+        capture_output=True,
+        text=True,
+        timeout=900,
+        env={**os.environ, **environment},
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -20,23 +27,44 @@ def way_out(tmp_path_factory):
     must('cmake', '--install', BUILD, '--component', 'library', '--prefix', folder / 'prefix')
     found = [str(path.parent) for path in (folder / 'prefix').rglob('palpate.pc')]
     assert len(found) == 1
-    must('cmake', '-S', EXAMPLES / 'ompl', '-B', folder / 'build', '-G', 'Ninja', '-DCMAKE_BUILD_TYPE=Release', PKG_CONFIG_PATH=found[0])
+    must(
+        'cmake',
+        '-S',
+        EXAMPLES / 'ompl',
+        '-B',
+        folder / 'build',
+        '-G',
+        'Ninja',
+        '-DCMAKE_BUILD_TYPE=Release',
+        PKG_CONFIG_PATH=found[0],
+    )
     must('cmake', '--build', folder / 'build')
     return folder / 'build/way_out'
 
 
 def test_a_bar_turns_to_get_through_a_window(way_out, tmp_path):
-    # A bar of 60 mm lies across a window that is 24 mm wide and 100 mm high in a wall of 4 mm: straight ahead it can't pass.
+    # A bar of 60 mm lies across a window that is 24 mm wide and 100 mm high in a wall of 4 mm: straight ahead
+    # it can't pass.
     near, far = 0.058, 0.062
-    wall = [((near, -0.3, -0.3), (far, -0.012, 0.3)), ((near, 0.012, -0.3), (far, 0.3, 0.3)),
-            ((near, -0.012, 0.05), (far, 0.012, 0.3)), ((near, -0.012, -0.3), (far, 0.012, -0.05))]
+    wall = [
+        ((near, -0.3, -0.3), (far, -0.012, 0.3)),
+        ((near, 0.012, -0.3), (far, 0.3, 0.3)),
+        ((near, -0.012, 0.05), (far, 0.012, 0.3)),
+        ((near, -0.012, -0.3), (far, 0.012, -0.05)),
+    ]
     scene = write_scene(tmp_path, wall, [((-0.005, -0.03, -0.005), (0.005, 0.03, 0.005))])
     (tmp_path / 'straight.csv').write_text('x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n0.12,0,0,0,0,0,1\n')
-    assert subprocess.run([PROGRAM, 'path', scene, tmp_path / 'straight.csv'], capture_output=True).returncode == 5
+    assert (
+        subprocess.run([PROGRAM, 'path', scene, tmp_path / 'straight.csv'], capture_output=True).returncode
+        == 5
+    )
     way = must(way_out, scene, 0.12, 0, 0, 300)
     rows = [[float(value) for value in line.split(',')] for line in way.splitlines()[1:]]
     assert len(rows) >= 3 and all(len(row) == 7 for row in rows)
-    assert max(abs(a - b) for a, b in zip(rows[0], [0, 0, 0, 0, 0, 0, 1])) < 1e-12 and max(abs(a - b) for a, b in zip(rows[-1][:3], [0.12, 0, 0])) < 1e-12
+    assert (
+        max(abs(a - b) for a, b in zip(rows[0], [0, 0, 0, 0, 0, 0, 1])) < 1e-12
+        and max(abs(a - b) for a, b in zip(rows[-1][:3], [0.12, 0, 0])) < 1e-12
+    )
     (tmp_path / 'way.csv').write_text(way)
     must(PROGRAM, 'path', scene, tmp_path / 'way.csv')
 

@@ -1,11 +1,12 @@
-"""Scenes of extreme size through the program: the right answer or one clear refusal, with and without the device."""
+"""Scenes of extreme size through the program: the right answer or one clear refusal, with and without the
+device."""
 import os
 import pathlib
 import resource
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
-from harness import *   # noqa: E402
+from harness import *  # noqa: E402
 
 BACKENDS = ('gpu', 'cpu')
 
@@ -32,13 +33,22 @@ def test_a_million_coincident_triangles_are_refused_with_the_limit():
     folder.write('same.stl', stl([((0, 0, 0), (0.1, 0, 0), (0, 0.1, 0))] * 1_000_000))
     scene = folder.save(static=[{'mesh': 'same.stl', 'units': 'm'}])
     for backend in BACKENDS:
-        expect_refused(palpate('query', scene, '--pose', '0 0 0 0 0 0 1', '--backend', backend), 3, 'scene.json', '1000000 triangles', 'limit is 4096')
+        expect_refused(
+            palpate('query', scene, '--pose', '0 0 0 0 0 0 1', '--backend', backend),
+            3,
+            'scene.json',
+            '1000000 triangles',
+            'limit is 4096',
+        )
 
 
 def test_a_million_triangles_in_one_voxel_are_answered():
-    # A ball of 1 m with a million triangles, in a scene of 10 km: the lists of the few voxels there hold all of them.
+    # A ball of 1 m with a million triangles, in a scene of 10 km: the lists of the few voxels there hold all
+    # of them.
     folder = Folder()
-    folder.write('crowd.stl', stl(sphere(0.5, 500) + [((1e4, 1e4, 1e4), (1e4 + 1, 1e4, 1e4), (1e4, 1e4 + 1, 1e4))]))
+    folder.write(
+        'crowd.stl', stl(sphere(0.5, 500) + [((1e4, 1e4, 1e4), (1e4 + 1, 1e4, 1e4), (1e4, 1e4 + 1, 1e4))])
+    )
     folder.write('ball.stl', stl(sphere(0.05)))
     scene = folder.save(static=[{'mesh': 'crowd.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
     pose = '0 0 0.52 0 0 0 1'
@@ -47,7 +57,7 @@ def test_a_million_triangles_in_one_voxel_are_answered():
     default, said = answer(scene, pose)
     expect(default == cpu, 'without --backend the answer is right, whoever gives it')
     outcome = palpate('query', scene, '--pose', pose, '--backend', 'gpu')
-    if outcome.code == 0:   # the device may lack room, or what else there is a limit to; it says so
+    if outcome.code == 0:  # the device may lack room, or what else there is a limit to; it says so
         gpu = {**lines_of(outcome)[0], 'time_us': 0, 'engine': ''}
         expect(gpu == cpu or (gpu['truncated'] and 'the most' in outcome.err), outcome)
     else:
@@ -59,7 +69,11 @@ def test_a_sliver_across_ten_thousand_voxels_is_found_all_along():
     folder = Folder()
     folder.write('sliver.stl', stl([((0, 0, 0), (0.7, 0.7, 0), (0.0001, 0, 0))]))
     folder.write('ball.stl', stl(sphere(0.002)))
-    scene = folder.save(static=[{'mesh': 'sliver.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'}, response={'voxel_size': 0.00007})
+    scene = folder.save(
+        static=[{'mesh': 'sliver.stl', 'units': 'm'}],
+        tool={'mesh': 'ball.stl', 'units': 'm'},
+        response={'voxel_size': 0.00007},
+    )
     for t in (0.0001, 0.35, 0.6999):
         found = answer_on_both(scene, f'{t} {t} 0 0 0 0 1')
         expect(found['contact'] and found['cst'] == [0], f'at {t}: {found}')
@@ -70,16 +84,23 @@ def test_a_triangle_across_too_many_voxels_is_refused_with_the_limit():
     folder = Folder()
     folder.write('sheet.stl', stl([((0, 0, 0), (0.7, 0, 0), (0, 0.7, 0))]))
     folder.write('steep.stl', stl([((0, 0, 0), (0.7, 0.7, 0.7), (0.0001, 0, 0))]))
-    for mesh, words in (('sheet.stl', ('boundary voxels', 'limit is 8000000')), ('steep.stl', ('bricks', 'limit is'))):
+    for mesh, words in (
+        ('sheet.stl', ('boundary voxels', 'limit is 8000000')),
+        ('steep.stl', ('bricks', 'limit is')),
+    ):
         scene = folder.save(static=[{'mesh': mesh, 'units': 'm'}], response={'voxel_size': 0.00007})
-        expect_refused(palpate('query', scene, '--pose', '0 0 0 0 0 0 1'), 3, 'scene.json', 'voxel_size', *words)
+        expect_refused(
+            palpate('query', scene, '--pose', '0 0 0 0 0 0 1'), 3, 'scene.json', 'voxel_size', *words
+        )
         # Left to choose, it finds a size that fits.
         answer_on_both(folder.save(static=[{'mesh': mesh, 'units': 'm'}]), '0.1 0.1 0.1 0 0 0 1')
 
 
 def test_ten_million_triangles_are_prepared_and_queried_within_six_gibibytes():
     folder = Folder()
-    made = palpate('generate', 'contacts', '--triangles', '10000000', '--tool-triangles', '2000', '--out', folder / 'big')
+    made = palpate(
+        'generate', 'contacts', '--triangles', '10000000', '--tool-triangles', '2000', '--out', folder / 'big'
+    )
     expect(made.code == 0, made)
     answer(folder / 'big' / 'scene.json', '0 0 0 0 0 0 1')
     most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024

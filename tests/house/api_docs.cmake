@@ -1,8 +1,10 @@
-# Writes the pages of the public headers. What doxygen warns of is an error: a word that it doesn't know, a link that leads nowhere, a class, enumeration or
-# function without a sentence. Let alone are variables, whose names may say it all, and comparisons, which are what they are.
+# Writes the pages of the public headers. What doxygen warns of is an error: a word that it doesn't know, a
+# link that leads nowhere, a class, enumeration or function without a sentence. Let alone are variables, whose
+# names may say it all, and comparisons, which are what they are.
 cmake_policy(SET CMP0007 NEW)
 file(REMOVE_RECURSE "${BUILD_DIR}/api")
-execute_process(COMMAND "${DOXYGEN}" "${BUILD_DIR}/Doxyfile" WORKING_DIRECTORY "${BUILD_DIR}" RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+execute_process(COMMAND "${DOXYGEN}" "${BUILD_DIR}/Doxyfile" WORKING_DIRECTORY "${BUILD_DIR}" RESULT_VARIABLE
+  code OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT code EQUAL 0)
   message(FATAL_ERROR "doxygen failed (${code}; Debian: doxygen):\n${output}")
 endif()

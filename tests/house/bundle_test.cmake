@@ -1,5 +1,5 @@
-# Packs the bundle, unpacks it elsewhere and starts it in an empty environment; every library but the C library's must
-# come from the bundle.
+# Packs the bundle, unpacks it elsewhere and starts it in an empty environment; every library but the C
+# library's must come from the bundle.
 function(must)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
@@ -16,14 +16,17 @@ file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION "${WORK_DIR}/elsewhere")
 file(GLOB root "${WORK_DIR}/elsewhere/*")
 
 must(env -i "${root}/bin/palpate" --version)
-# What installs beside the program, and what others' licences ask for: a copyright file for each bundled library's package.
-foreach(file share/man/man1/palpate.1 share/man/man1/palpate-run.1 share/bash-completion/completions/palpate share/zsh/site-functions/_palpate share/fish/vendor_completions.d/palpate.fish
+# What installs beside the program, and what others' licences ask for: a copyright file for each bundled
+# library's package.
+foreach(file share/man/man1/palpate.1 share/man/man1/palpate-run.1 share/bash-completion/completions/palpate
+  share/zsh/site-functions/_palpate share/fish/vendor_completions.d/palpate.fish
     share/palpate/THIRD_PARTY_NOTICES.md share/palpate/SECURITY.md share/palpate/licences/libcli11-dev)
   if(NOT EXISTS "${root}/${file}")
     message(FATAL_ERROR "missing from the bundle: ${file}")
   endif()
 endforeach()
-must(python3 "${CMAKE_CURRENT_LIST_DIR}/sbom_judge.py" "${root}/share/palpate/sbom.spdx.json" "${SOURCE_DIR}" "${root}/bin/palpate" "${root}/libexec/palpate/palpate-import")
+must(python3 "${CMAKE_CURRENT_LIST_DIR}/sbom_judge.py" "${root}/share/palpate/sbom.spdx.json" "${SOURCE_DIR}"
+  "${root}/bin/palpate" "${root}/libexec/palpate/palpate-import")
 file(GLOB libraries RELATIVE "${root}/lib/palpate" "${root}/lib/palpate/*.so*")
 foreach(library IN LISTS libraries)
   execute_process(COMMAND dpkg-query --search "*/${ARCHITECTURE}/${library}" OUTPUT_VARIABLE owner)
@@ -32,13 +35,15 @@ foreach(library IN LISTS libraries)
     message(FATAL_ERROR "no copyright file of '${owner}', which ${library} is from")
   endif()
 endforeach()
-must(env -i "${root}/bin/palpate" query "${root}/share/palpate/scenes/contacts.json" --backend cpu --pose "0 0 0 0 0 0 1")
+must(env -i "${root}/bin/palpate" query "${root}/share/palpate/scenes/contacts.json" --backend cpu --pose
+  "0 0 0 0 0 0 1")
 file(WRITE "${WORK_DIR}/triangle.off" "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
 must(env -i "${root}/bin/palpate" info "${WORK_DIR}/triangle.off")
 set(programs "${root}/bin/palpate" "${root}/libexec/palpate/palpate-import")
 must("${root}/bin/gpu-check" --help)
 list(APPEND programs "${root}/libexec/palpate/equivalence")
-must(env -i "${root}/libexec/palpate/equivalence" --case ball_on_block --backend cpu --check "${root}/share/palpate/hashes.json")
+must(env -i "${root}/libexec/palpate/equivalence" --case ball_on_block --backend cpu --check
+  "${root}/share/palpate/hashes.json")
 if(EXISTS "${root}/libexec/palpate/palpate-import-cad")
   list(APPEND programs "${root}/libexec/palpate/palpate-import-cad")
   foreach(file cylinder.step cylinder.igs cylinder.brep)
@@ -54,7 +59,8 @@ foreach(line IN LISTS lines)
   elseif(line MATCHES "=> ([^ ]+)")
     if(CMAKE_MATCH_1 MATCHES "/elsewhere/")
       math(EXPR inside "${inside} + 1")
-    elseif(NOT line MATCHES "^[ \t]*(libc|libm|libdl|libpthread|librt)\\.so" AND NOT line MATCHES "lib(a|t|ub)san")
+    elseif(NOT line MATCHES "^[ \t]*(libc|libm|libdl|libpthread|librt)\\.so" AND NOT line MATCHES
+      "lib(a|t|ub)san")
       message(FATAL_ERROR "taken from this machine, not from the bundle: ${line}")
     endif()
   endif()

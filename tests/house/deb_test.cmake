@@ -1,4 +1,5 @@
-# Packs the Debian package and looks at what is in it: files, dependencies, scripts. Then its programs run from where it was unpacked, in an empty environment.
+# Packs the Debian package and looks at what is in it: files, dependencies, scripts. Then its programs run
+# from where it was unpacked, in an empty environment.
 function(must)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
@@ -16,14 +17,20 @@ if(NOT package MATCHES "/palpate_[0-9.]+_[a-z0-9]+\\.deb$")
 endif()
 
 set(libdir usr/lib/${ARCHITECTURE})
-# Files: these, and nothing outside their folders; all are root's, none is anyone's to write, none sets an identity.
+# Files: these, and nothing outside their folders; all are root's, none is anyone's to write, none sets an
+# identity.
 must(dpkg-deb --contents "${package}")
 set(listing "${output}")
-foreach(file usr/bin/palpate usr/libexec/palpate/palpate-import usr/share/man/man1/palpate.1.gz usr/share/man/man1/palpate-run.1.gz usr/share/bash-completion/completions/palpate
-    usr/share/zsh/vendor-completions/_palpate usr/share/fish/vendor_completions.d/palpate.fish usr/lib/systemd/system/palpate.service usr/lib/udev/rules.d/70-palpate.rules
-    usr/share/palpate/scenes/contacts.json usr/share/doc/palpate/copyright usr/share/doc/palpate/changelog.gz usr/share/doc/palpate/THIRD_PARTY_NOTICES.md
-    usr/share/doc/palpate/sbom.spdx.json usr/share/doc/palpate/licences/libcli11-dev usr/include/palpate.h ${libdir}/libpalpate.so.0 ${libdir}/pkgconfig/palpate.pc
-    usr/lib/python3/dist-packages/palpate/scene.py usr/lib/python3/dist-packages/palpate/py.typed usr/bin/palpate-sweep)
+foreach(file usr/bin/palpate usr/libexec/palpate/palpate-import usr/share/man/man1/palpate.1.gz
+  usr/share/man/man1/palpate-run.1.gz usr/share/bash-completion/completions/palpate
+    usr/share/zsh/vendor-completions/_palpate usr/share/fish/vendor_completions.d/palpate.fish
+    usr/lib/systemd/system/palpate.service usr/lib/udev/rules.d/70-palpate.rules
+    usr/share/palpate/scenes/contacts.json usr/share/doc/palpate/copyright usr/share/doc/palpate/changelog.gz
+    usr/share/doc/palpate/THIRD_PARTY_NOTICES.md
+    usr/share/doc/palpate/sbom.spdx.json usr/share/doc/palpate/licences/libcli11-dev usr/include/palpate.h
+    ${libdir}/libpalpate.so.0 ${libdir}/pkgconfig/palpate.pc
+    usr/lib/python3/dist-packages/palpate/scene.py usr/lib/python3/dist-packages/palpate/py.typed
+    usr/bin/palpate-sweep)
   if(NOT listing MATCHES " \\./${file}( -> [^\n]*)?\n")
     message(FATAL_ERROR "missing from the package: ${file}\n${listing}")
   endif()
@@ -38,12 +45,14 @@ foreach(line IN LISTS listing)
     message(FATAL_ERROR "where a package of this kind has nothing, or not root's: ${line}")
   elseif(NOT line MATCHES "^l" AND line MATCHES "^.....w|^........w|^...[sS]|^......[sS]")
     message(FATAL_ERROR "others may write it, or it sets an identity: ${line}")
-  elseif(line MATCHES "/lib/palpate|\\.(so|a|h)(\\.|$)|cmake|__pycache__" AND NOT line MATCHES "/include/palpate\\.h$|/${ARCHITECTURE}/libpalpate\\.so")
+  elseif(line MATCHES "/lib/palpate|\\.(so|a|h)(\\.|$)|cmake|__pycache__" AND NOT line MATCHES
+    "/include/palpate\\.h$|/${ARCHITECTURE}/libpalpate\\.so")
     message(FATAL_ERROR "belongs to the bundle or to the C++ libraries: ${line}")
   endif()
 endforeach()
 
-# Dependencies: what the programs are linked with, by package; no compiler, no header, and drivers recommended only.
+# Dependencies: what the programs are linked with, by package; no compiler, no header, and drivers recommended
+# only.
 foreach(field Package Version Architecture Depends Recommends Description Installed-Size)
   must(dpkg-deb --field "${package}" ${field})
   string(STRIP "${output}" ${field})
@@ -56,7 +65,8 @@ foreach(name libc6 libvulkan1 libembree3 libfmt9 libssl3 libusb-1.0-0 libassimp5
     message(FATAL_ERROR "depends not on ${name}: ${Depends}")
   endif()
 endforeach()
-if(Depends MATCHES "-dev|mesa|g\\+\\+|cmake|python" OR NOT Recommends MATCHES "mesa-vulkan-drivers \\| vulkan-icd")
+if(Depends MATCHES "-dev|mesa|g\\+\\+|cmake|python" OR NOT Recommends MATCHES
+  "mesa-vulkan-drivers \\| vulkan-icd")
   message(FATAL_ERROR "depends: ${Depends}\nrecommends: ${Recommends}")
 endif()
 must(dpkg-deb --control "${package}" "${WORK_DIR}/control")
@@ -66,8 +76,10 @@ endforeach()
 
 must(dpkg-deb --extract "${package}" "${WORK_DIR}/root")
 set(root "${WORK_DIR}/root/usr")
-must(python3 "${CMAKE_CURRENT_LIST_DIR}/sbom_judge.py" "${root}/share/doc/palpate/sbom.spdx.json" "${SOURCE_DIR}" "${root}/bin/palpate" "${root}/libexec/palpate/palpate-import")
-file(GLOB programs "${root}/bin/palpate" "${root}/libexec/palpate/*" "${root}/lib/${ARCHITECTURE}/libpalpate.so.0")
+must(python3 "${CMAKE_CURRENT_LIST_DIR}/sbom_judge.py" "${root}/share/doc/palpate/sbom.spdx.json"
+  "${SOURCE_DIR}" "${root}/bin/palpate" "${root}/libexec/palpate/palpate-import")
+file(GLOB programs "${root}/bin/palpate" "${root}/libexec/palpate/*"
+  "${root}/lib/${ARCHITECTURE}/libpalpate.so.0")
 foreach(program IN LISTS programs)
   must(readelf -d "${program}")
   if(output MATCHES "RPATH|RUNPATH")
@@ -79,11 +91,13 @@ foreach(program IN LISTS programs)
   endif()
 endforeach()
 must(env -i "${root}/bin/palpate" --version)
-must(env -i "${root}/bin/palpate" query "${root}/share/palpate/scenes/contacts.json" --backend cpu --pose "0 0 0 0 0 0 1")
+must(env -i "${root}/bin/palpate" query "${root}/share/palpate/scenes/contacts.json" --backend cpu --pose
+  "0 0 0 0 0 0 1")
 file(WRITE "${WORK_DIR}/triangle.off" "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
 must(env -i "${root}/bin/palpate" info "${WORK_DIR}/triangle.off")
 file(WRITE "${WORK_DIR}/upright.off" "OFF\n3 1 0\n0 0 -1\n0 0 1\n0.1 0.1 1\n3 0 1 2\n")
-file(WRITE "${WORK_DIR}/triangle.json" "{\"static\": [{\"mesh\": \"triangle.off\"}], \"tool\": {\"mesh\": \"upright.off\"}}")
+file(WRITE "${WORK_DIR}/triangle.json"
+  "{\"static\": [{\"mesh\": \"triangle.off\"}], \"tool\": {\"mesh\": \"upright.off\"}}")
 
 # A C program built with what the package brings, and Python, each with the package's library.
 set(loader "LD_LIBRARY_PATH=${root}/lib/${ARCHITECTURE}")
@@ -96,4 +110,5 @@ import palpate
 scene = palpate.Scene('${WORK_DIR}/triangle.json')
 assert scene.touches([[0.2, 0.2, 0, 0, 0, 0, 1], [0, 0, 9, 0, 0, 0, 1]]).tolist() == [True, False]
 assert palpate.__file__.startswith('${root}'), palpate.__file__")
-must(env -i ${loader} "PYTHONPATH=${root}/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 "${root}/bin/palpate-sweep" --help)
+must(env -i ${loader} "PYTHONPATH=${root}/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1
+  "${root}/bin/palpate-sweep" --help)

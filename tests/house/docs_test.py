@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Pages name files that exist. Of README, CONTRIBUTING and docs/: every relative link, and every path of this
-tree that is written out (`compute/native/frame.cpp`). Of sources and scripts: every page of docs/ that they name.
+tree that is written out (`compute/native/frame.cpp`). Of sources and scripts: every page of docs/ that they
+name.
 
 usage: docs_test.py ROOT"""
 import re
@@ -9,15 +10,36 @@ from pathlib import Path
 
 TOP = 'bench|compute|cpu_ref|docs|driver|model|scenes|scripts|service|shaders|tests'
 LINK = re.compile(r'\]\(([^)#:\s]+)(?:#[^)]*)?\)')
-PATH = re.compile(rf'(?<![\w/.~-])((?:{TOP})/[\w./-]*\w\.(?:cpp|h|comp|glsl|py|md|mjs|ts|rules|csv|json|sh|in|service|conf))\b')
+PATH = re.compile(
+    rf'(?<![\w/.~-])((?:{TOP})/[\w./-]*\w\.(?:cpp|h|comp|glsl|py|md|mjs|ts|rules|csv|json|sh|in|service|conf))\b'
+)
 PAGE = re.compile(r'(?<![\w/.])docs/\w+\.md\b')
-SOURCES = {'.cpp', '.h', '.comp', '.glsl', '.py', '.mjs', '.ts', '.cmake', '.txt', '.json', '.sh', '.html', ''}
+SOURCES = {
+    '.cpp',
+    '.h',
+    '.comp',
+    '.glsl',
+    '.py',
+    '.mjs',
+    '.ts',
+    '.cmake',
+    '.txt',
+    '.json',
+    '.sh',
+    '.html',
+    '',
+}
 MADE = {'service/viewer/work'}  # folders of a build, which docs may speak of
 
 
 def missing(root):
-    pages = [root / 'README.md', root / 'CONTRIBUTING.md', *sorted((root / 'docs').glob('**/*.md')),
-             *sorted(root.glob('tests/**/README.md')), *sorted(root.glob('bench/**/README.md'))]
+    pages = [
+        root / 'README.md',
+        root / 'CONTRIBUTING.md',
+        *sorted((root / 'docs').glob('**/*.md')),
+        *sorted(root.glob('tests/**/README.md')),
+        *sorted(root.glob('bench/**/README.md')),
+    ]
     for page in pages:
         text = page.read_text()
         for target in LINK.findall(text):

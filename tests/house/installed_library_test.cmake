@@ -1,4 +1,5 @@
-# Installs the library component, builds docs/examples/own_device against it with find_package(palpate), and runs it.
+# Installs the library component, builds docs/examples/own_device against it with find_package(palpate), and
+# runs it.
 function(must)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)

@@ -1,10 +1,12 @@
-"""No shipped shader module computes a float that is compared, and none whose bits a device may choose leaves a module unnoticed.
+"""No shipped shader module computes a float that is compared, and none whose bits a device may choose leaves
+a module unnoticed.
 
 usage: spirv_floats.py SPIRV_DIRECTORY
 
-Integers decide (docs/EXACTNESS.md), and the doubles of an answer are made on the host. Floats only propose: CULLS lists the modules that hold
-any, and why no bit of theirs reaches an answer. Every other module with float arithmetic must have NoContraction on each operation, none that
-Vulkan leaves inexact, and no reduced precision. No module at all may keep a float where another invocation, the host or a later stage reads it.
+Integers decide (docs/EXACTNESS.md), and the doubles of an answer are made on the host. Floats only propose:
+CULLS lists the modules that hold any, and why no bit of theirs reaches an answer. Every other module with
+float arithmetic must have NoContraction on each operation, none that Vulkan leaves inexact, and no reduced
+precision. No module at all may keep a float where another invocation, the host or a later stage reads it.
 """
 import pathlib
 import re
@@ -12,11 +14,31 @@ import subprocess
 import sys
 import tempfile
 
-# Exactly rounded or free of rounding, once nothing is contracted (Vulkan, "Precision and Operation of SPIR-V Instructions").
+# Exactly rounded or free of rounding, once nothing is contracted (Vulkan, "Precision and Operation of SPIR-V
+# Instructions").
 ARITHMETIC = {'OpFAdd', 'OpFSub', 'OpFMul', 'OpFNegate', 'OpVectorTimesScalar'}
 EXACT_EXTENDED = {'FAbs', 'FMin', 'FMax', 'FSign', 'Floor', 'Ceil', 'Trunc'}
-INEXACT = {'OpFDiv', 'OpFRem', 'OpFMod', 'OpDot', 'OpOuterProduct', 'OpMatrixTimesScalar', 'OpVectorTimesMatrix', 'OpMatrixTimesVector', 'OpMatrixTimesMatrix'}
-SHARED_STORAGE = {'StorageBuffer', 'Uniform', 'UniformConstant', 'PushConstant', 'Workgroup', 'CrossWorkgroup', 'Input', 'Output'}
+INEXACT = {
+    'OpFDiv',
+    'OpFRem',
+    'OpFMod',
+    'OpDot',
+    'OpOuterProduct',
+    'OpMatrixTimesScalar',
+    'OpVectorTimesMatrix',
+    'OpMatrixTimesVector',
+    'OpMatrixTimesMatrix',
+}
+SHARED_STORAGE = {
+    'StorageBuffer',
+    'Uniform',
+    'UniformConstant',
+    'PushConstant',
+    'Workgroup',
+    'CrossWorkgroup',
+    'Input',
+    'Output',
+}
 
 RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding, contracted or not, and exact tests follow'
 CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
@@ -39,11 +61,13 @@ CULLS = {
 
 class Module:
     def __init__(self, path):
-        text = subprocess.run(['spirv-dis', '--raw-id', '--no-color', str(path)], check=True, capture_output=True, text=True).stdout
+        text = subprocess.run(
+            ['spirv-dis', '--raw-id', '--no-color', str(path)], check=True, capture_output=True, text=True
+        ).stdout
         self.problems = []
-        self.floats = 0                      # instructions that compute or convert a float
+        self.floats = 0  # instructions that compute or convert a float
         lines = [line.split(';')[0].split() for line in text.splitlines()]
-        instructions = []                    # (opcode, result or None, operands with the result's type first)
+        instructions = []  # (opcode, result or None, operands with the result's type first)
         for words in filter(None, lines):
             if len(words) > 2 and words[1] == '=':
                 instructions.append((words[2], words[0], words[3:]))
@@ -61,7 +85,13 @@ class Module:
             if op == 'OpTypeFloat':
                 holds_float.add(result)
                 widths.add(int(operands[0]))
-            elif op in ('OpTypeVector', 'OpTypeMatrix', 'OpTypeArray', 'OpTypeRuntimeArray', 'OpTypeStruct') and holds_float & set(operands):
+            elif op in (
+                'OpTypeVector',
+                'OpTypeMatrix',
+                'OpTypeArray',
+                'OpTypeRuntimeArray',
+                'OpTypeStruct',
+            ) and holds_float & set(operands):
                 holds_float.add(result)
             elif op == 'OpTypePointer' and operands[1] in holds_float and operands[0] in SHARED_STORAGE:
                 self.problems.append(f'a float in {operands[0]} memory')
@@ -69,7 +99,7 @@ class Module:
                 type_of[result] = operands[0]
         if widths - {32}:
             self.problems.append(f'floats of {sorted(widths)} bits')
-        self.loose = []                      # what a module outside CULLS may not hold
+        self.loose = []  # what a module outside CULLS may not hold
         for op, result, operands in instructions:
             is_float = bool(operands) and operands[0] in holds_float
             if op in ARITHMETIC and is_float:
@@ -83,7 +113,9 @@ class Module:
                 self.floats += 1
                 if operands[2] not in EXACT_EXTENDED:
                     self.loose.append(operands[2])
-            elif op.startswith('OpConvert') and (is_float or any(type_of.get(o) in holds_float for o in operands[1:])):
+            elif op.startswith('OpConvert') and (
+                is_float or any(type_of.get(o) in holds_float for o in operands[1:])
+            ):
                 self.floats += 1
 
 
@@ -101,9 +133,11 @@ def verdict(path, name):
 
 def test_the_test():
     """What must be found is found: each of these shaders breaks one rule, the last breaks none."""
-    head = ('#version 460\n#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 1) in;\n'
-            'layout(set = 0, binding = 0) buffer A { int a[]; };\nlayout(set = 0, binding = 1) buffer B { %s b[]; };\n'
-            'void main() { float x = float(a[0]), y = float(a[1]); precise float s = 0.0; float r = 0.0; %s a[2] = int(r) + int(s); }\n')
+    head = (
+        '#version 460\n#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 1) in;\n'
+        'layout(set = 0, binding = 0) buffer A { int a[]; };\nlayout(set = 0, binding = 1) buffer B { %s b[]; };\n'
+        'void main() { float x = float(a[0]), y = float(a[1]); precise float s = 0.0; float r = 0.0; %s a[2] = int(r) + int(s); }\n'
+    )
     cases = {
         'OpFMul without NoContraction': ('int', 'r = x * y + 1.0;'),
         'OpFAdd without NoContraction': ('int', 'r = x + y;'),
@@ -119,7 +153,11 @@ def test_the_test():
         for expected, (kind, body) in cases.items():
             source, spirv = pathlib.Path(folder) / 'probe.comp', pathlib.Path(folder) / 'probe.spv'
             source.write_text(head % (kind, body))
-            subprocess.run(['glslangValidator', '--quiet', '--target-env', 'vulkan1.3', '-o', str(spirv), str(source)], check=True, stdout=sys.stderr)
+            subprocess.run(
+                ['glslangValidator', '--quiet', '--target-env', 'vulkan1.3', '-o', str(spirv), str(source)],
+                check=True,
+                stdout=sys.stderr,
+            )
             problems, _ = verdict(spirv, 'probe')
             if (expected not in problems) if expected else problems:
                 sys.exit(f'this test is blind: {body} should give {expected}, gave {problems}')
@@ -132,7 +170,10 @@ def main():
     for path in paths:
         problems, floats = verdict(path, path.stem)
         if floats:
-            print(f'{path.stem}: {floats} float instructions' + (f'; {CULLS[path.stem]}' if path.stem in CULLS else ', none contracted'))
+            print(
+                f'{path.stem}: {floats} float instructions'
+                + (f'; {CULLS[path.stem]}' if path.stem in CULLS else ', none contracted')
+            )
         for problem in problems:
             failed += 1
             print(f'FAILED  {path.stem}: {problem}')

@@ -1,4 +1,5 @@
-# Builds the examples against the installed library as a stranger would, with pkg-config and rustc, and runs them on a cube over a plate.
+# Builds the examples against the installed library as a stranger would, with pkg-config and rustc, and runs
+# them on a cube over a plate.
 function(must)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE problems)
   if(NOT code EQUAL 0)
@@ -29,7 +30,8 @@ function(write_box file x y z)
       string(APPEND text "${px} ${py} ${pz}\n")
     endforeach()
   endforeach()
-  foreach(face "0 2 1" "0 3 2" "4 5 6" "4 6 7" "0 1 5" "0 5 4" "1 2 6" "1 6 5" "2 3 7" "2 7 6" "3 0 4" "3 4 7")
+  foreach(face "0 2 1" "0 3 2" "4 5 6" "4 6 7" "0 1 5" "0 5 4" "1 2 6" "1 6 5" "2 3 7" "2 7 6" "3 0 4"
+    "3 4 7")
     string(APPEND text "3 ${face}\n")
   endforeach()
   file(WRITE "${file}" "${text}")
@@ -46,18 +48,22 @@ if(SANITIZE)
   string(REPLACE ";" "," SANITIZE "${SANITIZE}")
   set(sanitizer "-fsanitize=${SANITIZE}")
 endif()
-must(${CXX} -x c -std=c11 -Wall -Wextra -pedantic -Werror "${EXAMPLES}/c/nearest.c" ${sanitizer} -o "${WORK_DIR}/nearest" ${flags})
+must(${CXX} -x c -std=c11 -Wall -Wextra -pedantic -Werror "${EXAMPLES}/c/nearest.c" ${sanitizer} -o
+  "${WORK_DIR}/nearest" ${flags})
 must("${WORK_DIR}/nearest" "${WORK_DIR}/scene.json" 0.01)
-if(NOT output MATCHES "free, first contact at height 0\\.00000[01] m" OR NOT output MATCHES ": 0\\.0(10000|09999) m free")
+if(NOT output MATCHES "free, first contact at height 0\\.00000[01] m" OR NOT output MATCHES
+  ": 0\\.0(10000|09999) m free")
   message(FATAL_ERROR "the C example says: ${output}")
 endif()
-execute_process(COMMAND "${WORK_DIR}/nearest" /nowhere.json 1 RESULT_VARIABLE code ERROR_VARIABLE problems OUTPUT_QUIET)
+execute_process(COMMAND "${WORK_DIR}/nearest" /nowhere.json 1 RESULT_VARIABLE code ERROR_VARIABLE problems
+  OUTPUT_QUIET)
 if(NOT code EQUAL 3 OR NOT problems MATCHES "/nowhere.json does not exist")
   message(FATAL_ERROR "the C example ends with ${code}: ${problems}")
 endif()
 
 if(NOT SANITIZE)   # rustc links no sanitizer of GCC's
-  must(${RUSTC} --edition 2021 -D warnings -L "native=${folder}" -o "${WORK_DIR}/nearest_rust" "${EXAMPLES}/rust/nearest.rs")
+  must(${RUSTC} --edition 2021 -D warnings -L "native=${folder}" -o "${WORK_DIR}/nearest_rust"
+    "${EXAMPLES}/rust/nearest.rs")
   must("${WORK_DIR}/nearest_rust" "${WORK_DIR}/scene.json" 0.01)
   if(NOT output MATCHES "^0\\.0(10000|09999) m free\n$")
     message(FATAL_ERROR "the Rust example says: ${output}")

@@ -3,9 +3,10 @@
 
     mutation.py JUDGE [--only PATH...] [--sample N] [--jobs N] [--cache FILE] [--table FILE] [--least PERCENT]
 
-JUDGE is the built mutant_judge. Prints a line a file and the survivors; writes the table with --table. A caught mutant stays caught
-until its file changes; a survivor is asked again when the oracle changes, too (--cache remembers). Status 1: a survivor that
-survivors.csv does not explain, or fewer caught than --least of those that change something.
+JUDGE is the built mutant_judge. Prints a line a file and the survivors; writes the table with --table. A
+caught mutant stays caught until its file changes; a survivor is asked again when the oracle changes, too
+(--cache remembers). Status 1: a survivor that survivors.csv does not explain, or fewer caught than --least of
+those that change something.
 """
 import argparse
 import collections
@@ -27,8 +28,14 @@ ROOT = HERE.parent.parent
 CAUGHT = ("differs", "crashed", "hangs")
 NO_MUTANT = ("no-program", "no-change")
 # How the reason begins when no test could see the mutant.
-CHANGES_NOTHING = ("equivalent: ", "speed only: ", "a sentence of an error", "memory_bytes is no answer", "by design: ")
-SECOND = ("logic", "not", "name")   # kinds that are judged when all others have been
+CHANGES_NOTHING = (
+    "equivalent: ",
+    "speed only: ",
+    "a sentence of an error",
+    "memory_bytes is no answer",
+    "by design: ",
+)
+SECOND = ("logic", "not", "name")  # kinds that are judged when all others have been
 
 # What is judged first: predicates, then areas, rays, classes; then the rest.
 FIRST = """cpu_ref/ model/ compute/ shaders/lib/triangle_pair shaders/lib/triangle_voxel shaders/lib/ray shaders/lib/sample.glsl
@@ -38,7 +45,10 @@ shaders/frame/ shaders/""".split()
 
 
 # The host's exact code, in the order of CMakeLists.txt.
-HOST = [f"model/{name}.cpp" for name in "mesh/boundary mesh/edges mesh/orientation contact/response mesh/side_winding mesh/smooth_angle".split()]
+HOST = [
+    f"model/{name}.cpp"
+    for name in "mesh/boundary mesh/edges mesh/orientation contact/response mesh/side_winding mesh/smooth_angle".split()
+]
 
 # What the device's back end does on the host at a pose. Asked of the device's judge, in its process.
 
@@ -50,8 +60,12 @@ def of_program(name):
 
 def sources():
     """Files with mutants, in the order of FIRST."""
-    names = [str(p.relative_to(ROOT)) for folder in ("cpu_ref", "shaders") for p in sorted((ROOT / folder).rglob("*"))
-             if p.suffix in (".h", ".cpp", ".glsl", ".comp") and "shared" not in p.parts]
+    names = [
+        str(p.relative_to(ROOT))
+        for folder in ("cpu_ref", "shaders")
+        for p in sorted((ROOT / folder).rglob("*"))
+        if p.suffix in (".h", ".cpp", ".glsl", ".comp") and "shared" not in p.parts
+    ]
     names += HOST
     return sorted(names, key=lambda n: (next(i for i, f in enumerate(FIRST) if n.startswith(f)), n))
 
@@ -80,15 +94,24 @@ class Job:
     def __init__(self, name, mutant, command, text_hash):
         self.name, self.mutant, self.command = name, mutant, command
         self.key = short_hash(text_hash, name, mutant.begin, mutant.new)
-        self.row = None   # outcome, seconds, case, what
+        self.row = None  # outcome, seconds, case, what
 
 
 def all_jobs(only):
     modules = {str(p.relative_to(ROOT)): None for p in (ROOT / "shaders").rglob("*.comp")}
     modules.update((str(p.relative_to(ROOT)), None) for p in (ROOT / "tests/compute/shaders").glob("*.comp"))
     closure = {m: includes(m) for m in modules}
-    # Probes first, they cost least; then the parts of a frame: a mutant caught there need not be compiled for the preparation too.
-    order = sorted(modules, key=lambda m: (not m.startswith("tests/"), not m.startswith("shaders/frame/"), not m.startswith("shaders/response/"), m))
+    # Probes first, they cost least; then the parts of a frame: a mutant caught there need not be compiled for
+    # the preparation too.
+    order = sorted(
+        modules,
+        key=lambda m: (
+            not m.startswith("tests/"),
+            not m.startswith("shaders/frame/"),
+            not m.startswith("shaders/response/"),
+            m,
+        ),
+    )
     first_number = 1
     numbers = {}
     for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST:
@@ -106,7 +129,9 @@ def all_jobs(only):
             else:
                 # Places in bytes, for C++.
                 begin, end = (len(text[:at].encode()) for at in (m.begin, m.end))
-                command = "\t".join([name, str(begin), str(end), m.new, " ".join(c for c in order if name in closure[c])])
+                command = "\t".join(
+                    [name, str(begin), str(end), m.new, " ".join(c for c in order if name in closure[c])]
+                )
             yield Job(name, m, command, short_hash(text))
 
 
@@ -122,8 +147,14 @@ class Judge:
 
     def start(self):
         environment = dict(os.environ, LP_NUM_THREADS="0")
-        self.process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                        stderr=subprocess.DEVNULL, text=True, env=environment)
+        self.process = subprocess.Popen(
+            self.command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            env=environment,
+        )
         ready = self.process.stdout.readline()
         if not ready.startswith("ready"):
             sys.exit(f"{' '.join(self.command)} does not start: the unchanged program fails its own oracle")
@@ -149,14 +180,14 @@ class Judge:
 
     def judge(self, job):
         row = self.ask(job.command)
-        if row is None:   # 27: SIGPROF, the limit of processor time
+        if row is None:  # 27: SIGPROF, the limit of processor time
             status = self.process.wait()
-            outcome = {-27: "hangs", 77: "no-program"}.get(status, "crashed")   # 77: mutant_switch.h
+            outcome = {-27: "hangs", 77: "no-program"}.get(status, "crashed")  # 77: mutant_switch.h
             row = [outcome, "0", "", f"signal {-status}"]
             self.process = None
             self.unchecked = []
         elif "did not answer in time" in row[3] and not getattr(job, "again", False):
-            job.again = True   # a busy machine, perhaps
+            job.again = True  # a busy machine, perhaps
             self.stop()
             return self.judge(job)
         job.row = row
@@ -182,7 +213,18 @@ class Judge:
 
 
 def oracle_version():
-    files = sorted([*HERE.glob("oracle*"), *HERE.glob("limits*"), *HERE.glob("probes*"), *HERE.glob("mutable_device*"), *HERE.glob("*_probes*"), *(ROOT / "tests/compute").glob("*.h"), *(ROOT / "tests/equivalence").glob("*.cpp"), *(ROOT / "tests/equivalence").glob("*.h")])
+    files = sorted(
+        [
+            *HERE.glob("oracle*"),
+            *HERE.glob("limits*"),
+            *HERE.glob("probes*"),
+            *HERE.glob("mutable_device*"),
+            *HERE.glob("*_probes*"),
+            *(ROOT / "tests/compute").glob("*.h"),
+            *(ROOT / "tests/equivalence").glob("*.cpp"),
+            *(ROOT / "tests/equivalence").glob("*.h"),
+        ]
+    )
     return short_hash(*[f.read_bytes() for f in files])
 
 
@@ -196,40 +238,71 @@ def explanations():
 
 
 def place(job):
-    """How a survivor is named in survivors.csv: by its line's text, so that it stays explained when lines move."""
+    """How a survivor is named in survivors.csv: by its line's text, so that it stays explained when lines
+    move."""
     m = job.mutant
     lines = [" ".join(line.split()) for line in (ROOT / job.name).read_text().split("\n")]
     source = lines[m.line - 1]
-    twin = lines[:m.line - 1].count(source)
-    nth = len([x for x in mutants((ROOT / job.name).read_text(), cpp=of_program(job.name))
-               if x.line == m.line and x.column < m.column and x.key() == m.key()])
-    return job.name, source + (f" [{twin + 1}]" if twin else ""), m.key() + (f" (no. {nth + 1})" if nth else "")
+    twin = lines[: m.line - 1].count(source)
+    nth = len(
+        [
+            x
+            for x in mutants((ROOT / job.name).read_text(), cpp=of_program(job.name))
+            if x.line == m.line and x.column < m.column and x.key() == m.key()
+        ]
+    )
+    return (
+        job.name,
+        source + (f" [{twin + 1}]" if twin else ""),
+        m.key() + (f" (no. {nth + 1})" if nth else ""),
+    )
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     arguments.add_argument("judge")
     arguments.add_argument("--only", nargs="*", default=[])
-    arguments.add_argument("--sample", type=int, default=0, help="every so many mutants only, so that this many are judged")
-    arguments.add_argument("--least", type=float, default=95, help="so many in 100 of those that change something must be caught")
-    arguments.add_argument("--without", nargs="*", default=[], help="cases that are not asked, to see what they are worth (and no probe)")
+    arguments.add_argument(
+        "--sample", type=int, default=0, help="every so many mutants only, so that this many are judged"
+    )
+    arguments.add_argument(
+        "--least", type=float, default=95, help="so many in 100 of those that change something must be caught"
+    )
+    arguments.add_argument(
+        "--without",
+        nargs="*",
+        default=[],
+        help="cases that are not asked, to see what they are worth (and no probe)",
+    )
     arguments.add_argument("--jobs", type=int, default=1)
     arguments.add_argument("--cache", type=pathlib.Path)
     arguments.add_argument("--table", type=pathlib.Path)
-    arguments.add_argument("--killers", action="store_true", help="ask the killer cases only: a first pass, whose survivors are asked again")
-    arguments.add_argument("--probes", action="store_true", help="ask shaders' mutants the probes of tests/compute alone: a first pass of seconds")
+    arguments.add_argument(
+        "--killers",
+        action="store_true",
+        help="ask the killer cases only: a first pass, whose survivors are asked again",
+    )
+    arguments.add_argument(
+        "--probes",
+        action="store_true",
+        help="ask shaders' mutants the probes of tests/compute alone: a first pass of seconds",
+    )
     arguments.add_argument("--known", action="store_true", help="judge nothing: only what the cache knows")
     options = arguments.parse_args()
 
     jobs = list(all_jobs(options.only))
     if options.sample:
-        jobs = jobs[::max(1, len(jobs) // options.sample)]
+        jobs = jobs[:: max(1, len(jobs) // options.sample)]
     known = json.loads(options.cache.read_text()) if options.cache and options.cache.exists() else {}
     flags = [f"--{name}" for name in ("killers", "probes") if getattr(options, name)]
     version = oracle_version() + "".join(f" {flag[2:]}" for flag in flags)
     for job in jobs:
         row = known.get(job.key)
-        if row and (row[0] in CAUGHT or row[0] in NO_MUTANT or row[4] in (version, oracle_version()) or options.known):
+        if row and (
+            row[0] in CAUGHT or row[0] in NO_MUTANT or row[4] in (version, oracle_version()) or options.known
+        ):
             job.row = row[:4]
     waiting = [j for j in jobs if j.row is None] if not options.known else []
     print(f"{len(jobs)} mutants, {len(waiting)} to judge", flush=True)
@@ -252,7 +325,7 @@ def main():
     batches = collections.OrderedDict()
     for job in waiting:
         batches.setdefault((SECOND.count(job.mutant.kind), job.name), []).append(job)
-    for _, batch in sorted(batches.items(), key=lambda item: item[0][0]):   # stable: by file within each pass
+    for _, batch in sorted(batches.items(), key=lambda item: item[0][0]):  # stable: by file within each pass
         work.put(batch)
 
     def worker():
@@ -264,8 +337,9 @@ def main():
                 break
             back_end = "cpu" if of_program(batch[0].name) else "gpu"
             judge = judges.setdefault(back_end, Judge(options.judge, back_end, flags, options.without))
-            for start in range(0, len(batch), Judge.CHECK_EVERY):   # what is judged is kept when somebody ends us
-                part = batch[start:start + Judge.CHECK_EVERY]
+            # What is judged is kept when somebody ends us.
+            for start in range(0, len(batch), Judge.CHECK_EVERY):
+                part = batch[start : start + Judge.CHECK_EVERY]
                 for job in part:
                     judge.judge(job)
                 judge.check()
@@ -291,10 +365,14 @@ def main():
     if options.table:
         with options.table.open("w", newline="") as file:
             out = csv.writer(file, lineterminator="\n")
-            out.writerow(["file", "line", "column", "kind", "change", "outcome", "cpu_s", "case", "what differs"])
+            out.writerow(
+                ["file", "line", "column", "kind", "change", "outcome", "cpu_s", "case", "what differs"]
+            )
             for j in done:
                 m = j.mutant
-                out.writerow([j.name, m.line, m.column, m.kind, m.key(), j.row[0], j.row[1], j.row[2], j.row[3][:60]])
+                out.writerow(
+                    [j.name, m.line, m.column, m.kind, m.key(), j.row[0], j.row[1], j.row[2], j.row[3][:60]]
+                )
     unexplained = [j for j in survivors if place(j) not in why]
     for j in survivors:
         note = why.get(place(j), "NOT EXPLAINED")
@@ -302,18 +380,25 @@ def main():
     outcomes = collections.Counter(j.row[0] for j in done)
     caught = len(real) - len(survivors)
     print(f"{len(done)} judged of {len(jobs)}: {dict(outcomes)}")
-    print(f"caught {caught} of {len(real)} ({100 * caught / max(1, len(real)):.1f} %), {len(survivors)} survive, {len(unexplained)} not explained")
+    print(
+        f"caught {caught} of {len(real)} ({100 * caught / max(1, len(real)):.1f} %), {len(survivors)} survive, {len(unexplained)} not explained"
+    )
     nothing = {id(j) for j in survivors if why.get(place(j), "").startswith(CHANGES_NOTHING)}
 
     def tell(what, chosen):
         n, of = sum(j.row[0] in CAUGHT for j in chosen), len(chosen)
         seen = of - sum(id(j) in nothing for j in chosen)
         if of:
-            print(f"  {what}: {n} of {of} ({100 * n / of:.1f} %); of the {seen} that change something {100 * n / max(1, seen):.1f} %")
+            print(
+                f"  {what}: {n} of {of} ({100 * n / of:.1f} %); of the {seen} that change something {100 * n / max(1, seen):.1f} %"
+            )
+
     tell("all", real)
-    for side, of_side in (("reference", [j for j in real if j.name.startswith("cpu_ref/")]), ("host", [j for j in real if j.name in HOST]),
-                          
-                          ("shaders", [j for j in real if not of_program(j.name)])):
+    for side, of_side in (
+        ("reference", [j for j in real if j.name.startswith("cpu_ref/")]),
+        ("host", [j for j in real if j.name in HOST]),
+        ("shaders", [j for j in real if not of_program(j.name)]),
+    ):
         tell(side, of_side)
         for kinds in (("relation",), ("sign", "negative"), ("barrier",), ("logic", "not"), ("name",)):
             tell(f"{side}, {' and '.join(kinds)}", [j for j in of_side if j.mutant.kind in kinds])

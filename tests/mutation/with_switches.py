@@ -1,4 +1,5 @@
-"""Writes the copy of the reference that holds all its mutants: with_switches.py SOURCE_ROOT OUT FILE..., and OUT/mutants.txt."""
+"""Writes the copy of the reference that holds all its mutants: with_switches.py SOURCE_ROOT OUT FILE..., and
+OUT/mutants.txt."""
 import pathlib
 import sys
 
@@ -11,7 +12,7 @@ for name in sys.argv[3:]:
     copy = out / name
     copy.parent.mkdir(parents=True, exist_ok=True)
     changed = with_switches(text, number)
-    if not copy.exists() or copy.read_text() != changed:   # what didn't change is not compiled again
+    if not copy.exists() or copy.read_text() != changed:  # what didn't change is not compiled again
         copy.write_text(changed)
     found = mutants(text, cpp=True)
     lines.append(f"{name} {number} {len(found)}\n")

@@ -3,7 +3,22 @@ import pytest
 
 import palpate
 
-FACES = np.array([[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7], [0, 1, 5], [0, 5, 4], [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7]])
+FACES = np.array(
+    [
+        [0, 2, 1],
+        [0, 3, 2],
+        [4, 5, 6],
+        [4, 6, 7],
+        [0, 1, 5],
+        [0, 5, 4],
+        [1, 2, 6],
+        [1, 6, 5],
+        [2, 3, 7],
+        [2, 7, 6],
+        [3, 0, 4],
+        [3, 4, 7],
+    ]
+)
 
 
 def box(half, z=0.0):
@@ -31,7 +46,9 @@ def boxes():
 @pytest.fixture(scope='session')
 def clamp(tmp_path_factory):
     """The path of a scene file: a clamp on a pipe among solids."""
-    return palpate.generate('disassembly', tmp_path_factory.mktemp('clamp'), triangles=5000, tool_triangles=2000)
+    return palpate.generate(
+        'disassembly', tmp_path_factory.mktemp('clamp'), triangles=5000, tool_triangles=2000
+    )
 
 
 def random_poses(scene, count, seed=1):

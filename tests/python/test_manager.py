@@ -26,7 +26,7 @@ def test_names_of_what_touches(manager):
     long = box([0.06, 0.005, 0.005])
     hit, names, contact = manager.in_collision_single(long, return_names=True, return_data=True)
     assert hit and names == {'left', 'right'} and contact.pairs > 0
-    assert manager.in_collision_single(box([0.002, 0.002, 0.002]), shift(x=-0.05))   # wholly inside
+    assert manager.in_collision_single(box([0.002, 0.002, 0.002]), shift(x=-0.05))  # wholly inside
 
 
 def test_distance_and_the_nearest(manager):
@@ -61,13 +61,13 @@ def test_moved_and_removed_objects_count_as_they_are():
 def test_matrices_and_poses_are_the_same():
     source = np.random.default_rng(3)
     poses = np.concatenate([source.normal(0, 1, (200, 3)), source.normal(0, 1, (200, 4))], 1)
-    poses[:4, 3:] = np.eye(4)   # half turns about the axes, and none
+    poses[:4, 3:] = np.eye(4)  # half turns about the axes, and none
     poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1, keepdims=True)
     back = palpate.pose_of_matrix(palpate.matrix_of_pose(poses))
-    same = np.sign((back[:, 3:] * poses[:, 3:]).sum(1))[:, None]   # q and -q are one turn
+    same = np.sign((back[:, 3:] * poses[:, 3:]).sum(1))[:, None]  # q and -q are one turn
     np.testing.assert_allclose(back[:, 3:] * same, poses[:, 3:], atol=1e-12)
     np.testing.assert_array_equal(back[:, :3], poses[:, :3])
-    matrix = palpate.matrix_of_pose([0, 0, 0, 0, 0, np.sqrt(0.5), np.sqrt(0.5)])   # a quarter turn about z
+    matrix = palpate.matrix_of_pose([0, 0, 0, 0, 0, np.sqrt(0.5), np.sqrt(0.5)])  # a quarter turn about z
     np.testing.assert_allclose(matrix[:3, :3] @ [1, 0, 0], [0, 1, 0], atol=1e-15)
     with pytest.raises(palpate.PalpateError, match='mirrors'):
         palpate.pose_of_matrix(np.diag([1.0, 1, -1, 1]))

@@ -34,13 +34,16 @@ def interrupted_after(seconds, work):
 
 
 def test_ctrl_c_ends_a_batch(boxes):
-    poses = np.repeat(at(0.009), 20_000_000, axis=0)   # minutes
+    poses = np.repeat(at(0.009), 20_000_000, axis=0)  # minutes
     interrupted_after(0.5, lambda: boxes.query_batch(poses, ('contact',)))
-    assert boxes.touches(at(0.009)).all()   # and the scene goes on
+    assert boxes.touches(at(0.009)).all()  # and the scene goes on
 
 
 def test_ctrl_c_ends_an_opening():
-    scene = {'tool': {'generate': {'name': 'disassembly', 'triangles': 1000}}, 'static': [{'generate': {'name': 'disassembly', 'triangles': 3_000_000}}]}
+    scene = {
+        'tool': {'generate': {'name': 'disassembly', 'triangles': 1000}},
+        'static': [{'generate': {'name': 'disassembly', 'triangles': 3_000_000}}],
+    }
     interrupted_after(0.5, lambda: palpate.Scene(scene, engine='cpu', cache=False))
 
 
@@ -64,8 +67,10 @@ def test_threads_ask_one_scene(clamp):
 
     def ask(at_once):
         for first in range(0, len(poses), at_once):
-            mine = scene.query_batch(poses[first:first + at_once], ('force', 'contact'))
-            if (mine.force != expected.force[first:first + at_once]).any() or (mine.contact != expected.contact[first:first + at_once]).any():
+            mine = scene.query_batch(poses[first : first + at_once], ('force', 'contact'))
+            if (mine.force != expected.force[first : first + at_once]).any() or (
+                mine.contact != expected.contact[first : first + at_once]
+            ).any():
                 faults.append(first)
 
     threads = [threading.Thread(target=ask, args=(at_once,)) for at_once in (1, 7, 200)]
@@ -104,7 +109,10 @@ def test_a_pickled_scene_opens_again_in_another_process(boxes, method):
 
 def test_a_pickle_knows_when_its_file_has_changed(clamp, tmp_path):
     file = tmp_path / 'scene.json'
-    scene = {'tool': {'generate': {'name': 'contacts', 'triangles': 1000}}, 'static': [{'generate': {'name': 'contacts', 'triangles': 1000}}]}
+    scene = {
+        'tool': {'generate': {'name': 'contacts', 'triangles': 1000}},
+        'static': [{'generate': {'name': 'contacts', 'triangles': 1000}}],
+    }
     file.write_text(repr(scene).replace("'", '"'))
     pickled = pickle.dumps(palpate.Scene(file, engine='cpu'))
     assert pickle.loads(pickled).file == str(file)
@@ -130,7 +138,9 @@ def test_a_closed_scene_says_so():
 def test_closing_while_a_thread_asks_waits_for_it():
     scene = palpate.Scene(tool=CUBE, static=PLATE, engine='cpu')
     poses, answers, begun = np.repeat(at(0.009), 300_000, axis=0), [], threading.Event()
-    thread = threading.Thread(target=lambda: answers.append(scene.touches(poses, progress=lambda done, count: begun.set()).all()))
+    thread = threading.Thread(
+        target=lambda: answers.append(scene.touches(poses, progress=lambda done, count: begun.set()).all())
+    )
     thread.start()
     begun.wait()
     scene.close()
@@ -139,5 +149,10 @@ def test_closing_while_a_thread_asks_waits_for_it():
 
 
 def test_a_missing_library_is_named():
-    done = subprocess.run([sys.executable, '-c', 'import palpate'], env={**os.environ, 'PALPATE_LIBRARY': '/nowhere/lib.so'}, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, '-c', 'import palpate'],
+        env={**os.environ, 'PALPATE_LIBRARY': '/nowhere/lib.so'},
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode != 0 and '/nowhere/lib.so can\'t be loaded' in done.stderr

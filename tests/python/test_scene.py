@@ -11,13 +11,15 @@ import palpate
 
 
 def test_the_version_is_the_projects():
-    line = subprocess.run([os.environ['PALPATE_PROGRAM'], '--version'], capture_output=True, text=True, check=True).stdout
+    line = subprocess.run(
+        [os.environ['PALPATE_PROGRAM'], '--version'], capture_output=True, text=True, check=True
+    ).stdout
     assert palpate.__version__ in line
 
 
 def test_touches_tells_containment_from_free(boxes):
     assert boxes.touches(at(0.02, 0.009, -0.01, -0.05)).tolist() == [False, True, True, False]
-    assert boxes.touches(at(0.009)[0]).shape == ()   # one pose, one answer
+    assert boxes.touches(at(0.009)[0]).shape == ()  # one pose, one answer
     assert boxes.touches(np.empty((0, 7))).shape == (0,)
 
 
@@ -47,7 +49,8 @@ def test_first_contact_is_never_late(boxes):
 def test_force_pushes_out_of_the_plate(boxes):
     force, torque = boxes.wrench(at(0.009)[0])
     assert force.shape == (3,) and force[2] > 0.1
-    np.testing.assert_allclose(np.append(force[:2], torque), 0, atol=1e-4 * force[2])   # samples lie on a grid, not about the middle
+    # Samples lie on a grid, not about the middle.
+    np.testing.assert_allclose(np.append(force[:2], torque), 0, atol=1e-4 * force[2])
 
 
 def test_only_the_columns_asked_for_are_made(boxes):
@@ -69,12 +72,20 @@ def test_columns_are_written_in_place(boxes):
 
 def test_lists_are_the_triangles_that_meet(boxes):
     found = boxes.query(at(0.009)[0])
-    assert found.contact and found.cst.tolist() == [2, 3] and found.static_parts == ['static 0'] and found.tool_parts == ['tool']
+    assert (
+        found.contact
+        and found.cst.tolist() == [2, 3]
+        and found.static_parts == ['static 0']
+        and found.tool_parts == ['tool']
+    )
 
 
 def test_a_scene_in_millimetres_is_the_same():
     scaled = [(1000 * vertices, faces) for vertices, faces in (CUBE, PLATE)]
-    scene = palpate.Scene({'tool': {'mesh': scaled[0], 'units': 'mm'}, 'static': [{'mesh': scaled[1], 'scale': 0.001}]}, engine='cpu')
+    scene = palpate.Scene(
+        {'tool': {'mesh': scaled[0], 'units': 'mm'}, 'static': [{'mesh': scaled[1], 'scale': 0.001}]},
+        engine='cpu',
+    )
     np.testing.assert_allclose(scene.clearance(at(0.03)).distance, 0.02, atol=1e-6)
 
 
@@ -94,8 +105,12 @@ def test_answers_are_those_of_the_command_line_bit_by_bit(clamp, tmp_path):
     poses = random_poses(scene, int(os.environ.get('PALPATE_TEST_POSES', 60)))
     file = tmp_path / 'poses.csv'
     np.savetxt(file, poses, '%.17g', ',', header='x,y,z,qx,qy,qz,qw', comments='')
-    done = subprocess.run([os.environ['PALPATE_PROGRAM'], 'query', clamp, '--poses', file, '--json', '--backend', 'cpu'], capture_output=True,
-                          text=True, check=True)
+    done = subprocess.run(
+        [os.environ['PALPATE_PROGRAM'], 'query', clamp, '--poses', file, '--json', '--backend', 'cpu'],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     lines = [json.loads(line) for line in done.stdout.splitlines()]
     found = scene.query_batch(poses)
     assert len(lines) == len(poses) and found.contact.sum() > len(poses) // 4
@@ -108,26 +123,32 @@ def test_answers_are_those_of_the_command_line_bit_by_bit(clamp, tmp_path):
     np.testing.assert_array_equal(scene.touches(poses), found.contact)
 
 
-@pytest.mark.parametrize('arguments, sentence', [
-    (((), {}), 'a scene is a file, a dict, or tool and static'),
-    ((('/nowhere.json',), {}), '/nowhere.json does not exist'),
-    (((), {'tool': CUBE, 'static': PLATE, 'engine': 'abacus'}), 'abacus'),
-    (((), {'tool': (CUBE[0], CUBE[1] + 1), 'static': PLATE}), 'index 8'),
-    (((), {'tool': (CUBE[0][:, :2], CUBE[1]), 'static': PLATE}), r'shape \(8, 2\)'),
-    (((), {'tool': (CUBE[0] * np.nan, CUBE[1]), 'static': PLATE}), 'vertex 0'),
-    ((({'tool': {'mesh': CUBE}, 'static': [{'mesh': PLATE}], 'responce': {}},), {}), 'responce'),
-])
+@pytest.mark.parametrize(
+    'arguments, sentence',
+    [
+        (((), {}), 'a scene is a file, a dict, or tool and static'),
+        ((('/nowhere.json',), {}), '/nowhere.json does not exist'),
+        (((), {'tool': CUBE, 'static': PLATE, 'engine': 'abacus'}), 'abacus'),
+        (((), {'tool': (CUBE[0], CUBE[1] + 1), 'static': PLATE}), 'index 8'),
+        (((), {'tool': (CUBE[0][:, :2], CUBE[1]), 'static': PLATE}), r'shape \(8, 2\)'),
+        (((), {'tool': (CUBE[0] * np.nan, CUBE[1]), 'static': PLATE}), 'vertex 0'),
+        ((({'tool': {'mesh': CUBE}, 'static': [{'mesh': PLATE}], 'responce': {}},), {}), 'responce'),
+    ],
+)
 def test_what_is_wrong_with_a_scene_is_said(arguments, sentence):
     with pytest.raises(palpate.PalpateError, match=sentence) as raised:
         palpate.Scene(*arguments[0], **arguments[1])
     assert raised.value.code in (2, 3)
 
 
-@pytest.mark.parametrize('poses, sentence', [
-    (np.zeros((3, 6)), r'shape \(3, 6\)'),
-    (np.zeros(7), 'pose 0 is no pose'),
-    (at(np.nan), 'pose 0'),
-])
+@pytest.mark.parametrize(
+    'poses, sentence',
+    [
+        (np.zeros((3, 6)), r'shape \(3, 6\)'),
+        (np.zeros(7), 'pose 0 is no pose'),
+        (at(np.nan), 'pose 0'),
+    ],
+)
 def test_what_is_wrong_with_poses_is_said(boxes, poses, sentence):
     with pytest.raises(palpate.PalpateError, match=sentence):
         boxes.touches(poses)

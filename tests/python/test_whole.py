@@ -30,11 +30,13 @@ def test_a_run_needs_a_file(boxes, tmp_path):
 
 def test_a_contact_is_drawn(boxes, tmp_path):
     import matplotlib
+
     matplotlib.use('Agg')
     axes = palpate.draw(boxes, at(0.009)[0])
     assert '12 pairs' in axes.get_title()
-    lots = [part._vec.shape[1] // 3 for part in axes.collections[:4]]   # triangles: the plate's near the tool and in contact, the tool's
-    assert lots == [0, 2, 2, 10] and len(axes.collections) == 5   # and the arrow
+    # Triangles: the plate's near the tool and in contact, the tool's.
+    lots = [part._vec.shape[1] // 3 for part in axes.collections[:4]]
+    assert lots == [0, 2, 2, 10] and len(axes.collections) == 5  # and the arrow
     axes.figure.savefig(tmp_path / 'contact.png')
     assert (tmp_path / 'contact.png').stat().st_size > 5000
 
@@ -59,8 +61,13 @@ for name in ("libembree3", "libtbb", "libfmt", "libvulkan"):
 print(palpate.__file__, scene.touches(scene.start), library._name)
 '''
     plain = {name: value for name, value in os.environ.items() if not name.startswith('PALPATE_')}
-    found = subprocess.run([sys.executable, '-c', script], cwd=tmp_path, env={**plain, 'PYTHONPATH': str(tmp_path / 'site'), 'PALPATE_CACHE': 'off'},
-                           capture_output=True, text=True)
+    found = subprocess.run(
+        [sys.executable, '-c', script],
+        cwd=tmp_path,
+        env={**plain, 'PYTHONPATH': str(tmp_path / 'site'), 'PALPATE_CACHE': 'off'},
+        capture_output=True,
+        text=True,
+    )
     assert found.returncode == 0, found.stderr
     where, touches, loaded = found.stdout.split()
     assert touches == 'True' and where.startswith(str(tmp_path)) and loaded.startswith(str(tmp_path))
@@ -68,9 +75,18 @@ print(palpate.__file__, scene.touches(scene.start), library._name)
 
 def test_names_of_the_interface_are_those_of_the_header():
     header = (SOURCE / 'service/library/palpate.h').read_text()
-    for name, columns in (('palpate_columns', palpate.COLUMNS), ('palpate_distances', palpate.DISTANCE_COLUMNS), ('palpate_motions', palpate.MOTION_COLUMNS)):
+    for name, columns in (
+        ('palpate_columns', palpate.COLUMNS),
+        ('palpate_distances', palpate.DISTANCE_COLUMNS),
+        ('palpate_motions', palpate.MOTION_COLUMNS),
+    ):
         body = header.split(f'typedef struct {name} {{')[1].split('}')[0]
-        members = [word.strip(' *;,') for line in body.splitlines() for word in line.split('/*')[0].replace(',', ' ').split()[1:] if word.strip(' *;,')]
+        members = [
+            word.strip(' *;,')
+            for line in body.splitlines()
+            for word in line.split('/*')[0].replace(',', ' ').split()[1:]
+            if word.strip(' *;,')
+        ]
         assert members == ['size', *columns], name
 
 

@@ -17,7 +17,8 @@ def free_port():
 
 
 class Cluster:
-    """A scheduler and `workers` workers, each started again when it ends, as a batch system's or systemd's are.
+    """A scheduler and `workers` workers, each started again when it ends, as a batch system's or systemd's
+    are.
 
     `processors`: worker i stays on processors[i], where given. What they print goes to `folder`."""
 
@@ -29,19 +30,51 @@ class Cluster:
         self._end = threading.Event()
         self._lock = threading.Lock()
         self._processes, self._threads = {}, {}
-        self._start('scheduler', [sys.executable, '-m', 'distributed.cli.dask_scheduler', '--host', '127.0.0.1', '--port', str(port),
-                                  '--dashboard-address', ':0'], environment)
+        self._start(
+            'scheduler',
+            [
+                sys.executable,
+                '-m',
+                'distributed.cli.dask_scheduler',
+                '--host',
+                '127.0.0.1',
+                '--port',
+                str(port),
+                '--dashboard-address',
+                ':0',
+            ],
+            environment,
+        )
         for i in range(workers):
             self.add_worker(environment, processors[i] if processors else None)
 
     def add_worker(self, environment=None, processor=None):
         name = f'worker-{len(self._threads) - 1}'
-        self._start(name, [*(['taskset', '-c', str(processor)] if processor is not None else []), sys.executable, '-m',
-                           'distributed.cli.dask_worker', self.address, '--nthreads', '2', '--no-nanny', '--dashboard-address', ':0',
-                           '--name', name, '--local-directory', str(self._folder)], environment)
+        self._start(
+            name,
+            [
+                *(['taskset', '-c', str(processor)] if processor is not None else []),
+                sys.executable,
+                '-m',
+                'distributed.cli.dask_worker',
+                self.address,
+                '--nthreads',
+                '2',
+                '--no-nanny',
+                '--dashboard-address',
+                ':0',
+                '--name',
+                name,
+                '--local-directory',
+                str(self._folder),
+            ],
+            environment,
+        )
 
     def _start(self, name, command, environment):
-        thread = self._threads[name] = threading.Thread(target=self._keep, args=(name, command, {**os.environ, **(environment or {})}))
+        thread = self._threads[name] = threading.Thread(
+            target=self._keep, args=(name, command, {**os.environ, **(environment or {})})
+        )
         thread.start()
 
     def _keep(self, name, command, environment):
@@ -50,7 +83,9 @@ class Cluster:
                 if self._end.is_set():
                     return
                 with open(self._folder / f'{name}.log', 'a') as log:
-                    self._processes[name] = process = subprocess.Popen(command, stdout=log, stderr=log, env=environment)
+                    self._processes[name] = process = subprocess.Popen(
+                        command, stdout=log, stderr=log, env=environment
+                    )
             process.wait()
             self._end.wait(0.2)
 

@@ -9,7 +9,7 @@ import pytest
 HERE = pathlib.Path(__file__).resolve().parent
 FAKE = HERE / 'fake'
 sys.path[:0] = [str(FAKE), str(HERE)]
-ENVIRONMENT = {**os.environ, 'PYTHONPATH': str(FAKE)}   # of workers and commands
+ENVIRONMENT = {**os.environ, 'PYTHONPATH': str(FAKE)}  # of workers and commands
 os.environ['PYTHONPATH'] = str(FAKE)
 
 # 40 x 40 x 20 x 3 poses in 20 chunks, as arguments and as a Grid.
@@ -23,10 +23,21 @@ class Command:
         self.out = folder / 'out.zarr'
         scene = folder / 'scene.json'
         scene.write_text(json.dumps(source))
-        self._words = [sys.executable, '-m', 'palpate.sweeps', str(scene), '--out', str(self.out), *AXES, *more]
+        self._words = [
+            sys.executable,
+            '-m',
+            'palpate.sweeps',
+            str(scene),
+            '--out',
+            str(self.out),
+            *AXES,
+            *more,
+        ]
 
     def start(self, **how):
-        return subprocess.Popen(self._words, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **how)
+        return subprocess.Popen(
+            self._words, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **how
+        )
 
     def run(self, **how):
         process = self.start(**how)
@@ -35,7 +46,11 @@ class Command:
 
     def markers(self):
         folder = self.out / '.sweep'
-        return sorted(int(file.name) for file in folder.iterdir() if file.name.isdigit()) if folder.is_dir() else []
+        return (
+            sorted(int(file.name) for file in folder.iterdir() if file.name.isdigit())
+            if folder.is_dir()
+            else []
+        )
 
 
 @pytest.fixture

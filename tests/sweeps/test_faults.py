@@ -1,4 +1,5 @@
-"""Workers that are killed, a scheduler that goes, a disk that is full: a sweep ends with the hash of an undisturbed one."""
+"""Workers that are killed, a scheduler that goes, a disk that is full: a sweep ends with the hash of an
+undisturbed one."""
 import os
 import resource
 import signal
@@ -18,7 +19,10 @@ GRID = Grid(x=(-1, 1, 40), y=(-1, 1, 40), z=(-1, 1, 20), rx=(0, 90, 3))
 def undisturbed(tmp_path_factory):
     """The hashes of sweeps that nothing disturbs, by what they ask."""
     folder = tmp_path_factory.mktemp('undisturbed')
-    return {ask: sweep(BALL, GRID, ask=ask, out=folder / f'{ask}.zarr', size=5000, workers=1, quiet=True).hash for ask in ('touches', 'clearance')}
+    return {
+        ask: sweep(BALL, GRID, ask=ask, out=folder / f'{ask}.zarr', size=5000, workers=1, quiet=True).hash
+        for ask in ('touches', 'clearance')
+    }
 
 
 def at_work(log):
@@ -81,17 +85,31 @@ def test_workers_that_come_late_and_are_killed_are_made_good(command, undisturbe
 def test_a_chunk_that_ends_its_workers_ends_the_sweep_in_a_sentence(command, monkeypatch):
     # Dask gives up at the fourth worker; for speed here at the first.
     monkeypatch.setitem(ENVIRONMENT, 'DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES', '0')
-    code, out, err = command({**BALL, 'crash': -1.0}, '--workers', '1', '--share', '0', '--rz=1', '--size=96000').run()
+    code, out, err = command(
+        {**BALL, 'crash': -1.0}, '--workers', '1', '--share', '0', '--rz=1', '--size=96000'
+    ).run()
     # Dask's dying processes may print tracebacks of theirs; none goes through the sweep.
-    assert code == 3 and 'palpate-sweep: chunk 0 ended every worker that took it' in err and 'palpate/sweeps/' not in err, err
+    assert (
+        code == 3
+        and 'palpate-sweep: chunk 0 ended every worker that took it' in err
+        and 'palpate/sweeps/' not in err
+    ), err
 
 
 def test_a_full_disk_is_said_in_a_sentence_and_the_same_command_goes_on(command, undisturbed):
-    # A limit on a file's length stands for the disk's: what is asked fits, a chunk's 20 kB of distances don't.
+    # A limit on a file's length stands for the disk's: what is asked fits, a chunk's 20 kB of distances
+    # don't.
     one = command(BALL, '--workers', '2', '--ask', 'clearance')
-    code, out, err = one.run(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8000, resource.getrlimit(resource.RLIMIT_FSIZE)[1])))
+    code, out, err = one.run(
+        preexec_fn=lambda: resource.setrlimit(
+            resource.RLIMIT_FSIZE, (8000, resource.getrlimit(resource.RLIMIT_FSIZE)[1])
+        )
+    )
     assert code == 3 and out == '' and one.markers() == []
-    assert 'out.zarr: no room to write (File too large); make room and give the same command again' in err.splitlines()[-1], err
+    assert (
+        'out.zarr: no room to write (File too large); make room and give the same command again'
+        in err.splitlines()[-1]
+    ), err
     assert 'Traceback' not in err
     code, out, err = one.run()
     assert code == 0, err

@@ -23,15 +23,20 @@ def same_poses(start, n):
 @pytest.fixture(scope='module')
 def client():
     from distributed import Client, LocalCluster
-    with LocalCluster(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=':0') as cluster, Client(cluster) as one:
+
+    with LocalCluster(
+        n_workers=1, threads_per_worker=2, processes=False, dashboard_address=':0'
+    ) as cluster, Client(cluster) as one:
         yield one
 
 
 @pytest.fixture
 def swept(client, tmp_path):
     """Sweeps into a folder of this test's own, `out`."""
+
     def do(scene=BALL, poses=GRID, out='out.zarr', size=5000, **more):
         return sweep(scene, poses, out=tmp_path / out, size=size, client=client, quiet=True, **more)
+
     return do
 
 
@@ -61,15 +66,21 @@ def test_workers_engine_and_where_poses_come_from_leave_the_hash_as_it_is(swept,
 
 def test_another_scene_pose_or_question_has_another_hash(swept):
     shifted = Grid(x=(-1, 1, 40), y=(-1, 1, 40), z=(-1, 1.0000000000000002, 20), rx=(0, 90, 3))
-    hashes = {swept(out='a.zarr').hash, swept(out='b.zarr', scene={'radius': 0.6}).hash, swept(out='c.zarr', poses=shifted).hash,
-              swept(out='d.zarr', ask='clearance').hash}
+    hashes = {
+        swept(out='a.zarr').hash,
+        swept(out='b.zarr', scene={'radius': 0.6}).hash,
+        swept(out='c.zarr', poses=shifted).hash,
+        swept(out='d.zarr', ask='clearance').hash,
+    }
     assert len(hashes) == 4
 
 
 def test_what_was_asked_and_by_whom_stands_in_the_attributes(swept):
     done = swept()
     kept = json.loads((done.path / '.zattrs').read_text())
-    assert kept['question']['scene'] == Scene(BALL).hash and kept['question']['palpate'] == palpate.__version__
+    assert (
+        kept['question']['scene'] == Scene(BALL).hash and kept['question']['palpate'] == palpate.__version__
+    )
     assert kept['question']['poses']['x'] == [-1, 1, 40] and kept['shape'] == [40, 40, 20, 3, 1, 1]
     assert kept['engine'] == 'cpu' and kept['engines'] == ['cpu'] and kept['again'] == ['ref']
     assert 'pytest' in kept['command'] and kept['hash'] == done.hash
@@ -80,18 +91,24 @@ def test_a_scene_is_made_once_a_worker_not_once_a_chunk_nor_a_sweep(swept, tmp_p
     swept(scene=logged, out='a.zarr', share=0)
     swept(scene=logged, out='b.zarr', share=0)
     made = [line for line in (tmp_path / 'log').read_text().splitlines() if line.split()[1] == 'scene']
-    assert len(made) == 3   # the worker's, and the caller's of each sweep
-    from palpate.sweeps import worker   # the worker is in this process
+    assert len(made) == 3  # the worker's, and the caller's of each sweep
+    from palpate.sweeps import worker  # the worker is in this process
+
     assert worker._jobs == {}
 
 
 def test_an_engine_that_answers_otherwise_is_told_of_with_chunk_and_pose(swept, tmp_path):
     # x = −1 is 40 · 20 · 3 poses at the beginning: chunk 0, pose 0.
-    with pytest.raises(PalpateError, match=r'chunk 0: pose 0 \(-1.0 -1.0 -1.0 0.0 0.0 0.0 1.0\): touches is False by cpu and True by ref'):
+    with pytest.raises(
+        PalpateError,
+        match=r'chunk 0: pose 0 \(-1.0 -1.0 -1.0 0.0 0.0 0.0 1.0\): touches is False by cpu and True by ref',
+    ):
         swept(scene={**BALL, 'wrong': -1.0}, share=1)
     assert not (tmp_path / 'out.zarr/.sweep/0').exists()
     # Asked at their first poses alone, no chunk notices that poses 2400 to 4799 are wrong.
-    assert swept(scene={**BALL, 'wrong': GRID.axis('x')[1]}, out='b.zarr', share=1, again_poses=1).chunks == 20
+    assert (
+        swept(scene={**BALL, 'wrong': GRID.axis('x')[1]}, out='b.zarr', share=1, again_poses=1).chunks == 20
+    )
 
 
 def test_an_engine_beside_itself_is_refused(swept):
@@ -101,7 +118,9 @@ def test_an_engine_beside_itself_is_refused(swept):
 
 def test_a_folder_of_another_question_is_left_alone(swept):
     done = swept()
-    with pytest.raises(PalpateError, match="holds another sweep: its ask is \"touches\", this one's is \"clearance\""):
+    with pytest.raises(
+        PalpateError, match="holds another sweep: its ask is \"touches\", this one's is \"clearance\""
+    ):
         swept(ask='clearance')
     with pytest.raises(PalpateError, match='its scene is'):
         swept(scene={'radius': 0.6})
@@ -122,8 +141,8 @@ def test_a_chunk_without_a_marker_and_one_that_was_spoilt_are_asked_again(swept,
     (done.path / '.sweep/7').unlink()
     (done.path / 'touches/7').write_bytes(b'half')
     (done.path / 'touches/7.0123.partial').write_bytes(b'h')
-    shutil.copy(done.path / 'touches/3', done.path / 'touches/12')   # marked, and another's answers
-    (done.path / 'touches/13').unlink()                              # marked, and gone
+    shutil.copy(done.path / 'touches/3', done.path / 'touches/12')  # marked, and another's answers
+    (done.path / 'touches/13').unlink()  # marked, and gone
     again = swept()
     assert again.hash == done.hash and (again.answers('touches')[:] == before).all()
     assert not list(done.path.rglob('*.partial'))
@@ -137,8 +156,12 @@ def test_a_driver_that_is_killed_goes_on_from_what_is_done(command, tmp_path):
     process.send_signal(signal.SIGKILL)
     process.communicate()
     # Its workers end when they miss it, with the chunk that they were at.
-    wait_for('the end of its workers', lambda: not any(os.path.exists(f'/proc/{line.split()[0]}')
-                                                       for line in (tmp_path / 'log').read_text().splitlines()))
+    wait_for(
+        'the end of its workers',
+        lambda: not any(
+            os.path.exists(f'/proc/{line.split()[0]}') for line in (tmp_path / 'log').read_text().splitlines()
+        ),
+    )
     before = len(one.markers())
     assert before < 20
     code, out, err = one.run()
@@ -168,10 +191,19 @@ def test_two_sweeps_do_not_write_to_one_folder_at_once(command):
     process.communicate()
 
 
-@pytest.mark.parametrize('words, code, said', [
-    (['--poses', 'none.npy'], 2, 'say which poses'), (['--ask', 'force'], 2, "'force'"), (['--x', '1:2'], 2, "'1:2'"),
-    (['--share', '2'], 3, 'share'), (['--size', '0'], 3, 'size'), (['--within', '0.1'], 3, 'clearance'),
-    (['--engine', 'gpu'], 4, 'no GPU'), (['--workers', '0'], 3, 'not 0')])
+@pytest.mark.parametrize(
+    'words, code, said',
+    [
+        (['--poses', 'none.npy'], 2, 'say which poses'),
+        (['--ask', 'force'], 2, "'force'"),
+        (['--x', '1:2'], 2, "'1:2'"),
+        (['--share', '2'], 3, 'share'),
+        (['--size', '0'], 3, 'size'),
+        (['--within', '0.1'], 3, 'clearance'),
+        (['--engine', 'gpu'], 4, 'no GPU'),
+        (['--workers', '0'], 3, 'not 0'),
+    ],
+)
 def test_the_command_refuses_bad_input_in_one_sentence(command, words, code, said):
     got, out, err = command(BALL, *words).run()
     assert got == code and said in err.splitlines()[-1] and out == '' and 'Traceback' not in err, err

@@ -2,9 +2,9 @@
 
     accessibility.py arm.ply [link.ply …] [--poses 1e7] [--out map]
 
-A rod, 250 mm long and 12 mm thick, stands with its tip at each point of a plane through the arm and points into all
-directions. A point's colour is the part of them in which the rod touches nothing. Meshes are in metres, z is up.
-Writes map.zarr, which goes on where it was cut off, and map.png.
+A rod, 250 mm long and 12 mm thick, stands with its tip at each point of a plane through the arm and points
+into all directions. A point's colour is the part of them in which the rod touches nothing. Meshes are in
+metres, z is up. Writes map.zarr, which goes on where it was cut off, and map.png.
 """
 import argparse
 
@@ -16,8 +16,8 @@ import palpate
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt
 
-LENGTH, RADIUS = 0.25, 0.006   # m
-TILTS, TURNS = 10, 25          # directions: bands from straight up to straight down, and round about
+LENGTH, RADIUS = 0.25, 0.006  # m
+TILTS, TURNS = 10, 25  # directions: bands from straight up to straight down, and round about
 
 
 def rod(sides=8):
@@ -46,8 +46,13 @@ def main():
     low, high = corners.min(axis=0)[[0, 2]] - 0.15, corners.max(axis=0)[[0, 2]] + 0.15
     step = np.sqrt(np.prod(high - low) * TILTS * TURNS / asked.poses)
     across, up = np.maximum(2, np.round((high - low) / step)).astype(int)
-    tilts = (np.arange(TILTS) + 0.5) * 180 / TILTS   # degrees from straight up, the middles of the bands
-    grid = palpate.Grid(x=(low[0], high[0], int(across)), z=(low[1], high[1], int(up)), rx=tilts, rz=np.arange(TURNS) * 360 / TURNS)
+    tilts = (np.arange(TILTS) + 0.5) * 180 / TILTS  # degrees from straight up, the middles of the bands
+    grid = palpate.Grid(
+        x=(low[0], high[0], int(across)),
+        z=(low[1], high[1], int(up)),
+        rx=tilts,
+        rz=np.arange(TURNS) * 360 / TURNS,
+    )
     print(f'{grid.count:,} poses, a point every {1000 * step:.1f} mm')
 
     done = palpate.sweep(scene, grid, out=f'{asked.out}.zarr', workers=asked.workers)
@@ -58,11 +63,22 @@ def main():
     share = np.tensordot(free.mean(axis=3), band / band.sum(), axes=1)
 
     figure, axes = plt.subplots(figsize=(8, 8 * up / across), layout='constrained')
-    picture = axes.imshow(100 * share.T, origin='lower', extent=[low[0], high[0], low[1], high[1]], cmap='viridis', vmin=0, vmax=100)
+    picture = axes.imshow(
+        100 * share.T,
+        origin='lower',
+        extent=[low[0], high[0], low[1], high[1]],
+        cmap='viridis',
+        vmin=0,
+        vmax=100,
+    )
     figure.colorbar(picture, label='directions in which the rod is free, %')
-    axes.set(xlabel='x, m', ylabel='z, m', title=f'A rod of {1000 * LENGTH:.0f} mm with its tip in the plane y = 0: {grid.count:,} poses')
+    axes.set(
+        xlabel='x, m',
+        ylabel='z, m',
+        title=f'A rod of {1000 * LENGTH:.0f} mm with its tip in the plane y = 0: {grid.count:,} poses',
+    )
     figure.savefig(f'{asked.out}.png', dpi=150)
 
 
-if __name__ == '__main__':   # the sweep's processes read this file, too
+if __name__ == '__main__':  # the sweep's processes read this file, too
     main()

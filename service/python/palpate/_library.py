@@ -14,8 +14,8 @@ _Result = TypeVar('_Result')
 class PalpateError(RuntimeError):
     """What went wrong, in the sentence of the command line.
 
-    `code` is its exit code: 1 a fault of palpate, 2 a wrong call, 3 a bad value, 4 no usable device; 64: cancelled.
-    """
+    `code` is its exit code: 1 a fault of palpate, 2 a wrong call, 3 a bad value, 4 no usable device; 64:
+    cancelled."""
 
     def __init__(self, code: int, sentence: str) -> None:
         super().__init__(sentence)
@@ -30,8 +30,13 @@ _NOTE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p)
 
 
 class Watch(ctypes.Structure):
-    _fields_ = [('size', ctypes.c_size_t), ('cancel', ctypes.POINTER(ctypes.c_int32)), ('progress', _PROGRESS), ('note', _NOTE),
-                ('context', ctypes.c_void_p)]
+    _fields_ = [
+        ('size', ctypes.c_size_t),
+        ('cancel', ctypes.POINTER(ctypes.c_int32)),
+        ('progress', _PROGRESS),
+        ('note', _NOTE),
+        ('context', ctypes.c_void_p),
+    ]
 
 
 def pointers(name: str, columns: tuple[str, ...]) -> type[ctypes.Structure]:
@@ -41,11 +46,14 @@ def pointers(name: str, columns: tuple[str, ...]) -> type[ctypes.Structure]:
 
 
 def _candidates() -> list[str]:
-    if os.environ.get('PALPATE_LIBRARY'):   # a file: nothing else will do
+    if os.environ.get('PALPATE_LIBRARY'):  # a file: nothing else will do
         return [os.environ['PALPATE_LIBRARY']]
     here = pathlib.Path(__file__).parent
     # A wheel has it inside, a build tree in lib beside python, and else the loader knows.
-    return [*(str(place) for place in (here / SONAME, here.parent.parent / 'lib' / SONAME) if place.is_file()), SONAME]
+    return [
+        *(str(place) for place in (here / SONAME, here.parent.parent / 'lib' / SONAME) if place.is_file()),
+        SONAME,
+    ]
 
 
 def _load() -> ctypes.CDLL:
@@ -53,13 +61,22 @@ def _load() -> ctypes.CDLL:
     try:
         return ctypes.CDLL(candidates[0])
     except OSError as fault:
-        raise ImportError(f'{candidates[0]} can\'t be loaded ({fault}); PALPATE_LIBRARY may name the file') from None
+        raise ImportError(
+            f'{candidates[0]} can\'t be loaded ({fault}); PALPATE_LIBRARY may name the file'
+        ) from None
 
 
 library = _load()
-_POINTER, _SIZE, _TEXT, _DOUBLE, _INT = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_char_p, ctypes.c_double, ctypes.c_int32
+_POINTER, _SIZE, _TEXT, _DOUBLE, _INT = (
+    ctypes.c_void_p,
+    ctypes.c_size_t,
+    ctypes.c_char_p,
+    ctypes.c_double,
+    ctypes.c_int32,
+)
 _WATCH, _OUT = ctypes.POINTER(Watch), ctypes.POINTER(ctypes.c_void_p)
-# Name: what it returns, what it takes. Those that can fail return a code and take the place for an error last.
+# Name: what it returns, what it takes. Those that can fail return a code and take the place for an error
+# last.
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'version': (_TEXT, []),
     'error_sentence': (_TEXT, [_POINTER]),
@@ -113,8 +130,9 @@ def text(name: str, *arguments: Any) -> str:
 
 
 def obeying(work: Callable[[], _Result], cancel: ctypes.c_int32) -> _Result:
-    """Does long work so that Ctrl-C ends it: signals reach the main thread alone, and only between two of its own instructions, so there
-    another thread does the work meanwhile. `cancel` is what the work's watch looks at."""
+    """Does long work so that Ctrl-C ends it: signals reach the main thread alone, and only between two of its
+    own instructions, so there another thread does the work meanwhile. `cancel` is what the work's watch looks
+    at."""
     if threading.current_thread() is not threading.main_thread():
         return work()
     results: list[_Result] = []
@@ -124,7 +142,7 @@ def obeying(work: Callable[[], _Result], cancel: ctypes.c_int32) -> _Result:
     def serve() -> None:
         try:
             results.append(work())
-        except BaseException as thrown:   # raised again by the thread that asked
+        except BaseException as thrown:  # raised again by the thread that asked
             faults.append(thrown)
         finished.set()
 
@@ -133,7 +151,7 @@ def obeying(work: Callable[[], _Result], cancel: ctypes.c_int32) -> _Result:
         finished.wait()
     except BaseException:
         cancel.value = 1
-        while not finished.is_set():   # whatever else comes must wait: the library still writes
+        while not finished.is_set():  # whatever else comes must wait: the library still writes
             try:
                 finished.wait()
             except BaseException:
@@ -144,9 +162,14 @@ def obeying(work: Callable[[], _Result], cancel: ctypes.c_int32) -> _Result:
     return results[0]
 
 
-def watch(cancel: ctypes.c_int32, progress: Optional[Callable[[str, float], Any]] = None, note: Optional[Callable[[str], Any]] = None,
-          faults: Optional[list[BaseException]] = None) -> Watch:
-    """A watch over `cancel`. What the callables raise ends the work and is kept in `faults`; `progress` ends it by giving False, too."""
+def watch(
+    cancel: ctypes.c_int32,
+    progress: Optional[Callable[[str, float], Any]] = None,
+    note: Optional[Callable[[str], Any]] = None,
+    faults: Optional[list[BaseException]] = None,
+) -> Watch:
+    """A watch over `cancel`. What the callables raise ends the work and is kept in `faults`; `progress` ends
+    it by giving False, too."""
     kept: list[BaseException] = [] if faults is None else faults
 
     def on_progress(_context: Any, what: bytes, done: float) -> int:

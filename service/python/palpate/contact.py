@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 
 class Contact:
-    """What touches at a pose. `cst`, `bst`, `cmt`, `bmt`, `imt`, `est`: triangles of the sets of docs/NOTATION.md, ascending (uint32)."""
+    """What touches at a pose. `cst`, `bst`, `cmt`, `bmt`, `imt`, `est`: triangles of the sets of
+    docs/NOTATION.md, ascending (uint32)."""
 
     def __init__(self, line: dict[str, Any]) -> None:
         #: The line that `palpate query --names --json` prints, read.
@@ -18,8 +19,9 @@ class Contact:
         self.contact: bool = line['contact']
         #: Pairs of triangles that intersect.
         self.pairs: int = line['pairs']
-        self.cst, self.bst, self.cmt, self.bmt, self.imt, self.est = (np.array(line[name], np.uint32)
-                                                                      for name in ('cst', 'bst', 'cmt', 'bmt', 'imt', 'est'))
+        self.cst, self.bst, self.cmt, self.bmt, self.imt, self.est = (
+            np.array(line[name], np.uint32) for name in ('cst', 'bst', 'cmt', 'bmt', 'imt', 'est')
+        )
         #: On the tool, world axes: N, and N·m about the tool's centre of mass.
         self.force: NDArray[np.float64] = np.array(line['force'])
         self.torque: NDArray[np.float64] = np.array(line['torque'] or [0.0, 0.0, 0.0])
@@ -32,4 +34,8 @@ class Contact:
         self.truncated: bool = line['truncated']
 
     def __repr__(self) -> str:
-        return f'<palpate.Contact: {self.pairs} pairs, force {self.force} N>' if self.contact else '<palpate.Contact: none>'
+        return (
+            f'<palpate.Contact: {self.pairs} pairs, force {self.force} N>'
+            if self.contact
+            else '<palpate.Contact: none>'
+        )

@@ -1,4 +1,5 @@
-"""A manager with the methods of trimesh.collision.CollisionManager that ask one moving mesh, or one rigid group, against many."""
+"""A manager with the methods of trimesh.collision.CollisionManager that ask one moving mesh, or one rigid
+group, against many."""
 from __future__ import annotations
 
 import hashlib
@@ -17,13 +18,14 @@ _IDENTITY = np.array([0, 0, 0, 0, 0, 0, 1.0])
 
 
 class CollisionManager:
-    """Named meshes in the world, and questions of a mesh that moves among them. Unlike FCL a mesh has an inside: what lies wholly in
-    another touches it. The first question of a mesh prepares a scene; further ones, at other transforms, take microseconds.
+    """Named meshes in the world, and questions of a mesh that moves among them. Unlike FCL a mesh has an
+    inside: what lies wholly in another touches it. The first question of a mesh prepares a scene; further
+    ones, at other transforms, take microseconds.
 
-    engine: as for Scene. Meshes: (vertices (V, 3), faces (F, 3)) in m, or what has `vertices` and `faces`, as a trimesh has.
-    """
+    engine: as for Scene. Meshes: (vertices (V, 3), faces (F, 3)) in m, or what has `vertices` and `faces`, as
+    a trimesh has."""
 
-    _kept = 8   # scenes (chosen: a gripper's parts)
+    _kept = 8  # scenes (chosen: a gripper's parts)
 
     def __init__(self, engine: str = 'auto') -> None:
         self._engine = engine
@@ -42,13 +44,20 @@ class CollisionManager:
         self._scenes.clear()
 
     def set_transform(self, name: str, transform: ArrayLike) -> None:
-        """Moves a mesh of the world, for which the next question prepares anew: what moves often is better asked as the single mesh."""
+        """Moves a mesh of the world, for which the next question prepares anew: what moves often is better
+        asked as the single mesh."""
         self._objects[name] = (self._named(name)[0], _pose(transform))
         self._scenes.clear()
 
-    def in_collision_single(self, mesh: MeshLike, transform: Optional[ArrayLike] = None, return_names: bool = False,
-                            return_data: bool = False) -> Any:
-        """Whether a mesh at a matrix touches any; with the set of their names and the Contact where wanted."""
+    def in_collision_single(
+        self,
+        mesh: MeshLike,
+        transform: Optional[ArrayLike] = None,
+        return_names: bool = False,
+        return_data: bool = False,
+    ) -> Any:
+        """Whether a mesh at a matrix touches any; with the set of their names and the Contact where
+        wanted."""
         scene, pose = self._scene(_arrays(mesh)), _pose(transform)
         if not (return_names or return_data):
             return bool(scene.touches(pose))
@@ -56,20 +65,38 @@ class CollisionManager:
         names = {name for part in found.static_parts for name in [self._name_of(part)]}
         return tuple([found.contact] + [names] * return_names + [found] * return_data)
 
-    def min_distance_single(self, mesh: MeshLike, transform: Optional[ArrayLike] = None, return_name: bool = False,
-                            return_data: bool = False) -> Any:
-        """The smallest distance (m) of a mesh at a matrix, 0 where it touches; with the name of the nearest, or None, and the Distances."""
+    def min_distance_single(
+        self,
+        mesh: MeshLike,
+        transform: Optional[ArrayLike] = None,
+        return_name: bool = False,
+        return_data: bool = False,
+    ) -> Any:
+        """The smallest distance (m) of a mesh at a matrix, 0 where it touches; with the name of the nearest,
+        or None, and the Distances."""
         scene = self._scene(_arrays(mesh))
         found = scene.clearance(_pose(transform))
-        nearest = None if found.static_id == NO_TRIANGLE else self._name_of(scene.part_of('static', int(found.static_id)))
-        return tuple([float(found.distance)] + [nearest] * return_name + [found] * return_data) if return_name or return_data else float(found.distance)
+        nearest = (
+            None
+            if found.static_id == NO_TRIANGLE
+            else self._name_of(scene.part_of('static', int(found.static_id)))
+        )
+        return (
+            tuple([float(found.distance)] + [nearest] * return_name + [found] * return_data)
+            if return_name or return_data
+            else float(found.distance)
+        )
 
     def in_collision_other(self, other: 'CollisionManager', return_names: bool = False) -> Any:
-        """Whether anything here touches anything of another manager; with the set of pairs of names where wanted."""
+        """Whether anything here touches anything of another manager; with the set of pairs of names where
+        wanted."""
         if not return_names:
             return self.in_collision_single(other._joined())
-        pairs = {(mine, theirs) for theirs, (mesh, pose) in other._objects.items()
-                 for mine in self.in_collision_single(mesh, matrix_of_pose(pose), return_names=True)[1]}
+        pairs = {
+            (mine, theirs)
+            for theirs, (mesh, pose) in other._objects.items()
+            for mine in self.in_collision_single(mesh, matrix_of_pose(pose), return_names=True)[1]
+        }
         return bool(pairs), pairs
 
     def min_distance_other(self, other: 'CollisionManager') -> float:
@@ -99,9 +126,17 @@ class CollisionManager:
         if not self._objects:
             raise PalpateError(2, 'a manager without objects can\'t be asked')
         key = hashlib.blake2b(tool[0].tobytes() + tool[1].tobytes()).hexdigest()
-        scene = self._scenes.pop(key, None) or Scene({'tool': {'mesh': tool}, 'static': [
-            {'mesh': mesh, 'position': pose[:3].tolist(), 'rotation': pose[3:].tolist()} for mesh, pose in self._objects.values()]}, engine=self._engine)
-        self._scenes[key] = scene   # the one used last
+        scene = self._scenes.pop(key, None) or Scene(
+            {
+                'tool': {'mesh': tool},
+                'static': [
+                    {'mesh': mesh, 'position': pose[:3].tolist(), 'rotation': pose[3:].tolist()}
+                    for mesh, pose in self._objects.values()
+                ],
+            },
+            engine=self._engine,
+        )
+        self._scenes[key] = scene  # the one used last
         while len(self._scenes) > self._kept:
             del self._scenes[next(iter(self._scenes))]
         return scene

@@ -8,23 +8,32 @@ from ._library import PalpateError
 
 
 def pose_of_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
-    """Poses (…, 7), x y z qx qy qz qw, of homogeneous matrices (…, 4, 4) that turn and shift alone. Raises PalpateError."""
+    """Poses (…, 7), x y z qx qy qz qw, of homogeneous matrices (…, 4, 4) that turn and shift alone. Raises
+    PalpateError."""
     given = np.asarray(matrix, np.float64)
     if given.shape[-2:] != (4, 4):
         raise PalpateError(2, f'matrices have the shape {given.shape}; (…, 4, 4) is wanted')
     turn = given[..., :3, :3]
-    if not np.allclose(turn @ np.swapaxes(turn, -1, -2), np.eye(3), atol=1e-6) or not (np.linalg.det(turn) > 0).all():
+    if (
+        not np.allclose(turn @ np.swapaxes(turn, -1, -2), np.eye(3), atol=1e-6)
+        or not (np.linalg.det(turn) > 0).all()
+    ):
         raise PalpateError(3, 'a matrix scales, shears or mirrors; a pose turns and shifts alone')
     # The largest of the four squares keeps the root away from 0: 4 q² of w, x, y, z.
     diagonal = np.diagonal(turn, axis1=-2, axis2=-1)
-    squares = np.stack([1 + diagonal.sum(-1), *(1 + 2 * diagonal[..., k] - diagonal.sum(-1) for k in range(3))], -1)
+    squares = np.stack(
+        [1 + diagonal.sum(-1), *(1 + 2 * diagonal[..., k] - diagonal.sum(-1) for k in range(3))], -1
+    )
     across = [turn[..., (k + 2) % 3, (k + 1) % 3] - turn[..., (k + 1) % 3, (k + 2) % 3] for k in range(3)]
     beside = [turn[..., (k + 2) % 3, (k + 1) % 3] + turn[..., (k + 1) % 3, (k + 2) % 3] for k in range(3)]
-    rows = [[squares[..., 0], *across],
-            [across[0], squares[..., 1], beside[2], beside[1]],
-            [across[1], beside[2], squares[..., 2], beside[0]],
-            [across[2], beside[1], beside[0], squares[..., 3]]]
-    every = np.stack([np.stack(row, -1) for row in rows], -2)   # (…, 4, 4): rows w x y z, each up to a factor the quaternion
+    rows = [
+        [squares[..., 0], *across],
+        [across[0], squares[..., 1], beside[2], beside[1]],
+        [across[1], beside[2], squares[..., 2], beside[0]],
+        [across[2], beside[1], beside[0], squares[..., 3]],
+    ]
+    # (…, 4, 4): rows w x y z, each up to a factor the quaternion.
+    every = np.stack([np.stack(row, -1) for row in rows], -2)
     best = np.take_along_axis(every, squares.argmax(-1)[..., None, None], -2)[..., 0, :]
     best = best / np.linalg.norm(best, axis=-1, keepdims=True)
     return np.concatenate([given[..., :3, 3], best[..., 1:], best[..., :1]], -1)

@@ -25,21 +25,34 @@ class Run:
     @property
     def trace(self) -> NDArray[Any]:
         """trace.csv, a row a tick, as a structured array: run.trace['time_s']."""
-        return np.genfromtxt(self.folder / 'trace.csv', delimiter=',', names=True, dtype=None, encoding='utf-8')
+        return np.genfromtxt(
+            self.folder / 'trace.csv', delimiter=',', names=True, dtype=None, encoding='utf-8'
+        )
 
 
 def program() -> str:
     """The program `palpate`: beside the library that is loaded, else on the PATH. Raises PalpateError."""
     here = pathlib.Path(library._name)
     beside = here.resolve().parent.parent / 'bin' / 'palpate'
-    found = os.environ.get('PALPATE_PROGRAM') or (str(beside) if here.is_absolute() and beside.is_file() else shutil.which('palpate'))
+    found = os.environ.get('PALPATE_PROGRAM') or (
+        str(beside) if here.is_absolute() and beside.is_file() else shutil.which('palpate')
+    )
     if found is None:
-        raise PalpateError(2, 'the program palpate, which does runs, is not on the PATH; PALPATE_PROGRAM may name it')
+        raise PalpateError(
+            2, 'the program palpate, which does runs, is not on the PATH; PALPATE_PROGRAM may name it'
+        )
     return found
 
 
-def run(scene: str, out: Union[str, os.PathLike[str]], engine: str, pace: str, device: Optional[str], duration: Optional[float],
-        overwrite: bool) -> Run:
+def run(
+    scene: str,
+    out: Union[str, os.PathLike[str]],
+    engine: str,
+    pace: str,
+    device: Optional[str],
+    duration: Optional[float],
+    overwrite: bool,
+) -> Run:
     command = [program(), 'run', scene, '--out', os.fspath(out), '--pace', pace, '--backend', engine]
     command += ['--device', device] if device is not None else []
     command += ['--duration', repr(duration)] if duration is not None else []

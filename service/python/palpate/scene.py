@@ -20,9 +20,9 @@ Progress = Callable[[int, int], Any]
 #: Vertices (V, 3) and faces (F, 3), or anything that has `vertices` and `faces`, as a trimesh has.
 MeshLike = Any
 
-_PIECE_SECONDS = 0.1     # of a batch between two looks at signals (chosen: a hand does not feel it)
-_LONGEST_SECONDS = 0.5   # where poses are slow (chosen: a hand feels it and waits)
-_LEAST_PIECE = 32 * (os.cpu_count() or 1)   # poses, if that takes no longer
+_PIECE_SECONDS = 0.1  # of a batch between two looks at signals (chosen: a hand does not feel it)
+_LONGEST_SECONDS = 0.5  # where poses are slow (chosen: a hand feels it and waits)
+_LEAST_PIECE = 32 * (os.cpu_count() or 1)  # poses, if that takes no longer
 
 
 class _Handle:
@@ -36,43 +36,62 @@ class _Handle:
 
 
 class Scene:
-    """A scene, prepared; asked by any thread. `with Scene(…) as scene:` closes it at the end; so does losing the last reference.
+    """A scene, prepared; asked by any thread. `with Scene(…) as scene:` closes it at the end; so does losing
+    the last reference.
 
-    source: path of a scene file; or a dict with its content, in which "mesh" may be (vertices, faces) in place of a file's name; or None.
-    tool, static: in place of `source`, a mesh each, or for `static` a list of them: (vertices (V, 3), faces (F, 3)), or what has them.
-    units: of these meshes: 'm', 'mm', 'cm' or 'in'.
-    engine: 'auto' (gpu on a GPU, else cpu), 'gpu', 'cpu' or 'ref'; all give the same answers.
-    profile: 'refined' or 'paper' in place of the scene's. all_samples: what a tolerance needs. cache: keep what preparing worked out.
-    folder: where the files lie that a dict names; the working directory by default.
+    source: path of a scene file; or a dict with its content, in which "mesh" may be (vertices, faces) in
+    place of a file's name; or None. tool, static: in place of `source`, a mesh each, or for `static` a list
+    of them: (vertices (V, 3), faces (F, 3)), or what has them. units: of these meshes: 'm', 'mm', 'cm' or
+    'in'. engine: 'auto' (gpu on a GPU, else cpu), 'gpu', 'cpu' or 'ref'; all give the same answers. profile:
+    'refined' or 'paper' in place of the scene's. all_samples: what a tolerance needs. cache: keep what
+    preparing worked out. folder: where the files lie that a dict names; the working directory by default.
     progress: called as progress(what, done), done from 0 to 1, by another thread; False ends the opening.
-    Raises PalpateError.
-    """
+    Raises PalpateError."""
 
-    def __init__(self, source: Union[str, os.PathLike[str], Mapping[str, Any], None] = None, *, tool: MeshLike = None, static: MeshLike = None,
-                 units: str = 'm', engine: str = 'auto', profile: Optional[str] = None, all_samples: bool = False, cache: bool = True,
-                 folder: Union[str, os.PathLike[str], None] = None, progress: Optional[Callable[[str, float], Any]] = None) -> None:
+    def __init__(
+        self,
+        source: Union[str, os.PathLike[str], Mapping[str, Any], None] = None,
+        *,
+        tool: MeshLike = None,
+        static: MeshLike = None,
+        units: str = 'm',
+        engine: str = 'auto',
+        profile: Optional[str] = None,
+        all_samples: bool = False,
+        cache: bool = True,
+        folder: Union[str, os.PathLike[str], None] = None,
+        progress: Optional[Callable[[str, float], Any]] = None,
+    ) -> None:
         if (source is None) == (tool is None or static is None):
             raise PalpateError(2, 'a scene is a file, a dict, or tool and static')
         if source is None:
             bodies = static if isinstance(static, list) else [static]
-            source = {'tool': {'mesh': tool, 'units': units}, 'static': [{'mesh': body, 'units': units} for body in bodies]}
+            source = {
+                'tool': {'mesh': tool, 'units': units},
+                'static': [{'mesh': body, 'units': units} for body in bodies],
+            }
         if isinstance(source, Mapping):
             folder = os.path.abspath(folder) if folder is not None else os.getcwd()
             written, meshes = _without_meshes(source)
             self._made_of: dict[str, Any] = {'text': json.dumps(written), 'folder': folder, 'meshes': meshes}
         else:
             self._made_of = {'file': os.path.abspath(source)}
-        self._options: dict[str, Any] = {'engine': engine, 'profile': profile, 'all_samples': all_samples, 'cache': cache}
+        self._options: dict[str, Any] = {
+            'engine': engine,
+            'profile': profile,
+            'all_samples': all_samples,
+            'cache': cache,
+        }
         self._open(progress)
 
     def _open(self, progress: Optional[Callable[[str, float], Any]]) -> None:
-        self._rates: dict[str, float] = {}   # poses a second, by question
+        self._rates: dict[str, float] = {}  # poses a second, by question
         #: What a user should know of this scene, a sentence each.
         self.notes: list[str] = []
         source = library.palpate_source_new()
         try:
             _fill(source, self._made_of, self._options)
-            out, cancel, faults = ctypes.c_void_p(), ctypes.c_int32(), []   # type: ignore[var-annotated]
+            out, cancel, faults = ctypes.c_void_p(), ctypes.c_int32(), []  # type: ignore[var-annotated]
             seen = watch(cancel, progress, self.notes.append, faults)
             try:
                 obeying(lambda: call('scene_open', source, ctypes.byref(seen), ctypes.byref(out)), cancel)
@@ -94,12 +113,14 @@ class Scene:
 
     @property
     def hash(self) -> str:
-        """32 hexadecimal digits that stand for all that decides this scene's answers, wherever its files lie."""
+        """32 hexadecimal digits that stand for all that decides this scene's answers, wherever its files
+        lie."""
         return str(self._description['hash'])
 
     @property
     def description(self) -> dict[str, Any]:
-        """Engine, device, profile, start pose, bodies with their parts, plan, memory: docs/LIBRARY.md. A copy."""
+        """Engine, device, profile, start pose, bodies with their parts, plan, memory: docs/LIBRARY.md. A
+        copy."""
         return copy.deepcopy(self._description)
 
     @property
@@ -113,7 +134,8 @@ class Scene:
         return self._made_of.get('file')
 
     def triangles(self, body: str = 'static') -> NDArray[np.float64]:
-        """Corners of all triangles of 'static' (world, m) or 'tool' (its own frame, m), as the engines see them: (T, 3, 3)."""
+        """Corners of all triangles of 'static' (world, m) or 'tool' (its own frame, m), as the engines see
+        them: (T, 3, 3)."""
         number = {'static': 0, 'tool': 1}.get(body)
         if number is None:
             raise PalpateError(2, f"the body is {body!r}; it must be 'static' or 'tool'")
@@ -131,56 +153,105 @@ class Scene:
 
     # ---- questions ------------------------------------------------------------------------------------
 
-    def query_batch(self, poses: ArrayLike, columns: Optional[Iterable[str]] = None, *, out: Optional[Mapping[str, NDArray[Any]]] = None,
-                    progress: Optional[Progress] = None) -> Columns:
+    def query_batch(
+        self,
+        poses: ArrayLike,
+        columns: Optional[Iterable[str]] = None,
+        *,
+        out: Optional[Mapping[str, NDArray[Any]]] = None,
+        progress: Optional[Progress] = None,
+    ) -> Columns:
         """Contact, force and torque at poses (N, 7): x y z (m) qx qy qz qw, world from tool.
 
-        columns: names of those that are wanted (palpate.COLUMNS); all by default. Without force, torque, tool and evaluations it takes
-        a fraction of the time. out: arrays of these names to write into. progress: called as progress(done, all) about ten times a
-        second; False ends it. Raises PalpateError; a batch that was ended leaves nothing of use.
-        """
+        columns: names of those that are wanted (palpate.COLUMNS); all by default. Without force, torque, tool
+        and evaluations it takes a fraction of the time. out: arrays of these names to write into. progress:
+        called as progress(done, all) about ten times a second; False ends it. Raises PalpateError; a batch
+        that was ended leaves nothing of use."""
         asked, shape = _poses(poses)
         found = Columns(shape, columns, out)
-        self._in_pieces('query', len(asked), progress, lambda handle, first, count, eye: call(
-            'query', handle, _row(asked, first), count, ctypes.byref(found._at(first)), eye))
+        self._in_pieces(
+            'query',
+            len(asked),
+            progress,
+            lambda handle, first, count, eye: call(
+                'query', handle, _row(asked, first), count, ctypes.byref(found._at(first)), eye
+            ),
+        )
         return found
 
-    def touches(self, poses: ArrayLike, tolerance: float = 0.0, *, progress: Optional[Progress] = None) -> NDArray[np.bool_]:
+    def touches(
+        self, poses: ArrayLike, tolerance: float = 0.0, *, progress: Optional[Progress] = None
+    ) -> NDArray[np.bool_]:
         """Whether tool and mock-up touch, containment included: bool (N,) for poses (N, 7).
 
-        tolerance (m): contact no deeper does not count; above 0 the scene must have been opened with all_samples=True.
-        """
+        tolerance (m): contact no deeper does not count; above 0 the scene must have been opened with
+        all_samples=True."""
         asked, shape = _poses(poses)
         found = np.empty(shape, np.bool_)
-        self._in_pieces('touches', len(asked), progress, lambda handle, first, count, eye: call(
-            'touches', handle, _row(asked, first), count, tolerance, found.ctypes.data + first, eye))
+        self._in_pieces(
+            'touches',
+            len(asked),
+            progress,
+            lambda handle, first, count, eye: call(
+                'touches', handle, _row(asked, first), count, tolerance, found.ctypes.data + first, eye
+            ),
+        )
         return found
 
-    def clearance(self, poses: ArrayLike, within: Optional[float] = None, *, progress: Optional[Progress] = None) -> Distances:
+    def clearance(
+        self, poses: ArrayLike, within: Optional[float] = None, *, progress: Optional[Progress] = None
+    ) -> Distances:
         """The exact smallest distance at poses (N, 7), where, and between which triangles.
 
-        within (m): what is further is inf; None: what the lattice reaches, description['reach'] from description['origin'] along each
-        axis, about as far as the scene is large. Poses with a vertex of the tool beyond that are inf, too.
-        """
+        within (m): what is further is inf; None: what the lattice reaches, description['reach'] from
+        description['origin'] along each axis, about as far as the scene is large. Poses with a vertex of the
+        tool beyond that are inf, too."""
         asked, shape = _poses(poses)
         found = Distances(shape)
         reach = float('inf') if within is None else within
-        self._in_pieces('clearance', len(asked), progress, lambda handle, first, count, eye: call(
-            'clearance', handle, _row(asked, first), count, reach, ctypes.byref(found._at(first)), eye))
+        self._in_pieces(
+            'clearance',
+            len(asked),
+            progress,
+            lambda handle, first, count, eye: call(
+                'clearance', handle, _row(asked, first), count, reach, ctypes.byref(found._at(first)), eye
+            ),
+        )
         return found
 
-    def first_contact(self, start: ArrayLike, goal: ArrayLike, tolerance: float = 0.0, *, progress: Optional[Progress] = None) -> Motions:
-        """When a tool that moves on the screw from `start` to `goal` first touches; never late. Poses (7,) or (N, 7) either."""
+    def first_contact(
+        self,
+        start: ArrayLike,
+        goal: ArrayLike,
+        tolerance: float = 0.0,
+        *,
+        progress: Optional[Progress] = None,
+    ) -> Motions:
+        """When a tool that moves on the screw from `start` to `goal` first touches; never late. Poses (7,) or
+        (N, 7) either."""
         begin, end = np.broadcast_arrays(np.asarray(start, np.float64), np.asarray(goal, np.float64))
         (first_poses, shape), (last_poses, _) = _poses(begin), _poses(end)
         found = Motions(shape)
-        self._in_pieces('first_contact', len(first_poses), progress, lambda handle, first, count, eye: call(
-            'first_contact', handle, _row(first_poses, first), _row(last_poses, first), count, tolerance,
-            ctypes.byref(found._at(first)), eye))
+        self._in_pieces(
+            'first_contact',
+            len(first_poses),
+            progress,
+            lambda handle, first, count, eye: call(
+                'first_contact',
+                handle,
+                _row(first_poses, first),
+                _row(last_poses, first),
+                count,
+                tolerance,
+                ctypes.byref(found._at(first)),
+                eye,
+            ),
+        )
         return found
 
     def wrench(self, pose: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Force (3,; N) and torque (3,; N·m, about the tool's centre of mass) on the tool at one pose, world axes."""
+        """Force (3,; N) and torque (3,; N·m, about the tool's centre of mass) on the tool at one pose, world
+        axes."""
         found = self.query_batch(pose, ('force', 'torque'))
         return found.force, found.torque
 
@@ -196,12 +267,20 @@ class Scene:
         finally:
             library.palpate_contact_free(out)
 
-    def run(self, out: Union[str, os.PathLike[str]], *, pace: str = 'asap', device: Optional[str] = None, duration: Optional[float] = None,
-            overwrite: bool = False) -> Run:
-        """Lets the program do the scene's whole task, as `palpate run` does, and gives what it left in the folder `out`.
+    def run(
+        self,
+        out: Union[str, os.PathLike[str]],
+        *,
+        pace: str = 'asap',
+        device: Optional[str] = None,
+        duration: Optional[float] = None,
+        overwrite: bool = False,
+    ) -> Run:
+        """Lets the program do the scene's whole task, as `palpate run` does, and gives what it left in the
+        folder `out`.
 
-        pace: 'asap' or 'real'. device: in place of the scene's. duration: s; the whole path by default. The scene must be one of a file.
-        """
+        pace: 'asap' or 'real'. device: in place of the scene's. duration: s; the whole path by default. The
+        scene must be one of a file."""
         if self.file is None:
             raise PalpateError(2, 'a run needs a scene of a file: its device and path stand there')
         return run(self.file, out, self._options['engine'], pace, device, duration, overwrite)
@@ -220,18 +299,24 @@ class Scene:
 
     def __repr__(self) -> str:
         bodies = self._description
-        return (f"<palpate.Scene {self.hash[:8]}: mock-up of {bodies['static']['triangles']} triangles, tool of "
-                f"{bodies['tool']['triangles']}, engine {self.engine}>")
+        return (
+            f"<palpate.Scene {self.hash[:8]}: mock-up of {bodies['static']['triangles']} triangles, tool of "
+            f"{bodies['tool']['triangles']}, engine {self.engine}>"
+        )
 
     def __getstate__(self) -> Any:
         return self._made_of, self._options, self.hash
 
     def __setstate__(self, state: Any) -> None:
-        """Opens the scene again, where the pickle is read. Raises PalpateError where its files have another content there."""
+        """Opens the scene again, where the pickle is read. Raises PalpateError where its files have another
+        content there."""
         self._made_of, self._options, wanted = state
         self._open(None)
         if self.hash != wanted:
-            raise PalpateError(3, f'{self.file or "the scene"} has changed since it was pickled: its hash is {self.hash} instead of {wanted}')
+            raise PalpateError(
+                3,
+                f'{self.file or "the scene"} has changed since it was pickled: its hash is {self.hash} instead of {wanted}',
+            )
 
     def _asked(self) -> _Handle:
         handle = self._handle
@@ -239,16 +324,22 @@ class Scene:
             raise PalpateError(2, 'the scene is closed')
         return handle
 
-    def _in_pieces(self, question: str, count: int, progress: Optional[Progress], ask: Callable[[int, int, int, Any], None]) -> None:
+    def _in_pieces(
+        self,
+        question: str,
+        count: int,
+        progress: Optional[Progress],
+        ask: Callable[[int, int, int, Any], None],
+    ) -> None:
         """Asks piece by piece, each about _PIECE_SECONDS long, so that Python sees signals between them."""
-        handle, first = self._asked(), 0   # the handle lives as long as this call
+        handle, first = self._asked(), 0  # the handle lives as long as this call
         while first < count:
-            rate = self._rates.get(question, 1 / _PIECE_SECONDS)   # of nothing yet: one pose tells more
+            rate = self._rates.get(question, 1 / _PIECE_SECONDS)  # of nothing yet: one pose tells more
             # Where poses are slow, a piece is long enough that processors seldom wait for the last of it.
             size = max(1, int(rate * _PIECE_SECONDS), min(_LEAST_PIECE, int(rate * _LONGEST_SECONDS)))
             size = min(size, count - first)
             begin = time.perf_counter()
-            if size / rate > _LONGEST_SECONDS:   # a single slow one
+            if size / rate > _LONGEST_SECONDS:  # a single slow one
                 cancel = ctypes.c_int32()
                 seen = ctypes.byref(watch(cancel))
                 obeying(lambda: ask(handle.pointer, first, size, seen), cancel)
@@ -257,7 +348,9 @@ class Scene:
             taken = max(time.perf_counter() - begin, 1e-6)
             first += size
             # A short piece says little of how long a long one takes.
-            self._rates[question] = min(size / taken, 8 * size / _PIECE_SECONDS) if taken < _PIECE_SECONDS else size / taken
+            self._rates[question] = (
+                min(size / taken, 8 * size / _PIECE_SECONDS) if taken < _PIECE_SECONDS else size / taken
+            )
             if progress is not None and progress(first, count) is False:
                 raise PalpateError(64, f'cancelled after {first} of {count}')
 
@@ -278,19 +371,29 @@ def _mesh(mesh: MeshLike) -> Optional[tuple[NDArray[np.float64], NDArray[np.uint
     """(vertices, faces) of a mesh in memory; None: a file's name."""
     if isinstance(mesh, (str, bytes)) or mesh is None:
         return None
-    vertices, faces = (mesh.vertices, mesh.faces) if hasattr(mesh, 'vertices') and hasattr(mesh, 'faces') else mesh
+    vertices, faces = (
+        (mesh.vertices, mesh.faces) if hasattr(mesh, 'vertices') and hasattr(mesh, 'faces') else mesh
+    )
     corners, indices = np.ascontiguousarray(vertices, np.float64), np.asarray(faces)
     if corners.ndim != 2 or corners.shape[1] != 3:
         raise PalpateError(3, f'the vertices of a mesh have the shape {corners.shape}; (V, 3) is wanted')
     if indices.ndim != 2 or indices.shape[1] != 3 or not np.issubdtype(indices.dtype, np.integer):
-        raise PalpateError(3, f'the faces of a mesh are {indices.dtype} of the shape {indices.shape}; whole numbers (F, 3) are wanted')
+        raise PalpateError(
+            3,
+            f'the faces of a mesh are {indices.dtype} of the shape {indices.shape}; whole numbers (F, 3) are wanted',
+        )
     if indices.size and (indices.min() < 0 or indices.max() >= len(corners)):
-        raise PalpateError(3, f'a face of a mesh has the index {indices.max() if indices.min() >= 0 else indices.min()}; '
-                              f'there are {len(corners)} vertices')
+        raise PalpateError(
+            3,
+            f'a face of a mesh has the index {indices.max() if indices.min() >= 0 else indices.min()}; '
+            f'there are {len(corners)} vertices',
+        )
     return corners, np.ascontiguousarray(indices, np.uint32)
 
 
-def _without_meshes(scene: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, tuple[NDArray[np.float64], NDArray[np.uint32]]]]:
+def _without_meshes(
+    scene: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, tuple[NDArray[np.float64], NDArray[np.uint32]]]]:
     """The scene with a name in place of each mesh in memory, and these."""
     meshes: dict[str, tuple[NDArray[np.float64], NDArray[np.uint32]]] = {}
 
@@ -317,7 +420,15 @@ def _fill(source: int, made_of: Mapping[str, Any], options: Mapping[str, Any]) -
     else:
         call('source_text', source, made_of['text'].encode(), os.fsencode(made_of['folder']))
         for name, (vertices, faces) in made_of['meshes'].items():
-            call('source_mesh', source, name.encode(), vertices.ctypes.data, len(vertices), faces.ctypes.data, len(faces))
+            call(
+                'source_mesh',
+                source,
+                name.encode(),
+                vertices.ctypes.data,
+                len(vertices),
+                faces.ctypes.data,
+                len(faces),
+            )
     call('source_engine', source, options['engine'].encode())
     if options['profile'] is not None:
         call('source_profile', source, options['profile'].encode())

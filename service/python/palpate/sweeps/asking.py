@@ -10,7 +10,8 @@ ASKS = ('touches', 'clearance', 'query')
 
 
 def answer(scene, ask, within, poses):
-    """The scene's answers to `ask` at poses (N, 7): {column: array (N, …)}. `within`: metres, for clearance alone."""
+    """The scene's answers to `ask` at poses (N, 7): {column: array (N, …)}. `within`: metres, for clearance
+    alone."""
     if ask == 'touches':
         return {'touches': numpy.asarray(scene.touches(poses), dtype=bool)}
     columns = scene.clearance(poses, within=within) if ask == 'clearance' else scene.query_batch(poses)
@@ -23,14 +24,17 @@ def first_difference(ones, others):
     found = None
     for name in sorted(ones):
         one, other = (numpy.ascontiguousarray(each[name]) for each in (ones, others))
-        rows = (one.view(numpy.uint8).reshape(len(one), -1) != other.view(numpy.uint8).reshape(len(other), -1)).any(axis=1)
+        rows = (
+            one.view(numpy.uint8).reshape(len(one), -1) != other.view(numpy.uint8).reshape(len(other), -1)
+        ).any(axis=1)
         if rows.any() and (found is None or rows.argmax() < found[0]):
             found = int(rows.argmax()), name
     return found
 
 
 def second_engine(first, wish):
-    """The engine that checks `first`: the one wished for; with 'auto' ref beside cpu, and cpu beside the others."""
+    """The engine that checks `first`: the one wished for; with 'auto' ref beside cpu, and cpu beside the
+    others."""
     if wish == first:
         refuse(f'the {first} engine answers; asking it again would compare it with itself')
     return wish if wish != 'auto' else 'ref' if first == 'cpu' else 'cpu'
@@ -44,5 +48,6 @@ def maker(scene):
 def _made(kind, state, engine):
     made_of, options, wanted = state
     scene = kind.__new__(kind)
-    scene.__setstate__((made_of, {**options, 'engine': engine}, wanted))   # opens it, and holds it against the hash wanted
+    # Opens it, and holds it against the hash wanted.
+    scene.__setstate__((made_of, {**options, 'engine': engine}, wanted))
     return scene

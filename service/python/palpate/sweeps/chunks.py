@@ -20,8 +20,9 @@ class Chunks:
         return start, min(self.size, self.poses - start)
 
     def asked_twice(self, share):
-        """The numbers of the chunks that a second engine answers too: those with the smallest hashes, at least one unless
-        `share` is 0. They depend on nothing but the count of chunks, so that a sweep that goes on asks the same ones."""
+        """The numbers of the chunks that a second engine answers too: those with the smallest hashes, at
+        least one unless `share` is 0. They depend on nothing but the count of chunks, so that a sweep that
+        goes on asks the same ones."""
         wanted = min(self.count, math.ceil(self.count * share))
         return frozenset(sorted(range(self.count), key=_lot)[:wanted])
 

@@ -19,28 +19,51 @@ def main(arguments=None):
     try:
         client, connect = _client(asked)
         poses, count = _poses(parser, asked)
-        swept = sweep(asked.scene, poses, out=asked.out, count=count, client=client, ask=asked.ask, within=asked.within,
-                      engine=asked.engine, again=asked.again, share=asked.share, again_poses=asked.again_poses, workers=asked.workers,
-                      size=asked.size, quiet=asked.quiet, connect=connect)
+        swept = sweep(
+            asked.scene,
+            poses,
+            out=asked.out,
+            count=count,
+            client=client,
+            ask=asked.ask,
+            within=asked.within,
+            engine=asked.engine,
+            again=asked.again,
+            share=asked.share,
+            again_poses=asked.again_poses,
+            workers=asked.workers,
+            size=asked.size,
+            quiet=asked.quiet,
+            connect=connect,
+        )
     except PalpateError as error:
         print(f'palpate-sweep: {error}', file=sys.stderr)
         return getattr(error, 'code', 0) or 3
     except KeyboardInterrupt:
         print('palpate-sweep: stopped; the same command goes on from what is done', file=sys.stderr)
         return 130
-    print(f'{swept.path}: {swept.poses:,} poses in {swept.chunks:,} chunks, {swept.earlier:,} of them from before, {swept.twice:,} '
-          f'answered by two engines; {swept.rate:,.0f} poses a second\nhash {swept.hash}')
+    print(
+        f'{swept.path}: {swept.poses:,} poses in {swept.chunks:,} chunks, {swept.earlier:,} of them from before, {swept.twice:,} '
+        f'answered by two engines; {swept.rate:,.0f} poses a second\nhash {swept.hash}'
+    )
     return 0
 
 
 def _parser():
-    parser = argparse.ArgumentParser('palpate-sweep', description='Asks a scene at very many poses and keeps the answers in a Zarr '
-                                     'group. Cut short, the same command goes on from what is done. docs/SWEEPS.md')
+    parser = argparse.ArgumentParser(
+        'palpate-sweep',
+        description='Asks a scene at very many poses and keeps the answers in a Zarr '
+        'group. Cut short, the same command goes on from what is done. docs/SWEEPS.md',
+    )
     parser.add_argument('scene', help='scene file')
     parser.add_argument('--out', required=True, metavar='OUT.zarr')
     parser.add_argument('--ask', choices=('touches', 'clearance', 'query'), default='touches')
-    parser.add_argument('--within', type=float, metavar='METRES', help='clearance: what is further is not measured')
-    grid = parser.add_argument_group('poses on a grid', 'each axis a number, FIRST:LAST:COUNT with both ends, or A,B,C,…')
+    parser.add_argument(
+        '--within', type=float, metavar='METRES', help='clearance: what is further is not measured'
+    )
+    grid = parser.add_argument_group(
+        'poses on a grid', 'each axis a number, FIRST:LAST:COUNT with both ends, or A,B,C,…'
+    )
     for name in ('x', 'y', 'z'):
         grid.add_argument(f'--{name}', type=_axis, metavar='METRES')
     for name in ('rx', 'ry', 'rz'):
@@ -50,13 +73,23 @@ def _parser():
     other.add_argument('--function', metavar='MODULE:NAME', help='function(start, n) -> float64 (n, 7)')
     other.add_argument('--count', type=int, help="the function's poses")
     parser.add_argument('--engine', choices=('auto', 'gpu', 'cpu', 'ref'), default='auto')
-    parser.add_argument('--again', choices=('auto', 'gpu', 'cpu', 'ref'), default='auto', help='the engine that checks')
+    parser.add_argument(
+        '--again', choices=('auto', 'gpu', 'cpu', 'ref'), default='auto', help='the engine that checks'
+    )
     parser.add_argument('--share', type=float, default=0.01, help='part of the chunks that it checks (0.01)')
-    parser.add_argument('--again-poses', type=int, default=1024, help='poses of such a chunk, evenly spread (1024)')
+    parser.add_argument(
+        '--again-poses', type=int, default=1024, help='poses of such a chunk, evenly spread (1024)'
+    )
     parser.add_argument('--size', type=int, default=1 << 16, help='poses in a chunk (65536)')
     parser.add_argument('--workers', type=int, help='processes on this machine')
-    parser.add_argument('--scheduler', metavar='ADDRESS', help="of a Dask cluster, tcp://…:8786, in place of this machine's processes")
-    parser.add_argument('--scheduler-file', metavar='FILE', help='the same, by the file that the scheduler writes')
+    parser.add_argument(
+        '--scheduler',
+        metavar='ADDRESS',
+        help="of a Dask cluster, tcp://…:8786, in place of this machine's processes",
+    )
+    parser.add_argument(
+        '--scheduler-file', metavar='FILE', help='the same, by the file that the scheduler writes'
+    )
     parser.add_argument('--quiet', action='store_true')
     return parser
 
@@ -68,7 +101,9 @@ def _axis(text):
             return float(first), float(last), int(count)
         return [float(value) for value in text.split(',')]
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is no number, FIRST:LAST:COUNT or list of numbers") from None
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is no number, FIRST:LAST:COUNT or list of numbers"
+        ) from None
 
 
 def _poses(parser, asked):

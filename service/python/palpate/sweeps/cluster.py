@@ -12,7 +12,8 @@ MOST_WORKERS = 8
 
 
 def shares(workers, processors):
-    """The processors of each worker, by its name in the cluster: all of them dealt out, none to two where there are enough."""
+    """The processors of each worker, by its name in the cluster: all of them dealt out, none to two where
+    there are enough."""
     processors = sorted(processors)
     if workers >= len(processors):
         return {number: {processors[number % len(processors)]} for number in range(workers)}
@@ -21,8 +22,8 @@ def shares(workers, processors):
 
 @contextlib.contextmanager
 def local(workers, gpu):
-    """A client of `workers` processes here, and their shares of the processors. None: one a processor, at most
-    MOST_WORKERS; one alone where a GPU answers."""
+    """A client of `workers` processes here, and their shares of the processors. None: one a processor, at
+    most MOST_WORKERS; one alone where a GPU answers."""
     from distributed import Client, LocalCluster
 
     processors = os.sched_getaffinity(0)
@@ -31,7 +32,12 @@ def local(workers, gpu):
     if workers < 1:
         refuse(f'a sweep needs one worker or more, not {workers}')
     # One thread's batch has threads of its own; the other writes meanwhile.
-    with tempfile.TemporaryDirectory(prefix='palpate-sweep-') as folder, \
-            LocalCluster(n_workers=workers, threads_per_worker=2, processes=True, dashboard_address=':0', local_directory=folder,
-                         silence_logs=logging.ERROR) as cluster, Client(cluster) as client:
+    with tempfile.TemporaryDirectory(prefix='palpate-sweep-') as folder, LocalCluster(
+        n_workers=workers,
+        threads_per_worker=2,
+        processes=True,
+        dashboard_address=':0',
+        local_directory=folder,
+        silence_logs=logging.ERROR,
+    ) as cluster, Client(cluster) as client:
         yield client, shares(workers, processors)

@@ -1,5 +1,6 @@
 # mypy: ignore-errors
-"""Hashes of poses and of answers. They are of numbers, not of files: compression and machine leave them as they are."""
+"""Hashes of poses and of answers. They are of numbers, not of files: compression and machine leave them as
+they are."""
 import hashlib
 import json
 
@@ -21,8 +22,8 @@ def of_columns(columns):
 
 
 def of_sweep(question, records):
-    """Of a whole sweep: what was asked, and all chunks' poses and answers in the order of their numbers. Neither engine nor
-    version nor who did what is in it."""
+    """Of a whole sweep: what was asked, and all chunks' poses and answers in the order of their numbers.
+    Neither engine nor version nor who did what is in it."""
     digest = hashlib.sha256(json.dumps(question, sort_keys=True).encode())
     for record in records:
         digest.update('{chunk} {start} {poses} {posed} {answers};'.format(**record).encode())

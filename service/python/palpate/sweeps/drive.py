@@ -1,9 +1,8 @@
 # mypy: ignore-errors
 """Hands chunks to Dask and sees that each is done once, whatever falls over meanwhile.
 
-Dask schedules: it moves a lost worker's tasks to the others. What it doesn't do is remember: after its scheduler is gone
-nothing is known of the tasks. The markers are, so whatever has none is handed in again.
-"""
+Dask schedules: it moves a lost worker's tasks to the others. What it doesn't do is remember: after its
+scheduler is gone nothing is known of the tasks. The markers are, so whatever has none is handed in again. """
 import contextlib
 import queue
 import time
@@ -13,14 +12,15 @@ from distributed import KilledWorker
 from .words import refuse
 from .worker import Delivery, Undelivered, answer_chunk
 
-# So many chunks are handed in for each thread of the workers: the next is there when one is done, and a scheduler that
-# is asked for 10^10 poses need not know them all at once (chosen).
+# So many chunks are handed in for each thread of the workers: the next is there when one is done, and a
+# scheduler that is asked for 10^10 poses need not know them all at once (chosen).
 AHEAD = 3
-PATIENCE_S = 120   # for a scheduler to come back, or a first worker to come (chosen)
+PATIENCE_S = 120  # for a scheduler to come back, or a first worker to come (chosen)
 
 
 class Driver:
-    """Has `job` done by the workers of `client`. `connect`: gives a client anew when this one is closed, or None."""
+    """Has `job` done by the workers of `client`. `connect`: gives a client anew when this one is closed, or
+    None."""
 
     def __init__(self, client, job, progress, connect=None):
         self._client, self._job, self._progress, self._connect = client, job, progress, connect
@@ -28,8 +28,8 @@ class Driver:
         self._round, self._alone = 0, False
 
     def run(self, todo, twice):
-        """Does the chunks `todo`, in their order; those also in `twice` are asked of two engines. Full, PalpateError: it
-        stopped; what is done stays done."""
+        """Does the chunks `todo`, in their order; those also in `twice` are asked of two engines. Full,
+        PalpateError: it stopped; what is done stays done."""
         waiting, running = list(reversed(todo)), {}
         self._deliver()
         room, counted = self._room(), time.monotonic()
@@ -56,15 +56,21 @@ class Driver:
                 if time.monotonic() - counted > 5:
                     room, counted = self._room(), time.monotonic()
         finally:
-            with contextlib.suppress(Exception):   # of a connection that is gone
+            with contextlib.suppress(Exception):  # of a connection that is gone
                 for future in running.values():
                     future.cancel()
                 self._client.unregister_worker_plugin(self._job.name)
 
     def _submit(self, number, twice):
         self._round += 1
-        future = self._client.submit(answer_chunk, self._job.name, number, twice, pure=False,
-                                     key=f'{self._job.name}-{number}-{self._round}')
+        future = self._client.submit(
+            answer_chunk,
+            self._job.name,
+            number,
+            twice,
+            pure=False,
+            key=f'{self._job.name}-{number}-{self._round}',
+        )
         future.add_done_callback(lambda ended: self._ended.put((number, ended)))
         return future
 
@@ -72,7 +78,7 @@ class Driver:
         """False: it has to be handed in again."""
         if future.status == 'finished':
             return True
-        if future.status != 'error':   # cancelled, lost: its scheduler is gone
+        if future.status != 'error':  # cancelled, lost: its scheduler is gone
             return False
         error = future.exception()
         if isinstance(error, Undelivered):
@@ -86,7 +92,7 @@ class Driver:
         """How many chunks to keep handed in."""
         try:
             threads = sum(self._client.nthreads().values())
-        except Exception:   # no connection at the moment
+        except Exception:  # no connection at the moment
             threads = 0
         if threads == 0 and not self._alone:
             self._progress.note('no worker is there yet; waiting for one')
@@ -108,7 +114,7 @@ class Driver:
                     self._deliver()
                     self._progress.note('the scheduler is back')
                     return
-            except Exception:   # whatever a connection that comes and goes throws: there is the time limit
+            except Exception:  # whatever a connection that comes and goes throws: there is the time limit
                 pass
             time.sleep(0.2)
         refuse(f'the scheduler did not come back within {PATIENCE_S} s')

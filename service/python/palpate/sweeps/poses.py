@@ -1,6 +1,6 @@
 # mypy: ignore-errors
-"""Where a sweep's poses come from: a grid, a function or an array. Any run of them can be made by itself, on any
-machine, from its first number alone, and is the same bits there.
+"""Where a sweep's poses come from: a grid, a function or an array. Any run of them can be made by itself, on
+any machine, from its first number alone, and is the same bits there.
 
 A pose is x y z qx qy qz qw: metres, a unit quaternion, world from tool, as everywhere in palpate.
 """
@@ -16,15 +16,15 @@ MOST_ANGLES = 10**6
 
 
 class Grid:
-    """All combinations of six axes, each a number, a range `(first, last, count)` that holds both ends, or a list of values.
+    """All combinations of six axes, each a number, a range `(first, last, count)` that holds both ends, or a
+    list of values.
 
-    x, y, z : position of the tool's frame, metres, world frame.
-    rx, ry, rz : turns about the world's x, y and z axis through the tool's origin, degrees, done in this order.
+    x, y, z : position of the tool's frame, metres, world frame. rx, ry, rz : turns about the world's x, y and
+    z axis through the tool's origin, degrees, done in this order.
 
-    Nothing is kept but the axes: 10^8 poses take no memory. The last axis runs fastest; `shape` has the six counts, so
-    that `answers.reshape(grid.shape)` has an axis each. Sines are worked out here, once, and travel with the grid: numpy's
-    differ in the last bit from processor to processor.
-    """
+    Nothing is kept but the axes: 10^8 poses take no memory. The last axis runs fastest; `shape` has the six
+    counts, so that `answers.reshape(grid.shape)` has an axis each. Sines are worked out here, once, and
+    travel with the grid: numpy's differ in the last bit from processor to processor."""
 
     NAMES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
@@ -61,8 +61,8 @@ class Grid:
 
 
 class FunctionPoses:
-    """`function(start, n)` gives poses start … start + n − 1 of `count`, float64 (n, 7). It must give the same whenever
-    and wherever it is called, and be something that cloudpickle can send."""
+    """`function(start, n)` gives poses start … start + n − 1 of `count`, float64 (n, 7). It must give the
+    same whenever and wherever it is called, and be something that cloudpickle can send."""
 
     def __init__(self, function, count):
         if isinstance(count, bool) or not isinstance(count, (int, numpy.integer)) or count < 1:
@@ -74,8 +74,12 @@ class FunctionPoses:
         ends = hashlib.sha256()
         for start in sorted({0, self.count // 2, self.count - 1}):
             ends.update(self.poses(start, min(16, self.count - start)).tobytes())
-        return {'kind': 'function', 'name': getattr(self.function, '__qualname__', 'function'), 'count': self.count,
-                'sample': ends.hexdigest()}
+        return {
+            'kind': 'function',
+            'name': getattr(self.function, '__qualname__', 'function'),
+            'count': self.count,
+            'sample': ends.hexdigest(),
+        }
 
     def poses(self, start, n):
         return checked(self.function(start, n), n, f'the function of poses, asked for {n} from {start} on,')
@@ -95,7 +99,7 @@ class ArrayPoses:
         return {'kind': 'array', 'count': self.count, 'sha256': digest.hexdigest()}
 
     def poses(self, start, n):
-        return checked(self.rows[start:start + n], n, f'rows {start} to {start + n - 1} of the poses')
+        return checked(self.rows[start : start + n], n, f'rows {start} to {start + n - 1} of the poses')
 
 
 def source_of(poses, count=None):
@@ -104,7 +108,7 @@ def source_of(poses, count=None):
         return poses
     if callable(poses):
         return FunctionPoses(poses, count)
-    rows = numpy.asanyarray(poses)   # keeps a file that is mapped into memory as it is
+    rows = numpy.asanyarray(poses)  # keeps a file that is mapped into memory as it is
     if rows.ndim != 2 or rows.shape[1] != 7 or len(rows) == 0:
         refuse(f'poses are rows of seven numbers, shape (N, 7); these have shape {rows.shape}')
     return ArrayPoses(rows)
@@ -160,8 +164,10 @@ def _axis(name, axis):
             first, last, count = axis
             made, numbers = _Range(float(first), float(last), int(count)), (first, last)
             if count != int(count) or count < 1 or (count == 1 and first != last):
-                refuse(f'axis {name}: a range is (first, last, count) with a whole count from 1 on, and from 2 on if its ends '
-                       f'differ; it is {axis}')
+                refuse(
+                    f'axis {name}: a range is (first, last, count) with a whole count from 1 on, and from 2 on if its ends '
+                    f'differ; it is {axis}'
+                )
         else:
             numbers = numpy.atleast_1d(numpy.asarray(axis, dtype=numpy.float64))
             if numbers.ndim != 1 or len(numbers) == 0:

@@ -1,5 +1,6 @@
 # mypy: ignore-errors
-"""palpate.sweep: asks a scene at very many poses, on many processors or machines, and can be cut short anywhere."""
+"""palpate.sweep: asks a scene at very many poses, on many processors or machines, and can be cut short
+anywhere."""
 import contextlib
 import dataclasses
 import os
@@ -21,11 +22,11 @@ from .words import refuse
 class Swept:
     """A sweep that is done.
 
-    path : the Zarr group; `answers(column)` opens one of its arrays.
-    hash : of the scene's hash, the question, all poses and all answers; the same for any workers, engines and cuts.
-    poses, chunks : how many. earlier : chunks that were done before this run. twice : chunks that two engines answered.
-    seconds, rate : of this run, in s and poses a second, after the workers were there.
-    """
+    path : the Zarr group; `answers(column)` opens one of its arrays. hash : of the scene's hash, the
+    question, all poses and all answers; the same for any workers, engines and cuts. poses, chunks : how many.
+    earlier : chunks that were done before this run. twice : chunks that two engines answered. seconds, rate :
+    of this run, in s and poses a second, after the workers were there."""
+
     path: pathlib.Path
     hash: str
     poses: int
@@ -42,22 +43,41 @@ class Swept:
         return zarr.open_group(str(self.path), mode='r')[column]
 
 
-def sweep(scene, poses, *, out, count=None, client=None, ask='touches', within=None, engine='auto', again='auto', share=0.01,
-          again_poses=1024, workers=None, size=SIZE, quiet=False, command=None, connect=None):
+def sweep(
+    scene,
+    poses,
+    *,
+    out,
+    count=None,
+    client=None,
+    ask='touches',
+    within=None,
+    engine='auto',
+    again='auto',
+    share=0.01,
+    again_poses=1024,
+    workers=None,
+    size=SIZE,
+    quiet=False,
+    command=None,
+    connect=None,
+):
     """Asks a scene at all of `poses` and keeps the answers in the Zarr group `out`.
 
-    scene : a palpate.Scene, or what makes one: a file or a dict.
-    poses : a Grid, a function (start, n) -> float64 (n, 7) with `count` of them in all, or an array (N, 7).
-    client : a distributed.Client whose workers have palpate and see `out` and the scene's files under the same paths. None:
+    scene : a palpate.Scene, or what makes one: a file or a dict. poses : a Grid, a function (start, n) ->
+    float64 (n, 7) with `count` of them in all, or an array (N, 7). client : a distributed.Client whose
+    workers have palpate and see `out` and the scene's files under the same paths. None:
         `workers` processes here, which share the processors out (None: one each, at most 8).
-    ask : 'touches' (bool), 'clearance' (distance and nearest points; `within` metres) or 'query' (contact, force, torque).
-    engine : of a scene that is made here. again : the engine that answers `share` of the chunks a second time: 'auto' (ref
+    ask : 'touches' (bool), 'clearance' (distance and nearest points; `within` metres) or 'query' (contact,
+    force, torque). engine : of a scene that is made here. again : the engine that answers `share` of the
+    chunks a second time: 'auto' (ref
         beside cpu, cpu beside gpu), 'gpu', 'cpu' or 'ref'; at `again_poses` poses of each, evenly spread, for ref is slow.
-    quiet : no progress on standard error. command : what to note as the command; connect : makes a lost client anew.
+    quiet : no progress on standard error. command : what to note as the command; connect : makes a lost
+    client anew.
 
-    Called again with the same question and `out`, it goes on where it was cut off. Raises PalpateError in one sentence: bad
-    input, no room on the disk, two engines that differ (the chunk and the pose are named, and nothing of it is kept).
-    """
+    Called again with the same question and `out`, it goes on where it was cut off. Raises PalpateError in one
+    sentence: bad input, no room on the disk, two engines that differ (the chunk and the pose are named, and
+    nothing of it is kept)."""
     import palpate
 
     if ask not in ASKS:
@@ -75,12 +95,42 @@ def sweep(scene, poses, *, out, count=None, client=None, ask='touches', within=N
     store, chunks = Store(os.path.abspath(out)), Chunks(source.count, size)
     try:
         with store.mine():
-            return _sweep(scene, source, chunks, store, client, ask, within, again, share, again_poses, workers, quiet, command, connect)
+            return _sweep(
+                scene,
+                source,
+                chunks,
+                store,
+                client,
+                ask,
+                within,
+                again,
+                share,
+                again_poses,
+                workers,
+                quiet,
+                command,
+                connect,
+            )
     except Full as full:
         refuse(f'{full}; make room and give the same command again, which goes on from what is done')
 
 
-def _sweep(scene, source, chunks, store, client, ask, within, again, share, again_poses, workers, quiet, command, connect):
+def _sweep(
+    scene,
+    source,
+    chunks,
+    store,
+    client,
+    ask,
+    within,
+    again,
+    share,
+    again_poses,
+    workers,
+    quiet,
+    command,
+    connect,
+):
     import palpate
 
     from .cluster import local
@@ -89,30 +139,62 @@ def _sweep(scene, source, chunks, store, client, ask, within, again, share, agai
 
     again = second_engine(scene.engine, again)
     first = answer(scene, ask, within, source.poses(0, 1))
-    types = {name: [values.dtype.newbyteorder('<').str, list(values.shape[1:])] for name, values in sorted(first.items())}
+    types = {
+        name: [values.dtype.newbyteorder('<').str, list(values.shape[1:])]
+        for name, values in sorted(first.items())
+    }
     asked = {'scene': scene.hash, 'ask': ask, 'within': within, 'columns': types}
-    question = {**asked, 'poses': source.describe(), 'count': source.count, 'chunk': chunks.size, 'palpate': palpate.__version__}
-    about = {'engine': scene.engine, 'command': command or shlex.join(sys.orig_argv), 'shape': list(getattr(source, 'shape', ()))}
+    question = {
+        **asked,
+        'poses': source.describe(),
+        'count': source.count,
+        'chunk': chunks.size,
+        'palpate': palpate.__version__,
+    }
+    about = {
+        'engine': scene.engine,
+        'command': command or shlex.join(sys.orig_argv),
+        'shape': list(getattr(source, 'shape', ())),
+    }
     kept = isinstance(source, ArrayPoses)
     store.begin(question, about, first, chunks, source.rows if kept else None)
 
     twice = chunks.asked_twice(share)
     done = store.done()
     earlier = len(done)
-    progress = Progress(chunks.poses, sum(record['poses'] for record in done.values()), open(os.devnull, 'w') if quiet else None)
+    progress = Progress(
+        chunks.poses,
+        sum(record['poses'] for record in done.values()),
+        open(os.devnull, 'w') if quiet else None,
+    )
     if earlier:
         progress.note(f'{earlier} of {chunks.count} chunks were done before')
     with contextlib.ExitStack() as stack:
         for attempt in range(3):
             # Those that two engines answer take longest, so they begin first.
-            todo = sorted(set(range(chunks.count)) - set(done), key=lambda number: (number not in twice, number))
+            todo = sorted(
+                set(range(chunks.count)) - set(done), key=lambda number: (number not in twice, number)
+            )
             if todo:
                 if attempt == 0:
                     shares = {}
                     if client is None:
                         client, shares = stack.enter_context(local(workers, scene.engine == 'gpu'))
-                    job = Job(f'palpate-sweep-{uuid.uuid4().hex}', palpate.__version__, scene.hash, maker(scene), scene.engine, again,
-                              again_poses, ask, within, None if kept else source, str(store.path), chunks, shares)
+                    job = Job(
+                        f'palpate-sweep-{uuid.uuid4().hex}',
+                        palpate.__version__,
+                        scene.hash,
+                        maker(scene),
+                        scene.engine,
+                        again,
+                        again_poses,
+                        ask,
+                        within,
+                        None if kept else source,
+                        str(store.path),
+                        chunks,
+                        shares,
+                    )
                     driver = Driver(client, job, progress, connect)
                     progress.begin()
                 try:
@@ -132,11 +214,24 @@ def _sweep(scene, source, chunks, store, client, ask, within, again, share, agai
         else:
             refuse(f'{store.path}: the disk gives back other data than was written')
     records = [done[number] for number in range(chunks.count)]
-    if [record['start'] for record in records] != [chunks.span(number)[0] for number in range(chunks.count)] \
-            or sum(record['poses'] for record in records) != chunks.poses:
+    if [record['start'] for record in records] != [
+        chunks.span(number)[0] for number in range(chunks.count)
+    ] or sum(record['poses'] for record in records) != chunks.poses:
         refuse(f'{store.path}: its markers are not those of this sweep')
     value = digest.of_sweep(asked, records)
-    store.finish(hash=value, poses=chunks.poses, engines=sorted({record['engine'] for record in records}),
-                 again=sorted({record['again'] for record in records if 'again' in record}))
-    return Swept(store.path, value, chunks.poses, chunks.count, earlier, sum('again' in record for record in records),
-                 progress.seconds, progress.rate)
+    store.finish(
+        hash=value,
+        poses=chunks.poses,
+        engines=sorted({record['engine'] for record in records}),
+        again=sorted({record['again'] for record in records if 'again' in record}),
+    )
+    return Swept(
+        store.path,
+        value,
+        chunks.poses,
+        chunks.count,
+        earlier,
+        sum('again' in record for record in records),
+        progress.seconds,
+        progress.rate,
+    )

@@ -6,8 +6,8 @@
     OUT.zarr/poses/NUMBER     its poses, where they came as an array
     OUT.zarr/.sweep/NUMBER    its marker, made after all its data is on the disk, by one rename
 
-A chunk without a marker is asked again, whatever there is of it. The same chunk written twice has the same bytes.
-"""
+A chunk without a marker is asked again, whatever there is of it. The same chunk written twice has the same
+bytes. """
 import contextlib
 import errno
 import fcntl
@@ -73,8 +73,9 @@ class Store:
     def begin(self, question, about, columns, chunks, rows):
         """Sets the arrays up, or goes on with those that the same question was asked of. Within mine().
 
-        question : what the answers depend on. about : what else is worth knowing. columns : {name: array of one answer or
-        more}, for their types. rows : poses (N, 7) that the store keeps for the workers, or None."""
+        question : what the answers depend on. about : what else is worth knowing. columns : {name: array of
+        one answer or more}, for their types. rows : poses (N, 7) that the store keeps for the workers, or
+        None."""
         with self._room():
             root = _Durable(str(self.path))
             if not (self.path / '.zgroup').exists():
@@ -83,16 +84,23 @@ class Store:
             found = self._group.attrs.asdict()
             for key, value in question.items():
                 if 'question' in found and found['question'].get(key) != value:
-                    refuse(f'{self.path} holds another sweep: its {key} is {_short(found["question"].get(key))}, this one\'s is '
-                           f'{_short(value)}; name another folder')
+                    refuse(
+                        f'{self.path} holds another sweep: its {key} is {_short(found["question"].get(key))}, this one\'s is '
+                        f'{_short(value)}; name another folder'
+                    )
             if 'question' not in found:
                 kept = {'poses': rows[:1].astype(numpy.float64)} if rows is not None else {}
                 for name, values in {**columns, **kept}.items():
-                    self._group.create_dataset(name, shape=(chunks.poses, *values.shape[1:]),
-                                               chunks=(chunks.size, *values.shape[1:]), dtype=values.dtype, overwrite=True)
+                    self._group.create_dataset(
+                        name,
+                        shape=(chunks.poses, *values.shape[1:]),
+                        chunks=(chunks.size, *values.shape[1:]),
+                        dtype=values.dtype,
+                        overwrite=True,
+                    )
                 for number in range(chunks.count) if rows is not None else ():
                     start, n = chunks.span(number)
-                    self._group['poses'][start:start + n] = rows[start:start + n]
+                    self._group['poses'][start : start + n] = rows[start : start + n]
                 # Last, so that a folder whose making was cut short is made again.
                 self._group.attrs.update({'question': question, **about})
 
@@ -101,22 +109,28 @@ class Store:
         start, n = record['start'], record['poses']
         with self._room():
             for name, values in columns.items():
-                self.group[name][start:start + n] = values
+                self.group[name][start : start + n] = values
             self._file(f'{MARKERS}/{record["chunk"]}', json.dumps(record))
 
     def done(self):
         """{number: record} of the chunks that are done."""
-        return {int(file.name): json.loads(file.read_text())
-                for file in (self.path / MARKERS).iterdir() if file.name.isdigit()}
+        return {
+            int(file.name): json.loads(file.read_text())
+            for file in (self.path / MARKERS).iterdir()
+            if file.name.isdigit()
+        }
 
     def faulty(self, records, columns):
-        """The numbers of the chunks whose answers are not what their markers say; their markers are gone after this."""
+        """The numbers of the chunks whose answers are not what their markers say; their markers are gone
+        after this."""
         wrong = []
         for record in records:
             span = slice(record['start'], record['start'] + record['poses'])
             try:
-                same = digest.of_columns({name: self.group[name][span] for name in columns}) == record['answers']
-            except (ValueError, RuntimeError, OSError):   # what can't be decoded
+                same = (
+                    digest.of_columns({name: self.group[name][span] for name in columns}) == record['answers']
+                )
+            except (ValueError, RuntimeError, OSError):  # what can't be decoded
                 same = False
             if not same:
                 (self.path / MARKERS / str(record['chunk'])).unlink()

@@ -2,11 +2,11 @@
 """How a sweep says no."""
 
 
-BAD_VALUE = 3   # palpate.h
+BAD_VALUE = 3  # palpate.h
 
 
 def refuse(sentence):
     """Raises PalpateError with this sentence."""
-    from palpate import PalpateError   # late: palpate itself imports this package
+    from palpate import PalpateError  # late: palpate itself imports this package
 
     raise PalpateError(BAD_VALUE, sentence) from None

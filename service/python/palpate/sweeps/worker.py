@@ -1,5 +1,6 @@
 # mypy: ignore-errors
-"""What a Dask worker does for a sweep: it gets a scene once, by its content, and answers chunks by their numbers."""
+"""What a Dask worker does for a sweep: it gets a scene once, by its content, and answers chunks by their
+numbers."""
 import dataclasses
 import functools
 import os
@@ -19,19 +20,20 @@ from .words import refuse
 @dataclasses.dataclass(frozen=True)
 class Job:
     """A sweep, as its workers know it; the same for all its chunks, so it travels once."""
+
     name: str
     version: str
-    scene: str        # content hash
-    make: object      # make(engine=…) gives the scene
+    scene: str  # content hash
+    make: object  # make(engine=…) gives the scene
     engine: str
-    again: str        # the second engine
+    again: str  # the second engine
     again_poses: int  # of a chunk that it is asked of
     ask: str
     within: object
-    source: object    # of poses; None: the store keeps them
+    source: object  # of poses; None: the store keeps them
     store: str
     chunks: Chunks
-    shares: dict      # {worker's name: processors that it may use}; of a cluster of the sweep's own
+    shares: dict  # {worker's name: processors that it may use}; of a cluster of the sweep's own
 
 
 class Delivery(WorkerPlugin):
@@ -62,21 +64,22 @@ class _Work:
         return self.job.source or ArrayPoses(self.store.group['poses'])
 
 
-_lock = threading.Lock()   # of _jobs
-_jobs = {}                 # by name
-_scenes = {}               # by content hash and engine
-# A batch takes all of the worker's processors, so a second one at once gains nothing; while one is answered, a worker of
-# two threads makes the next one's poses and writes the last one's answers.
-_answering = threading.Lock()   # of _scenes and whoever asks them
+_lock = threading.Lock()  # of _jobs
+_jobs = {}  # by name
+_scenes = {}  # by content hash and engine
+# A batch takes all of the worker's processors, so a second one at once gains nothing; while one is answered,
+# a worker of two threads makes the next one's poses and writes the last one's answers.
+_answering = threading.Lock()  # of _scenes and whoever asks them
 
 
 class Undelivered(Exception):
-    """A worker knows no such job: the scheduler that would have told it is gone. The driver delivers again."""
+    """A worker knows no such job: the scheduler that would have told it is gone. The driver delivers
+    again."""
 
 
 def answer_chunk(name, number, twice):
-    """Answers chunk `number` of job `name` and puts it on the disk. Gives nothing: the marker says that it is done, and a
-    result that Dask kept could be lost with its worker. Full, PalpateError, Undelivered."""
+    """Answers chunk `number` of job `name` and puts it on the disk. Gives nothing: the marker says that it is
+    done, and a result that Dask kept could be lost with its worker. Full, PalpateError, Undelivered."""
     from palpate import PalpateError
 
     with _lock:
@@ -96,10 +99,17 @@ def _answer(work, number, twice):
     with _answering:
         scene = _scene(job, job.engine)
         columns = answer(scene, job.ask, job.within, poses)
-    record = {'chunk': number, 'start': start, 'poses': n, 'posed': digest.of_array(poses), 'answers': digest.of_columns(columns),
-              'engine': scene.engine}
+    record = {
+        'chunk': number,
+        'start': start,
+        'poses': n,
+        'posed': digest.of_array(poses),
+        'answers': digest.of_columns(columns),
+        'engine': scene.engine,
+    }
     if twice:
-        asked = numpy.unique(numpy.arange(job.again_poses) * n // job.again_poses)   # evenly spread; all of a small chunk
+        # Evenly spread; all of a small chunk.
+        asked = numpy.unique(numpy.arange(job.again_poses) * n // job.again_poses)
         with _answering:
             second = _scene(job, job.again)
             others = answer(second, job.ask, job.within, poses[asked])
@@ -107,8 +117,10 @@ def _answer(work, number, twice):
         if differs:
             row, column = differs
             place = asked[row]
-            refuse(f'pose {start + place} ({" ".join(repr(float(x)) for x in poses[place])}): {column} is {columns[column][place]} by '
-                   f'{scene.engine} and {others[column][row]} by {second.engine}')
+            refuse(
+                f'pose {start + place} ({" ".join(repr(float(x)) for x in poses[place])}): {column} is {columns[column][place]} by '
+                f'{scene.engine} and {others[column][row]} by {second.engine}'
+            )
         record['again'] = second.engine
     work.store.write(record, columns)
 
@@ -124,7 +136,9 @@ def _scene(job, engine):
         for other in [other for other in _scenes if other[0] not in wanted]:
             del _scenes[other]
         if palpate.__version__ != job.version:
-            refuse(f'worker {get_worker().name} has palpate {palpate.__version__}, the sweep is of {job.version}')
+            refuse(
+                f'worker {get_worker().name} has palpate {palpate.__version__}, the sweep is of {job.version}'
+            )
         _scenes[key] = job.make(engine=engine)
     return _scenes[key]
 

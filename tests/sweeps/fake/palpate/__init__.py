@@ -1,9 +1,9 @@
-"""A palpate with a scene of arithmetic alone, so that what a sweep does can be tested at any speed and with any fault.
+"""A palpate with a scene of arithmetic alone, so that what a sweep does can be tested at any speed and with
+any fault.
 
-The scene is a dict, or a file of one: `radius` (touch is nearer than that to the origin), `pause_s` (a batch takes so
-long), `wrong` (a pose with this x is answered wrongly by the engine ref), `crash` (a batch with this x ends the process),
-`log` (a file that gets a line for all that goes
-on)."""
+The scene is a dict, or a file of one: `radius` (touch is nearer than that to the origin), `pause_s` (a batch
+takes so long), `wrong` (a pose with this x is answered wrongly by the engine ref), `crash` (a batch with this
+x ends the process), `log` (a file that gets a line for all that goes on)."""
 import hashlib
 import json
 import os
@@ -61,7 +61,11 @@ class Scene:
 
     def clearance(self, poses, within=None):
         distance = numpy.maximum(0, numpy.sqrt((poses[:, :3] ** 2).sum(axis=1)) - self.source['radius'])
-        return {'distance': distance, 'on_static': poses[:, :3] * 0.37, 'engine': numpy.full(len(poses), 2, numpy.uint8)}
+        return {
+            'distance': distance,
+            'on_static': poses[:, :3] * 0.37,
+            'engine': numpy.full(len(poses), 2, numpy.uint8),
+        }
 
     def _say(self, what):
         if 'log' in self.source:
