@@ -1,5 +1,7 @@
 #include "service/bench/bench.h"
 
+#include <fmt/format.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -89,10 +91,14 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
                                             "and more), max; contact and free apart");
   add_common(*latency, options);
   add_poses(*latency, options);
-  latency->add_option("--backend", options.backends, "the engine, or several in turns, as for run (auto)")
-      ->check(one_of(kEngines))
-      ->expected(1, 3)
-      ->type_name("auto|gpu|cpu|ref");
+  const auto backends = [&options](CLI::App& to, const char* when) {
+    to.add_option("--backend", options.backends,
+                  fmt::format("the engine, or several {}, as for run (auto)", when))
+        ->check(one_of(kEngines))
+        ->expected(1, 3)
+        ->type_name("auto|gpu|cpu|ref");
+  };
+  backends(*latency, "in turns");
   latency->footer(
       "Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing "
       "near). Stages are the\n"
@@ -114,12 +120,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "throughput", "poses a second against the size of a batch, beside poses asked singly");
   add_common(*throughput, options);
   add_poses(*throughput, options);
-  throughput
-      ->add_option("--backend", options.backends,
-                   "the engine, or several one after the other, as for run (auto)")
-      ->check(one_of(kEngines))
-      ->expected(1, 3)
-      ->type_name("auto|gpu|cpu|ref");
+  backends(*throughput, "one after the other");
   throughput->footer(
       "Batches of 1 to 1,024 poses, in turns with the same poses asked singly. `frames` are a session's, "
       "without balance; `answers` a lone query's, with the\n"
@@ -134,7 +135,7 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
                                           "contact, finer, of the tool; or of scenes of your own, refined");
   add_common(*scale, options, false);
   add_poses(*scale, options);
-  one_backend(*scale);
+  backends(*scale, "one after the other");
   scale
       ->add_option("--most", options.most_triangles,
                    "triangles of the largest mock-up, 100,000 to 10,000,000 (1,000,000)")
@@ -202,14 +203,17 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "peers", "other collision libraries on the same triangles and poses, in turns with palpate");
   add_common(*peers, options);
   add_poses(*peers, options);
+  backends(*peers, "in turns");
   peers
       ->add_option("--peers", options.peers,
                    "beginnings of names (fcl, embree, bullet, cgal); without it all")
       ->type_name("NAME");
   peers->footer(
-      "palpate's time is a whole frame: sets, areas, zones, rays, wrench. The others' is the pairs alone. "
-      "Before anything is timed, each\n"
-      "library's pairs are held against the exact ones: `missing` and `extra` count pairs over all poses.");
+      "palpate's time is a whole frame: sets, areas, wrench. The others' is the pairs alone. Before anything "
+      "is timed, each library's pairs\n"
+      "are held against the exact ones: `missing` and `extra` count pairs over all poses. Ratios are those "
+      "of "
+      "the engine that is named first.");
   measure(peers, bench_peers);
 
   CLI::App* questions = bench->add_subcommand(

@@ -294,9 +294,9 @@ def test_bench_scale_refines_a_scene_of_ones_own():
         'x,y,z,qx,qy,qz,qw\n' + ''.join(f'{0.001 * i},{0.0007 * i},0.009,0,0,0,1\n' for i in range(8)),
     )
     scene = folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
-    done = palpate(
-        'bench', 'scale', scene, '--poses', folder / 'poses.csv', '--rounds', '1', '--out', folder / 'out'
-    )
+    engines = ('--backend', 'cpu', 'gpu')
+    few = ('--poses', folder / 'poses.csv', '--rounds', '1')
+    done = palpate('bench', 'scale', scene, *few, *engines, '--out', folder / 'out')
     expect(done.code == 0, done)
     rows = [
         row
@@ -305,11 +305,14 @@ def test_bench_scale_refines_a_scene_of_ones_own():
     ]
     balls = len(sphere(0.01))
     expect(
-        [(row['static_triangles'], row['tool_triangles']) for row in rows]
-        == [(12 * n, balls * n) for n in (1, 4, 16)],
+        [(row['backend'], row['static_triangles'], row['tool_triangles']) for row in rows]
+        == [(engine, 12 * n, balls * n) for n in (1, 4, 16) for engine in ('cpu', 'gpu')],
         rows,
     )
     expect(all(row['count'] == 8 and row['p50_us'] > 0 for row in rows), 'the same poses meet in all three')
+    # What a frame asks of a device: one submission of the device's engine, nothing of the native one.
+    asked = [(row['backend'], row['submissions'] or 0, row['dispatches'] or 0) for row in rows]
+    expect(all(s == (e == 'gpu') and (d > 0) == (e == 'gpu') for e, s, d in asked), asked)
     expect_refused(palpate('bench', 'scale', scene, '--out', folder / 'none'), 2, '--poses')
     # p99.9 of fewer than a thousand frames would be the longest by another name.
     done = palpate(

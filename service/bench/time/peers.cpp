@@ -43,14 +43,20 @@ struct Competitor {
   TimeTable times;
 };
 
-struct Race {
+/// An engine of palpate's.
+struct Engine {
   std::unique_ptr<HostedScene> scene;
+  Difference difference;  ///< pairs counted; missing and extra: of the static and mobile triangles in them
+  TimeTable times;
+};
+
+struct Race {
+  std::vector<Engine> engines;
   std::vector<Competitor> peers;
-  TimeTable ours;
   std::uint64_t exact_pairs = 0;
-  Difference
-      our_difference;  ///< pairs counted; missing and extra: of the static and mobile triangles in them
   std::vector<Pose> poses;
+
+  const SceneGeometry& geometry() const { return engines.front().scene->loaded.geometry; }
   std::vector<FrameKind> kinds;
 };
 
@@ -66,7 +72,7 @@ Result<void> build(const BenchOptions& options, const Parts& parts, Race& race, 
     if (!wanted(options, peer->name())) continue;
     if (!console.progress(peer->name().c_str(), 0)) return Error{ErrorCode::kInternal, "interrupted"};
     const Stopwatch watch(options.cpu_clock);
-    peer->build(race.scene->loaded.geometry);
+    peer->build(race.geometry());
     race.peers.push_back({std::move(peer), watch.us() * 1e-6, {}, {}});
   }
   if (race.peers.empty())
@@ -86,18 +92,15 @@ std::uint64_t lacking(const std::vector<T>& a, const std::vector<T>& b) {
 /// Before anything is timed: everybody's pairs against the exact ones.
 Result<void> check(const Parts& parts, Race& race, Console& console) {
   const std::unique_ptr<Peer> judge = parts.make_judge();
-  judge->build(race.scene->loaded.geometry);
+  judge->build(race.geometry());
   std::vector<TrianglePair> exact, found;
   Answer answer;
   for (std::size_t i = 0; i < race.poses.size(); ++i) {
-    const Result<LatticePose> pose = to_lattice(race.poses[i], race.scene->loaded.geometry);
+    const Result<LatticePose> pose = to_lattice(race.poses[i], race.geometry());
     if (!pose) return pose.error();
     judge->find(*pose, exact);
     std::sort(exact.begin(), exact.end());
     race.exact_pairs += exact.size();
-    if (auto done = answer_frame(*race.scene, race.poses[i], answer); !done) return done;
-    race.kinds.push_back(frame_kind(answer.contacts));
-
     std::vector<std::uint32_t> statics, mobiles;
     for (const auto& [s, m] : exact) statics.push_back(s), mobiles.push_back(m);
     for (auto* ids : {&statics, &mobiles}) {
@@ -111,10 +114,14 @@ Result<void> check(const Parts& parts, Race& race, Console& console) {
       difference.extra += extra;
       difference.poses += differs ? 1 : 0;
     };
-    const Contacts& ours = answer.contacts;
-    add(race.our_difference, ours.pairs, lacking(statics, ours.cst) + lacking(mobiles, ours.cmt),
-        lacking(ours.cst, statics) + lacking(ours.cmt, mobiles),
-        ours.pairs != exact.size() || statics != ours.cst || mobiles != ours.cmt);
+    for (Engine& engine : race.engines) {
+      if (auto done = answer_frame(*engine.scene, race.poses[i], answer); !done) return done;
+      const Contacts& ours = answer.contacts;
+      if (&engine == &race.engines.front()) race.kinds.push_back(frame_kind(ours));
+      add(engine.difference, ours.pairs, lacking(statics, ours.cst) + lacking(mobiles, ours.cmt),
+          lacking(ours.cst, statics) + lacking(ours.cmt, mobiles),
+          ours.pairs != exact.size() || statics != ours.cst || mobiles != ours.cmt);
+    }
     for (Competitor& competitor : race.peers) {
       competitor.peer->find(*pose, found);
       std::sort(found.begin(), found.end());
@@ -130,18 +137,22 @@ Result<void> check(const Parts& parts, Race& race, Console& console) {
 Result<void> time_all(const BenchOptions& options, Race& race, Console& console) {
   std::vector<TrianglePair> found;
   Answer answer;
-  const std::size_t runners = race.peers.size() + 1;
+  const std::size_t runners = race.peers.size() + race.engines.size();
   for (std::uint64_t round = 0; round < options.rounds; ++round)
     for (std::size_t i = 0; i < race.poses.size(); ++i) {
       for (std::size_t k = 0; k < runners; ++k) {
         const std::size_t runner = (i + k) % runners;
-        const Stopwatch watch(options.cpu_clock);
-        if (runner == race.peers.size()) {
-          if (auto done = answer_frame(*race.scene, race.poses[i], answer); !done) return done;
-          race.ours.add(race.kinds[i], watch.us());
+        if (runner >= race.peers.size()) {
+          Engine& engine = race.engines[runner - race.peers.size()];
+          const DeviceWork before = engine.scene->backend->device_work();
+          const Stopwatch watch(options.cpu_clock);
+          if (auto done = answer_frame(*engine.scene, race.poses[i], answer); !done) return done;
+          const double us = watch.us();
+          engine.times.add(race.kinds[i], us, since(before, engine.scene->backend->device_work()));
           continue;
         }
-        const Result<LatticePose> pose = to_lattice(race.poses[i], race.scene->loaded.geometry);
+        const Stopwatch watch(options.cpu_clock);
+        const Result<LatticePose> pose = to_lattice(race.poses[i], race.geometry());
         if (!pose) return pose.error();
         race.peers[runner].peer->find(*pose, found);
         race.peers[runner].times.add(race.kinds[i], watch.us());
@@ -157,11 +168,12 @@ Result<void> time_all(const BenchOptions& options, Race& race, Console& console)
 Result<Race> run_race(const BenchOptions& options, const std::string& file, const Parts& parts,
                       Console& console) {
   Race race;
-  auto prepared =
-      ready_scene(options, file, asked_backends(options).front(), Purpose::kQuery, parts, console);
-  if (!prepared) return prepared.error();
-  race.scene = std::move(*prepared);
-  auto poses = bench_poses(options, *race.scene, parts, console);
+  for (const std::string& backend : asked_backends(options)) {
+    auto prepared = ready_scene(options, file, backend, Purpose::kQuery, parts, console);
+    if (!prepared) return prepared.error();
+    race.engines.push_back({std::move(*prepared), {}, {}});
+  }
+  auto poses = bench_poses(options, *race.engines.front().scene, parts, console);
   if (!poses) return poses.error();
   race.poses = std::move(*poses);
   console.step("peers");
@@ -174,28 +186,37 @@ Result<Race> run_race(const BenchOptions& options, const std::string& file, cons
 
 void add_rows(const std::string& scene, const Race& race, BenchTable& table) {
   for (std::size_t kind = 0; kind < 4; ++kind) {
-    const TimePercentiles ours = percentiles(race.ours.times(kind, "total"));
+    const TimePercentiles ours = percentiles(race.engines.front().times.times(kind, "total"));
     if (ours.count == 0) continue;
-    const auto row = [&](const std::string& name, const TimePercentiles& p, const Difference& d) {
+    const auto row = [&](const std::string& name, const TimePercentiles& p, const Difference& d,
+                         const DeviceWork& work) {
       table.rows.push_back({scene, name, kFrameKindNames[kind], std::uint64_t{p.count}, p.p50, p.p95, p.p99,
                             cell_of(p.p999), p.max, ours.p50 / p.p50, ours.p99 / p.p99, d.pairs, d.missing,
                             d.extra, d.poses});
+      for (BenchCell& cell : work_cells(work)) table.rows.back().push_back(std::move(cell));
     };
-    row("palpate " + race.scene->backend->name(), ours, race.our_difference);
+    for (const Engine& engine : race.engines)
+      row("palpate " + engine.scene->backend->name(), percentiles(engine.times.times(kind, "total")),
+          engine.difference, engine.times.work(kind));
     for (const Competitor& competitor : race.peers) {
       const TimePercentiles p = percentiles(competitor.times.times(kind, "total"));
-      row(competitor.peer->name(), p, competitor.difference);
+      row(competitor.peer->name(), p, competitor.difference, {});
       if (competitor.peer->name() != "FCL OBB") continue;
       // Coal's share is known for the median in contact and for the 99th percentile of all.
-      const CoalFactor factor = coal_factor(race.scene->loaded.geometry);
+      const CoalFactor factor = coal_factor(race.geometry());
       const double p50 = factor.p50 * p.p50, p99 = factor.p99 * p.p99;
-      const std::string none;
-      if (kind == 0)
-        table.rows.push_back({scene, "Coal OBB (estimated from FCL)", kFrameKindNames[kind], std::uint64_t{0},
-                              p50, none, none, none, none, ours.p50 / p50, none, none, none, none, none});
-      if (kind == 3)
-        table.rows.push_back({scene, "Coal OBB (estimated from FCL)", kFrameKindNames[kind], std::uint64_t{0},
-                              none, none, p99, none, none, none, ours.p99 / p99, none, none, none, none});
+      std::vector<BenchCell> estimated(table.columns.size(), std::string());
+      estimated[0] = scene;
+      estimated[1] = "Coal OBB (estimated from FCL)";
+      estimated[2] = kFrameKindNames[kind];
+      estimated[3] = std::uint64_t{0};
+      const auto put = [&](const char* column, double value) {
+        estimated[static_cast<std::size_t>(std::find(table.columns.begin(), table.columns.end(), column) -
+                                           table.columns.begin())] = value;
+      };
+      if (kind == 0) put("p50_us", p50), put("palpate_p50_ratio", ours.p50 / p50);
+      if (kind == 3) put("p99_us", p99), put("palpate_p99_ratio", ours.p99 / p99);
+      if (kind == 0 || kind == 3) table.rows.push_back(std::move(estimated));
     }
   }
 }
@@ -214,7 +235,8 @@ void add_chart(const std::string& scene, const Race& race, std::vector<BenchChar
          {percentiles(times.times(0, "total")).p50, percentiles(times.times(3, "total")).p99,
           percentiles(times.times(1, "total")).p50}});
   };
-  series("palpate, whole frame", race.ours);
+  for (const Engine& engine : race.engines)
+    series("palpate " + engine.scene->backend->name() + ", whole frame", engine.times);
   for (const Competitor& competitor : race.peers) series(competitor.peer->name(), competitor.times);
   charts.push_back(std::move(chart));
 }
@@ -232,16 +254,23 @@ Result<void> bench_peers(const BenchOptions& options, const Parts& parts) {
   BenchTable table{{"scene", "library", "frames", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us",
                     "palpate_p50_ratio", "palpate_p99_ratio", "pairs", "missing", "extra", "poses_different"},
                    {}};
+  table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
   std::vector<BenchChart> charts;
+  std::vector<std::string> devices;
   const double load = load_average();
   for (const std::string& file : options.scenes) {
     const Result<Race> race = run_race(options, file, parts, console);
     if (!race) return race.error();
     const std::string name = scene_name(file);
-    const SceneGeometry& geometry = race->scene->loaded.geometry;
+    const SceneGeometry& geometry = race->geometry();
     add_rows(name, *race, table);
     add_chart(name, *race, charts);
-    if (facts.device.empty()) facts.device = device_text(*race->scene->backend, parts);
+    for (const Engine& engine : race->engines) {
+      const std::string device = device_text(*engine.scene->backend, parts);
+      if (std::find(devices.begin(), devices.end(), device) != devices.end()) continue;
+      devices.push_back(device);
+      facts.device += (facts.device.empty() ? "" : "; ") + device;
+    }
     facts.more.emplace_back(name, fmt::format("mock-up {} triangles, tool {}, {} poses, {} exact pairs",
                                               count_text(geometry.mockup.triangles.size()),
                                               count_text(geometry.tool.triangles.size()), race->poses.size(),

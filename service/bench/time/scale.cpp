@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -86,11 +87,10 @@ struct Figures {
   std::string device, backend;
 };
 
-Result<Figures> measure(const BenchOptions& options, const std::string& file, const Parts& parts,
-                        Console& console) {
+Result<Figures> measure(const BenchOptions& options, const std::string& file, const std::string& backend,
+                        const Parts& parts, Console& console) {
   restart_peak_memory();
-  auto prepared =
-      ready_scene(options, file, asked_backends(options).front(), Purpose::kQuery, parts, console);
+  auto prepared = ready_scene(options, file, backend, Purpose::kQuery, parts, console);
   if (!prepared) return prepared.error();
   HostedScene& scene = **prepared;
   const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
@@ -100,9 +100,11 @@ Result<Figures> measure(const BenchOptions& options, const std::string& file, co
   console.step("measuring");
   for (std::uint64_t round = 0; round <= options.rounds; ++round)
     for (std::size_t i = 0; i < poses->size(); ++i) {
+      const DeviceWork before = scene.backend->device_work();
       const Stopwatch watch(options.cpu_clock);
       if (auto done = answer_frame(scene, (*poses)[i], answer); !done) return done.error();
-      if (const double us = watch.us(); round > 0) out.times.add(frame_kind(answer.contacts), us);
+      const double us = watch.us();
+      if (round > 0) out.times.add(answer.contacts, us, since(before, scene.backend->device_work()));
       if (i % 16 == 0 &&
           !console.progress("poses", static_cast<double>(round) / static_cast<double>(options.rounds + 1)))
         return Error{ErrorCode::kInternal, "interrupted"};
@@ -132,34 +134,22 @@ struct Step {
 class Scale {
  public:
   Scale(const BenchOptions& options, const Parts& parts) : options_(options), parts_(parts) {}
+  static BenchTable columns() {
+    BenchTable table{
+        {"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us",
+         "times_the_first", "times_the_last", "voxel_mm", "prepare_s", "kept_bytes", "peak_bytes", "backend"},
+        {}};
+    table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
+    return table;
+  }
 
   template <class Write>
   Result<void> add(const Step& step, Write write) {
     const double spacing_m =
         step.keeps_samples && spacing_m_.count(step.series) != 0 ? spacing_m_.at(step.series) : 0;
     if (auto written = write(spacing_m); !written) return written;
-    const Result<Figures> figures = measure(options_, step.file, parts_, console_);
-    if (!figures) return figures.error();
-    spacing_m_.emplace(step.series, figures->spacing_m);
-    for (std::size_t kind = 0; kind < 4; ++kind) {
-      const TimePercentiles p = percentiles(figures->times.times(kind, "total"));
-      if (p.count == 0) continue;
-      const std::string line = fmt::format("{} {}", step.series, kind);
-      const double smallest = first_.emplace(line, p.p50).first->second,
-                   before = last_.emplace(line, p.p50).first->second;
-      last_[line] = p.p50;
-      table_.rows.push_back({step.series, figures->triangles, figures->tool,
-                             std::string(kFrameKindNames[kind]), std::uint64_t{p.count}, p.p50, p.p99,
-                             p.p50 / smallest, p.p50 / before, 1000 * figures->voxel_m, figures->prepare_s,
-                             figures->kept, figures->peak, figures->backend});
-      if (kind != 0) continue;
-      if (growth_.series.empty() || growth_.series.back().label != step.series)
-        growth_.series.push_back({step.series, {}, {}});
-      growth_.series.back().x.push_back(
-          static_cast<double>(step.of_tool ? figures->tool : figures->triangles));
-      growth_.series.back().y.push_back(p.p50);
-    }
-    facts_.device = figures->device;
+    for (const std::string& backend : asked_backends(options_))
+      if (auto done = add(step, backend); !done) return done;
     return {};
   }
 
@@ -169,30 +159,68 @@ class Scale {
     facts_.more.emplace_back("clock", options_.cpu_clock ? "CPU time of this process" : "wall");
     facts_.more.emplace_back("load average",
                              fmt::format("{:.1f} at the start, {:.1f} at the end", load_, load_average()));
-    return write_bench(options_.out, facts_, table_, {growth_});
+    std::vector<BenchChart> charts;
+    for (auto& [backend, chart] : growth_) charts.push_back(std::move(chart));
+    return write_bench(options_.out, facts_, table_, charts);
   }
 
  private:
+  /// The step's rows of one engine.
+  Result<void> add(const Step& step, const std::string& backend) {
+    const Result<Figures> figures = measure(options_, step.file, backend, parts_, console_);
+    if (!figures) return figures.error();
+    spacing_m_.emplace(step.series, figures->spacing_m);
+    for (std::size_t kind = 0; kind < 4; ++kind) {
+      const TimePercentiles p = percentiles(figures->times.times(kind, "total"));
+      if (p.count == 0) continue;
+      const std::string line = fmt::format("{} {} {}", step.series, kind, figures->backend);
+      const double smallest = first_.emplace(line, p.p50).first->second,
+                   before = last_.emplace(line, p.p50).first->second;
+      last_[line] = p.p50;
+      table_.rows.push_back({step.series, figures->triangles, figures->tool,
+                             std::string(kFrameKindNames[kind]), std::uint64_t{p.count}, p.p50, p.p99,
+                             p.p50 / smallest, p.p50 / before, 1000 * figures->voxel_m, figures->prepare_s,
+                             figures->kept, figures->peak, figures->backend});
+      for (BenchCell& cell : work_cells(figures->times.work(kind)))
+        table_.rows.back().push_back(std::move(cell));
+      if (kind != 0) continue;
+      BenchChart& growth =
+          growth_
+              .try_emplace(figures->backend,
+                           BenchChart{.title = "Median of a frame in contact, " + figures->backend,
+                                      .unit = "µs",
+                                      .labels = {},
+                                      .series = {},
+                                      .log_x = true,
+                                      .log_y = true,
+                                      .x_title = "triangles of the mock-up, or of the tool"})
+              .first->second;
+      if (growth.series.empty() || growth.series.back().label != step.series)
+        growth.series.push_back({step.series, {}, {}});
+      growth.series.back().x.push_back(
+          static_cast<double>(step.of_tool ? figures->tool : figures->triangles));
+      growth.series.back().y.push_back(p.p50);
+    }
+    if (std::find(devices_.begin(), devices_.end(), figures->device) == devices_.end()) {
+      devices_.push_back(figures->device);
+      facts_.device += (facts_.device.empty() ? "" : "; ") + figures->device;
+    }
+    return {};
+  }
+
   const BenchOptions& options_;
   const Parts& parts_;
   Console console_;
   double load_ = load_average();
   std::map<std::string, double> first_,
-      last_;  ///< by series and kind of frame: the median of its smallest scene, and of the scene before
+      last_;  ///< by series, kind of frame and engine: the median of its smallest scene, and of the one
+              ///< before
   std::map<std::string, double>
       spacing_m_;  ///< by series, of its first: other samples would be another contact
   BenchFacts facts_{.command = "scale", .device = {}, .more = {}};
-  BenchTable table_{
-      {"series", "static_triangles", "tool_triangles", "frames", "count", "p50_us", "p99_us",
-       "times_the_first", "times_the_last", "voxel_mm", "prepare_s", "kept_bytes", "peak_bytes", "backend"},
-      {}};
-  BenchChart growth_{.title = "Median of a frame in contact",
-                     .unit = "µs",
-                     .labels = {},
-                     .series = {},
-                     .log_x = true,
-                     .log_y = true,
-                     .x_title = "triangles of the mock-up, or of the tool"};
+  std::vector<std::string> devices_;  ///< of the engines that answered
+  BenchTable table_ = columns();
+  std::map<std::string, BenchChart> growth_;  ///< by engine
 };
 
 Result<void> write_json(const std::string& file, const Json& scene) {

@@ -46,10 +46,14 @@ void TimeTable::put(FrameKind kind, const std::string& stage, double us) {
   times_[static_cast<std::size_t>(kind)][stage].push_back(us);
 }
 
+void TimeTable::add(FrameKind kind, double total_us, const DeviceWork& work) {
+  work_[static_cast<std::size_t>(kind)].push_back(work);
+  add(kind, total_us);
+}
+
 void TimeTable::add(const Contacts& contacts, double total_us, const DeviceWork& work) {
   const FrameKind kind = frame_kind(contacts);
-  work_[static_cast<std::size_t>(kind)].push_back(work);
-  put(kind, "total", total_us);
+  add(kind, total_us, work);
   // A stage may come several times in a frame; its time is their sum.
   std::vector<std::pair<std::string_view, double>> sums;
   double known = 0;

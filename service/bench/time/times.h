@@ -45,6 +45,7 @@ class TimeTable {
   /// Adds a frame's total, its stages, as `host` what is left, and what it asked of a device.
   void add(const Contacts& contacts, double total_us, const DeviceWork& work);
   void add(FrameKind kind, double total_us) { put(kind, "total", total_us); }
+  void add(FrameKind kind, double total_us, const DeviceWork& work);  ///< a frame without its stages
 
   /// Stages in the order of their first appearance; `total` is the first.
   const std::vector<std::string>& stages() const { return order_; }
