@@ -86,7 +86,7 @@ Answered part_of(const Answered& all, std::size_t first, std::size_t count) {
     const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
     return std::decay_t<decltype(from)>(begin, begin + static_cast<std::ptrdiff_t>(count));
   };
-  return {cut_out(all.answers), cut_out(all.times_us), cut_out(all.all_us), all.samples};
+  return {cut_out(all.answers), cut_out(all.times_us), cut_out(all.all_us), all.samples, all.work};
 }
 
 std::size_t contacts_of(const Truths& truths) {
@@ -455,11 +455,13 @@ class ErrorBench {
         const double p50 = percentile(point.result.times_us, 0.5),
                      p99 = percentile(point.result.times_us, 0.99);
         const std::size_t method = point.setting.profile == Profile::kPaper ? 1 : 0;
-        for (std::size_t q = 0; q < kErrorQuantities.size(); ++q)
+        for (std::size_t q = 0; q < kErrorQuantities.size(); ++q) {
           table_.rows.push_back(
               {set.name, kMethods[method], point.setting.knob, point.setting.value, kErrorQuantities[q],
                percentile(point.result.errors[q], 0.5), percentile(point.result.errors[q], 0.99), p50, p99,
                curves.engine, point.result.times_us.size(), point.result.lost, set.about.typical[method][q]});
+          for (BenchCell& cell : work_cells(point.result.work)) table_.rows.back().push_back(std::move(cell));
+        }
         if (point.result.lost > 0)
           facts_.more.emplace_back(
               fmt::format("{}, {} {} {:.4g}, {}", set.name, kMethods[method], point.setting.knob,
@@ -528,6 +530,14 @@ class ErrorBench {
                                  lead.paper_error, lead.paper_us);
   }
 
+  static BenchTable columns() {
+    BenchTable table{{"scene", "method", "knob", "value", "quantity", "error_p50", "error_p99", "time_us_p50",
+                      "time_us_p99", "engine", "poses", "lost", "truth_p50"},
+                     {}};
+    table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
+    return table;
+  }
+
   static constexpr const char* kMethods[] = {"refined", "paper"};
 
   const BenchOptions& options_;
@@ -537,9 +547,7 @@ class ErrorBench {
   std::map<std::string, std::vector<std::pair<std::string, MethodLead>>>
       leads_;  ///< by engine that knows paper: of each subject and its poses
   BenchFacts facts_{.command = "error", .device = {}, .more = {}};
-  BenchTable table_{{"scene", "method", "knob", "value", "quantity", "error_p50", "error_p99", "time_us_p50",
-                     "time_us_p99", "engine", "poses", "lost", "truth_p50"},
-                    {}};
+  BenchTable table_ = columns();
   std::vector<BenchChart> charts_;
 };
 

@@ -20,6 +20,7 @@ void ErrorApart::rows(const std::string& scene, const std::string& method, const
   table.rows.push_back({scene, method, knob, value, quantity, percentile(errors, 0.5),
                         percentile(errors, 0.99), us_p50, us_p99, std::string(), errors.size(),
                         std::uint64_t{0}, std::string()});
+  for (BenchCell& cell : work_cells({})) table.rows.back().push_back(std::move(cell));
 }
 
 void ErrorApart::tessellation() {

@@ -44,10 +44,12 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
   out.answers.resize(subject.poses.size());
   out.times_us.assign(subject.poses.size(), HUGE_VAL);
   out.all_us.resize(subject.poses.size());
+  std::vector<DeviceWork> work;
   Contacts contacts;
   ContactResponse response;
   for (std::uint64_t round = 0; round <= rounds; ++round)  // the first warms up
     for (std::size_t i = 0; i < subject.poses.size(); ++i) {
+      const DeviceWork before = backend.device_work();
       const Stopwatch watch(cpu_clock);
       const Result<LatticePose> pose = to_lattice(subject.poses[i], *geometry);
       if (!pose) return Error{pose.error().code, subject.name + ": " + pose.error().sentence};
@@ -60,6 +62,7 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
       if (round > 0) {
         out.times_us[i] = std::min(out.times_us[i], us);
         out.all_us[i].push_back(us);
+        work.push_back(since(before, backend.device_work()));
       }
       if (round == 0) {
         out.answers[i] = summary_of(response);
@@ -70,6 +73,7 @@ Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& set
           !progress("poses", static_cast<double>(i) / static_cast<double>(subject.poses.size())))
         return Error{ErrorCode::kInternal, "interrupted"};
     }
+  out.work = median_of(std::move(work));
   return out;
 }
 
@@ -91,6 +95,7 @@ ErrorResult judge(const Answered& answered, const std::vector<std::optional<Cont
     out.errors[2].push_back(glm::length(answer.point - truth.point));
   }
   out.samples = answered.samples;
+  out.work = answered.work;
   return out;
 }
 

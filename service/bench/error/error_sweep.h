@@ -27,6 +27,7 @@ struct ErrorResult {
   std::size_t lost =
       0;  ///< poses where the truth has a contact and the answer none; their n_c and cp do not count
   std::uint64_t samples = 0;  ///< rays of all poses
+  DeviceWork work{};          ///< as in Answered
 };
 
 /// The response of the setting at each pose; empty where there is no contact. `rounds`: how often each pose
@@ -37,6 +38,7 @@ struct Answered {
   std::vector<double> times_us;             ///< the fastest of the rounds
   std::vector<std::vector<double>> all_us;  ///< every round's
   std::uint64_t samples = 0;
+  DeviceWork work;  ///< what a frame asks of a device: medians
 };
 Result<Answered> answer_all(const ErrorSubject& subject, const ErrorSetting& setting, std::uint64_t rounds,
                             CollisionBackend& backend, const Progress& progress, bool cpu_clock = false);

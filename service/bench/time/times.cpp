@@ -84,6 +84,10 @@ DeviceWork TimeTable::work(std::size_t kind) const {
   std::vector<DeviceWork> all;
   for (std::size_t k = 0; k < 3; ++k)
     if (kind == 3 || kind == k) all.insert(all.end(), work_[k].begin(), work_[k].end());
+  return median_of(std::move(all));
+}
+
+DeviceWork median_of(std::vector<DeviceWork> all) {
   DeviceWork out;
   if (all.empty()) return out;
   const auto take = [&](auto member) {

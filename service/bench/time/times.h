@@ -38,6 +38,8 @@ FrameKind frame_kind(const Contacts& contacts);
 
 /// What was asked of a device between two looks at CollisionBackend::device_work.
 DeviceWork since(const DeviceWork& before, const DeviceWork& after);
+/// Of each count by itself; nothing of nothing.
+DeviceWork median_of(std::vector<DeviceWork> all);
 
 /// Times of one thing under test, by kind of frame and by stage.
 class TimeTable {
