@@ -10,6 +10,7 @@
 #include "driver/falcon/firmware.h"
 #include "driver/safe_device.h"
 #include "tests/driver/fake_usb/falcon_table.h"
+#include "tests/model/temporary_folder.h"
 
 namespace palpate::falcon {
 namespace {
@@ -23,7 +24,8 @@ struct Table : fake::FalconTable {
 };
 
 std::string firmware_file(std::size_t size) {
-  const std::string path = testing::TempDir() + "falcon_firmware_" + std::to_string(::getpid()) + ".bin";
+  static const TemporaryFolder folder;
+  const std::string path = folder.path("firmware.bin");
   std::ofstream out(path, std::ios::binary);
   for (std::size_t i = 0; i < size; ++i) out.put(static_cast<char>(i * 37 + i / 256));
   return path;

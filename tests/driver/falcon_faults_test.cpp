@@ -13,6 +13,7 @@
 
 #include "driver/falcon/report_filter.h"
 #include "tests/driver/fake_usb/falcon_table.h"
+#include "tests/model/temporary_folder.h"
 
 namespace palpate::falcon {
 namespace {
@@ -119,7 +120,8 @@ std::vector<Row> rows() {
 }
 
 std::string firmware_file() {
-  const std::string path = testing::TempDir() + "falcon_faults_" + std::to_string(::getpid()) + ".bin";
+  static const TemporaryFolder folder;
+  const std::string path = folder.path("firmware.bin");
   std::ofstream out(path, std::ios::binary);
   for (std::size_t i = 0; i < FalconTable::kFirmwareBytes; ++i) out.put(static_cast<char>(i * 37));
   return path;

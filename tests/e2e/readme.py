@@ -2,6 +2,7 @@
 scene file against the program's reader."""
 import re
 import shlex
+import shutil
 
 from harness import *
 from server import Server
@@ -45,6 +46,7 @@ def test_every_command_of_the_readme_works():
     finally:
         os.chdir(here)
         code = server.stop() if server else None
+        shutil.rmtree(folder)
     expect(code == 0, f'the server ended with {code}')
 
 

@@ -1,7 +1,7 @@
 // From files to a scene file: names, units, the tree of parts, what a draft makes, undo, the archive.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -103,9 +103,10 @@ test('parts are drawn apart though they share vertices, scaled by file, and foun
 });
 
 test('the archive is one that others read', async () => {
-  const path = join(mkdtempSync(join(tmpdir(), 'palpate-zip-')), 'a.zip');
+  const folder = mkdtempSync(join(tmpdir(), 'palpate-zip-')), path = join(folder, 'a.zip');
   const content = new TextEncoder().encode('{"a": 1}');
   writeFileSync(path, new Uint8Array(await zip([{ name: 'scene.json', bytes: content }, { name: 'mesh ü.bin', bytes: Uint8Array.from({ length: 70_000 }, (_, i) => i & 255) }]).arrayBuffer()));
   const told = spawnSync('python3', ['-c', 'import sys, zipfile; z = zipfile.ZipFile(sys.argv[1]); print(z.testzip(), [(i.filename, i.file_size) for i in z.infolist()], z.read("scene.json").decode())', path], { encoding: 'utf8' });
+  rmSync(folder, { recursive: true });
   assert.equal(told.stdout.trim(), 'None [(\'scene.json\', 8), (\'mesh ü.bin\', 70000)] {"a": 1}', told.stderr);
 });
