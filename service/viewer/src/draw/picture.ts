@@ -41,6 +41,7 @@ export class Picture {
     this.view = new SceneView(host);
     this.view.scene.add(this.shown);
     this.bodies = new Bodies(this.shown);
+    this.view.kept.add(this.bodies.mockup_mesh);
     this.stores = { mockup: new TriangleStore(api, 'static'), tool: new TriangleStore(api, 'tool') };
     this.contact = new ContactLayer(this.stores.mockup, this.stores.tool);
     this.ghost = new Ghost(this.bodies);
@@ -49,8 +50,8 @@ export class Picture {
     this.bodies.tool.add(this.contact.tool.object);
     for (const store of [this.stores.mockup, this.stores.tool]) store.arrived = () => { this.redraw_contact(); };
     this.levels.may_coarsen = this.view.software;
-    this.view.after_draw.push((ms) => {
-      if (this.scene && Number.isFinite(ms) && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
+    this.view.after_draw.push((ms, whole) => {
+      if (this.scene && whole && Number.isFinite(ms) && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
       this.view.coarse = this.levels.coarse;
     });
   }
