@@ -1,27 +1,36 @@
 // What stands still is drawn once: its colours and depths are kept, and laid under what moves until anything of it is another, the camera included.
 import * as three from 'three';
 
-const STILL = 3;   // the layer of what is kept; a headset's eyes have 1 and 2
+const STILL = 3;          // the layer of what is kept; a headset's eyes have 1 and 2
+const STANDS_MS = 120;    // chosen: what has stood for so long will go on to; a camera that is turned by hand does not rest so long
 
 /** What is kept, and, beside what a mesh says itself, what else its picture hangs on. */
 interface Still { object: three.Object3D; also: () => readonly unknown[] }
 
+/** What is drawn into, and what the picture in it hangs on; empty: there is none. */
+interface Kept { target: three.WebGLRenderTarget; of: unknown[] }
+function room(): Kept {
+  const target = new three.WebGLRenderTarget(1, 1, { colorSpace: three.SRGBColorSpace, internalFormat: 'RGBA8', minFilter: three.NearestFilter, magFilter: three.NearestFilter, generateMipmaps: false });
+  // As the canvas has them, and as three does it for a headset: colours as they are shown, in eight bits. Else they would be blended and rounded otherwise.
+  (target as three.WebGLRenderTarget & { isXRRenderTarget: boolean }).isXRRenderTarget = true;
+  target.depthTexture = new three.DepthTexture(1, 1, three.UnsignedIntType);
+  return { target, of: [] };
+}
+
 export class KeptPicture {
   private readonly still: Still[] = [];
-  private readonly target = new three.WebGLRenderTarget(1, 1, { colorSpace: three.SRGBColorSpace, internalFormat: 'RGBA8', minFilter: three.NearestFilter, magFilter: three.NearestFilter, generateMipmaps: false });
+  private readonly rooms = [room(), room()];   // the newest first: one for pictures of what moves, one for the sharp one at rest
   private readonly sheet: three.Mesh<three.BufferGeometry, three.RawShaderMaterial>;
   private seen: unknown[] = [];   // what the picture before hung on
-  private kept: unknown[] = [];   // what the picture that is kept hangs on; empty: none is
-  private since = 0;              // when `seen` began, ms
+  private since = -Infinity;      // when `seen` began, ms
+  private changed = false;        // it did with the picture before
+  private moves = false;
 
   constructor(private readonly renderer: three.WebGLRenderer, private readonly scene: three.Scene, private readonly camera: three.Camera) {
-    // As the canvas has them, and as three does it for a headset: colours as they are shown, in eight bits. Else they would be blended and rounded otherwise.
-    (this.target as three.WebGLRenderTarget & { isXRRenderTarget: boolean }).isXRRenderTarget = true;
-    this.target.depthTexture = new three.DepthTexture(1, 1, three.UnsignedIntType);
     const corners = new three.BufferGeometry();
     corners.setAttribute('position', new three.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     this.sheet = new three.Mesh(corners, new three.RawShaderMaterial({
-      glslVersion: three.GLSL3, depthFunc: three.AlwaysDepth, uniforms: { colours: { value: this.target.texture }, depths: { value: this.target.depthTexture } },
+      glslVersion: three.GLSL3, depthFunc: three.AlwaysDepth, uniforms: { colours: { value: null as three.Texture | null }, depths: { value: null as three.Texture | null } },
       vertexShader: 'in vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }',
       fragmentShader: `precision highp float;
         precision highp sampler2D;
@@ -47,26 +56,31 @@ export class KeptPicture {
   remove(object: three.Object3D): void { this.still.splice(this.still.findIndex((one) => one.object === object), 1); }
   /** A light that shines on it. */
   lit_by(light: three.Light): void { light.layers.enable(STILL); }
-  forget(): void { this.kept = []; }
+  forget(): void { for (const each of this.rooms) each.of = []; }
 
-  /** Looks at the scene before a picture: for how long what stands still has done so, ms. `now` as requestAnimationFrame has it. */
-  look(now: number): number {
+  /** Looks at the scene before a picture: whether what should stand still does. One change, such as a part that is hidden, is no motion; the second in a row is. `now` as requestAnimationFrame has it. */
+  look(now: number): boolean {
     this.scene.updateMatrixWorld();
     const state = this.state();
-    if (!same(state, this.seen)) { this.seen = state; this.since = now; }
-    return now - this.since;
+    const changes = !same(state, this.seen);
+    if (changes) this.moves = this.changed || now - this.since < STANDS_MS;
+    else if (now - this.since >= STANDS_MS) this.moves = false;
+    if (changes) { this.seen = state; this.since = now; }
+    this.changed = changes;
+    return !this.moves;
   }
   /** Whether the next picture can be laid on what is kept, of a canvas of this many pixels for one of the page. */
-  get ready(): boolean { return this.kept.length > 0 && same(this.kept, [...this.seen, ...this.size()]); }
+  get ready(): boolean { return this.fitting() !== undefined; }
+  private fitting(): Kept | undefined { const wanted = [...this.seen, ...this.size()]; return this.rooms.find(({ of }) => same(of, wanted)); }
   /** Whether it can be kept at all. What one sees through belongs between other things, not under them. */
   get may_keep(): boolean { return !this.still.some(({ object }) => shown(object) && meshes(object).some(({ material }) => material.transparent)); }
 
   /** Draws what `look` saw; `keep`: keeps what stands still for the pictures to come. */
   draw(keep: boolean): void {
-    if (!this.ready) {
-      if (!keep || !this.may_keep) { this.renderer.render(this.scene, this.camera); return; }
-      this.take();
-    }
+    const { target } = this.fitting() ?? (keep && this.may_keep ? this.take() : { target: null });
+    if (!target) { this.renderer.render(this.scene, this.camera); return; }
+    this.sheet.material.uniforms['colours'].value = target.texture;
+    this.sheet.material.uniforms['depths'].value = target.depthTexture;
     const hidden = this.still.map(({ object }) => object).filter(({ visible }) => visible);
     for (const object of hidden) object.visible = false;
     this.sheet.visible = true;
@@ -74,16 +88,19 @@ export class KeptPicture {
     this.sheet.visible = false;
     for (const object of hidden) object.visible = true;
   }
-  private take(): void {
+  private take(): Kept {
+    const into = this.rooms.pop()!;
+    this.rooms.unshift(into);
     const [width, height] = this.size();
-    if (this.target.width !== width || this.target.height !== height) this.target.setSize(width, height);
+    if (into.target.width !== width || into.target.height !== height) into.target.setSize(width, height);
     const { mask } = this.camera.layers;
     this.camera.layers.set(STILL);
-    this.renderer.setRenderTarget(this.target);
+    this.renderer.setRenderTarget(into.target);
     this.renderer.render(this.scene, this.camera);
     this.renderer.setRenderTarget(null);
     this.camera.layers.mask = mask;
-    this.kept = [...this.seen, width, height];
+    into.of = [...this.seen, width, height];
+    return into;
   }
   private size(): [number, number] {
     const { x, y } = this.renderer.getDrawingBufferSize(new three.Vector2());

@@ -13,7 +13,6 @@ export function round_down(value: number): number {
 }
 
 const SHARP_AFTER = 8;   // pictures' times without a picture; chosen: a hand that stops waits an eighth of a second for the sharp one
-const STANDS_MS = 120;   // chosen: what has stood still for so long will go on to; a camera that is turned by hand does not rest so long
 
 /** Whether WebGL is drawn without a GPU: then edges are left rough, for smooth ones cost four times as much, and it is pixels that take the time. */
 function drawn_by_processor(): boolean {
@@ -29,15 +28,16 @@ export class SceneView {
   readonly scene = new three.Scene();
   readonly camera = new three.PerspectiveCamera(38, 1, 0.001, 100);
   readonly controls: OrbitControls;
-  /** Called before each picture, and after it with the time since the last one in an unbroken row, ms (NaN for the first); `whole`: what stands still was drawn for both. */
+  /** Called before each picture, and after it with the time since the last one in an unbroken row, ms (NaN for the first), and how many of both were drawn with what stands still. */
   readonly before_draw: (() => void)[] = [];
-  readonly after_draw: ((ms: number, whole: boolean) => void)[] = [];
+  readonly after_draw: ((ms: number, whole: number) => void)[] = [];
   /** Whether pixels are what takes the time. */
   readonly software = drawn_by_processor();
   /** What stands still. */
   readonly kept: KeptPicture;
-  /** Pictures that follow one another while the camera moves have half the width and height. */
+  /** Pictures that follow one another have half the width and height: while the camera moves, and while it stands. */
   coarse = false;
+  coarse_standing = false;
   /** A headset has the pictures: here none is drawn. */
   presenting = false;
   /** The grid's cell, m. */
@@ -48,7 +48,7 @@ export class SceneView {
   private running = false;
   private quiet = 0;
   private last_draw = NaN;
-  private last_whole = false;
+  private last_whole = 0;
   private readonly sharp: number;   // pixels of the picture for one of the page
   private focus = { centre: new three.Vector3(), radius: 1, floor: 0 };
 
@@ -98,14 +98,14 @@ export class SceneView {
     if (!this.dirty && !rests) { this.last_draw = NaN; return; }
     this.dirty = false;
     this.camera.updateMatrixWorld();
-    const stands = this.software && (this.kept.look(now) > STANDS_MS || rests) && this.kept.may_keep;
+    const stands = this.software && (this.kept.look(now) || rests) && this.kept.may_keep;
     // Coarse from the second picture of a row to the end of the motion, which a row that breaks is not: another size costs a picture's time.
-    const ratio = rests || stands || !this.coarse ? this.sharp : Number.isFinite(this.last_draw) ? this.sharp / 2 : before;
+    const ratio = rests || !(stands ? this.coarse_standing : this.coarse) ? this.sharp : Number.isFinite(this.last_draw) ? this.sharp / 2 : before;
     if (ratio !== before) this.renderer.setPixelRatio(ratio);
     for (const call of this.before_draw) call();   // labels are placed by where the camera is now
-    const whole = !stands || !this.kept.ready;
+    const whole = stands && this.kept.ready ? 0 : 1;
     this.kept.draw(stands);
-    for (const call of this.after_draw) call(now - this.last_draw, whole && this.last_whole);
+    for (const call of this.after_draw) call(now - this.last_draw, whole + this.last_whole);
     this.last_draw = rests ? NaN : now;
     this.last_whole = whole;
   };
