@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "service/loop/law_result.h"
 
@@ -127,8 +128,8 @@ Vec6 LoneQuery::next(const LawPose& device, const Vec6& apart) const {
 }
 
 Result<void> LoneQuery::feel(PoseQuery& backend, const Ignored* ignored, const Pose& pose,
-                             ContactResponse& response) {
-  Result<Felt> felt = ask(backend, ignored, pose, response);
+                             ContactResponse& response, bool from_before) {
+  Result<Felt> felt = ask(backend, ignored, pose, response, from_before);
   if (!felt) return felt.error();
   if (!response.contact_points) felt->wrench.torque = Vec3(0);
   if (!felt->settled) response.flags |= kFlagUnsettled;
@@ -137,18 +138,23 @@ Result<void> LoneQuery::feel(PoseQuery& backend, const Ignored* ignored, const P
 }
 
 Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose,
-                            const ContactResponse& at_pose) {
+                            const ContactResponse& at_pose, bool from_before) {
   Felt out;
   out.tool = pose;
   out.evaluations = 1;
+  const std::optional<Vec6> before = std::exchange(before_, std::nullopt);
   if (!at_pose.contact || !spring_.on()) return out;
   const LawPose device{0, pose.position + pose.rotation * geometry_.tool_gc_m, glm::normalize(pose.rotation)};
+  // What the planes of the balance before say of this pose: the tool follows the hand along a wall, not in.
+  std::optional<Vec6> begin;
+  if (from_before && before) begin = spring_balance(spring_, device, *before, PlaneFeel(planes_));
   fill_planes(at_pose, planes_);
   planes_.gc = device.gc;
   planes_.rotation = device.rotation;
 
   const Metric metric{geometry_.tool_gyration_m};
-  constexpr double kEnough = 1e-8, kEnoughShare = 1e-6;  // m, and of the way: 20 µN at 2 kN/m (chosen)
+  // m, and of the way: 20 µN at 2 kN/m, or what one can see (chosen)
+  const double enough = from_before ? 1e-7 : 1e-8, enough_share = from_before ? 1e-3 : 1e-6;
   constexpr int kMostTries =
       10;  // places along one step (chosen: a stiff wall is found to a thousandth of the step)
   constexpr double kLevel =
@@ -157,7 +163,20 @@ Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Po
   Anderson anderson(metric);
   Vec6 apart{}, rest = pull(at_pose.wrench, apart), image = next(device, apart), best = image;
   double left = metric.length(plus(image, -1, apart)), least = left;
-  const auto settled = [&] { return left <= kEnough + kEnoughShare * metric.length(image); };
+  if (begin) {
+    if (auto done = evaluate(backend, ignored, apart_from(device, *begin, spring_)); !done)
+      return done.error();
+    ++out.evaluations;
+    const Vec6 there = next(device, *begin);
+    const double left_there = metric.length(plus(there, -1, *begin));
+    if (left_there < left) {
+      apart = *begin;
+      rest = pull(response_.wrench, apart);
+      image = best = there;
+      left = least = left_there;
+    }
+  }
+  const auto settled = [&] { return left <= enough + enough_share * metric.length(image); };
   while (!settled() && out.evaluations < kMostEvaluations) {
     const Vec6 way = plus(image, -1, apart);
     Vec6 step = plus(anderson.next(apart, image), -1, apart);
@@ -209,6 +228,7 @@ Result<Felt> LoneQuery::ask(PoseQuery& backend, const Ignored* ignored, const Po
     }
   }
   out.settled = settled();
+  before_ = best;
   out.wrench.force = spring_.stiffness_n_per_m * Vec3(best[0], best[1], best[2]);
   out.wrench.torque = spring_.stiffness_nm_per_rad * Vec3(best[3], best[4], best[5]);
   const LawPose tool = apart_from(device, best, spring_);

@@ -460,6 +460,49 @@ def test_a_remote_loop_gets_wrenches_with_its_own_stamps():
         expect(server.ask('GET', f'/v1/scenes/{name}').json()['users'] in (0, 1), 'users')
 
 
+def test_a_near_pose_is_answered_from_the_one_before_and_a_pose_alone_as_a_query():
+    folder, arguments = rooted()
+    poses = [[0.0002 * i, 0, 0.018, 0, 0, 0, 1] for i in range(20)]
+    with Server(*arguments) as server:
+        name = named(server)
+        (last,) = lines_of(
+            palpate(
+                'query', folder / 'scene.json', '--pose', ' '.join(map(str, poses[-1])), '--backend', 'cpu'
+            )
+        )
+        evaluations = {False: 0, True: 0}
+        with WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
+            loop.json()
+            for near in (False, True):
+                for i, pose in enumerate(poses):
+                    loop.send(
+                        {'type': 'pose', 'seq': 100 * near + i, 'pose': pose, 'full': True, 'near': near}
+                    )
+                    answer = loop.json()
+                    expect(answer['seq'] == 100 * near + i, answer)
+                    evaluations[near] += answer['frame']['evaluations']
+                apart = math.dist(answer['force'], last['force']) / math.hypot(*last['force'])
+                expect(
+                    apart < 2e-3
+                    if near
+                    else answer['force'] == last['force'] and answer['torque'] == last['torque'],
+                    (near, apart, answer['force'], last['force']),
+                )
+            expect(evaluations[True] < evaluations[False], evaluations)
+            # After others, one without it is a query's again.
+            loop.send({'type': 'pose', 'seq': 500, 'pose': poses[-1], 'full': True})
+            answer = loop.json()
+            expect(
+                answer['force'] == last['force']
+                and answer['torque'] == last['torque']
+                and answer['frame']['evaluations'] == last['evaluations'],
+                answer,
+            )
+            loop.send({'type': 'pose', 'seq': 501, 'pose': poses[-1], 'near': 1})
+            refused = loop.json()
+            expect(refused['type'] == 'error' and refused['problem']['field'] == 'near', refused)
+
+
 def test_sigterm_in_mid_session_sends_zero_force_tells_clients_and_exits_0():
     folder, arguments = rooted()
     simulated(folder)

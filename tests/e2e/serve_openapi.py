@@ -84,7 +84,7 @@ def test_real_answers_fit_their_schemas():
         with WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
             seen.append(('HapticHello', loop.json()))
             for full in (False, True):
-                pose = {'type': 'pose', 'seq': 1, 'time': 0.5, 'pose': PRESSED, 'full': full}
+                pose = {'type': 'pose', 'seq': 1, 'time': 0.5, 'pose': PRESSED, 'full': full, 'near': full}
                 loop.send(pose)
                 seen += [('PoseMessage', pose), ('Wrench', loop.json())]
             loop.send('{}')

@@ -34,7 +34,7 @@ struct PoseMessage {
   std::uint64_t seq = 0;
   double time = 0;
   Pose pose;
-  bool full = false, binary = false;
+  bool full = false, near = false, binary = false;
   Clock::time_point arrived{};
 };
 
@@ -52,7 +52,7 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
     out.pose = std::get<Pose>(pose);
     return out;
   }
-  const auto read = read_json_object(data, depth, {"type", "seq", "time", "pose", "full"});
+  const auto read = read_json_object(data, depth, {"type", "seq", "time", "pose", "full", "near"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
   if (!json.contains("type") || json["type"] != "pose")
@@ -67,6 +67,10 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
   if (json.contains("full")) {
     if (!json["full"].is_boolean()) return bad_request("\"full\" is neither true nor false", "full");
     out.full = json["full"];
+  }
+  if (json.contains("near")) {
+    if (!json["near"].is_boolean()) return bad_request("\"near\" is neither true nor false", "near");
+    out.near = json["near"];
   }
   const auto pose = pose_from_json(json.contains("pose") ? json["pose"] : nlohmann::json(), "pose");
   if (const auto* problem = std::get_if<Problem>(&pose)) return *problem;
@@ -133,11 +137,11 @@ struct RemoteLoops::Loop {
         lone((*use)->loaded.geometry, (*use)->loaded.scene.response.stiffness_n_per_m),
         field((*use)->loaded.scene.response.profile == Profile::kRefined) {}
 
-  /// The pose in `slot`.
-  Result<void> solve() noexcept {
+  /// The pose in `slot`. `near`: from the answer before on.
+  Result<void> solve(bool near) noexcept {
     if (auto solved = frame.solve(slot, result); !solved || !field || !slot.response.contact) return solved;
     try {
-      return lone.feel(backend, frame.ignored(), slot.sample.pose, slot.response);
+      return lone.feel(backend, frame.ignored(), slot.sample.pose, slot.response, near);
     } catch (const std::exception& error) {  // a library's, as in CollisionFrame::solve
       return Error{ErrorCode::kInternal, std::string("the collision query failed: ") + error.what()};
     } catch (...) {
@@ -301,7 +305,7 @@ void RemoteLoops::answer(Loop& loop) {
   }
   if (!pose) return;
   loop.slot.sample = {loop.count++, pose->pose};
-  const Result<void> solved = loop.solve();
+  const Result<void> solved = loop.solve(pose->near);
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - pose->arrived).count();
   ++metrics_.loop_poses;
   metrics_.loop_s.add(us / 1e6);

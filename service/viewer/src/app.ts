@@ -35,6 +35,7 @@ import { Strips, figure } from './strips.js';
 type Source = 'live' | 'mouse' | 'run';
 const REFRESH_MS = 3000;
 const TURN = 0.1;   // rad of a key that turns the view; chosen
+const WORDS_MS = 80;   // chosen: figures that change more often can't be read, and to lay them out takes as long as a picture
 const FELT: Record<Source, string> = { live: 'to the device', mouse: 'to the hand', run: 'to the device' };
 const LATE: Record<Source, [string, string]> = { live: ['Lateness', 'µs'], mouse: ['There and back', 'ms'], run: ['Age of result', 'ticks'] };
 
@@ -80,6 +81,9 @@ export class App {
   private rest_timer = 0;
   private mouse_rests = false;
   private last_tick = NaN;
+  private told: Moment | null = null;
+  private words_at = -Infinity;
+  private words_timer = 0;
   private banner_timer = 0;
 
   constructor() {
@@ -330,7 +334,15 @@ export class App {
     if (moment) this.picture.show(moment);
     if (moment && this.picker.current && !this.workshop.building) this.clearance.want(this.picker.current.id, moment.pose, moment.contact);
     this.labels.set(moment?.frame?.contact ? moment.frame.areas : []);
-    this.readout.show(moment, this.picker.current?.stages ?? []);
+    this.told = moment;
+    clearTimeout(this.words_timer);
+    const wait = WORDS_MS - (performance.now() - this.words_at);
+    if (wait > 0) this.words_timer = window.setTimeout(() => this.tell(), wait); else this.tell();
+  }
+  /** The moment in figures and curves. */
+  private tell(): void {
+    this.words_at = performance.now();
+    this.readout.show(this.told, this.picker.current?.stages ?? []);
     this.player.show();
     this.strips.samples = this.source === 'run' ? this.player.samples : this.source === 'mouse' ? this.mouse_samples : this.live_samples;
     this.strips.recorded = this.source === 'run' && this.player.playback ? { duration: this.player.playback.duration, time: this.player.playback.time } : null;

@@ -8,7 +8,7 @@ export function count_drawing() {
     owner.prototype[name] = function (...args) { see(args); return real.apply(this, args); };
   };
   wrap('stroke', () => { ++now.strokes; }, CanvasRenderingContext2D);
-  const draw = (mode, count) => { if (mode === WebGL2RenderingContext.TRIANGLES) { now.triangles += count / 3; now.drawn = true; } };
+  const draw = (mode, count) => { if (mode === WebGL2RenderingContext.TRIANGLES) { if (count > 3) now.triangles += count / 3; now.drawn = true; } };   // one alone lays down what is kept
   wrap('drawElements', ([mode, count]) => draw(mode, count));
   wrap('drawArrays', ([mode, , count]) => draw(mode, count));
   const size = (data) => (typeof data === 'number' ? data : data?.byteLength ?? 0);

@@ -5,7 +5,7 @@ import { MouseSource } from '../src/mouse/mouse_source.js';
 import type { Scene } from '../src/server/protocol.js';
 
 const SCENE = { id: 's', start: [0, 0, 0, 0, 0, 0, 1], tool_gc: [0, 0, 0], tool_radius: 0.05, stiffness: 2000, backend: 'cpu' } as unknown as Scene;
-interface Asked { seq: number; full: boolean; pose: number[] }
+interface Asked { seq: number; full: boolean; near: boolean; pose: number[] }
 
 /** A server that answers when it is told to. */
 class Socket {
@@ -82,10 +82,32 @@ test('without pictures nothing goes on', async () => {
   mouse.advance();
   mouse.coupling.held = true;
   mouse.coupling.target_position.set(0.1, 0, 0);
-  pass(150);
+  pass(650);
   const before = socket.asked.length;
   socket.answer();
   pass(50);
   assert.equal(socket.asked.length, before);
+  mouse.close();
+});
+
+test('a tool that moves is told from the answer before on, one that rests exactly', async () => {
+  const { socket, mouse } = await begun();
+  socket.answer();
+  mouse.coupling.held = true;
+  mouse.coupling.target_position.set(0.001, 0, 0);
+  pass(40);
+  mouse.advance();
+  socket.answer();
+  mouse.coupling.let_go();
+  mouse.advance();   // where it had come to meanwhile
+  assert.equal(socket.asked.at(-1)!.near, true);
+  socket.answer();
+  mouse.advance();
+  const { pose, near } = socket.asked.at(-1)!;
+  assert.deepEqual([near, pose], [false, socket.asked.at(-2)!.pose]);   // the same pose again
+  socket.answer();
+  const asked = socket.asked.length;
+  mouse.advance();
+  assert.equal(socket.asked.length, asked);
   mouse.close();
 });

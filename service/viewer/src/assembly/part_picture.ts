@@ -1,5 +1,6 @@
 // All parts of an assembly as one mesh: one draw call however many they are. What each looks like, whether it is shown and whether it moves with the tool is a texel a part.
 import * as three from 'three';
+import { flat_material, geometry_of, with_faces } from '../draw/flat_shading.js';
 import type { Geometry } from '../server/binary.js';
 import type { AssemblyPart } from '../server/protocol.js';
 
@@ -23,24 +24,21 @@ export class PartPicture {
   private corners = new Uint32Array(0);
 
   constructor() {
-    const material = new three.MeshLambertMaterial({ flatShading: true, side: three.DoubleSide });
-    material.onBeforeCompile = (shader) => {
+    const material = flat_material({}, (shader) => {
       shader.uniforms['parts'] = this.states;
       shader.uniforms['tool_matrix'] = { value: this.tool_matrix };
       shader.vertexShader = shader.vertexShader
-        .replace('#include <common>', '#include <common>\nattribute float part;\nuniform highp sampler2D parts;\nuniform mat4 tool_matrix;\nvarying vec3 part_colour;')
+        .replace('#include <common>', '#include <common>\nattribute float part;\nuniform highp sampler2D parts;\nuniform mat4 tool_matrix;')
         .replace('#include <begin_vertex>', `#include <begin_vertex>
           int place = int(part + 0.5);
           vec4 look = texelFetch(parts, ivec2(place % ${WIDTH}, place / ${WIDTH}), 0);
-          part_colour = look.rgb;
+          colour = look.rgb;
           bool with_tool = look.a >= ${WITH_TOOL}.0;
           if (with_tool) transformed = (tool_matrix * vec4(transformed, 1.0)).xyz;`)
+        .replace('normalMatrix * face', 'normalMatrix * (with_tool ? mat3(tool_matrix) * face : face)')
         .replace('#include <project_vertex>', `#include <project_vertex>
           if (look.a == ${HIDDEN}.0 || look.a == ${WITH_TOOL}.0) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);   // beyond the far plane, as a whole triangle`);
-      shader.fragmentShader = shader.fragmentShader
-        .replace('#include <common>', '#include <common>\nvarying vec3 part_colour;')
-        .replace('#include <color_fragment>', '#include <color_fragment>\ndiffuseColor.rgb = part_colour;');
-    };
+    });
     this.mesh = new three.Mesh(new three.BufferGeometry(), material);
     this.mesh.frustumCulled = false;   // the shader moves some of it
     this.object.add(this.mesh);
@@ -82,16 +80,18 @@ export class PartPicture {
       const factor = scale(parts[owners[i]].file);
       for (let axis = 0; axis < 3; ++axis) positions[3 * i + axis] = vertices[3 * source[i] + axis] * factor;
     }
-    this.positions = positions;
-    this.corners = out;
+    const made = with_faces(positions, out);
+    const owned = new Float32Array(count + made.copied.length);
+    owned.set(owners.subarray(0, count));
+    made.copied.forEach((vertex, i) => { owned[count + i] = owners[vertex]; });
+    this.positions = made.vertices;
+    this.corners = made.corners;
     this.drawn_triangles = ids.length;
     const corner = new three.Vector3();
-    for (const run of this.runs) for (let i = 3 * run.first; i < 3 * (run.first + run.count); ++i) run.box.expandByPoint(corner.fromArray(positions, 3 * out[i]));
+    for (const run of this.runs) for (let i = 3 * run.first; i < 3 * (run.first + run.count); ++i) run.box.expandByPoint(corner.fromArray(made.vertices, 3 * made.corners[i]));
     this.mesh.geometry.dispose();
-    this.mesh.geometry = new three.BufferGeometry();
-    this.mesh.geometry.setAttribute('position', new three.BufferAttribute(positions, 3));
-    this.mesh.geometry.setAttribute('part', new three.BufferAttribute(owners.slice(0, count), 1));
-    this.mesh.geometry.setIndex(new three.BufferAttribute(out, 1));
+    this.mesh.geometry = geometry_of(made);
+    this.mesh.geometry.setAttribute('part', new three.BufferAttribute(owned, 1));
     this.states.value.dispose();
     const rows = Math.max(1, Math.ceil(parts.length / WIDTH));
     this.states.value = new three.DataTexture(new Float32Array(4 * WIDTH * rows), WIDTH, rows, three.RGBAFormat, three.FloatType);
@@ -106,6 +106,9 @@ export class PartPicture {
     });
     this.states.value.needsUpdate = true;
   }
+
+  /** What the picture hangs on beside the mesh. */
+  changes(): unknown[] { return [this.states.value, this.states.value.version, ...this.tool_matrix.elements]; }
 
   /** Box of some parts, m; where they are shown, the tool moved. */
   box(parts: readonly number[], moved = true): three.Box3 {

@@ -57,6 +57,7 @@ export class Workshop {
     this.gizmo = new Gizmo(picture.view, fields, (place) => { this.move(place); }, (place) => this.change({ place }));
     this.parts.object.visible = false;
     picture.view.scene.add(this.parts.object);
+    picture.view.kept.add(this.parts.object, () => this.parts.changes());
     this.wire();
   }
   private fresh(): Draft { return { units: {}, tool: '', place: AT_HOME, hidden: [], ignore_initial: false, settings: { ...USUAL } }; }

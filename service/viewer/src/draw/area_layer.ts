@@ -17,8 +17,8 @@ class Mark {
   private readonly most: three.Mesh;
   constructor(private readonly materials: { normal: three.MeshBasicMaterial; point: three.MeshBasicMaterial; height: three.MeshBasicMaterial }) {
     this.normal = new Arrow(0xffffff);
-    this.point = new three.Mesh(new three.SphereGeometry(1, 16, 12), materials.point);
-    const bar = new three.CylinderGeometry(1, 1, 1, 12);
+    this.point = new three.Mesh(new three.SphereGeometry(1, 12, 8), materials.point);
+    const bar = new three.CylinderGeometry(1, 1, 1, 8);
     this.mean = new three.Mesh(bar, materials.height);
     this.most = new three.Mesh(bar, materials.height);
     for (const mesh of [this.point, this.mean, this.most]) mesh.renderOrder = 9;

@@ -1,8 +1,8 @@
 // An arrow that is a solid, so that it reads at any distance and any line width.
 import * as three from 'three';
 
-const SHAFT = new three.CylinderGeometry(1, 1, 1, 12).translate(0, 0.5, 0);
-const HEAD = new three.ConeGeometry(2.6, 1, 16).translate(0, -0.5, 0);
+const SHAFT = new three.CylinderGeometry(1, 1, 1, 8).translate(0, 0.5, 0);
+const HEAD = new three.ConeGeometry(2.6, 1, 12).translate(0, -0.5, 0);
 const UP = new three.Vector3(0, 1, 0);
 
 export class Arrow {

@@ -4,28 +4,22 @@ import type { HiddenParts } from '../scene_parts_panel.js';
 import type { Body, Geometry } from '../server/binary.js';
 import type { Theme } from './palette.js';
 import type { Pose, SceneParts } from '../server/protocol.js';
+import { flat_material, geometry_of, with_faces } from './flat_shading.js';
 import { shown_corners } from './shown_parts.js';
-
-function mesh_of(body: Body): three.BufferGeometry {
-  const geometry = new three.BufferGeometry();
-  geometry.setAttribute('position', new three.BufferAttribute(body.vertices, 3));
-  geometry.setIndex(new three.BufferAttribute(body.corners, 1));
-  geometry.computeBoundingBox();
-  geometry.computeBoundingSphere();
-  return geometry;
-}
 
 export class Bodies {
   readonly tool = new three.Group();
   readonly mockup_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   readonly tool_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
-  private drawn: Geometry | null = null;
+  private drawn: { mockup: Body; tool: Body } | null = null;
+  private shape: Body = { vertices: new Float32Array(0), corners: new Uint32Array(0), ids: new Uint32Array(0) };   // the tool as it came: each vertex once
+  private shape_corners = this.shape.corners;
   private parts: SceneParts = { static: [], tool: [] };
   private hidden: HiddenParts = { mockup: new Set(), tool: new Set() };
 
   constructor(scene: three.Object3D) {
     // Pushed back a little, so that contact triangles, which lie in the same planes, win.
-    const material = () => new three.MeshLambertMaterial({ flatShading: true, side: three.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    const material = () => flat_material({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.mockup_mesh = new three.Mesh(new three.BufferGeometry(), material());
     this.tool_mesh = new three.Mesh(new three.BufferGeometry(), material());
     this.tool_mesh.renderOrder = 1;
@@ -36,11 +30,14 @@ export class Bodies {
   }
 
   set(geometry: Geometry): void {
-    for (const [mesh, body] of [[this.mockup_mesh, geometry.mockup], [this.tool_mesh, geometry.tool]] as const) {
+    const faced = (mesh: three.Mesh, body: Body): Body => {
+      const made = with_faces(body.vertices, body.corners);
       mesh.geometry.dispose();
-      mesh.geometry = mesh_of(body);
-    }
-    this.drawn = geometry;
+      mesh.geometry = geometry_of(made);
+      return { ...body, vertices: made.vertices, corners: made.corners };
+    };
+    this.shape = geometry.tool;
+    this.drawn = { mockup: faced(this.mockup_mesh, geometry.mockup), tool: faced(this.tool_mesh, geometry.tool) };
     this.leave_out();
     this.tool.visible = true;
   }
@@ -56,7 +53,10 @@ export class Bodies {
       const corners = shown_corners(body, parts, hidden);
       if (mesh.geometry.index?.array !== corners) mesh.geometry.setIndex(new three.BufferAttribute(corners, 1));
     }
+    this.shape_corners = shown_corners(this.shape, this.parts.tool, this.hidden.tool);
   }
+  /** The tool's triangles that are drawn, in its frame; each vertex once. */
+  shape_of_tool(): { vertices: Float32Array; corners: Uint32Array } { return { vertices: this.shape.vertices, corners: this.shape_corners }; }
   clear(): void {
     this.drawn = null;
     this.hidden = { mockup: new Set(), tool: new Set() };

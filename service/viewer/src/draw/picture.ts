@@ -25,6 +25,7 @@ export class Picture {
   readonly ghost: Ghost;
   readonly drag: MouseDrag;
   readonly levels = new LevelKeeper();
+  private readonly pace = new LevelKeeper();   // of pictures that have no mock-up to draw: they may be coarse, and have no level
   scene: Scene | null = null;
   drawn_triangles = 0;
   reduced = false;
@@ -41,6 +42,7 @@ export class Picture {
     this.view = new SceneView(host);
     this.view.scene.add(this.shown);
     this.bodies = new Bodies(this.shown);
+    this.view.kept.add(this.bodies.mockup_mesh);
     this.stores = { mockup: new TriangleStore(api, 'static'), tool: new TriangleStore(api, 'tool') };
     this.contact = new ContactLayer(this.stores.mockup, this.stores.tool);
     this.ghost = new Ghost(this.bodies);
@@ -48,10 +50,14 @@ export class Picture {
     this.shown.add(this.contact.mockup.object, this.areas.object, this.voxels.object, this.ghost.object);
     this.bodies.tool.add(this.contact.tool.object);
     for (const store of [this.stores.mockup, this.stores.tool]) store.arrived = () => { this.redraw_contact(); };
-    this.levels.may_coarsen = this.view.software;
-    this.view.after_draw.push((ms) => {
-      if (this.scene && Number.isFinite(ms) && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
+    this.levels.may_coarsen = this.pace.may_coarsen = this.view.software;
+    this.pace.level = 0;
+    this.view.after_draw.push((ms, whole) => {
+      if (!this.scene || !Number.isFinite(ms)) return;
+      if (whole === 2 && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
+      if (whole === 0) this.pace.take(ms, 0);
       this.view.coarse = this.levels.coarse;
+      this.view.coarse_standing = this.pace.coarse;
     });
   }
 

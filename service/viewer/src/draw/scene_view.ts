@@ -1,6 +1,8 @@
 // The picture's frame: renderer, camera, light, ground grid. Draws when something changed, and else rests. What moves may be drawn coarsely; at rest all is sharp.
 import * as three from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { choose_corner } from './flat_shading.js';
+import { KeptPicture } from './kept_picture.js';
 import type { Theme } from './palette.js';
 
 /** The nearest 1, 2 or 5 times a power of ten at or below `value`. */
@@ -26,13 +28,16 @@ export class SceneView {
   readonly scene = new three.Scene();
   readonly camera = new three.PerspectiveCamera(38, 1, 0.001, 100);
   readonly controls: OrbitControls;
-  /** Called before each picture, and after it with the time since the last one in an unbroken row, ms (NaN for the first). */
+  /** Called before each picture, and after it with the time since the last one in an unbroken row, ms (NaN for the first), and how many of both were drawn with what stands still. */
   readonly before_draw: (() => void)[] = [];
-  readonly after_draw: ((ms: number) => void)[] = [];
+  readonly after_draw: ((ms: number, whole: number) => void)[] = [];
   /** Whether pixels are what takes the time. */
   readonly software = drawn_by_processor();
-  /** Pictures that follow one another have half the width and height. */
+  /** What stands still. */
+  readonly kept: KeptPicture;
+  /** Pictures that follow one another have half the width and height: while the camera moves, and while it stands. */
   coarse = false;
+  coarse_standing = false;
   /** A headset has the pictures: here none is drawn. */
   presenting = false;
   /** The grid's cell, m. */
@@ -43,11 +48,15 @@ export class SceneView {
   private running = false;
   private quiet = 0;
   private last_draw = NaN;
+  private last_whole = 0;
   private readonly sharp: number;   // pixels of the picture for one of the page
   private focus = { centre: new three.Vector3(), radius: 1, floor: 0 };
 
   constructor(private readonly host: HTMLElement) {
     this.renderer = new three.WebGLRenderer({ antialias: !this.software, powerPreference: 'high-performance' });
+    const choose = () => choose_corner(this.renderer.getContext() as WebGL2RenderingContext);
+    choose();
+    this.canvas.addEventListener('webglcontextrestored', choose);
     this.sharp = this.software ? 1 : Math.min(window.devicePixelRatio, 2);
     this.renderer.setPixelRatio(this.sharp);
     host.append(this.renderer.domElement);
@@ -62,6 +71,9 @@ export class SceneView {
     lamp.position.set(-0.6, 0.9, 0.8);
     this.camera.add(lamp);
     this.scene.add(sky, this.camera);
+    this.kept = new KeptPicture(this.renderer, this.scene, this.camera);
+    this.kept.lit_by(sky);
+    this.kept.lit_by(lamp);
     new ResizeObserver(() => this.resize()).observe(host);
     document.addEventListener('visibilitychange', () => { this.last_draw = NaN; });   // how long nobody looked is no picture's time
     this.resize();
@@ -82,17 +94,20 @@ export class SceneView {
     this.running = this.quiet < 20;
     if (this.running) requestAnimationFrame(this.draw);
     const before = this.renderer.getPixelRatio();
-    const rests = this.quiet === SHARP_AFTER && before !== this.sharp;
+    const rests = this.quiet === SHARP_AFTER && (before !== this.sharp || (this.software && this.kept.may_keep && !this.kept.ready));
     if (!this.dirty && !rests) { this.last_draw = NaN; return; }
     this.dirty = false;
+    this.camera.updateMatrixWorld();
+    const stands = this.software && (this.kept.look(now) || rests) && this.kept.may_keep;
     // Coarse from the second picture of a row to the end of the motion, which a row that breaks is not: another size costs a picture's time.
-    const ratio = rests || !this.coarse ? this.sharp : Number.isFinite(this.last_draw) ? this.sharp / 2 : before;
+    const ratio = rests || !(stands ? this.coarse_standing : this.coarse) ? this.sharp : Number.isFinite(this.last_draw) ? this.sharp / 2 : before;
     if (ratio !== before) this.renderer.setPixelRatio(ratio);
-    this.camera.updateMatrixWorld();   // labels are placed by where it is now
-    for (const call of this.before_draw) call();
-    this.renderer.render(this.scene, this.camera);
-    for (const call of this.after_draw) call(now - this.last_draw);
+    for (const call of this.before_draw) call();   // labels are placed by where the camera is now
+    const whole = stands && this.kept.ready ? 0 : 1;
+    this.kept.draw(stands);
+    for (const call of this.after_draw) call(now - this.last_draw, whole + this.last_whole);
     this.last_draw = rests ? NaN : now;
+    this.last_whole = whole;
   };
 
   /** Makes the programs of all that may come to be drawn, so that the first contact does not wait for its own in the middle of a motion. */
@@ -101,7 +116,8 @@ export class SceneView {
   /** Draws at once, sharp, for who reads the canvas next. */
   draw_now(): void {
     if (this.renderer.getPixelRatio() !== this.sharp) this.renderer.setPixelRatio(this.sharp);
-    this.renderer.render(this.scene, this.camera);
+    this.kept.look(performance.now());
+    this.kept.draw(false);
   }
   get canvas(): HTMLCanvasElement { return this.renderer.domElement; }
 
@@ -187,7 +203,7 @@ export class SceneView {
   }
 
   private draw_grid(): void {
-    if (this.grid) { this.scene.remove(this.grid); this.grid.dispose(); }
+    if (this.grid) { this.scene.remove(this.grid); this.kept.remove(this.grid); this.grid.dispose(); }
     this.grid_cell = round_down(this.focus.radius / 4);
     const cells = 2 * Math.ceil((this.focus.radius * 1.6) / this.grid_cell);
     this.grid = new three.GridHelper(cells * this.grid_cell, cells, this.grid_colour, this.grid_colour);
@@ -199,6 +215,7 @@ export class SceneView {
       this.grid.position.set(snap(this.focus.centre.x), this.focus.centre.y - this.focus.radius * 0.7, snap(this.focus.centre.z));
     }
     this.scene.add(this.grid);
+    this.kept.add(this.grid);
     this.request();
   }
 

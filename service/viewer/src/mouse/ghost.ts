@@ -1,18 +1,20 @@
-// Where the hand is while contact holds the tool back: the tool's outline there, and a line to it. Its length is the resistance.
+// Where the hand is while contact holds the tool back: the tool's edges there, and a line to it. Its length is the resistance.
 import * as three from 'three';
 import type { Bodies } from '../draw/bodies.js';
 import type { Coupling } from './coupling.js';
 import type { Theme } from '../draw/palette.js';
+import { sharp_edges } from '../draw/sharp_edges.js';
 
-const MOST_CORNERS = 150_000;   // an outline of more lines is a blot
+const MOST_EDGES = 1500;   // chosen: more are a blot, and lines are slow where there is no GPU
 
 export class Ghost {
   readonly object = new three.Group();
-  private readonly shell: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
+  private readonly shell: three.LineSegments<three.BufferGeometry, three.LineBasicMaterial>;
+  private edges_of: unknown = null;
   private readonly line: three.Line<three.BufferGeometry, three.LineDashedMaterial>;
 
   constructor(private readonly bodies: Bodies) {
-    this.shell = new three.Mesh(new three.BufferGeometry(), new three.MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.12, depthWrite: false }));
+    this.shell = new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial({ transparent: true, opacity: 0.25, depthWrite: false }));
     this.line = new three.Line(new three.BufferGeometry().setFromPoints([new three.Vector3(), new three.Vector3()]), new three.LineDashedMaterial({ depthTest: false, transparent: true }));
     this.shell.frustumCulled = this.line.frustumCulled = false;
     this.object.add(this.shell, this.line);
@@ -30,8 +32,14 @@ export class Ghost {
     const apart = from.distanceTo(to) > coupling.radius * 0.02 || coupling.rotation.angleTo(coupling.target_rotation) > 0.03;
     if (!apart) return;
     this.object.visible = true;
-    this.shell.geometry = this.bodies.tool_mesh.geometry;
-    this.shell.visible = (this.shell.geometry.index?.count ?? 0) < MOST_CORNERS;
+    const { vertices, corners } = this.bodies.shape_of_tool();
+    if (this.edges_of !== corners) {
+      this.edges_of = corners;
+      this.shell.geometry.dispose();
+      this.shell.geometry = new three.BufferGeometry();
+      this.shell.geometry.setAttribute('position', new three.BufferAttribute(vertices, 3));
+      this.shell.geometry.setIndex(new three.BufferAttribute(sharp_edges(vertices, corners, MOST_EDGES), 1));
+    }
     this.shell.position.copy(coupling.target_position);
     this.shell.quaternion.copy(coupling.target_rotation);
     this.line.geometry.setFromPoints([from, to]);

@@ -1,5 +1,5 @@
 // The mouse as a device: poses go to the server's remote loop, wrenches come back, the coupling moves the tool between them.
-import { Quaternion } from 'three';
+import { Quaternion, Vector3 } from 'three';
 import { Coupling, type Answer } from './coupling.js';
 import { HapticLink } from './haptic_link.js';
 import type { Moment } from '../moment.js';
@@ -7,7 +7,9 @@ import { waiting_words } from './waiting.js';
 import { depth, type Frame, type HapticHello, type Pose, type Scene, type Wrench } from '../server/protocol.js';
 
 const ASK_MS = 8;         // from one question to the next where the answer is sooner; chosen: with the answer's own time it is not 20 ms old in any picture
-const UNWATCHED_MS = 100;  // without a picture for so long nobody looks, and between pictures nothing moves
+const ASK_SHARE = 2;      // of the server's time for an answer: half of a processor is left to who draws the pictures; chosen
+const UNWATCHED_MS = 600;  // without a picture for so long nobody looks, and between pictures nothing moves; chosen: longer than a slow picture takes
+const MOVES_SHARE = 1e-5, RESTS_SHARE = 1e-7;   // of the tool's radius, from one question to the next: what moves is told to a thousandth, sooner; chosen
 
 export class MouseSource {
   /** Stays the same when the connection is lost and found again: so does the tool, and the hand that holds it. */
@@ -18,6 +20,9 @@ export class MouseSource {
   private answer: Answer | null = null;
   private asked: { seq: number; pose: Pose; at: number } | null = null;
   private asked_at = 0;
+  private near = false;   // what was asked last is told to a thousandth
+  private readonly asked_position = new Vector3();
+  private readonly asked_rotation = new Quaternion();
   private stale = true;
   private seq = 0;
   private frame: Frame | null = null;
@@ -76,7 +81,7 @@ export class MouseSource {
     this.frame = wrench.frame ?? this.frame;
     // Of a cut answer nothing is felt; the tool can be drawn back, or it would be stuck where lists are too small.
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => { if (performance.now() - this.last_picture < UNWATCHED_MS) this.move(); }, Math.max(0, ASK_MS - this.round_ms));
+    this.timer = setTimeout(() => { if (performance.now() - this.last_picture < UNWATCHED_MS) this.move(); }, Math.max(0, Math.max(ASK_MS, (wrench.server_us * ASK_SHARE) / 1000) - this.round_ms));
     this.answer = { gc: wrench.gc, rotation: new Quaternion(pose[3], pose[4], pose[5], pose[6]), areas: wrench.truncated ? [] : wrench.areas };
   }
 
@@ -85,11 +90,17 @@ export class MouseSource {
     const pose = this.coupling.pose();
     const text = pose.join();
     // At rest nothing is asked, but once in 20 s: the server closes a connection that says nothing for a minute.
-    if (text === this.last_pose && (this.framed || !this.wants_frame) && performance.now() - this.asked_at < 20_000) return;
+    if (text === this.last_pose && !this.near && (this.framed || !this.wants_frame) && performance.now() - this.asked_at < 20_000) return;
     this.last_pose = text;
     this.asked_at = performance.now();
+    // A tool that comes to rest is told exactly, and then so until it moves again: two answers that differ a little would keep it moving.
+    const { position, rotation, radius } = this.coupling;
+    const share = this.near ? RESTS_SHARE : MOVES_SHARE;
+    this.near = position.distanceTo(this.asked_position) > share * radius || rotation.angleTo(this.asked_rotation) > share;
+    this.asked_position.copy(position);
+    this.asked_rotation.copy(rotation);
     this.asked = { seq: ++this.seq, pose, at: this.asked_at };
-    this.link.send(JSON.stringify({ type: 'pose', seq: this.seq, time: (this.asked_at - this.began) / 1000, pose, full: this.wants_frame }));
+    this.link.send(JSON.stringify({ type: 'pose', seq: this.seq, time: (this.asked_at - this.began) / 1000, pose, full: this.wants_frame, near: this.near }));
     this.wants_frame = false;
   }
 
