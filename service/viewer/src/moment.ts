@@ -1,17 +1,19 @@
 // What is shown at one instant, whoever it comes from: a device, the mouse, a recorded run.
-import type { Frame, Pose, Vec3 } from './server/protocol.js';
+import type {Frame, Pose, Vec3} from './server/protocol.js';
 
 export interface Moment {
-  time: number;            // s
+  time: number;  // s
   pose: Pose;
-  frame: Frame | null;     // the newest one that was judged
-  force: Vec3;             // N, as the hand feels it, on the tool
-  torque: Vec3;            // N·m, about the centre of mass
-  response: { force: Vec3; torque: Vec3 } | null;   // what the contact answers, before law, limits and the device's axes; null: not known
-  depth: number;           // m, the deepest area
+  frame: Frame|null;  // the newest one that was judged
+  force: Vec3;        // N, as the hand feels it, on the tool
+  torque: Vec3;       // N·m, about the centre of mass
+  response: {force: Vec3; torque: Vec3}|
+      null;       // what the contact answers, before law, limits and the device's axes; null: not known
+  depth: number;  // m, the deepest area
   contact: boolean;
-  frame_us: number;        // NaN when unknown
-  late: number;            // what the last strip shows: lateness in µs, age in ticks or the way there and back in ms; NaN when unknown
-  stage: number;           // from 1; 0: none
-  note: string;            // "", or what holds the force back: "paused", …
+  frame_us: number;  // NaN when unknown
+  late: number;   // what the last strip shows: lateness in µs, age in ticks or the way there and back in ms;
+                  // NaN when unknown
+  stage: number;  // from 1; 0: none
+  note: string;   // "", or what holds the force back: "paused", …
 }

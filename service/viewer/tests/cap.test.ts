@@ -1,10 +1,15 @@
 // A SpaceMouse's reports, as a browser hands them over: without their number.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
-import { at_rest, take_report } from '../src/mouse/cap_report.js';
-import { deflection } from '../src/mouse/space_mouse.js';
+import {test} from 'node:test';
 
-const view = (...values: number[]): DataView => { const out = new DataView(new ArrayBuffer(2 * values.length)); values.forEach((value, i) => out.setInt16(2 * i, value, true)); return out; };
+import {at_rest, take_report} from '../src/mouse/cap_report.js';
+import {deflection} from '../src/mouse/space_mouse.js';
+
+const view = (...values: number[]): DataView => {
+  const out = new DataView(new ArrayBuffer(2 * values.length));
+  values.forEach((value, i) => out.setInt16(2 * i, value, true));
+  return out;
+};
 const bytes = (...values: number[]): DataView => new DataView(Uint8Array.from(values).buffer);
 
 test('older models report moves and turns apart, newer ones together; full is full', () => {
@@ -22,7 +27,9 @@ test('older models report moves and turns apart, newer ones together; full is fu
 test('what is too short, or of another number, changes nothing', () => {
   const cap = at_rest();
   take_report(cap, 1, view(350, 0, 0));
-  for (const [id, data] of [[1, view(1, 2)], [2, view(1)], [3, bytes()], [23, view(1, 2, 3, 4, 5, 6)]] as const) assert.equal(take_report(cap, id, data), false);
+  for (const [id, data] of [[1, view(1, 2)], [2, view(1)], [3, bytes()], [23, view(1, 2, 3, 4, 5, 6)]] as
+       const)
+    assert.equal(take_report(cap, id, data), false);
   assert.deepEqual(cap.axes, [1, 0, 0, 0, 0, 0]);
 });
 

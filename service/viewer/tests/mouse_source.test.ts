@@ -1,40 +1,77 @@
 // The mouse's end of the remote loop: how often it asks, and for what.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
-import { MouseSource } from '../src/mouse/mouse_source.js';
-import type { Scene } from '../src/server/protocol.js';
+import {test} from 'node:test';
 
-const SCENE = { id: 's', start: [0, 0, 0, 0, 0, 0, 1], tool_gc: [0, 0, 0], tool_radius: 0.05, stiffness: 2000, backend: 'cpu' } as unknown as Scene;
-interface Asked { seq: number; full: boolean; near: boolean; pose: number[] }
+import {MouseSource} from '../src/mouse/mouse_source.js';
+
+import type {Scene} from '../src/server/protocol.js';
+
+const SCENE = {
+  id: 's',
+  start: [0, 0, 0, 0, 0, 0, 1],
+  tool_gc: [0, 0, 0],
+  tool_radius: 0.05,
+  stiffness: 2000,
+  backend: 'cpu'
+} as unknown as Scene;
+interface Asked {
+  seq: number;
+  full: boolean;
+  near: boolean;
+  pose: number[]
+}
 
 /** A server that answers when it is told to. */
 class Socket {
   readonly CONNECTING = 0;
   readyState = 1;
   asked: Asked[] = [];
-  onmessage: (event: { data: string }) => void = () => {};
+  onmessage: (event: {data: string}) => void = () => {};
   onclose = (): void => {};
-  send(text: string): void { this.asked.push(JSON.parse(text) as Asked); }
-  close(): void { this.onclose(); }
-  say(message: unknown): void { this.onmessage({ data: JSON.stringify(message) }); }
+  send(text: string): void {
+    this.asked.push(JSON.parse(text) as Asked);
+  }
+  close(): void {
+    this.onclose();
+  }
+  say(message: unknown): void {
+    this.onmessage({data: JSON.stringify(message)});
+  }
   answer(): void {
-    const { seq, full } = this.asked.at(-1)!;
-    const empty = { contact: false, areas: [], force: [0, 0, 0], torque: [0, 0, 0] };
-    this.say({ type: 'wrench', seq, server_us: 100, truncated: false, gc: [0, 0, 0], engine: 'cpu', ...empty, ...(full ? { frame: empty } : {}) });
+    const {seq, full} = this.asked.at(-1)!;
+    const empty = {contact: false, areas: [], force: [0, 0, 0], torque: [0, 0, 0]};
+    this.say({
+      type: 'wrench',
+      seq,
+      server_us: 100,
+      truncated: false,
+      gc: [0, 0, 0],
+      engine: 'cpu',
+      ...empty,
+      ...(full ? {frame: empty} : {})
+    });
   }
 }
 
 // A clock of our own: what is due then is called then, however busy the machine is.
 let clock = 0;
-let due: { at: number; call: () => void; id: number }[] = [];
+let due: {at: number; call: () => void; id: number}[] = [];
 let ids = 0;
-Object.defineProperty(globalThis, 'performance', { value: { now: () => clock }, configurable: true });
-globalThis.setTimeout = ((call: () => void, ms = 0) => { due.push({ at: clock + ms, call, id: ++ids }); return ids; }) as unknown as typeof setTimeout;
-globalThis.clearTimeout = ((id: number) => { due = due.filter((one) => one.id !== id); }) as unknown as typeof clearTimeout;
+Object.defineProperty(globalThis, 'performance', {value: {now: () => clock}, configurable: true});
+globalThis.setTimeout = ((call: () => void, ms = 0) => {
+                          due.push({at: clock + ms, call, id: ++ids});
+                          return ids;
+                        }) as unknown as typeof setTimeout;
+globalThis.clearTimeout = ((id: number) => {
+                            due = due.filter((one) => one.id !== id);
+                          }) as unknown as typeof clearTimeout;
 function pass(ms: number): void {
-  for (const end = clock + ms; ;) {
-    const next = due.filter(({ at }) => at <= end).sort((a, b) => a.at - b.at)[0];
-    if (!next) { clock = end; return; }
+  for (const end = clock + ms;;) {
+    const next = due.filter(({at}) => at <= end).sort((a, b) => a.at - b.at)[0];
+    if (!next) {
+      clock = end;
+      return;
+    }
     due = due.filter((one) => one !== next);
     clock = Math.max(clock, next.at);
     next.call();
@@ -43,26 +80,29 @@ function pass(ms: number): void {
 async function begun() {
   const socket = new Socket();
   const mouse = new MouseSource(SCENE, null, async () => {}, () => socket as unknown as WebSocket, () => {});
-  for (let i = 0; i < 5; ++i) await Promise.resolve();   // the scene is ready
-  socket.say({ type: 'hello', scene: 's', stiffness: 2000, watchdog_ms: 20, tool_gc: [0, 0, 0], start: SCENE.start });
-  return { socket, mouse };
+  for (let i = 0; i < 5; ++i) await Promise.resolve();  // the scene is ready
+  socket.say(
+      {type: 'hello', scene: 's', stiffness: 2000, watchdog_ms: 20, tool_gc: [0, 0, 0], start: SCENE.start});
+  return {socket, mouse};
 }
 
-test('between two pictures a moving tool is asked about again, and a picture alone asks for its frame', async () => {
-  const { socket, mouse } = await begun();
-  assert.deepEqual(socket.asked.map(({ full }) => full), [true]);
-  socket.answer();
-  mouse.coupling.held = true;
-  mouse.coupling.target_position.set(0.1, 0, 0);
-  pass(40);   // no picture meanwhile
-  assert.ok(socket.asked.length === 2, `${socket.asked.length} questions`);
-  assert.equal(socket.asked[1].full, false);
-  assert.ok(socket.asked[1].pose[0] > 0);
-  mouse.close();
-});
+test(
+    'between two pictures a moving tool is asked about again, and a picture alone asks for its frame',
+    async () => {
+      const {socket, mouse} = await begun();
+      assert.deepEqual(socket.asked.map(({full}) => full), [true]);
+      socket.answer();
+      mouse.coupling.held = true;
+      mouse.coupling.target_position.set(0.1, 0, 0);
+      pass(40);  // no picture meanwhile
+      assert.ok(socket.asked.length === 2, `${socket.asked.length} questions`);
+      assert.equal(socket.asked[1].full, false);
+      assert.ok(socket.asked[1].pose[0] > 0);
+      mouse.close();
+    });
 
 test('a tool that has come to rest is shown with its own frame', async () => {
-  const { socket, mouse } = await begun();
+  const {socket, mouse} = await begun();
   socket.answer();
   mouse.coupling.held = true;
   mouse.coupling.target_position.set(0.001, 0, 0);
@@ -73,12 +113,12 @@ test('a tool that has come to rest is shown with its own frame', async () => {
   assert.deepEqual([socket.asked.length, socket.asked.at(-1)!.full], [3, true]);
   socket.answer();
   mouse.advance();
-  assert.equal(socket.asked.length, 3);   // at rest nothing is asked
+  assert.equal(socket.asked.length, 3);  // at rest nothing is asked
   mouse.close();
 });
 
 test('without pictures nothing goes on', async () => {
-  const { socket, mouse } = await begun();
+  const {socket, mouse} = await begun();
   mouse.advance();
   mouse.coupling.held = true;
   mouse.coupling.target_position.set(0.1, 0, 0);
@@ -91,7 +131,7 @@ test('without pictures nothing goes on', async () => {
 });
 
 test('a tool that moves is told from the answer before on, one that rests exactly', async () => {
-  const { socket, mouse } = await begun();
+  const {socket, mouse} = await begun();
   socket.answer();
   mouse.coupling.held = true;
   mouse.coupling.target_position.set(0.001, 0, 0);
@@ -99,12 +139,12 @@ test('a tool that moves is told from the answer before on, one that rests exactl
   mouse.advance();
   socket.answer();
   mouse.coupling.let_go();
-  mouse.advance();   // where it had come to meanwhile
+  mouse.advance();  // where it had come to meanwhile
   assert.equal(socket.asked.at(-1)!.near, true);
   socket.answer();
   mouse.advance();
-  const { pose, near } = socket.asked.at(-1)!;
-  assert.deepEqual([near, pose], [false, socket.asked.at(-2)!.pose]);   // the same pose again
+  const {pose, near} = socket.asked.at(-1)!;
+  assert.deepEqual([near, pose], [false, socket.asked.at(-2)!.pose]);  // the same pose again
   socket.answer();
   const asked = socket.asked.length;
   mouse.advance();

@@ -1,12 +1,13 @@
 // Readers of what the server sends: they take what docs/SERVICE.md defines and refuse the rest.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
-import { id_ranges, ids_within, read_geometry, read_voxels } from '../src/server/binary.js';
-import { FrameIndex } from '../src/run/frame_index.js';
-import { LevelKeeper, next_level } from '../src/draw/lod.js';
-import { Samples, round_up } from '../src/samples.js';
-import { LineSplitter } from '../src/run/text_lines.js';
-import { Trace } from '../src/run/trace.js';
+import {test} from 'node:test';
+
+import {LevelKeeper, next_level} from '../src/draw/lod.js';
+import {FrameIndex} from '../src/run/frame_index.js';
+import {LineSplitter} from '../src/run/text_lines.js';
+import {Trace} from '../src/run/trace.js';
+import {round_up, Samples} from '../src/samples.js';
+import {id_ranges, ids_within, read_geometry, read_voxels} from '../src/server/binary.js';
 
 function geometry_bytes(corner = 2): ArrayBuffer {
   const bytes = new ArrayBuffer(32 + 2 * (3 * 12 + 16));
@@ -43,7 +44,9 @@ test('voxels: origin, size, counts and cells', () => {
   view.setBigUint64(64, 2n, true);
   view.setUint32(76, 119, true);
   const voxels = read_voxels(bytes);
-  assert.deepEqual([voxels.origin, voxels.size, voxels.counts, [...voxels.cells]], [[0.5, -1, 2], 0.25, [4, 5, 6], [0, 119]]);
+  assert.deepEqual(
+      [voxels.origin, voxels.size, voxels.counts, [...voxels.cells]],
+      [[0.5, -1, 2], 0.25, [4, 5, 6], [0, 119]]);
 });
 test('ids are asked for in ranges', () => {
   assert.equal(id_ranges([9, 1, 5, 6, 7, 8]), '1,5-9');
@@ -61,7 +64,8 @@ test('lines are found however the download is cut, with the offset where each be
 });
 test('trace: columns by name, rows by time, a row that was cut is left out', () => {
   const trace = new Trace();
-  const names = 'stage,time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,result_age_ticks,contact';
+  const names =
+      'stage,time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,result_age_ticks,contact';
   trace.take(names);
   trace.take('1,0,1,2,3,0,0,0,1,4,5,6,7,8,9,-1,0');
   trace.take('2,0.001,1,2,3,0,0,0,1,4,5,6,7,8,9,3,1');
@@ -70,12 +74,14 @@ test('trace: columns by name, rows by time, a row that was cut is left out', () 
   assert.deepEqual(trace.pose(1), [1, 2, 3, 0, 0, 0, 1]);
   assert.deepEqual([trace.force(1), trace.torque(1)], [[4, 5, 6], [7, 8, 9]]);
   assert.deepEqual([trace.row_at(0.0009), trace.row_at(5), trace.row_at(-1)], [0, 1, 0]);
-  assert.deepEqual([trace.contact(0), trace.contact(1), trace.stage(1), trace.result_age(1)], [false, true, 2, 3]);
+  assert.deepEqual(
+      [trace.contact(0), trace.contact(1), trace.stage(1), trace.result_age(1)], [false, true, 2, 3]);
   assert.throws(() => new Trace().take('time_s,x_m'), /no column y_m/);
 });
 test('frames: the newest at a tick, and a line that was cut is left out', () => {
   const index = new FrameIndex();
-  const line = (tick: number) => new TextEncoder().encode(`{"tick": ${tick}, "areas": [{"depth": 0.002}, {"depth": 0.001}], "time_us": {"total": 900}}`);
+  const line = (tick: number) => new TextEncoder().encode(
+      `{"tick": ${tick}, "areas": [{"depth": 0.002}, {"depth": 0.001}], "time_us": {"total": 900}}`);
   assert.equal(index.take(line(5), 0), true);
   assert.equal(index.take(line(9), 80), true);
   assert.equal(index.take(line(12).slice(0, 30), 160), false);
@@ -84,41 +90,62 @@ test('frames: the newest at a tick, and a line that was cut is left out', () => 
   assert.equal(index.parse(index.text(1)!).tick, 9);
 });
 test('ids: as many as a request holds, the smallest first', () => {
-  const scattered = Array.from({ length: 1000 }, (_, i) => 9_999_999 - 7 * i);
-  const { ids, text } = ids_within(scattered, 1800);
+  const scattered = Array.from({length: 1000}, (_, i) => 9_999_999 - 7 * i);
+  const {ids, text} = ids_within(scattered, 1800);
   assert.ok(text.length <= 1800 && ids.length > 150, `${ids.length} ids, ${text.length} characters`);
   assert.deepEqual([ids[0], text], [9_999_999 - 6993, id_ranges(ids)]);
-  assert.deepEqual(ids_within([3, 1, 2], 1800), { ids: [1, 2, 3], text: '1-3' });
+  assert.deepEqual(ids_within([3, 1, 2], 1800), {ids: [1, 2, 3], text: '1-3'});
 });
 test('level of detail: where pixels take the time, they go before triangles do', () => {
   const keeper = new LevelKeeper();
   keeper.may_coarsen = true;
-  const feed = (ms: number, pictures: number) => { for (let i = 0; i < pictures; ++i) keeper.take(ms, 1e6); return [keeper.coarse, keeper.level]; };
-  assert.deepEqual([feed(30, 40), feed(60, 25), feed(30, 40), feed(60, 25), feed(5, 40)], [[false, 1], [true, 1], [true, 1], [true, 0], [true, 0]]);
+  const feed = (ms: number, pictures: number) => {
+    for (let i = 0; i < pictures; ++i) keeper.take(ms, 1e6);
+    return [keeper.coarse, keeper.level];
+  };
+  assert.deepEqual(
+      [feed(30, 40), feed(60, 25), feed(30, 40), feed(60, 25), feed(5, 40)],
+      [[false, 1], [true, 1], [true, 1], [true, 0], [true, 0]]);
 });
-test('level of detail: down when pictures are slow, up when they are fast and there is more, and not back to one that was slow', () => {
-  assert.deepEqual([next_level(1, 60, 1e6), next_level(0, 60, 1e6), next_level(1, 5, 1e6), next_level(1, 5, 1e5), next_level(1, 20, 1e6)], [0, 0, 2, 1, 1]);
-  const keeper = new LevelKeeper();
-  const feed = (ms: number) => { for (let i = 0; i < 40; ++i) keeper.take(ms, 1e6); return keeper.level; };
-  assert.deepEqual([feed(5), feed(60), feed(5)], [2, 1, 1]);
-});
-test('level of detail: pictures of a second go down after a few, two levels at once; one that waited does not decide', () => {
-  const keeper = new LevelKeeper();
-  keeper.level = 3;
-  assert.deepEqual([1000, 1000, 1000, 1000].map((ms) => keeper.take(ms, 1e7)), [false, false, false, true]);
-  assert.equal(keeper.level, 1);
-  const waited = new LevelKeeper();
-  assert.deepEqual([25, 3000, 25, 25].map((ms) => waited.take(ms, 1e7)), [false, false, false, false]);
-  assert.equal(waited.level, 1);
-  const stutters = new LevelKeeper();
-  for (let i = 0; i < 8; ++i) stutters.take(i % 2 ? 16 : 500, 1e7);   // two pictures at once, then none for long
-  assert.equal(stutters.level, 0);
-});
+test(
+    'level of detail: down when pictures are slow, up when they are fast and there is more, and not back to one that was slow',
+    () => {
+      assert.deepEqual(
+          [
+            next_level(1, 60, 1e6), next_level(0, 60, 1e6), next_level(1, 5, 1e6), next_level(1, 5, 1e5),
+            next_level(1, 20, 1e6)
+          ],
+          [0, 0, 2, 1, 1]);
+      const keeper = new LevelKeeper();
+      const feed = (ms: number) => {
+        for (let i = 0; i < 40; ++i) keeper.take(ms, 1e6);
+        return keeper.level;
+      };
+      assert.deepEqual([feed(5), feed(60), feed(5)], [2, 1, 1]);
+    });
+test(
+    'level of detail: pictures of a second go down after a few, two levels at once; one that waited does not decide',
+    () => {
+      const keeper = new LevelKeeper();
+      keeper.level = 3;
+      assert.deepEqual(
+          [1000, 1000, 1000, 1000].map((ms) => keeper.take(ms, 1e7)), [false, false, false, true]);
+      assert.equal(keeper.level, 1);
+      const waited = new LevelKeeper();
+      assert.deepEqual([25, 3000, 25, 25].map((ms) => waited.take(ms, 1e7)), [false, false, false, false]);
+      assert.equal(waited.level, 1);
+      const stutters = new LevelKeeper();
+      for (let i = 0; i < 8; ++i)
+        stutters.take(i % 2 ? 16 : 500, 1e7);  // two pictures at once, then none for long
+      assert.equal(stutters.level, 0);
+    });
 test('strips: the newest samples stay, and a range is 1, 2 or 5 times a power of ten', () => {
   const samples = new Samples(8);
   for (let i = 0; i < 11; ++i) samples.add(i, [i, 0, 0, 0, 0, 0, 0, 0, 0]);
-  assert.deepEqual([samples.last('fx'), samples.times[samples.count - 1], samples.first_at(9.5) === samples.count - 1], [10, 10, true]);
-  samples.add(0, new Array(9).fill(0));   // a new session
+  assert.deepEqual(
+      [samples.last('fx'), samples.times[samples.count - 1], samples.first_at(9.5) === samples.count - 1],
+      [10, 10, true]);
+  samples.add(0, new Array(9).fill(0));  // a new session
   assert.equal(samples.count, 1);
   assert.deepEqual([0.3, 1, 2.1, 7, 0].map(round_up), [0.5, 1, 5, 10, 1]);
 });

@@ -12,14 +12,18 @@ export class Arrow {
   private readonly head: three.Mesh;
 
   constructor(colour: number) {
-    this.material = new three.MeshBasicMaterial({ color: colour, toneMapped: false, depthTest: false, transparent: true });
+    this.material =
+        new three.MeshBasicMaterial({color: colour, toneMapped: false, depthTest: false, transparent: true});
     this.shaft = new three.Mesh(SHAFT, this.material);
     this.head = new three.Mesh(HEAD, this.material);
     this.shaft.renderOrder = this.head.renderOrder = 10;
     this.object.add(this.shaft, this.head);
     this.object.visible = false;
   }
-  /** `direction` is a unit vector; `length` and `width` in metres. A short arrow is thinner, so that it still shows where it points. */
+  /**
+   * `direction` is a unit vector; `length` and `width` in metres. A short arrow is thinner, so that it still
+   * shows where it points.
+   */
   set(from: three.Vector3, direction: three.Vector3, length: number, width: number): void {
     this.object.visible = length > width * 0.05;
     if (!this.object.visible) return;
@@ -31,5 +35,7 @@ export class Arrow {
     this.head.scale.set(thick, head, thick);
     this.head.position.y = length;
   }
-  hide(): void { this.object.visible = false; }
+  hide(): void {
+    this.object.visible = false;
+  }
 }

@@ -1,25 +1,31 @@
-// Mock-up and tool as solids. The tool is a group that moves with the pose; what belongs to its frame is added to it.
+// Mock-up and tool as solids. The tool is a group that moves with the pose; what belongs to its frame is
+// added to it.
 import * as three from 'three';
-import type { HiddenParts } from '../scene_parts_panel.js';
-import type { Body, Geometry } from '../server/binary.js';
-import type { Theme } from './palette.js';
-import type { Pose, SceneParts } from '../server/protocol.js';
-import { flat_material, geometry_of, with_faces } from './flat_shading.js';
-import { shown_corners } from './shown_parts.js';
+import type {HiddenParts} from '../scene_parts_panel.js';
+import type {Body, Geometry} from '../server/binary.js';
+import type {Theme} from './palette.js';
+import type {Pose, SceneParts} from '../server/protocol.js';
+import {flat_material, geometry_of, with_faces} from './flat_shading.js';
+import {shown_corners} from './shown_parts.js';
 
 export class Bodies {
   readonly tool = new three.Group();
   readonly mockup_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   readonly tool_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
-  private drawn: { mockup: Body; tool: Body } | null = null;
-  private shape: Body = { vertices: new Float32Array(0), corners: new Uint32Array(0), ids: new Uint32Array(0) };   // the tool as it came: each vertex once
+  private drawn: {mockup: Body; tool: Body}|null = null;
+  private shape: Body = {
+    vertices: new Float32Array(0),
+    corners: new Uint32Array(0),
+    ids: new Uint32Array(0)
+  };  // the tool as it came: each vertex once
   private shape_corners = this.shape.corners;
-  private parts: SceneParts = { static: [], tool: [] };
-  private hidden: HiddenParts = { mockup: new Set(), tool: new Set() };
+  private parts: SceneParts = {static: [], tool: []};
+  private hidden: HiddenParts = {mockup: new Set(), tool: new Set()};
 
   constructor(scene: three.Object3D) {
     // Pushed back a little, so that contact triangles, which lie in the same planes, win.
-    const material = () => flat_material({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    const material = () =>
+        flat_material({polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
     this.mockup_mesh = new three.Mesh(new three.BufferGeometry(), material());
     this.tool_mesh = new three.Mesh(new three.BufferGeometry(), material());
     this.tool_mesh.renderOrder = 1;
@@ -34,32 +40,40 @@ export class Bodies {
       const made = with_faces(body.vertices, body.corners);
       mesh.geometry.dispose();
       mesh.geometry = geometry_of(made);
-      return { ...body, vertices: made.vertices, corners: made.corners };
+      return {...body, vertices: made.vertices, corners: made.corners};
     };
     this.shape = geometry.tool;
-    this.drawn = { mockup: faced(this.mockup_mesh, geometry.mockup), tool: faced(this.tool_mesh, geometry.tool) };
+    this.drawn = {
+      mockup: faced(this.mockup_mesh, geometry.mockup),
+      tool: faced(this.tool_mesh, geometry.tool)
+    };
     this.leave_out();
     this.tool.visible = true;
   }
   /** Of these parts those that are hidden are not drawn; boxes and spheres stay those of the whole. */
   hide(parts: SceneParts, hidden: HiddenParts): void {
     this.parts = parts;
-    this.hidden = { mockup: new Set(hidden.mockup), tool: new Set(hidden.tool) };
+    this.hidden = {mockup: new Set(hidden.mockup), tool: new Set(hidden.tool)};
     this.leave_out();
   }
   private leave_out(): void {
     if (!this.drawn) return;
-    for (const [mesh, body, parts, hidden] of [[this.mockup_mesh, this.drawn.mockup, this.parts.static, this.hidden.mockup], [this.tool_mesh, this.drawn.tool, this.parts.tool, this.hidden.tool]] as const) {
+    for (const [mesh, body, parts, hidden] of [
+             [this.mockup_mesh, this.drawn.mockup, this.parts.static, this.hidden.mockup],
+             [this.tool_mesh, this.drawn.tool, this.parts.tool, this.hidden.tool]] as const) {
       const corners = shown_corners(body, parts, hidden);
-      if (mesh.geometry.index?.array !== corners) mesh.geometry.setIndex(new three.BufferAttribute(corners, 1));
+      if (mesh.geometry.index?.array !== corners)
+        mesh.geometry.setIndex(new three.BufferAttribute(corners, 1));
     }
     this.shape_corners = shown_corners(this.shape, this.parts.tool, this.hidden.tool);
   }
   /** The tool's triangles that are drawn, in its frame; each vertex once. */
-  shape_of_tool(): { vertices: Float32Array; corners: Uint32Array } { return { vertices: this.shape.vertices, corners: this.shape_corners }; }
+  shape_of_tool(): {vertices: Float32Array; corners: Uint32Array} {
+    return {vertices: this.shape.vertices, corners: this.shape_corners};
+  }
   clear(): void {
     this.drawn = null;
-    this.hidden = { mockup: new Set(), tool: new Set() };
+    this.hidden = {mockup: new Set(), tool: new Set()};
     this.mockup_mesh.geometry = new three.BufferGeometry();
     this.tool_mesh.geometry = new three.BufferGeometry();
     this.tool.visible = false;
@@ -68,11 +82,12 @@ export class Bodies {
     this.tool.position.set(pose[0], pose[1], pose[2]);
     this.tool.quaternion.set(pose[3], pose[4], pose[5], pose[6]);
   }
-  glass(which: 'mockup' | 'tool', on: boolean): void {
+  glass(which: 'mockup'|'tool', on: boolean): void {
     const material = which === 'tool' ? this.tool_mesh.material : this.mockup_mesh.material;
     material.transparent = on;
     material.opacity = on ? (which === 'tool' ? 0.62 : 0.22) : 1;
-    material.depthWrite = !on || which === 'tool';   // a glass tool hides its own far side, or it would look like a net
+    material.depthWrite =
+        !on || which === 'tool';  // a glass tool hides its own far side, or it would look like a net
     material.needsUpdate = true;
   }
   theme(theme: Theme): void {
@@ -82,6 +97,8 @@ export class Bodies {
   /** The smallest sphere about the tool's box, world frame: a tool may lie far from its file's origin. */
   tool_sphere(): three.Sphere {
     this.tool.updateMatrixWorld();
-    return (this.tool_mesh.geometry.boundingSphere ?? new three.Sphere()).clone().applyMatrix4(this.tool.matrixWorld);
+    return (this.tool_mesh.geometry.boundingSphere ?? new three.Sphere())
+        .clone()
+        .applyMatrix4(this.tool.matrixWorld);
   }
 }

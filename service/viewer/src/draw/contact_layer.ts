@@ -1,10 +1,13 @@
-// Contact triangles, exact at every level of detail, coloured by kind, area or zone. What lies behind other surfaces shows through them, weaker.
+// Contact triangles, exact at every level of detail, coloured by kind, area or zone. What lies behind other
+// surfaces shows through them, weaker.
 import * as three from 'three';
-import { CYCLE, KIND_COLOUR } from './palette.js';
-import { KINDS, MOBILE_KINDS, STATIC_KINDS, type Frame, type Kind } from '../server/protocol.js';
-import type { TriangleStore } from './triangle_store.js';
 
-export type Colouring = 'kind' | 'area' | 'zone';
+import {CYCLE, KIND_COLOUR} from './palette.js';
+
+import {KINDS, MOBILE_KINDS, STATIC_KINDS, type Frame, type Kind} from '../server/protocol.js';
+import type {TriangleStore} from './triangle_store.js';
+
+export type Colouring = 'kind'|'area'|'zone';
 
 /** One body's coloured triangles. */
 class Patch {
@@ -18,9 +21,12 @@ class Patch {
   count = 0;
 
   constructor(private readonly store: TriangleStore) {
-    const common = { vertexColors: true, side: three.DoubleSide, toneMapped: false };
+    const common = {vertexColors: true, side: three.DoubleSide, toneMapped: false};
     this.front = new three.Mesh(this.geometry, new three.MeshBasicMaterial(common));
-    this.behind = new three.Mesh(this.geometry, new three.MeshBasicMaterial({ ...common, transparent: true, opacity: 0.45, depthFunc: three.GreaterDepth, depthWrite: false }));
+    this.behind = new three.Mesh(
+        this.geometry,
+        new three.MeshBasicMaterial(
+            {...common, transparent: true, opacity: 0.45, depthFunc: three.GreaterDepth, depthWrite: false}));
     this.front.frustumCulled = this.behind.frustumCulled = false;
     this.front.renderOrder = 2;
     this.behind.renderOrder = 3;
@@ -34,8 +40,10 @@ class Patch {
     this.colours = new Uint8Array(9 * this.capacity);
     this.geometry.dispose();
     this.geometry = new three.BufferGeometry();
-    this.geometry.setAttribute('position', new three.BufferAttribute(this.positions, 3).setUsage(three.DynamicDrawUsage));
-    this.geometry.setAttribute('color', new three.BufferAttribute(this.colours, 3, true).setUsage(three.DynamicDrawUsage));
+    this.geometry.setAttribute(
+        'position', new three.BufferAttribute(this.positions, 3).setUsage(three.DynamicDrawUsage));
+    this.geometry.setAttribute(
+        'color', new three.BufferAttribute(this.colours, 3, true).setUsage(three.DynamicDrawUsage));
     this.front.geometry = this.behind.geometry = this.geometry;
   }
   add(id: number, colour: three.Color): void {
@@ -63,7 +71,9 @@ export class ContactLayer {
   readonly tool: Patch;
   readonly shown = new Set<Kind>(KINDS);
   colouring: Colouring = 'kind';
-  private readonly kind_colours = Object.fromEntries(KINDS.map((kind) => [kind, new three.Color(KIND_COLOUR[kind])])) as Record<Kind, three.Color>;
+  private readonly kind_colours =
+      Object.fromEntries(KINDS.map((kind) => [kind, new three.Color(KIND_COLOUR[kind])])) as
+      Record<Kind, three.Color>;
   private readonly cycle = CYCLE.map((colour) => new three.Color(colour));
 
   constructor(mockup_store: TriangleStore, tool_store: TriangleStore) {
@@ -71,23 +81,28 @@ export class ContactLayer {
     this.tool = new Patch(tool_store);
   }
 
-  set(frame: Frame | null): void {
+  set(frame: Frame|null): void {
     const group = this.colouring === 'kind' ? null : this.groups(frame);
-    for (const [patch, kinds, groups] of [[this.mockup, STATIC_KINDS, group?.mockup], [this.tool, MOBILE_KINDS, group?.tool]] as const) {
+    for (const [patch, kinds, groups] of [
+             [this.mockup, STATIC_KINDS, group?.mockup], [this.tool, MOBILE_KINDS, group?.tool]] as const) {
       const shown = frame ? kinds.filter((kind) => this.shown.has(kind)) : [];
       patch.begin(shown.reduce((sum, kind) => sum + frame![kind].length, 0));
       for (const kind of shown)
         for (const id of frame![kind]) {
           const index = groups?.get(id);
-          if (!groups) patch.add(id, this.kind_colours[kind]);
-          else if (index !== undefined) patch.add(id, this.cycle[index % this.cycle.length]);
+          if (!groups)
+            patch.add(id, this.kind_colours[kind]);
+          else if (index !== undefined)
+            patch.add(id, this.cycle[index % this.cycle.length]);
         }
       patch.end();
     }
   }
 
-  /** Which area, or zone, each triangle belongs to. A tool triangle has no zone: it takes its area's first. */
-  private groups(frame: Frame | null): { mockup: Map<number, number>; tool: Map<number, number> } {
+  /**
+   * Which area, or zone, each triangle belongs to. A tool triangle has no zone: it takes its area's first.
+   */
+  private groups(frame: Frame|null): {mockup: Map<number, number>; tool: Map<number, number>} {
     const mockup = new Map<number, number>();
     const tool = new Map<number, number>();
     let next = 0;
@@ -95,8 +110,12 @@ export class ContactLayer {
       const first = next++;
       for (const id of area.static ?? []) mockup.set(id, first);
       for (const id of area.mobile ?? []) tool.set(id, first);
-      if (this.colouring === 'zone') (area.zones ?? []).forEach((zone, i) => { if (i > 0) ++next; for (const id of zone) mockup.set(id, first + i); });
+      if (this.colouring === 'zone')
+        (area.zones ?? []).forEach((zone, i) => {
+          if (i > 0) ++next;
+          for (const id of zone) mockup.set(id, first + i);
+        });
     }
-    return { mockup, tool };
+    return {mockup, tool};
   }
 }

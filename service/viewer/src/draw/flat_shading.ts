@@ -1,31 +1,55 @@
-// Flat triangles, lit once each and not at every pixel: a triangle's colour is made where one of its corners is, which no other triangle has its colour from.
-// Colours are those of three's flat Lambert material. Where WebGL is drawn without a GPU that is a half to two thirds of a near picture's time.
+// Flat triangles, lit once each and not at every pixel: a triangle's colour is made where one of its corners
+// is, which no other triangle has its colour from. Colours are those of three's flat Lambert material. Where
+// WebGL is drawn without a GPU that is a half to two thirds of a near picture's time.
 import * as three from 'three';
 
 let own_is_first = false;
 
-/** The corner that decides a triangle's colour: the first where one can have that, for on some systems the last has to be imitated. Before any mesh is made. */
+/**
+ * The corner that decides a triangle's colour: the first where one can have that, for on some systems the
+ * last has to be imitated. Before any mesh is made.
+ */
 export function choose_corner(gl: WebGL2RenderingContext): void {
-  const order = gl.getExtension('WEBGL_provoking_vertex') as { provokingVertexWEBGL: (mode: number) => void; FIRST_VERTEX_CONVENTION_WEBGL: number } | null;
+  const order = gl.getExtension('WEBGL_provoking_vertex') as {
+    provokingVertexWEBGL: (mode: number) => void;
+    FIRST_VERTEX_CONVENTION_WEBGL: number
+  }
+  |null;
   order?.provokingVertexWEBGL(order.FIRST_VERTEX_CONVENTION_WEBGL);
   own_is_first = order !== null;
 }
 
-/** A mesh in which each triangle has a corner of its own. `faces`: four numbers a vertex, the normal of the triangle whose own it is. `copied`: which vertices the last ones are copies of. */
-export interface Faced { vertices: Float32Array; corners: Uint32Array; faces: Int16Array; copied: Uint32Array }
+/**
+ * A mesh in which each triangle has a corner of its own. `faces`: four numbers a vertex, the normal of the
+ * triangle whose own it is. `copied`: which vertices the last ones are copies of.
+ */
+export interface Faced {
+  vertices: Float32Array;
+  corners: Uint32Array;
+  faces: Int16Array;
+  copied: Uint32Array
+}
 export function with_faces(vertices: Float32Array, corners: Uint32Array): Faced {
   const before = vertices.length / 3;
   const triangles = corners.length / 3;
   const taken = new Uint8Array(before);
-  const own = new Uint8Array(triangles);   // which corner; 3: a copy of the first
+  const own = new Uint8Array(triangles);  // which corner; 3: a copy of the first
   let copies = 0;
   for (let t = 0; t < triangles; ++t) {
     let k = 0;
     while (k < 3 && taken[corners[3 * t + k]]) ++k;
     own[t] = k;
-    if (k < 3) taken[corners[3 * t + k]] = 1; else ++copies;
+    if (k < 3)
+      taken[corners[3 * t + k]] = 1;
+    else
+      ++copies;
   }
-  const out = { vertices: new Float32Array(3 * (before + copies)), corners: new Uint32Array(corners.length), faces: new Int16Array(4 * (before + copies)), copied: new Uint32Array(copies) };
+  const out = {
+    vertices: new Float32Array(3 * (before + copies)),
+    corners: new Uint32Array(corners.length),
+    faces: new Int16Array(4 * (before + copies)),
+    copied: new Uint32Array(copies)
+  };
   out.vertices.set(vertices);
   const [a, b, c] = [new three.Vector3(), new three.Vector3(), new three.Vector3()];
   copies = 0;
@@ -45,10 +69,11 @@ export function with_faces(vertices: Float32Array, corners: Uint32Array): Faced 
   }
   return out;
 }
-export function geometry_of({ vertices, corners, faces }: Faced): three.BufferGeometry {
+export function geometry_of({vertices, corners, faces}: Faced): three.BufferGeometry {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute('position', new three.BufferAttribute(vertices, 3));
-  geometry.setAttribute('face', new three.InterleavedBufferAttribute(new three.InterleavedBuffer(faces, 4), 3, 0, true));
+  geometry.setAttribute(
+      'face', new three.InterleavedBufferAttribute(new three.InterleavedBuffer(faces, 4), 3, 0, true));
   geometry.setIndex(new three.BufferAttribute(corners, 1));
   geometry.computeBoundingBox();
   geometry.computeBoundingSphere();
@@ -56,8 +81,11 @@ export function geometry_of({ vertices, corners, faces }: Faced): three.BufferGe
 }
 
 /** `change`: what else the shaders are to do. */
-export function flat_material(parameters: three.MeshLambertMaterialParameters, change: (shader: three.WebGLProgramParametersWithUniforms) => void = () => {}): three.MeshLambertMaterial {
-  const material = new three.MeshLambertMaterial({ ...parameters, side: three.DoubleSide });
+export function flat_material(
+    parameters: three.MeshLambertMaterialParameters,
+    change: (shader: three.WebGLProgramParametersWithUniforms) => void =
+        () => {}): three.MeshLambertMaterial {
+  const material = new three.MeshLambertMaterial({...parameters, side: three.DoubleSide});
   material.customProgramCacheKey = () => `flat ${String(change)}`;
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = `

@@ -1,11 +1,13 @@
-// How many triangles to ask the server for, from how long a picture takes. Contact triangles are exact at every level.
+// How many triangles to ask the server for, from how long a picture takes. Contact triangles are exact at
+// every level.
 
 export const LEVELS = [30_000, 120_000, 400_000, 1_500_000];
-const SLOW_MS = 40;   // chosen: below 25 pictures a second dragging feels sticky
-const FAST_MS = 18;   // chosen: keeps up with a screen of 60 Hz; whether four times as much does, too, is tried once
-const ENOUGH = 40;    // pictures that tell; where they are slow, those of ENOUGH_MS, and FEWEST at least
+const SLOW_MS = 40;  // chosen: below 25 pictures a second dragging feels sticky
+const FAST_MS =
+    18;  // chosen: keeps up with a screen of 60 Hz; whether four times as much does, too, is tried once
+const ENOUGH = 40;  // pictures that tell; where they are slow, those of ENOUGH_MS, and FEWEST at least
 const ENOUGH_MS = 1500;
-const FEWEST = 4;     // one that waits for something else does not decide
+const FEWEST = 4;  // one that waits for something else does not decide
 
 /** The level to move to; `total`: triangles of the whole mock-up. */
 export function next_level(level: number, picture_ms: number, total: number): number {
@@ -14,22 +16,32 @@ export function next_level(level: number, picture_ms: number, total: number): nu
   return level;
 }
 
-/** Watches pictures of moving scenes; says when to change the level, and never goes back up to one that was too slow. */
+/**
+ * Watches pictures of moving scenes; says when to change the level, and never goes back up to one that was
+ * too slow.
+ */
 export class LevelKeeper {
   level = 1;
-  /** Pictures of what moves are to have half the width and height: where that helps (`may_coarsen`) it is given up before triangles are, for at rest it comes back. */
+  /**
+   * Pictures of what moves are to have half the width and height: where that helps (`may_coarsen`) it is
+   * given up before triangles are, for at rest it comes back.
+   */
   coarse = false;
   may_coarsen = false;
   private ceiling = LEVELS.length - 1;
   private times: number[] = [];
   private spent = 0;
 
-  /** Takes the time since the picture before in an unbroken row of them, ms, however long; true when the level changed. */
+  /**
+   * Takes the time since the picture before in an unbroken row of them, ms, however long; true when the
+   * level changed.
+   */
   take(picture_ms: number, total: number): boolean {
     this.times.push(picture_ms);
     this.spent += picture_ms;
     if (this.times.length < ENOUGH && (this.times.length < FEWEST || this.spent < ENOUGH_MS)) return false;
-    // The mean without the longest: a browser that draws without a GPU shows two pictures at once and then none for long.
+    // The mean without the longest: a browser that draws without a GPU shows two pictures at once and then
+    // none for long.
     const typical = (this.spent - Math.max(...this.times)) / (this.times.length - 1);
     this.times = [];
     this.spent = 0;

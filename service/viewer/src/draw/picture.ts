@@ -1,20 +1,21 @@
-// The picture of a moment: bodies, contact, areas, voxels in one view, at a level of detail that stays smooth.
+// The picture of a moment: bodies, contact, areas, voxels in one view, at a level of detail that stays
+// smooth.
 import * as three from 'three';
-import { ApiError, type Api } from '../server/api.js';
-import { AreaLayer } from './area_layer.js';
-import { Bodies } from './bodies.js';
-import { ContactLayer } from './contact_layer.js';
-import { Ghost } from '../mouse/ghost.js';
-import { LEVELS, LevelKeeper } from './lod.js';
-import type { Moment } from '../moment.js';
-import { MouseDrag } from '../mouse/mouse_drag.js';
-import { DARK, LIGHT } from './palette.js';
-import type { Frame, Pose, Scene } from '../server/protocol.js';
-import { SceneView } from './scene_view.js';
-import { TriangleStore } from './triangle_store.js';
-import { VoxelLayer } from './voxel_layer.js';
+import {ApiError, type Api} from '../server/api.js';
+import {AreaLayer} from './area_layer.js';
+import {Bodies} from './bodies.js';
+import {ContactLayer} from './contact_layer.js';
+import {Ghost} from '../mouse/ghost.js';
+import {LEVELS, LevelKeeper} from './lod.js';
+import type {Moment} from '../moment.js';
+import {MouseDrag} from '../mouse/mouse_drag.js';
+import {DARK, LIGHT} from './palette.js';
+import type {Frame, Pose, Scene} from '../server/protocol.js';
+import {SceneView} from './scene_view.js';
+import {TriangleStore} from './triangle_store.js';
+import {VoxelLayer} from './voxel_layer.js';
 
-const STRONG_N = 3;   // chosen: arrows and heights are scaled so that this fills the tool's size
+const STRONG_N = 3;  // chosen: arrows and heights are scaled so that this fills the tool's size
 
 export class Picture {
   readonly view: SceneView;
@@ -25,36 +26,42 @@ export class Picture {
   readonly ghost: Ghost;
   readonly drag: MouseDrag;
   readonly levels = new LevelKeeper();
-  private readonly pace = new LevelKeeper();   // of pictures that have no mock-up to draw: they may be coarse, and have no level
-  scene: Scene | null = null;
+  private readonly pace =
+      new LevelKeeper();  // of pictures that have no mock-up to draw: they may be coarse, and have no level
+  scene: Scene|null = null;
   drawn_triangles = 0;
   reduced = false;
   /** Called when another level is drawn. */
   levelled: () => void = () => {};
   private readonly shown = new three.Group();
-  private readonly stores: { mockup: TriangleStore; tool: TriangleStore };
-  private shown_frame: Frame | null = null;
-  private loading: AbortController | null = null;
+  private readonly stores: {mockup: TriangleStore; tool: TriangleStore};
+  private shown_frame: Frame|null = null;
+  private loading: AbortController|null = null;
   private centre = new three.Vector3();
   private following = false;
 
-  constructor(private readonly api: Api, host: HTMLElement, private readonly failed: (error: unknown) => void) {
+  constructor(
+      private readonly api: Api, host: HTMLElement, private readonly failed: (error: unknown) => void) {
     this.view = new SceneView(host);
     this.view.scene.add(this.shown);
     this.bodies = new Bodies(this.shown);
     this.view.kept.add(this.bodies.mockup_mesh);
-    this.stores = { mockup: new TriangleStore(api, 'static'), tool: new TriangleStore(api, 'tool') };
+    this.stores = {mockup: new TriangleStore(api, 'static'), tool: new TriangleStore(api, 'tool')};
     this.contact = new ContactLayer(this.stores.mockup, this.stores.tool);
     this.ghost = new Ghost(this.bodies);
     this.drag = new MouseDrag(this.view, this.bodies);
     this.shown.add(this.contact.mockup.object, this.areas.object, this.voxels.object, this.ghost.object);
     this.bodies.tool.add(this.contact.tool.object);
-    for (const store of [this.stores.mockup, this.stores.tool]) store.arrived = () => { this.redraw_contact(); };
+    for (const store of [this.stores.mockup, this.stores.tool])
+      store.arrived = () => {
+        this.redraw_contact();
+      };
     this.levels.may_coarsen = this.pace.may_coarsen = this.view.software;
     this.pace.level = 0;
     this.view.after_draw.push((ms, whole) => {
       if (!this.scene || !Number.isFinite(ms)) return;
-      if (whole === 2 && this.levels.take(ms, this.scene.static_triangles ?? 0)) void this.load_level(this.scene);
+      if (whole === 2 && this.levels.take(ms, this.scene.static_triangles ?? 0))
+        void this.load_level(this.scene);
       if (whole === 0) this.pace.take(ms, 0);
       this.view.coarse = this.levels.coarse;
       this.view.coarse_standing = this.pace.coarse;
@@ -62,16 +69,21 @@ export class Picture {
   }
 
   /** Something else that belongs to the scene. */
-  add(object: three.Object3D): void { this.shown.add(object); }
+  add(object: three.Object3D): void {
+    this.shown.add(object);
+  }
   /** Whether the scene is drawn at all. */
   set_visible(on: boolean): void {
     this.shown.visible = on;
     this.view.request();
   }
-  /** Shows a scene that is ready; the camera goes to it. `stay`: it is the one before with other settings, the tool is here and the camera stays. */
-  async open(scene: Scene, stay: Pose | null = null): Promise<void> {
+  /**
+   * Shows a scene that is ready; the camera goes to it. `stay`: it is the one before with other settings,
+   * the tool is here and the camera stays.
+   */
+  async open(scene: Scene, stay: Pose|null = null): Promise<void> {
     this.scene = scene;
-    this.bodies.clear();   // what is shown of another scene is no longer true
+    this.bodies.clear();  // what is shown of another scene is no longer true
     this.stores.mockup.reset(scene.id);
     this.stores.tool.reset(scene.id);
     this.voxels.clear();
@@ -80,10 +92,13 @@ export class Picture {
     await this.load_level(scene);
     this.bodies.move(stay ?? scene.start ?? [0, 0, 0, 0, 0, 0, 1]);
     const box = new three.Box3();
-    if (scene.bounds) box.set(new three.Vector3(...scene.bounds.min), new three.Vector3(...scene.bounds.max));
-    else box.copy(this.bodies.mockup_mesh.geometry.boundingBox ?? new three.Box3());
+    if (scene.bounds)
+      box.set(new three.Vector3(...scene.bounds.min), new three.Vector3(...scene.bounds.max));
+    else
+      box.copy(this.bodies.mockup_mesh.geometry.boundingBox ?? new three.Box3());
     this.view.set_bounds(box);
-    this.areas.set_scale(scene.tool_radius ?? this.bodies.tool_sphere().radius, STRONG_N, scene.stiffness ?? 2000);
+    this.areas.set_scale(
+        scene.tool_radius ?? this.bodies.tool_sphere().radius, STRONG_N, scene.stiffness ?? 2000);
     if (!stay) {
       this.following = false;
       this.view.look_at_all(true);
@@ -131,14 +146,16 @@ export class Picture {
     this.view.request();
   }
   /** Draws the contact again, in the colours and kinds that are chosen now. */
-  redraw_contact(): void { this.set_contact(this.shown_frame); }
-  private set_contact(frame: Frame | null): void {
+  redraw_contact(): void {
+    this.set_contact(this.shown_frame);
+  }
+  private set_contact(frame: Frame|null): void {
     this.shown_frame = frame;
     this.contact.set(frame);
     this.view.request();
   }
 
-  async show_voxels(kind: 'boundary' | 'internal' | null): Promise<void> {
+  async show_voxels(kind: 'boundary'|'internal'|null): Promise<void> {
     this.voxels.clear();
     this.view.request();
     if (!kind || !this.scene) return;
@@ -148,13 +165,15 @@ export class Picture {
       if (this.scene === scene) this.voxels.show(voxels);
     } catch (error) {
       throw error instanceof ApiError ? error : new Error(String(error));
-    } finally { this.view.request(); }
+    } finally {
+      this.view.request();
+    }
   }
 
   /** The camera goes to the tool and stays with it, until `look_at_all`. */
   follow_tool(): void {
     this.following = true;
-    const { center, radius } = this.bodies.tool_sphere();
+    const {center, radius} = this.bodies.tool_sphere();
     this.view.look_at(center, radius * 2);
   }
   look_at_all(): void {
@@ -162,10 +181,15 @@ export class Picture {
     this.view.look_at_all();
   }
   /** Where a ray meets the mock-up or the tool first. */
-  meet(ray: three.Ray): three.Vector3 | null {
+  meet(ray: three.Ray): three.Vector3|null {
     const caster = new three.Raycaster(ray.origin, ray.direction);
     this.bodies.tool.updateMatrixWorld();
-    return caster.intersectObjects([this.bodies.mockup_mesh, ...(this.bodies.tool.visible ? [this.bodies.tool_mesh] : [])], false)[0]?.point ?? null;
+    return caster
+               .intersectObjects(
+                   [this.bodies.mockup_mesh, ...(this.bodies.tool.visible ? [this.bodies.tool_mesh] : [])],
+                   false)[0]
+               ?.point ??
+        null;
   }
   /** The box of all that is drawn. */
   box(): three.Box3 {
@@ -173,7 +197,7 @@ export class Picture {
     return this.bodies.tool.visible ? box.union(new three.Box3().setFromObject(this.bodies.tool_mesh)) : box;
   }
   pose_of_tool(): Pose {
-    const { position: p, quaternion: q } = this.bodies.tool;
+    const {position: p, quaternion: q} = this.bodies.tool;
     return [p.x, p.y, p.z, q.x, q.y, q.z, q.w];
   }
   theme(dark: boolean): void {

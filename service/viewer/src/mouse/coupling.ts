@@ -1,9 +1,14 @@
-// The tool between the mouse and the mock-up: a spring pulls it to where the mouse is, contact pushes it back, and it moves without inertia.
-// The answer is carried on along each area's own line, F = max(0, depth − n·Δx)·K, as docs/SERVICE.md asks of a far loop: held forces would make it jitter.
-import { Quaternion, Vector3 } from 'three';
-import type { Area, Pose, Vec3 } from '../server/protocol.js';
+// The tool between the mouse and the mock-up: a spring pulls it to where the mouse is, contact pushes it
+// back, and it moves without inertia. The answer is carried on along each area's own line, F = max(0, depth −
+// n·Δx)·K, as docs/SERVICE.md asks of a far loop: held forces would make it jitter.
+import {Quaternion, Vector3} from 'three';
+import type {Area, Pose, Vec3} from '../server/protocol.js';
 
-export interface Answer { gc: Vec3; rotation: Quaternion; areas: Area[] }
+export interface Answer {
+  gc: Vec3;
+  rotation: Quaternion;
+  areas: Area[]
+}
 
 const STEP_S = 0.002;
 const SETTLE_S = 0.01;       // time in which contact settles
@@ -27,11 +32,11 @@ export class Coupling {
   /** Of the last step: on the tool, about its centre of mass. */
   readonly force = new Vector3();
   readonly torque = new Vector3();
-  stiffness = 2000;   // N/m
-  radius = 0.05;      // m
+  stiffness = 2000;  // N/m
+  radius = 0.05;     // m
   /** Whether a hand holds the tool: without one no spring pulls, and contact pushes the tool out. */
   held = false;
-  private centre = new Vector3();   // of mass, tool frame
+  private centre = new Vector3();  // of mass, tool frame
   private rest = 0;
 
   reset(pose: Pose, centre: Vec3): void {
@@ -47,12 +52,22 @@ export class Coupling {
     this.target_position.copy(this.position);
     this.target_rotation.copy(this.rotation);
   }
-  gc(position = this.position, rotation = this.rotation): Vector3 { return this.centre.clone().applyQuaternion(rotation).add(position); }
-  pose(): Pose { return [...this.position.toArray(), this.rotation.x, this.rotation.y, this.rotation.z, this.rotation.w] as Pose; }
+  gc(position = this.position, rotation = this.rotation): Vector3 {
+    return this.centre.clone().applyQuaternion(rotation).add(position);
+  }
+  pose(): Pose {
+    return [...this.position.toArray(), this.rotation.x, this.rotation.y, this.rotation.z, this.rotation.w] as
+        Pose;
+  }
 
   /** Moves on by `seconds`, against the newest answer; with none the tool stands still and feels nothing. */
-  advance(seconds: number, answer: Answer | null): void {
-    if (!answer) { this.force.set(0, 0, 0); this.torque.set(0, 0, 0); this.rest = 0; return; }
+  advance(seconds: number, answer: Answer|null): void {
+    if (!answer) {
+      this.force.set(0, 0, 0);
+      this.torque.set(0, 0, 0);
+      this.rest = 0;
+      return;
+    }
     this.rest = Math.min(this.rest + seconds, 0.1);
     for (; this.rest >= STEP_S; this.rest -= STEP_S) this.step(answer);
   }
@@ -67,7 +82,7 @@ export class Coupling {
     let stiffness_sum = 0;
     for (const area of answer.areas) {
       const size = Math.hypot(...area.force);
-      if (!(size > 0) || !(area.depth > 0)) continue;   // pierced, or without a direction
+      if (!(size > 0) || !(area.depth > 0)) continue;  // pierced, or without a direction
       const stiffness = size / area.depth;
       const normal = vector(area.force).divideScalar(size);
       const arm = vector(area.point).sub(vector(answer.gc));
@@ -83,16 +98,20 @@ export class Coupling {
     const pull = this.gc(this.target_position, this.target_rotation).sub(gc).multiplyScalar(spring);
     pull.clampLength(0, this.stiffness * this.radius * DEEPEST_SHARE);
     const inertia = TURN_SHARE * this.radius * this.radius;
-    const twist = rotation_vector(this.target_rotation.clone().multiply(this.rotation.clone().invert())).multiplyScalar(spring * inertia);
+    const twist = rotation_vector(this.target_rotation.clone().multiply(this.rotation.clone().invert()))
+                      .multiplyScalar(spring * inertia);
     twist.clampLength(0, this.stiffness * this.radius * this.radius * DEEPEST_SHARE);
 
-    // Without inertia, velocity is force over damping; the damping grows with the areas so that the step stays stable.
+    // Without inertia, velocity is force over damping; the damping grows with the areas so that the step
+    // stays stable.
     const damping = (spring + Math.max(this.stiffness, stiffness_sum)) * SETTLE_S;
     const way = pull.add(this.force).multiplyScalar(STEP_S / damping).clampLength(0, this.radius * 0.05);
     const turn = twist.add(this.torque).multiplyScalar(STEP_S / (damping * inertia)).clampLength(0, 0.05);
     const angle = turn.length();
     const next_gc = gc.add(way);
-    if (angle > 1e-12) this.rotation.premultiply(new Quaternion().setFromAxisAngle(turn.divideScalar(angle), angle)).normalize();
+    if (angle > 1e-12)
+      this.rotation.premultiply(new Quaternion().setFromAxisAngle(turn.divideScalar(angle), angle))
+          .normalize();
     this.position.copy(next_gc.sub(this.centre.clone().applyQuaternion(this.rotation)));
   }
 }

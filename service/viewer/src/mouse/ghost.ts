@@ -1,11 +1,12 @@
-// Where the hand is while contact holds the tool back: the tool's edges there, and a line to it. Its length is the resistance.
+// Where the hand is while contact holds the tool back: the tool's edges there, and a line to it. Its length
+// is the resistance.
 import * as three from 'three';
-import type { Bodies } from '../draw/bodies.js';
-import type { Coupling } from './coupling.js';
-import type { Theme } from '../draw/palette.js';
-import { sharp_edges } from '../draw/sharp_edges.js';
+import type {Bodies} from '../draw/bodies.js';
+import type {Coupling} from './coupling.js';
+import type {Theme} from '../draw/palette.js';
+import {sharp_edges} from '../draw/sharp_edges.js';
 
-const MOST_EDGES = 1500;   // chosen: more are a blot, and lines are slow where there is no GPU
+const MOST_EDGES = 1500;  // chosen: more are a blot, and lines are slow where there is no GPU
 
 export class Ghost {
   readonly object = new three.Group();
@@ -14,8 +15,12 @@ export class Ghost {
   private readonly line: three.Line<three.BufferGeometry, three.LineDashedMaterial>;
 
   constructor(private readonly bodies: Bodies) {
-    this.shell = new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial({ transparent: true, opacity: 0.25, depthWrite: false }));
-    this.line = new three.Line(new three.BufferGeometry().setFromPoints([new three.Vector3(), new three.Vector3()]), new three.LineDashedMaterial({ depthTest: false, transparent: true }));
+    this.shell = new three.LineSegments(
+        new three.BufferGeometry(),
+        new three.LineBasicMaterial({transparent: true, opacity: 0.25, depthWrite: false}));
+    this.line = new three.Line(
+        new three.BufferGeometry().setFromPoints([new three.Vector3(), new three.Vector3()]),
+        new three.LineDashedMaterial({depthTest: false, transparent: true}));
     this.shell.frustumCulled = this.line.frustumCulled = false;
     this.object.add(this.shell, this.line);
     this.object.visible = false;
@@ -24,15 +29,16 @@ export class Ghost {
     this.shell.material.color.setHex(theme.ghost);
     this.line.material.color.setHex(theme.ghost);
   }
-  set(coupling: Coupling | null, holding: boolean): void {
+  set(coupling: Coupling|null, holding: boolean): void {
     this.object.visible = false;
     if (!coupling || !holding) return;
     const from = coupling.gc();
     const to = coupling.gc(coupling.target_position, coupling.target_rotation);
-    const apart = from.distanceTo(to) > coupling.radius * 0.02 || coupling.rotation.angleTo(coupling.target_rotation) > 0.03;
+    const apart = from.distanceTo(to) > coupling.radius * 0.02 ||
+        coupling.rotation.angleTo(coupling.target_rotation) > 0.03;
     if (!apart) return;
     this.object.visible = true;
-    const { vertices, corners } = this.bodies.shape_of_tool();
+    const {vertices, corners} = this.bodies.shape_of_tool();
     if (this.edges_of !== corners) {
       this.edges_of = corners;
       this.shell.geometry.dispose();

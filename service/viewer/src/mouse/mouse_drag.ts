@@ -1,20 +1,21 @@
-// Takes hold of the tool in the picture: drag moves it in the plane of the screen, the wheel nearer or farther, right button or Shift turns it.
+// Takes hold of the tool in the picture: drag moves it in the plane of the screen, the wheel nearer or
+// farther, right button or Shift turns it.
 import * as three from 'three';
-import type { Bodies } from '../draw/bodies.js';
-import type { Coupling } from './coupling.js';
-import type { SceneView } from '../draw/scene_view.js';
+import type {Bodies} from '../draw/bodies.js';
+import type {Coupling} from './coupling.js';
+import type {SceneView} from '../draw/scene_view.js';
 
-const GRAB_PX = 10;   // how far beside the tool a press still takes it
+const GRAB_PX = 10;  // how far beside the tool a press still takes it
 
-const RADII_A_SECOND = 0.8, RADIANS_A_SECOND = 1.2;   // of a cap that is pushed as far as it goes; chosen
-const NUDGE_MS = 400;   // chosen: a key that repeats keeps the hand closed
+const RADII_A_SECOND = 0.8, RADIANS_A_SECOND = 1.2;  // of a cap that is pushed as far as it goes; chosen
+const NUDGE_MS = 400;                                // chosen: a key that repeats keeps the hand closed
 
-export type Drag = 'move' | 'turn' | 'depth';
+export type Drag = 'move'|'turn'|'depth';
 
 export class MouseDrag {
   /** The coupling that is moved; null while the mouse is no device. */
-  coupling: Coupling | null = null;
-  holding: Drag | null = null;
+  coupling: Coupling|null = null;
+  holding: Drag|null = null;
   /** What a plain drag does: fingers have no other keys. */
   plain: Drag = 'move';
   private readonly plane = new three.Plane();
@@ -25,19 +26,22 @@ export class MouseDrag {
   constructor(private readonly view: SceneView, private readonly bodies: Bodies) {
     const canvas = view.canvas;
     // Before the camera's controls see it.
-    canvas.addEventListener('pointerdown', (event) => this.press(event), { capture: true });
+    canvas.addEventListener('pointerdown', (event) => this.press(event), {capture: true});
     canvas.addEventListener('pointermove', (event) => this.move(event));
-    for (const name of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(name, () => this.release());
-    canvas.addEventListener('wheel', (event) => this.wheel(event), { capture: true, passive: false });
+    for (const name of ['pointerup', 'pointercancel'] as const)
+      canvas.addEventListener(name, () => this.release());
+    canvas.addEventListener('wheel', (event) => this.wheel(event), {capture: true, passive: false});
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   }
 
   private aim(event: MouseEvent, dx = 0, dy = 0): void {
     const box = this.view.canvas.getBoundingClientRect();
-    this.pointer.set(((event.clientX + dx - box.left) / box.width) * 2 - 1, 1 - ((event.clientY + dy - box.top) / box.height) * 2);
+    this.pointer.set(
+        ((event.clientX + dx - box.left) / box.width) * 2 - 1,
+        1 - ((event.clientY + dy - box.top) / box.height) * 2);
     this.ray.setFromCamera(this.pointer, this.view.camera);
   }
-  private hit(event: MouseEvent): three.Vector3 | null {
+  private hit(event: MouseEvent): three.Vector3|null {
     if (!this.bodies.tool.visible) return null;
     this.bodies.tool.updateWorldMatrix(true, true);
     for (const [dx, dy] of [[0, 0], [GRAB_PX, 0], [-GRAB_PX, 0], [0, GRAB_PX], [0, -GRAB_PX]]) {
@@ -77,8 +81,11 @@ export class MouseDrag {
     } else {
       const turn = new three.Quaternion();
       const camera = this.view.camera.quaternion;
-      for (const [axis, angle] of [[new three.Vector3(0, 1, 0), event.movementX], [new three.Vector3(1, 0, 0), event.movementY]] as const) {
-        turn.premultiply(new three.Quaternion().setFromAxisAngle(axis.clone().applyQuaternion(camera), angle * 0.008));
+      for (const [axis, angle] of [
+               [new three.Vector3(0, 1, 0), event.movementX],
+               [new three.Vector3(1, 0, 0), event.movementY]] as const) {
+        turn.premultiply(
+            new three.Quaternion().setFromAxisAngle(axis.clone().applyQuaternion(camera), angle * 0.008));
       }
       this.turn(turn);
     }
@@ -93,41 +100,55 @@ export class MouseDrag {
     const moved = coupling.gc(coupling.target_position, coupling.target_rotation);
     coupling.target_position.add(centre.sub(moved));
   }
-  /** A small step by the keyboard: right, up and away as the camera sees it; or turns about these. The hand lets go a moment later. */
+  /**
+   * A small step by the keyboard: right, up and away as the camera sees it; or turns about these. The hand
+   * lets go a moment later.
+   */
   nudge(right: number, up: number, away: number, turning: boolean): void {
-    const { coupling } = this;
+    const {coupling} = this;
     if (!coupling || this.holding) return;
     coupling.held = true;
     const way = new three.Vector3(right, up, -away).applyQuaternion(this.view.camera.quaternion);
-    if (turning) this.turn(new three.Quaternion().setFromAxisAngle(new three.Vector3(-up, right, -away).applyQuaternion(this.view.camera.quaternion), 0.02));
-    else coupling.target_position.addScaledVector(way, coupling.radius * 0.02);
+    if (turning)
+      this.turn(new three.Quaternion().setFromAxisAngle(
+          new three.Vector3(-up, right, -away).applyQuaternion(this.view.camera.quaternion), 0.02));
+    else
+      coupling.target_position.addScaledVector(way, coupling.radius * 0.02);
     this.let_go_later();
     this.view.request();
   }
-  /** A cap that is pushed moves the hand on for `seconds`: right, up, away and turns about these, −1 … 1 each. Returns whether it is pushed. */
+  /**
+   * A cap that is pushed moves the hand on for `seconds`: right, up, away and turns about these, −1 … 1
+   * each. Returns whether it is pushed.
+   */
   steer(wish: readonly number[], seconds: number): boolean {
-    const { coupling } = this;
+    const {coupling} = this;
     if (!coupling || this.holding || wish.every((value) => value === 0)) return false;
     coupling.held = true;
     const camera = this.view.camera.quaternion;
-    const seen = (first: number) => new three.Vector3(wish[first], wish[first + 1], -wish[first + 2]).applyQuaternion(camera);
+    const seen = (first: number) =>
+        new three.Vector3(wish[first], wish[first + 1], -wish[first + 2]).applyQuaternion(camera);
     coupling.target_position.addScaledVector(seen(0), coupling.radius * RADII_A_SECOND * seconds);
     const turn = seen(3);
     const angle = turn.length();
-    if (angle > 0) this.turn(new three.Quaternion().setFromAxisAngle(turn.divideScalar(angle), angle * RADIANS_A_SECOND * seconds));
+    if (angle > 0)
+      this.turn(new three.Quaternion().setFromAxisAngle(
+          turn.divideScalar(angle), angle * RADIANS_A_SECOND * seconds));
     this.let_go_later();
     this.view.request();
     return true;
   }
   private let_go_later(): void {
     clearTimeout(this.nudged);
-    this.nudged = window.setTimeout(() => { if (!this.holding) this.coupling?.let_go(); }, NUDGE_MS);
+    this.nudged = window.setTimeout(() => {
+      if (!this.holding) this.coupling?.let_go();
+    }, NUDGE_MS);
   }
   private nudged = 0;
   private release(): void {
     if (!this.holding) return;
     this.holding = null;
-    this.coupling?.let_go();   // an open hand presses on nothing
+    this.coupling?.let_go();  // an open hand presses on nothing
     document.body.classList.remove('holding');
     this.view.request();
   }

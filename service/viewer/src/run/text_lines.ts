@@ -1,6 +1,9 @@
 // Splits a download into lines without ever holding more than a piece and an unfinished line.
 
-/** Calls `take` with each line's bytes (no end of line) and the offset where it begins. A last line without its end counts only if `whole`. */
+/**
+ * Calls `take` with each line's bytes (no end of line) and the offset where it begins. A last line without
+ * its end counts only if `whole`.
+ */
 export class LineSplitter {
   private rest = new Uint8Array(0);
   private offset = 0;
@@ -28,13 +31,15 @@ export class LineSplitter {
 }
 
 /** Feeds a response's body to the splitter; `progress` gets the bytes so far. */
-export async function split_lines(response: Response, take: (line: Uint8Array, offset: number) => void, progress: (bytes: number) => void): Promise<void> {
+export async function split_lines(
+    response: Response, take: (line: Uint8Array, offset: number) => void,
+    progress: (bytes: number) => void): Promise<void> {
   const splitter = new LineSplitter(take);
   const reader = response.body?.getReader();
   if (!reader) return;
   let bytes = 0;
   for (;;) {
-    const { done, value } = await reader.read();
+    const {done, value} = await reader.read();
     if (done) break;
     splitter.push(value);
     progress((bytes += value.length));

@@ -1,5 +1,5 @@
 // Whether the server is there. Asked now and then, and at once when something failed.
-import type { Api } from './api.js';
+import type {Api} from './api.js';
 
 const CALM_MS = 4000;
 const FIRST_RETRY_MS = 500;
@@ -11,10 +11,14 @@ export class Connection {
   private retry = FIRST_RETRY_MS;
 
   /** `changed`: the server went, or came back. */
-  constructor(private readonly api: Api, private readonly changed: (up: boolean) => void) { this.later(CALM_MS); }
+  constructor(private readonly api: Api, private readonly changed: (up: boolean) => void) {
+    this.later(CALM_MS);
+  }
 
   /** Somebody got no answer: look now. */
-  doubt(): void { this.later(0); }
+  doubt(): void {
+    this.later(0);
+  }
   private later(ms: number): void {
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.look(), ms);

@@ -1,11 +1,14 @@
-// The scene in a headset (WebXR), where the browser has one: half a metre before the eyes, and a controller's trigger takes the tool.
+// The scene in a headset (WebXR), where the browser has one: half a metre before the eyes, and a controller's
+// trigger takes the tool.
 import * as three from 'three';
-import { element, write } from '../dom.js';
-import type { SceneView } from '../draw/scene_view.js';
-import type { Coupling } from '../mouse/coupling.js';
 
-const RADIUS = 0.35;                                    // of the mock-up as it is seen, m; chosen
-const BEFORE = new three.Vector3(0, -0.15, -0.9);       // where its middle is, from the head that begins; chosen
+import {element, write} from '../dom.js';
+
+import type {SceneView} from '../draw/scene_view.js';
+import type {Coupling} from '../mouse/coupling.js';
+
+const RADIUS = 0.35;                               // of the mock-up as it is seen, m; chosen
+const BEFORE = new three.Vector3(0, -0.15, -0.9);  // where its middle is, from the head that begins; chosen
 
 export interface HeadsetHooks {
   /** Where the mock-up is. */
@@ -22,33 +25,46 @@ export interface HeadsetHooks {
 export class Headset {
   private readonly rig = new three.Group();
   private readonly button = element<HTMLButtonElement>('headset');
-  private session: XRSession | null = null;
+  private session: XRSession|null = null;
   /** A controller's place, and the tool's, when it was taken. */
-  private grip: { hand: three.Object3D; hand_then: three.Matrix4; tool_then: three.Matrix4 } | null = null;
+  private grip: {hand: three.Object3D; hand_then: three.Matrix4; tool_then: three.Matrix4}|null = null;
 
   constructor(private readonly view: SceneView, private readonly hooks: HeadsetHooks) {
-    const { xr } = navigator;
+    const {xr} = navigator;
     if (!xr) return;
     this.button.addEventListener('click', () => void this.toggle(xr).catch(hooks.failed));
     for (const i of [0, 1]) {
       const hand = view.renderer.xr.getController(i);
-      const ray = new three.Line(new three.BufferGeometry().setFromPoints([new three.Vector3(), new three.Vector3(0, 0, -0.15)]));
+      const ray = new three.Line(
+          new three.BufferGeometry().setFromPoints([new three.Vector3(), new three.Vector3(0, 0, -0.15)]));
       hand.add(ray);
       hand.addEventListener('selectstart', () => this.take(hand));
-      hand.addEventListener('selectend', () => { if (this.grip?.hand === hand) this.let_go(); });
+      hand.addEventListener('selectend', () => {
+        if (this.grip?.hand === hand) this.let_go();
+      });
       this.rig.add(hand);
     }
     view.scene.add(this.rig);
     this.rig.visible = false;
-    void xr.isSessionSupported('immersive-vr').then((on) => { element('headset-row').hidden = !on; }, hooks.failed);
+    void xr.isSessionSupported('immersive-vr').then((on) => {
+      element('headset-row').hidden = !on;
+    }, hooks.failed);
   }
 
   private async toggle(xr: XRSystem): Promise<void> {
-    if (this.session) { await this.session.end(); return; }
+    if (this.session) {
+      await this.session.end();
+      return;
+    }
     const session = await xr.requestSession('immersive-vr');
     this.session = session;
-    const { view, rig } = this;
-    const before = { position: view.camera.position.clone(), quaternion: view.camera.quaternion.clone(), near: view.camera.near, far: view.camera.far };
+    const {view, rig} = this;
+    const before = {
+      position: view.camera.position.clone(),
+      quaternion: view.camera.quaternion.clone(),
+      near: view.camera.near,
+      far: view.camera.far
+    };
     session.addEventListener('end', () => {
       this.let_go();
       this.session = null;
@@ -58,7 +74,7 @@ export class Headset {
       view.scene.add(view.camera);
       view.camera.position.copy(before.position);
       view.camera.quaternion.copy(before.quaternion);
-      Object.assign(view.camera, { near: before.near, far: before.far });
+      Object.assign(view.camera, {near: before.near, far: before.far});
       view.camera.scale.setScalar(1);
       view.camera.updateProjectionMatrix();
       view.presenting = false;
@@ -68,14 +84,14 @@ export class Headset {
       this.hooks.ended();
     });
     // The head is in the rig, which stands so before the mock-up that it looks RADIUS large.
-    const { center, radius } = this.hooks.bounds();
+    const {center, radius} = this.hooks.bounds();
     const size = radius / RADIUS;
     rig.scale.setScalar(size);
     rig.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), view.camera.up);
     rig.position.copy(center).sub(BEFORE.clone().multiplyScalar(size).applyQuaternion(rig.quaternion));
     rig.visible = true;
     rig.add(view.camera);
-    Object.assign(view.camera, { near: 0.02, far: 50 });
+    Object.assign(view.camera, {near: 0.02, far: 50});
     view.presenting = true;
     document.body.classList.add('in-headset');
     view.renderer.setPixelRatio(1);
@@ -95,13 +111,17 @@ export class Headset {
     if (!coupling || this.grip) return;
     hand.updateWorldMatrix(true, false);
     coupling.held = true;
-    this.grip = { hand, hand_then: hand.matrixWorld.clone(), tool_then: new three.Matrix4().compose(coupling.position, coupling.rotation, new three.Vector3(1, 1, 1)) };
+    this.grip = {
+      hand,
+      hand_then: hand.matrixWorld.clone(),
+      tool_then: new three.Matrix4().compose(coupling.position, coupling.rotation, new three.Vector3(1, 1, 1))
+    };
   }
   /** The target follows the hand as if it were fixed to it. */
   private move(): void {
     const coupling = this.hooks.coupling();
     if (!this.grip || !coupling) return;
-    const { hand, hand_then, tool_then } = this.grip;
+    const {hand, hand_then, tool_then} = this.grip;
     hand.updateWorldMatrix(true, false);
     const place = hand.matrixWorld.clone().multiply(hand_then.clone().invert()).multiply(tool_then);
     place.decompose(coupling.target_position, coupling.target_rotation, new three.Vector3());

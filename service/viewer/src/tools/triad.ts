@@ -1,9 +1,11 @@
 // The axes as the camera sees them, and how many pictures a second are drawn.
-import { Vector3 } from 'three';
-import { element, write } from '../dom.js';
-import type { SceneView } from '../draw/scene_view.js';
+import {Vector3} from 'three';
 
-const REACH = 22;   // px
+import {element, write} from '../dom.js';
+
+import type {SceneView} from '../draw/scene_view.js';
+
+const REACH = 22;  // px
 
 export class Triad {
   private readonly lines = ['x', 'y', 'z'].map((axis) => element(`triad-${axis}`));
@@ -25,7 +27,10 @@ export class Triad {
   }
   /** After each: `ms` since the one before in an unbroken row. */
   count(ms: number): void {
-    if (!Number.isFinite(ms)) { this.times = []; return; }
+    if (!Number.isFinite(ms)) {
+      this.times = [];
+      return;
+    }
     this.times.push(ms);
     if (this.times.length > 30) this.times.shift();
     const mean = this.times.reduce((sum, each) => sum + each, 0) / this.times.length;
