@@ -3,10 +3,10 @@
 import {read_address, write_address} from './address.js';
 import {take_files} from './assembly/file_drop.js';
 import {Workshop} from './assembly/workshop.js';
+import {element, write} from './dom.js';
 import {Api, ApiError} from './server/api.js';
 import {Connection} from './server/connection.js';
-import type {Colouring} from './draw/contact_layer.js';
-import {element, make, write} from './dom.js';
+
 import {listen, type Action} from './keys.js';
 import {Labels} from './draw/labels.js';
 import type {Moment} from './moment.js';
@@ -14,10 +14,13 @@ import type {Drag} from './mouse/mouse_drag.js';
 import {MouseSource} from './mouse/mouse_source.js';
 import {PathPanel} from './mouse/path_panel.js';
 import {SpaceMouse} from './mouse/space_mouse.js';
+import {Banner} from './words/banner.js';
 import {PartNames} from './words/part_names.js';
+import {show_scene} from './words/scene_facts.js';
 import {StartNote} from './words/start_note.js';
 import {DARK, LIGHT} from './draw/palette.js';
 import {Picture} from './draw/picture.js';
+import {offer_picture_options} from './draw/picture_options.js';
 import {Player} from './run/player.js';
 import type {Pose, Scene, SceneParts} from './server/protocol.js';
 import {Readout} from './words/readout.js';
@@ -35,7 +38,15 @@ import {Strips, figure} from './strips.js';
 
 type Source = 'live'|'mouse'|'run';
 const REFRESH_MS = 3000;
-const TURN = 0.1;     // rad of a key that turns the view; chosen
+const TURN = 0.1;  // rad of a key that turns the view; chosen
+const STEPS: Partial<Record<Action, [number, number, number]>> = {
+  'turn-left': [-TURN, 0, 0],
+  'turn-right': [TURN, 0, 0],
+  'turn-up': [0, TURN, 0],
+  'turn-down': [0, -TURN, 0],
+  'nearer': [0, 0, 0.1],
+  'farther': [0, 0, -0.1]
+};
 const WORDS_MS = 80;  // chosen: figures that change more often can't be read, and to lay them out takes as
                       // long as a picture
 const FELT: Record<Source, string> = {
@@ -51,6 +62,7 @@ const LATE: Record<Source, [string, string]> = {
 
 export class App {
   private readonly api = new Api();
+  private readonly banner = new Banner();
   private readonly picture = new Picture(this.api, element('canvas'), (error) => this.failed(error));
   private readonly labels = new Labels(this.picture.view);
   private readonly strips = new Strips(element('strips'));
@@ -130,7 +142,6 @@ export class App {
   private told: Moment|null = null;
   private words_at = -Infinity;
   private words_timer = 0;
-  private banner_timer = 0;
 
   constructor() {
     this.wire_panel();
@@ -248,7 +259,7 @@ export class App {
     await this.picture.open(scene, stay);
     this.labels.with_force = scene.profile === 'paper';
     this.readout.set_profile(scene.profile);
-    this.show_scene(scene);
+    show_scene(scene);
     void this.look_closer(scene, stay !== null);
     this.remember();
     await this.choose(this.source);
@@ -299,7 +310,7 @@ export class App {
       this.say('The server does not answer. What you see is the last picture; trying again.', true, true);
       return;
     }
-    this.hide_banner();
+    this.banner.hide();
     try {
       if (!this.picker.current) {
         await this.begin();
@@ -357,7 +368,7 @@ export class App {
     if (source !== this.source) {
       this.readout.show(null, []);
       this.picture.redraw_contact();
-      if (this.connection.up) this.hide_banner();  // it was about what was shown before
+      if (this.connection.up) this.banner.hide();  // it was about what was shown before
     }
     this.source = source;
     for (const tab of document.querySelectorAll<HTMLElement>('[data-source]'))
@@ -516,32 +527,6 @@ export class App {
       ...(reduced ? [`drawn: ${drawn_triangles.toLocaleString('en')} triangles, contact exact`] : []),
     ].join(' · '));
   }
-  private show_scene(scene: Scene): void {
-    const whole = (value: number|null) => (value === null ? '–' : value.toLocaleString('en'));
-    element('facts').textContent =
-        `${whole(scene.static_triangles)} + ${whole(scene.tool_triangles)} triangles`;
-    const rows: [string, string][] = [
-      ['mock-up', `${whole(scene.static_triangles)} triangles`],
-      ['tool', `${whole(scene.tool_triangles)} triangles`],
-      ['profile', scene.profile ?? '–'],
-      ['stiffness', scene.stiffness === null ? '–' : `${figure(scene.stiffness)} N/m`],
-      ['voxel', scene.voxel_size === null ? '–' : `${figure(scene.voxel_size * 1000)} mm`],
-      [
-        'memory',
-        scene.memory_bytes === null || scene.memory_bytes === undefined ?
-            '–' :
-            `${figure(scene.memory_bytes / 1048576)} MiB`
-      ],
-      ['engine', scene.backend ? `${scene.backend} on ${scene.device}` : '–'],
-    ];
-    element('scene-facts')
-        .replaceChildren(
-            make('h2', {}, scene.name),
-            make('dl', {}, ...rows.flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)])),
-            ...(scene.warnings ?? []).map((warning) => make('p', {class: 'warn'}, warning)));
-    document.title = `${scene.name}, palpate`;
-  }
-
   // ---- words, keys, panel
 
   private remember(): void {
@@ -568,15 +553,7 @@ export class App {
     this.say(error instanceof Error ? error.message : String(error), true);
   }
   private say(text: string, bad = false, stays = false): void {
-    const banner = element('banner');
-    banner.textContent = text;
-    banner.dataset['state'] = bad ? 'bad' : 'good';
-    banner.hidden = false;
-    clearTimeout(this.banner_timer);
-    if (!stays) this.banner_timer = window.setTimeout(() => this.hide_banner(), bad ? 9000 : 3500);
-  }
-  private hide_banner(): void {
-    element('banner').hidden = true;
+    this.banner.say(text, bad, stays);
   }
 
   private apply_theme(theme: string): void {
@@ -586,14 +563,6 @@ export class App {
     this.clearance.theme(theme === 'dark' ? DARK : LIGHT);
     this.strips.theme();
     this.touch();
-  }
-  private check(id: string, set: (on: boolean) => void): void {
-    const box = element<HTMLInputElement>(id);
-    box.addEventListener('change', () => {
-      set(box.checked);
-      this.touch();
-      this.picture.redraw_contact();
-    });
   }
   private wire_tools(): void {
     const {picture, workshop} = this;
@@ -641,36 +610,8 @@ export class App {
     this.wire_files();
     for (const tab of document.querySelectorAll<HTMLElement>('[data-source]'))
       tab.addEventListener('click', () => void this.choose(tab.dataset['source'] as Source));
-    const colouring = element<HTMLSelectElement>('colouring');
-    colouring.addEventListener('change', () => {
-      this.picture.contact.colouring = colouring.value as Colouring;
-      this.picture.redraw_contact();
-    });
-    const voxels = element<HTMLSelectElement>('voxels');
-    voxels.addEventListener('change', () => {
-      if (voxels.value === 'internal' && !element<HTMLInputElement>('glass-mockup').checked)
-        element('glass-mockup').click();  // or they would be hidden by what they fill
-      this.picture.show_voxels((voxels.value || null) as 'boundary' | 'internal' | null)
-          .catch((error: unknown) => {
-            voxels.value = '';
-            this.failed(error);
-          });
-    });
-    this.check('show-normals', (on) => {
-      this.picture.areas.show.normals = on;
-    });
-    this.check('show-heights', (on) => {
-      this.picture.areas.show.heights = on;
-    });
-    this.check('show-wrench', (on) => {
-      this.picture.areas.show.wrench = on;
-    });
-    this.check('show-clearance', (on) => this.clearance.set_on(on));
-    this.check('show-labels', (on) => {
-      this.labels.shown = on;
-    });
-    this.check('glass-mockup', (on) => this.picture.bodies.glass('mockup', on));
-    this.check('glass-tool', (on) => this.picture.bodies.glass('tool', on));
+    offer_picture_options(
+        this.picture, this.labels, this.clearance, () => this.touch(), (error) => this.failed(error));
     element('mouse-reset').addEventListener('click', () => {
       this.mouse?.restart();
       this.touch();
@@ -750,27 +691,6 @@ export class App {
         else
           this.picture.follow_tool();
         break;
-      case 'up':
-        this.picture.view.turn_up();
-        break;
-      case 'turn-left':
-        this.picture.view.step(-TURN, 0, 0);
-        break;
-      case 'turn-right':
-        this.picture.view.step(TURN, 0, 0);
-        break;
-      case 'turn-up':
-        this.picture.view.step(0, TURN, 0);
-        break;
-      case 'turn-down':
-        this.picture.view.step(0, -TURN, 0);
-        break;
-      case 'nearer':
-        this.picture.view.step(0, 0, 0.1);
-        break;
-      case 'farther':
-        this.picture.view.step(0, 0, -0.1);
-        break;
       case 'panel':
         document.body.classList.toggle('no-panel');
         this.touch();
@@ -791,10 +711,17 @@ export class App {
         break;
       }
       case 'close':
-        this.hide_banner();
+        this.banner.hide();
+        break;
+      case 'up':
+        this.picture.view.turn_up();
         break;
       default:
-        document.querySelectorAll<HTMLButtonElement>('#legend button')[Number(action.slice(4)) - 1]?.click();
+        if (action in STEPS)
+          this.picture.view.step(...STEPS[action]!);
+        else
+          document.querySelectorAll<HTMLButtonElement>('#legend button')[Number(action.slice(4)) - 1]
+              ?.click();
     }
   }
 }
