@@ -1,5 +1,6 @@
 #include "compute/native/queries/pair_distance.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "compute/native/processor.h"

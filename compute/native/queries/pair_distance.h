@@ -40,8 +40,8 @@ inline double distance_error(double shorter_edge, double reach) {
   return shorter_edge * 0x1p-18 + reach * 0x1p-28 + 0x1p-10;
 }
 
-/// Squares of what a triangle is apart from eight boxes along axes of their own; no more than that. Corners:
-/// k of corner c at [3 c + k].
+/// Squares of what a triangle is apart from eight boxes, along axes of their own or along its normal; no more
+/// than that. Corners: k of corner c at [3 c + k].
 void turned_gaps(const std::array<double, 9>& corners, const TriangleTree::TurnedBoxes& boxes,
                  std::array<double, kLanes>& squared);
 

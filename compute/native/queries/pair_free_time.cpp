@@ -17,6 +17,13 @@ struct PairSearch::Timed {
   double top = 0;  ///< of what is looked at, along it
   double closed = 0;                   ///< how far that gets along it in `time`, and a little
   bool aimed = false, turned = false;  ///< whether there are these, and a way
+  /// A direction, and how high along it what is looked at gets in `time`.
+  struct Reach {
+    Vec way;
+    double most;
+  };
+  std::array<Reach, 2> ahead{};  ///< along its normal and against it, of a single triangle
+  std::size_t ahead_count = 0;
 
   void set(double sooner) {
     time = sooner;
@@ -47,6 +54,8 @@ struct PairSearch::Timed {
   bool keep(double squared, const BoxOf& tool, const BoxOf& mockup) const {
     if (!near(squared)) return false;
     if (aimed && lowest(way, mockup) - top > closed) return false;
+    for (std::size_t i = 0; i < ahead_count; ++i)
+      if (lowest(ahead[i].way, mockup) > ahead[i].most) return false;
     const double distance = std::sqrt(squared), need = distance - kMotionSlack - 1;
     if (need <= 0) return true;
     Vec n;
@@ -59,6 +68,8 @@ struct PairSearch::Timed {
   static double room_along(const Vec&) { return 0; }
   void aim(std::span<const Mobile> tool) {
     aimed = turned;
+    ahead_count = 0;
+    if (tool.size() == 1) look_ahead(tool.front());
     if (!turned) return;
     top = -std::numeric_limits<double>::infinity();
     BoxOf box = tool.front().box;
@@ -71,9 +82,23 @@ struct PairSearch::Timed {
     }
     closed = std::max(gets(way, box), 0.0) + kMotionSlack + 1 + kAlongSlack;
   }
+  /// What lies before and behind a triangle is told apart best along its normal, however slowly that moves.
+  void look_ahead(const Mobile& m) {
+    const Vec a{m.corners[0], m.corners[1], m.corners[2]}, b{m.corners[3], m.corners[4], m.corners[5]},
+        c{m.corners[6], m.corners[7], m.corners[8]}, normal = cross(b - a, c - a);
+    const double size = length(normal);
+    if (!(size > 0)) return;
+    for (const double side : {1.0, -1.0}) {
+      const Vec n = normal * (side / size);
+      ahead[ahead_count++] = {
+          n, highest(n, m.corners) + std::max(gets(n, m.box), 0.0) + kMotionSlack + 1 + kAlongSlack};
+    }
+  }
   unsigned near_along(const Lanes& corners) const {
-    if (!aimed) return ~0u;
-    return up_to(way, corners, top + closed);
+    unsigned near = aimed ? up_to(way, corners, top + closed) : ~0u;
+    for (std::size_t i = 0; i < ahead_count && near != 0; ++i)
+      near &= up_to(ahead[i].way, corners, ahead[i].most);
+    return near;
   }
   void met(std::uint32_t s, std::uint32_t m) {
     out = {.time = 0, .blocked = true, .steps = 0, .static_id = s, .mobile_id = m};

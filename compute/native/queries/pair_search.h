@@ -69,6 +69,15 @@ class PairSearch {
     std::uint32_t run, mask;  ///< of its triangles those that may matter
     std::array<double, kLanes> rooms;
   };
+  /// Whether RoomField::all_beyond() has paid so far in a search: where all is as near it never does.
+  struct Balls {
+    std::uint32_t asked = 0, beyond = 0;
+    bool worth_asking() const { return asked < 16 || 4 * beyond >= asked; }  // chosen
+    void count(bool is_beyond) {
+      ++asked;
+      beyond += is_beyond ? 1u : 0u;
+    }
+  };
   struct Mobile {  ///< a triangle of the tool at the pose
     std::uint32_t id;
     exact::Corners at;
@@ -114,6 +123,7 @@ class PairSearch {
   RoomField::Turn turn_{};
   std::vector<Group> groups_;
   std::vector<Lead> leads_;
+  Balls balls_;
   std::vector<Node> open_;
   std::array<Mobile, kLanes> mobiles_;  ///< of a run
   std::size_t count_ = 0;

@@ -190,17 +190,36 @@ static void load(const float* from, Doubles& out) {
   out = __builtin_convertvector(single, Doubles);
 }
 
-// Squared gaps along the axes of eight boxes. Axes are floats, so each gap is taken shorter by 2^-20 of
-// itself and a step, and the sum by 2^-20, which is more than they are off (docs/EXACTNESS.md, section 9).
+// Squared gaps along the axes of eight boxes, or along the triangle's normal where that is more. Axes are
+// floats, so each gap is taken shorter by 2^-20 of itself and a step, along the normal by 2^-20 of the box's
+// ends instead, and the square by 2^-20, which is more than they are off (docs/EXACTNESS.md, section 9).
 static void turned_gaps(const std::array<double, 9>& corners, const TriangleTree::TurnedBoxes& boxes,
                         std::array<double, kLanes>& squared) {
+  double e[3], f[3], normal[3], size = 0, top = 0, bottom = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    e[k] = corners[3 + k] - corners[k];
+    f[k] = corners[6 + k] - corners[k];
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    normal[k] = e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3];
+    size += normal[k] * normal[k];
+  }
+  for (double& n : normal) n *= size > 0 ? 1 / std::sqrt(size) : 0;
+  for (const auto& edge : {e, f}) {  // of a sliver the normal is rough
+    const double height = normal[0] * edge[0] + normal[1] * edge[1] + normal[2] * edge[2];
+    top = height > top ? height : top;
+    bottom = height < bottom ? height : bottom;
+  }
   for (std::size_t begin = 0; begin < kLanes; begin += kWidth) {
-    Doubles from[3][3], sum{};
+    const Doubles none{};
+    Doubles from[3][3], sum{}, lowest{}, highest{}, ends{};  // of the box above the triangle's first corner
     for (std::size_t k = 0; k < 3; ++k) {
       Doubles corner;
       load(boxes.corner[k].data() + begin, corner);
       for (std::size_t c = 0; c < 3; ++c) from[c][k] = corners[3 * c + k] - corner;
+      lowest -= normal[k] * from[0][k];
     }
+    highest = lowest;
     for (std::size_t a = 0; a < 3; ++a) {
       Doubles x, y, z, low, high;
       load(boxes.axis[a][0].data() + begin, x);
@@ -216,11 +235,19 @@ static void turned_gaps(const std::array<double, 9>& corners, const TriangleTree
       }
       const Doubles ahead = first - high, behind = low - last;
       Doubles sure = (ahead > behind ? ahead : behind) * (1 - 0x1p-20) - 1;
-      const Doubles none{};
       sure = sure > none ? sure : none;
       sum += sure * sure;
+      const Doubles turn = x * normal[0] + y * normal[1] + z * normal[2], of_low = turn * low,
+                    of_high = turn * high;
+      lowest += of_low < of_high ? of_low : of_high;
+      highest += of_low < of_high ? of_high : of_low;
+      ends += high - low;  // low is 0 at most, high at least
     }
-    sum *= 1 - 0x1p-20;
+    const Doubles above = lowest - top, below = bottom - highest;
+    Doubles sure = (above > below ? above : below) - ends * 0x1p-20 - 1;
+    sure = sure > none ? sure : none;
+    const Doubles along = sure * sure;
+    sum = (along > sum ? along : sum) * (1 - 0x1p-20);
     std::memcpy(squared.data() + begin, &sum, sizeof sum);
   }
 }

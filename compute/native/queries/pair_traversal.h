@@ -76,7 +76,7 @@ inline double highest(const Vec& way, const std::array<double, 9>& corners) {
 /// A bit for each of eight triangles that does not lie wholly above a place along it.
 inline unsigned up_to(const Vec& way, const std::array<std::array<std::int32_t, kLanes>, 9>& corners,
                       double place) {
-  std::array<double, kLanes> low;
+  std::array<double, kLanes> low{};
   for (std::size_t c = 0; c < 9; c += 3)
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double at = way[0] * corners[c][i] + way[1] * corners[c + 1][i] + way[2] * corners[c + 2][i];
@@ -168,6 +168,7 @@ bool PairSearch::dive(Policy& policy) {
 template <class Policy>
 void PairSearch::search(Policy& policy) {
   if (trees_->tool.order.empty() || trees_->mockup.order.empty()) return;
+  balls_ = {};
   if (Policy::kNearestFirst && !dive(policy)) return;
   if (!gather(policy)) return;
   std::sort(leads_.begin(), leads_.end(), [](const Lead& a, const Lead& b) { return a.room < b.room; });
@@ -187,8 +188,11 @@ void PairSearch::pose(const Policy& policy, const Lead& lead) {
     m.id = trees_->tool.order[kWide * lead.run + i];
     m.at = mobile(m.id);
     if (exact::raw_normal(m.at) == exact::Normal{}) continue;  // collinear at this pose: in no pair
-    if (lead.rooms[i] < trees_->field.detail_steps() && trees_->field.all_beyond(m.at, policy.within_steps()))
-      continue;
+    if (lead.rooms[i] < trees_->field.detail_steps() && balls_.worth_asking()) {
+      const bool beyond = trees_->field.all_beyond(m.at, policy.within_steps());
+      balls_.count(beyond);
+      if (beyond) continue;
+    }
     m.box = box_of(m.at);
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t k = 0; k < 3; ++k) m.corners[3 * c + k] = m.at[c][static_cast<int>(k)];
