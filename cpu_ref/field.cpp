@@ -23,10 +23,18 @@ struct Push {
   Int3 along{0};             ///< n: the way it pushes the tool, Q30
   Int3 against{0};           ///< u: φ falls as the tool moves along it, Q30
   std::uint32_t depth = 0;   ///< φ, steps
-  std::uint32_t weight = 0;  ///< w, Q24: half of the sample's, for the other body's samples say the same once
-                             ///< more; all of it where they can't (sheets)
+  std::uint32_t weight = 0;  ///< what counts of the sample's w, Q24: half, for the other body's samples say
+                             ///< the same once more; all of it where they can't (sheets); 0: none pushes
   std::uint32_t whole = 0;   ///< the sample's own
 };
+
+bool is_thin(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & kTriangleThin) != 0; }
+
+/// What counts of a sample's weight: half of it, but what lies in a thin piece counts for nothing, and the
+/// thin piece's own samples wholly.
+std::uint32_t counted(std::uint32_t weight, bool own_thin, bool other_thin) {
+  return own_thin == other_thin ? weight / 2 : own_thin ? weight : 0;
+}
 
 /// Which of the bins a direction belongs to: about an eighth of a turn round each axis, edge and corner of a
 /// cube.
@@ -55,50 +63,12 @@ class Summing {
     grade_ = std::min<std::int64_t>(grade_, 256 * kSampleLevels);
   }
 
-  void add_push(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier) {
+  /// What a sample inside the other body adds.
+  void add_sample(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier) {
     const Long3 r = difference(push.at, frame_.pose.translation);  // within tool_radius + a few
-    const Long3 turned = cross(r, Long3(push.along));              // within 2^60
-    const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);  // below 2^46
-    FieldBin& bin = out_.field.bins[bin_of(push.along)];
-    bin.samples += 1;
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      add(bin.push[i], p * (push.along[k] >> 10));
-      add(bin.turn[i], (p >> 10) * (turned[k] >> 30));
-    }
-    // How the force gives way along the push: w (n·u), as the force law and the solver need it.
-    std::int64_t steep = 0;
-    for (int k = 0; k < 3; ++k) steep += std::int64_t{push.along[k]} * push.against[k];
-    steep = std::max<std::int64_t>(steep >> 30, 0);
-    const std::int64_t give = (std::int64_t{push.weight} * steep) >> 34;  // Q20
-    const Long3 lever(r.x >> shift_, r.y >> shift_, r.z >> shift_);
-    bin.give += give;
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      bin.give_at[i] += give * lever[k];
-      bin.give_spread[i] += (give * lever[k] * lever[k]) >> 8;
-      bin.give_spread[i + 3] += (give * lever[k] * lever[(k + 1) % 3]) >> 8;
-    }
-    FieldSums& field = out_.field;
-    if (push.depth > field.max_depth) {
-      field.max_depth = push.depth;
-      field.deepest_static = static_id;
-      field.deepest_mobile = mobile;
-    } else if (push.depth == field.max_depth && push.depth > 0) {
-      field.deepest_static = std::min(field.deepest_static, static_id);
-      field.deepest_mobile = std::min(field.deepest_mobile, mobile);
-    }
-    if (carrier == nullptr) return;
-    carrier->samples += 1;
-    carrier->max_depth = std::max(carrier->max_depth, push.depth);
-    const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.whole) >> 14);
-    carrier->weight_sum += push.whole;
-    carrier->depth_sum += whole;
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      add(carrier->push[i], whole * (push.along[k] >> 10));
-      add(carrier->moment[i], (whole >> 10) * r[k]);
-    }
+    if (push.weight != 0) add_push(push, r);
+    add_depth(push.depth, static_id, mobile);
+    if (carrier != nullptr) add_carried(push, r, *carrier);
   }
 
   /// The mock-up's samples in the tool's depth.
@@ -150,6 +120,56 @@ class Summing {
   void list_touched() { out_.ignored_touched.assign(touched_.begin(), touched_.end()); }
 
  private:
+  void add_push(const Push& push, const Long3& r) {
+    const Long3 turned = cross(r, Long3(push.along));                                           // within 2^60
+    const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.weight) >> 14);  // below 2^46
+    FieldBin& bin = out_.field.bins[bin_of(push.along)];
+    bin.samples += 1;
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      add(bin.push[i], p * (push.along[k] >> 10));
+      add(bin.turn[i], (p >> 10) * (turned[k] >> 30));
+    }
+    // How the force gives way along the push: w (n·u), as the force law and the solver need it.
+    std::int64_t steep = 0;
+    for (int k = 0; k < 3; ++k) steep += std::int64_t{push.along[k]} * push.against[k];
+    steep = std::max<std::int64_t>(steep >> 30, 0);
+    const std::int64_t give = (std::int64_t{push.weight} * steep) >> 34;  // Q20
+    const Long3 lever(r.x >> shift_, r.y >> shift_, r.z >> shift_);
+    bin.give += give;
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      bin.give_at[i] += give * lever[k];
+      bin.give_spread[i] += (give * lever[k] * lever[k]) >> 8;
+      bin.give_spread[i + 3] += (give * lever[k] * lever[(k + 1) % 3]) >> 8;
+    }
+  }
+
+  void add_depth(std::uint32_t depth, std::uint32_t static_id, std::uint32_t mobile) {
+    FieldSums& field = out_.field;
+    if (depth > field.max_depth) {
+      field.max_depth = depth;
+      field.deepest_static = static_id;
+      field.deepest_mobile = mobile;
+    } else if (depth == field.max_depth && depth > 0) {
+      field.deepest_static = std::min(field.deepest_static, static_id);
+      field.deepest_mobile = std::min(field.deepest_mobile, mobile);
+    }
+  }
+
+  void add_carried(const Push& push, const Long3& r, CarrierSums& carrier) {
+    carrier.samples += 1;
+    carrier.max_depth = std::max(carrier.max_depth, push.depth);
+    const auto whole = static_cast<std::int64_t>((std::uint64_t{push.depth} * push.whole) >> 14);
+    carrier.weight_sum += push.whole;
+    carrier.depth_sum += whole;
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      add(carrier.push[i], whole * (push.along[k] >> 10));
+      add(carrier.moment[i], (whole >> 10) * r[k]);
+    }
+  }
+
   /// What a grid sample weighs in this frame, Q30: between what it weighs at one level and at the next.
   std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& sample,
                           std::int32_t spacing) const {
@@ -205,9 +225,9 @@ class Summing {
               .depth = below->steps};
     push.along = sheet ? push.against : mockup.unit_normal_q30[id];
     push.whole = weight;
-    push.weight = weight >> (sheet ? 0 : 1);
+    push.weight = sheet ? weight : counted(weight, is_thin(mockup, id), is_thin(tool, below->triangle));
     if (sheet) out_.flags |= kFlagSheet;
-    add_push(push, id, below->triangle, carrier(id));
+    add_sample(push, id, below->triangle, carrier(id));
   }
 
   void tool_sample(std::uint32_t m, const Int3& own, std::uint32_t weight) {
@@ -219,9 +239,9 @@ class Summing {
     const bool sheet = is_sheet(tool, m) || !frame_.scene.tool_has_inside;
     Push push{.at = point, .against = mockup.unit_normal_q30[below->triangle], .depth = below->steps};
     push.along = sheet ? push.against : -turned(frame_.pose, tool.unit_normal_q30[m]);
-    push.weight = weight >> (sheet ? 0 : 1);
+    push.weight = sheet ? weight : counted(weight, is_thin(tool, m), is_thin(mockup, below->triangle));
     if (sheet) out_.flags |= kFlagSheet;
-    add_push(push, below->triangle, m, nullptr);
+    add_sample(push, below->triangle, m, nullptr);
   }
 
   /// Notes a contact that is left out.

@@ -14,6 +14,7 @@ enum TriangleFlag : std::uint8_t {
   kTriangleCollapsed = 1,  ///< no area on the lattice; in no set, keeps its number
   kTriangleSheet = 2,      ///< of a part with winding 0 on both sides
   kTriangleTurned = 4,     ///< of a part that was inside out; vertices 1 and 2 are exchanged
+  kTriangleThin = 8,       ///< of a thin piece: what lies in it says little, its own samples speak for it
 };
 
 /// One neighbour across a shared edge (the same two lattice vertices): neighbour id · 2 + (1 if the edge is

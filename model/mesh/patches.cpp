@@ -37,6 +37,9 @@ constexpr double kLeastOfLevel = 16;
 constexpr double kNarrowRound = 4, kNarrow = 1, kFlat = 0.98;
 /// They lie so many of its widths apart, no closer than this part of s (chosen).
 constexpr double kOfWidth = 0.5, kClosest = 0.25;
+/// A piece whose volume is below so many s of a quarter of its area is thin (chosen: a pin then holds no more
+/// than about 16 of the other body's samples across).
+constexpr double kThin = 4.5;
 constexpr double kMostExtras = 1024;    // on one triangle (chosen: memory)
 constexpr double kMostCells = 1 << 20;  // of a triangle whose samples are counted (chosen: milliseconds; what
                                         // so many miss of its area is a thousandth)
@@ -71,16 +74,16 @@ struct Numbering {
   std::uint32_t count = 0;
 };
 
-/// Numbers the components over smooth edges between triangles that `together` allows, in the order of their
-/// smallest triangle.
+/// Numbers the components over edges between triangles that `together` allows, in the order of their smallest
+/// triangle.
 template <class Together>
-Numbering number_smooth(const LatticeMesh& mesh, const Together& together) {
+Numbering number_joined(const LatticeMesh& mesh, const Together& together) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   Components components(count);
   for (std::uint32_t t = 0; t < count; ++t)
     for (std::uint32_t i = mesh.neighbour_begin[t]; i < mesh.neighbour_begin[t + 1]; ++i) {
       const EdgeNeighbour entry = mesh.neighbours[i];
-      if ((entry & 1) != 0 && entry / 2 < t && together(t, entry / 2)) components.join(t, entry / 2);
+      if (entry / 2 < t && together(t, entry / 2, (entry & 1) != 0)) components.join(t, entry / 2);
     }
   Numbering out{std::vector<std::uint32_t>(count, kNoPatch)};
   for (std::uint32_t t = 0; t < count; ++t) {
@@ -344,11 +347,29 @@ void level_extras(std::int32_t spacing, LatticeMesh& mesh) {
   }
 }
 
+/// Whether each of a triangle's edges is run along as often one way as the other, by it and its neighbours.
+bool edges_cancel(const LatticeMesh& mesh, std::uint32_t triangle) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t p = mesh.triangles[triangle][k], q = mesh.triangles[triangle][(k + 1) % 3];
+    int left = 1;
+    for (std::uint32_t i = mesh.neighbour_begin[triangle]; i < mesh.neighbour_begin[triangle + 1]; ++i) {
+      const auto& other = mesh.triangles[mesh.neighbours[i] / 2];
+      for (std::size_t l = 0; l < 3; ++l) {
+        const std::uint32_t from = other[l], to = other[(l + 1) % 3];
+        left += (from == p && to == q ? 1 : 0) - (from == q && to == p ? 1 : 0);
+      }
+    }
+    if (left != 0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh) {
-  Numbering found =
-      number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) { return part_of[a] == part_of[b]; });
+  Numbering found = number_joined(mesh, [&](std::uint32_t a, std::uint32_t b, bool smooth) {
+    return smooth && part_of[a] == part_of[b];
+  });
   mesh.patch = std::move(found.of);
   mesh.patch_count = found.count;
 }
@@ -395,8 +416,8 @@ std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std
 void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   const double square = static_cast<double>(spacing) * spacing;
-  const Numbering sides = number_smooth(mesh, [&](std::uint32_t a, std::uint32_t b) {
-    return mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] &&
+  const Numbering sides = number_joined(mesh, [&](std::uint32_t a, std::uint32_t b, bool smooth) {
+    return smooth && mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] &&
            looks_back(mesh, a) == looks_back(mesh, b);
   });
   std::vector<std::uint32_t> begin(std::size_t{sides.count} + 1, 0), order(count);
@@ -435,6 +456,34 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),
                    [](const ExtraSample& a, const ExtraSample& b) { return a.triangle < b.triangle; });
   level_extras(spacing, mesh);
+}
+
+void mark_thin_pieces(std::int32_t spacing, LatticeMesh& mesh) {
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  const Numbering pieces = number_joined(mesh, [](std::uint32_t, std::uint32_t, bool) { return true; });
+  struct Piece {
+    bool closed = true;
+    Vec3 origin{0};
+    double volume = 0, area = 0;  // six and two times
+  };
+  std::vector<Piece> of(pieces.count);
+  std::vector<std::uint8_t> begun(pieces.count, 0);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    if (pieces.of[t] == kNoPatch) continue;
+    Piece& piece = of[pieces.of[t]];
+    if (begun[pieces.of[t]] == 0) piece.origin = Vec3(mesh.corner(t, 0)), begun[pieces.of[t]] = 1;
+    const Vec3 raw(raw_normal(mesh, t));
+    piece.area += length(raw);
+    piece.volume += glm::dot(raw, Vec3(mesh.corner(t, 0)) - piece.origin);
+    if (!edges_cancel(mesh, t)) piece.closed = false;
+  }
+  for (std::uint32_t t = 0; t < count; ++t) {
+    mesh.flags[t] &= static_cast<std::uint8_t>(~kTriangleThin);
+    if (pieces.of[t] == kNoPatch) continue;
+    const Piece& piece = of[pieces.of[t]];  // 4 V / A = 4 (volume / 6) / (area / 2)
+    if (piece.closed && piece.volume > 0 && 4 * piece.volume < 3 * kThin * spacing * piece.area)
+      mesh.flags[t] |= kTriangleThin;
+  }
 }
 
 }  // namespace palpate

@@ -272,6 +272,7 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
        {std::pair{&out.mockup, out.sample_spacing}, std::pair{&out.tool, out.tool_sample_spacing}}) {
     if (go_on && !go_on()) return Error{ErrorCode::kInternal, "loading was cancelled"};
     weigh_for_field(sampled_at, *mesh);
+    mark_thin_pieces(out.sample_spacing, *mesh);
   }
   return out;
 }

@@ -87,6 +87,11 @@ bool push_of(bool extra, uint32_t item, out Push push) {
   push.along = push.sheet ? push.against : mockup_normals[id];
   push.depth = uint32_t(depth.steps);
   push.weight = weight;
+  const bool thin = (mockup_info[id] & kInfoThin) != 0u,
+             in_thin = (body_info[depth.triangle] & kInfoThin) != 0u;
+  push.counted = push.sheet || (thin && !in_thin) ? weight
+                 : thin == in_thin               ? weight >> 1
+                                                 : 0u;
   push.static_id = id;
   push.mobile = depth.triangle;
   // CST and EST carry.

@@ -66,6 +66,11 @@ bool push_of(uint32_t item, out Push push) {
   push.along = push.sheet ? push.against : -turned(tool_normals[work.triangle]);
   push.depth = uint32_t(depth.steps);
   push.weight = work.weight;
+  const bool thin = (tool_info[work.triangle] & kInfoThin) != 0u,
+             in_thin = (body_info[depth.triangle] & kInfoThin) != 0u;
+  push.counted = push.sheet || (thin && !in_thin) ? work.weight
+                 : thin == in_thin               ? work.weight >> 1
+                                                 : 0u;
   push.static_id = depth.triangle;
   push.mobile = work.triangle;
   push.slot = kNone;

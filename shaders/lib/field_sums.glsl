@@ -16,6 +16,7 @@ struct Push {
   ivec3 against;       // u
   uint32_t depth;
   uint32_t weight;     // the sample's own, Q24
+  uint32_t counted;    // of it; 0: none pushes, but its depth counts
   bool sheet;
   uint32_t static_id, mobile;
   uint32_t slot;       // of the carrier; kNone: none carries it
@@ -46,9 +47,9 @@ uint32_t bin_of(ivec3 n) {
 void put_push(Push push) {
   const i64vec3 n = i64vec3(push.along), u = i64vec3(push.against),
                 r = i64vec3(push.at) - i64vec3(frame_input.translation);
-  const uint32_t weight = push.weight >> (push.sheet ? 0u : 1u);
+  const uint32_t weight = push.counted;
   const int64_t p = int64_t((uint64_t(push.depth) * uint64_t(weight)) >> 14);
-  put_term(0u, 1l);
+  put_term(0u, weight != 0u ? 1l : 0l);
   put_wide(1u, p * (n >> 10));
   put_wide(7u,
            (p >> 10) * (i64vec3(r.y * n.z - r.z * n.y, r.z * n.x - r.x * n.z, r.x * n.y - r.y * n.x) >> 30));

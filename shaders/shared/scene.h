@@ -18,6 +18,7 @@ PALPATE_CONSTANT uint32_t kVoxelInternal = 2u;
 // 10: it has extra samples.
 PALPATE_CONSTANT uint32_t kInfoCollapsed = 1u;
 PALPATE_CONSTANT uint32_t kInfoSheet = 2u;
+PALPATE_CONSTANT uint32_t kInfoThin = 8u;
 PALPATE_CONSTANT uint32_t kInfoAxisShift = 8u;
 PALPATE_CONSTANT uint32_t kInfoHasExtra = 1u << 10;
 

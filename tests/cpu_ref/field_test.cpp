@@ -78,6 +78,18 @@ TEST(Field, OfASphereInAPlaneIsTheIntegralOverTheCap) {
   }
 }
 
+TEST(Field, OfANeedleIsThatOfItsTip) {
+  BenchScene scene(block(), solids::box(Vec3(-0.3, -0.3, -20) * kMm, Vec3(0.3, 0.3, 20) * kMm, Int3(1)),
+                   voxels_of(2 * kMm));
+  // Of the block's samples, 0.5 mm apart, one or two lie in it, no deeper than 0.3 mm.
+  for (const double d : {0.2, 1.0, 3.0})
+    for (const double x : {0.0, 0.11, 0.23}) {
+      const ContactResponse& answer = scene.ask(Vec3(1.3 + x, 0.7, 20 - d) * kMm);
+      const double expected = modulus(scene) * 0.6 * kMm * 0.6 * kMm * d * kMm;
+      EXPECT_NEAR(answer.wrench.force.z / expected, 1, 1e-3) << d;  // corners on the lattice
+    }
+}
+
 TEST(Field, OfASquarePegCentredInATightHoleCancels) {
   BenchScene scene(square_hole(10 * kMm),
                    solids::box(Vec3(-10.1, -10.1, -30) * kMm, Vec3(10.1, 10.1, 30) * kMm, Int3(1)),

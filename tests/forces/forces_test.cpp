@@ -55,8 +55,8 @@ bool falls_short(const std::string& name, double voxels, const std::string& sent
     return std::any_of(starts.begin(), starts.end(), [&](const char* one) { return name.starts_with(one); });
   };
   if (sentence.starts_with("∂F is"))
-    return any_of({"sphere over an edge", "cone's tip", "plate of", "pin on a plate", "plate on a pin",
-                   "needle", "tool wholly swallowed", "peg of 240 sides tilted, play 3 mm"}) ||
+    return any_of({"sphere over an edge", "cone's tip", "plate of", "tool wholly swallowed",
+                   "peg of 240 sides tilted, play 3 mm"}) ||
            (voxels != 1 && any_of({"peg of", "shaft in two bearings", "gears", "sheet", "open box"}));
   if (sentence.ends_with("of the work is lost round the loop"))
     return name == "cone's tip over an edge" || (name == "box off a table" && voxels >= 1);

@@ -417,6 +417,48 @@ TEST(ExtraSamples, OfOneLevelLieInTheCubesOfThoseTheyStandFor) {
   }
 }
 
+/// 1 where all triangles are flagged as thin, 0 where none is.
+double thin_part(const LatticeMesh& mesh) {
+  return static_cast<double>(std::ranges::count_if(
+             mesh.flags, [](std::uint8_t flags) { return (flags & kTriangleThin) != 0; })) /
+         static_cast<double>(mesh.flags.size());
+}
+
+TEST(ThinPieces, AreNarrowerThanFourAndAHalfSpacings) {
+  // 4 V / A = 4 · 2 · 3 · 60 / (2 · (2 · 3 + 2 · 60 + 3 · 60)) mm.
+  const double width = 1440.0 / 612 * 1e-3;
+  const auto marked = [&](double of_width) {
+    LatticeMesh mesh = build(solids::box(Vec3(0), Vec3(0.002, 0.003, 0.06), Int3(3)));
+    mark_thin_pieces(static_cast<std::int32_t>(of_width * width / (4.5 * kStep)), mesh);
+    return thin_part(mesh);
+  };
+  EXPECT_EQ(marked(0.99), 0);  // corners are rounded to a micrometre
+  EXPECT_EQ(marked(1.01), 1);
+}
+
+TEST(ThinPieces, AreClosedAndTellByThemselves) {
+  const Mesh pin = solids::box(Vec3(0), Vec3(0.001, 0.001, 0.03), Int3(1)),
+             block = solids::box(Vec3(0.1, 0, 0), Vec3(0.15, 0.05, 0.05), Int3(1));
+  Mesh open = pin;
+  open.triangles.pop_back();
+  open.parts = {{"open", 0, static_cast<std::uint32_t>(open.triangles.size())}};
+  LatticeMesh mesh = build(open);
+  mark_thin_pieces(kSpacing, mesh);
+  EXPECT_EQ(thin_part(mesh), 0);
+  Mesh both = pin;
+  both.vertices.insert(both.vertices.end(), block.vertices.begin(), block.vertices.end());
+  for (auto triangle : block.triangles) {
+    for (auto& vertex : triangle) vertex += static_cast<std::uint32_t>(pin.vertices.size());
+    both.triangles.push_back(triangle);
+  }
+  both.parts = {{"both", 0, static_cast<std::uint32_t>(both.triangles.size())}};
+  mesh = build(both);
+  mark_thin_pieces(kSpacing, mesh);
+  EXPECT_EQ(thin_part(mesh), 0.5);
+  mark_thin_pieces(1, mesh);
+  EXPECT_EQ(thin_part(mesh), 0);
+}
+
 TEST(Gyration, OfABoxAboutItsMiddleAndAboutACorner) {
   // A cube's surface of side 2a about its middle: a² for the face's own axis, a²/3 for each of the others.
   const LatticeMesh cube = build(solids::box(Vec3(-0x1p-6), Vec3(0x1p-6), Int3(2, 3, 5)));

@@ -21,6 +21,16 @@ constexpr std::size_t kPart =
 
 bool is_sheet(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & kTriangleSheet) != 0; }
 
+bool is_thin(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & kTriangleThin) != 0; }
+
+/// What counts of a sample's weight: half, for the other body says the same once more; of a thin piece and
+/// one that isn't, the thin one's samples alone (EXACTNESS section 8). `in_thin`: the nearest triangle is
+/// thin.
+std::uint32_t counted(std::uint32_t weight, bool sheet, bool thin, bool in_thin) {
+  if (sheet || (thin && !in_thin)) return weight;
+  return thin == in_thin ? weight >> 1 : 0;
+}
+
 Int3 turned(const LatticePose& pose, const Int3& n) {
   Int3 out;
   for (int r = 0; r < 3; ++r) {
@@ -89,7 +99,8 @@ struct HostField::Push {
   Int3 at;
   Int3 along, against;  ///< n and u
   std::uint32_t depth;
-  std::uint32_t weight;  ///< the sample's own, Q24
+  std::uint32_t weight;   ///< the sample's own, Q24
+  std::uint32_t counted;  ///< of it: 0 in a thin piece, where it pushes nothing
   bool sheet;
 };
 
@@ -198,9 +209,9 @@ bool HostField::is_ignored(std::uint32_t static_id, Lane& lane) const {
   return true;
 }
 
-void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
-                    Lane& lane) const {
-  const std::uint32_t weight = push.weight >> (push.sheet ? 0 : 1);
+/// What pushes.
+void HostField::add_push(const Push& push, Lane& lane) const {
+  const std::uint32_t weight = push.counted;
   const Int3 &n = push.along, r = push.at;
   const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 14);
   constexpr std::int32_t kLeast = 444764242;  // tan 22.5° in Q30
@@ -230,7 +241,11 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   bin.give_spread[3] += (give * x * y) >> 8;
   bin.give_spread[4] += (give * y * z) >> 8;
   bin.give_spread[5] += (give * z * x) >> 8;
+}
 
+void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
+                    Lane& lane) const {
+  if (push.counted != 0) add_push(push, lane);
   add_deepest(lane.field, push.depth, static_id, mobile);
   if (push.sheet) lane.flags |= kFlagSheet;
   if (carrier == nullptr) return;
@@ -240,8 +255,8 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   carrier->weight_sum += push.weight;
   carrier->depth_sum += whole;
   for (std::size_t k = 0; k < 3; ++k) {
-    add_term(carrier->push[k], whole * (n[static_cast<int>(k)] >> 10));
-    add_term(carrier->moment[k], (whole >> 10) * r[static_cast<int>(k)]);
+    add_term(carrier->push[k], whole * (push.along[static_cast<int>(k)] >> 10));
+    add_term(carrier->moment[k], (whole >> 10) * push.at[static_cast<int>(k)]);
   }
 }
 
@@ -252,8 +267,10 @@ void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_i
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, lane)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
+  const bool thin = is_thin(geometry_->mockup, static_id), in_thin = is_thin(geometry_->tool, below.triangle);
+  const auto weight = static_cast<std::uint32_t>(weight_q30 >> 6);
   add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against,
-       below.steps, static_cast<std::uint32_t>(weight_q30 >> 6), sheet},
+       below.steps, weight, counted(weight, sheet, thin, in_thin), sheet},
       static_id, below.triangle, carrier, lane);
 }
 
@@ -264,8 +281,10 @@ void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, co
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, lane)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
+  const bool thin = is_thin(geometry_->tool, mobile), in_thin = is_thin(geometry_->mockup, below.triangle);
+  const auto weight = static_cast<std::uint32_t>(weight_q30 >> 4);
   add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]),
-       against, below.steps, static_cast<std::uint32_t>(weight_q30 >> 4), sheet},
+       against, below.steps, weight, counted(weight, sheet, thin, in_thin), sheet},
       below.triangle, mobile, nullptr, lane);
 }
 

@@ -58,6 +58,7 @@ class HostField {
     std::span<const ExtraSample> all_;
     std::vector<std::uint64_t> has_;  ///< a bit a triangle
   };
+  void add_push(const Push& push, Lane& lane) const;
   void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
            Lane& lane) const;
   void push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point,
