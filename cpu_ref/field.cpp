@@ -32,7 +32,7 @@ bool is_thin(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id]
 
 /// What counts of a sample's weight: half of it, but what lies in a thin piece counts for nothing, and the
 /// thin piece's own samples wholly.
-std::uint32_t counted(std::uint32_t weight, bool own_thin, bool other_thin) {
+std::uint32_t counted_weight(std::uint32_t weight, bool own_thin, bool other_thin) {
   return own_thin == other_thin ? weight / 2 : own_thin ? weight : 0;
 }
 
@@ -225,7 +225,8 @@ class Summing {
               .depth = below->steps};
     push.along = sheet ? push.against : mockup.unit_normal_q30[id];
     push.whole = weight;
-    push.weight = sheet ? weight : counted(weight, is_thin(mockup, id), is_thin(tool, below->triangle));
+    push.weight =
+        sheet ? weight : counted_weight(weight, is_thin(mockup, id), is_thin(tool, below->triangle));
     if (sheet) out_.flags |= kFlagSheet;
     add_sample(push, id, below->triangle, carrier(id));
   }
@@ -239,7 +240,7 @@ class Summing {
     const bool sheet = is_sheet(tool, m) || !frame_.scene.tool_has_inside;
     Push push{.at = point, .against = mockup.unit_normal_q30[below->triangle], .depth = below->steps};
     push.along = sheet ? push.against : -turned(frame_.pose, tool.unit_normal_q30[m]);
-    push.weight = sheet ? weight : counted(weight, is_thin(tool, m), is_thin(mockup, below->triangle));
+    push.weight = sheet ? weight : counted_weight(weight, is_thin(tool, m), is_thin(mockup, below->triangle));
     if (sheet) out_.flags |= kFlagSheet;
     add_sample(push, below->triangle, m, nullptr);
   }
