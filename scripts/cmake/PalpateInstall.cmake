@@ -120,9 +120,9 @@ if(TARGET palpate)
   target_link_options(palpate PRIVATE -Wl,--disable-new-dtags)
   set_target_properties(palpate PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/palpate")
   install(TARGETS palpate RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
-  COMPONENT bundle)
+    COMPONENT bundle)
   install(TARGETS ${palpate_importers} RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION
-  libexec/palpate COMPONENT bundle)
+    libexec/palpate COMPONENT bundle)
   # The C library and the loader belong to the machine; everything else travels, the Vulkan loader too
   # (drivers do not).
   install(RUNTIME_DEPENDENCY_SET palpate_runtime COMPONENT bundle DESTINATION lib/palpate
@@ -138,18 +138,18 @@ if(TARGET palpate)
     file(MAKE_DIRECTORY \"\${OUT}\")
     include(\"${PROJECT_SOURCE_DIR}/scripts/cmake/CollectLicences.cmake\")" COMPONENT bundle)
   install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md SECURITY.md CITATION.cff
-  driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
+    driver/udev/70-palpate.rules DESTINATION share/palpate COMPONENT bundle)
   if(TARGET equivalence)
     # For a GPU that nobody here has had: asks it for all stored answers, and how fast it is.
     set_target_properties(equivalence PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib/palpate")
     target_link_options(equivalence PRIVATE -Wl,--disable-new-dtags)
     install(TARGETS equivalence RUNTIME_DEPENDENCY_SET palpate_runtime RUNTIME DESTINATION libexec/palpate
-    COMPONENT bundle)
+      COMPONENT bundle)
     install(FILES tests/equivalence/hashes.json DESTINATION share/palpate COMPONENT bundle)
     install(PROGRAMS scripts/gpu-check DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bundle)
   endif()
   install(FILES service/deploy/palpate.service service/deploy/nginx.conf DESTINATION share/palpate/deploy
-  COMPONENT bundle)
+    COMPONENT bundle)
   palpate_install_sbom(bundle share/palpate)
   include(PalpateDebian)
 endif()

@@ -26,9 +26,8 @@ option(PALPATE_TOGETHER
 # compiling. -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON turns them off, for ccache to know a file from another
 # checkout, and to see that each includes what it uses.
 set(palpate_common_headers <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem>
-  <fstream> <functional> <map>
-  <memory> <mutex> <optional> <random> <set> <span> <string> <string_view> <thread> <utility> <variant>
-  <vector>
+  <fstream> <functional> <map> <memory> <mutex> <optional> <random> <set> <span> <string> <string_view>
+  <thread> <utility> <variant> <vector>
   <glm/gtc/quaternion.hpp> <glm/mat3x3.hpp> <glm/vec3.hpp>)
 
 # palpate_precompile(NAME OPTION [more headers]): an object library of nothing but them, with -fPIC for
@@ -155,8 +154,8 @@ function(palpate_test_objects name)
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
 endfunction()
 
-# palpate_test(lattice_test LABEL quick SOURCES lattice_test.cpp LIBS palpate::model [ENV "A=1;B=2"] [TIMEOUT
-# 60])
+# palpate_test(lattice_test LABEL quick SOURCES lattice_test.cpp LIBS palpate::model
+#   [ENV "A=1;B=2"] [TIMEOUT 60])
 function(palpate_test name)
   cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LIBS;ENV" ${ARGN})
   if(NOT arg_LABEL)

@@ -195,6 +195,10 @@ std::vector<BenchCell> work_cells(const DeviceWork& work) {
   return {work.submissions, work.dispatches, work.barriers, work.bytes_up, work.bytes_down, work.host_us};
 }
 
+void BenchFacts::add_device(const std::string& text) {
+  if (device.find(text) == std::string::npos) device += (device.empty() ? "" : "; ") + text;
+}
+
 double load_average() {
   double loads[1];
   return getloadavg(loads, 1) == 1 ? loads[0] : -1;

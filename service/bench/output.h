@@ -66,6 +66,9 @@ struct BenchChart {
 
 /// What figures belong to.
 struct BenchFacts {
+  /// Names a device beside those that are there; nothing if it is there already.
+  void add_device(const std::string& text);
+
   std::string command;  ///< "latency"
   std::string device;   ///< the back ends' devices and drivers
   std::vector<std::pair<std::string, std::string>>

@@ -57,6 +57,19 @@ def test_the_other_commands_are_scripts_that_exist():
         expect(os.access(SOURCE / script, os.X_OK), script)
 
 
+def test_scripts_tell_all_of_their_usage():
+    for name in ('test', 'bench', 'bench-haptic', 'gpu-check'):
+        script = SOURCE / 'scripts' / name
+        head = script.read_text().split('\n', 1)[1].split('\nset -')[0].splitlines()
+        told = subprocess.run([script, '--help'], capture_output=True, text=True, timeout=60)
+        expect(told.returncode == 0 and 'usage: ' in told.stdout, told)
+        expect(told.stdout.splitlines() == [line[2:] for line in head], told.stdout)
+    refused = subprocess.run(
+        [SOURCE / 'scripts/check-tidy', '-x'], capture_output=True, text=True, timeout=60
+    )
+    expect(refused.returncode == 2 and refused.stderr.startswith('usage: scripts/check-tidy'), refused)
+
+
 def test_the_scene_file_of_the_readme_is_read():
     scene = re.search(r'```json\n(.*?)```', TEXT, re.S).group(1)
     folder = Folder()

@@ -71,9 +71,9 @@ TEST(Library, GivesTheColumnsThatAreAskedForAndNoOthers) {
   must(palpate_query(scene, poses.data(), 2, &columns, nullptr, &error), error);
   EXPECT_EQ(force[2], 0);
   EXPECT_GT(force[5], 0.1);  // upwards, out of the plate
-  // Within 0.2 degrees: of so small a cube its own samples speak alone, 10 mm apart, which are not the same
-  // about the middle.
-  EXPECT_NEAR(force[3], 0, 3.5e-3 * force[5]);
+  // Within 3 degrees, as tests/forces asks of faces: samples, 5 and 10 mm apart, are not the same about the
+  // middle.
+  EXPECT_NEAR(force[3], 0, 0.052 * force[5]);
   EXPECT_GT(evaluations[1], 1u);
 }
 

@@ -71,7 +71,7 @@ def main():
         vmin=0,
         vmax=100,
     )
-    figure.colorbar(picture, label='directions in which the rod is free, %')
+    figure.colorbar(picture, label='directions in which the rod is free, %', shrink=0.6)
     axes.set(
         xlabel='x, m',
         ylabel='z, m',

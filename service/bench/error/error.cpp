@@ -183,7 +183,7 @@ class ErrorBench {
       }
       if (!made) return made.error();
       const std::string own = (*made)->name();
-      facts_.device += (facts_.device.empty() ? "" : "; ") + device_text(**made, parts_);
+      facts_.add_device(device_text(**made, parts_));
       engines_.push_back({own, std::move(*made), own != "cpu"});
     }
     return {};

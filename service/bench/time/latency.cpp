@@ -115,9 +115,7 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
                              count_text(geometry.mockup.triangles.size()),
                              count_text(geometry.tool.triangles.size()), scene.load_s, scene.prepare_s,
                              bytes_text(scene.backend->memory_bytes()), scene.backend->name()));
-      const std::string device = device_text(*scene.backend, parts);
-      if (facts.device.find(device) == std::string::npos)
-        facts.device += (facts.device.empty() ? "" : "; ") + device;
+      facts.add_device(device_text(*scene.backend, parts));
     }
   }
   facts.more.emplace_back("clock", options.cpu_clock ? "CPU time of this process" : "wall");

@@ -256,7 +256,6 @@ Result<void> bench_peers(const BenchOptions& options, const Parts& parts) {
                    {}};
   table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
   std::vector<BenchChart> charts;
-  std::vector<std::string> devices;
   const double load = load_average();
   for (const std::string& file : options.scenes) {
     const Result<Race> race = run_race(options, file, parts, console);
@@ -265,12 +264,7 @@ Result<void> bench_peers(const BenchOptions& options, const Parts& parts) {
     const SceneGeometry& geometry = race->geometry();
     add_rows(name, *race, table);
     add_chart(name, *race, charts);
-    for (const Engine& engine : race->engines) {
-      const std::string device = device_text(*engine.scene->backend, parts);
-      if (std::find(devices.begin(), devices.end(), device) != devices.end()) continue;
-      devices.push_back(device);
-      facts.device += (facts.device.empty() ? "" : "; ") + device;
-    }
+    for (const Engine& engine : race->engines) facts.add_device(device_text(*engine.scene->backend, parts));
     facts.more.emplace_back(name, fmt::format("mock-up {} triangles, tool {}, {} poses, {} exact pairs",
                                               count_text(geometry.mockup.triangles.size()),
                                               count_text(geometry.tool.triangles.size()), race->poses.size(),

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -201,10 +200,7 @@ class Scale {
           static_cast<double>(step.of_tool ? figures->tool : figures->triangles));
       growth.series.back().y.push_back(p.p50);
     }
-    if (std::find(devices_.begin(), devices_.end(), figures->device) == devices_.end()) {
-      devices_.push_back(figures->device);
-      facts_.device += (facts_.device.empty() ? "" : "; ") + figures->device;
-    }
+    facts_.add_device(figures->device);
     return {};
   }
 
@@ -218,7 +214,6 @@ class Scale {
   std::map<std::string, double>
       spacing_m_;  ///< by series, of its first: other samples would be another contact
   BenchFacts facts_{.command = "scale", .device = {}, .more = {}};
-  std::vector<std::string> devices_;  ///< of the engines that answered
   BenchTable table_ = columns();
   std::map<std::string, BenchChart> growth_;  ///< by engine
 };

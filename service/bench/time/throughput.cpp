@@ -145,9 +145,7 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
             1e6 / us, us, us / single});
         for (BenchCell& cell : work_cells(series.work)) row.push_back(std::move(cell));
       }
-      const std::string device = device_text(*scene.backend, parts);
-      if (facts.device.find(device) == std::string::npos)
-        facts.device += (facts.device.empty() ? "" : "; ") + device;
+      facts.add_device(device_text(*scene.backend, parts));
       facts.more.emplace_back(name + ", " + backend, fmt::format("{} poses", poses->size()));
     }
   facts.more.emplace_back("clock", "wall");
