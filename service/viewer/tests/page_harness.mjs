@@ -72,8 +72,8 @@ export async function open_browser() {
     executablePath: browser_path,
     args: [
       '--headless', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
-      '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage', '--use-gl=angle',
-      '--use-angle=swiftshader', '--enable-unsafe-swiftshader'
+      '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
+      '--enable-unsafe-swiftshader'  // WebGL where there is no GPU; the page itself is not drawn by it
     ]
   });
 }

@@ -90,8 +90,8 @@ const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
   args: [
     '--headless', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
-    '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage', '--use-gl=angle',
-    '--use-angle=swiftshader', '--enable-unsafe-swiftshader'
+    '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
+    '--enable-unsafe-swiftshader'  // as in page_harness.mjs
   ]
 });
 try {

@@ -1,6 +1,8 @@
 # mypy: ignore-errors
 """palpate.sweep: asks a scene at very many poses, on many processors or machines, and can be cut short
 anywhere."""
+from __future__ import annotations
+
 import contextlib
 import dataclasses
 import os
@@ -16,6 +18,21 @@ from .poses import ArrayPoses, source_of
 from .progress import Progress
 from .store import Full, Store
 from .words import refuse
+
+
+@dataclasses.dataclass(frozen=True)
+class _Wanted:
+    """What `sweep` is asked beside the scene and the poses, under its own names."""
+
+    ask: str
+    within: float | None
+    again: str  # the second engine
+    share: float
+    again_poses: int
+    workers: int | None
+    quiet: bool
+    command: str | None
+    connect: object
 
 
 @dataclasses.dataclass(frozen=True)
@@ -66,12 +83,12 @@ def sweep(
 
     scene : a palpate.Scene, or what makes one: a file or a dict. poses : a Grid, a function (start, n) ->
     float64 (n, 7) with `count` of them in all, or an array (N, 7). client : a distributed.Client whose
-    workers have palpate and see `out` and the scene's files under the same paths. None:
-        `workers` processes here, which share the processors out (None: one each, at most 8).
+    workers have palpate and see `out` and the scene's files under the same paths. None: `workers` processes
+    here, which share the processors out (None: one each, at most 8).
     ask : 'touches' (bool), 'clearance' (distance and nearest points; `within` metres) or 'query' (contact,
     force, torque). engine : of a scene that is made here. again : the engine that answers `share` of the
-    chunks a second time: 'auto' (ref
-        beside cpu, cpu beside gpu), 'gpu', 'cpu' or 'ref'; at `again_poses` poses of each, evenly spread, for ref is slow.
+    chunks a second time: 'auto' (ref beside cpu, cpu beside gpu), 'gpu', 'cpu' or 'ref'; at `again_poses`
+    poses of each, evenly spread, for ref is slow.
     quiet : no progress on standard error. command : what to note as the command; connect : makes a lost
     client anew.
 
@@ -93,109 +110,37 @@ def sweep(
     if not isinstance(scene, palpate.Scene):
         scene = palpate.Scene(scene, engine=engine)
     store, chunks = Store(os.path.abspath(out)), Chunks(source.count, size)
+    second = second_engine(scene.engine, again)
+    wanted = _Wanted(ask, within, second, share, again_poses, workers, quiet, command, connect)
     try:
         with store.mine():
-            return _sweep(
-                scene,
-                source,
-                chunks,
-                store,
-                client,
-                ask,
-                within,
-                again,
-                share,
-                again_poses,
-                workers,
-                quiet,
-                command,
-                connect,
-            )
+            return _sweep(scene, source, chunks, store, client, wanted)
     except Full as full:
         refuse(f'{full}; make room and give the same command again, which goes on from what is done')
 
 
-def _sweep(
-    scene,
-    source,
-    chunks,
-    store,
-    client,
-    ask,
-    within,
-    again,
-    share,
-    again_poses,
-    workers,
-    quiet,
-    command,
-    connect,
-):
-    import palpate
-
-    from .cluster import local
-    from .drive import Driver
-    from .worker import Job
-
-    again = second_engine(scene.engine, again)
-    first = answer(scene, ask, within, source.poses(0, 1))
-    types = {
-        name: [values.dtype.newbyteorder('<').str, list(values.shape[1:])]
-        for name, values in sorted(first.items())
-    }
-    asked = {'scene': scene.hash, 'ask': ask, 'within': within, 'columns': types}
-    question = {
-        **asked,
-        'poses': source.describe(),
-        'count': source.count,
-        'chunk': chunks.size,
-        'palpate': palpate.__version__,
-    }
-    about = {
-        'engine': scene.engine,
-        'command': command or shlex.join(sys.orig_argv),
-        'shape': list(getattr(source, 'shape', ())),
-    }
-    kept = isinstance(source, ArrayPoses)
-    store.begin(question, about, first, chunks, source.rows if kept else None)
-
-    twice = chunks.asked_twice(share)
+def _sweep(scene, source, chunks, store, client, wanted):
+    asked = _begin(scene, source, chunks, store, wanted)
+    twice = chunks.asked_twice(wanted.share)
     done = store.done()
     earlier = len(done)
     progress = Progress(
         chunks.poses,
         sum(record['poses'] for record in done.values()),
-        open(os.devnull, 'w') if quiet else None,
+        open(os.devnull, 'w') if wanted.quiet else None,
     )
     if earlier:
         progress.note(f'{earlier} of {chunks.count} chunks were done before')
     with contextlib.ExitStack() as stack:
-        for attempt in range(3):
+        driver = None
+        for _ in range(3):
             # Those that two engines answer take longest, so they begin first.
             todo = sorted(
                 set(range(chunks.count)) - set(done), key=lambda number: (number not in twice, number)
             )
             if todo:
-                if attempt == 0:
-                    shares = {}
-                    if client is None:
-                        client, shares = stack.enter_context(local(workers, scene.engine == 'gpu'))
-                    job = Job(
-                        f'palpate-sweep-{uuid.uuid4().hex}',
-                        palpate.__version__,
-                        scene.hash,
-                        maker(scene),
-                        scene.engine,
-                        again,
-                        again_poses,
-                        ask,
-                        within,
-                        None if kept else source,
-                        str(store.path),
-                        chunks,
-                        shares,
-                    )
-                    driver = Driver(client, job, progress, connect)
+                if driver is None:
+                    driver = _driver(scene, source, chunks, store, client, wanted, progress, stack)
                     progress.begin()
                 try:
                     driver.run(todo, twice)
@@ -206,14 +151,74 @@ def _sweep(
                 progress.end()
                 done = store.done()
             # What counts is what the disk gives back.
-            for number in store.faulty(sorted(done.values(), key=lambda record: record['chunk']), types):
+            in_turn = sorted(done.values(), key=lambda record: record['chunk'])
+            for number in store.faulty(in_turn, asked['columns']):
                 progress.note(f'chunk {number} is not on the disk as it was written; asking again')
                 del done[number]
             if len(done) == chunks.count:
                 break
         else:
             refuse(f'{store.path}: the disk gives back other data than was written')
-    records = [done[number] for number in range(chunks.count)]
+    return _finish(asked, [done[number] for number in range(chunks.count)], chunks, store, earlier, progress)
+
+
+def _begin(scene, source, chunks, store, wanted):
+    """Makes the store ready for this question, or finds it there. What is asked, for the digest."""
+    import palpate
+
+    first = answer(scene, wanted.ask, wanted.within, source.poses(0, 1))
+    types = {
+        name: [values.dtype.newbyteorder('<').str, list(values.shape[1:])]
+        for name, values in sorted(first.items())
+    }
+    asked = {'scene': scene.hash, 'ask': wanted.ask, 'within': wanted.within, 'columns': types}
+    question = {
+        **asked,
+        'poses': source.describe(),
+        'count': source.count,
+        'chunk': chunks.size,
+        'palpate': palpate.__version__,
+    }
+    about = {
+        'engine': scene.engine,
+        'command': wanted.command or shlex.join(sys.orig_argv),
+        'shape': list(getattr(source, 'shape', ())),
+    }
+    store.begin(question, about, first, chunks, source.rows if isinstance(source, ArrayPoses) else None)
+    return asked
+
+
+def _driver(scene, source, chunks, store, client, wanted, progress, stack):
+    """Hands the job out: to `client`, or to processes of this machine, which end with `stack`."""
+    import palpate
+
+    from .cluster import local
+    from .drive import Driver
+    from .worker import Job
+
+    shares = {}
+    if client is None:
+        client, shares = stack.enter_context(local(wanted.workers, scene.engine == 'gpu'))
+    job = Job(
+        f'palpate-sweep-{uuid.uuid4().hex}',
+        palpate.__version__,
+        scene.hash,
+        maker(scene),
+        scene.engine,
+        wanted.again,
+        wanted.again_poses,
+        wanted.ask,
+        wanted.within,
+        None if isinstance(source, ArrayPoses) else source,
+        str(store.path),
+        chunks,
+        shares,
+    )
+    return Driver(client, job, progress, wanted.connect)
+
+
+def _finish(asked, records, chunks, store, earlier, progress):
+    """Seals the store with the hash of all answers."""
     if [record['start'] for record in records] != [
         chunks.span(number)[0] for number in range(chunks.count)
     ] or sum(record['poses'] for record in records) != chunks.poses:

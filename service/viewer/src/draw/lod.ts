@@ -2,7 +2,7 @@
 // every level.
 
 export const LEVELS = [30_000, 120_000, 400_000, 1_500_000];
-const SLOW_MS = 40;  // chosen: below 25 pictures a second dragging feels sticky
+const SLOW_MS = 36;  // chosen: what is paced (scene_view.ts) at 33 ms, and a tenth
 const FAST_MS =
     18;  // chosen: keeps up with a screen of 60 Hz; whether four times as much does, too, is tried once
 const ENOUGH = 40;  // pictures that tell; where they are slow, those of ENOUGH_MS, and FEWEST at least

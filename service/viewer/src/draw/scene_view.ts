@@ -18,6 +18,10 @@ export function round_down(value: number): number {
 const SHARP_AFTER = 8;  // pictures' times without a picture; chosen: a hand that stops waits an eighth of a
                         // second for the sharp one
 
+// Without a GPU, from one picture to the next, ms: as many as look smooth. More would be drawn with the
+// processors that work out what the tool touches. Chosen: every second one of a screen of 60 Hz.
+const PACE_MS = 25;
+
 /**
  * Whether WebGL is drawn without a GPU: then edges are left rough, for smooth ones cost four times as much,
  * and it is pixels that take the time.
@@ -61,6 +65,7 @@ export class SceneView {
   private running = false;
   private quiet = 0;
   private last_draw = NaN;
+  private drew_at = -Infinity;
   private last_whole = 0;
   private readonly sharp: number;  // pixels of the picture for one of the page
   private focus = {centre: new three.Vector3(), radius: 1, floor: 0};
@@ -112,6 +117,10 @@ export class SceneView {
       this.running = false;
       return;
     }
+    if (this.software && this.dirty && now - this.drew_at < PACE_MS) {
+      requestAnimationFrame(this.draw);
+      return;
+    }
     this.quiet = this.dirty ? 0 : this.quiet + 1;
     this.running = this.quiet < 20;
     if (this.running) requestAnimationFrame(this.draw);
@@ -123,6 +132,7 @@ export class SceneView {
       return;
     }
     this.dirty = false;
+    this.drew_at = now;
     this.camera.updateMatrixWorld();
     const stands = this.software && (this.kept.look(now) || rests) && this.kept.may_keep;
     // Coarse from the second picture of a row to the end of the motion, which a row that breaks is not:
