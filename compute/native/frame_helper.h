@@ -24,8 +24,8 @@ class FrameHelper {
 
   /// Calls part(i, lane) for i = 0 … parts − 1, each once, on this thread (lane 0) and the helper's (lane 1);
   /// returns when all have returned. At most kMostParts. What a part throws is thrown on here, once all have
-  /// ended. One caller at a time. Neither allocates nor blocks: it spins, then yields, for the last part of the
-  /// other.
+  /// ended. One caller at a time. Neither allocates nor blocks: for the other's last part it spins, then
+  /// yields.
   template <class Part>
   void share(std::uint32_t parts, Part part) {
     run(
