@@ -174,7 +174,7 @@ def watch(
 
     def on_progress(_context: Any, what: bytes, done: float) -> int:
         try:
-            return 1 if progress is not None and progress(what.decode(), done) is False else 0
+            return 1 if progress(what.decode(), done) is False else 0  # type: ignore[misc]
         except BaseException as thrown:
             kept.append(thrown)
             return 1
@@ -187,4 +187,6 @@ def watch(
             kept.append(thrown)
             cancel.value = 1
 
-    return Watch(ctypes.sizeof(Watch), ctypes.pointer(cancel), _PROGRESS(on_progress), _NOTE(on_note), None)
+    # The library tells every few poses: nobody is called who has nothing to hear.
+    told = _PROGRESS(on_progress) if progress is not None else _PROGRESS()
+    return Watch(ctypes.sizeof(Watch), ctypes.pointer(cancel), told, _NOTE(on_note), None)

@@ -20,9 +20,8 @@ Progress = Callable[[int, int], Any]
 #: Vertices (V, 3) and faces (F, 3), or anything that has `vertices` and `faces`, as a trimesh has.
 MeshLike = Any
 
-_PIECE_SECONDS = 0.1  # of a batch between two looks at signals (chosen: a hand does not feel it)
-_LONGEST_SECONDS = 0.5  # where poses are slow (chosen: a hand feels it and waits)
-_LEAST_PIECE = 32 * (os.cpu_count() or 1)  # poses, if that takes no longer
+_UNFELT_SECONDS = 0.1  # without a look at signals (chosen: a hand does not feel it)
+_TELL_SECONDS = 0.1  # between two words of progress
 
 
 class _Handle:
@@ -169,7 +168,7 @@ class Scene:
         that was ended leaves nothing of use."""
         asked, shape = _poses(poses)
         found = Columns(shape, columns, out)
-        self._in_pieces(
+        self._answer(
             'query',
             len(asked),
             progress,
@@ -188,7 +187,7 @@ class Scene:
         all_samples=True."""
         asked, shape = _poses(poses)
         found = np.empty(shape, np.bool_)
-        self._in_pieces(
+        self._answer(
             'touches',
             len(asked),
             progress,
@@ -209,7 +208,7 @@ class Scene:
         asked, shape = _poses(poses)
         found = Distances(shape)
         reach = float('inf') if within is None else within
-        self._in_pieces(
+        self._answer(
             'clearance',
             len(asked),
             progress,
@@ -232,7 +231,7 @@ class Scene:
         begin, end = np.broadcast_arrays(np.asarray(start, np.float64), np.asarray(goal, np.float64))
         (first_poses, shape), (last_poses, _) = _poses(begin), _poses(end)
         found = Motions(shape)
-        self._in_pieces(
+        self._answer(
             'first_contact',
             len(first_poses),
             progress,
@@ -324,35 +323,63 @@ class Scene:
             raise PalpateError(2, 'the scene is closed')
         return handle
 
-    def _in_pieces(
+    def _answer(
         self,
         question: str,
         count: int,
         progress: Optional[Progress],
         ask: Callable[[int, int, int, Any], None],
     ) -> None:
-        """Asks piece by piece, each about _PIECE_SECONDS long, so that Python sees signals between them."""
-        handle, first = self._asked(), 0  # the handle lives as long as this call
-        while first < count:
-            rate = self._rates.get(question, 1 / _PIECE_SECONDS)  # of nothing yet: one pose tells more
-            # Where poses are slow, a piece is long enough that processors seldom wait for the last of it.
-            size = max(1, int(rate * _PIECE_SECONDS), min(_LEAST_PIECE, int(rate * _LONGEST_SECONDS)))
-            size = min(size, count - first)
+        """Asks `count` poses. What takes longer than a hand feels is asked beside this thread, which then sees
+        signals."""
+        handle = self._asked()  # it lives as long as this call
+        rate, first = self._rates.get(question), 0
+        if rate is None or count <= rate * _UNFELT_SECONDS:
+            first = 1 if rate is None else count  # one pose tells how long the others take
             begin = time.perf_counter()
-            if size / rate > _LONGEST_SECONDS:  # a single slow one
-                cancel = ctypes.c_int32()
-                seen = ctypes.byref(watch(cancel))
-                obeying(lambda: ask(handle.pointer, first, size, seen), cancel)
-            else:
-                ask(handle.pointer, first, size, None)
-            taken = max(time.perf_counter() - begin, 1e-6)
-            first += size
-            # A short piece says little of how long a long one takes.
+            ask(handle.pointer, 0, min(first, count), None)
+            self._learn(question, min(first, count), time.perf_counter() - begin)
+        if first < count:
+            self._answer_long(handle, question, first, count, progress, ask)
+        if progress is not None and progress(count, count) is False:
+            raise PalpateError(64, f'cancelled after {count} of {count}')
+
+    def _answer_long(
+        self,
+        handle: _Handle,
+        question: str,
+        first: int,
+        count: int,
+        progress: Optional[Progress],
+        ask: Callable[[int, int, int, Any], None],
+    ) -> None:
+        cancel, faults = ctypes.c_int32(), []  # type: ignore[var-annotated]
+        begin = told = time.perf_counter()
+
+        def tell(_what: str, done: float) -> Any:
+            nonlocal told
+            now = time.perf_counter()
+            if progress is None or now - told < _TELL_SECONDS:
+                return True
+            told = now
+            return progress(first + int(done * (count - first)), count)
+
+        seen = watch(cancel, tell if progress is not None else None, None, faults)
+        try:
+            obeying(lambda: ask(handle.pointer, first, count - first, ctypes.byref(seen)), cancel)
+        except PalpateError:
+            if faults:
+                raise faults[0] from None
+            raise
+        self._learn(question, count - first, time.perf_counter() - begin)
+
+    def _learn(self, question: str, count: int, seconds: float) -> None:
+        """How many poses a second; a short piece says little of how long a long one takes."""
+        if count > 0:
+            rate = count / max(seconds, 1e-6)
             self._rates[question] = (
-                min(size / taken, 8 * size / _PIECE_SECONDS) if taken < _PIECE_SECONDS else size / taken
+                rate if seconds >= _UNFELT_SECONDS else min(rate, 8 * count / _UNFELT_SECONDS)
             )
-            if progress is not None and progress(first, count) is False:
-                raise PalpateError(64, f'cancelled after {first} of {count}')
 
 
 def _row(poses: NDArray[np.float64], first: int) -> int:
