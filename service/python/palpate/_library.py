@@ -188,5 +188,5 @@ def watch(
             cancel.value = 1
 
     # The library tells every few poses: nobody is called who has nothing to hear.
-    told = _PROGRESS(on_progress) if progress is not None else _PROGRESS()
+    told = _PROGRESS(on_progress) if progress is not None else _PROGRESS(0)  # null
     return Watch(ctypes.sizeof(Watch), ctypes.pointer(cancel), told, _NOTE(on_note), None)
