@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from typing import Any, Iterator, Mapping, Optional
 
 import numpy as np
@@ -102,7 +103,7 @@ class _Columns(Mapping[str, 'NDArray[Any]']):
         made = self._struct()
         made.size = ctypes.sizeof(made)
         for name, array in self._flat.items():
-            step = array.itemsize * int(np.prod(self._specification[name][1], dtype=int))
+            step = array.itemsize * math.prod(self._specification[name][1])
             setattr(made, name, array.ctypes.data + first * step)
         return made
 
