@@ -53,7 +53,7 @@ Result<double> CsvRow::number(std::size_t column) const {
 }
 
 Result<double> CsvRow::time(std::size_t column) const {
-  const auto value = number(column);
+  auto value = number(column);
   if (value && (*value < 0 || *value > kLatest))
     return bad_value(place() + ": time " + printed(*value) + " s is not from 0 to 1000000 s");
   return value;

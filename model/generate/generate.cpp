@@ -1,6 +1,7 @@
 #include "model/generate.h"
 
 #include <array>
+#include <iterator>
 
 #include "model/generate/chapter_scenes.h"
 
@@ -42,6 +43,7 @@ Result<GeneratedScene> generate_scene(const std::string& name, std::uint64_t tri
 
 std::vector<std::string> generator_names() {
   std::vector<std::string> names;
+  names.reserve(std::size(kGenerators));
   for (const Generator& generator : kGenerators) names.emplace_back(generator.name);
   return names;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +18,7 @@ class Motion {
 
   /// Moves within `seconds` (a multiple of 20 ms) with the least jerk: 10 f³ − 15 f⁴ + 6 f⁵.
   void go(const Vec3& place, const Vec3& turn, double seconds, int stage) {
-    const int steps = static_cast<int>(seconds * kRate + 0.5);
+    const int steps = static_cast<int>(std::lround(seconds * kRate));
     for (int i = 1; i <= steps; ++i) {
       const double f = static_cast<double>(i) / steps;
       const double g = f * f * f * (10 + f * (-15 + 6 * f));

@@ -83,8 +83,9 @@ Piece block(std::string name, const Vec3& min, const Vec3& max, double fineness,
   return piece;
 }
 
-Piece lofted(std::string name, double fineness, std::vector<Span> around, std::vector<Span> along, Ends ends,
-             std::function<Vec3(const GridPlace&, const GridPlace&)> point) {
+Piece lofted(std::string name, double fineness, const std::vector<Span>& around,
+             const std::vector<Span>& along, Ends ends,
+             const std::function<Vec3(const GridPlace&, const GridPlace&)>& point) {
   Piece piece{std::move(name), fineness, around, {}, {}};
   piece.spans.insert(piece.spans.end(), along.begin(), along.end());
   const std::size_t n_around = around.size(), n_along = along.size();
@@ -104,14 +105,15 @@ Piece lofted(std::string name, double fineness, std::vector<Span> around, std::v
   return piece;
 }
 
-Piece swept(std::string name, double fineness, std::vector<Span> section_spans,
-            std::function<std::pair<double, double>(const GridPlace&)> section, std::vector<Span> spine_spans,
-            std::function<Pose(const GridPlace&)> spine, double cap_m) {
+Piece swept(std::string name, double fineness, const std::vector<Span>& section_spans,
+            const std::function<std::pair<double, double>(const GridPlace&)>& section,
+            const std::vector<Span>& spine_spans, const std::function<Pose(const GridPlace&)>& spine,
+            double cap_m) {
   const std::size_t last = spine_spans.size() + 1;
   std::vector<Span> along{{cap_m, 1}};
   along.insert(along.end(), spine_spans.begin(), spine_spans.end());
   along.push_back({cap_m, 1});
-  return lofted(std::move(name), fineness, std::move(section_spans), std::move(along), Ends::kPoints,
+  return lofted(std::move(name), fineness, section_spans, along, Ends::kPoints,
                 [=](const GridPlace& u, const GridPlace& v) {
                   double scale = 1;
                   GridPlace on_spine{v.span - 1, v.step, v.steps};

@@ -41,14 +41,16 @@ struct Piece {
 Piece block(std::string name, const Vec3& min, const Vec3& max, double fineness, const Pose& pose = {});
 
 /// A grid of `around` × `along` spans (solids::loft says which way round is outward).
-Piece lofted(std::string name, double fineness, std::vector<Span> around, std::vector<Span> along,
-             solids::Ends ends, std::function<Vec3(const GridPlace& around, const GridPlace& along)> point);
+Piece lofted(std::string name, double fineness, const std::vector<Span>& around,
+             const std::vector<Span>& along, solids::Ends ends,
+             const std::function<Vec3(const GridPlace& around, const GridPlace& along)>& point);
 
 /// A section in the (y, z) plane of a frame that moves along its own x; closed at both ends by shrinking the
 /// section to the frame's origin. The section runs counter-clockwise seen from +x.
-Piece swept(std::string name, double fineness, std::vector<Span> section_spans,
-            std::function<std::pair<double, double>(const GridPlace&)> section, std::vector<Span> spine_spans,
-            std::function<Pose(const GridPlace&)> spine, double cap_m);
+Piece swept(std::string name, double fineness, const std::vector<Span>& section_spans,
+            const std::function<std::pair<double, double>(const GridPlace&)>& section,
+            const std::vector<Span>& spine_spans, const std::function<Pose(const GridPlace&)>& spine,
+            double cap_m);
 
 /// A plate of thickness `thickness` along x with an opening: two outlines in (y, z), counter-clockwise seen
 /// from +x, corner i of the one joined to corner i of the other. `round_inside`: the inner one is a circle

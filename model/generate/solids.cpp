@@ -132,7 +132,7 @@ Mesh sphere(double radius, std::uint32_t segments, std::uint32_t rings) {
 Mesh sphere_of(double radius, std::uint64_t triangles) {
   // segments = 2·rings makes the cells near the equator square: 4·r² − 4·r triangles.
   const double rings = 0.5 + std::sqrt(0.25 + static_cast<double>(triangles) / 4);
-  const auto r = std::max(2u, static_cast<std::uint32_t>(rings + 0.5));
+  const auto r = std::max(2u, static_cast<std::uint32_t>(std::lround(rings)));
   return sphere(radius, 2 * r, r);
 }
 

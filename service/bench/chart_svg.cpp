@@ -102,12 +102,14 @@ std::string axis_marks(const ChartAxis* x, const ChartAxis& y, const std::string
 
 /// Place of a series' name below the plot.
 std::pair<double, double> legend_place(std::size_t number) {
+  const std::size_t row = number / 2;
   return {number % 2 == 0 ? kChartLeft : (kChartLeft + kChartWidth) / 2,
-          kBottom + 58 + kLegendRow * static_cast<double>(number / 2)};
+          kBottom + 58 + kLegendRow * static_cast<double>(row)};
 }
 
 double lines_height(const BenchChart& chart) {
-  return kBottom + 52 + kLegendRow * static_cast<double>((chart.series.size() + 1) / 2);
+  const std::size_t rows = (chart.series.size() + 1) / 2;
+  return kBottom + 52 + kLegendRow * static_cast<double>(rows);
 }
 
 std::string lines_svg(const BenchChart& chart) {

@@ -71,8 +71,7 @@ Result<void> export_geometry(const std::string& directory, const SceneGeometry& 
       continue;
     }
     const auto path = root / fmt::format("tool_{}.i32", i);
-    const auto done =
-        write_triangles(path, geometry.tool, [&](const Int3& v) { return transform(*pose, v); });
+    auto done = write_triangles(path, geometry.tool, [&](const Int3& v) { return transform(*pose, v); });
     if (!done) return done;
   }
 

@@ -106,6 +106,7 @@ std::vector<std::string> all_names(const std::vector<OptionLine>& options) {
 
 std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) {
   std::vector<std::string> out;
+  out.reserve(commands.size());
   for (const CLI::App* command : commands) out.push_back(command->get_name());
   return out;
 }

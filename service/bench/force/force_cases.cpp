@@ -291,6 +291,7 @@ ForceCase sphere_into_a_corner() {
 /// A plate slides from one pad on to `pads`, pressed by 0.3 mm.
 ForceCase plate_over_pads(int pads) {
   std::vector<Mesh> all;
+  all.reserve(static_cast<std::size_t>(pads));
   for (int i = 0; i < pads; ++i) all.push_back(block(Vec3(-50 + 25 * i, -8, -10), Vec3(-38 + 25 * i, 8, 0)));
   return {.name = {},
           .mockup = joined(all),
@@ -300,6 +301,7 @@ ForceCase plate_over_pads(int pads) {
 }
 ForceCase plate_on_waves() {
   std::vector<Mesh> all;
+  all.reserve(6);
   for (int i = 0; i < 6; ++i)
     all.push_back(solids::moved(solids::cylinder(6 * kMm, 60 * kMm, 48, 6),
                                 {Vec3(-45 + 15 * i, 30, -6) * kMm, rotation_by(Vec3(kPi / 2, 0, 0))}));
@@ -408,7 +410,7 @@ ForceCase on_an_open_box() {
 
 std::vector<ForceCaseMaker> force_cases() {
   std::vector<ForceCaseMaker> out;
-  const auto add = [&](std::string name, std::function<ForceCase()> make) {
+  const auto add = [&](const std::string& name, const std::function<ForceCase()>& make) {
     out.push_back({name, [name, make] {
                      ForceCase made = make();
                      made.name = name;

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "model/contact/response.h"
 #include "service/bench/time/times.h"
@@ -24,8 +25,12 @@ bool any_contact(const PlanTrial& trial) {
                      [](const auto& frame) { return frame.contacts.contact; });
 }
 
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+bool same_bits(const Vec3& a, const Vec3& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
 
 /// Names the first difference of two areas and their responses.
 const char* difference(const ContactArea& a, const AreaResponse& ra, const ContactArea& b,

@@ -22,9 +22,9 @@ struct HttpRequest {
   std::string content_type, accept, range, expect;
   std::string body;  ///< empty when it went to a BodySink
 
-  std::string query_or(const std::string& name, std::string otherwise) const {
+  std::string query_or(const std::string& name, const std::string& otherwise) const {
     const auto found = query.find(name);
-    return found == query.end() ? std::move(otherwise) : found->second;
+    return found == query.end() ? otherwise : found->second;
   }
 };
 

@@ -105,7 +105,7 @@ std::optional<Problem> MultipartReader::feed(std::string_view bytes) {
         break;
       case State::kHead: {
         const auto end = rest.find("\r\n\r\n");
-        if (end == std::string_view::npos || end > kLongestHead) {
+        if (end > kLongestHead) {  // npos, too
           if (rest.size() > kLongestHead)
             problem = bad_request("the header of a part is longer than 8192 bytes", "body");
           more = false;
