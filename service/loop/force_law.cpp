@@ -135,7 +135,7 @@ void ForceLawState::take(const LawPose& pose, const LawResult& result) {
   felt.rotation = pose.rotation;
   add_pushes(felt, to_, share_);
   add_pushes(felt, from_, 1 - share_, from_grows_);
-  PlaneSet next = result;
+  PlaneSet next = static_cast<const PlaneSet&>(result);
   std::array<LawPose, kMaxLawPlanes> seen;
   for (std::uint32_t i = 0; i < next.plane_count; ++i) seen[i] = {result.tick, result.gc, result.rotation};
   remember(result, next, seen);

@@ -115,14 +115,16 @@ void BatchQueue::add(BatchRequest request, Reply reply) {
   auto batch = std::make_shared<Batch>();
   batch->request = std::move(request);
   batch->reply = std::move(reply);
+  bool taken = false;
   {
     const std::lock_guard lock(mutex_);
     if (!stop_ && metrics_.batches_now < limits_.batches) {
       ++metrics_.batches_now;
-      ring_.push_back(std::move(batch));
+      ring_.push_back(batch);
+      taken = true;
     }
   }
-  if (batch) return batch->reply(Problem{503, "busy", "there are too many queries under way; ask again", ""});
+  if (!taken) return batch->reply(Problem{503, "busy", "there are too many queries under way; ask again", ""});
   work_.notify_one();
 }
 
