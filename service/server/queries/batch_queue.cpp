@@ -124,7 +124,8 @@ void BatchQueue::add(BatchRequest request, Reply reply) {
       taken = true;
     }
   }
-  if (!taken) return batch->reply(Problem{503, "busy", "there are too many queries under way; ask again", ""});
+  if (!taken)
+    return batch->reply(Problem{503, "busy", "there are too many queries under way; ask again", ""});
   work_.notify_one();
 }
 
