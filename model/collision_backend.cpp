@@ -2,8 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace palpate {
+
+Result<void> CollisionBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
+  const std::size_t each = poses_together(poses.size());
+  if (each <= 1)
+    return share(poses.size(),
+                 [&](PoseQuery& asked, std::size_t i) { return asked.query(poses[i], nullptr, out[i]); });
+  return share((poses.size() + each - 1) / each, [&](PoseQuery& asked, std::size_t i) {
+    const std::size_t first = i * each, count = std::min(each, poses.size() - first);
+    std::vector<Contacts*> to(count);
+    for (std::size_t k = 0; k < count; ++k) to[k] = &out[first + k];
+    return asked.query_together(poses.subspan(first, count), to);
+  });
+}
 
 Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
   constexpr std::size_t kAtOnce = 1024;  // contacts that are held (chosen: some megabytes)

@@ -54,6 +54,13 @@ class PoseQuery {
   /// Answers one pose. `ignored`: what is left out, `refined` only; may be null. Writes `out` whole, reusing
   /// its memory. An error means that the back end itself failed (device lost): the caller sends zero force.
   virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;
+  /// Answers many: `out[i]` is what query(poses[i], nullptr, *out[i]) would make of it but for the times. As
+  /// many `out` as `poses`.
+  virtual Result<void> query_together(std::span<const LatticePose> poses, std::span<Contacts* const> out) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (auto done = query(poses[i], nullptr, *out[i]); !done) return done;
+    return {};
+  }
 };
 
 /// Piece `i` of some work: asks `asked`, and nobody else, for as many poses as it needs. An error ends the
@@ -97,12 +104,16 @@ class CollisionBackend : public PoseQuery {
     return {};
   }
 
+  /// How many of so many poses a piece of share() best asks together; 1: nothing is gained by it. May set
+  /// helpers up, as share().
+  virtual std::size_t poses_together(std::size_t count) {
+    (void)count;
+    return 1;
+  }
+
   /// Answers many poses with whatever can work on them side by side: out[i] is what query(poses[i], nullptr,
   /// out[i]) would make of it but for the times. As many `out` as `poses`. Threads and memory as share().
-  virtual Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
-    return share(poses.size(),
-                 [&](PoseQuery& asked, std::size_t i) { return asked.query(poses[i], nullptr, out[i]); });
-  }
+  virtual Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out);
 
   /// Whether the tool touches the mock-up, containment included: bits[i] = 1 where query() of poses[i] would
   /// find contact. As many `bits` as `poses`. As query_batch() for the rest, and may stop at the first pair

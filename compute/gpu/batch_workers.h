@@ -1,11 +1,12 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "compute/gpu/frame/frame.h"
+#include "compute/gpu/frame/pose_grid.h"
 #include "compute/gpu/gpu_backend.h"
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/vulkan/device.h"
@@ -13,41 +14,45 @@
 
 namespace palpate {
 
-/// Frames that answer poses of a batch beside the caller's, each on a thread of its own, all on one scene.
-/// Where what a frame does runs on the thread that asks (lavapipe), each has a device, too, and the devices
-/// share the scene in host memory (VulkanDevice::shares_memory): a thread is a core's worth. Elsewhere all
-/// frames are the one device's: while one waits for it others search, so that several are under way. One
-/// caller at a time.
+/// What answers poses of a batch on the caller's thread and beside it, each on a thread of its own, all on
+/// one scene: a lone frame, and in `refined` a grid of many poses. Where what a device does runs on the
+/// thread that asks (lavapipe), each has a device, too, and the devices share the scene in host memory
+/// (VulkanDevice::shares_memory): a thread is a core's worth. Elsewhere all are the one device's: while one
+/// waits for it others write poses and read answers, so that several submissions are under way. One caller at
+/// a time.
 class BatchWorkers {
  public:
-  /// `helpers` threads on `device`, or each on a device of its own where it is null; device, geometry and
-  /// scene outlive this. Reads the environment as make_gpu_backend does. Takes about as long as the first
-  /// frame.
-  static Result<std::unique_ptr<BatchWorkers>> create(const GpuOptions& options, VulkanDevice* device,
-                                                      const SceneGeometry& geometry,
+  /// `helpers` threads; each with a device of its own, or on `device` where `own_devices` is not. `own`: the
+  /// caller's frame, on `device`. Device, geometry, scene and `own` outlive this. Reads the environment as
+  /// make_gpu_backend does. Takes about as long as the first frame.
+  static Result<std::unique_ptr<BatchWorkers>> create(const GpuOptions& options, VulkanDevice& device,
+                                                      bool own_devices, const SceneGeometry& geometry,
                                                       const PreparedScene& scene, const Plan& plan,
-                                                      unsigned helpers);
+                                                      Frame& own, unsigned helpers);
   ~BatchWorkers();
   BatchWorkers(const BatchWorkers&) = delete;
   BatchWorkers& operator=(const BatchWorkers&) = delete;
 
-  /// As PoseThreads::share: `own` on this thread, the helpers beside it. What a frame has too little room for
-  /// is enlarged and asked again.
-  Result<void> share(Frame& own, std::size_t count, const PoseWork& work);
+  /// As PoseThreads::share. What a frame has too little room for is enlarged and asked again.
+  Result<void> share(std::size_t count, const PoseWork& work);
+  /// As CollisionBackend::poses_together.
+  std::size_t poses_together(std::size_t count) const;
 
   std::uint64_t memory_bytes() const;
-  /// Of the helpers' frames.
+  /// Of all of them but the caller's frame.
   DeviceWork work() const;
 
  private:
+  class Asked;
   struct Helper {
     std::unique_ptr<VulkanDevice> device;  ///< where each has one, with …
     PreparedScene scene;                   ///< … what it has of the scene
     std::unique_ptr<Frame> frame;
-    std::unique_ptr<PoseQuery> asked;  ///< the frame, enlarged where it has to be
+    std::unique_ptr<Asked> asked;  ///< the frame, enlarged where it has to be, and the grid
   };
-  BatchWorkers() = default;
+  BatchWorkers();
 
+  std::unique_ptr<Asked> own_;  ///< on the caller's thread
   std::vector<std::unique_ptr<Helper>> helpers_;
   std::optional<PoseThreads> threads_;  ///< of the helpers
 };

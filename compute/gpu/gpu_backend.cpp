@@ -18,7 +18,10 @@
 namespace palpate {
 namespace {
 
-constexpr unsigned kMostHelpers = 7;  // each takes a frame's memory (chosen)
+// Each takes a frame's memory (chosen), …
+constexpr unsigned kMostHelpers = 7;
+// … and on a device that all share a grid's, hundreds of megabytes: as many as keep it busy.
+constexpr unsigned kMostGrids = 3;
 
 /// The device engine: a device, the scene on it, and the frame that answers queries.
 class GpuBackend final : public CollisionBackend {
@@ -40,8 +43,8 @@ class GpuBackend final : public CollisionBackend {
   Result<void> replan(const Plan& plan) override {
     if (!scene_ || (plan.profile == Profile::kRefined) != (scene_->constants.refined != 0))
       return Error{ErrorCode::kInternal, "no scene has been prepared for this plan's profile"};
-    frame_.reset();  // two frames' lists may not fit
-    workers_.reset();
+    workers_.reset();  // which asks the frame
+    frame_.reset();    // two frames' lists may not fit
     no_workers_ = false;
     return make_frame(plan);
   }
@@ -65,10 +68,15 @@ class GpuBackend final : public CollisionBackend {
   Result<void> share(std::size_t count, const PoseWork& work) override {
     if (!frame_) return Error{ErrorCode::kInternal, "query before prepare"};
     shared_ += count;
-    if (!workers_ && !no_workers_ && shared_ >= kWorthThreads) set_helpers_up();
-    if (!workers_ || count < 2) return CollisionBackend::share(count, work);
-    if (auto done = workers_->share(*frame_, count, work); !done) return done;
+    if (shared_ >= kWorthThreads) set_helpers_up();
+    if (!workers_) return CollisionBackend::share(count, work);
+    if (auto done = workers_->share(count, work); !done) return done;
     return device_->check_guards();
+  }
+
+  std::size_t poses_together(std::size_t count) override {
+    if (frame_ && shared_ + count >= kWorthThreads) set_helpers_up();
+    return workers_ ? workers_->poses_together(count) : 1;
   }
 
   Result<void> enlarge() override {
@@ -156,12 +164,12 @@ class GpuBackend final : public CollisionBackend {
   }
 
   void set_helpers_up() {
+    if (workers_ || no_workers_) return;
     no_workers_ = true;
-    const unsigned cores = processors();
-    if (cores < 2) return;
     const bool own_devices = device_->shares_memory() && options_.inline_execution;
-    auto made = BatchWorkers::create(options_, own_devices ? nullptr : device_.get(), *geometry_, *scene_,
-                                     plan_, std::min(cores - 1, kMostHelpers));
+    const unsigned most = own_devices || scene_->constants.refined == 0 ? kMostHelpers : kMostGrids;
+    auto made = BatchWorkers::create(options_, *device_, own_devices, *geometry_, *scene_, plan_, *frame_,
+                                     std::min(processors() - 1, most));
     if (made) workers_ = std::move(*made);  // else one thread answers all, as before
   }
 

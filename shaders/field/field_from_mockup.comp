@@ -13,7 +13,7 @@ layout(constant_id = 0) const bool CLOSED = true;   // the tool
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindSamples, FrameSample, frame_samples);
 READ(kBindMockupPoints, FieldPoint, mockup_points);
 READ(kBindMockupInfo, uint32_t, mockup_info);
@@ -44,6 +44,8 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 #define BODY_GRID scene.fine
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/group_count.glsl"
+#include "shaders/lib/posed_table.glsl"
+POSED_TABLE(static, kBindStaticKeys)
 #include "shaders/lib/body/body_depth.glsl"
 #include "shaders/lib/body/body_walks.glsl"
 #include "shaders/lib/field_sums.glsl"
@@ -62,16 +64,21 @@ bool inside_tool(ivec3 point, ivec3 at) {
 // False: nothing pushes.
 bool push_of(bool extra, uint32_t item, out Push push) {
   ivec3 point;
-  uint32_t id, weight;
+  uint32_t entry, id, weight;
   if (extra) {
     const FieldPoint work = mockup_points[item];
     point = work.point;
-    id = work.triangle;
+    entry = work.triangle;
+    id = static_id(entry);
     weight = work.weight;
+    take_pose(static_pose(entry));
   } else {
     const FrameSample work = frame_samples[item];
     point = work.point;
-    id = work.static_id;
+    entry = work.static_id;
+    id = static_id(entry);
+    take_pose(static_pose(entry));
+    if (!in_contact()) return false;
     const uint32_t axis = mockup_info[id] >> kInfoAxisShift & 3u;
     const ivec2 ij =
         cell_of_sample(ivec2(point[(axis + 1u) % 3u], point[(axis + 2u) % 3u]), scene.sample_spacing);
@@ -95,13 +102,12 @@ bool push_of(bool extra, uint32_t item, out Push push) {
   push.static_id = id;
   push.mobile = depth.triangle;
   // CST and EST carry.
-  push.slot = (static_state[id] & (kStaticHit | kStaticSampled)) != 0u ? static_slot[id] : kNone;
+  push.slot = (static_state[entry] & (kStaticHit | kStaticSampled)) != 0u ? static_slot[entry] : kNone;
   return true;
 }
 
 void main() {
-  const uint32_t samples = in_contact() ? list_count(kListSamples) : 0u,
-                 rounded = groups_to(list_count(kListSamples)) * kGroupSize;
+  const uint32_t samples = list_count(kListSamples), rounded = groups_to(samples) * kGroupSize;
   const uint32_t i = flat_invocation();
   const bool extra = i >= rounded;
   Push push;

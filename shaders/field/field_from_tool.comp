@@ -13,7 +13,7 @@ layout(constant_id = 1) const bool INSIDE = true;   // the tool has an inside
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindToolPoints, FieldPoint, tool_points);
 READ(kBindToolInfo, uint32_t, tool_info);
 READ(kBindToolNormals, ivec3, tool_normals);
@@ -38,6 +38,8 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 
 #define BODY_GRID scene.mockup.grid
 #include "shaders/lib/list_room.glsl"
+#include "shaders/lib/posed_table.glsl"
+POSED_TABLE(mobile, kBindMobileKeys)
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/body/body_depth.glsl"
 #include "shaders/lib/body/body_walks.glsl"
@@ -54,25 +56,27 @@ bool inside_mockup(ivec3 point) {
 // False: nothing pushes.
 bool push_of(uint32_t item, out Push push) {
   const FieldPoint work = tool_points[item];
+  const uint32_t mobile = mobile_id(work.triangle);
+  take_pose(mobile_pose(work.triangle));
   // What touches nothing is on one side of the mock-up, with its first corner.
   const bool hit = (mobile_state[work.triangle] & kMobileHit) != 0u;
-  if (!inside_mockup(hit ? work.point : world_from_tool(tool_vertices[tool_triangles[work.triangle].x])))
+  if (!inside_mockup(hit ? work.point : world_from_tool(tool_vertices[tool_triangles[mobile].x])))
     return false;
   const Depth depth = body_depth(work.point);
   if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
   push.at = work.point;
   push.against = body_normals[depth.triangle];
-  push.sheet = !INSIDE || (tool_info[work.triangle] & kInfoSheet) != 0u;
-  push.along = push.sheet ? push.against : -turned(tool_normals[work.triangle]);
+  push.sheet = !INSIDE || (tool_info[mobile] & kInfoSheet) != 0u;
+  push.along = push.sheet ? push.against : -turned(tool_normals[mobile]);
   push.depth = uint32_t(depth.steps);
   push.weight = work.weight;
-  const bool thin = (tool_info[work.triangle] & kInfoThin) != 0u,
+  const bool thin = (tool_info[mobile] & kInfoThin) != 0u,
              in_thin = (body_info[depth.triangle] & kInfoThin) != 0u;
   push.counted = push.sheet || (thin && !in_thin) ? work.weight
                  : thin == in_thin               ? work.weight >> 1
                                                  : 0u;
   push.static_id = depth.triangle;
-  push.mobile = work.triangle;
+  push.mobile = mobile;
   push.slot = kNone;
   return true;
 }

@@ -10,7 +10,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 #include "shaders/lib/set_name.glsl"
 
 layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
@@ -37,7 +37,7 @@ EXTRA_SAMPLES(tool, tool_extras)
 GROUP_COUNTS(kBindPlacedGroups, placed_groups)
 GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 
-void list_static_extras(uint32_t id) {
+void list_static_extras(uint32_t id, uint32_t entry) {
   const uint32_t first = first_mockup_extra(id, scene.mockup_extras),
                  count = mockup_extras_from(first, id, scene.mockup_extras);
   for (uint32_t i = 0u; i < count; ++i) {
@@ -45,14 +45,14 @@ void list_static_extras(uint32_t id) {
     if (weight == 0u) continue;
     const uint32_t at = take_room(kListMockupPoints, 1u);
     if (at >= frame_lists[kListMockupPoints].capacity) continue;
-    mockup_points[at] = FieldPoint(mockup_extras[first + i].point, id, weight);
+    mockup_points[at] = FieldPoint(mockup_extras[first + i].point, entry, weight);
     if (begins_group(at, 1u))
       grow_placed_groups(kGroupsMockupPush,
                          groups_to(list_count(kListSamples)) + groups_to(at + 1u));  // behind the samples
   }
 }
 
-void list_mobile_extras(uint32_t mobile) {
+void list_mobile_extras(uint32_t mobile, uint32_t entry) {
   const uint32_t first = first_tool_extra(mobile, scene.tool_extras),
                  count = tool_extras_from(first, mobile, scene.tool_extras);
   for (uint32_t i = 0u; i < count; ++i) {
@@ -60,13 +60,13 @@ void list_mobile_extras(uint32_t mobile) {
     if (weight == 0u) continue;
     const uint32_t at = take_room(kListToolPoints, 1u);
     if (at >= frame_lists[kListToolPoints].capacity) continue;
-    tool_points[at] = FieldPoint(world_from_tool(tool_extras[first + i].point), mobile, weight);
+    tool_points[at] = FieldPoint(world_from_tool(tool_extras[first + i].point), entry, weight);
     if (begins_group(at, 1u)) grow_pushed_groups(0u, groups_to(at + 1u));
   }
 }
 
 // Of the cells that reach into the triangle's box; they are decided one by one later.
-void list_tiles(uint32_t mobile, uint32_t info) {
+void list_tiles(uint32_t mobile, uint32_t entry, uint32_t info) {
   const uvec3 corners = tool_triangles[mobile];
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
   const uint32_t axis = info >> kInfoAxisShift & 3u, u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
@@ -85,25 +85,28 @@ void list_tiles(uint32_t mobile, uint32_t info) {
   if (first < capacity)
     grow_placed_groups(kGroupsTiles, groups_to(min(first + tiles, capacity) * kFieldTileLanes));
   for (uint32_t t = 0u; t < tiles && first + t < capacity && !spent(1u); ++t)
-    field_tiles[first + t] = FieldTile(mobile, u_first, v_first, across, t * kFieldTile,
+    field_tiles[first + t] = FieldTile(entry, u_first, v_first, across, t * kFieldTile,
                                        min((t + 1u) * kFieldTile, uint32_t(cells)));
 }
 
 void take_static(uint32_t slot) {
+  const uint32_t entry = contact_statics[slot], id = static_id(entry);
+  take_pose(static_pose(entry));
   name_static(slot);
   if (!in_contact()) return;
   if (CARRIERS)
     for (uint32_t i = 0u; i < kCarrierWords; ++i) carrier_work[kCarrierWords * slot + i] = 0l;
-  const uint32_t id = contact_statics[slot];
-  if (INSIDE && (mockup_info[id] & kInfoHasExtra) != 0u) list_static_extras(id);
+  if (INSIDE && (mockup_info[id] & kInfoHasExtra) != 0u) list_static_extras(id, entry);
 }
 
 void take_mobile(uint32_t place) {
+  const uint32_t entry = contact_mobiles[place];
+  take_pose(mobile_pose(entry));
   name_mobile(place);
   if (!in_contact()) return;
-  const uint32_t mobile = contact_mobiles[place], info = tool_info[mobile];
-  if ((info & kInfoHasExtra) != 0u) list_mobile_extras(mobile);
-  if (tool_weights[mobile] != 0u) list_tiles(mobile, info);
+  const uint32_t mobile = mobile_id(entry), info = tool_info[mobile];
+  if ((info & kInfoHasExtra) != 0u) list_mobile_extras(mobile, entry);
+  if (tool_weights[mobile] != 0u) list_tiles(mobile, entry, info);
 }
 
 void main() {

@@ -13,7 +13,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindFieldTiles, FieldTile, field_tiles);
 READ(kBindToolVertices, ivec3, tool_vertices);
 READ(kBindToolTriangles, uvec3, tool_triangles);
@@ -27,6 +27,8 @@ EDIT(kBindToolPoints, FieldPoint, tool_points);
 
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/group_count.glsl"
+#include "shaders/lib/posed_table.glsl"
+POSED_TABLE(mobile, kBindMobileKeys)
 GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #include "shaders/lib/pose.glsl"
 #define PARTITION(name) mockup_##name
@@ -37,11 +39,11 @@ GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #include "shaders/lib/sample_levels.glsl"
 SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
-void take(FieldTile tile, SampledTriangle triangle, uint32_t cell) {
+void take(FieldTile tile, uint32_t mobile, SampledTriangle triangle, uint32_t cell) {
   const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
               g = sample_of_cell(ij, scene.tool_sample_spacing);
   if (!grid_point_inside(triangle, g)) return;
-  const uint32_t weight = uint32_t(tool_weight(tile.mobile, tool_weights[tile.mobile], ij) >> 4);
+  const uint32_t weight = uint32_t(tool_weight(mobile, tool_weights[mobile], ij) >> 4);
   if (weight == 0u) return;
   const ivec3 p = world_from_tool(sample_point(triangle, g));
   const bool hit = (mobile_state[tile.mobile] & kMobileHit) != 0u;
@@ -56,10 +58,12 @@ void main() {
   const uint32_t item = flat_invocation() / kFieldTileLanes;
   if (item >= list_count(kListFieldTiles)) return;
   const FieldTile tile = field_tiles[item];
-  const uvec3 corners = tool_triangles[tile.mobile];
+  const uint32_t mobile = mobile_id(tile.mobile);
+  take_pose(mobile_pose(tile.mobile));
+  const uvec3 corners = tool_triangles[mobile];
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
-  const int32_t axis = int32_t(tool_info[tile.mobile] >> kInfoAxisShift & 3u);
+  const int32_t axis = int32_t(tool_info[mobile] >> kInfoAxisShift & 3u);
   const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
   for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end; cell += kFieldTileLanes)
-    take(tile, triangle, cell);
+    take(tile, mobile, triangle, cell);
 }

@@ -4,8 +4,8 @@
 // kGroupSize clusters each, an invocation one of them, then one of the runs of those that are near. The
 // BRICK_GROUPS others: V_bnd voxels of the mock-up that the tool's solid may reach into, and so samples; in
 // rounds of kGroupSize bricks of those that the tool's fine grid may meet, an invocation one of them, then
-// one of the voxels of those that are near. Reads boxes of the tool, occupied cubes and both partitions;
-// appends near_runs and sample_chunks. Errs towards near.
+// one of the voxels of those that are near. In a batch so many workgroups a pose, a row each. Reads boxes of
+// the tool, occupied cubes and both partitions; appends near_runs and sample_chunks. Errs towards near.
 #include "shaders/lib/frame.glsl"
 
 layout(constant_id = 0) const uint32_t SAMPLES = 2u;   // 1: chunks of voxels' lists; 2: of listed points
@@ -15,7 +15,7 @@ layout(constant_id = 2) const uint32_t BRICK_GROUPS = 2u;   // workgroups that l
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindToolBounds, LatticeBox, tool_bounds);
 READ(kBindOccupied, uint32_t, occupied);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slot);
@@ -61,7 +61,7 @@ void append_parts(uint32_t run, ivec3 first, ivec3 last) {
       for (int32_t x = first.x; x <= last.x && !spent(1u); x += part.x) {
         const ivec3 low = ivec3(x, y, z);
         const uvec3 range = uvec3(low | min(low + part - 1, last) << 16);
-        append(NearRun(run, range.x, range.y, range.z));
+        append(NearRun(run, range.x, range.y, range.z, frame_pose));
       }
 }
 
@@ -85,9 +85,8 @@ bool grid_near(ivec3 brick) {
   ivec3 reach = ivec3(half_side);
   if (ROTATES)
     for (int c = 0; c < 3; ++c)
-      reach[c] = int32_t((abs(float(frame_input.rotation_q30[c])) +
-                          abs(float(frame_input.rotation_q30[3 + c])) +
-                          abs(float(frame_input.rotation_q30[6 + c]))) *
+      reach[c] = int32_t((abs(float(INPUT(rotation_q30[c]))) + abs(float(INPUT(rotation_q30[3 + c]))) +
+                          abs(float(INPUT(rotation_q30[6 + c])))) *
                          (float(half_side) * ((1.0 + 1.0 / 1048576.0) / 1073741824.0))) + 4;
   const ivec3 low = scene.fine.origin, high = low + 8 * scene.fine.size * scene.fine.bricks;
   return all(greaterThanEqual(centre + reach, low)) && all(lessThanEqual(centre - reach, high));
@@ -124,7 +123,9 @@ void append_chunks(ivec3 voxel, uint32_t boundary) {
   if (at < capacity && begins_group(at, chunks))
     grow_near_groups(kGroupsSamples, groups_to(min(at + chunks, capacity)));
   for (uint32_t i = 0u; i < chunks && at + i < capacity && !spent(1u); ++i)
-    sample_chunks[at + i] = SampleChunk(voxel, begin + i * chunk, min(begin + (i + 1u) * chunk, end));
+    sample_chunks[at + i] =
+        SampleChunk(voxel + ivec3(0, 0, BATCH ? int32_t(frame_pose << 16) : 0), begin + i * chunk,
+                    min(begin + (i + 1u) * chunk, end));
 }
 
 void cull_samples(uint32_t lane, uint32_t item) {
@@ -165,8 +166,9 @@ void cull_samples(uint32_t lane, uint32_t item) {
 }
 
 void main() {
-  const uint32_t lane = gl_LocalInvocationIndex, group = flat_group();
+  const uint32_t lane = gl_LocalInvocationIndex, group = BATCH ? gl_WorkGroupID.x : flat_group();
   const uint32_t all = kClusterSize * kGroupSize, tool_groups = (scene.tool.triangles + all - 1u) / all;
+  take_pose(gl_WorkGroupID.y);
   if (lane == 0u) near_count = 0u;
   barrier();
   if (group < tool_groups)

@@ -10,7 +10,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
@@ -27,6 +27,7 @@ EDIT(kBindPairSlots, uint32_t, pair_slots);
 EDIT(kBindPairs, ContactPair, pairs);
 
 #include "shaders/lib/budget.glsl"
+#include "shaders/lib/group_poses.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/mobile_mark.glsl"
@@ -62,8 +63,11 @@ ivec3 parts_of(ivec3 d, int32_t size) {
 }
 
 void begin(uint32_t lane, uint32_t item) {
+  no_pose(lane);
   if (item >= list_count(kListPairChunks)) return;
   const PairChunk work = pair_chunks[item];
+  take_pose(work.pose);
+  put_pose(lane);
   const uint32_t place = work.place & ~kFirstTouch;
   const RecordCorners r = record_at(place);
   const ivec3 a = world_from_tool(r.a), b = world_from_tool(r.b), c = world_from_tool(r.c);
@@ -100,12 +104,19 @@ bool may_meet(uint32_t box) {
   return abs(plane + at.x + at.y + at.z) <= about.x + about.y + about.z + slack;
 }
 
+// Never 0: an empty entry. In a batch the host has seen to it that all fits (FrameDetection::keys_fit).
+uint64_t key_of(uint32_t id, uint32_t place) {
+  if (!BATCH) return (uint64_t(id) + 1ul) << 32 | uint64_t(place);
+  return ((uint64_t(frame_pose) + 1ul) << (findMSB(scene.mockup.triangles) + 1) | uint64_t(id))
+             << (findMSB(scene.tool.triangles) + 1) |
+         uint64_t(place);
+}
+
 // Enters a pair in the table. False: it is there, or there is no room.
 bool is_new(uint32_t id, uint32_t place) {
-  const uint64_t key = (uint64_t(id) + 1ul) << 32 | uint64_t(place);   // never 0: an empty entry
-  const uint32_t entries = uint32_t(pair_table.length());              // 2^n, n > 0
-  // 2^64 / golden ratio; the highest bits of the product hang on all of the key's.
-  uint32_t at = uint32_t((key * 0x9E3779B97F4A7C15ul) >> uint32_t(64 - findMSB(entries))), probes = 0u;
+  const uint64_t key = key_of(id, place);
+  const uint32_t entries = uint32_t(pair_table.length());   // 2^n, n > 0
+  uint32_t at = first_probe(key, entries), probes = 0u;
   uint64_t there = ~0ul;
   while (there != 0ul && probes++ < entries && !spent(1u)) {
     there = atomicCompSwap(pair_table[at], 0ul, key);
@@ -122,6 +133,7 @@ bool is_new(uint32_t id, uint32_t place) {
 
 void decide(uint64_t work) {
   const uint32_t id = uint32_t(work), lane = uint32_t(work >> 32), place = places[lane];
+  go_on_for(lane);
   if (!is_new(id, place)) return;
   const uvec3 s = mockup_triangles[id];
   if (!triangles_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]),
@@ -130,6 +142,10 @@ void decide(uint64_t work) {
   const uint32_t mobile = uint32_t(tool_records[6u * place + 1u] >> 32);
   mark_static(id, kStaticHit);
   mark_mobile(mobile, kMobileHit);
+  if (BATCH) {   // nobody asks which
+    atomicAdd(frame_state.pairs, 1u);
+    return;
+  }
   const uint32_t at = take_room(kListPairs, 1u);
   if (at < frame_lists[kListPairs].capacity) pairs[at] = ContactPair(id, mobile);
 }
@@ -151,9 +167,13 @@ void main() {
     barrier();
     const uint32_t marks = mark_count, meets = meet_count;
     again = unfinished != 0u;
-    for (uint32_t i = lane; i < marks && !spent(1u); i += kGroupSize)
-      mark_static(uint32_t(found[kRoom - 1u - i]), kStaticListed);
+    for (uint32_t i = lane; i < marks && !spent(1u); i += kGroupSize) {
+      const uint64_t work = found[kRoom - 1u - i];
+      go_on_for(uint32_t(work >> 32));
+      mark_static(uint32_t(work), kStaticListed);
+    }
     for (uint32_t i = lane; i < meets && !spent(1u); i += kGroupSize) decide(found[i]);
     barrier();
   }
+  tell_left_undone(lane);
 }

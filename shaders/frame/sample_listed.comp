@@ -12,7 +12,7 @@ layout(constant_id = 0) const bool WIDE = false;   // voxels of more than kNarro
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindFineBrickSlot, uint32_t, fine_brick_slot);
 READ(kBindFineBricks, Brick, fine_bricks);
 READ(kBindSamplePoints, uint32_t, sample_points);
@@ -22,9 +22,11 @@ EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
 EDIT(kBindOpenSamples, FrameSample, open_samples);
+EDIT(kBindOpenPoses, uint32_t, open_poses);
 EDIT(kBindSamples, FrameSample, samples);
 
 #include "shaders/lib/budget.glsl"
+#include "shaders/lib/group_poses.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
 #include "shaders/lib/sample_room.glsl"
@@ -50,24 +52,32 @@ uint32_t point = 0u, end = 0u;   // of the invocation's chunk
 ivec3 low;                       // its voxel's low corner
 
 void begin(uint32_t lane, uint32_t item) {
+  no_pose(lane);
   if (item >= list_count(kListSampleChunks)) return;
-  const SampleChunk work = sample_chunks[item];
+  SampleChunk work = sample_chunks[item];
+  if (BATCH) {
+    take_pose(uint32_t(work.voxel.z) >> 16);
+    work.voxel.z &= 0xFFFF;
+  }
+  put_pose(lane);
   low = scene.mockup.grid.origin + scene.mockup.grid.size * work.voxel;
   for (uint32_t k = 0u; k < 3u; ++k) lows[3u * lane + k] = low[k];
   point = work.begin;
   end = work.end;
 }
 
+// Goes on with it for whoever has found it.
 FrameSample sample_of(uint64_t work) {
   const uint32_t i = uint32_t(work), of = 3u * uint32_t(work >> 32);
+  go_on_for(uint32_t(work >> 32));
   return FrameSample(ivec3(lows[of], lows[of + 1u], lows[of + 2u]) + point_at(i), sample_ids[i]);
 }
 
 void take(FrameSample sample_) {
-  mark_static(sample_.static_id & ~kCornerProbe, kStaticSampled);
-  if ((sample_.static_id & kCornerProbe) != 0u) return;
+  const uint32_t entry = mark_static(sample_.static_id & ~kCornerProbe, kStaticSampled);
+  if ((sample_.static_id & kCornerProbe) != 0u || entry == kNone) return;
   uint32_t place;
-  if (take_sample(place)) samples[place] = sample_;
+  if (take_sample(place)) samples[place] = FrameSample(sample_.point, entry);
 }
 
 void main() {
@@ -96,4 +106,5 @@ void main() {
       put_open(sample_of(found[kRoom - 1u - i]));
     barrier();
   }
+  tell_left_undone(lane);
 }

@@ -11,7 +11,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupInfo, uint32_t, mockup_info);
@@ -23,6 +23,7 @@ EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
 EDIT(kBindOpenSamples, FrameSample, open_samples);
+EDIT(kBindOpenPoses, uint32_t, open_poses);
 EDIT(kBindSamples, FrameSample, samples);
 
 #include "shaders/lib/pose.glsl"
@@ -42,9 +43,9 @@ void take(ivec3 point, uint32_t id) {
     put_open(FrameSample(point, id));
     return;
   }
-  mark_static(id, kStaticSampled);
+  const uint32_t entry = mark_static(id, kStaticSampled);
   uint32_t at;
-  if (take_sample(at)) samples[at] = FrameSample(point, id);
+  if (entry != kNone && take_sample(at)) samples[at] = FrameSample(point, entry);
 }
 
 // EST by the first corner, for triangles between the samples.
@@ -56,7 +57,11 @@ void probe(ivec3 corner, uint32_t id) {
 
 void decide(uint32_t item) {
   if (item >= list_count(kListSampleChunks)) return;
-  const SampleChunk work = sample_chunks[item];
+  SampleChunk work = sample_chunks[item];
+  if (BATCH) {
+    take_pose(uint32_t(work.voxel.z) >> 16);
+    work.voxel.z &= 0xFFFF;
+  }
   const int32_t spacing = scene.sample_spacing;
   const ivec3 low = scene.mockup.grid.origin + scene.mockup.grid.size * work.voxel;
   const ivec3 high = low + scene.mockup.grid.size - 1;   // the last lattice point of the half-open cube

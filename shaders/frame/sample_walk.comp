@@ -12,7 +12,7 @@ layout(constant_id = 0) const bool CLOSED = true;   // the tool
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindToolVertices, ivec3, body_vertices);
 READ(kBindToolTriangles, uvec3, body_triangles);
@@ -25,6 +25,7 @@ READ(kBindFineShells, int32_t, body_shells);
 READ(kBindFinePlaces, uint32_t, fine_places);
 READ(kBindFineExit, uint32_t, fine_exit);
 READ(kBindOpenSamples, ivec4, open_samples);
+READ(kBindOpenPoses, uint32_t, open_poses);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
 EDIT(kBindContactStatics, uint32_t, contact_statics);
@@ -39,12 +40,13 @@ EDIT(kBindSamples, ivec4, samples);
 void decide(uint32_t item) {
   if (item >= list_count(kListOpenSamples)) return;
   const ivec4 work = open_samples[item];   // FrameSample
+  if (BATCH) take_pose(open_poses[item]);
   const ivec3 at = tool_from_world(work.xyz), voxel = body_voxel_of(at);
   if (!(CLOSED ? tool_winding(work.xyz) != 0 : body_vote_inside(at, voxel))) return;
-  mark_static(uint32_t(work.w) & ~kCornerProbe, kStaticSampled);
-  if ((uint32_t(work.w) & kCornerProbe) != 0u) return;
+  const uint32_t entry = mark_static(uint32_t(work.w) & ~kCornerProbe, kStaticSampled);
+  if ((uint32_t(work.w) & kCornerProbe) != 0u || entry == kNone) return;
   uint32_t place;
-  if (take_sample(place)) samples[place] = work;
+  if (take_sample(place)) samples[place] = ivec4(work.xyz, int32_t(entry));
 }
 
 void main() { decide(flat_invocation()); }

@@ -11,7 +11,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-EDIT_ONE(kBindFrameState, FrameState, frame_state);
+#include "shaders/lib/batch.glsl"
 READ(kBindOccupied, uint32_t, occupied);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slot);
 READ(kBindMockupBricks, Brick, mockup_bricks);
@@ -25,11 +25,13 @@ EDIT(kBindTouchedVoxels, uvec4, touched_voxels);
 EDIT(kBindPairChunks, PairChunk, pair_chunks);
 
 #include "shaders/lib/budget.glsl"
+#include "shaders/lib/group_poses.glsl"
 #include "shaders/lib/broad_phase/turned_box.glsl"
 #include "shaders/lib/broad_phase/occupied.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/mobile_mark.glsl"
+POSED_TABLE(voxel, kBindVoxelKeys)
 GROUP_COUNTS(kBindListedGroups, listed_groups)
 #define PARTITION_GRID scene.mockup.grid
 #define PARTITION_SLOTS mockup_brick_slot
@@ -75,8 +77,11 @@ bool off_plane(ivec3 low, int32_t side) {
 }
 
 void begin(uint32_t lane, uint32_t item) {
+  no_pose(lane);
   if (item >= list_count(kListNearRuns)) return;
   const NearRun part = near_runs[item];
+  take_pose(part.pose);
+  put_pose(lane);
   const uint32_t place = part.run * kRunSize + lane % kRunSize;
   if (place >= scene.tool.triangles || (uint32_t(tool_records[6u * place + 3u] >> 32) & kInfoCollapsed) != 0u)
     return;
@@ -175,11 +180,16 @@ bool step(uint32_t lane) {
 }
 
 void mark_voxel(uint32_t place, uint32_t boundary, uvec3 voxel) {
-  const bool is_new = (atomicOr(voxel_state[boundary], kVoxelTouched) & kVoxelTouched) == 0u;
+  const uint32_t entry = voxel_entry(boundary);
+  if (BATCH && entry == kNone) {
+    atomicOr(frame_state.overflow, 1u << kListTouchedVoxels);
+    return;
+  }
+  const bool is_new = (atomicOr(voxel_state[entry], kVoxelTouched) & kVoxelTouched) == 0u;
   if (is_new) {
     const uint32_t at = take_room(kListTouchedVoxels, 1u);
     if (at < frame_lists[kListTouchedVoxels].capacity) {
-      touched_voxels[at] = uvec4(boundary, voxel);
+      touched_voxels[at] = uvec4(entry, voxel);
       if (begins_group(at, 1u)) grow_result_groups(0u, groups_to(at + 1u));
     }
   }
@@ -193,13 +203,14 @@ void mark_voxel(uint32_t place, uint32_t boundary, uvec3 voxel) {
   for (uint32_t i = 0u; i < chunks && at + i < capacity && !spent(1u); ++i)
     pair_chunks[at + i] =
         PairChunk(place | (is_new ? kFirstTouch : 0u), list_begin + i * chunk,
-                  min(list_begin + (i + 1u) * chunk, list_end), voxel.x | voxel.y << 16, voxel.z, 0u);
+                  min(list_begin + (i + 1u) * chunk, list_end), voxel.x | voxel.y << 16, voxel.z, frame_pose);
 }
 
 void decide(uint64_t work) {
   if ((work & kNothing) != 0ul) return;
   const uint32_t xy = uint32_t(work), rest = uint32_t(work >> 32);
   const uint32_t lane = rest >> 16 & (kGroupSize - 1u), place = places[lane];
+  go_on_for(lane);
   const bool whole = (work & kWholeBrick) != 0ul;
   const ivec3 a = corner_of(lane, 0u), b = corner_of(lane, 1u), c = corner_of(lane, 2u);
   const uvec3 voxel = uvec3(xy & 0xFFFFu, xy >> 16, rest & 0xFFFFu);
@@ -228,4 +239,5 @@ void main() {
     for (uint32_t i = lane; i < count && !spent(1u); i += kGroupSize) decide(found[i]);
     barrier();
   }
+  tell_left_undone(lane);
 }

@@ -38,15 +38,19 @@ void put_wide(uint32_t kind, i64vec3 term) {
   }
 }
 
+// Of the bins of all poses.
 uint32_t bin_of(ivec3 n) {
   const int32_t least = 444764242;   // tan 22.5° in Q30
   const ivec3 digit = 1 + ivec3(greaterThan(n, ivec3(least))) - ivec3(lessThan(n, ivec3(-least)));
-  return uint32_t(digit.x + 3 * digit.y + 9 * digit.z);
+  return kFieldBinCount * frame_pose + uint32_t(digit.x + 3 * digit.y + 9 * digit.z);
 }
+
+// A word of the pose's field.
+uint32_t field_word(uint32_t word) { return kFieldWords * frame_pose + word; }
 
 void put_push(Push push) {
   const i64vec3 n = i64vec3(push.along), u = i64vec3(push.against),
-                r = i64vec3(push.at) - i64vec3(frame_input.translation);
+                r = i64vec3(push.at) - i64vec3(INPUT(translation));
   const uint32_t weight = push.counted;
   const int64_t p = int64_t((uint64_t(push.depth) * uint64_t(weight)) >> 14);
   put_term(0u, weight != 0u ? 1l : 0l);
@@ -63,9 +67,17 @@ void put_push(Push push) {
     put_term(20u + k, (moment[k] * lever[(k + 1u) % 3u]) >> 8);
   }
   term_bins[gl_LocalInvocationIndex] = bin_of(push.along);
-  deepest[gl_LocalInvocationIndex] = uint64_t(push.depth) << 32 | uint64_t(~push.static_id);
-  deepest[kGroupSize + gl_LocalInvocationIndex] = uint64_t(push.depth) << 32 | uint64_t(~push.mobile);
-  if (push.sheet) any_sheet = 1u;   // whoever writes it
+  const uint64_t depth = uint64_t(push.depth) << 32, by_static = depth | uint64_t(~push.static_id),
+                 by_mobile = depth | uint64_t(~push.mobile);
+  if (BATCH) {   // a workgroup has several poses
+    atomicMax(field_work[field_word(kWordDeepest)], int64_t(by_static));
+    atomicMax(field_work[field_word(kWordDeepest + 1u)], int64_t(by_mobile));
+    if (push.sheet) atomicOr(field_work[field_word(kWordSheet)], 1l);
+  } else {
+    deepest[gl_LocalInvocationIndex] = by_static;
+    deepest[kGroupSize + gl_LocalInvocationIndex] = by_mobile;
+    if (push.sheet) any_sheet = 1u;   // whoever writes it
+  }
   if (!CARRIERS || push.slot == kNone) return;
   const int64_t whole = int64_t((uint64_t(push.depth) * uint64_t(push.weight)) >> 14);
   put_term(kFieldBinWords, 1l);
@@ -79,7 +91,11 @@ void put_push(Push push) {
 
 void flush_term(uint32_t kind, uint32_t key, int64_t sum) {
   if (key == kNone || sum == 0l) return;
-  if (kind < kFieldBinWords) atomicAdd(field_work[kFieldBinWords * key + kind], sum);
+  if (kind < kFieldBinWords)
+    atomicAdd(field_work[(BATCH ? kFieldWords * (key / kFieldBinCount) + kFieldBinWords * (key % kFieldBinCount)
+                                : kFieldBinWords * key) +
+                         kind],
+              sum);
   else atomicAdd(carrier_work[kCarrierWords * key + (kind - kFieldBinWords)], sum);
 }
 
@@ -108,12 +124,12 @@ void add_pushes(bool pushes, Push push) {
       sum += terms[lane * kGroupSize + i];
     }
     flush_term(lane, key, sum);
-  } else if (lane >= kTerms && lane < kTerms + 2u) {
+  } else if (!BATCH && lane >= kTerms && lane < kTerms + 2u) {
     const uint32_t which = lane - kTerms;
     uint64_t most = 0ul;
     for (uint32_t i = 0u; i < kGroupSize; ++i) most = max(most, deepest[which * kGroupSize + i]);
     if (most != 0ul) atomicMax(field_work[kWordDeepest + which], int64_t(most));   // depths are below 2^31
-  } else if (lane == kTerms + 2u && any_sheet != 0u) {
+  } else if (!BATCH && lane == kTerms + 2u && any_sheet != 0u) {
     atomicOr(field_work[kWordSheet], 1l);
   }
 }

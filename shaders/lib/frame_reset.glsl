@@ -4,6 +4,7 @@
 #ifndef PALPATE_LIB_FRAME_RESET
 #define PALPATE_LIB_FRAME_RESET
 #include "shaders/lib/list_room.glsl"
+#include "shaders/shared/frame_batch.h"
 
 READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindContactMobiles, uint32_t, contact_mobiles);
@@ -11,15 +12,27 @@ READ(kBindTouchedVoxels, FrameVoxel, touched_voxels);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindVoxelState, uint32_t, voxel_state);
+EDIT(kBindStaticKeys, uint64_t, static_keys);
+EDIT(kBindMobileKeys, uint64_t, mobile_keys);
+EDIT(kBindVoxelKeys, uint64_t, voxel_keys);
 READ(kBindPairSlots, uint32_t, pair_slots);
 EDIT(kBindPairTable, uint64_t, pair_table);
 EDIT_ONE(kBindResult, FrameResult, result);
 
 // Entry i of each list.
 void reset_entry(uint32_t i) {
-  if (i < list_count(kListContactStatics)) static_state[contact_statics[i]] = 0u;
-  if (i < list_count(kListContactMobiles)) mobile_state[contact_mobiles[i]] = 0u;
-  if (i < list_count(kListTouchedVoxels)) voxel_state[touched_voxels[i].boundary] = 0u;
+  if (i < list_count(kListContactStatics)) {
+    static_state[contact_statics[i]] = 0u;
+    if (BATCH) static_keys[contact_statics[i]] = 0ul;
+  }
+  if (i < list_count(kListContactMobiles)) {
+    mobile_state[contact_mobiles[i]] = 0u;
+    if (BATCH) mobile_keys[contact_mobiles[i]] = 0ul;
+  }
+  if (i < list_count(kListTouchedVoxels)) {
+    voxel_state[touched_voxels[i].boundary] = 0u;
+    if (BATCH) voxel_keys[touched_voxels[i].boundary] = 0ul;
+  }
   if (i < list_count(kListPairCandidates)) pair_table[pair_slots[i]] = 0ul;
 }
 

@@ -6,7 +6,7 @@
 #define PALPATE_LIB_IGNORED
 #include "shaders/lib/list_room.glsl"
 bool is_ignored(uint32_t static_id) {
-  if (frame_input.ignores == 0u) return false;
+  if (BATCH || frame_input.ignores == 0u) return false;   // a batch ignores none
   const uint32_t patch_id = mockup_patches[static_id], word = patch_id >> 5, bit = 1u << (patch_id & 31u);
   if ((ignored[word] & bit) == 0u) return false;
   if ((atomicOr(ignored_state[word], bit) & bit) == 0u) {

@@ -27,10 +27,12 @@ uint32_t log_q8(uint32_t count) {
 
 // Of this frame, Q8.
 uint32_t frame_level() {
-  const uint32_t count = list_count(kListSamples) + list_count(kListContactMobiles) / 16u,
+  const uint32_t samples = BATCH ? frame_state.samples : list_count(kListSamples),
+                 mobiles = BATCH ? frame_state.mobiles : list_count(kListContactMobiles),
+                 count = samples + mobiles / 16u,
                  wanted = scene.contact_samples;
   const uint32_t by_size = wanted != 0u && count > wanted ? log_q8(count) - log_q8(wanted) : 0u;
-  return min(by_size + frame_input.coarser, 256u * kMostSampleLevel);
+  return min(by_size + INPUT(coarser), 256u * kMostSampleLevel);
 }
 
 // Q30. `weights`: an extra sample's.

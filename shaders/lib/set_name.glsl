@@ -5,6 +5,9 @@
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/plan.glsl"
 
+#include "shaders/lib/posed_table.glsl"
+POSED_TABLE(static, kBindStaticKeys)
+POSED_TABLE(mobile, kBindMobileKeys)
 READ(kBindContactStatics, uint32_t, contact_statics);
 READ(kBindStaticState, uint32_t, static_state);
 READ(kBindContactMobiles, uint32_t, contact_mobiles);
@@ -13,8 +16,9 @@ EDIT(kBindResultStatics, StaticResult, result_statics);
 EDIT(kBindResultMobiles, MobileResult, result_mobiles);
 
 void name_static(uint32_t slot) {
-  const uint32_t id = contact_statics[slot], state = static_state[id];
-  result_statics[slot] = StaticResult(id, state, kNone, kNone);
+  const uint32_t entry = contact_statics[slot], state = static_state[entry];
+  result_statics[slot] =
+      StaticResult(static_id(entry), state, BATCH ? frame_pose : kNone, BATCH ? slot : kNone);
   if ((state & kStaticHit) != 0u) {
     atomicAdd(frame_state.cst, 1u);
     return;
@@ -24,8 +28,9 @@ void name_static(uint32_t slot) {
 }
 
 void name_mobile(uint32_t place) {
-  const uint32_t mobile = contact_mobiles[place], state = mobile_state[mobile];
-  result_mobiles[place] = MobileResult(mobile, state);
+  const uint32_t entry = contact_mobiles[place], state = mobile_state[entry];
+  result_mobiles[place] =
+      MobileResult(mobile_id(entry), BATCH ? state | frame_pose << kResultPoseShift : state);
   if ((state & kMobileHit) != 0u)
     atomicAdd(frame_state.cmt, 1u);
   else if (INTERNAL && (state & kMobileInternal) != 0u)

@@ -132,11 +132,12 @@ PALPATE_CONSTANT int32_t kBindListBoxes =
          // lies, low x, y, z, high x, y, z in kListParts-ths of its side, 5 bits each
 PALPATE_CONSTANT int32_t kBindNearGroups = 71;  // kGroupsTouch, kGroupsSamples
 PALPATE_CONSTANT int32_t kBindResponseFirst =
-    72;  // frame_response.h has this one and above, frame_field.h 96 and above
+    72;  // frame_response.h has this one and above, frame_field.h 96 and above, frame_batch.h 112 and above
 
 // ---- lists
 // ---------------------------------------------------------------------------------------------------------------
 
+// 0: frame_batch.h
 PALPATE_CONSTANT uint32_t kListNearRuns = 2;
 PALPATE_CONSTANT uint32_t kListTouchedVoxels = 3;
 PALPATE_CONSTANT uint32_t kListPairChunks = 5;
@@ -213,7 +214,8 @@ struct FrameState {
   uint32_t contact;  // 1: CST, IMT or EST is not empty, and nothing overflowed before they were known; set at
                      // the end (lib/list_room.glsl: in_contact())
   uint32_t meets;    // 1: something was marked that is in CST, IMT or EST
-  uint32_t cst, bst, est, cmt, bmt, imt;  // sizes of the sets
+  uint32_t cst, bst, est, cmt, bmt, imt;      // sizes of the sets
+  uint32_t pairs, samples, statics, mobiles;  // of a batch's pose: how many it has in the lists of all poses
 };
 // Samples are rounded by less than a step, transformed corners too. Bodies that keep this distance have no
 // sample on the wrong side of each other's surface.
@@ -256,6 +258,7 @@ struct ToolRecord {
 struct NearRun {
   uint32_t run;
   uint32_t x, y, z;  // low + 2^16 · high
+  uint32_t pose;     // of a batch
 };
 PALPATE_CONSTANT uint32_t kRunsAGroup = kGroupSize / kRunSize;
 PALPATE_CONSTANT int32_t kBricksAPart = 64;     // of a NearRun (chosen), …
@@ -263,7 +266,7 @@ PALPATE_CONSTANT int32_t kMostParts = 1 << 14;  // … and more where so many pa
 
 // A V_bnd voxel of the mock-up's grid.
 struct FrameVoxel {
-  uint32_t boundary;  // its number among V_bnd voxels: state and list
+  uint32_t boundary;  // its number among V_bnd voxels: state and list; of a batch: entry of the tables
   ivec3 voxel;        // coordinates in the grid
 };
 
@@ -274,12 +277,12 @@ struct PairChunk {
                    // before, and all that it lists is to be marked
   uint32_t begin, end;
   uint32_t xy, z;  // voxel x + 2^16 · voxel y, voxel z
-  uint32_t padding;
+  uint32_t pose;   // of a batch
 };
 PALPATE_CONSTANT uint32_t kFirstTouch = 1u << 31;
 PALPATE_CONSTANT int32_t kListParts = 32;
 struct SampleChunk {
-  ivec3 voxel;          // whose samples are asked for
+  ivec3 voxel;          // whose samples are asked for; of a batch z + 2^16 · pose
   uint32_t begin, end;  // of its list, or of its points, where samples are listed
 };
 PALPATE_CONSTANT uint32_t kPairChunk = 16;   // entries in a PairChunk (chosen: most lists are shorter)
@@ -299,7 +302,7 @@ struct FrameSample {
   ivec3 point;         // world lattice
   uint32_t static_id;  // its triangle; the weight is the triangle's. With kCornerProbe: the point is the
                        // triangle's first corner (which is left out where it is known to lie inside), tells
-                       // EST and does not count
+                       // EST and does not count. In kListSamples, of a batch: entry of the tables
 };
 PALPATE_CONSTANT uint32_t kCornerProbe = 1u << 31;  // more triangles than this do not fit a lattice mesh
 
@@ -334,8 +337,10 @@ struct FrameResult {
 struct StaticResult {
   uint32_t id;
   uint32_t state;  // kStatic… bits
-  uint32_t area;   // area number of this frame; kNone without contact (the response writes it)
-  uint32_t zone;   // equal for triangles of one zone, different between zones (the response writes it)
+  uint32_t area;   // area number of this frame; kNone without contact (the response writes it). Of a batch:
+                   // the pose
+  uint32_t zone;   // equal for triangles of one zone, different between zones (the response writes it). Of a
+                   // batch: the slot
 };
 
 struct MobileResult {
@@ -351,10 +356,10 @@ struct AreaMember {
 PALPATE_ASSERT_SIZE(FrameList, 8);
 PALPATE_ASSERT_SIZE(FrameInput, 56);
 PALPATE_ASSERT_SIZE(ToolRecord, 48);
-PALPATE_ASSERT_SIZE(NearRun, 16);
+PALPATE_ASSERT_SIZE(NearRun, 20);
 PALPATE_ASSERT_SIZE(PairChunk, 24);
 PALPATE_ASSERT_SIZE(AreaResult, 64);
-PALPATE_ASSERT_SIZE(FrameResult, 64 + 4 * kListCount + 64 * kMaxFrameAreas);
+PALPATE_ASSERT_SIZE(FrameResult, 80 + 4 * kListCount + 64 * kMaxFrameAreas);
 
 PALPATE_SHARED_END
 #endif

@@ -2,7 +2,7 @@
 // docs/EXACTNESS.md section 8.
 //
 // Sums are of 64-bit words that many workgroups add to, in any order: FieldWork and CarrierWork are arrays of
-// words to the shaders, by the numbers below, and structs to the host.
+// words to the shaders, by the numbers below, and structs to the host. A batch has a FieldWork a pose.
 #ifndef PALPATE_SHARED_FRAME_FIELD_H
 #define PALPATE_SHARED_FRAME_FIELD_H
 #include "shaders/shared/base.h"
@@ -59,14 +59,14 @@ struct ExtraSample {
 // A sample that pushes if it lies inside the other body.
 struct FieldPoint {
   ivec3 point;        // world lattice
-  uint32_t triangle;  // its own
+  uint32_t triangle;  // its own; of a batch: entry of the tables
   uint32_t weight;    // Q24
 };
 
 // Cells begin … end − 1 of a tool triangle's box, which is `across` cells wide and begins at cell (first_u,
 // first_v), row by row.
 struct FieldTile {
-  uint32_t mobile;
+  uint32_t mobile;  // of a batch: entry of the tables
   int32_t first_u, first_v;
   uint32_t across;
   uint32_t begin, end;

@@ -214,7 +214,7 @@ TEST_P(Batch, EndsWithTheErrorOfAPoseThatFails) {
   const auto backend = prepared(options, scene);
   std::vector<Contacts> out(scene.poses.size());
   ASSERT_TRUE(backend->query_batch(scene.poses, out));
-  fault->after = 100;
+  fault->after = 2;
   fault->call = GpuFault::Call::kSubmit;
   const auto lost = backend->query_batch(scene.poses, out);
   ASSERT_FALSE(lost);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
+
+#include "shaders/shared/frame_batch.h"
 
 namespace palpate {
 namespace {
@@ -43,6 +46,13 @@ std::uint32_t doubled(std::uint32_t capacity) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(2 * std::uint64_t{capacity}, ~0u));
 }
 
+void override_lists(std::array<std::uint32_t, kListCount>& lists,
+                    const std::map<std::string, std::uint32_t>& wanted) {
+  for (std::uint32_t list = 0; list < kListNames.size(); ++list)
+    if (const auto asked = wanted.find(kListNames[list]); *kListNames[list] != 0 && asked != wanted.end())
+      lists[list] = std::max(1u, asked->second);
+}
+
 }  // namespace
 
 FrameCapacity FrameCapacity::first(const FrameDemand& demand,
@@ -75,11 +85,26 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand,
   l[kListMockupPoints] = room(0, scene.mockup_extras);
   l[kListToolPoints] = refined ? room(0, ~0u) : 1;
   l[kListIgnored] = room(0, refined ? mockup : 1);
-  const auto put = [&](const char* name, std::uint32_t& capacity) {
-    if (const auto asked = wanted.find(name); asked != wanted.end()) capacity = std::max(1u, asked->second);
-  };
-  for (std::uint32_t list = 0; list < kListNames.size(); ++list)
-    if (*kListNames[list] != 0) put(kListNames[list], l[list]);
+  override_lists(l, wanted);
+  return out;
+}
+
+FrameCapacity FrameCapacity::first_of_batch(std::uint32_t poses,
+                                            const std::map<std::string, std::uint32_t>& wanted) {
+  // Items of a pose on an average (chosen: as a hand's contacts have; what many poses do not need a few may,
+  // and what is too little grows).
+  constexpr std::pair<std::uint32_t, std::uint32_t> kOfAPose[] = {
+      {kListNearRuns, 64},        {kListTouchedVoxels, 256},  {kListPairChunks, 512},
+      {kListPairCandidates, 512}, {kListContactStatics, 256}, {kListContactMobiles, 128},
+      {kListSampleChunks, 256},   {kListOpenSamples, 256},    {kListSamples, 512},
+      {kListFieldTiles, 128},     {kListMockupPoints, 64},    {kListToolPoints, 256}};
+  FrameCapacity out;
+  out.poses = poses;
+  out.lists.fill(1);
+  for (const auto& [list, items_of_a_pose] : kOfAPose)
+    out.lists[list] = items(std::uint64_t{items_of_a_pose} * poses, kMostItems);
+  override_lists(out.lists, wanted);
+  out.lists[kListPoses] = poses;
   return out;
 }
 

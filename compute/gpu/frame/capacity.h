@@ -22,10 +22,15 @@ struct FrameDemand {
 /// can ask for; what has overflowed grows when asked.
 struct FrameCapacity {
   std::array<std::uint32_t, gpu::kListCount>
-      lists{};  ///< by kList…; at least 1 for each list that the profile has
+      lists{};              ///< by kList…; at least 1 for each list that the profile has
+  std::uint32_t poses = 0;  ///< of a batch, which has lists for all of them together; 0: a lone frame
 
   /// What a frame begins with. `wanted` overrides lists by their names (overflow_name), for tests.
   static FrameCapacity first(const FrameDemand& demand, const std::map<std::string, std::uint32_t>& wanted);
+
+  /// What a batch of `poses` begins with; `wanted` likewise.
+  static FrameCapacity first_of_batch(std::uint32_t poses,
+                                      const std::map<std::string, std::uint32_t>& wanted);
 
   /// Makes room for what a frame ran out of: at least double, and all that was `asked` for. False: what it
   /// ran out of is no matter of memory (areas, steps of one invocation).

@@ -7,14 +7,17 @@
 #include "compute/gpu/frame/plan.h"
 #include "compute/scene/tool_order.h"
 #include "shaders/code.h"
+#include "shaders/shared/frame_batch.h"
 
 namespace palpate {
 
 using namespace gpu;  // names of shaders/shared/frame.h
 
 std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geometry,
-                                                     const PreparedScene& scene, const Plan& plan) {
+                                                     const PreparedScene& scene, const Plan& plan,
+                                                     bool batch) {
   std::unique_ptr<FrameDetection> out(new FrameDetection);
+  out->batch_ = batch;
   out->plan_ = plan;
   out->order_ = order_in_space(geometry.tool);
   out->refined_ = scene.constants.refined != 0;
@@ -27,12 +30,26 @@ std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geomet
   return out;
 }
 
+bool FrameDetection::keys_fit(const SceneConstants& scene, std::uint32_t poses) {
+  return std::bit_width(scene.mockup.triangles) + std::bit_width(scene.tool.triangles) +
+             std::bit_width(poses + 1) <=
+         64;
+}
+
 Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeometry& geometry,
                                           const PreparedScene& scene, const FrameCapacity& capacity,
                                           FrameBuffers& buffers) const {
   const BodyConstants& mockup = scene.constants.mockup;
   const BodyConstants& tool = scene.constants.tool;
-  const std::uint64_t voxels = mockup.grid.boundary_voxels, statics = capacity.lists[kListContactStatics];
+  const std::uint64_t statics = capacity.lists[kListContactStatics];
+  // Of what is kept by number, or in a batch by key: at most half full.
+  const std::uint64_t poses = capacity.poses;
+  const auto entries = [&](std::uint32_t list, std::uint64_t numbers) {
+    return poses == 0 ? numbers : std::bit_ceil(2 * std::uint64_t{capacity.lists[list]});
+  };
+  const std::uint64_t by_voxel = entries(kListTouchedVoxels, mockup.grid.boundary_voxels),
+                      by_static = entries(kListContactStatics, mockup.triangles),
+                      by_mobile = entries(kListContactMobiles, tool.triangles);
   const std::uint64_t clusters = (tool.triangles + kClusterSize - 1) / kClusterSize,
                       runs = (tool.triangles + kRunSize - 1) / kRunSize;
 
@@ -71,7 +88,12 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindFrameInput, "frame input", sizeof(FrameInput), BufferKind::kUpload},
       {kBindFrameLists, "frame lists", sizeof(FrameList) * kListCount},
       {kBindDispatches, "group counts", sizeof(DispatchArguments) * kDispatchCount},
-      {kBindListsAnew, "frame lists", sizeof(FrameLists)},
+      {kBindListsAnew, "frame lists", poses == 0 ? sizeof(FrameLists) : sizeof(BatchLists),
+       poses == 0 ? BufferKind::kDevice : BufferKind::kUpload},
+      {kBindBatchInputs, "poses", sizeof(FrameInput) * poses, BufferKind::kUpload},
+      {kBindOpenPoses, "poses of samples near the tool's surface",
+       poses == 0 ? 4 : 4 * std::uint64_t{capacity.lists[kListOpenSamples]}},
+      {kBindResultStates, "frame states", sizeof(FrameState) * poses, BufferKind::kReadback},
       {kBindResultGroups, "group counts", sizeof(DispatchArguments)},
       {kBindToolRecords, "tool triangles", sizeof(ToolRecord) * std::uint64_t{tool.triangles}},
       {kBindToolBounds, "boxes of the tool", sizeof(LatticeBox) * (clusters + runs)},
@@ -81,7 +103,7 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
       {kBindRunBoxes, "boxes of runs", sizeof(LatticeBox) * clusters * (kClusterSize / kRunSize)},
       {kBindToolCorners, "corners of the transformed tool",
        sizeof(ToolCorners) * std::uint64_t{tool.triangles}},
-      {kBindStaticSlot, "slots of the mock-up's triangles", 4 * std::uint64_t{mockup.triangles}},
+      {kBindStaticSlot, "slots of the mock-up's triangles", 4 * by_static},
       {kBindResult, "frame result", sizeof(FrameResult), BufferKind::kReadback},
       {kBindResultStatics, "results of the mock-up's triangles", sizeof(StaticResult) * statics,
        BufferKind::kReadback},
@@ -91,31 +113,34 @@ Result<void> FrameDetection::make_buffers(VulkanDevice& device, const SceneGeome
   for (const Plain& p : plain)
     if (auto r = buffers.make(device, p.binding, p.what, p.bytes, p.kind); !r) return r;
 
-  if (auto r = buffers.make_table(device, kBindFrameState, "frame state", sizeof(FrameState)); !r) return r;
+  struct Table {
+    std::int32_t binding;
+    const char* what;
+    std::uint64_t bytes;
+  };
+  const auto keys = [&](std::uint64_t count) { return poses == 0 ? 4 : 8 * count; };
+  const Table tables[] = {
+      {kBindFrameState, "frame state", sizeof(FrameState) * std::max<std::uint64_t>(poses, 1)},
+      {kBindVoxelState, "states of boundary voxels", 4 * by_voxel},
+      {kBindStaticState, "states of the mock-up's triangles", 4 * by_static},
+      {kBindMobileState, "states of the tool's triangles", 4 * by_mobile},
+      {kBindVoxelKeys, "keys of boundary voxels", keys(by_voxel)},
+      {kBindStaticKeys, "keys of the mock-up's triangles", keys(by_static)},
+      {kBindMobileKeys, "keys of the tool's triangles", keys(by_mobile)},
+      // At most half full.
+      {kBindPairTable, "table of pairs",
+       8 * std::bit_ceil(2 * std::uint64_t{capacity.lists[kListPairCandidates]})},
+  };
+  for (const Table& t : tables)
+    if (auto r = buffers.make_table(device, t.binding, t.what, t.bytes); !r) return r;
   for (const std::int32_t binding :
        {kBindNearGroups, kBindListedGroups, kBindMembersGroups, kBindPlacedGroups, kBindPushedGroups})
     if (auto r = buffers.make_table(device, binding, "group counts", 2 * sizeof(DispatchArguments)); !r)
       return r;
-  if (auto r = buffers.make_table(device, kBindVoxelState, "states of boundary voxels", 4 * voxels); !r)
-    return r;
-  if (auto r = buffers.make_table(device, kBindStaticState, "states of the mock-up's triangles",
-                                  4 * std::uint64_t{mockup.triangles});
-      !r)
-    return r;
-
-  if (auto r = buffers.make_table(device, kBindMobileState, "states of the tool's triangles",
-                                  4 * std::uint64_t{tool.triangles});
-      !r)
-    return r;
   for (const std::int32_t binding : {kBindToolNear, kBindSampleBegin})
     if (buffers.bytes(binding) == 0)  // broad_phase asks nobody
       if (auto r = buffers.make(device, binding, "unused", 4); !r) return r;
 
-  // At most half full.
-  if (auto r = buffers.make_table(device, kBindPairTable, "table of pairs",
-                                  8 * std::bit_ceil(2 * std::uint64_t{capacity.lists[kListPairCandidates]}));
-      !r)
-    return r;
   if (auto r = upload_records(device, geometry.tool, buffers[kBindToolRecords]); !r) return r;
   if (auto r = upload_bounds(device, geometry.tool, buffers[kBindToolBounds]); !r) return r;
   return closed_ ? upload_places(device, scene, buffers[kBindFinePlaces]) : Result<void>{};
@@ -160,8 +185,10 @@ Result<void> FrameDetection::upload_bounds(VulkanDevice& device, const LatticeMe
 }
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
-  if (device.shares_memory()) brick_groups_ = 2;  // llvmpipe takes its time for one without work, too
-  const std::vector<SpecConstant> plan = plan_constants(plan_);
+  // llvmpipe takes its time for one without work, too; of a batch other poses keep a device busy.
+  if (device.shares_memory() || batch_) brick_groups_ = 2;
+  std::vector<SpecConstant> plan = plan_constants(plan_);
+  if (batch_) plan.push_back({kBatchConstant, 1});
   const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}}, of_points[] = {{0, wide_ ? 1u : 0u}},
                      of_search[] = {{0, !inside_  ? 0u
                                         : listed_ ? 2u
@@ -198,11 +225,19 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   return {};
 }
 
+std::uint32_t FrameDetection::cull_groups() const {
+  const auto groups = [](std::size_t items) {
+    return static_cast<std::uint32_t>((items + kGroupSize - 1) / kGroupSize);
+  };
+  return groups((order_.size() + kClusterSize - 1) / kClusterSize) + (inside_ ? brick_groups_ : 0);
+}
+
 void FrameDetection::record(FrameRecorder& recorder) const {
   recorder.stage("cull");
-  const auto clusters = static_cast<std::uint32_t>((order_.size() + kClusterSize - 1) / kClusterSize);
-  const auto groups = [](std::uint32_t items) { return (items + kGroupSize - 1) / kGroupSize; };
-  recorder.run(broad_phase_, groups(clusters) + (inside_ ? brick_groups_ : 0));
+  if (batch_)
+    recorder.run_indirect(broad_phase_, kBindListsAnew, offsetof(BatchLists, cull));
+  else
+    recorder.run(broad_phase_, cull_groups());
   recorder.barrier();
 
   recorder.stage(plan_.imt ? "imt" : "bmt");  // one dispatch decides both
@@ -240,6 +275,7 @@ void FrameDetection::record_anew(FrameRecorder& recorder) {
   for (const std::int32_t binding : {kBindFrameState, kBindNearGroups, kBindListedGroups, kBindMembersGroups,
                                      kBindPlacedGroups, kBindPushedGroups})
     recorder.clear(binding);
+  // FrameLists is what BatchLists begins with.
   recorder.copy(kBindListsAnew, offsetof(FrameLists, lists), kBindFrameLists, sizeof FrameLists::lists);
   recorder.copy(kBindListsAnew, offsetof(FrameLists, result), kBindResultGroups, sizeof FrameLists::result);
 }

@@ -18,8 +18,11 @@ namespace palpate {
 /// buffers and pipelines.
 class FrameDetection {
  public:
+  /// `batch`: of a batch (shaders/shared/frame_batch.h), `refined` only.
   static std::unique_ptr<FrameDetection> make(const SceneGeometry& geometry, const PreparedScene& scene,
-                                              const Plan& plan);
+                                              const Plan& plan, bool batch = false);
+  /// Whether pose, static triangle and tool triangle together fit a key of a batch of so many poses.
+  static bool keys_fit(const gpu::SceneConstants& scene, std::uint32_t poses);
 
   /// Asks for the pipelines, which are then made beside what follows. Before record().
   Result<void> make_shaders(VulkanDevice& device);
@@ -31,11 +34,13 @@ class FrameDetection {
 
   /// From the pose to the lists of C_s, C_m, samples, and frame_state; ends with a barrier due.
   void record(FrameRecorder& recorder) const;
+  /// Workgroups of the first dispatch that a pose takes.
+  std::uint32_t cull_groups() const;
   /// `paper`: names the sets, and whether there is contact; ends with a barrier due.
   void record_names(FrameRecorder& recorder) const;
   /// `paper`, after the response: counts to the host, tables back to 0.
   void record_end(FrameRecorder& recorder) const;
-  /// Last of all: lists, state and group counts as each frame finds them.
+  /// Last of all, in a batch first: lists, state and group counts as each frame finds them.
   static void record_anew(FrameRecorder& recorder);
   /// Ids of the tool's triangles in the order of clusters and runs.
   const std::vector<std::uint32_t>& order() const { return order_; }
@@ -47,6 +52,7 @@ class FrameDetection {
   Result<void> upload_places(VulkanDevice& device, const PreparedScene& scene, const VulkanBuffer& to) const;
 
   Plan plan_;
+  bool batch_ = false;
   bool refined_ = false;
   bool inside_ =
       false;  ///< samples are asked whether they lie inside the tool: refined, and it has an inside

@@ -5,6 +5,7 @@
 
 #include "compute/gpu/frame/plan.h"
 #include "shaders/code.h"
+#include "shaders/shared/frame_batch.h"
 
 namespace palpate {
 
@@ -46,7 +47,7 @@ CarrierSums carrier_of(std::uint32_t id, const CarrierWork& from) {
 }  // namespace
 
 Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry& geometry,
-                                      const PreparedScene& scene, const Plan& plan) {
+                                      const PreparedScene& scene, const Plan& plan, bool batch) {
   FrameField out;
   out.geometry_ = &geometry;
   out.plan_ = plan;
@@ -69,6 +70,7 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
     if (!made_for.kept) continue;
     std::vector<SpecConstant> constants = plan_constants(plan);
     if (!plan.telemetry) constants.push_back({kCarriersId, 0u});
+    if (batch) constants.push_back({kBatchConstant, 1u});
     constants.insert(constants.end(), made_for.constants.begin(), made_for.constants.end());
     auto made = make_frame_shader(device, made_for.code, 0, constants);
     if (!made) return made.error();
@@ -88,6 +90,7 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
   const auto& lists = capacity.lists;
   const std::uint64_t carriers =
       (plan_.telemetry ? lists[kListContactStatics] : 1) * std::uint64_t{sizeof(CarrierWork)};
+  const std::uint64_t field = sizeof(FieldWork) * std::max<std::uint64_t>(capacity.poses, 1);
   const std::uint64_t patches = (geometry_->mockup.patch_count + 31) / 32 * std::uint64_t{4};
   for (const BufferPlan& plan : std::initializer_list<BufferPlan>{
            {kBindCarrierWork, "what contact triangles carry", carriers},
@@ -99,7 +102,7 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
            {kBindIgnored, "ignored patches", patches, BufferKind::kUpload},
            {kBindResultIgnored, "ignored patches that are touched", lists[kListIgnored] * std::uint64_t{4},
             BufferKind::kReadback},
-           {kBindResultField, "result of the pressure field", sizeof(FieldWork), BufferKind::kReadback},
+           {kBindResultField, "result of the pressure field", field, BufferKind::kReadback},
            {kBindResultCarriers, "result of what contact triangles carry", carriers, BufferKind::kReadback},
        }) {
     const bool there = buffers.bytes(plan.binding) >= std::max<std::uint64_t>(plan.bytes, 4);
@@ -114,7 +117,7 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
   for (const std::int32_t binding : {kBindFineExit, kBindMockupShells, kBindFineShells})
     if (buffers.bytes(binding) == 0)  // whether a body is closed says what of them anybody reads
       if (auto made = buffers.make(device, binding, "unused", 4); !made) return made.error();
-  if (auto made = buffers.make_table(device, kBindFieldWork, "pressure field", sizeof(FieldWork)); !made)
+  if (auto made = buffers.make_table(device, kBindFieldWork, "pressure field", field); !made)
     return made.error();
   return buffers.make_table(device, kBindIgnoredState, "states of ignored patches", patches);
 }
@@ -150,8 +153,7 @@ bool FrameField::ignore(const Ignored* ignored, const FrameBuffers& buffers) {
   return !wanted.empty();
 }
 
-void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, Contacts& out) {
-  const auto& work = *buffers[kBindResultField].as<FieldWork>();
+void decode_field(const FieldWork& work, Contacts& out) {
   FieldSums& field = out.field;
   bool pushes = false;
   for (std::size_t i = 0; i < kFieldBins; ++i) {
@@ -163,7 +165,19 @@ void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, 
   field.deepest_mobile = field.max_depth != 0 ? ~static_cast<std::uint32_t>(work.deepest_mobile) : 0;
   if (work.sheet != 0) out.flags |= kFlagSheet;
   if (!pushes) out.flags |= kFlagNoDirection;
+}
 
+void add_carrier(const StaticResult& of, const CarrierWork& work, Contacts& out) {
+  if ((of.state & (kStaticHit | kStaticSampled)) != 0) out.carriers.push_back(carrier_of(of.id, work));
+}
+
+void order_carriers(Contacts& out) {
+  std::sort(out.carriers.begin(), out.carriers.end(),
+            [](const CarrierSums& a, const CarrierSums& b) { return a.id < b.id; });
+}
+
+void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, Contacts& out) {
+  decode_field(*buffers[kBindResultField].as<FieldWork>(), out);
   const auto* touched = buffers[kBindResultIgnored].as<std::uint32_t>();
   out.ignored_touched.assign(touched, touched + result.ignored_count);
   std::sort(out.ignored_touched.begin(), out.ignored_touched.end());
@@ -172,10 +186,8 @@ void FrameField::decode(const FrameBuffers& buffers, const FrameResult& result, 
   const auto* statics = buffers[kBindResultStatics].as<StaticResult>();
   const auto* carriers = buffers[kBindResultCarriers].as<CarrierWork>();
   for (std::uint32_t slot = 0; slot < result.static_count; ++slot)
-    if ((statics[slot].state & (kStaticHit | kStaticSampled)) != 0)
-      out.carriers.push_back(carrier_of(statics[slot].id, carriers[slot]));
-  std::sort(out.carriers.begin(), out.carriers.end(),
-            [](const CarrierSums& a, const CarrierSums& b) { return a.id < b.id; });
+    add_carrier(statics[slot], carriers[slot], out);
+  order_carriers(out);
 }
 
 static_assert(kFieldBins == kFieldBinCount);

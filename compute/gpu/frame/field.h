@@ -19,9 +19,9 @@ namespace palpate {
 /// frame runs.
 class FrameField {
  public:
-  /// Makes the pipelines. Geometry outlives this.
+  /// Makes the pipelines; `batch`: of a batch (shaders/shared/frame_batch.h). Geometry outlives this.
   static Result<FrameField> create(VulkanDevice& device, const SceneGeometry& geometry,
-                                   const PreparedScene& scene, const Plan& plan);
+                                   const PreparedScene& scene, const Plan& plan, bool batch = false);
 
   /// Makes its buffers in `buffers`; those that are large enough already stay. Before the first record(), and
   /// again when the capacity has grown. Error: one buffer is beyond a limit, or out of memory.
@@ -47,5 +47,12 @@ class FrameField {
   std::vector<std::uint32_t> ignored_;       ///< what the bits say
   std::vector<std::uint32_t> ignored_bits_;  ///< as the device has them
 };
+
+/// Fills the field and its flags of an answer in contact.
+void decode_field(const gpu::FieldWork& work, Contacts& out);
+/// Adds what a static triangle carries, if it is one that does. After the last one they are to be put in
+/// order.
+void add_carrier(const gpu::StaticResult& of, const gpu::CarrierWork& work, Contacts& out);
+void order_carriers(Contacts& out);
 
 }  // namespace palpate

@@ -16,6 +16,7 @@
 #include "compute/gpu/frame/plan.h"
 #include "compute/gpu/frame/recorder.h"
 #include "compute/gpu/frame/response.h"
+#include "compute/gpu/frame/scene_buffers.h"
 #include "compute/gpu/frame/stage_memory.h"
 #include "compute/vulkan/command_recorder.h"
 #include "model/contact/contact_areas.h"
@@ -27,21 +28,6 @@ using Clock = std::chrono::steady_clock;
 
 double us_since(Clock::time_point from) {
   return std::chrono::duration<double, std::micro>(Clock::now() - from).count();
-}
-
-bool turned(const LatticePose& pose) {
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c)
-      if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
-  return false;
-}
-
-/// As groups_for() of shaders/lib/frame.glsl.
-gpu::DispatchArguments groups_for(std::uint32_t groups) {
-  return {std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX, 1};
-}
-gpu::DispatchArguments items_for(std::uint32_t items) {
-  return groups_for((items + gpu::kGroupSize - 1) / gpu::kGroupSize);
 }
 
 class RecordedFrame final : public Frame {
@@ -63,7 +49,6 @@ class RecordedFrame final : public Frame {
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
 
  private:
-  void name_scene();
   Result<void> make_pipelines();
   Result<void> make_buffers();
   Result<void> set_capacities();
@@ -98,58 +83,10 @@ class RecordedFrame final : public Frame {
   std::uint32_t frame_flags_ = 0;  ///< of every frame within the lattice
 };
 
-void RecordedFrame::name_scene() {
-  using namespace gpu;
-  const BodyBuffers &m = scene_.mockup, &t = scene_.tool;
-  const PartitionBuffers& fine = scene_.fine.brick_slot ? scene_.fine : t.partition;
-  const std::pair<std::int32_t, const VulkanBuffer*> all[] = {
-      {kBindScene, &scene_.scene},
-      {kBindMockupVertices, &m.vertices},
-      {kBindMockupTriangles, &m.triangles},
-      {kBindMockupInfo, &m.triangle_info},
-      {kBindMockupNormals, &m.unit_normal},
-      {kBindMockupWeights, &m.field_weight},
-      {kBindNeighbourBegin, &m.neighbour_begin},
-      {kBindNeighbours, &m.neighbours},
-      {kBindMockupPatches, &m.patch},
-      {kBindMockupExtras, &m.extras},
-      {kBindMockupLevels, &m.levels},
-      {kBindMockupBrickSlot, &m.partition.brick_slot},
-      {kBindMockupBricks, &m.partition.bricks},
-      {kBindMockupListBegin, &m.partition.list_begin},
-      {kBindMockupListTriangles, &m.partition.list_triangles},
-      {kBindMockupBoundaryPlace, &m.partition.boundary_place},
-      {kBindMockupMixedBrick, &m.partition.mixed_brick},
-      {kBindToolVertices, &t.vertices},
-      {kBindToolTriangles, &t.triangles},
-      {kBindToolInfo, &t.triangle_info},
-      {kBindToolNormals, &t.unit_normal},
-      {kBindToolWeights, &t.field_weight},
-      {kBindToolExtras, &t.extras},
-      {kBindToolLevels, &t.levels},
-      {kBindFineBrickSlot, &fine.brick_slot},
-      {kBindFineBricks, &fine.bricks},
-      {kBindFineListBegin, &fine.list_begin},
-      {kBindFineListTriangles, &fine.list_triangles},
-      {kBindMockupShells, &m.partition.shells},
-      {kBindFineShells, &fine.shells},
-      {kBindFineExit, &scene_.fine_exit},
-      {kBindOccupied, &scene_.occupied},
-      {kBindListBoxes, &scene_.list_boxes},
-      {kBindToolNear, &scene_.tool_near},
-      {kBindSampleBegin, &scene_.sample_begin},
-      {kBindSamplePoints, &scene_.sample_points},
-      {kBindSampleIds, &scene_.sample_ids}};
-  for (const auto& [binding, buffer] : all)
-    if (*buffer) buffers_.name(binding, *buffer);  // `paper` has no partition of the tool
-}
-
 Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& first_capacity) {
-  name_scene();
+  name_scene(scene_, buffers_);
   const gpu::SceneConstants& constants = scene_.constants;
-  const bool refined = constants.refined != 0;
-  if (refined && constants.tool.closed == 0 && constants.tool.has_internal == 0) frame_flags_ = kFlagToolOpen;
-
+  frame_flags_ = flags_of_frames(constants);
   detection_ = FrameDetection::make(geometry_, scene_, plan_);
   if (auto r = make_pipelines(); !r) return r;
   std::optional<std::uint64_t> samples;
@@ -196,7 +133,7 @@ Result<void> RecordedFrame::make_buffers() {
 Result<void> RecordedFrame::set_capacities() {
   gpu::FrameLists anew{};
   for (std::size_t i = 0; i < gpu::kListCount; ++i) anew.lists[i].capacity = capacity_.lists[i];
-  anew.result = items_for(field_ ? gpu::kFieldWords : 1);
+  anew.result = dispatch_of_items(field_ ? gpu::kFieldWords : 1);
   if (auto r = upload(device_, buffers_[gpu::kBindListsAnew], &anew, sizeof anew); !r) return r;
   if (auto r = upload(device_, buffers_[gpu::kBindResultGroups], &anew.result, sizeof anew.result); !r)
     return r;
@@ -267,9 +204,7 @@ Result<void> RecordedFrame::record() {
 }
 
 void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored) {
-  gpu::FrameInput input{};
-  for (std::size_t i = 0; i < 9; ++i) input.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
-  input.translation = pose.translation;
+  gpu::FrameInput input = frame_input(pose);
   if (field_) input.ignores = field_->ignore(ignored, buffers_) ? 1 : 0;
   input.coarser = ignored != nullptr ? ignored->coarser : 0;
   buffers_[gpu::kBindFrameInput].write(0, &input, sizeof input);
@@ -287,14 +222,10 @@ Result<void> RecordedFrame::query(const LatticePose& pose, const Ignored* ignore
 Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
   out.times.clear();
   decoder_.clear(out);
-  out.engine = "gpu";
   pairs_ = 0;
-  out.contact_points = plan_.contact_point;
-  out.lists = plan_.telemetry;
-  if (!plan_.transform_rotates && !pose.beyond_lattice && turned(pose))
-    return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
-  if (!pose.beyond_lattice) out.flags = frame_flags_;
+  if (auto r = begin_answer(plan_, pose, out); !r) return r;
   if (pose.beyond_lattice) return {};
+  out.flags = frame_flags_;
   if (auto r = finish(); !r) return r;
   if (!tables_clear_)
     if (auto r = clear(); !r) return r;

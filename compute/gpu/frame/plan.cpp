@@ -1,6 +1,18 @@
 #include "compute/gpu/frame/plan.h"
 
+#include <cstddef>
+
 namespace palpate {
+namespace {
+
+bool turned(const LatticePose& pose) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
+  return false;
+}
+
+}  // namespace
 
 Plan frame_plan(const Plan& plan, bool has_internal) {
   Plan out = plan;
@@ -15,6 +27,28 @@ std::vector<SpecConstant> plan_constants(const Plan& plan) {
   if (!plan.zones) out.push_back({18, 0});
   if (!plan.contact_point) out.push_back({19, 0});
   return out;
+}
+
+std::uint32_t flags_of_frames(const gpu::SceneConstants& scene) {
+  return scene.refined != 0 && scene.tool.closed == 0 && scene.tool.has_internal == 0
+             ? std::uint32_t{kFlagToolOpen}
+             : 0u;
+}
+
+gpu::FrameInput frame_input(const LatticePose& pose) {
+  gpu::FrameInput out{};
+  for (std::size_t i = 0; i < 9; ++i) out.rotation_q30[i] = pose.rotation_q30[i / 3][i % 3];
+  out.translation = pose.translation;
+  return out;
+}
+
+Result<void> begin_answer(const Plan& plan, const LatticePose& pose, Contacts& out) {
+  out.engine = "gpu";
+  out.contact_points = plan.contact_point;
+  out.lists = plan.telemetry;
+  if (!plan.transform_rotates && !pose.beyond_lattice && turned(pose))
+    return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
+  return {};
 }
 
 }  // namespace palpate

@@ -2,7 +2,12 @@
 #include <vector>
 
 #include "compute/vulkan/pipeline.h"
+#include "model/contact/contacts.h"
+#include "model/lattice/lattice.h"
+#include "model/result.h"
 #include "model/scene/plan.h"
+#include "shaders/shared/frame.h"
+#include "shaders/shared/scene.h"
 
 namespace palpate {
 
@@ -13,5 +18,14 @@ Plan frame_plan(const Plan& plan, bool has_internal);
 /// The constants of shaders/lib/plan.glsl that differ from what stands there, so that the whole plan's
 /// pipelines need none.
 std::vector<SpecConstant> plan_constants(const Plan& plan);
+
+/// ContactFlag bits of every answer within the lattice.
+std::uint32_t flags_of_frames(const gpu::SceneConstants& scene);
+
+/// A pose as shaders read it; nothing is ignored, nothing coarser.
+gpu::FrameInput frame_input(const LatticePose& pose);
+
+/// What an emptied answer says whatever the pose finds. Error: the plan does not know such a pose.
+Result<void> begin_answer(const Plan& plan, const LatticePose& pose, Contacts& out);
 
 }  // namespace palpate

@@ -63,6 +63,15 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
                                       std::uint32_t push_bytes = 0,
                                       std::span<const SpecConstant> constants = {});
 
+/// As groups_for() and items_for() of shaders/lib/frame.glsl: so many workgroups, along x first; an
+/// invocation an item.
+inline gpu::DispatchArguments dispatch_of_groups(std::uint32_t groups) {
+  return {std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX, 1};
+}
+inline gpu::DispatchArguments dispatch_of_items(std::uint32_t items) {
+  return dispatch_of_groups((items + gpu::kGroupSize - 1) / gpu::kGroupSize);
+}
+
 /// Records dispatches of a frame. No order between calls unless barrier() stands between them.
 class FrameRecorder {
  public:
@@ -87,6 +96,10 @@ class FrameRecorder {
   /// As entry `which` of a stage's group counts says.
   void run_stage(const FrameShader& shader, std::int32_t groups, std::uint32_t which = 0) {
     indirect(shader, groups, which * sizeof(gpu::DispatchArguments), nullptr, 0);
+  }
+  /// As the three numbers at `offset` of a buffer say.
+  void run_indirect(const FrameShader& shader, std::int32_t binding, std::uint64_t offset) {
+    indirect(shader, binding, offset, nullptr, 0);
   }
   /// Fills a buffer with 0; copies all of `from`'s bytes from `offset` on that `to` has.
   void clear(std::int32_t binding) { recorder_.fill(buffers_[binding], 0); }
