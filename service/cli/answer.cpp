@@ -1,6 +1,8 @@
 #include "service/cli/answer.h"
 
+#include <algorithm>
 #include <chrono>
+#include <vector>
 
 #include "service/queries/lone_query.h"
 
@@ -61,15 +63,22 @@ Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, Batch
   out.contacts.resize(poses.size());
   out.responses.resize(poses.size());
   if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
-  // Each pose's balance is found by asking for more poses: side by side, too.
+  // Each pose's balance is found by asking for more poses: side by side, too, and together where that pays.
   const ResponseSettings& settings = scene.loaded.scene.response;
-  const auto respond_to = [&](PoseQuery& asked, std::size_t i) -> Result<void> {
-    respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m,
-            out.responses[i]);
+  const std::size_t each = scene.backend->poses_together(poses.size());
+  const auto respond_to = [&](PoseQuery& asked, std::size_t piece) -> Result<void> {
+    const std::size_t first = piece * each, count = std::min(each, poses.size() - first);
+    std::vector<ContactResponse*> responses;
+    for (std::size_t i = first; i < first + count; ++i) {
+      respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m,
+              out.responses[i]);
+      responses.push_back(&out.responses[i]);
+    }
     if (settings.profile != Profile::kRefined) return {};
-    return LoneQuery(geometry, settings.stiffness_n_per_m).feel(asked, nullptr, poses[i], out.responses[i]);
+    return LoneQueries(geometry, settings.stiffness_n_per_m)
+        .feel(asked, poses.subspan(first, count), responses);
   };
-  if (auto done = scene.backend->share(poses.size(), respond_to); !done) return done;
+  if (auto done = scene.backend->share((poses.size() + each - 1) / each, respond_to); !done) return done;
   out.total_us = us_since(start);
   return {};
 }

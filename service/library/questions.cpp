@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <optional>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -41,10 +43,14 @@ std::uint32_t length(const std::vector<std::uint32_t>& list) {
   return static_cast<std::uint32_t>(list.size());
 }
 
-/// What a pose is answered with, kept from pose to pose so that lists keep their memory.
+/// What poses are answered with, kept from piece to piece so that lists keep their memory.
 struct Scratch {
-  Contacts contacts;
-  ContactResponse response;
+  std::vector<Contacts> contacts;
+  std::vector<ContactResponse> responses;
+  std::vector<LatticePose> lattice;
+  std::vector<Contacts*> answers;
+  std::vector<ContactResponse*> told;
+  std::optional<LoneQueries> balances;
 };
 
 /// Asks the engine for poses and writes what it says into columns.
@@ -57,18 +63,30 @@ class ColumnsOf {
         balance_(settings_.profile == Profile::kRefined &&
                  (to_.force || to_.torque || to_.tool || to_.evaluations)) {}
 
-  Result<void> answer(PoseQuery& asked, const Pose& pose, std::size_t i, Scratch& with) const {
-    const auto lattice = to_lattice(pose, geometry_);
-    if (!lattice) return lattice.error();
-    const auto& [contacts, response] = with;
-    if (auto done = asked.query(*lattice, nullptr, with.contacts); !done) return done;
-    respond(contacts, *lattice, geometry_, settings_.profile, settings_.stiffness_n_per_m, with.response);
-    if (balance_)
-      if (auto felt =
-              LoneQuery(geometry_, settings_.stiffness_n_per_m).feel(asked, nullptr, pose, with.response);
-          !felt)
-        return felt;
-    write(contacts, response, pose, i);
+  /// Of poses that follow each other, the first of which is number `first`.
+  Result<void> answer(PoseQuery& asked, std::span<const Pose> poses, std::size_t first, Scratch& with) const {
+    const std::size_t count = poses.size();
+    with.contacts.resize(std::max(with.contacts.size(), count));
+    with.responses.resize(std::max(with.responses.size(), count));
+    with.lattice.clear();
+    with.answers.clear();
+    with.told.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto lattice = to_lattice(poses[i], geometry_);
+      if (!lattice) return lattice.error();
+      with.lattice.push_back(*lattice);
+      with.answers.push_back(&with.contacts[i]);
+      with.told.push_back(&with.responses[i]);
+    }
+    if (auto done = asked.query_together(with.lattice, with.answers); !done) return done;
+    for (std::size_t i = 0; i < count; ++i)
+      respond(with.contacts[i], with.lattice[i], geometry_, settings_.profile, settings_.stiffness_n_per_m,
+              with.responses[i]);
+    if (balance_) {
+      if (!with.balances) with.balances.emplace(geometry_, settings_.stiffness_n_per_m);
+      if (auto felt = with.balances->feel(asked, poses, with.told); !felt) return felt;
+    }
+    for (std::size_t i = 0; i < count; ++i) write(with.contacts[i], with.responses[i], poses[i], first + i);
     return {};
   }
 
@@ -235,7 +253,7 @@ std::int32_t palpate_query(palpate_scene* scene, const double* poses, std::size_
     ScratchPool pool;
     std::atomic<std::size_t> done{0};
     const auto caller = std::this_thread::get_id();
-    const std::size_t piece = std::clamp<std::size_t>(count / 64, 1, kMostInAPiece);
+    std::size_t piece = 1, together = 1;
     const PoseWork work = [&](PoseQuery& asked, std::size_t number) -> Result<void> {
       const std::size_t first = number * piece, last = std::min(first + piece, count);
       const bool go_on =
@@ -244,16 +262,23 @@ std::int32_t palpate_query(palpate_scene* scene, const double* poses, std::size_
               : !watching.cancelled();
       if (!go_on) return stopped(done, count);
       auto scratch = pool.take();
-      for (std::size_t i = first; i < last; ++i) {
-        const auto pose = pose_at(poses, i);
-        if (!pose) return pose.error();
-        if (auto answered = to.answer(asked, *pose, i, *scratch); !answered) return answered;
+      std::vector<Pose> wanted;
+      for (std::size_t i = first; i < last; i += wanted.size()) {
+        wanted.clear();
+        while (wanted.size() < std::min(together, last - i)) {
+          const auto pose = pose_at(poses, i + wanted.size());
+          if (!pose) return pose.error();
+          wanted.push_back(*pose);
+        }
+        if (auto answered = to.answer(asked, wanted, i, *scratch); !answered) return answered;
       }
       done += last - first;
       pool.give(std::move(scratch));
       return {};
     };
     const auto all = [&](CollisionBackend& backend) {
+      together = backend.poses_together(count);
+      piece = std::max(together, std::clamp<std::size_t>(count / 64, 1, kMostInAPiece));
       return backend.share((count + piece - 1) / piece, work);
     };
     return count <= kFew ? scene->ask_any(all) : scene->ask(all);

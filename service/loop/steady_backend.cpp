@@ -95,6 +95,11 @@ class WatchedQuery final : public PoseQuery {
     truncated |= out.truncated;
     return answered;
   }
+  Result<void> query_together(std::span<const LatticePose> poses, std::span<Contacts* const> out) override {
+    auto answered = asked_.query_together(poses, out);
+    for (const Contacts* one : out) truncated |= one->truncated;
+    return answered;
+  }
   bool truncated = false;
 
  private:
@@ -119,6 +124,11 @@ Result<void> SteadyBackend::share(std::size_t count, const PoseWork& work) {
     if (again[i] != 0)
       if (auto done = work(*this, i); !done) return done;
   return {};
+}
+
+std::size_t SteadyBackend::poses_together(std::size_t count) {
+  if (first_ready_) return first_->poses_together(count);
+  return spare_ready_ ? spare_->poses_together(count) : 1;
 }
 
 Result<void> SteadyBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {

@@ -1,5 +1,9 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "model/collision_backend.h"
 #include "model/contact/response.h"
@@ -7,6 +11,25 @@
 #include "service/loop/spring_balance.h"
 
 namespace palpate {
+
+/// Anderson's method on z = T(z): the next z from the last few z and T(z). Turns count by their way at the
+/// tool's radius of gyration, so that a length is a length.
+class Anderson {
+ public:
+  explicit Anderson(double gyration) : gyration_(gyration) {}
+  double product(const Vec6& a, const Vec6& b) const;
+  double length(const Vec6& v) const;
+
+  Vec6 next(const Vec6& z, const Vec6& image);
+  void forget() { count_ = 0; }
+
+ private:
+  static constexpr std::size_t kMemory = 5;
+  double gyration_;
+  std::size_t count_ = 0;
+  std::array<Vec6, kMemory> rest_steps_{}, image_steps_{};
+  Vec6 last_rest_{}, last_image_{};
+};
 
 /// `refined`: force and torque of a lone pose. The tool hangs on the device by a spring of stiffness K and
 /// Kρ² (ρ: its radius of gyration), and is where spring and field balance: F = −∇ min_y [E(y) + ½ |x − y|²],
@@ -36,21 +59,65 @@ class LoneQuery {
   Result<Felt> ask(PoseQuery& backend, const Ignored* ignored, const Pose& pose,
                    const ContactResponse& at_pose, bool from_before = false);
 
+  /// The same step by step, for whoever asks for many at once: begin(), then as long as wanted() has a pose,
+  /// what respond() says there to take(). At last felt() puts what would be felt into `response`.
+  void begin(const Pose& pose, const ContactResponse& at_pose, bool from_before = false);
+  std::optional<Pose> wanted() const;
+  void take(const ContactResponse& there);
+  void felt(ContactResponse& response) const;
+
   /// The spring whose balance is sought.
   CouplingSettings spring() const { return spring_; }
 
  private:
-  Result<void> evaluate(PoseQuery& backend, const Ignored* ignored, const LawPose& tool);
+  enum class Stage : std::uint8_t { kFromBefore, kStep, kDone };
+
   Vec6 pull(const Wrench& push, const Vec6& apart) const;
-  Vec6 next(const LawPose& device, const Vec6& apart) const;
+  Vec6 next(const Vec6& apart) const;
+  bool settled() const;
+  void begin_step();
+  void want(const Vec6& apart, Stage stage);
+  void finish();
 
   const SceneGeometry& geometry_;
   double stiffness_;
   CouplingSettings spring_;
   Contacts contacts_;
   ContactResponse response_;
-  PlaneSet planes_;
   std::optional<Vec6> before_;  ///< the balance of the last pose asked, if that was in contact
+
+  // Of the pose that is asked for now.
+  Stage stage_ = Stage::kDone;
+  Felt felt_;
+  LawPose device_, tool_;  ///< tool_: where the field is wanted
+  Vec6 there_{};           ///< likewise, apart from device_
+  PlaneSet planes_;        ///< of the field where it was last evaluated
+  double enough_ = 0, enough_share_ = 0;
+  Anderson anderson_;
+  Vec6 apart_{}, rest_{}, image_{}, best_{};
+  double left_ = 0, least_ = 0;
+  // Of its present step.
+  Vec6 way_{}, step_{};
+  double slope_here_ = 0, low_ = 0, low_slope_ = 0, high_ = 0, high_slope_ = 0, share_ = 1;
+  int tried_ = 0;
+};
+
+/// Balances of many poses, in rounds: where the fields of all that are under way are wanted is asked
+/// together. The same answers as LoneQuery::feel of each. One thread.
+class LoneQueries {
+ public:
+  LoneQueries(const SceneGeometry& geometry, double stiffness) : geometry_(geometry), stiffness_(stiffness) {}
+
+  /// As LoneQuery::feel, of each pose; as many responses as poses. Error: the back end failed.
+  Result<void> feel(PoseQuery& backend, std::span<const Pose> poses,
+                    std::span<ContactResponse* const> responses);
+
+ private:
+  const SceneGeometry& geometry_;
+  double stiffness_;
+  std::vector<LoneQuery> under_way_;
+  std::vector<Contacts> contacts_;
+  ContactResponse response_;
 };
 
 }  // namespace palpate
