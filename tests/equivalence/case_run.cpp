@@ -3,8 +3,10 @@
 #include <chrono>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "model/contact/response.h"
+#include "model/pose_threads.h"
 #include "tests/equivalence/contacts_difference.h"
 #include "tests/equivalence/known.h"
 #include "tests/equivalence/touching_poses.h"
@@ -134,6 +136,25 @@ class Runner {
       if (case_.coarser) ignored.coarser = static_cast<std::uint32_t>(97 * i % (Ignored::kCoarsest + 1));
       if (!ask(geometry, pose, case_.ignoring || case_.coarser ? &ignored : nullptr, known)) return;
     }
+    ask_together();
+  }
+
+  /// All poses that have been asked singly, as often as it takes until helpers are set up.
+  void ask_together() {
+    if (poses_.empty()) return;
+    const std::size_t copies = kWorthThreads / poses_.size() + 1;
+    std::vector<LatticePose> poses;
+    for (std::size_t copy = 0; copy < copies; ++copy) poses.insert(poses.end(), poses_.begin(), poses_.end());
+    std::vector<Contacts> batch(poses.size());
+    if (const auto asked = backends_[0]->query_batch(poses, batch); !asked) {
+      differs(backends_[0]->name() + " failed on a batch: " + asked.error().sentence);
+      return;
+    }
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      where_ = "pose " + std::to_string(i % poses_.size()) + " of a batch, " + text_of(poses[i]);
+      compare(first_difference(batch[i], singles_[i % poses_.size()]), backends_[0]->name() + ", it singly");
+      if (out_.findings.size() >= static_cast<std::size_t>(settings_.most_differences)) return;
+    }
   }
 
   /// One pose, every back end. False: no more.
@@ -142,6 +163,10 @@ class Runner {
     if (!query(*backends_[0], geometry, pose, ignored, answer_)) return false;
     if (!counted_) return true;
     count(geometry, pose, known);
+    if (settings_.batch && !case_.ignoring && !case_.coarser) {
+      poses_.push_back(pose);
+      singles_.push_back(answer_.contacts);
+    }
     if (settings_.twice) {
       if (!query(*backends_[0], geometry, pose, ignored, other_)) return false;
       compare(first_difference(answer_, other_), "two runs of " + backends_[0]->name());
@@ -233,6 +258,8 @@ class Runner {
   const RunSettings& settings_;
   CaseRun out_;
   Answer answer_, other_;
+  std::vector<LatticePose> poses_;  ///< for a batch, and …
+  std::vector<Contacts> singles_;   ///< … what the first back end says of each
   std::string where_;
   bool counted_ = true;
 };

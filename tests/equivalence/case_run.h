@@ -20,8 +20,10 @@ struct RunSettings {
   std::uint64_t seed = 1;
   std::uint64_t first = 0;             ///< first pose compared and counted
   std::optional<std::uint64_t> poses;  ///< empty: the case's own number
-  bool twice = false;        ///< ask the first back end every pose again and compare the two answers
-  bool floats = false;       ///< count where single precision would decide otherwise
+  bool twice = false;   ///< ask the first back end every pose again and compare the two answers
+  bool batch = false;   ///< ask the first back end all poses of a case together, too, again and again until
+                        ///< it has helpers, and compare with its single answers
+  bool floats = false;  ///< count where single precision would decide otherwise
   int most_differences = 5;  ///< the rest of a case is not looked at
 };
 

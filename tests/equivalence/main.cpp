@@ -22,7 +22,7 @@ constexpr int kAllEqual = 0, kSomeDiffer = 1, kBadUsage = 2, kSomeNotSupported =
 struct Options {
   std::vector<std::string> names, families;
   bool list = false, killer = false, stop = false, times = false, validation = false, twice = false,
-       floats = false, guards = false, own_memory = false;
+       batch = false, floats = false, guards = false, own_memory = false;
   std::string backend = "all", device, check, write, reason;
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> poses, pose;
@@ -140,7 +140,7 @@ void print_repeat(const Case& c, const CaseRun& run, const Options& options, std
   const std::string flags =
       std::string(options.guards ? " --guards" : "") + (options.own_memory ? " --own-memory" : "") +
       (options.validation ? " --validation" : "") +
-      (options.twice || options.campaign > 0 ? " --twice" : "") +
+      (options.twice || options.campaign > 0 ? " --twice" : "") + (options.batch ? " --batch" : "") +
       (options.backend == "cpu" || options.backend == "ref" ? " --backend " + options.backend : "");
   std::printf("    repeat: equivalence --case %s --seed %llu%s%s\n", c.name.c_str(), Count{seed},
               pose.c_str(), flags.c_str());
@@ -193,6 +193,7 @@ int run_cases(const std::vector<Case>& cases, const Engines& engines, const Opti
   RunSettings settings;
   settings.seed = options.seed;
   settings.twice = options.twice;
+  settings.batch = options.batch;
   settings.floats = options.floats;
   settings.poses = options.pose ? std::optional<std::uint64_t>(1) : options.poses;
   settings.first = options.pose.value_or(0);
@@ -291,6 +292,7 @@ int run(int argc, char** argv) {
   app.add_option("--write", o.write, "write the hashes to this file, if all is equal")->needs(reason);
   app.add_flag("--stop", o.stop, "stop at the first difference");
   app.add_flag("--twice", o.twice, "ask the first back end everything twice");
+  app.add_flag("--batch", o.batch, "ask the first back end a case's poses together, too");
   app.add_flag("--floats", o.floats, "count what single precision would have judged otherwise");
   app.add_flag("--times", o.times, "print the median time of every stage");
   app.add_flag("--validation", o.validation, "with Vulkan's validation layer and its synchronisation checks");
