@@ -52,8 +52,13 @@ Result<void> answer_pose(const LoadedScene& scene, CollisionBackend& backend, co
 }
 
 Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
+  return answer_batch(scene.loaded, *scene.backend, poses, out);
+}
+
+Result<void> answer_batch(const LoadedScene& scene, CollisionBackend& backend, std::span<const Pose> poses,
+                          BatchAnswer& out) {
   const auto start = Clock::now();
-  const SceneGeometry& geometry = scene.loaded.geometry;
+  const SceneGeometry& geometry = scene.geometry;
   out.poses.clear();
   for (const Pose& pose : poses) {
     const Result<LatticePose> lattice = to_lattice(pose, geometry);
@@ -62,10 +67,10 @@ Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, Batch
   }
   out.contacts.resize(poses.size());
   out.responses.resize(poses.size());
-  if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
+  if (auto done = backend.query_batch(out.poses, out.contacts); !done) return done;
   // Each pose's balance is found by asking for more poses: side by side, too, and together where that pays.
-  const ResponseSettings& settings = scene.loaded.scene.response;
-  const std::size_t each = scene.backend->poses_together(poses.size());
+  const ResponseSettings& settings = scene.scene.response;
+  const std::size_t each = backend.poses_together(poses.size());
   const auto respond_to = [&](PoseQuery& asked, std::size_t piece) -> Result<void> {
     const std::size_t first = piece * each, count = std::min(each, poses.size() - first);
     std::vector<ContactResponse*> responses;
@@ -78,7 +83,7 @@ Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, Batch
     return LoneQueries(geometry, settings.stiffness_n_per_m)
         .feel(asked, poses.subspan(first, count), responses);
   };
-  if (auto done = scene.backend->share((poses.size() + each - 1) / each, respond_to); !done) return done;
+  if (auto done = backend.share((poses.size() + each - 1) / each, respond_to); !done) return done;
   out.total_us = us_since(start);
   return {};
 }

@@ -27,6 +27,9 @@ struct BatchAnswer {
 /// Answers poses side by side where the back end can; each as answer_pose would, but for the times. Errors
 /// likewise.
 Result<void> answer_batch(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out);
+/// The same by another back end that has the scene prepared.
+Result<void> answer_batch(const LoadedScene& scene, CollisionBackend& backend, std::span<const Pose> poses,
+                          BatchAnswer& out);
 
 /// One frame, as a session asks it: the field at the pose itself, no balance with a spring. What benches
 /// time.

@@ -285,8 +285,10 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   add_backend(*query_app, query.common);
   add_method(*query_app, query.common);
   query_app
-      ->add_option("--batch", query.batch,
-                   "answer N poses together, on all cores; time_us is then a pose's share")
+      ->add_option(
+          "--batch", query.batch,
+          "answer N poses together, on all cores, or as many as it takes in a submission of a device;"
+          " time_us is then a pose's share")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
   query_app->add_flag("--names", query.names, "parts: which named parts touch");

@@ -381,6 +381,27 @@ TEST(PoseGrid, AnOverflowOfOnePoseFlagsThisPose) {
   EXPECT_STREQ(on.answers[30].truncated_capacity, list);
 }
 
+// Keys hang on a pose's place in its batch: whatever one left in a table would fill it before long.
+TEST(PoseGrid, WhatABatchLeavesInTablesIsNothing) {
+  const Subject scene = subject("disassembly", 4000, 120);
+  Grid on(scene, {{"contact triangles of the mock-up", 1},
+                  {"contact triangles of the tool", 1},
+                  {"touched voxels", 1},
+                  {"pairs to test", 1}});
+  constexpr std::size_t kAtOnce = 40;
+  const auto flagged = [&](std::size_t first) {
+    EXPECT_TRUE(on.ask(std::span<const LatticePose>(scene.poses).subspan(first, kAtOnce)));
+    return std::count_if(on.answers.begin(), on.answers.begin() + kAtOnce,
+                         [](const Contacts& answer) { return answer.truncated; });
+  };
+  for (const bool grown : {false, true})  // lists grow to what any of these batches takes
+    for (std::size_t first = 0; first + kAtOnce <= scene.poses.size(); ++first) {
+      auto left = flagged(first);
+      for (int round = 0; !grown && left > 0 && round < 20; ++round) left = flagged(first);
+      EXPECT_EQ(left, 0) << "from pose " << first;
+    }
+}
+
 TEST(PoseGrid, ADeviceThatIsLostAnswersNothing) {
   const Subject scene = subject("disassembly", 4000, 100);
   const auto fault = std::make_shared<GpuFault>();

@@ -117,12 +117,15 @@ def test_a_batch_on_all_cores_prints_what_single_queries_do():
         'poses.csv',
         HEADER + ''.join(f'{0.002 * (i % 100) - 0.1},{0.001 * (i % 13)},0,0,0,0,1\n' for i in range(200)),
     )
-    alone = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv'))
-    batch = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--batch', '200'))
-    expect(any(line['contact'] for line in alone), 'some touch')
-    for a, b in zip(alone, batch, strict=True):
-        expect(b.pop('batch') == 200, b)
-        expect(without_time(a) == without_time(b), f"pose {a['number']} differs")
+    for engine in ('cpu', 'gpu'):
+        asked = ['query', scene, '--poses', folder / 'poses.csv', '--backend', engine]
+        alone = lines_of(palpate(*asked))
+        batch = lines_of(palpate(*asked, '--batch', '200'))
+        expect(any(line['contact'] for line in alone), 'some touch')
+        expect(any(line['evaluations'] > 2 for line in alone), 'some look for a balance')
+        for a, b in zip(alone, batch, strict=True):
+            expect(b.pop('batch') == 200, b)
+            expect(without_time(a) == without_time(b), f"{engine}: pose {a['number']} differs")
 
 
 def test_an_interrupt_ends_preparation():

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "service/cli/answer.h"
@@ -20,20 +21,20 @@ constexpr auto kSliceTime = std::chrono::milliseconds(10);  ///< chosen, for pos
 constexpr std::size_t kReadAhead = 1 << 20;                 ///< bytes made before the client has read; chosen
 
 /// The 64 bytes of docs/SERVICE.md.
-void append_wrench(const Answer& answer, std::string& out) {
+void append_wrench(const Contacts& contacts, const ContactResponse& response, std::string& out) {
   struct Record {
     double force[3], torque[3];
     std::uint32_t pairs, flags, areas, bits;
   } record{};
   static_assert(sizeof(Record) == 64);
   for (int i = 0; i < 3; ++i) {
-    record.force[i] = answer.response.told().force[i];
-    record.torque[i] = answer.response.told().torque[i];
+    record.force[i] = response.told().force[i];
+    record.torque[i] = response.told().torque[i];
   }
-  record.pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(answer.contacts.pairs, UINT32_MAX));
-  record.flags = answer.response.flags;
-  record.areas = static_cast<std::uint32_t>(answer.contacts.areas.size());
-  record.bits = (answer.contacts.contact ? 1u : 0u) | (answer.contacts.truncated ? 2u : 0u);
+  record.pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(contacts.pairs, UINT32_MAX));
+  record.flags = response.flags;
+  record.areas = static_cast<std::uint32_t>(contacts.areas.size());
+  record.bits = (contacts.contact ? 1u : 0u) | (contacts.truncated ? 2u : 0u);
   out.append(reinterpret_cast<const char*>(&record), sizeof record);
 }
 
@@ -45,7 +46,9 @@ struct BatchQueue::Batch {
   Reply reply;  ///< empty once replied
   std::size_t next = 0;
   Answer answer;
-  std::string made;  ///< by the slice under way
+  std::size_t together = kSlicePoses;  ///< most poses asked at once, for them to take no longer than a slice
+  BatchAnswer answers;                 ///< of such
+  std::string made;                    ///< by the slice under way
   bool failed = false;
   std::string failure;
 
@@ -247,6 +250,27 @@ Result<void> BatchQueue::clearance_slice(Batch& batch, std::chrono::steady_clock
   return {};
 }
 
+/// One pose into batch.answer; or, where nobody waits for a pose's end and it pays, several, `most` at most,
+/// into batch.answers. How many.
+Result<std::size_t> BatchQueue::answer_some(Batch& batch, CollisionBackend& backend, bool several,
+                                            std::size_t most) {
+  const LoadedScene& scene = (*batch.request.scene)->loaded;
+  const std::span<const Pose> poses = batch.request.poses;
+  std::size_t count = 1;
+  if (several)
+    count = std::min({backend.poses_together(poses.size()), batch.together, most, poses.size() - batch.next});
+  if (count == 1) {
+    if (auto done = answer_pose(scene, backend, poses[batch.next], batch.answer); !done) return done.error();
+    return count;
+  }
+  if (auto done = answer_batch(scene, backend, poses.subspan(batch.next, count), batch.answers); !done)
+    return done.error();
+  const bool long_one = batch.answers.total_us > std::chrono::microseconds(kSliceTime).count();
+  batch.together = long_one ? std::max<std::size_t>(batch.together / 2, 1)
+                            : std::min<std::size_t>(batch.together * 2, kSlicePoses);
+  return count;
+}
+
 void BatchQueue::answer_slice(Batch& batch) {
   const auto start = std::chrono::steady_clock::now();
   const BatchRequest& request = batch.request;
@@ -262,16 +286,36 @@ void BatchQueue::answer_slice(Batch& batch) {
     }
     const auto parts =
         request.names ? std::optional<TouchedParts>(std::in_place, scene.loaded.geometry) : std::nullopt;
-    for (std::size_t i = 0; i < kSlicePoses && batch.next < request.poses.size(); ++i, ++batch.next) {
-      if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
-      Result<void> answered;
+    const auto tell = [&](const Contacts& contacts, const ContactResponse& response, double us) {
+      ++metrics_.poses;
+      metrics_.query_s.add(us / 1e6);
+      for (const auto& time : contacts.times) metrics_.add_stage(contacts.engine, time.stage, time.us);
+      if (contacts.truncated) ++metrics_.truncated;
+      if (request.binary)
+        append_wrench(contacts, response, batch.made);
+      else
+        append_query_line({.number = batch.next,
+                           .total_us = us,
+                           .batch = std::nullopt,
+                           .tick = std::nullopt,
+                           .sets = request.sets,
+                           .parts = request.names ? &*parts : nullptr,
+                           .pose = &request.poses[batch.next]},
+                          contacts, response, batch.made);
+      ++batch.next;
+    };
+    for (std::size_t asked = 0, count = 0; asked < kSlicePoses && batch.next < request.poses.size();
+         asked += count) {
+      if (asked > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
+      Result<std::size_t> answered = std::size_t{0};
       {
-        const Aside aside = request.scene->loops() > 0 ? store_.aside(*request.scene) : Aside{};
+        const bool beside = request.scene->loops() > 0;
+        const Aside aside = beside ? store_.aside(*request.scene) : Aside{};
         if (aside.backend) {
-          answered = answer_pose(scene.loaded, *aside.backend, request.poses[batch.next], batch.answer);
+          answered = answer_some(batch, *aside.backend, true, kSlicePoses - asked);
         } else {
           const TurnGuard turn(request.scene->turns(), TurnGuard::Kind::kBatch);
-          answered = answer_pose(scene, request.poses[batch.next], batch.answer);
+          answered = answer_some(batch, *scene.backend, !beside, kSlicePoses - asked);
         }
       }
       if (!answered) {
@@ -280,22 +324,14 @@ void BatchQueue::answer_slice(Batch& batch) {
         batch.failure = answered.error().sentence;
         return;
       }
-      ++metrics_.poses;
-      metrics_.query_s.add(batch.answer.total_us / 1e6);
-      for (const auto& time : batch.answer.contacts.times)
-        metrics_.add_stage(batch.answer.contacts.engine, time.stage, time.us);
-      if (batch.answer.contacts.truncated) ++metrics_.truncated;
-      if (request.binary)
-        append_wrench(batch.answer, batch.made);
-      else
-        append_query_line({.number = batch.next,
-                           .total_us = batch.answer.total_us,
-                           .batch = std::nullopt,
-                           .tick = std::nullopt,
-                           .sets = request.sets,
-                           .parts = request.names ? &*parts : nullptr,
-                           .pose = &request.poses[batch.next]},
-                          batch.answer.contacts, batch.answer.response, batch.made);
+      count = *answered;
+      if (count == 1) {
+        tell(batch.answer.contacts, batch.answer.response, batch.answer.total_us);
+      } else {
+        for (std::size_t i = 0; i < count; ++i)
+          tell(batch.answers.contacts[i], batch.answers.responses[i],
+               batch.answers.total_us / static_cast<double>(count));
+      }
     }
   } catch (const std::exception& error) {
     batch.failed = true;

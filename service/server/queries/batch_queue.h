@@ -48,6 +48,7 @@ class BatchQueue {
   class Source;
   void run();
   void answer_slice(Batch& batch);
+  Result<std::size_t> answer_some(Batch& batch, CollisionBackend& backend, bool several, std::size_t most);
   Result<void> touch_slice(Batch& batch);
   Result<void> clearance_slice(Batch& batch, std::chrono::steady_clock::time_point start);
   void resume(const std::shared_ptr<Batch>& batch);

@@ -1,0 +1,86 @@
+// Balances that are looked for together are those that are looked for one by one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "compute/native/native_backend.h"
+#include "model/files/path_file.h"
+#include "model/generate.h"
+#include "model/scene/geometry_build.h"
+#include "service/queries/lone_query.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kStiffness = 2000;
+
+/// Counts how often it is asked, and for how many at most.
+class Counting final : public PoseQuery {
+ public:
+  explicit Counting(PoseQuery& asked) : asked_(asked) {}
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    ++alone;
+    return asked_.query(pose, ignored, out);
+  }
+  Result<void> query_together(std::span<const LatticePose> poses, std::span<Contacts* const> out) override {
+    ++rounds;
+    most = std::max(most, poses.size());
+    return asked_.query_together(poses, out);
+  }
+  std::size_t alone = 0, rounds = 0, most = 0;
+
+ private:
+  PoseQuery& asked_;
+};
+
+TEST(LoneQueries, FindTheBalancesOfLoneQueriesInAsManyRoundsAsTheLongestTakes) {
+  const auto scene = generate_scene("contacts", 8000, 1000);
+  ASSERT_TRUE(scene);
+  const auto geometry = build_geometry(scene->mockup, scene->tool, {});
+  ASSERT_TRUE(geometry);
+  const auto backend = make_native_backend();
+  ASSERT_TRUE(backend->prepare(*geometry, Plan{}, {}));
+
+  std::vector<Pose> poses;
+  std::vector<ContactResponse> at_pose, together;
+  Contacts contacts;
+  for (std::size_t i = 0; i < 80; ++i) {
+    poses.push_back(path_pose(scene->path[i * scene->path.size() / 80], scene->guide));
+    const LatticePose lattice = *to_lattice(poses.back(), *geometry);
+    ASSERT_TRUE(backend->query(lattice, nullptr, contacts));
+    respond(contacts, lattice, *geometry, Profile::kRefined, kStiffness, at_pose.emplace_back());
+  }
+  together = at_pose;
+  std::vector<ContactResponse*> told;
+  for (ContactResponse& response : together) told.push_back(&response);
+  Counting counting(*backend);
+  LoneQueries queries(*geometry, kStiffness);
+  ASSERT_TRUE(queries.feel(counting, poses, told));
+
+  int longest = 0;
+  std::size_t contacts_met = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    ContactResponse alone = at_pose[i];
+    ASSERT_TRUE(LoneQuery(*geometry, kStiffness).feel(*backend, nullptr, poses[i], alone));
+    ASSERT_TRUE(alone.felt && together[i].felt) << i;
+    const Felt &a = *alone.felt, &b = *together[i].felt;
+    EXPECT_EQ(a.wrench.force, b.wrench.force) << i;
+    EXPECT_EQ(a.wrench.torque, b.wrench.torque) << i;
+    EXPECT_EQ(a.tool.position, b.tool.position) << i;
+    EXPECT_EQ(a.tool.rotation, b.tool.rotation) << i;
+    EXPECT_EQ(a.evaluations, b.evaluations) << i;
+    EXPECT_EQ(a.settled, b.settled) << i;
+    EXPECT_EQ(alone.flags, together[i].flags) << i;
+    longest = std::max(longest, a.evaluations);
+    contacts_met += at_pose[i].contact ? 1u : 0u;
+  }
+  EXPECT_GT(longest, 3);
+  EXPECT_EQ(counting.alone, 0u);
+  EXPECT_EQ(counting.rounds + 1, static_cast<std::size_t>(longest)) << "the pose itself was asked before";
+  EXPECT_EQ(counting.most, contacts_met);
+}
+
+}  // namespace
+}  // namespace palpate
