@@ -152,6 +152,27 @@ Error stopped(std::size_t done, std::size_t count) {
   return {ErrorCode::kInternal, fmt::format("cancelled after {} of {} poses", done, count)};
 }
 
+/// Ends a piece between two of its questions once the watch says so: a piece that asks for many poses at a
+/// time is long.
+class HeedingQuery final : public PoseQuery {
+ public:
+  /// `done` of `count` poses are answered; it goes on to count.
+  HeedingQuery(PoseQuery& asked, const Watch& watch, const std::atomic<std::size_t>& done, std::size_t count)
+      : asked_(asked), watch_(watch), done_(done), count_(count) {}
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    return watch_.cancelled() ? stopped(done_, count_) : asked_.query(pose, ignored, out);
+  }
+  Result<void> query_together(std::span<const LatticePose> poses, std::span<Contacts* const> out) override {
+    return watch_.cancelled() ? stopped(done_, count_) : asked_.query_together(poses, out);
+  }
+
+ private:
+  PoseQuery& asked_;
+  const Watch& watch_;
+  const std::atomic<std::size_t>& done_;
+  const std::size_t count_;
+};
+
 /// The questions of docs/EXACTNESS.md section 10 are defined for `refined`.
 Result<void> verdicts_allowed(const palpate_scene& scene, double tolerance) {
   if (scene.hosted().plan.plan.profile != Profile::kRefined)
@@ -262,6 +283,7 @@ std::int32_t palpate_query(palpate_scene* scene, const double* poses, std::size_
               : !watching.cancelled();
       if (!go_on) return stopped(done, count);
       auto scratch = pool.take();
+      HeedingQuery heeded(asked, watching, done, count);
       std::vector<Pose> wanted;
       for (std::size_t i = first; i < last; i += wanted.size()) {
         wanted.clear();
@@ -270,7 +292,7 @@ std::int32_t palpate_query(palpate_scene* scene, const double* poses, std::size_
           if (!pose) return pose.error();
           wanted.push_back(*pose);
         }
-        if (auto answered = to.answer(asked, wanted, i, *scratch); !answered) return answered;
+        if (auto answered = to.answer(heeded, wanted, i, *scratch); !answered) return answered;
       }
       done += last - first;
       pool.give(std::move(scratch));

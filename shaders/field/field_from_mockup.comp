@@ -13,7 +13,7 @@ layout(constant_id = 0) const bool CLOSED = true;   // the tool
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindSamples, FrameSample, frame_samples);
 READ(kBindMockupPoints, FieldPoint, mockup_points);
 READ(kBindMockupInfo, uint32_t, mockup_info);
@@ -44,7 +44,7 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 #define BODY_GRID scene.fine
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/group_count.glsl"
-#include "shaders/lib/posed_table.glsl"
+#include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(static, kBindStaticKeys)
 #include "shaders/lib/body/body_depth.glsl"
 #include "shaders/lib/body/body_walks.glsl"

@@ -13,7 +13,7 @@ layout(constant_id = 1) const bool INSIDE = true;   // the tool has an inside
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindToolPoints, FieldPoint, tool_points);
 READ(kBindToolInfo, uint32_t, tool_info);
 READ(kBindToolNormals, ivec3, tool_normals);
@@ -38,7 +38,7 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 
 #define BODY_GRID scene.mockup.grid
 #include "shaders/lib/list_room.glsl"
-#include "shaders/lib/posed_table.glsl"
+#include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(mobile, kBindMobileKeys)
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/body/body_depth.glsl"

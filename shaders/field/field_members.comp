@@ -10,7 +10,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 #include "shaders/lib/set_name.glsl"
 
 layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside

@@ -13,7 +13,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindFieldTiles, FieldTile, field_tiles);
 READ(kBindToolVertices, ivec3, tool_vertices);
 READ(kBindToolTriangles, uvec3, tool_triangles);
@@ -27,7 +27,7 @@ EDIT(kBindToolPoints, FieldPoint, tool_points);
 
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/group_count.glsl"
-#include "shaders/lib/posed_table.glsl"
+#include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(mobile, kBindMobileKeys)
 GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #include "shaders/lib/pose.glsl"

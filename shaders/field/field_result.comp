@@ -9,7 +9,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 #include "shaders/lib/frame_reset.glsl"
 
 layout(constant_id = 8) const bool CARRIERS = true;   // as in lib/field_sums.glsl

@@ -15,7 +15,7 @@ layout(constant_id = 2) const uint32_t BRICK_GROUPS = 2u;   // workgroups that l
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindToolBounds, LatticeBox, tool_bounds);
 READ(kBindOccupied, uint32_t, occupied);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slot);

@@ -10,7 +10,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
@@ -27,7 +27,7 @@ EDIT(kBindPairSlots, uint32_t, pair_slots);
 EDIT(kBindPairs, ContactPair, pairs);
 
 #include "shaders/lib/budget.glsl"
-#include "shaders/lib/group_poses.glsl"
+#include "shaders/lib/batch/group_poses.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/tool_record.glsl"
 #include "shaders/lib/mobile_mark.glsl"

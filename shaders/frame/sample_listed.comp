@@ -12,7 +12,7 @@ layout(constant_id = 0) const bool WIDE = false;   // voxels of more than kNarro
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindFineBrickSlot, uint32_t, fine_brick_slot);
 READ(kBindFineBricks, Brick, fine_bricks);
 READ(kBindSamplePoints, uint32_t, sample_points);
@@ -26,7 +26,7 @@ EDIT(kBindOpenPoses, uint32_t, open_poses);
 EDIT(kBindSamples, FrameSample, samples);
 
 #include "shaders/lib/budget.glsl"
-#include "shaders/lib/group_poses.glsl"
+#include "shaders/lib/batch/group_poses.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
 #include "shaders/lib/sample_room.glsl"

@@ -11,7 +11,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindMockupVertices, ivec3, mockup_vertices);
 READ(kBindMockupTriangles, uvec3, mockup_triangles);
 READ(kBindMockupInfo, uint32_t, mockup_info);

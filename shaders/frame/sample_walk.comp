@@ -12,7 +12,7 @@ layout(constant_id = 0) const bool CLOSED = true;   // the tool
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindToolRecords, uint64_t, tool_records);
 READ(kBindToolVertices, ivec3, body_vertices);
 READ(kBindToolTriangles, uvec3, body_triangles);

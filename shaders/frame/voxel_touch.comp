@@ -11,7 +11,7 @@
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
-#include "shaders/lib/batch.glsl"
+#include "shaders/lib/batch/batch.glsl"
 READ(kBindOccupied, uint32_t, occupied);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slot);
 READ(kBindMockupBricks, Brick, mockup_bricks);
@@ -25,7 +25,7 @@ EDIT(kBindTouchedVoxels, uvec4, touched_voxels);
 EDIT(kBindPairChunks, PairChunk, pair_chunks);
 
 #include "shaders/lib/budget.glsl"
-#include "shaders/lib/group_poses.glsl"
+#include "shaders/lib/batch/group_poses.glsl"
 #include "shaders/lib/broad_phase/turned_box.glsl"
 #include "shaders/lib/broad_phase/occupied.glsl"
 #include "shaders/lib/tool_record.glsl"

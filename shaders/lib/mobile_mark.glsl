@@ -4,7 +4,7 @@
 #define PALPATE_MOBILE_MARK_GLSL
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/member_groups.glsl"
-#include "shaders/lib/posed_table.glsl"
+#include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(mobile, kBindMobileKeys)
 
 void mark_mobile(uint32_t mobile, uint32_t bit) {

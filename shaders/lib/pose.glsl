@@ -3,7 +3,7 @@
 #define PALPATE_POSE_GLSL
 #include "shaders/lib/plan.glsl"
 #ifndef INPUT
-#define INPUT(member) frame_input.member   // lib/batch.glsl has it of the invocation's pose
+#define INPUT(member) frame_input.member   // lib/batch/batch.glsl has it of the invocation's pose
 #endif
 
 // (R·v + 2^29) >> 30: a direction or a unit normal of the tool, Q30, in the world. |v|, |R| ≤ 2^30: sums

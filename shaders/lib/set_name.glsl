@@ -5,7 +5,7 @@
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/plan.glsl"
 
-#include "shaders/lib/posed_table.glsl"
+#include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(static, kBindStaticKeys)
 POSED_TABLE(mobile, kBindMobileKeys)
 READ(kBindContactStatics, uint32_t, contact_statics);

@@ -1,10 +1,10 @@
 // Sets a bit of a static triangle's state; the first one gives it a slot in C_s. The including file has
-// static_state, static_slot, contact_statics, frame_lists and frame_state (lib/batch.glsl).
+// static_state, static_slot, contact_statics, frame_lists and frame_state (lib/batch/batch.glsl).
 #ifndef PALPATE_STATIC_MARK_GLSL
 #define PALPATE_STATIC_MARK_GLSL
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/member_groups.glsl"
-#include "shaders/lib/posed_table.glsl"
+#include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(static, kBindStaticKeys)
 
 // The triangle's entry in the tables by static triangle; kNone: a batch has no room for it.

@@ -1,6 +1,6 @@
 // The poses of a workgroup's invocations, for shaders in which these share out what they have found: whoever
 // goes on with an invocation's find goes on with its pose. Nothing of it is left in a lone frame.
-// The including shader has lib/batch.glsl and lib/budget.glsl.
+// The including shader has lib/batch/batch.glsl and lib/budget.glsl.
 #ifndef PALPATE_LIB_GROUP_POSES
 #define PALPATE_LIB_GROUP_POSES
 shared uint32_t group_poses[kGroupSize];   // kNone: the invocation has no item
