@@ -48,6 +48,12 @@ uint32_t bin_of(ivec3 n) {
 // A word of the pose's field.
 uint32_t field_word(uint32_t word) { return kFieldWords * frame_pose + word; }
 
+// The first one of a bin.
+uint32_t word_of_bin(uint32_t bin) {
+  if (!BATCH) return kFieldBinWords * bin;
+  return kFieldWords * (bin / kFieldBinCount) + kFieldBinWords * (bin % kFieldBinCount);
+}
+
 void put_push(Push push) {
   const i64vec3 n = i64vec3(push.along), u = i64vec3(push.against),
                 r = i64vec3(push.at) - i64vec3(INPUT(translation));
@@ -92,10 +98,7 @@ void put_push(Push push) {
 void flush_term(uint32_t kind, uint32_t key, int64_t sum) {
   if (key == kNone || sum == 0l) return;
   if (kind < kFieldBinWords)
-    atomicAdd(field_work[(BATCH ? kFieldWords * (key / kFieldBinCount) + kFieldBinWords * (key % kFieldBinCount)
-                                : kFieldBinWords * key) +
-                         kind],
-              sum);
+    atomicAdd(field_work[word_of_bin(key) + kind], sum);
   else atomicAdd(carrier_work[kCarrierWords * key + (kind - kFieldBinWords)], sum);
 }
 

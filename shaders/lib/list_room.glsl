@@ -7,7 +7,8 @@ uint32_t take_room(uint32_t list, uint32_t n) {
   const uint32_t at = atomicAdd(frame_lists[list].count, n);
   const uint32_t capacity = frame_lists[list].capacity;
   // In a batch each pose notes its own.
-  if ((BATCH || at <= capacity) && n > capacity - min(at, capacity)) atomicOr(frame_state.overflow, 1u << list);
+  if ((BATCH || at <= capacity) && n > capacity - min(at, capacity))
+    atomicOr(frame_state.overflow, 1u << list);
   return at;
 }
 
