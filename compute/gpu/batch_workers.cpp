@@ -7,9 +7,12 @@
 namespace palpate {
 namespace {
 
-// Pieces of a batch for each thread, so that all end together; and poses of a piece that are worth a
-// submission (both chosen).
-constexpr std::size_t kPiecesOfThread = 4, kWorthSubmission = 32;
+/// How a batch is cut (all chosen): pieces for each thread, so that all end together; and poses that are
+/// worth a submission, which on a GPU costs what dozens of poses do.
+struct Cut {
+  std::size_t pieces_of_thread, least;
+};
+constexpr Cut kOfProcessors{.pieces_of_thread = 4, .least = 32}, kOfGpu{.pieces_of_thread = 2, .least = 256};
 
 }  // namespace
 
@@ -59,6 +62,7 @@ Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& opt
     return made ? std::move(*made) : nullptr;  // pose by pose, as before
   };
   std::unique_ptr<BatchWorkers> out(new BatchWorkers);
+  out->own_devices_ = own_devices;
   out->own_ = std::make_unique<Asked>(own, grid_on(device, scene));
   for (unsigned i = 0; i < helpers; ++i) {
     auto helper = std::make_unique<Helper>();
@@ -115,9 +119,9 @@ DeviceWork BatchWorkers::work() const {
 
 std::size_t BatchWorkers::poses_together(std::size_t count) const {
   if (own_->grid() == nullptr) return 1;
-  const std::size_t pieces = kPiecesOfThread * (helpers_.size() + 1);
-  return std::clamp((count + pieces - 1) / pieces, std::min(kWorthSubmission, own_->grid()->most()),
-                    own_->grid()->most());
+  const Cut& cut = own_devices_ ? kOfProcessors : kOfGpu;
+  const std::size_t pieces = cut.pieces_of_thread * (helpers_.size() + 1), most = own_->grid()->most();
+  return std::clamp((count + pieces - 1) / pieces, std::min(cut.least, most), most);
 }
 
 Result<void> BatchWorkers::share(std::size_t count, const PoseWork& work) {

@@ -52,6 +52,7 @@ class BatchWorkers {
   };
   BatchWorkers();
 
+  bool own_devices_ = false;
   std::unique_ptr<Asked> own_;  ///< on the caller's thread
   std::vector<std::unique_ptr<Helper>> helpers_;
   std::optional<PoseThreads> threads_;  ///< of the helpers

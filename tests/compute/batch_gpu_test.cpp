@@ -133,12 +133,12 @@ TEST(RefBatch, IsTheBitsOfSingleQueries) {
   }
 }
 
-// Threads are made at kWorthThreads; poses are handed out eight at a time at most before, and then in pieces
-// of at least 32.
+// Threads are made at kWorthThreads; from then on poses are handed out in pieces of at least 32, or 256.
 TEST_P(Batch, OfEverySizeIsTheBitsOfSingleQueries) {
-  const Subject scene = subject("disassembly", 4000, 150);
+  const Subject scene = subject("disassembly", 4000, 260);
   const auto backend = prepared(options_here(), scene);
-  for (const std::size_t size : {1u, 2u, 7u, 8u, 9u, 31u, 32u, 33u, 63u, 64u, 65u, 127u, 128u, 129u}) {
+  for (const std::size_t size :
+       {1u, 2u, 7u, 8u, 9u, 31u, 32u, 33u, 63u, 64u, 65u, 127u, 128u, 129u, 256u, 257u}) {
     SCOPED_TRACE(size);
     expect_same(*backend, std::span(scene.poses).first(size), 0);
   }
