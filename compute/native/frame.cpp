@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "compute/scene/tool_order.h"
 #include "model/contact/contact_areas.h"
@@ -37,20 +38,23 @@ void clear(Contacts& out) {
 
 }  // namespace
 
-Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan)
+Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan,
+             std::shared_ptr<const OpenInside> tool)
     : geometry_(geometry),
       plan_(plan),
       order_(order_in_space(geometry.tool)),
       runs_(geometry.tool, order_),
       posed_(geometry.tool),
       broad_phase_(BroadPhase::make(geometry, scene, runs_)),
-      contact_(HostContact::make(geometry, scene, order_)),
+      contact_(HostContact::make(geometry, scene, order_, tool)),
       flags_(scene.constants.tool.closed == 0 && scene.constants.tool.has_internal == 0 ? kFlagToolOpen : 0u),
       touch_(kUsualItems),
       candidate_pairs_(kUsualItems),
       chunks_(kUsualItems),
       inside_(kUsualItems),
-      open_(kUsualItems) {}
+      open_(kUsualItems) {
+  if (tool) broad_phase_.use(std::move(tool), scene.tool);
+}
 
 /// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on
 /// its processors, and a loop's are chosen well.

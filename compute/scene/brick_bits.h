@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -43,20 +44,26 @@ class BrickBits {
   }
   /// `size` in bricks; `slots` as brick_slot has them.
   void make(const Int3& size, std::vector<std::uint32_t> slots, std::span<const gpu::Brick> bricks, Of of) {
-    size_ = size;
-    block_ = std::move(slots);
-    for (std::uint32_t& block : block_)
-      block = block == gpu::kBrickExternal ? 0 : block == gpu::kBrickInternal ? 1 : block + 2;
-    bits_.resize(bricks.size() + 2);
-    bits_[0].fill(0);
-    bits_[1].fill(~std::uint64_t{0});
+    std::vector<Block> blocks(bricks.size());
     for (std::size_t i = 0; i < bricks.size(); ++i) {
       const auto half = [&](std::size_t word) {
         return std::uint64_t{bricks[i].internal_[word] |
                              (of == Of::kOccupied ? bricks[i].boundary[word] : 0)};
       };
-      for (std::size_t z = 0; z < 8; ++z) bits_[i + 2][z] = half(2 * z) | half(2 * z + 1) << 32;
+      for (std::size_t z = 0; z < 8; ++z) blocks[i][z] = half(2 * z) | half(2 * z + 1) << 32;
     }
+    make(size, std::move(slots), blocks);
+  }
+  /// The same of bits that are there: `slots` says which of `blocks`.
+  void make(const Int3& size, std::vector<std::uint32_t> slots, std::span<const Block> blocks) {
+    size_ = size;
+    block_ = std::move(slots);
+    for (std::uint32_t& block : block_)
+      block = block == gpu::kBrickExternal ? 0 : block == gpu::kBrickInternal ? 1 : block + 2;
+    bits_.resize(blocks.size() + 2);
+    bits_[0].fill(0);
+    bits_[1].fill(~std::uint64_t{0});
+    std::copy(blocks.begin(), blocks.end(), bits_.begin() + 2);
   }
 
   /// A bit for each brick: whether it has a voxel.

@@ -10,6 +10,8 @@ namespace {
 constexpr double kMoreEntries = 1.3;
 constexpr double kFixed = double(96 << 20);  // runs of pairs and samples, tables of short scenes
 
+constexpr double kOpenBrick = 25'000, kMostOpenBricks = 8192;  // compute/native/narrow_phase/inside_cells.cpp
+
 struct Sizes {
   double body = 0, entries = 0, boundary = 0, bricks = 0;
 };
@@ -43,6 +45,9 @@ std::uint64_t estimate_preparation(const SceneGeometry& geometry, const Plan& pl
       kFixed + mockup.body + tool.body + lists(mockup, static_cast<double>(geometry.mockup.triangles.size()));
   if (plan.profile == Profile::kRefined)
     sum += 17 * lists(tool, static_cast<double>(geometry.tool.triangles.size()));  // and in finer voxels
+  // Cells and quarters of an open tool's voxels, and tables of both while they are made.
+  if (plan.profile == Profile::kRefined && !geometry.tool.closed)
+    sum += kOpenBrick * std::min(tool.bricks, kMostOpenBricks);
   return static_cast<std::uint64_t>(std::min(sum, 1e18));  // beyond, numbers end; memory did long before
 }
 

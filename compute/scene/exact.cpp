@@ -54,12 +54,6 @@ int edge_side(const Int3& p, const Int3& d, const Int3& u, const Int3& v) {
   return side != 0 ? side : first_sign(cross(d, v - u));
 }
 
-/// Side of the plane of a triangle on which it lies ahead of the perturbed p.
-int plane_ahead(const Normal& n, const Int3& p, const Int3& a) {
-  const int side = sign(dot(n, a - p));
-  return side != 0 ? side : -first_sign(n);
-}
-
 /// One of the nine axes (unit vector × edge): s and t are the projections of the edge and of the third
 /// corner.
 bool parted(std::int64_t s, std::int64_t t, std::int64_t radius) {
@@ -124,6 +118,11 @@ bool triangle_touches_cube(const Corners& t, const Box& box, const Int3& low, st
   if (distance > reach || -distance > reach) return false;
   return !edge_parts(t[1] - t[0], p, r, side) && !edge_parts(t[2] - t[1], q, p, side) &&
          !edge_parts(t[0] - t[2], r, q, side);
+}
+
+int plane_ahead(const Normal& n, const Int3& p, const Int3& a) {
+  const int side = sign(dot(n, a - p));
+  return side != 0 ? side : -first_sign(n);
 }
 
 int segment_crossing(const Int3& p, const Int3& q, const Corners& t) {

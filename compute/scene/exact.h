@@ -56,6 +56,10 @@ inline Box box_of(const Corners& t) {
 /// triangle's.
 bool triangle_touches_cube(const Corners& t, const Box& box, const Int3& low, std::int32_t side);
 
+/// The sign of the side of a triangle's plane on which it lies ahead of the perturbed p; n: its normal, a:
+/// one of its corners.
+int plane_ahead(const Normal& n, const Int3& p, const Int3& a);
+
 /// +1 when the way from p to q, p ≠ q, both perturbed alike, leaves through the triangle's outward face, −1
 /// when it enters, 0 when it does not cross. A collapsed triangle is not crossed.
 int segment_crossing(const Int3& p, const Int3& q, const Corners& t);

@@ -56,42 +56,63 @@ std::vector<std::uint32_t> ways_out(const PartitionView& p) {
   return exits;
 }
 
-std::vector<std::uint32_t> near_tool(const PartitionView& p, std::int32_t voxel_size) {
-  const Int3 n = p.grid.bricks * 8;
-  const std::uint64_t voxels = brick_count(p.grid.bricks) * 512;
-  if (voxels > kMostNearVoxels) return {};
-  const HostPartition classes(p);
-  std::vector<std::uint8_t> near(voxels);
-  std::size_t i = 0;
-  for (int z = 0; z < n.z; ++z)
-    for (int y = 0; y < n.y; ++y)
-      for (int x = 0; x < n.x; ++x) near[i++] = classes.at({x, y, z}).kind != gpu::kVoxelExternal;
+SolidCubes::SolidCubes(const Int3& cubes, double side) : n_(cubes), side_(side), words_((cubes.x + 63) / 64) {
+  rows_.resize(static_cast<std::size_t>(words_) * static_cast<std::size_t>(n_.y) *
+               static_cast<std::size_t>(n_.z));
+}
 
-  // Two voxels whose index differs by d have points (|d| − 1)+ voxels apart an axis; rounding adds two steps.
-  const double reach = (std::sqrt(0.75) * voxel_size + 4) / p.grid.size;
+std::vector<std::uint32_t> SolidCubes::near(double distance) const {
+  const auto words = static_cast<std::size_t>(words_);
+  // Two cubes whose index differs by d have points (|d| − 1)+ cubes apart an axis.
+  const double reach = distance / side_;
   const int most = static_cast<int>(reach) + 1;
   const auto gap = [](int d) {
     const double g = std::max(std::abs(d) - 1, 0);
     return g * g;
   };
-  for (std::uint32_t boundary = 0; boundary < p.grid.boundary_voxels; ++boundary) {
-    const Int3 v = p.boundary_voxel(boundary);
-    for (int z = std::max(v.z - most, 0); z <= std::min(v.z + most, n.z - 1); ++z)
-      for (int y = std::max(v.y - most, 0); y <= std::min(v.y + most, n.y - 1); ++y) {
-        const double left = reach * reach - gap(z - v.z) - gap(y - v.y);
-        if (left < 0) continue;
-        const int wide = static_cast<int>(std::sqrt(left)) + 1;
-        const std::size_t row =
-            static_cast<std::size_t>(n.x) *
-            (static_cast<std::size_t>(y) + static_cast<std::size_t>(n.y) * static_cast<std::size_t>(z));
-        const int first = std::max(v.x - wide, 0), last = std::min(v.x + wide, n.x - 1);
-        std::fill(near.begin() + static_cast<std::ptrdiff_t>(row) + first,
-                  near.begin() + static_cast<std::ptrdiff_t>(row) + last + 1, std::uint8_t{1});
-      }
-  }
-  std::vector<std::uint32_t> bits(voxels / 32);
-  for (i = 0; i < voxels; ++i) bits[i / 32] |= std::uint32_t{near[i]} << (i % 32);
+  std::vector<std::uint64_t> out(rows_.size());
+  std::vector<std::uint64_t> wide(words * static_cast<std::size_t>(most + 2));  // a row, ever wider
+  for (int z = 0; z < n_.z; ++z)
+    for (int y = 0; y < n_.y; ++y) {
+      const std::uint64_t* row = &rows_[place(0, y, z)];
+      if (std::all_of(row, row + words, [](std::uint64_t word) { return word == 0; })) continue;
+      std::copy_n(row, words, wide.begin());
+      for (std::size_t w = 1; w < static_cast<std::size_t>(most + 2); ++w)
+        for (std::size_t i = 0; i < words; ++i) {
+          const std::uint64_t* before = &wide[(w - 1) * words];
+          wide[w * words + i] = before[i] | before[i] << 1 | before[i] >> 1 |
+                                (i > 0 ? before[i - 1] >> 63 : 0) | (i + 1 < words ? before[i + 1] << 63 : 0);
+        }
+      for (int to_z = std::max(z - most, 0); to_z <= std::min(z + most, n_.z - 1); ++to_z)
+        for (int to_y = std::max(y - most, 0); to_y <= std::min(y + most, n_.y - 1); ++to_y) {
+          const double left = reach * reach - gap(to_z - z) - gap(to_y - y);
+          if (left < 0) continue;
+          const std::uint64_t* from = &wide[static_cast<std::size_t>(std::sqrt(left) + 1) * words];
+          std::uint64_t* to = &out[place(0, to_y, to_z)];
+          for (std::size_t i = 0; i < words; ++i) to[i] |= from[i];
+        }
+    }
+  // Rows of whole bytes, one behind the other.
+  const auto row_bytes = static_cast<std::size_t>(n_.x / 8);
+  std::vector<std::uint32_t> bits(
+      (row_bytes * static_cast<std::size_t>(n_.y) * static_cast<std::size_t>(n_.z) + 3) / 4);
+  std::size_t byte = 0;
+  for (std::size_t row = 0; row < out.size(); row += words)
+    for (std::size_t i = 0; i < row_bytes; ++i, ++byte)
+      bits[byte / 4] |= static_cast<std::uint32_t>(out[row + i / 8] >> 8 * (i % 8) & 0xFF) << 8 * (byte % 4);
   return bits;
+}
+
+std::vector<std::uint32_t> near_tool(const PartitionView& p, std::int32_t voxel_size) {
+  const Int3 n = p.grid.bricks * 8;
+  if (brick_count(p.grid.bricks) * 512 > kMostNearVoxels) return {};
+  const HostPartition classes(p);
+  SolidCubes solid(n, p.grid.size);
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x)
+        if (classes.at({x, y, z}).kind != gpu::kVoxelExternal) solid.add(x, y, z);
+  return solid.near(near_distance(voxel_size));
 }
 
 }  // namespace palpate

@@ -105,6 +105,10 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to wrench "
       "out. The frames are a loop's\n"
       "that nobody watches: without lists of triangles, and `refined` without areas.\n"
+      "Of several engines the report says on how many frames the first is slower than each other one. A "
+      "frame "
+      "that looks so is asked\n"
+      "up to 20 times more, and the least times count.\n"
       "Rows of `total` have what a frame asks of a device, the median of each: submissions, dispatches, "
       "barriers, bytes that the frame writes for it and\n"
       "reads of it, and host_us, the host's time beside submitting and waiting.");

@@ -83,10 +83,11 @@ CLI::Validator one_of(const std::vector<std::string>& words) { return CLI::IsMem
 
 CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
   return app
-      .add_option("--backend", options.backend,
-                  "the engine that answers: gpu, everything in shaders; cpu, native code on this processor; "
-                  "ref, the reference; auto: gpu on a GPU, else cpu, "
-                  "with a sentence on standard error (auto)")
+      .add_option(
+          "--backend", options.backend,
+          "the engine that answers: gpu, everything in shaders; cpu, native code on this processor; "
+          "ref, the reference; auto: where there is a GPU, the quicker one of gpu and cpu at a few poses "
+          "near the start, else cpu, with a sentence on standard error (auto)")
       ->check(one_of({"auto", "gpu", "cpu", "ref"}))
       ->type_name("auto|gpu|cpu|ref");
 }

@@ -51,7 +51,8 @@ struct Parts {
 /// What several commands share.
 struct SceneOptions {
   std::string scene;    ///< path of the scene file
-  std::string backend;  ///< "gpu", "cpu" or "ref"; "auto" or empty: gpu on a GPU, else cpu with a sentence
+  std::string backend;  ///< "gpu", "cpu" or "ref"; "auto" or empty: on a GPU the quicker of gpu and cpu, else
+                        ///< cpu, with a sentence
   std::optional<Profile> profile;  ///< in place of the scene's
   bool full_plan = false;
   bool second_backend = false;        ///< for going over to another plan in mid-run

@@ -14,6 +14,7 @@
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
 #include "service/cli/scene_host.h"
+#include "service/engine_times.h"
 
 namespace palpate {
 namespace {
@@ -52,28 +53,10 @@ Result<void> measure_savings(HostedScene& hosted, Console& console) {
   return hosted.backend->replan(hosted.plan.plan);
 }
 
-/// A frame of an engine at a few poses near the scene's start.
-struct EngineTime {
-  std::string engine, device;
-  double frame_us = 0;  ///< median over the poses, of each the least of kRounds
-  std::string missing;  ///< why it could not be measured
-};
-
-std::vector<Pose> poses_near_start(const Scene& scene) {
-  constexpr std::size_t kNear = 8, kSecond = 1000;  // chosen: poses of the path's first second
-  std::vector<Pose> out{scene.start};
-  const std::size_t ticks = std::min(kSecond, scene.device.path.size());
-  for (std::size_t i = 1; i < kNear && ticks > kNear; ++i)
-    out.push_back(path_pose(scene.device.path[i * ticks / kNear], scene.device.guide));
-  return out;
-}
-
 /// Both engines that answer a loop, each prepared for the scene anew. Error: interrupted.
 Result<std::vector<EngineTime>> measure_engines(const HostedScene& hosted, const Parts& parts,
                                                 Console& console) {
   const LoadedScene& loaded = hosted.loaded;
-  const PlanQuestion question{&loaded.geometry, poses_near_start(loaded.scene),
-                              loaded.scene.response.stiffness_n_per_m};
   std::vector<EngineTime> out;
   for (const char* name : {"cpu", "gpu"}) {
     console.step((std::string("measuring the engine ") + name).c_str());
@@ -93,35 +76,14 @@ Result<std::vector<EngineTime>> measure_engines(const HostedScene& hosted, const
       if (auto prepared = (*backend)->prepare(loaded.geometry, hosted.plan.plan, progress); !prepared)
         return prepared;
       if (auto finished = (*backend)->finish_preparing(); !finished) return finished;
-      time.device = (*backend)->device();
-      PlanTrial trial;
-      if (auto done = try_plan(**backend, question, hosted.plan.plan, kRounds, trial); !done) return done;
-      time.frame_us = median_frame_us(trial);
+      auto timed = time_engine(loaded, **backend);
+      if (!timed) return timed.error();
+      time = std::move(*timed);
       return {};
     }();
     if (stopped) return Error{ErrorCode::kInternal, "interrupted"};
     if (!measured) time.missing = measured.error().sentence;
   }
-  return out;
-}
-
-/// Which of both answers the sooner, or which one is left.
-std::string engines_text(const std::vector<EngineTime>& engines) {
-  std::string out;
-  const EngineTime* quickest = nullptr;
-  const EngineTime* slower = nullptr;
-  for (const EngineTime& e : engines) {
-    out += (out.empty() ? "" : "; ") + e.engine +
-           (e.missing.empty() ? fmt::format(" {:.0f} µs on {}", e.frame_us, e.device)
-                              : " not measured: " + e.missing);
-    if (!e.missing.empty()) continue;
-    slower = quickest;
-    quickest = &e;
-    if (slower != nullptr && slower->frame_us < quickest->frame_us) std::swap(slower, quickest);
-  }
-  if (slower != nullptr)
-    out += fmt::format("; {} is the quicker by a factor of {:.3g}", quickest->engine,
-                       slower->frame_us / quickest->frame_us);
   return out;
 }
 

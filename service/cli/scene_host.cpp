@@ -7,6 +7,7 @@
 
 #include "model/scene/scene_file.h"
 #include "service/cli/numbers.h"
+#include "service/engine_times.h"
 #include "service/loop/steady_backend.h"
 
 namespace palpate {
@@ -45,6 +46,48 @@ std::string prepared_text(const HostedScene& prepared) {
       1000 * geometry.lattice.step_m * geometry.mockup_grid.size,
       bytes_text(prepared.backend->memory_bytes()), prepared.backend->device(),
       prepared.loaded.from_cache ? "known from before, read" : "read", prepared.load_s, prepared.prepare_s);
+}
+
+/// Where a GPU answers, whether native code does so sooner here: both are asked at a few poses, and `cpu`
+/// takes over where it is the quicker by more than kAlike. Not for a loop that is to go over to `paper`,
+/// which `cpu` doesn't know. Error: interrupted.
+Result<void> take_quicker(const SceneOptions& options, const Parts& parts, const PrepareWatch& watch,
+                          HostedScene& prepared) {
+  const LoadedScene& loaded = prepared.loaded;
+  if (prepared.backend->name() != "gpu" || loaded.scene.response.profile != Profile::kRefined ||
+      options.second_backend || !parts.has_gpu())
+    return {};
+  bool stopped = false;
+  const Progress progress = [&](const char* what, double done) {
+    return !watch.progress || !(stopped = stopped || !watch.progress(what, done));
+  };
+  watch.step("measuring the engines");
+  auto native = choose_backend("cpu", Profile::kRefined, parts, watch.note, watch.cached);
+  Result<void> ready = native ? (*native)->prepare(loaded.geometry, prepared.plan.plan, progress)
+                              : Result<void>(native.error());
+  if (stopped) return Error{ErrorCode::kInternal, "interrupted"};
+  if (ready && (*native)->name() != "cpu") {  // but its spare
+    for (const std::string& note : (*native)->take_notes()) watch.note(note);
+    ready = Error{ErrorCode::kInternal, "that engine can't prepare the scene"};
+  }
+  if (ready) ready = prepared.backend->finish_preparing();
+  std::vector<EngineTime> times;
+  for (CollisionBackend* backend : {prepared.backend.get(), ready ? native->get() : nullptr}) {
+    if (!ready) break;
+    if (auto timed = time_engine(loaded, *backend); timed)
+      times.push_back(std::move(*timed));
+    else
+      ready = timed.error();
+  }
+  if (!ready) {
+    watch.note("the engine gpu answers; it was not measured beside cpu: " + ready.error().sentence);
+    return {};
+  }
+  const bool quicker = times[0].frame_us > kAlike * times[1].frame_us;
+  if (quicker) prepared.backend = std::move(*native);
+  watch.note(fmt::format("the engine {} answers: a frame near the start, {}", quicker ? "cpu" : "gpu",
+                         engines_text(times)));
+  return {};
 }
 
 }  // namespace
@@ -163,6 +206,8 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(Scene scene, const SceneOptio
   // Whether there are V_int voxels is known only now.
   facts.internal_voxels = prepared->backend->has_internal_voxels();
   prepared->plan = decide_plan(facts);
+  if (options.backend.empty() || options.backend == "auto")
+    if (auto done = take_quicker(options, parts, watch, *prepared); !done) return done.error();
   add_memory(*prepared->backend, prepared->plan.stages);
   prepared->prepare_s = seconds_since(prepare_start);
   watch.note(prepared_text(*prepared));

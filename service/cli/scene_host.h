@@ -47,9 +47,9 @@ struct PrepareWatch {
                        ///< empty: anywhere
 };
 
-/// Reads the scene, chooses the back end, imports, decides the plan and prepares.
-/// Call before any thread exists, or with LP_NUM_THREADS set: a Vulkan driver's settings are read from the
-/// environment.
+/// Reads the scene, chooses the back end, imports, decides the plan and prepares. Where `auto` finds a GPU,
+/// the native engine is prepared as well, and the quicker of both stays (service/engine_times.h). Call before
+/// any thread exists, or with LP_NUM_THREADS set: a Vulkan driver's settings are read from the environment.
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose,
                                                    const Parts& parts, const PrepareWatch& watch);
 

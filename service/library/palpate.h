@@ -87,7 +87,8 @@ PALPATE_API int32_t palpate_source_text(palpate_source* source, const char* json
 PALPATE_API int32_t palpate_source_mesh(palpate_source* source, const char* name, const double* vertices,
                                         size_t vertex_count, const uint32_t* faces, size_t face_count,
                                         palpate_error** error);
-/* "auto" (the default: gpu on a GPU, else cpu), "gpu", "cpu" or "ref". All give the same answers. */
+/* "auto" (the default: the quicker of gpu and cpu on a GPU, else cpu), "gpu", "cpu" or "ref". All give the
+   same answers. */
 PALPATE_API int32_t palpate_source_engine(palpate_source* source, const char* engine, palpate_error** error);
 /* "refined" or "paper" in place of the scene's own. */
 PALPATE_API int32_t palpate_source_profile(palpate_source* source, const char* profile,

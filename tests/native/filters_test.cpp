@@ -12,6 +12,7 @@
 
 #include "compute/native/broad_phase/listed_boxes.h"
 #include "compute/native/broad_phase/turned_boxes.h"
+#include "compute/native/narrow_phase/crossing.h"
 #include "compute/scene/search_tables.h"
 #include "tests/compute/geometry_cases.h"
 
@@ -149,6 +150,51 @@ TEST(PairFilter, ReachesTheEndsOfTheLattice) {
             PairFilter::kApart);
   EXPECT_EQ(judge({{{Int3(-end, -end, 0), Int3(-end, -end, end), Int3(-end, end, end)}, t}})[0],
             PairFilter::kUnknown);  // they share a corner
+}
+
+TEST(SegmentCrossing, NeverSaysWhatIsNotSo) {
+  LatticePoints points(6);
+  std::array<std::size_t, 3> count{};  // −1, 0 and 1
+  for (int i = 0; i < 200'000; ++i) {
+    points.choose();
+    Int3 t[3];
+    points.triangle(t);
+    const Corners corners{t[0], t[1], t[2]};
+    const Int3 p = points.point();
+    Int3 q = points.point();
+    if (i % 2 == 0) q[i % 3] = p[i % 3], q[(i + 1) % 3] = p[(i + 1) % 3];  // along an axis, as walks go
+    if (p == q) continue;
+    const int exactly = exact::segment_crossing(p, q, corners);
+    ++count[static_cast<std::size_t>(exactly + 1)];
+    ASSERT_EQ(segment_crossing(p, q, corners), exactly) << "round " << i;
+  }
+  for (const std::size_t kind : count) EXPECT_GT(kind, 5'000u);
+}
+
+/// Ways that pass a corner, an edge or the plane of a triangle by a step or meet it, far off and near.
+TEST(SegmentCrossing, NeverSaysWhatIsNotSoOfNearMisses) {
+  std::mt19937_64 random(7);
+  const auto within = [&](std::int32_t most) {
+    return static_cast<std::int32_t>(random() % (2 * static_cast<std::uint64_t>(most) + 1)) - most;
+  };
+  std::size_t crossed = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const std::int32_t large = 1 << (4 + random() % 23), way = 1 << (2 + random() % 24);
+    Corners t;
+    for (Int3& corner : t) corner = Int3(within(large), within(large), within(large));
+    const auto u = static_cast<std::int64_t>(random() % 9), v = static_cast<std::int64_t>(random() % 9);
+    Int3 at;
+    for (int k = 0; k < 3; ++k)
+      at[k] = static_cast<std::int32_t>(t[0][k] + (u * (t[1][k] - t[0][k]) + v * (t[2][k] - t[0][k])) / 8) +
+              within(1);
+    const Int3 half(within(way), within(way), within(way));
+    const Int3 p = random() % 4 == 0 ? at : at - half, q = at + half;
+    if (p == q) continue;
+    const int exactly = exact::segment_crossing(p, q, t);
+    crossed += exactly != 0 ? 1 : 0;
+    ASSERT_EQ(segment_crossing(p, q, t), exactly) << "round " << i;
+  }
+  EXPECT_GT(crossed, 20'000u);
 }
 
 /// A voxel's boxes as SearchTables has them, and a triangle's look at them.

@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compute/native/broad_phase/candidate_pairs.h"
@@ -29,6 +31,10 @@ class BroadPhase {
  public:
   /// `runs`: of the tool; they, geometry and scene outlive this. Allocates.
   static BroadPhase make(const SceneGeometry& geometry, const SceneTables& scene, const RunTree& runs);
+  /// As CandidateSamples::use().
+  void use(std::shared_ptr<const OpenInside> known, const PartitionView& tool) {
+    if (has_inside_) samples_.use(std::move(known), tool);
+  }
   /// Before find() has a helper: what that one needs for itself. Allocates.
   void share();
 

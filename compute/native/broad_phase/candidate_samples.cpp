@@ -39,35 +39,39 @@ void widen(std::vector<std::uint8_t>& cells, const Int3& n, int axis, std::int32
 
 constexpr std::size_t kEight = HostSamples::kPointsAtOnce;
 
-/// From the mock-up's voxels to fine voxels of the tool at a pose, numbers of the latter.
-struct FineTurn {
-  double column[3][3];       ///< a mock-up voxel further along [1] is so much along [0]
-  float point_column[3][3];  ///< the same for a voxel's 1024th
-  float end[3];              ///< the grid's fine voxels
-  float error;               ///< of a point, along each axis
+/// From the mock-up's voxels to cubes of the tool at a pose, numbers of the latter.
+struct NearTurn {
+  double column[3][3];  ///< a mock-up voxel further along [1] is so much along [0]
+};
+
+/// From 1024ths of the mock-up's voxels to cubes of the tool at a pose, numbers of the latter.
+struct PointTurn {
+  float column[3][3];  ///< a 1024th further along [1] is so much along [0]
+  float end[3];        ///< the grid's cubes
+  float error;         ///< of a point, along each axis
 };
 
 /// Boundary voxels of a brick.
 struct BrickVoxels {
-  double first_centre[3];          ///< the centre of the brick's first voxel, in fine voxels
+  double first_centre[3];          ///< the centre of the brick's first voxel, in cubes
   std::int32_t bit[512 + kEight];  ///< x + 8y + 64z
   std::uint32_t number[512];
   std::size_t count = 0;
 };
 
-/// Which fine voxels are near to the tool's solid (SceneTables::tool_near).
+/// Which of these cubes are near to the tool's solid.
 struct NearCells {
   std::span<const std::uint32_t> bits;
-  std::int32_t size[3];  ///< fine voxels, …
+  std::int32_t size[3];  ///< cubes, …
   double end[3];         ///< … the same
   double beyond;  ///< what reaches so far out of the grid has its nearest voxel of the solid seen from the
                   ///< border: the grid is padded by two voxels
 };
 
-/// Points in fine voxels of the tool.
+/// Points in cubes of the tool.
 struct SolidPoints {
-  unsigned may, unsure;  ///< a bit each: may lie in the solid; the voxel may be the next one
-  std::uint32_t brick[kEight], bit[kEight];  ///< which voxel, where it is sure (BrickBits)
+  unsigned may, unsure;  ///< a bit each: may lie in the solid; the cube may be the next one
+  std::uint32_t brick[kEight], bit[kEight];  ///< which cube, where it is sure (BrickBits)
 };
 
 namespace plain {
@@ -83,7 +87,7 @@ constexpr std::size_t kWidth = 8;
 PALPATE_SECOND_CODE_END
 #endif
 
-std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const NearCells& cells,
+std::size_t near_voxels(const NearTurn& turn, const BrickVoxels& voxels, const NearCells& cells,
                         std::uint16_t* near) {
 #if PALPATE_TWO_CODES
   if (has_second_code()) return second::near_voxels(turn, voxels, cells, near);
@@ -91,7 +95,7 @@ std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const N
   return plain::near_voxels(turn, voxels, cells, near);
 }
 
-void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& solid,
+void solid_points(const PointTurn& turn, const float (&low)[3], const BrickBits& solid,
                   const std::uint32_t* points, SolidPoints& out) {
 #if PALPATE_TWO_CODES
   if (has_second_code()) return second::solid_points(turn, low, solid, points, out);
@@ -106,7 +110,8 @@ struct CandidateSamples::Search {
   double rotation[3][3];  // world from tool
   double translation[3];
   Candidates& lists;
-  FineTurn fine{};
+  NearTurn near{};
+  PointTurn points{};
 
   /// Tool lattice point of a world lattice point, off by less than 2^-20.
   void to_tool(const Int3& p, double (&out)[3]) const {
@@ -131,27 +136,30 @@ struct CandidateSamples::Search {
 CandidateSamples CandidateSamples::make(const SceneGeometry& geometry, const SceneTables& scene) {
   CandidateSamples out;
   const PartitionView& m = scene.mockup;
+  const gpu::GridConstants& fine = scene.constants.fine;
   out.mockup_ = m.grid;
-  out.fine_ = scene.constants.fine;
-  out.per_fine_ = 1.0 / out.fine_.size;
-  out.per_cube_ = 1.0 / (8.0 * out.fine_.size);
-  out.has_near_ = !scene.tool_near.empty();
   out.listed_ = scene.samples && scene.samples->listed();
   out.mesh_ = &geometry.mockup;
   out.spacing_ = geometry.sample_spacing;
   out.sampled_ = scene.samples;
-  const Int3 cubes = out.fine_.bricks;
   out.slots_ = m.brick_slot;
   out.bricks_ = m.bricks;
   out.list_begin_ = m.list_begin;
   if (out.listed_) {
     out.list_triangles_ = m.list_triangles;
-    out.solid_.make(scene.fine, BrickBits::Of::kOccupied);
-    out.internal_.make(scene.fine, BrickBits::Of::kInternal);
+    out.cubes_ = {fine.origin, 1.0 / fine.size, fine.bricks, {}, {}};
+    out.cubes_.may.make(scene.fine, BrickBits::Of::kOccupied);
+    out.cubes_.all.make(scene.fine, BrickBits::Of::kInternal);
   }
+  out.use({fine.origin, 1.0 / fine.size, fine.bricks, scene.tool_near});
+  return out;
+}
+
+void CandidateSamples::use(const Near& near) {
+  near_ = near;
+  const Int3 cubes = near.bricks;
   std::vector<std::uint8_t> any(brick_count(cubes), 1);
-  if (out.has_near_) {
-    out.near_ = scene.tool_near;
+  if (!near.bits.empty()) {
     std::fill(any.begin(), any.end(), std::uint8_t{0});
     const Int3 cells = 8 * cubes;
     Int3 c;
@@ -159,27 +167,40 @@ CandidateSamples CandidateSamples::make(const SceneGeometry& geometry, const Sce
     for (c.z = 0; c.z < cells.z; ++c.z)
       for (c.y = 0; c.y < cells.y; ++c.y)
         for (c.x = 0; c.x < cells.x; ++c.x, ++i)
-          if ((out.near_[i >> 5] >> (i & 31) & 1u) != 0) any[at(c / 8, cubes)] = 1;
+          if ((near.bits[i >> 5] >> (i & 31) & 1u) != 0) any[at(c / 8, cubes)] = 1;
   }
   // Centres of voxels are within 3.5 voxels an axis of their brick's centre, within 1.5 of their octant's;
-  // what is beyond the fine grid counts as at its border up to a voxel away.
-  out.brick_ = out.make_level(any, 3.5 * kRootThree * m.grid.size + m.grid.size);
-  out.octant_ = out.make_level(any, 1.5 * kRootThree * m.grid.size + m.grid.size);
-  return out;
+  // what is beyond the grid counts as at its border up to a voxel away.
+  brick_ = make_level(any, 3.5 * kRootThree * mockup_.size + mockup_.size);
+  octant_ = make_level(any, 1.5 * kRootThree * mockup_.size + mockup_.size);
+}
+
+void CandidateSamples::use(std::shared_ptr<const OpenInside> known, const PartitionView& partition) {
+  Cubes cells;
+  if (!listed_ || !known->cells.spread(partition, cells.may, cells.all)) return;
+  const gpu::GridConstants& grid = partition.grid;
+  cells.origin = grid.origin;
+  cells.per_step = static_cast<double>(InsideCells::kCells) / grid.size;
+  cells.bricks = InsideCells::kCells * grid.bricks;
+  cubes_ = std::move(cells);
+  known_ = std::move(known);
+  if (!known_->near.empty())
+    use(Near{grid.origin, static_cast<double>(OpenInside::kNearParts) / grid.size,
+             OpenInside::kNearParts * grid.bricks, known_->near});
 }
 
 CandidateSamples::Level CandidateSamples::make_level(const std::vector<std::uint8_t>& cubes,
                                                      double reach) const {
   Level out;
-  out.border = static_cast<std::int32_t>((reach + 2) * per_cube_) + 1;
-  out.cells = fine_.bricks + 2 * out.border;
+  out.border = static_cast<std::int32_t>((reach + 2) * near_.per_step / 8) + 1;
+  out.cells = near_.bricks + 2 * out.border;
   out.near.resize(static_cast<std::size_t>(out.cells.x) * static_cast<std::size_t>(out.cells.y) *
                   static_cast<std::size_t>(out.cells.z));
   Int3 c;
-  for (c.z = 0; c.z < fine_.bricks.z; ++c.z)
-    for (c.y = 0; c.y < fine_.bricks.y; ++c.y)
-      for (c.x = 0; c.x < fine_.bricks.x; ++c.x)
-        out.near[at(c + out.border, out.cells)] = cubes[at(c, fine_.bricks)];
+  for (c.z = 0; c.z < near_.bricks.z; ++c.z)
+    for (c.y = 0; c.y < near_.bricks.y; ++c.y)
+      for (c.x = 0; c.x < near_.bricks.x; ++c.x)
+        out.near[at(c + out.border, out.cells)] = cubes[at(c, near_.bricks)];
   for (int axis = 0; axis < 3; ++axis) widen(out.near, out.cells, axis, out.border);
   return out;
 }
@@ -187,28 +208,27 @@ CandidateSamples::Level CandidateSamples::make_level(const std::vector<std::uint
 bool CandidateSamples::near_cube(const Level& level, const double (&p)[3]) const {
   Int3 cell;
   for (int k = 0; k < 3; ++k) {
-    const double along = (p[k] - fine_.origin[k]) * per_cube_ + level.border;
+    const double along = (p[k] - near_.origin[k]) * near_.per_step / 8 + level.border;
     if (!(along >= 0 && along < level.cells[k])) return false;
     cell[k] = static_cast<std::int32_t>(along);
   }
   return level.near[at(cell, level.cells)] != 0;
 }
 
-/// kVoxel… of the fine voxel that holds a point; V_ext beyond the grid. For an open sample the device begins
-/// at the same voxel.
-std::uint32_t CandidateSamples::fine_class(const Int3& p) const {
+/// kVoxel… of the cube that holds a point; V_ext beyond the grid. V_bnd: it may lie inside, and may not.
+std::uint32_t CandidateSamples::class_at(const Int3& p) const {
   Int3 v;
   for (int k = 0; k < 3; ++k) {
-    // Half a step from the nearest integer quotient, which is far more than a double rounds.
-    const double along = (p[k] - fine_.origin[k] + 0.5) * per_fine_;
-    if (!(along >= 0 && along < 8 * fine_.bricks[k])) return gpu::kVoxelExternal;
+    // Of fine voxels half a step from the nearest integer quotient, which is far more than a double rounds.
+    const double along = (p[k] - cubes_.origin[k] + 0.5) * cubes_.per_step;
+    if (!(along >= 0 && along < 8 * cubes_.bricks[k])) return gpu::kVoxelExternal;
     v[k] = static_cast<std::int32_t>(along);
   }
-  const std::size_t brick = solid_.number(v.x >> 3, v.y >> 3, v.z >> 3);
+  const std::size_t brick = cubes_.may.number(v.x >> 3, v.y >> 3, v.z >> 3);
   const auto bit = static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
-  return internal_.at(brick, bit) ? gpu::kVoxelInternal
-         : solid_.at(brick, bit)  ? gpu::kVoxelBoundary
-                                  : gpu::kVoxelExternal;
+  return cubes_.all.at(brick, bit)   ? gpu::kVoxelInternal
+         : cubes_.may.at(brick, bit) ? gpu::kVoxelBoundary
+                                     : gpu::kVoxelExternal;
 }
 
 bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
@@ -219,9 +239,9 @@ bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint3
   search.to_tool(lowest, at);
   float low[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    const float(&column)[3] = search.fine.point_column[k];
-    // Half a step, since points are rounded to steps (fine_class), and half a 1024th.
-    low[k] = static_cast<float>((at[k] - fine_.origin[static_cast<int>(k)] + 0.5) * per_fine_) +
+    const float(&column)[3] = search.points.column[k];
+    // Half a step, since points are rounded to steps (class_at), and half a 1024th.
+    low[k] = static_cast<float>((at[k] - cubes_.origin[static_cast<int>(k)] + 0.5) * cubes_.per_step) +
              0.5F * (column[0] + column[1] + column[2]);
   }
   const std::uint32_t* const ids = &list_triangles_[list_begin_[boundary]];
@@ -230,14 +250,14 @@ bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint3
   const std::uint16_t* const owners = from.owners.data() + begin.owner;
   for (std::uint32_t first = begin.point; first < end.point; first += kEight) {
     SolidPoints solid;
-    solid_points(search.fine, low, solid_, &from.points[first], solid);
+    solid_points(search.points, low, cubes_.may, &from.points[first], solid);
     if (end.point - first < kEight) solid.may &= (1u << (end.point - first)) - 1;
     for (; solid.may != 0; solid.may &= solid.may - 1) {
       const auto lane = static_cast<unsigned>(std::countr_zero(solid.may));
       const std::uint32_t point = first + lane;
       const bool sure = (solid.unsure >> lane & 1) == 0;
-      std::uint32_t kind = sure && internal_.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal
-                                                                                    : gpu::kVoxelBoundary;
+      std::uint32_t kind = sure && cubes_.all.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal
+                                                                                     : gpu::kVoxelBoundary;
       gpu::FrameSample sample{};
       std::span<const std::uint16_t> triangles(&from.entries[point], 1);
       std::uint32_t mark = 0;
@@ -254,7 +274,7 @@ bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint3
         sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> HostSamples::kAxisShift),
                                    begin.sample + (point - first_sample));
       }
-      if (!sure) kind = fine_class(search.rounded_to_tool(sample.point));
+      if (!sure) kind = class_at(search.rounded_to_tool(sample.point));
       if (kind == gpu::kVoxelExternal) continue;
       const bool internal = kind == gpu::kVoxelInternal;
       auto& list = internal ? search.lists.inside : search.lists.open;
@@ -306,16 +326,16 @@ void CandidateSamples::take_brick(Search& search, const Int3& brick, std::uint32
   }
   std::uint16_t near[512 + kEight];
   std::size_t count = found.count;
-  if (has_near_) {
+  if (!near_.bits.empty()) {
     std::fill_n(&found.bit[count], kEight, 0);
     search.to_tool(origin + size / 2, q);
-    NearCells cells{near_, {}, {}, mockup_.size * per_fine_};
+    NearCells cells{near_.bits, {}, {}, mockup_.size * near_.per_step};
     for (std::size_t k = 0; k < 3; ++k) {
-      found.first_centre[k] = (q[k] - fine_.origin[static_cast<int>(k)]) * per_fine_;
-      cells.size[k] = 8 * fine_.bricks[static_cast<int>(k)];
+      found.first_centre[k] = (q[k] - near_.origin[static_cast<int>(k)]) * near_.per_step;
+      cells.size[k] = 8 * near_.bricks[static_cast<int>(k)];
       cells.end[k] = cells.size[k];
     }
-    count = near_voxels(search.fine, found, cells, near);
+    count = near_voxels(search.near, found, cells, near);
   } else {
     for (std::size_t i = 0; i < count; ++i) near[i] = static_cast<std::uint16_t>(i);
   }
@@ -341,23 +361,23 @@ void CandidateSamples::find(const LatticePose& pose, const Int3& first, const In
     for (std::size_t c = 0; c < 3; ++c) search.rotation[r][c] = pose.rotation_q30[r][c] * 0x1p-30;
     search.translation[r] = pose.translation[static_cast<int>(r)];
   }
-  const double ratio = mockup_.size * per_fine_;
+  const double ratio = mockup_.size * cubes_.per_step;
   double most = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t r = 0; r < 3; ++r) {
-      search.fine.column[k][r] = search.rotation[r][k] * ratio;
-      search.fine.point_column[k][r] =
-          static_cast<float>(search.fine.column[k][r] / (1 << HostSamples::kPointBits));
+      search.near.column[k][r] = search.rotation[r][k] * (mockup_.size * near_.per_step);
+      search.points.column[k][r] =
+          static_cast<float>(search.rotation[r][k] * ratio / (1 << HostSamples::kPointBits));
     }
-    const double cells = 8.0 * fine_.bricks[static_cast<int>(k)];
-    search.fine.end[k] = static_cast<float>(cells);
-    most = std::max(most, cells);
+    const double cubes = 8.0 * cubes_.bricks[static_cast<int>(k)];
+    search.points.end[k] = static_cast<float>(cubes);
+    most = std::max(most, cubes);
   }
   // A point lies within half a 1024th of its word's middle along each axis, √3 / 2 of one at most along a
   // turned one. Single precision: the voxel's low corner, three columns, their products and sums, all below
   // the grid's size and a few voxels: eight roundings.
-  search.fine.error = static_cast<float>(kRootThree / 2 * ratio / (1 << HostSamples::kPointBits) +
-                                         (most + 4 * ratio + 4) * 0x1p-21);
+  search.points.error = static_cast<float>(kRootThree / 2 * ratio / (1 << HostSamples::kPointBits) +
+                                           (most + 4 * ratio + 4) * 0x1p-21);
   on_this_processor([&] {
     Int3 b;
     for (b.z = first.z; b.z <= last.z; ++b.z)

@@ -8,7 +8,7 @@ using HalfWords = std::int32_t __attribute__((vector_size(2 * kWidth)));
 
 // Of voxels of a brick, those whose centres lie in cells near the solid: their places in `voxels`, packed at
 // the front of `near`.
-static std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, const NearCells& cells,
+static std::size_t near_voxels(const NearTurn& turn, const BrickVoxels& voxels, const NearCells& cells,
                                std::uint16_t* near) {
   constexpr std::size_t kHalf = kWidth / 2;
   std::size_t count = 0;
@@ -40,7 +40,7 @@ static std::size_t near_voxels(const FineTurn& turn, const BrickVoxels& voxels, 
 }
 
 // Of kEight points of a voxel (words of HostSamples::points) those that may lie in the solid.
-static void solid_points(const FineTurn& turn, const float (&low)[3], const BrickBits& solid,
+static void solid_points(const PointTurn& turn, const float (&low)[3], const BrickBits& solid,
                          const std::uint32_t* points, SolidPoints& out) {
   out.may = out.unsure = 0;
   for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
@@ -52,7 +52,7 @@ static void solid_points(const FineTurn& turn, const float (&low)[3], const Bric
                  z = __builtin_convertvector(word >> 2 * HostSamples::kPointBits & kMost, Floats);
     Words may = Words{} - 1, beside{}, brick{}, bit{};
     for (std::size_t k = 3; k-- > 0;) {
-      const float(&column)[3] = turn.point_column[k];
+      const float(&column)[3] = turn.column[k];
       const Floats at = low[k] + column[0] * x + column[1] * y + column[2] * z;
       const float end = turn.end[k];
       may &= (at >= -turn.error) & (at <= end + turn.error);

@@ -303,15 +303,21 @@ CarrierSums* carrier_of(std::span<CarrierSums> carriers, std::uint32_t id) {
 void HostField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples,
                             std::span<CarrierSums> carriers, Lane& lane) const {
   const LatticeMesh& mockup = geometry_->mockup;
-  const SampleGrid grid{geometry_->sample_spacing};
+  // As SampleGrid::cell: half a step from the nearest integer quotient, which is far more than a double
+  // rounds.
+  const double per_step = 1.0 / geometry_->sample_spacing;
+  const auto cell = [&](std::int32_t coordinate) {
+    const double along = (coordinate + 0.5) * per_step;
+    return static_cast<std::int64_t>(along) - (along < 0 ? 1 : 0);
+  };
   const bool all = (level_ | between_) == 0;
   for (const FrameSample& sample : samples) {
     const std::uint32_t id = sample.static_id;
     const int axis = mockup.sample_axis[id];
     const int level = all || mockup.levels_of[id] == 0
                           ? 0
-                          : SampleGrid::level(grid.cell(sample.point[(axis + 1) % 3]),
-                                              grid.cell(sample.point[(axis + 2) % 3]));
+                          : SampleGrid::level(cell(sample.point[axis == 2 ? 0 : axis + 1]),
+                                              cell(sample.point[axis == 0 ? 2 : axis - 1]));
     if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0)
       push_from_mockup(pose, id, sample.point, weight, carrier_of(carriers, id), lane);
   }

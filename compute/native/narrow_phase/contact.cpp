@@ -1,11 +1,14 @@
 #include "compute/native/narrow_phase/contact.h"
 
+#include <utility>
+
 namespace palpate {
 
 using namespace gpu;  // names of shaders/shared/frame.h
 
 std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, const SceneTables& scene,
-                                               std::span<const std::uint32_t> order) {
+                                               std::span<const std::uint32_t> order,
+                                               std::shared_ptr<const OpenInside> known) {
   std::unique_ptr<HostContact> out(new HostContact);
   out->mockup_ = HostPartition(scene.mockup);
   out->tool_ = HostPartition(scene.tool);
@@ -13,7 +16,7 @@ std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, co
   out->tool_triangles_ = TriangleTree::make(geometry.tool, [] { return true; });
   out->search_ = scene.search;
   out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
-  if (!geometry.tool.closed) out->in_tool_.keep_cells(scene.tool);
+  out->in_tool_.use(std::move(known));
   out->sets_ = HostSets::make(geometry, scene, order, out->in_tool_);
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;

@@ -21,8 +21,10 @@ namespace palpate {
 /// when a contact is larger than all before.
 class HostContact {
  public:
+  /// `known` of a tool that is not closed; may be null.
   static std::unique_ptr<HostContact> make(const SceneGeometry& geometry, const SceneTables& scene,
-                                           std::span<const std::uint32_t> order);
+                                           std::span<const std::uint32_t> order,
+                                           std::shared_ptr<const OpenInside> known);
 
   /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `helper` may be
   /// null. `stage(name, looks)` is called at the end of each stage, as Contacts::StageTime has it.

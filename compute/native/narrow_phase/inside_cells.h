@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "compute/scene/brick_bits.h"
 #include "compute/scene/partition_lookup.h"
 #include "model/lattice/lattice_mesh.h"
 
@@ -28,39 +29,41 @@ class InsideCells {
 
   /// Calls for what find() reads of a voxel.
   void prefetch(std::uint32_t boundary) const {
-    if (octants_.empty()) return;
-    __builtin_prefetch(&octants_[8 * std::size_t{boundary}]);
-    __builtin_prefetch(&octants_[8 * std::size_t{boundary} + 4]);
+    if (voxels_.empty()) return;
+    __builtin_prefetch(&voxels_[boundary].touched);
+    __builtin_prefetch(&voxels_[boundary].inside);
   }
 
+  std::uint64_t bytes() const { return sizeof(Voxel) * voxels_.size(); }
+
+  static constexpr int kCells = 8;  ///< of a voxel along an axis
+  /// All cells of the grid: those that may hold a point inside, and those that hold nothing else. A brick
+  /// each is a voxel. False: there are no cells, or too many voxels for such a table. Allocates.
+  bool spread(const PartitionView& partition, BrickBits& may, BrickBits& all) const;
+
  private:
-  static constexpr int kSide = 4;  ///< cells of an octant of a voxel along an axis
-  /// A bit a cell, x + 4 y + 16 z.
-  struct Octant {
-    std::uint64_t touched =
-        0;  ///< by a triangle; all of them where the octant has an edge that does not cancel
-    std::uint64_t inside = 0;
+  /// Of a voxel, a bit a cell, x + 8 y + 64 z.
+  struct Voxel {
+    BrickBits::Block touched{};  ///< by a triangle, or by what an edge that does not cancel hides
+    BrickBits::Block inside{};
   };
 
   Int3 origin_{0};
-  std::int32_t size_ = 0;        ///< of a voxel, steps
-  double per_cell_ = 0;          ///< cells a step
-  std::vector<Octant> octants_;  ///< eight a V_bnd voxel; empty: there are no cells
+  std::int32_t size_ = 0;      ///< of a voxel, steps
+  double per_cell_ = 0;        ///< cells a step
+  std::vector<Voxel> voxels_;  ///< by V_bnd voxel; empty: there are no cells
 };
 
 inline std::optional<bool> InsideCells::find(const Int3& point, const Int3& voxel,
                                              std::uint32_t boundary) const {
-  if (octants_.empty()) return std::nullopt;
-  std::uint32_t octant = 0, bit = 0;
-  for (int k = 2; k >= 0; --k) {
-    const auto cell = static_cast<std::uint32_t>((point[k] - origin_[k] - size_ * voxel[k]) *
-                                                 per_cell_);  // below 8: a step is more than a double rounds
-    octant = octant << 1 | cell / kSide;
-    bit = bit << 2 | cell % kSide;
-  }
-  const Octant& cells = octants_[8 * std::size_t{boundary} + octant];
-  if ((cells.touched >> bit & 1) != 0) return std::nullopt;
-  return (cells.inside >> bit & 1) != 0;
+  if (voxels_.empty()) return std::nullopt;
+  std::uint32_t bit = 0;
+  for (int k = 2; k >= 0; --k)
+    bit = bit << 3 | static_cast<std::uint32_t>((point[k] - origin_[k] - size_ * voxel[k]) *
+                                                per_cell_);  // below 8: a step is more than a double rounds
+  const Voxel& cells = voxels_[boundary];
+  if ((cells.touched[bit >> 6] >> (bit & 63) & 1) != 0) return std::nullopt;
+  return (cells.inside[bit >> 6] >> (bit & 63) & 1) != 0;
 }
 
 }  // namespace palpate

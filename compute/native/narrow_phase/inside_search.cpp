@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "compute/native/broad_phase/turned_boxes.h"
+#include "compute/native/narrow_phase/crossing.h"
 #include "compute/native/processor.h"
 #include "compute/scene/exact.h"
 
@@ -52,12 +53,23 @@ void InsideSearch::inside(std::span<const Int3> points, std::span<std::uint8_t> 
       const HostPartition::Voxel at = partition_->at(voxel);
       places[i] = {voxel, at.boundary};
       answers[i] = at.kind == kVoxelInternal ? 1 : 0;
-      if (at.boundary != kNoVoxel) cells_.prefetch(at.boundary);
+      if (at.boundary != kNoVoxel && known_) known_->cells.prefetch(at.boundary);
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (places[i].boundary == kNoVoxel) continue;
-      answers[i] = inside_boundary(points[i], places[i].voxel, places[i].boundary) ? 1 : 0;
+      if (known_)
+        if (const std::optional<bool> known =
+                known_->cells.find(points[i], places[i].voxel, places[i].boundary)) {
+          answers[i] = *known ? 1 : 0;
+          places[i].boundary = kNoVoxel;
+          continue;
+        }
+      if (known_) known_->crossings.prefetch(places[i].boundary);
+      __builtin_prefetch(&middle_[places[i].boundary]);
     }
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (places[i].boundary != kNoVoxel)
+        answers[i] = inside_open(points[i], places[i].voxel, places[i].boundary) ? 1 : 0;
   });
 }
 
@@ -69,15 +81,9 @@ bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::ui
     const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1, true);
     return out.net + (out.kind == kVoxelInternal ? winding_of(out.voxel) : 0) != 0;
   }
-  if (const std::optional<bool> known = cells_.find(point, voxel, boundary)) return *known;
+  if (known_)
+    if (const std::optional<bool> known = known_->cells.find(point, voxel, boundary)) return *known;
   return inside_open(point, voxel, boundary);
-}
-
-void InsideSearch::keep_cells(const PartitionView& partition) {
-  cells_ = InsideCells(*mesh_, partition, boxes_,
-                       [this](const Int3& point, const Int3& voxel, std::uint32_t boundary) {
-                         return inside_open(point, voxel, boundary);
-                       });
 }
 
 bool InsideSearch::inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary) {
@@ -89,6 +95,9 @@ bool InsideSearch::inside_open(const Int3& point, const Int3& voxel, std::uint32
   }
   const Int3 middle =
       partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
+  if (known_ && !known_->crossings.empty())
+    if (const MiddleCrossings::Net net = known_->crossings.crossed(point - middle, boundary); !net.unsure)
+      return winding + net.crossed > 0;
   return winding + (point == middle ? 0 : crossed_within(point, middle, voxel, boundary)) > 0;
 }
 
@@ -137,8 +146,7 @@ int InsideSearch::crossed_within(const Int3& from, const Int3& to, const Int3& v
       if (near[i] == 0) continue;
       const std::uint32_t id = list[first + i];
       if (bounds_solid(*mesh_, id))
-        net += exact::segment_crossing(from, to,
-                                       {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+        net += segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
     }
   }
   return net;
@@ -191,8 +199,7 @@ int InsideSearch::crossed(const Int3& from, const Int3& to, int axis, const Int3
       if (near[i] == 0) continue;
       const std::uint32_t id = list[first + i];
       if (sheets || bounds_solid(*mesh_, id))
-        net += exact::segment_crossing(from, to,
-                                       {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+        net += segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
     }
   }
   return net;

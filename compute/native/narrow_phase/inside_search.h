@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "compute/native/narrow_phase/inside_cells.h"
+#include "compute/native/narrow_phase/open_inside.h"
 #include "compute/scene/partition_lookup.h"
 #include "model/lattice/lattice_mesh.h"
 
@@ -11,8 +13,8 @@ namespace palpate {
 
 /// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md
 /// section 4): by walks along axes to voxels that list nothing, of a body that is not closed once a voxel,
-/// and where it keeps cells (InsideCells) not even that. Arguments outlive this. One thread, but of a body
-/// that is not closed any number; only the constructor allocates.
+/// and where more of it is known (OpenInside) not even that. Arguments outlive this. One thread, but of a
+/// body that is not closed any number; only the constructor allocates.
 class InsideSearch {
  public:
   InsideSearch() = default;
@@ -25,8 +27,10 @@ class InsideSearch {
   /// all of them read is called for before the first is answered, for it lies far apart. At most kMostPoints.
   void inside(std::span<const Int3> points, std::span<std::uint8_t> answers);
   static constexpr std::size_t kMostPoints = 256;
-  /// For a body that is not closed and is asked much.
-  void keep_cells(const PartitionView& partition);
+  /// For a body that is not closed and is asked much. `known` is of the same body and partition.
+  void use(std::shared_ptr<const OpenInside> known) { known_ = std::move(known); }
+  /// Of a point in a V_bnd voxel of a body that is not closed, of number `boundary`; without cells.
+  bool inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary);
 
  private:
   struct Walk {
@@ -35,7 +39,6 @@ class InsideSearch {
     std::uint32_t kind;  ///< of that voxel
   };
   bool inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary);
-  bool inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary);
   Walk walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const;
   int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary,
               bool sheets) const;
@@ -47,8 +50,8 @@ class InsideSearch {
   const LatticeMesh* mesh_ = nullptr;
   const HostPartition* partition_ = nullptr;
   std::span<const std::uint8_t> boxes_;
-  double per_part_ = 0;  ///< parts of a voxel a step
-  InsideCells cells_;
+  double per_part_ = 0;                      ///< parts of a voxel a step
+  std::shared_ptr<const OpenInside> known_;  ///< may be null
   std::vector<std::uint8_t> way_;  ///< by V_bnd voxel of a closed body: the shortest way out of such voxels,
                                    ///< axis · 2 + up + 1; 0: not known yet
   static constexpr std::int16_t kUnknown = INT16_MIN;

@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "compute/native/narrow_phase/crossing.h"
 #include "compute/native/processor.h"
 
 namespace palpate {
@@ -147,7 +148,7 @@ bool HostSets::walks_out(const LatticePose& pose, const Int3& point) const {
         const exact::Corners own{mesh.corner(id, 0), mesh.corner(id, 1), mesh.corner(id, 2)};
         const exact::Box box = exact::box_of(own);
         if (glm::any(glm::greaterThan(box.low, high)) || glm::any(glm::lessThan(box.high, low))) continue;
-        winding += exact::segment_crossing(
+        winding += segment_crossing(
             from, to, {transform(pose, own[0]), transform(pose, own[1]), transform(pose, own[2])});
       }
     from = to;

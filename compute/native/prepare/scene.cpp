@@ -46,10 +46,14 @@ SceneTables Scene::tables() const {
   return out;
 }
 
+void Scene::know(const LatticeMesh& mesh) {
+  if (!mesh.closed && tool.has_internal) open_tool = OpenInside::make(mesh, tool);
+}
+
 std::uint64_t Scene::bytes() const {
   return mockup.bytes() + tool.bytes() + fine.bytes() +
          4 * (std::uint64_t{fine_exit.size()} + tool_near.size()) + (samples ? samples->bytes() : 0) +
-         (search ? search->bytes() : 0);
+         (search ? search->bytes() : 0) + (open_tool ? open_tool->bytes() : 0);
 }
 
 Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
@@ -81,6 +85,8 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
   }
   out.tool_near = near_tool(out.finest(), out.tool.grid.size);
   if (geometry.tool.closed) out.fine_exit = ways_out(out.finest());
+
+  out.know(geometry.tool);
 
   if (!at("search", 0.4)) return cancelled();
   out.search = SearchTables::make(geometry, out.mockup, go_on);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "compute/native/narrow_phase/open_inside.h"
 #include "compute/scene/scene_tables.h"
 #include "model/collision_backend.h"
 #include "model/scene/plan.h"
@@ -18,10 +19,14 @@ struct Scene {
   std::shared_ptr<const HostSamples> samples;       ///< may be null: frames work them out
   std::shared_ptr<const SearchTables> search;       ///< never null
 
+  std::shared_ptr<const OpenInside> open_tool;  ///< null: the tool is closed, or has no inside
+
   const Partition& finest() const { return fine.brick_slot.empty() ? tool : fine; }
   /// Valid as long as this neither moves nor changes.
   SceneTables tables() const;
   std::uint64_t bytes() const;
+  /// Fills open_tool, which no cache keeps.
+  void know(const LatticeMesh& mesh);
 };
 
 /// Makes all of it, on all cores. Errors: a grid that is too large (kBadValue), cancelled.

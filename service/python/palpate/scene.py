@@ -41,7 +41,7 @@ class Scene:
     source: path of a scene file; or a dict with its content, in which "mesh" may be (vertices, faces) in
     place of a file's name; or None. tool, static: in place of `source`, a mesh each, or for `static` a list
     of them: (vertices (V, 3), faces (F, 3)), or what has them. units: of these meshes: 'm', 'mm', 'cm' or
-    'in'. engine: 'auto' (gpu on a GPU, else cpu), 'gpu', 'cpu' or 'ref'; all give the same answers. profile:
+    'in'. engine: 'auto' (the quicker of gpu and cpu on a GPU, else cpu), 'gpu', 'cpu' or 'ref'; all give the same answers. profile:
     'refined' or 'paper' in place of the scene's. all_samples: what a tolerance needs. cache: keep what
     preparing worked out. folder: where the files lie that a dict names; the working directory by default.
     progress: called as progress(what, done), done from 0 to 1, by another thread; False ends the opening.

@@ -467,7 +467,8 @@ Aside SceneStore::aside(const SceneLease& lease) {
   const auto note = [&](const std::string& sentence) {
     log_.info("scene_note", {{"scene", entry->content.id}, {"note", sentence}});
   };
-  const std::string engine = entry->content.engine.empty() ? backend_ : entry->content.engine;
+  std::string engine = entry->content.engine.empty() ? backend_ : entry->content.engine;
+  if (scene.backend->name() == "cpu") engine = "cpu";  // by measurement, where `auto` was asked for
   auto made =
       choose_backend(engine, scene.loaded.scene.response.profile, parts_, note, !entry->content.uploaded);
   Result<void> prepared = made ? Result<void>() : made.error();
