@@ -46,7 +46,7 @@ Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan
       runs_(geometry.tool, order_),
       posed_(geometry.tool),
       broad_phase_(BroadPhase::make(geometry, scene, runs_)),
-      contact_(HostContact::make(geometry, scene, order_, tool)),
+      contact_(NarrowPhase::make(geometry, scene, order_, tool)),
       flags_(scene.constants.tool.closed == 0 && scene.constants.tool.has_internal == 0 ? kFlagToolOpen : 0u),
       touch_(kUsualItems),
       candidate_pairs_(kUsualItems),

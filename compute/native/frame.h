@@ -51,7 +51,7 @@ class Frame final : public PoseQuery {
   RunTree runs_;
   PosedTool posed_;
   BroadPhase broad_phase_;
-  std::unique_ptr<HostContact> contact_;
+  std::unique_ptr<NarrowPhase> contact_;
   std::unique_ptr<FrameHelper> helper_;  ///< null: not asked for yet (helper_tried_), or there is none
   bool sharing_ = false, helper_tried_ = false;
   bool solved_ = false;      ///< the last query came to the contact

@@ -9,10 +9,10 @@
 namespace palpate {
 
 /// A voxel partition to look things up in. What the view names outlives this.
-class HostPartition {
+class PartitionLookup {
  public:
-  HostPartition() = default;
-  explicit HostPartition(const PartitionView& from)
+  PartitionLookup() = default;
+  explicit PartitionLookup(const PartitionView& from)
       : grid_(from.grid),
         per_voxel_(1.0 / from.grid.size),
         slots_(from.brick_slot),

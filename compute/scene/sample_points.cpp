@@ -31,12 +31,12 @@ std::vector<std::uint32_t> entry_shares(const PartitionView& lists) {
 }
 
 Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::int32_t spacing,
-                    const ListingProgress& go_on, EntrySamples from, HostSamples& out) {
+                    const ListingProgress& go_on, EntrySamples from, VoxelSamples& out) {
   const std::vector<std::uint32_t> shares = entry_shares(lists);
   const auto count = static_cast<std::uint32_t>(shares.size() - 1);
   out.begin.resize(std::size_t{lists.grid.boundary_voxels} + 1);
   for (std::uint32_t voxel = 0; voxel < lists.grid.boundary_voxels; ++voxel)
-    if (lists.list_begin[voxel + 1] - lists.list_begin[voxel] > HostSamples::kLongestList)
+    if (lists.list_begin[voxel + 1] - lists.list_begin[voxel] > VoxelSamples::kLongestList)
       return Listing::kTooMany;
   // First how many there are in each voxel, then the numbers of its first ones.
   const auto in_voxels = [&](double begin, double part, auto&& take) {
@@ -64,25 +64,26 @@ Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::in
     out.begin[voxel] = {corners + samples, samples, static_cast<std::uint32_t>(owners.size())};
   });
   if (!counted) return Listing::kCancelled;
-  HostSamples::Begin sum{};
-  for (HostSamples::Begin& begin : out.begin) {
-    const HostSamples::Begin size = std::exchange(begin, sum);
+  VoxelSamples::Begin sum{};
+  for (VoxelSamples::Begin& begin : out.begin) {
+    const VoxelSamples::Begin size = std::exchange(begin, sum);
     sum = {sum.point + size.point, sum.sample + size.sample, sum.owner + size.owner};
   }
-  out.points.resize(out.begin.back().point + (HostSamples::kPointsAtOnce - 1));
+  out.points.resize(out.begin.back().point + (VoxelSamples::kPointsAtOnce - 1));
   out.entries.resize(out.begin.back().point);
   out.owners.resize(out.begin.back().owner);
   out.words = std::move(from.words);
   out.wide = from.wide;
   const bool written = in_voxels(0.4, 0.6, [&](std::uint32_t voxel, const std::vector<Owner>& owners) {
-    const HostSamples::Voxel grid(lists.grid.origin + lists.grid.size * lists.boundary_voxel(voxel), spacing);
+    const VoxelSamples::Voxel grid(lists.grid.origin + lists.grid.size * lists.boundary_voxel(voxel),
+                                   spacing);
     std::uint32_t at = out.begin[voxel].point;
     const auto put = [&](const Int3& p, std::uint32_t entry, int axis) {
-      std::uint32_t word = static_cast<std::uint32_t>(axis) << HostSamples::kAxisShift;
+      std::uint32_t word = static_cast<std::uint32_t>(axis) << VoxelSamples::kAxisShift;
       for (int k = 0; k < 3; ++k)
-        word |= static_cast<std::uint32_t>((std::int64_t{p[k] - grid.low[k]} << HostSamples::kPointBits) /
+        word |= static_cast<std::uint32_t>((std::int64_t{p[k] - grid.low[k]} << VoxelSamples::kPointBits) /
                                            lists.grid.size)
-                << HostSamples::kPointBits * k;
+                << VoxelSamples::kPointBits * k;
       out.points[at] = word;
       out.entries[at++] = static_cast<std::uint16_t>(entry);
     };

@@ -20,8 +20,8 @@ using ListingProgress = std::function<bool(double done)>;
 std::vector<std::uint32_t> entry_shares(const PartitionView& lists);
 
 /// Voxel by voxel what an engine has listed entry by entry, on all cores. kTooMany: a voxel lists more than
-/// HostSamples::kLongestList. What is not done leaves `out` half written.
+/// VoxelSamples::kLongestList. What is not done leaves `out` half written.
 Listing list_points(const LatticeMesh& mesh, const PartitionView& lists, std::int32_t spacing,
-                    const ListingProgress& go_on, EntrySamples from, HostSamples& out);
+                    const ListingProgress& go_on, EntrySamples from, VoxelSamples& out);
 
 }  // namespace palpate

@@ -11,7 +11,7 @@ namespace palpate {
 /// Samples and first corners of the mock-up's triangles, voxel by voxel: they do not depend on the pose, and
 /// only the host reads them. A sample is the place of its cell among those that reach into the voxel, two
 /// numbers below 64, and its height above the voxel's low side along its triangle's sample axis.
-struct HostSamples {
+struct VoxelSamples {
   struct Begin {
     std::uint32_t point, sample, owner;  ///< numbers of the voxel's first ones
     bool operator==(const Begin&) const = default;
@@ -40,7 +40,7 @@ struct HostSamples {
   static constexpr std::int32_t kNarrowVoxel =
       1 << 20;  ///< steps: the largest that a height of 20 bits is enough for
 
-  bool operator==(const HostSamples&) const = default;
+  bool operator==(const VoxelSamples&) const = default;
   std::uint64_t count() const { return words.size() / (wide ? 2 : 1); }
   bool listed() const { return !begin.empty(); }
   std::uint64_t bytes() const {
@@ -78,7 +78,7 @@ struct EntrySamples {
   /// Begin of an entry's samples in its low bits, then whether the triangle's first corner lies in the voxel
   /// (gpu::kSampleCorner), then the triangle's sample axis (gpu::kSampleAxisShift). One more at the end.
   std::vector<std::uint32_t> begin;
-  std::vector<std::uint32_t> words;  ///< as HostSamples::words
+  std::vector<std::uint32_t> words;  ///< as VoxelSamples::words
   bool wide = false;
 
   static constexpr std::uint32_t kBegin = gpu::kSampleCorner - 1;

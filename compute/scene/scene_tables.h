@@ -43,11 +43,11 @@ struct SceneTables {
   PartitionView mockup;
   PartitionView tool;  ///< empty in `paper`
   PartitionView fine;  ///< of a closed tool in finer voxels; where there is none, the tool's own
-  std::span<const std::uint32_t> fine_exit;    ///< by boundary voxel of a closed tool's `fine`: kBindFineExit
-  std::span<const std::uint32_t> tool_near;    ///< a bit a voxel of `fine`: a mock-up voxel with its centre
-                                               ///< there may meet the tool's solid; may be empty: all may
-  std::shared_ptr<const HostSamples> samples;  ///< may be null or empty: frames work them out
-  std::shared_ptr<const SearchTables> search;  ///< never null
+  std::span<const std::uint32_t> fine_exit;  ///< by boundary voxel of a closed tool's `fine`: kBindFineExit
+  std::span<const std::uint32_t> tool_near;  ///< a bit a voxel of `fine`: a mock-up voxel with its centre
+                                             ///< there may meet the tool's solid; may be empty: all may
+  std::shared_ptr<const VoxelSamples> samples;  ///< may be null or empty: frames work them out
+  std::shared_ptr<const SearchTables> search;   ///< never null
 };
 
 }  // namespace palpate

@@ -18,7 +18,7 @@ constexpr std::uint64_t kMostNearVoxels = std::uint64_t{1} << 29;
 
 /// The axis step that leads out of the solid through the fewest boundary voxels; every straight line leads
 /// out.
-std::uint32_t way_out(const HostPartition& classes, const Int3& from) {
+std::uint32_t way_out(const PartitionLookup& classes, const Int3& from) {
   std::uint32_t best = 0;
   int fewest = INT32_MAX;
   for (std::uint32_t step = 0; step < 6; ++step) {
@@ -49,7 +49,7 @@ std::int32_t fine_voxel_size(const SceneGeometry& geometry, const gpu::GridConst
 }
 
 std::vector<std::uint32_t> ways_out(const PartitionView& p) {
-  const HostPartition classes(p);
+  const PartitionLookup classes(p);
   std::vector<std::uint32_t> exits(p.grid.boundary_voxels);
   for (std::uint32_t boundary = 0; boundary < exits.size(); ++boundary)
     exits[boundary] = way_out(classes, p.boundary_voxel(boundary));
@@ -106,7 +106,7 @@ std::vector<std::uint32_t> SolidCubes::near(double distance) const {
 std::vector<std::uint32_t> near_tool(const PartitionView& p, std::int32_t voxel_size) {
   const Int3 n = p.grid.bricks * 8;
   if (brick_count(p.grid.bricks) * 512 > kMostNearVoxels) return {};
-  const HostPartition classes(p);
+  const PartitionLookup classes(p);
   SolidCubes solid(n, p.grid.size);
   for (int z = 0; z < n.z; ++z)
     for (int y = 0; y < n.y; ++y)

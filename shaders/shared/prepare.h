@@ -72,7 +72,7 @@ struct SampleListPush {
   uint32_t count;  // entries of this run
   uint32_t first;  // entry
   uint32_t base;   // number of its first sample
-  uint32_t wide;   // as HostSamples::wide
+  uint32_t wide;   // as VoxelSamples::wide
 };
 PALPATE_ASSERT_SIZE(SampleListPush, 48);
 

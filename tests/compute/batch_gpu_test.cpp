@@ -445,16 +445,16 @@ Mesh soup(std::size_t triangles) {
 testing::AssertionResult points_are_right(const SceneGeometry& geometry, const native::Scene& scene) {
   const PartitionView lists = scene.mockup;
   const gpu::GridConstants& grid_of_voxels = lists.grid;
-  const HostSamples& samples = *scene.samples;
+  const VoxelSamples& samples = *scene.samples;
   std::vector<std::uint32_t> expected;
   std::vector<std::uint16_t> entries, owners;
-  std::vector<HostSamples::Begin> begins{{0, 0, 0}};
+  std::vector<VoxelSamples::Begin> begins{{0, 0, 0}};
   std::uint32_t number = 0;  // of the next sample
   for (std::size_t voxel = 0; voxel < lists.boundary_place.size(); ++voxel) {
     const Int3 low = grid_of_voxels.origin +
                      grid_of_voxels.size * lists.boundary_voxel(static_cast<std::uint32_t>(voxel)),
                high = low + (grid_of_voxels.size - 1);
-    const HostSamples::Voxel grid(low, geometry.sample_spacing);
+    const VoxelSamples::Voxel grid(low, geometry.sample_spacing);
     const auto put = [&](const Int3& point, std::size_t entry, std::uint32_t axis) {
       const auto part = [&](int k) {
         return static_cast<std::uint32_t>(std::floor(1024.0 * (point[k] - low[k]) / grid_of_voxels.size));
@@ -495,7 +495,7 @@ testing::AssertionResult points_are_right(const SceneGeometry& geometry, const n
   if (samples.begin != begins) return testing::AssertionFailure() << "begins differ";
   if (samples.entries != entries) return testing::AssertionFailure() << "entries differ";
   if (samples.owners != owners) return testing::AssertionFailure() << "owners differ";
-  if (samples.points.size() != expected.size() + HostSamples::kPointsAtOnce - 1 ||
+  if (samples.points.size() != expected.size() + VoxelSamples::kPointsAtOnce - 1 ||
       !std::equal(expected.begin(), expected.end(), samples.points.begin()))
     return testing::AssertionFailure() << "points differ";
   return testing::AssertionSuccess();
@@ -692,7 +692,7 @@ TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
   mesh.vertices = {{1, 1, 1}, {90, 1, 1}, {1, 90, 1}};
   mesh.triangles = {{0, 1, 2}};
   mesh.sample_axis = {2};
-  for (const std::uint32_t entries : {HostSamples::kLongestList, HostSamples::kLongestList + 1}) {
+  for (const std::uint32_t entries : {VoxelSamples::kLongestList, VoxelSamples::kLongestList + 1}) {
     Partition lists;  // one voxel of one brick; the triangle again and again
     lists.grid.origin = Int3(0);
     lists.grid.size = 100;
@@ -706,15 +706,15 @@ TEST(Preparation, ListsNoSamplesWhereAVoxelListsMoreThanCanBeToldApart) {
     EntrySamples by_entry;
     const auto go_on = [](double) { return true; };
     ASSERT_EQ(native::list_samples(mesh, lists, 40, std::uint64_t{1} << 30, go_on, by_entry), Listing::kDone);
-    HostSamples samples;
+    VoxelSamples samples;
     const Listing outcome = list_points(mesh, lists, 40, go_on, std::move(by_entry), samples);
-    EXPECT_EQ(outcome, entries == HostSamples::kLongestList ? Listing::kDone : Listing::kTooMany);
+    EXPECT_EQ(outcome, entries == VoxelSamples::kLongestList ? Listing::kDone : Listing::kTooMany);
     if (outcome != Listing::kDone) continue;
     EXPECT_EQ(samples.entries.front(), 0);
-    EXPECT_EQ(samples.entries.back(), HostSamples::kLongestList - 1);
-    EXPECT_EQ(samples.owners.size(), HostSamples::kLongestList);  // of one corner
-    EXPECT_EQ(samples.owners.back(), HostSamples::kLongestList - 1);
-    EXPECT_EQ(samples.count(), 4 * HostSamples::kLongestList);  // of cells (1, 0), (0, 1), (2, 0) and (0, 2)
+    EXPECT_EQ(samples.entries.back(), VoxelSamples::kLongestList - 1);
+    EXPECT_EQ(samples.owners.size(), VoxelSamples::kLongestList);  // of one corner
+    EXPECT_EQ(samples.owners.back(), VoxelSamples::kLongestList - 1);
+    EXPECT_EQ(samples.count(), 4 * VoxelSamples::kLongestList);  // of cells (1, 0), (0, 1), (2, 0) and (0, 2)
   }
 }
 

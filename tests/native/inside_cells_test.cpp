@@ -58,7 +58,7 @@ TEST(InsideCells, SayWhatCrossingsSayWhereTheySayAnything) {
                                              [] { return true; });
     ASSERT_TRUE(made);
     const PartitionView view(*made);
-    const HostPartition partition(view);
+    const PartitionLookup partition(view);
     const std::vector<std::uint8_t> boxes = SearchTables::boxes_of(mesh, view);
     InsideSearch plain(mesh, partition, boxes);
     int asked = 0, known = 0, inside = 0;
@@ -111,7 +111,7 @@ TEST(MiddleCrossings, AreWhatIntegersCount) {
                                              [] { return true; });
     ASSERT_TRUE(made);
     const PartitionView view(*made);
-    const HostPartition partition(view);
+    const PartitionLookup partition(view);
     const MiddleCrossings crossings(mesh, view);
     ASSERT_FALSE(crossings.empty());
     std::mt19937 random(8);

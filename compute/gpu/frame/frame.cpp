@@ -296,6 +296,7 @@ Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> RecordedFrame::pair
       !r)
     return r.error();
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+  out.reserve(found.size());
   for (const gpu::ContactPair& pair : found) out.emplace_back(pair.static_id, pair.mobile);
   std::sort(out.begin(), out.end());
   return out;

@@ -42,7 +42,7 @@ void upload_points(PrepareSteps& steps, const SceneGeometry& geometry, const Par
   const std::size_t words = samples.wide ? 3 : 2;
   if (count * words * 4 > steps.device().limits().storage_range) return;
 
-  HostSamples grid;  // to read them with
+  VoxelSamples grid;  // to read them with
   grid.words = std::move(samples.words);
   grid.wide = samples.wide;
   std::vector<std::uint32_t> points(count * words), ids(count);
@@ -51,8 +51,8 @@ void upload_points(PrepareSteps& steps, const SceneGeometry& geometry, const Par
       static_cast<std::uint32_t>(shares.size() - 1),
       [&](std::uint32_t share) {
         for (std::uint32_t voxel = shares[share]; voxel < shares[share + 1]; ++voxel) {
-          const HostSamples::Voxel cells(lists.grid.origin + lists.grid.size * lists.boundary_voxel(voxel),
-                                         geometry.sample_spacing);
+          const VoxelSamples::Voxel cells(lists.grid.origin + lists.grid.size * lists.boundary_voxel(voxel),
+                                          geometry.sample_spacing);
           std::size_t at = begin[voxel];
           const auto put = [&](const Int3& point, std::uint32_t id) {
             const Int3 d = point - cells.low;
@@ -99,7 +99,7 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
   push.bricks = p.grid.bricks;
   push.spacing = geometry.sample_spacing;
   push.count = p.grid.list_entries;
-  push.wide = p.grid.size > HostSamples::kNarrowVoxel ? 1 : 0;
+  push.wide = p.grid.size > VoxelSamples::kNarrowVoxel ? 1 : 0;
   const VulkanBuffer begins = steps.buffer("begins of samples", std::uint64_t{push.count} + 1);
   const VulkanBuffer unused = steps.buffer("unused", 1);
   const auto run = [&](std::uint32_t emit, const VulkanBuffer& samples) {

@@ -37,7 +37,7 @@ void widen(std::vector<std::uint8_t>& cells, const Int3& n, int axis, std::int32
       }
 }
 
-constexpr std::size_t kEight = HostSamples::kPointsAtOnce;
+constexpr std::size_t kEight = VoxelSamples::kPointsAtOnce;
 
 /// From the mock-up's voxels to cubes of the tool at a pose, numbers of the latter.
 struct NearTurn {
@@ -232,9 +232,9 @@ std::uint32_t CandidateSamples::class_at(const Int3& p) const {
 }
 
 bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
-  const HostSamples& from = *sampled_;
+  const VoxelSamples& from = *sampled_;
   const Int3 lowest = mockup_.origin + mockup_.size * voxel;
-  std::optional<HostSamples::Voxel> grid;  // once a point is wanted
+  std::optional<VoxelSamples::Voxel> grid;  // once a point is wanted
   double at[3];
   search.to_tool(lowest, at);
   float low[3];
@@ -245,7 +245,7 @@ bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint3
              0.5F * (column[0] + column[1] + column[2]);
   }
   const std::uint32_t* const ids = &list_triangles_[list_begin_[boundary]];
-  const HostSamples::Begin begin = from.begin[boundary], end = from.begin[boundary + 1];
+  const VoxelSamples::Begin begin = from.begin[boundary], end = from.begin[boundary + 1];
   const std::uint32_t first_sample = end.point - (end.sample - begin.sample);
   const std::uint16_t* const owners = from.owners.data() + begin.owner;
   for (std::uint32_t first = begin.point; first < end.point; first += kEight) {
@@ -271,7 +271,7 @@ bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint3
         mark = gpu::kCornerProbe;
       } else {
         if (!grid) grid.emplace(lowest, spacing_);
-        sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> HostSamples::kAxisShift),
+        sample.point = from.sample(*grid, static_cast<int>(from.points[point] >> VoxelSamples::kAxisShift),
                                    begin.sample + (point - first_sample));
       }
       if (!sure) kind = class_at(search.rounded_to_tool(sample.point));
@@ -367,7 +367,7 @@ void CandidateSamples::find(const LatticePose& pose, const Int3& first, const In
     for (std::size_t r = 0; r < 3; ++r) {
       search.near.column[k][r] = search.rotation[r][k] * (mockup_.size * near_.per_step);
       search.points.column[k][r] =
-          static_cast<float>(search.rotation[r][k] * ratio / (1 << HostSamples::kPointBits));
+          static_cast<float>(search.rotation[r][k] * ratio / (1 << VoxelSamples::kPointBits));
     }
     const double cubes = 8.0 * cubes_.bricks[static_cast<int>(k)];
     search.points.end[k] = static_cast<float>(cubes);
@@ -376,7 +376,7 @@ void CandidateSamples::find(const LatticePose& pose, const Int3& first, const In
   // A point lies within half a 1024th of its word's middle along each axis, √3 / 2 of one at most along a
   // turned one. Single precision: the voxel's low corner, three columns, their products and sums, all below
   // the grid's size and a few voxels: eight roundings.
-  search.points.error = static_cast<float>(kRootThree / 2 * ratio / (1 << HostSamples::kPointBits) +
+  search.points.error = static_cast<float>(kRootThree / 2 * ratio / (1 << VoxelSamples::kPointBits) +
                                            (most + 4 * ratio + 4) * 0x1p-21);
   on_this_processor([&] {
     Int3 b;

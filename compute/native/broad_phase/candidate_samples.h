@@ -68,7 +68,7 @@ class CandidateSamples {
   Cubes cubes_;
   const LatticeMesh* mesh_ = nullptr;
   std::int32_t spacing_ = 1;
-  std::shared_ptr<const HostSamples> sampled_;
+  std::shared_ptr<const VoxelSamples> sampled_;
   std::shared_ptr<const OpenInside> known_;  ///< near_ may be its
 };
 

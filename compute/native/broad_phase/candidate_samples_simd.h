@@ -39,17 +39,17 @@ static std::size_t near_voxels(const NearTurn& turn, const BrickVoxels& voxels, 
   return count;
 }
 
-// Of kEight points of a voxel (words of HostSamples::points) those that may lie in the solid.
+// Of kEight points of a voxel (words of VoxelSamples::points) those that may lie in the solid.
 static void solid_points(const PointTurn& turn, const float (&low)[3], const BrickBits& solid,
                          const std::uint32_t* points, SolidPoints& out) {
   out.may = out.unsure = 0;
   for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
     Words word;
     std::memcpy(&word, points + begin, sizeof word);
-    constexpr std::int32_t kMost = (1 << HostSamples::kPointBits) - 1;
+    constexpr std::int32_t kMost = (1 << VoxelSamples::kPointBits) - 1;
     const Floats x = __builtin_convertvector(word & kMost, Floats),
-                 y = __builtin_convertvector(word >> HostSamples::kPointBits & kMost, Floats),
-                 z = __builtin_convertvector(word >> 2 * HostSamples::kPointBits & kMost, Floats);
+                 y = __builtin_convertvector(word >> VoxelSamples::kPointBits & kMost, Floats),
+                 z = __builtin_convertvector(word >> 2 * VoxelSamples::kPointBits & kMost, Floats);
     Words may = Words{} - 1, beside{}, brick{}, bit{};
     for (std::size_t k = 3; k-- > 0;) {
       const float(&column)[3] = turn.column[k];

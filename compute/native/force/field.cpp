@@ -95,7 +95,7 @@ void add_deepest(FieldSums& field, std::uint32_t depth, std::uint32_t static_id,
 }  // namespace
 
 /// A sample inside the other body (EXACTNESS section 8).
-struct HostField::Push {
+struct PressureField::Push {
   Int3 at;
   Int3 along, against;  ///< n and u
   std::uint32_t depth;
@@ -104,21 +104,22 @@ struct HostField::Push {
   bool sheet;
 };
 
-HostField::Extras::Extras(const LatticeMesh& mesh)
+PressureField::Extras::Extras(const LatticeMesh& mesh)
     : all_(mesh.extra_samples), has_((mesh.triangles.size() + 63) / 64) {
   for (const ExtraSample& extra : all_)
     has_[extra.triangle >> 6] |= std::uint64_t{1} << (extra.triangle & 63);
 }
 
-std::span<const ExtraSample> HostField::Extras::of(std::uint32_t triangle) const {
+std::span<const ExtraSample> PressureField::Extras::of(std::uint32_t triangle) const {
   if ((has_[triangle >> 6] >> (triangle & 63) & 1) == 0) return {};
   const auto first = std::ranges::lower_bound(all_, triangle, {}, &ExtraSample::triangle);
   return {first, std::ranges::upper_bound(first, all_.end(), triangle, {}, &ExtraSample::triangle)};
 }
 
-HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& mockup,
-                          const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside) {
-  HostField out;
+PressureField PressureField::make(const SceneGeometry& geometry, const TriangleTree& mockup,
+                                  const InsideSearch& in_mockup, const TriangleTree& tool,
+                                  bool tool_has_inside) {
+  PressureField out;
   out.geometry_ = &geometry;
   for (Lane& lane : out.lanes_) {
     lane.mockup_depth = DepthSearch(geometry.mockup, mockup);
@@ -153,7 +154,7 @@ HostField HostField::make(const SceneGeometry& geometry, const TriangleTree& moc
 }
 
 template <class Take>
-void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
+void PressureField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   if (!own_begin_.empty()) {
     for (std::uint32_t i = own_begin_[mobile]; i < own_begin_[mobile + 1]; ++i)
       take(own_samples_[i], own_levels_[i]);
@@ -170,7 +171,7 @@ void HostField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
       [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
 }
 
-void HostField::choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser) {
+void PressureField::choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser) {
   const std::uint64_t wanted = geometry_->contact_samples, count = samples + mobiles / 16;
   const std::uint32_t level = std::min(
       (wanted != 0 && count > wanted ? log_q8(count) - log_q8(wanted) : 0) + coarser, Ignored::kCoarsest);
@@ -179,7 +180,7 @@ void HostField::choose_level(std::size_t samples, std::size_t mobiles, std::uint
 }
 
 /// Of a grid sample in this frame, Q30.
-std::uint64_t HostField::weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const {
+std::uint64_t PressureField::weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const {
   const std::uint32_t place = mesh.levels_of[triangle];
   if (place == 0 || (level_ | between_) == 0) return mesh.field_weight_q30[triangle];
   const SideLevels& side = mesh.side_levels[place - 1];
@@ -193,7 +194,7 @@ std::uint64_t HostField::weight_of(const LatticeMesh& mesh, std::uint32_t triang
   return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
 }
 
-std::uint64_t HostField::weight_of(const ExtraSample& extra) const {
+std::uint64_t PressureField::weight_of(const ExtraSample& extra) const {
   const auto at = [&](std::uint32_t level) -> std::uint64_t {
     level = std::min<std::uint32_t>(level, kSampleLevels);
     return level == 0 ? extra.weight_q30 : std::uint64_t{extra.coarse_q30[level - 1]} << level;
@@ -201,7 +202,7 @@ std::uint64_t HostField::weight_of(const ExtraSample& extra) const {
   return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
 }
 
-bool HostField::is_ignored(std::uint32_t static_id, Lane& lane) const {
+bool PressureField::is_ignored(std::uint32_t static_id, Lane& lane) const {
   if (ignored_ == nullptr || ignored_->patches.empty()) return false;
   const std::uint32_t patch = geometry_->mockup.patch[static_id];
   if (!std::binary_search(ignored_->patches.begin(), ignored_->patches.end(), patch)) return false;
@@ -210,7 +211,7 @@ bool HostField::is_ignored(std::uint32_t static_id, Lane& lane) const {
 }
 
 /// What pushes.
-void HostField::add_push(const Push& push, Lane& lane) const {
+void PressureField::add_push(const Push& push, Lane& lane) const {
   const std::uint32_t weight = push.counted;
   const Int3 &n = push.along, r = push.at;
   const auto p = static_cast<std::int64_t>((std::uint64_t{push.depth} * weight) >> 14);
@@ -243,8 +244,8 @@ void HostField::add_push(const Push& push, Lane& lane) const {
   bin.give_spread[5] += (give * z * x) >> 8;
 }
 
-void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
-                    Lane& lane) const {
+void PressureField::add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
+                        Lane& lane) const {
   if (push.counted != 0) add_push(push, lane);
   add_deepest(lane.field, push.depth, static_id, mobile);
   if (push.sheet) lane.flags |= kFlagSheet;
@@ -260,8 +261,8 @@ void HostField::add(const Push& push, std::uint32_t static_id, std::uint32_t mob
   }
 }
 
-void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point,
-                                 std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const {
+void PressureField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point,
+                                     std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const {
   const DepthSearch::Depth below = lane.tool_depth.below(to_tool(pose, point), lane.near_tool);
   lane.near_tool = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, lane)) return;
@@ -274,8 +275,8 @@ void HostField::push_from_mockup(const LatticePose& pose, std::uint32_t static_i
       static_id, below.triangle, carrier, lane);
 }
 
-void HostField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point,
-                               std::uint64_t weight_q30, Lane& lane) const {
+void PressureField::push_from_tool(const LatticePose& pose, std::uint32_t mobile, const Int3& point,
+                                   std::uint64_t weight_q30, Lane& lane) const {
   const DepthSearch::Depth below = lane.mockup_depth.below(point, lane.near_mockup);
   lane.near_mockup = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, lane)) return;
@@ -300,8 +301,8 @@ CarrierSums* carrier_of(std::span<CarrierSums> carriers, std::uint32_t id) {
 }  // namespace
 
 /// Of the mock-up's samples inside the tool.
-void HostField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples,
-                            std::span<CarrierSums> carriers, Lane& lane) const {
+void PressureField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples,
+                                std::span<CarrierSums> carriers, Lane& lane) const {
   const LatticeMesh& mockup = geometry_->mockup;
   // As SampleGrid::cell: half a step from the nearest integer quotient, which is far more than a double
   // rounds.
@@ -324,9 +325,9 @@ void HostField::sum_samples(const LatticePose& pose, std::span<const FrameSample
 }
 
 /// Of the mock-up's extra samples that lie inside the tool.
-void HostField::sum_extras(const LatticePose& pose, const HostSets& sets,
-                           std::span<const StaticResult> statics, std::span<CarrierSums> carriers,
-                           Lane& lane) const {
+void PressureField::sum_extras(const LatticePose& pose, const ContactSets& sets,
+                               std::span<const StaticResult> statics, std::span<CarrierSums> carriers,
+                               Lane& lane) const {
   for (const StaticResult& result : statics)
     for (const ExtraSample& extra : mockup_extras_.of(result.id))
       if (const std::uint64_t weight = weight_of(extra); weight != 0 && sets.inside(pose, extra.point))
@@ -334,7 +335,8 @@ void HostField::sum_extras(const LatticePose& pose, const HostSets& sets,
 }
 
 /// Of the samples of C_m inside the mock-up.
-void HostField::sum_tool(const LatticePose& pose, std::span<const MobileResult> mobiles, Lane& lane) const {
+void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResult> mobiles,
+                             Lane& lane) const {
   const LatticeMesh& own = geometry_->tool;
   for (const MobileResult& result : mobiles) {
     // What touches nothing is on one side of the mock-up, with its first corner.
@@ -353,14 +355,14 @@ void HostField::sum_tool(const LatticePose& pose, std::span<const MobileResult> 
   }
 }
 
-std::uint64_t HostField::looks() const {
+std::uint64_t PressureField::looks() const {
   std::uint64_t out = 0;
   for (const Lane& lane : lanes_) out += lane.mockup_depth.looks() + lane.tool_depth.looks();
   return out;
 }
 
-void HostField::sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found,
-                    const Wanted& wanted, FrameHelper* helper, Contacts& out) {
+void PressureField::sum(const LatticePose& pose, const ContactSets& sets, const FoundSets& found,
+                        const Wanted& wanted, FrameHelper* helper, Contacts& out) {
   choose_level(found.samples.size(), found.mobiles.size(),
                wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
   out.carriers.clear();

@@ -16,11 +16,11 @@ namespace palpate {
 
 /// The pressure field at a pose (docs/EXACTNESS.md section 8), on the host. One thread and its helper; make()
 /// keeps references to its arguments; sum() allocates only when a contact is larger than all before.
-class HostField {
+class PressureField {
  public:
   /// What the arguments refer to outlives this.
-  static HostField make(const SceneGeometry& geometry, const TriangleTree& mockup,
-                        const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside);
+  static PressureField make(const SceneGeometry& geometry, const TriangleTree& mockup,
+                            const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
@@ -28,7 +28,7 @@ class HostField {
     bool carriers = true;
   };
   /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags. `helper` may be null.
-  void sum(const LatticePose& pose, const HostSets& sets, const FoundSets& found, const Wanted& wanted,
+  void sum(const LatticePose& pose, const ContactSets& sets, const FoundSets& found, const Wanted& wanted,
            FrameHelper* helper, Contacts& out);
   /// Groups of eight boxes or triangles that sums have looked at in all.
   std::uint64_t looks() const;
@@ -67,8 +67,9 @@ class HostField {
                       std::uint64_t weight_q30, Lane& lane) const;
   void sum_samples(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
                    std::span<CarrierSums> carriers, Lane& lane) const;
-  void sum_extras(const LatticePose& pose, const HostSets& sets, std::span<const gpu::StaticResult> statics,
-                  std::span<CarrierSums> carriers, Lane& lane) const;
+  void sum_extras(const LatticePose& pose, const ContactSets& sets,
+                  std::span<const gpu::StaticResult> statics, std::span<CarrierSums> carriers,
+                  Lane& lane) const;
   void sum_tool(const LatticePose& pose, std::span<const gpu::MobileResult> mobiles, Lane& lane) const;
   bool is_ignored(std::uint32_t static_id, Lane& lane) const;
   template <class Take>

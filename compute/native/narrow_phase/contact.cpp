@@ -6,27 +6,27 @@ namespace palpate {
 
 using namespace gpu;  // names of shaders/shared/frame.h
 
-std::unique_ptr<HostContact> HostContact::make(const SceneGeometry& geometry, const SceneTables& scene,
+std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, const SceneTables& scene,
                                                std::span<const std::uint32_t> order,
                                                std::shared_ptr<const OpenInside> known) {
-  std::unique_ptr<HostContact> out(new HostContact);
-  out->mockup_ = HostPartition(scene.mockup);
-  out->tool_ = HostPartition(scene.tool);
+  std::unique_ptr<NarrowPhase> out(new NarrowPhase);
+  out->mockup_ = PartitionLookup(scene.mockup);
+  out->tool_ = PartitionLookup(scene.tool);
   out->tool_boxes_ = SearchTables::boxes_of(geometry.tool, scene.tool);
   out->tool_triangles_ = TriangleTree::make(geometry.tool, [] { return true; });
   out->search_ = scene.search;
   out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
   out->in_tool_.use(std::move(known));
-  out->sets_ = HostSets::make(geometry, scene, order, out->in_tool_);
+  out->sets_ = ContactSets::make(geometry, scene, order, out->in_tool_);
   out->statics_.resize(geometry.mockup.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
-  out->field_ = HostField::make(geometry, scene.search->triangles,
-                                InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
-                                out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);
+  out->field_ = PressureField::make(geometry, scene.search->triangles,
+                                    InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
+                                    out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 
-void HostContact::decide(PosedTool& tool, const Candidates& near, FrameHelper* helper, Contacts& out) {
+void NarrowPhase::decide(PosedTool& tool, const Candidates& near, FrameHelper* helper, Contacts& out) {
   sets_.decide(tool, near, statics_, helper, found_);
   out.contact = found_.state.contact != 0;
   out.pairs = found_.pairs.size();

@@ -19,10 +19,10 @@ namespace palpate {
 /// A whole contact, from the lists of what is near to the field (docs/EXACTNESS.md sections 3, 4 and 8).
 /// `refined`. One thread and its helper; make() keeps references to its arguments; solve() allocates only
 /// when a contact is larger than all before.
-class HostContact {
+class NarrowPhase {
  public:
   /// `known` of a tool that is not closed; may be null.
-  static std::unique_ptr<HostContact> make(const SceneGeometry& geometry, const SceneTables& scene,
+  static std::unique_ptr<NarrowPhase> make(const SceneGeometry& geometry, const SceneTables& scene,
                                            std::span<const std::uint32_t> order,
                                            std::shared_ptr<const OpenInside> known);
 
@@ -44,17 +44,17 @@ class HostContact {
   std::span<const gpu::ContactPair> pairs() const { return found_.pairs; }
 
  private:
-  HostContact() = default;
+  NarrowPhase() = default;
   void decide(PosedTool& tool, const Candidates& near, FrameHelper* helper, Contacts& out);
 
-  HostPartition mockup_, tool_;
+  PartitionLookup mockup_, tool_;
   std::vector<std::uint8_t> tool_boxes_;  ///< SearchTables::boxes_of
   TriangleTree tool_triangles_;
   std::shared_ptr<const SearchTables> search_;
   IdMarks statics_;
   InsideSearch in_tool_;
-  HostSets sets_;
-  HostField field_;
+  ContactSets sets_;
+  PressureField field_;
   FoundSets found_;
 };
 

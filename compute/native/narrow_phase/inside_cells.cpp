@@ -77,7 +77,7 @@ bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) {
 }
 
 /// A voxel's cells that a triangle which bounds a solid may touch: by its box there, its plane and its edges.
-void add_touched(const LatticeMesh& mesh, const HostPartition& partition,
+void add_touched(const LatticeMesh& mesh, const PartitionLookup& partition,
                  std::span<const std::uint8_t> all_boxes, const Int3& low, double cell,
                  std::uint32_t boundary, Block& out) {
   const auto list = partition.list(boundary);
@@ -132,7 +132,7 @@ struct Edge {
 
 /// A voxel's cells from which an edge that does not cancel, of what the voxel lists, may be just passed on
 /// the way to the middle: the edge's shadow, as the middle sees it. `edges`: room.
-void add_shadows(const LatticeMesh& mesh, const HostPartition& partition, const Int3& voxel, double cell,
+void add_shadows(const LatticeMesh& mesh, const PartitionLookup& partition, const Int3& voxel, double cell,
                  std::uint32_t boundary, std::vector<Edge>& edges, Block& out) {
   edges.clear();
   for (const std::uint32_t id : partition.list(boundary)) {
@@ -190,7 +190,7 @@ InsideCells::InsideCells(const LatticeMesh& mesh, const PartitionView& view,
     : origin_(view.grid.origin), size_(view.grid.size), per_cell_(double(kCells) / view.grid.size) {
   const std::size_t voxels = view.grid.boundary_voxels;
   if (size_ < kLeastVoxel || voxels > kMostVoxels) return;
-  const HostPartition partition(view);
+  const PartitionLookup partition(view);
   const double cell = double(size_) / kCells;
   std::vector<Edge> edges;
   voxels_.resize(voxels);
@@ -222,7 +222,7 @@ InsideCells::InsideCells(const LatticeMesh& mesh, const PartitionView& view,
 bool InsideCells::spread(const PartitionView& partition, BrickBits& may, BrickBits& all) const {
   const std::size_t bricks = brick_count(partition.grid.bricks), voxels = 512 * bricks;
   if (voxels_.empty() || voxels > kMostSpread) return false;
-  const HostPartition classes(partition);
+  const PartitionLookup classes(partition);
   const Int3 size = 8 * partition.grid.bricks;
   std::vector<std::uint32_t> slots;
   slots.reserve(voxels);
@@ -230,7 +230,7 @@ bool InsideCells::spread(const PartitionView& partition, BrickBits& may, BrickBi
   for (v.z = 0; v.z < size.z; ++v.z)
     for (v.y = 0; v.y < size.y; ++v.y)
       for (v.x = 0; v.x < size.x; ++v.x) {
-        const HostPartition::Voxel at = classes.at(v);
+        const PartitionLookup::Voxel at = classes.at(v);
         slots.push_back(at.boundary != gpu::kNoVoxel     ? at.boundary
                         : at.kind == gpu::kVoxelInternal ? gpu::kBrickInternal
                                                          : gpu::kBrickExternal);

@@ -22,7 +22,7 @@ bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) {
 
 }  // namespace
 
-InsideSearch::InsideSearch(const LatticeMesh& mesh, const HostPartition& partition,
+InsideSearch::InsideSearch(const LatticeMesh& mesh, const PartitionLookup& partition,
                            std::span<const std::uint8_t> boxes)
     : mesh_(&mesh),
       partition_(&partition),
@@ -36,7 +36,7 @@ InsideSearch::InsideSearch(const LatticeMesh& mesh, const HostPartition& partiti
 
 bool InsideSearch::inside(const Int3& point) {
   const Int3 voxel = partition_->voxel_of(point);
-  const HostPartition::Voxel at = partition_->at(voxel);
+  const PartitionLookup::Voxel at = partition_->at(voxel);
   if (at.boundary == kNoVoxel) return at.kind == kVoxelInternal;
   return on_this_processor([&] { return inside_boundary(point, voxel, at.boundary); });
 }
@@ -50,7 +50,7 @@ void InsideSearch::inside(std::span<const Int3> points, std::span<std::uint8_t> 
   on_this_processor([&] {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Int3 voxel = partition_->voxel_of(points[i]);
-      const HostPartition::Voxel at = partition_->at(voxel);
+      const PartitionLookup::Voxel at = partition_->at(voxel);
       places[i] = {voxel, at.boundary};
       answers[i] = at.kind == kVoxelInternal ? 1 : 0;
       if (at.boundary != kNoVoxel && known_) known_->cells.prefetch(at.boundary);
@@ -158,7 +158,7 @@ InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int 
   const GridConstants& grid = partition_->grid();
   Walk out{0, voxel, kVoxelBoundary};
   Int3 from = point;
-  HostPartition::Voxel here = partition_->at(voxel);
+  PartitionLookup::Voxel here = partition_->at(voxel);
   do {
     Int3 to = from;
     to[axis] = grid.origin[axis] + grid.size * (out.voxel[axis] + (way > 0 ? 1 : 0));
@@ -213,7 +213,7 @@ std::uint8_t InsideSearch::shortest_way(const Int3& voxel) const {
       for (const int up : {0, 1}) {
         Int3 to = voxel;
         to[axis] += up != 0 ? steps : -steps;
-        const HostPartition::Voxel there = partition_->at(to);
+        const PartitionLookup::Voxel there = partition_->at(to);
         if (there.boundary != kNoVoxel) continue;
         const auto way = static_cast<std::uint8_t>(axis * 2 + up + 1);
         if (there.kind != kVoxelInternal) return way;
@@ -238,7 +238,7 @@ int InsideSearch::winding_of(const Int3& voxel) {
   int winding = 0;
   Int3 at = voxel, from = grid.origin + grid.size * voxel + Int3(grid.size / 2);
   for (; at.x < n.x; ++at.x) {
-    const HostPartition::Voxel here = partition_->at(at);
+    const PartitionLookup::Voxel here = partition_->at(at);
     if (here.kind == kVoxelExternal) break;
     Int3 to = from;
     to.x = grid.origin.x + grid.size * (at.x + 1);

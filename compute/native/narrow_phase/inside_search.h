@@ -20,7 +20,8 @@ class InsideSearch {
   InsideSearch() = default;
   /// `partition` lists every triangle of `mesh` in every voxel that it touches; `boxes`: SearchTables::boxes
   /// of it.
-  InsideSearch(const LatticeMesh& mesh, const HostPartition& partition, std::span<const std::uint8_t> boxes);
+  InsideSearch(const LatticeMesh& mesh, const PartitionLookup& partition,
+               std::span<const std::uint8_t> boxes);
 
   bool inside(const Int3& point);
   /// The same of many points of a body that is not closed: answers[i] is 1 where points[i] lies inside. What
@@ -48,7 +49,7 @@ class InsideSearch {
   int winding_of(const Int3& voxel);
 
   const LatticeMesh* mesh_ = nullptr;
-  const HostPartition* partition_ = nullptr;
+  const PartitionLookup* partition_ = nullptr;
   std::span<const std::uint8_t> boxes_;
   double per_part_ = 0;                      ///< parts of a voxel a step
   std::shared_ptr<const OpenInside> known_;  ///< may be null

@@ -39,7 +39,7 @@ double put(const exact::Normal& normal, double times, double half, float (&to)[3
 }  // namespace
 
 MiddleCrossings::MiddleCrossings(const LatticeMesh& mesh, const PartitionView& view) {
-  const HostPartition partition(view);
+  const PartitionLookup partition(view);
   const std::uint32_t voxels = view.grid.boundary_voxels;
   const std::int32_t half = view.grid.size / 2;
   const auto bounds_solid = [&](std::uint32_t id) {

@@ -12,7 +12,7 @@ namespace palpate {
 std::shared_ptr<const OpenInside> OpenInside::make(const LatticeMesh& mesh, const PartitionView& view) {
   auto out = std::make_shared<OpenInside>();
   out->crossings = MiddleCrossings(mesh, view);
-  const HostPartition partition(view);
+  const PartitionLookup partition(view);
   const std::vector<std::uint8_t> boxes = SearchTables::boxes_of(mesh, view);
   InsideSearch search(mesh, partition, boxes);
   search.use(out);  // it has no cells yet

@@ -24,14 +24,14 @@ constexpr std::size_t kAhead =
 
 }  // namespace
 
-HostSets HostSets::make(const SceneGeometry& geometry, const SceneTables& scene,
-                        std::span<const std::uint32_t> order, InsideSearch& in_tool) {
-  HostSets out;
+ContactSets ContactSets::make(const SceneGeometry& geometry, const SceneTables& scene,
+                              std::span<const std::uint32_t> order, InsideSearch& in_tool) {
+  ContactSets out;
   out.geometry_ = &geometry;
   out.in_tool_ = &in_tool;
   out.order_ = order;
-  out.mockup_ = HostPartition(scene.mockup);
-  out.fine_ = HostPartition(scene.fine);
+  out.mockup_ = PartitionLookup(scene.mockup);
+  out.fine_ = PartitionLookup(scene.fine);
   out.fine_exit_ = scene.fine_exit;
   out.touched_.resize(scene.mockup.grid.boundary_voxels);
   out.mobiles_.resize(order.size());
@@ -41,7 +41,7 @@ HostSets HostSets::make(const SceneGeometry& geometry, const SceneTables& scene,
 
 /// The tool lattice point of a world lattice point (section 4). |p − translation| < 2^31: sums within 3 ·
 /// 2^61.
-Int3 HostSets::tool_point(const LatticePose& pose, const Int3& point) const {
+Int3 ContactSets::tool_point(const LatticePose& pose, const Int3& point) const {
   Int3 at;
   for (int c = 0; c < 3; ++c) {
     std::int64_t sum = std::int64_t{1} << 29;
@@ -52,7 +52,7 @@ Int3 HostSets::tool_point(const LatticePose& pose, const Int3& point) const {
   return at;
 }
 
-bool HostSets::inside(const LatticePose& pose, const Int3& point) const {
+bool ContactSets::inside(const LatticePose& pose, const Int3& point) const {
   const Int3 at = tool_point(pose, point);
   if (!geometry_->tool.closed) return in_tool_->inside(at);
   // A closed body's winding is 0 beyond its box. A voxel much larger than the tool lists points far from it.
@@ -65,7 +65,7 @@ bool HostSets::inside(const LatticePose& pose, const Int3& point) const {
 
 /// Samples and first corners of listed triangles in a voxel, where preparation has not listed them.
 template <class Take>
-void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
+void ContactSets::scan(const SampleChunk& chunk, Take&& take) const {
   const LatticeMesh& mesh = geometry_->mockup;
   const Int3 low = mockup_.grid().origin + mockup_.grid().size * chunk.voxel,
              high = low + mockup_.grid().size - 1;  // half-open
@@ -83,8 +83,8 @@ void HostSets::scan(const SampleChunk& chunk, Take&& take) const {
 /// The cells of open points. Point by point the way from voxel to list, triangles and sides is one long chain
 /// of loads, and what is decided at its end keeps the processor from the next point; step by step all points'
 /// loads run side by side.
-void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> samples,
-                          std::vector<OpenPoint>& all) const {
+void ContactSets::find_cells(const LatticePose& pose, std::span<const FrameSample> samples,
+                             std::vector<OpenPoint>& all) const {
   // From a plane, in steps: roundings and the rounded matrix come to less than 2.5, the rounded normal to
   // less than 0.8 (derived).
   constexpr std::int64_t kFar = std::int64_t{4} << 30;
@@ -118,7 +118,7 @@ void HostSets::find_cells(const LatticePose& pose, std::span<const FrameSample> 
 /// Whether the winding at an open sample is not 0. In the tool's frame the planes of all that the sample's
 /// voxel lists divide the voxel into convex cells that nothing passes through, so that all samples of a cell
 /// have one answer, at every pose (docs/EXACTNESS.md, section 9).
-bool HostSets::open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open) {
+bool ContactSets::open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open) {
   if (!open.in_cell) return walks_out(pose, point);
   if (const std::optional<bool> answer = cells_.find(open.voxel, open.sides)) return *answer;
   const bool answer = walks_out(pose, point);
@@ -129,11 +129,11 @@ bool HostSets::open_inside(const LatticePose& pose, const Int3& point, const Ope
 /// The same by a walk: the winding is what a walk out of the tool crosses, along an axis of its fine grid.
 /// shaders/frame/sample_walk.comp has the proof that each voxel on the way lists all that is crossed in it.
 /// Moves what it meets itself, for the threads of a frame can't share moved triangles.
-bool HostSets::walks_out(const LatticePose& pose, const Int3& point) const {
+bool ContactSets::walks_out(const LatticePose& pose, const Int3& point) const {
   const LatticeMesh& mesh = geometry_->tool;
   Int3 from = point, at = tool_point(pose, point);
   Int3 voxel = fine_.voxel_of(at);
-  HostPartition::Voxel here = fine_.at(voxel);
+  PartitionLookup::Voxel here = fine_.at(voxel);
   const std::uint32_t exit = fine_exit_[here.boundary];
   const int axis = static_cast<int>(exit >> 1), up = static_cast<int>(exit & 1);
   int winding = 0;
@@ -159,7 +159,7 @@ bool HostSets::walks_out(const LatticePose& pose, const Int3& point) const {
 }
 
 /// EST of open samples.
-void HostSets::decide_open(const LatticePose& pose, std::span<const FrameSample> samples, Lane& lane) {
+void ContactSets::decide_open(const LatticePose& pose, std::span<const FrameSample> samples, Lane& lane) {
   if (!geometry_->tool.closed) {
     static_assert(kOpenPart <= InsideSearch::kMostPoints);
     std::array<std::uint8_t, kOpenPart> inside;
@@ -185,8 +185,8 @@ void HostSets::decide_open(const LatticePose& pose, std::span<const FrameSample>
 }
 
 /// Pairs that meet. The search has moved their tool triangles.
-void HostSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates,
-                            Lane& found) const {
+void ContactSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates,
+                               Lane& found) const {
   const LatticeMesh& mockup = geometry_->mockup;
   std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
   for (std::size_t begin = 0; begin < candidates.size(); begin += PairFilter::kLanes) {
@@ -221,7 +221,7 @@ void HostSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate
 
 /// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is
 /// not asked.
-void HostSets::decide_voxels(PosedTool& tool, const Candidates& near) {
+void ContactSets::decide_voxels(PosedTool& tool, const Candidates& near) {
   const GridConstants& grid = mockup_.grid();
   std::uint32_t place = kNone, id = 0, marks = 0;  // candidates of one tool triangle follow each other
   const exact::Corners* corners = nullptr;         // its own, once they are asked for
@@ -255,7 +255,7 @@ void HostSets::decide_voxels(PosedTool& tool, const Candidates& near) {
 }
 
 /// BST: what touched voxels list.
-void HostSets::mark_lists(IdMarks& statics) {
+void ContactSets::mark_lists(IdMarks& statics) {
   for (std::size_t i = 0; i < touched_voxels_.size(); ++i) {
     if (i + kAhead < touched_voxels_.size())
       __builtin_prefetch(mockup_.list(touched_voxels_[i + kAhead]).data());
@@ -265,7 +265,7 @@ void HostSets::mark_lists(IdMarks& statics) {
 }
 
 /// C_s and C_m, and how many there are of each set.
-void HostSets::list(IdMarks& statics, FoundSets& out) {
+void ContactSets::list(IdMarks& statics, FoundSets& out) {
   FrameState& state = out.state;
   statics.number([&](std::uint32_t id, std::uint32_t marks) {
     const bool hit = (marks & kStaticHit) != 0;
@@ -280,8 +280,8 @@ void HostSets::list(IdMarks& statics, FoundSets& out) {
   });
 }
 
-void HostSets::decide(PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
-                      FoundSets& out) {
+void ContactSets::decide(PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
+                         FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();

@@ -31,12 +31,12 @@ struct FoundSets {
 /// sections 3 and 4): sets, pairs and samples inside the tool in `refined`. The same questions, answered
 /// exactly, so the same bits. One thread and its helper; make() keeps references to its arguments; decide()
 /// allocates only when a contact is larger than all before.
-class HostSets {
+class ContactSets {
  public:
   /// `order`: ids of the tool's triangles by place. `in_tool` outlives this and answers for a tool that is
   /// not closed. `refined`.
-  static HostSets make(const SceneGeometry& geometry, const SceneTables& scene,
-                       std::span<const std::uint32_t> order, InsideSearch& in_tool);
+  static ContactSets make(const SceneGeometry& geometry, const SceneTables& scene,
+                          std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
   /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked
   /// there (kStatic…) and numbered. `helper` may be null.
@@ -80,7 +80,7 @@ class HostSets {
   const SceneGeometry* geometry_ = nullptr;
   InsideSearch* in_tool_ = nullptr;
   std::span<const std::uint32_t> order_;
-  HostPartition mockup_, fine_;
+  PartitionLookup mockup_, fine_;
   std::span<const std::uint32_t> fine_exit_;
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
   CellMemo cells_;                               ///< of fine V_bnd voxels: whether they are inside

@@ -36,7 +36,7 @@ std::optional<Scene> find_scene(DiskCache& cache, const ContentKey& key) {
   ArchiveReader reader(entry->payload());
   Scene scene;
   archive_scene(reader, scene);
-  auto samples = std::make_shared<HostSamples>();
+  auto samples = std::make_shared<VoxelSamples>();
   archive_samples(reader, *samples);
   if (samples->listed()) scene.samples = std::move(samples);
   auto tables = std::make_shared<SearchTables>();
@@ -48,7 +48,7 @@ std::optional<Scene> find_scene(DiskCache& cache, const ContentKey& key) {
 }
 
 void keep_scene(DiskCache& cache, const ContentKey& key, const Scene& scene, double seconds) {
-  static const HostSamples kNone;
+  static const VoxelSamples kNone;
   ArchiveWriter writer;
   archive_scene(writer, scene);
   archive_samples(writer, scene.samples ? *scene.samples : kNone);

@@ -99,7 +99,7 @@ Listing list_samples(const LatticeMesh& mesh, const PartitionView& lists, std::i
                      std::uint64_t most_bytes, const ListingProgress& go_on, EntrySamples& out) {
   const std::vector<std::uint32_t> shares = entry_shares(lists);
   const auto count = static_cast<std::uint32_t>(shares.size() - 1);
-  out.wide = lists.grid.size > HostSamples::kNarrowVoxel;
+  out.wide = lists.grid.size > VoxelSamples::kNarrowVoxel;
   out.begin.resize(std::size_t{lists.grid.list_entries} + 1);
   std::vector<std::vector<std::uint32_t>> words(count);
   std::atomic<std::uint64_t> total{0};

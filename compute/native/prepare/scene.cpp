@@ -21,7 +21,7 @@ bool make_samples(const SceneGeometry& geometry, const Progress& progress, Scene
         [&progress, from, part](double done) { return !progress || progress("samples", from + part * done); };
   };
   EntrySamples by_entry;
-  auto samples = std::make_shared<HostSamples>();
+  auto samples = std::make_shared<VoxelSamples>();
   Listing listing = list_samples(geometry.mockup, out.mockup, geometry.sample_spacing, kMostSampleBytes,
                                  told(0.6, 0.25), by_entry);
   if (listing == Listing::kDone)

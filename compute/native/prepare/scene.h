@@ -16,7 +16,7 @@ struct Scene {
   Partition mockup, tool;
   Partition fine;  ///< of a closed tool in finer voxels; may be empty: the tool's own serves
   std::vector<std::uint32_t> fine_exit, tool_near;  ///< as SceneTables has them
-  std::shared_ptr<const HostSamples> samples;       ///< may be null: frames work them out
+  std::shared_ptr<const VoxelSamples> samples;      ///< may be null: frames work them out
   std::shared_ptr<const SearchTables> search;       ///< never null
 
   std::shared_ptr<const OpenInside> open_tool;  ///< null: the tool is closed, or has no inside

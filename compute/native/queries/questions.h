@@ -14,7 +14,7 @@ namespace palpate::native {
 struct Containment {
   Containment(const SceneGeometry& geometry, const SceneTables& scene);
 
-  HostPartition mockup;
+  PartitionLookup mockup;
   /// Both bodies are closed, so that a body that meets nothing lies wholly on one side of the other. Else
   /// containment is a frame's to say.
   bool told_by_corners;
