@@ -16,11 +16,16 @@ namespace palpate {
 /// tool's radius of gyration, so that a length is a length.
 class Anderson {
  public:
+  /// The tool's radius of gyration, m.
   explicit Anderson(double gyration) : gyration_(gyration) {}
+  /// Of two ways (m, rad), m².
   double product(const Vec6& a, const Vec6& b) const;
+  /// Of a way, m.
   double length(const Vec6& v) const;
 
+  /// `image`: T(z).
   Vec6 next(const Vec6& z, const Vec6& image);
+  /// What was before says nothing of what comes.
   void forget() { count_ = 0; }
 
  private:
@@ -62,8 +67,11 @@ class LoneQuery {
   /// The same step by step, for whoever asks for many at once: begin(), then as long as wanted() has a pose,
   /// what respond() says there to take(). At last felt() puts what would be felt into `response`.
   void begin(const Pose& pose, const ContactResponse& at_pose, bool from_before = false);
+  /// Where the field is wanted next; none: the balance is found, or not to be found.
   std::optional<Pose> wanted() const;
+  /// What respond() says at wanted().
   void take(const ContactResponse& there);
+  /// As feel() leaves `response`.
   void felt(ContactResponse& response) const;
 
   /// The spring whose balance is sought.
@@ -106,6 +114,7 @@ class LoneQuery {
 /// together. The same answers as LoneQuery::feel of each. One thread.
 class LoneQueries {
  public:
+  /// As LoneQuery's.
   LoneQueries(const SceneGeometry& geometry, double stiffness) : geometry_(geometry), stiffness_(stiffness) {}
 
   /// As LoneQuery::feel, of each pose; as many responses as poses. Error: the back end failed.
