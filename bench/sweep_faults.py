@@ -160,6 +160,8 @@ def main():
     assert share == count and [sweep.markers() for sweep in (one, two, last)] == [chunks] * 3
     assert hash_one == hash_two == hash_last and one.bytes() == two.bytes() == last.bytes()
     print(f'hash of all three: {hash_one}')
+    if asked.tmpfs:
+        subprocess.run(['umount', str(folder)], check=True)
     if not asked.folder:
         shutil.rmtree(folder)
 
