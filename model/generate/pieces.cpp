@@ -160,8 +160,8 @@ Piece framed_opening(std::string name, double fineness, std::vector<std::pair<do
     return pose.position + pose.rotation * Vec3(x * thickness, in.first + (out.first - in.first) * outward,
                                                 in.second + (out.second - in.second) * outward);
   };
-  return lofted(std::move(name), fineness, std::move(around),
-                {{web, 1}, {thickness, 1}, {web, 1}, {thickness, 1}}, Ends::kJoined, point);
+  return lofted(std::move(name), fineness, around, {{web, 1}, {thickness, 1}, {web, 1}, {thickness, 1}},
+                Ends::kJoined, point);
 }
 
 Piece cylinder(std::string name, double fineness, double radius, double height, std::uint32_t least_segments,

@@ -82,12 +82,12 @@ class Triangulator {
   /// The shape, or one of the same form that the library can make triangles of: it fails on some cones, and
   /// not where they are spline surfaces.
   static TopoDS_Shape with_triangles(const TopoDS_Shape& shape, const IMeshTools_Parameters& parameters) {
-    BRepMesh_IncrementalMesh(shape, parameters);
+    const BRepMesh_IncrementalMesh made(shape, parameters);
     const std::size_t without = faces_without_triangles(shape);
     if (without == 0) return shape;
     try {
       const TopoDS_Shape splines = BRepBuilderAPI_NurbsConvert(shape, true).Shape();
-      BRepMesh_IncrementalMesh(splines, parameters);
+      const BRepMesh_IncrementalMesh made_anew(splines, parameters);
       return faces_without_triangles(splines) < without ? splines : shape;
     } catch (const Standard_Failure&) {
       return shape;
@@ -110,6 +110,7 @@ class Triangulator {
   Result<double> deflection_for(const std::vector<Body>& bodies, const Tessellation& tessellation) {
     if (tessellation.deflection_m > 0) return tessellation.deflection_m;
     std::vector<MeshPart> parts;
+    parts.reserve(bodies.size());
     for (const Body& body : bodies) parts.push_back({body.path, 0, 0, body.also});
     std::string node;
     if (!tessellation.part.empty()) {

@@ -99,11 +99,11 @@ DistanceLattice::DistanceLattice(const LatticeMesh& mesh, const TriangleTree& tr
   squared_.resize(std::size_t{count_[0]} * count_[1] * count_[2]);
   if (tree.order.empty()) return;  // no surface: zeros promise nothing
   const auto fill = [&](std::uint32_t row) {
+    const std::uint32_t y = row % count_[1], z = row / count_[1];
     std::vector<Node> open;
     double before = std::numeric_limits<double>::infinity();
     for (std::uint32_t x = 0; x < count_[0]; ++x) {
-      const Vec3 p(low_[0] + x * spacing_, low_[1] + row % count_[1] * spacing_,
-                   low_[2] + row / count_[1] * spacing_);
+      const Vec3 p(low_[0] + x * spacing_, low_[1] + y * spacing_, low_[2] + z * spacing_);
       const double most = (before + spacing_) * (before + spacing_) * (1 + 0x1p-30) + 1,
                    found = nearest(mesh, tree, p, most, open);
       before = std::sqrt(found);

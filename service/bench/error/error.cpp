@@ -125,7 +125,7 @@ class ErrorBench {
     if (auto done = find_engines(); !done) return done;
     // What one subject lacks, or an interruption, does not lose what the others have told.
     std::optional<Error> failed;
-    const auto take = [&](const std::string& name, Result<void> done) {
+    const auto take = [&](const std::string& name, const Result<void>& done) {
       if (done || interrupted()) return;
       failed = done.error();
       console_.note(failed->sentence);
@@ -243,6 +243,7 @@ class ErrorBench {
       std::vector<ErrorSetting> settings;
       const std::vector<double> parts = options_.quick ? std::vector<double>{1, 1.5, 2, 3, 4, 6}
                                                        : std::vector<double>{1, 1.5, 2, 3, 4, 6, 8, 12, 16};
+      settings.reserve(parts.size());
       for (const double part : parts) settings.push_back(spacing(coarse[k].settings, voxel / part));
       if (!options_.quick) {
         for (const double times : kVoxelTimes)

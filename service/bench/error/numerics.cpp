@@ -464,7 +464,7 @@ class NumericsBench {
             }
         }
         chart.series.push_back(std::move(line));
-        if (!lost.x.empty()) chart.series.push_back(std::move(lost));
+        if (!lost.x.empty()) chart.series.push_back(lost);
         if (!refused.x.empty()) chart.series.push_back(std::move(refused));
       }
       chart.caption = fmt::format(

@@ -63,6 +63,7 @@ class Cyclictest {
     else
       words.push_back("--policy=other");
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;

@@ -224,7 +224,6 @@ int DescriptorFront::handle_ioctl(unsigned long request, void* argument) {
       return -EPIPE;
     }
     case USBDEVFS_GETDRIVER:
-      return -ENODATA;
     case USBDEVFS_IOCTL:
       return -ENODATA;
     case USBDEVFS_CLAIMINTERFACE:
