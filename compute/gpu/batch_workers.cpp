@@ -59,7 +59,7 @@ Result<std::unique_ptr<BatchWorkers>> BatchWorkers::create(const GpuOptions& opt
                                                            Frame& own, unsigned helpers) {
   const auto grid_on = [&](VulkanDevice& on, const PreparedScene& of) -> std::unique_ptr<PoseGrid> {
     auto made = PoseGrid::create(on, geometry, of, options.first_capacity, plan);
-    return made ? std::move(*made) : nullptr;  // pose by pose, as before
+    return made ? std::move(*made) : nullptr;  // then it goes pose by pose
   };
   std::unique_ptr<BatchWorkers> out(new BatchWorkers);
   out->own_devices_ = own_devices;
