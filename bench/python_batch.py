@@ -65,7 +65,8 @@ before = resident_kib()
 peak_kib(reset=True)
 found = scene.query_batch(poses, names)
 print(
-    f'memory: {(peak_kib() - before) / 1024:.1f} MiB at the peak, of which the columns are {found.nbytes / 2**20:.1f} MiB'
+    f'memory: {(peak_kib() - before) / 1024:.1f} MiB at the peak, of which the columns are'
+    f' {found.nbytes / 2**20:.1f} MiB'
 )
 
 one, other = [], []
@@ -75,7 +76,8 @@ for _ in range(options.rounds):
 for what, times in (('one call of palpate_query', one), ('Scene.query_batch', other)):
     wall, processor = (statistics.median(column) for column in zip(*times))
     print(
-        f'{what}: {options.poses / wall:.0f} poses/s by the clock, {1e6 * processor / options.poses:.2f} us of processor time a pose'
+        f'{what}: {options.poses / wall:.0f} poses/s by the clock, {1e6 * processor / options.poses:.2f} us'
+        ' of processor time a pose'
     )
 assert all((whole()[name] == scene.query_batch(poses, names)[name]).all() for name in names)
 
@@ -92,5 +94,6 @@ for question in (lambda pose: scene.touches(pose), lambda pose: scene.query_batc
         )[0]
         rates.append(len(lone) / taken)
     print(
-        f'lone poses: {rates[0]:.0f}/s by one thread, {rates[1]:.0f}/s by two: {rates[1] / rates[0]:.2f} times'
+        f'lone poses: {rates[0]:.0f}/s by one thread, {rates[1]:.0f}/s by two:'
+        f' {rates[1] / rates[0]:.2f} times'
     )

@@ -69,7 +69,8 @@ def lengthen():
     head, *rows = file.read_text().splitlines()
     if not head.startswith('time_s,x_m,y_m,z_m,qx,qy,qz,qw'):
         raise SystemExit(
-            f'{file.name} of {options.folder} has no poses, which the batches are made of: take a scene whose tool is free'
+            f'{file.name} of {options.folder} has no poses, which the batches are made of: take a scene whose'
+            ' tool is free'
         )
     times, rest = zip(*((float(time), pose) for time, pose in (row.split(',', 1) for row in rows)))
     steps = list(zip([b - a for a, b in zip(times, times[1:])], rest[1:], rest))
@@ -277,7 +278,9 @@ class Load:
             link = socket.create_connection(('127.0.0.1', port))
             kind = '?format=binary' if i % 2 else ''
             link.sendall(
-                f'GET /v1/sessions/{session_id}/stream{kind} HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: {KEY}\r\nSec-WebSocket-Version: 13\r\n\r\n'.encode()
+                f'GET /v1/sessions/{session_id}/stream{kind} HTTP/1.1\r\nHost: localhost\r\nUpgrade:'
+                f' websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: {KEY}\r\nSec-WebSocket-Version:'
+                ' 13\r\n\r\n'.encode()
             )
             link.setblocking(False)
             poll.register(link, selectors.EVENT_READ)

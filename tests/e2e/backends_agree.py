@@ -60,7 +60,10 @@ def compare(scene, profile):
             for key in ref.keys() - {'time_us', 'engine'}:
                 expect(
                     other[key] == ref[key],
-                    f'{scene.name}, {profile}: {key} of {other["engine"]} differs, palpate query {scene} --pose "{" ".join(map(repr, poses[i]))}"',
+                    (
+                        f'{scene.name}, {profile}: {key} of {other["engine"]} differs, palpate query'
+                        f' {scene} --pose "{" ".join(map(repr, poses[i]))}"'
+                    ),
                 )
         contacts += ref['contact']
         areas += len(ref['areas'])
@@ -69,7 +72,8 @@ def compare(scene, profile):
         f'only {contacts} of {len(answers["ref"])} poses touch',
     )
     print(
-        f'        {scene.name}, {profile}: {POSES} poses equal in every bit, {contacts} in contact, {areas} areas'
+        f'        {scene.name}, {profile}: {POSES} poses equal in every bit, {contacts} in contact,'
+        f' {areas} areas'
     )
 
 

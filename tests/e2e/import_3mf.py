@@ -9,9 +9,10 @@ PRODUCTION = (
     'xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06" requiredextensions="p"'
 )
 TYPES = (
-    '<?xml version="1.0" encoding="UTF-8"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
-    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
-    '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
+    '<?xml version="1.0" encoding="UTF-8"?><Types'
+    ' xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels"'
+    ' ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model"'
+    ' ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
 )
 
 
@@ -36,8 +37,10 @@ def model(objects, items, unit='millimeter', more=''):
 
 def relation(target):
     return (
-        '<?xml version="1.0" encoding="UTF-8"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
-        f'<Relationship Target="{target}" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+        '<?xml version="1.0" encoding="UTF-8"?><Relationships'
+        ' xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship'
+        f' Target="{target}" Id="rel0"'
+        ' Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
     )
 
 
@@ -66,11 +69,15 @@ def near(a, b):
 def test_objects_components_and_transforms():
     folder = Folder()
     objects = (
-        f'<object id="1" name="cube" type="model">{mesh(10)}</object><object id="2" name="small" type="model">{mesh(5)}</object>'
-        '<object id="3" name="pair" type="model"><components><component objectid="1"/>'
-        '<component objectid="2" transform="0 1 0 -1 0 0 0 0 1 30 0 0"/></components></object>'
+        f'<object id="1" name="cube" type="model">{mesh(10)}</object><object id="2" name="small"'
+        f' type="model">{mesh(5)}</object><object id="3" name="pair" type="model"><components><component'
+        ' objectid="1"/><component objectid="2" transform="0 1 0 -1 0 0 0 0 1 30 0'
+        ' 0"/></components></object>'
     )
-    build = '<build><item objectid="3" transform="1 0 0 0 1 0 0 0 1 0 0 100"/><item objectid="1" transform="-1 0 0 0 1 0 0 0 1 0 0 0"/><item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 50 0"/></build>'
+    build = (
+        '<build><item objectid="3" transform="1 0 0 0 1 0 0 0 1 0 0 100"/><item objectid="1" transform="-1 0'
+        ' 0 0 1 0 0 0 1 0 0 0"/><item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 50 0"/></build>'
+    )
     read = info(package(folder / 'several.3mf', model(objects, build)))
     parts = {part['path']: part for part in read['parts']}
     expect(
@@ -106,8 +113,11 @@ def test_a_model_in_another_file_of_the_package():
     folder = Folder()
     uuid = '00000000-0000-0000-0000-{:012d}'.format
     main = model(
-        f'<object id="8" name="whole" p:UUID="{uuid(1)}" type="model"><components><component p:path="/3D/Objects/cube.model" objectid="1" p:UUID="{uuid(2)}" '
-        'transform="1 0 0 0 1 0 0 0 1 7 0 0"/></components></object>',
+        (
+            f'<object id="8" name="whole" p:UUID="{uuid(1)}" type="model"><components><component'
+            f' p:path="/3D/Objects/cube.model" objectid="1" p:UUID="{uuid(2)}" transform="1 0 0 0 1 0 0 0 1 7'
+            ' 0 0"/></components></object>'
+        ),
         f'<build p:UUID="{uuid(9)}"><item objectid="8" p:UUID="{uuid(3)}"/></build>',
         more=PRODUCTION,
     )
@@ -179,7 +189,8 @@ def test_what_is_broken_is_refused():
         ),
     )
     doubled = cube + ''.join(
-        f'<object id="{i}" type="model"><components><component objectid="{i - 1}"/><component objectid="{i - 1}"/></components></object>'
+        f'<object id="{i}" type="model"><components><component objectid="{i - 1}"/><component'
+        f' objectid="{i - 1}"/></components></object>'
         for i in range(2, 60)
     )
     for name in ('cut', 'none', 'index', 'finite', 'nothing', 'unknown', 'itself'):
@@ -194,7 +205,8 @@ def test_what_is_broken_is_refused():
 def test_instances_are_counted():
     folder = Folder()
     doubled = f'<object id="1" type="model">{mesh(2)}</object>' + ''.join(
-        f'<object id="{i}" type="model"><components><component objectid="{i - 1}"/><component objectid="{i - 1}"/></components></object>'
+        f'<object id="{i}" type="model"><components><component objectid="{i - 1}"/><component'
+        f' objectid="{i - 1}"/></components></object>'
         for i in range(2, 20)
     )
     package(folder / 'many.3mf', model(doubled, '<build><item objectid="19"/></build>'))  # 262,144 cubes

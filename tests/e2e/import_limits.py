@@ -82,8 +82,12 @@ def test_a_real_file_that_makes_the_library_abort():
     with zipfile.ZipFile(folder / 'no_root.3mf', 'w') as archive:
         archive.writestr(
             '_rels/.rels',
-            '<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
-            'Target="/3D/gone.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>',
+            (
+                '<?xml version="1.0"?><Relationships'
+                ' xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship'
+                ' Target="/3D/gone.model" Id="rel0"'
+                ' Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+            ),
         )
     expect_refused(palpate('info', folder / 'no_root.3mf'), 3, 'no_root.3mf', "can't be read")
 

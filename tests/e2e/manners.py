@@ -388,7 +388,10 @@ def completed(*words):
             'bash',
             '--norc',
             '-c',
-            f'{script}\nCOMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; _palpate; printf "%s\\n" "${{COMPREPLY[@]}}"',
+            (
+                f'{script}\nCOMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; _palpate; printf "%s\\n"'
+                ' "${COMPREPLY[@]}"'
+            ),
         ],
         capture_output=True,
         text=True,
@@ -453,7 +456,10 @@ def test_zsh_and_fish_take_their_scripts():
             'zsh',
             '-f',
             '-c',
-            f'autoload -Uz compinit; compinit -u -d {folder / "dump"}; source {script}; whence -w _palpate _palpate_run _palpate_bench_latency',
+            (
+                f'autoload -Uz compinit; compinit -u -d {folder / "dump"}; source {script}; whence -w'
+                ' _palpate _palpate_run _palpate_bench_latency'
+            ),
         ],
         capture_output=True,
         text=True,

@@ -243,7 +243,10 @@ def test_both_back_ends_and_both_plans_answer_alike_to_the_bit():
                 for field in reference:
                     expect(
                         line[field] == reference[field],
-                        f"{profile} {key}, pose {line['number']}, {field}: {line[field]} instead of {reference[field]}",
+                        (
+                            f"{profile} {key}, pose {line['number']}, {field}: {line[field]} instead of"
+                            f" {reference[field]}"
+                        ),
                     )
 
 

@@ -55,18 +55,20 @@ def test_what_is_too_large_is_refused_before_it_is_read():
         '--root', folder.path, '--max-upload', '1', '--max-poses', '10', '--max-triangles', '100'
     ) as server:
         answer = server.raw(
-            b'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 2000000\r\n\r\n'
+            b'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type:'
+            b' application/json\r\nContent-Length: 2000000\r\n\r\n'
         )
         expect(status_of(answer) == 413 and b'too-large' in answer, answer[:300])
         body, kind = form({'tool': ('a.stl', b'x' * 3_000_000)})
         answer = server.raw(
-            f'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: {10**15}\r\n\r\n'.encode()
+            f'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length:'
+            f' {10**15}\r\n\r\n'.encode()
         )
         expect(status_of(answer) == 413, answer[:300])
         chunk = b'10000\r\n' + b'x' * 65536 + b'\r\n'
         answer = server.raw(
-            f'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nTransfer-Encoding: chunked\r\n\r\n'.encode()
-            + chunk * 40
+            f'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nTransfer-Encoding:'
+            ' chunked\r\n\r\n'.encode() + chunk * 40
         )
         # None: a reset overtook the answer, since the client went on sending.
         expect(status_of(answer) in (413, None), answer[:300])
@@ -102,7 +104,10 @@ def test_what_is_too_large_is_refused_before_it_is_read():
 
 def test_slow_clients_are_cut_off_and_hold_up_nobody():
     with Server() as server:
-        head = b'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 100\r\n\r\n{'
+        head = (
+            b'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type:'
+            b' application/json\r\nContent-Length: 100\r\n\r\n{'
+        )
         ends = {}
 
         def drip(name, start, piece):
@@ -157,7 +162,10 @@ def test_rubbish_is_400_or_the_end():
         b'GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: -1\r\n\r\n',
         b'GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n',
         b'POST / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n',
-        b'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n',
+        (
+            b'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type:'
+            b' application/json\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n'
+        ),
         b'\x16\x03\x01' + bytes(200),
         b'GET /%00 HTTP/1.1\r\nHost: localhost\r\n\r\n',
         b'GET /%zz HTTP/1.1\r\nHost: localhost\r\n\r\n',
@@ -293,8 +301,8 @@ def test_bad_uploads_leave_nothing_behind():
         body, kind = form(good)
         with server.connect() as link:
             link.sendall(
-                f'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: {len(body)}\r\n\r\n'.encode()
-                + body[:1000]
+                f'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length:'
+                f' {len(body)}\r\n\r\n'.encode() + body[:1000]
             )
         # A mesh that names a file of this machine is not given it.
         secret = folder.write('secret.bin', struct.pack('<9f', 0, 0, 0, 1, 0, 0, 0, 1, 0))
@@ -511,7 +519,8 @@ def test_beyond_loopback_with_token_and_tls():
         trust = ssl.create_default_context(cafile=str(folder / 'cert.pem'))
         with trust.wrap_socket(server.connect(), server_hostname='localhost') as link:
             link.sendall(
-                f'GET /v1/info HTTP/1.1\r\nHost: localhost:{server.port}\r\nAuthorization: Bearer {TOKEN}\r\nConnection: close\r\n\r\n'.encode()
+                f'GET /v1/info HTTP/1.1\r\nHost: localhost:{server.port}\r\nAuthorization: Bearer'
+                f' {TOKEN}\r\nConnection: close\r\n\r\n'.encode()
             )
             got = b''
             while piece := link.recv(65536):
@@ -575,7 +584,10 @@ def test_clients_that_are_killed_leave_nothing():
         name = server.ready(server.ask('POST', '/v1/scenes', {'path': 'scene.json'}))
         session = server.ask('POST', '/v1/sessions', {'scene': name}).json()['id']
         body = 'x,y,z,qx,qy,qz,qw\n' + '0,0,0.018,0,0,0,1\n' * 50_000
-        head = f'POST /v1/scenes/{name}/query HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/csv\r\nContent-Length: {len(body)}\r\n\r\n'
+        head = (
+            f'POST /v1/scenes/{name}/query HTTP/1.1\r\nHost: localhost\r\nContent-Type:'
+            f' text/csv\r\nContent-Length: {len(body)}\r\n\r\n'
+        )
         for _ in range(10):
             links = [
                 WebSocket(server, f'/v1/sessions/{session}/stream'),

@@ -36,7 +36,10 @@ def test_queries_are_spread_and_survive_a_server():
         )
         conf = folder.write(
             'nginx.conf',
-            f'worker_processes 1; daemon off; pid {folder.path}/pid; error_log {folder.path}/error.log; events {{}} http {{ access_log off; {temporary} {ours} }}',
+            (
+                f'worker_processes 1; daemon off; pid {folder.path}/pid; error_log {folder.path}/error.log;'
+                f' events {{}} http {{ access_log off; {temporary} {ours} }}'
+            ),
         )
         proxy = subprocess.Popen([nginx, '-e', folder / 'error.log', '-c', conf], stderr=subprocess.PIPE)
         try:

@@ -197,8 +197,8 @@ class WebSocket:
         self.link = server.connect()
         key = base64.b64encode(os.urandom(16)).decode()
         self.link.sendall(
-            f'GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n'
-            f'Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n{headers}\r\n'.encode()
+            f'GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection:'
+            f' Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n{headers}\r\n'.encode()
         )
         self.buffer = b''
         while b'\r\n\r\n' not in self.buffer:

@@ -40,11 +40,30 @@ SHARED_STORAGE = {
     'Output',
 }
 
-RAYS = 'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding, contracted or not, and exact tests follow'
-CELL = 'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the quotient is less than one off, and an integer remainder settles it'
-DEPTH = 'in which cell a coordinate lies (as above), quotients and roots of lib/distance.glsl, which integer remainders settle, and which triangles a segment crosses or may be nearest (lib/segment_estimate.glsl, lib/distance_estimate.glsl): margins cover every rounding, contracted or not, and exact tests decide the rest'
-WALK = 'in which cell a coordinate lies (as above), and which triangles a segment crosses for sure (lib/segment_estimate.glsl): margins cover every rounding, contracted or not, and the exact test decides the rest'
-NEAR = 'which runs, voxels and list entries may be near (lib/broad_phase/turned_box.glsl, broad_phase, voxel_touch, pair_test): margins cover every rounding, contracted or not, and exact tests follow; and in which cell a coordinate lies (as above)'
+RAYS = (
+    'whether a ray may meet a box or a triangle (lib/line_box.glsl): the margin covers every rounding,'
+    ' contracted or not, and exact tests follow'
+)
+CELL = (
+    'in which cell a coordinate lies (cell_along in lib/voxel_range.glsl): with at most 2^15 cells the'
+    ' quotient is less than one off, and an integer remainder settles it'
+)
+DEPTH = (
+    'in which cell a coordinate lies (as above), quotients and roots of lib/distance.glsl, which integer'
+    ' remainders settle, and which triangles a segment crosses or may be nearest (lib/segment_estimate.glsl,'
+    ' lib/distance_estimate.glsl): margins cover every rounding, contracted or not, and exact tests decide'
+    ' the rest'
+)
+WALK = (
+    'in which cell a coordinate lies (as above), and which triangles a segment crosses for sure'
+    ' (lib/segment_estimate.glsl): margins cover every rounding, contracted or not, and the exact test'
+    ' decides the rest'
+)
+NEAR = (
+    'which runs, voxels and list entries may be near (lib/broad_phase/turned_box.glsl, broad_phase,'
+    ' voxel_touch, pair_test): margins cover every rounding, contracted or not, and exact tests follow; and'
+    ' in which cell a coordinate lies (as above)'
+)
 CULLS = {
     'centroids_trace': RAYS,
     'field_from_mockup': DEPTH,
@@ -134,9 +153,10 @@ def verdict(path, name):
 def test_the_test():
     """What must be found is found: each of these shaders breaks one rule, the last breaks none."""
     head = (
-        '#version 460\n#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 1) in;\n'
-        'layout(set = 0, binding = 0) buffer A { int a[]; };\nlayout(set = 0, binding = 1) buffer B { %s b[]; };\n'
-        'void main() { float x = float(a[0]), y = float(a[1]); precise float s = 0.0; float r = 0.0; %s a[2] = int(r) + int(s); }\n'
+        '#version 460\n#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 1)'
+        ' in;\nlayout(set = 0, binding = 0) buffer A { int a[]; };\nlayout(set = 0, binding = 1) buffer B {'
+        ' %s b[]; };\nvoid main() { float x = float(a[0]), y = float(a[1]); precise float s = 0.0; float r ='
+        ' 0.0; %s a[2] = int(r) + int(s); }\n'
     )
     cases = {
         'OpFMul without NoContraction': ('int', 'r = x * y + 1.0;'),

@@ -34,7 +34,8 @@ listed = subprocess.run(
 exported = {line.split()[-1].split('@')[0] for line in listed if ' A ' not in line}
 if exported != names:
     sys.exit(
-        f'the library exports {sorted(exported - names)} beside the header, and lacks {sorted(names - exported)}'
+        f'the library exports {sorted(exported - names)} beside the header, and lacks'
+        f' {sorted(names - exported)}'
     )
 
 with tempfile.TemporaryDirectory() as folder:

@@ -381,7 +381,8 @@ def main():
     caught = len(real) - len(survivors)
     print(f"{len(done)} judged of {len(jobs)}: {dict(outcomes)}")
     print(
-        f"caught {caught} of {len(real)} ({100 * caught / max(1, len(real)):.1f} %), {len(survivors)} survive, {len(unexplained)} not explained"
+        f"caught {caught} of {len(real)} ({100 * caught / max(1, len(real)):.1f} %),"
+        f" {len(survivors)} survive, {len(unexplained)} not explained"
     )
     nothing = {id(j) for j in survivors if why.get(place(j), "").startswith(CHANGES_NOTHING)}
 
@@ -390,7 +391,8 @@ def main():
         seen = of - sum(id(j) in nothing for j in chosen)
         if of:
             print(
-                f"  {what}: {n} of {of} ({100 * n / of:.1f} %); of the {seen} that change something {100 * n / max(1, seen):.1f} %"
+                f"  {what}: {n} of {of} ({100 * n / of:.1f} %); of the {seen} that change something"
+                f" {100 * n / max(1, seen):.1f} %"
             )
 
     tell("all", real)

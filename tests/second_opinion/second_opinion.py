@@ -51,7 +51,8 @@ def command(*arguments, codes=(0,)):
     done = subprocess.run([*map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode not in codes:
         raise SystemExit(
-            f'{" ".join(map(str, arguments))}: exit {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}'
+            f'{" ".join(map(str, arguments))}: exit'
+            f' {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}'
         )
     return done
 
@@ -93,7 +94,8 @@ def judged(scene, poses, folder, stride, backends=('gpu', 'cpu')):
                 sorted(set(pairs[1::2])),
             ):
                 raise SystemExit(
-                    f'{scene}, {backend}, pose {i}: pairs, cst and cmt are not those of the list of pairs (or the answer is truncated)'
+                    f'{scene}, {backend}, pose {i}: pairs, cst and cmt are not those of the list of pairs (or'
+                    ' the answer is truncated)'
                 )
         exports.append(out)
     for name in sorted(p.name for p in exports[0].iterdir()):
@@ -351,10 +353,14 @@ def report(name, verdicts):
         for key in COUNTS:
             total[key] += counts[key]
     print(
-        f"{name}: {scenes} scenes, {total['poses']} poses, {total['touching']} with pairs; {total['pairs']} pairs ({total['cross']} cross, "
-        f"{total['overlap']} overlap in a plane, {total['touch']} only touch), {total['missing']} missing, {total['extra']} extra; "
-        f"{total['boundary']} boundary voxels, {total['boundary_missing']} missing, {total['boundary_extra']} extra; "
-        f"{total['centres']} other voxels' centres ({total['inside']} inside), {total['wrong']} wrong",
+        (
+            f"{name}: {scenes} scenes, {total['poses']} poses, {total['touching']} with pairs;"
+            f" {total['pairs']} pairs ({total['cross']} cross, {total['overlap']} overlap in a plane,"
+            f" {total['touch']} only touch), {total['missing']} missing, {total['extra']} extra;"
+            f" {total['boundary']} boundary voxels, {total['boundary_missing']} missing,"
+            f" {total['boundary_extra']} extra; {total['centres']} other voxels' centres"
+            f" ({total['inside']} inside), {total['wrong']} wrong"
+        ),
         flush=True,
     )
     if total['touching'] < LEAST_TOUCHING * total['poses']:
@@ -375,8 +381,9 @@ def main():
         raise SystemExit('hardly any pair only touches, or no voxel is inside: this compared nothing hard')
     wrong = sum(everything[k] for k in ('missing', 'extra', 'boundary_missing', 'boundary_extra', 'wrong'))
     print(
-        f"all: {everything['poses']} poses, {everything['pairs']} pairs of which {everything['touch']} only touch, {everything['missing']} missing, "
-        f"{everything['extra']} extra; {everything['centres']} centres, {wrong} differences (seed {SEED})"
+        f"all: {everything['poses']} poses, {everything['pairs']} pairs of which {everything['touch']} only"
+        f" touch, {everything['missing']} missing, {everything['extra']} extra;"
+        f" {everything['centres']} centres, {wrong} differences (seed {SEED})"
     )
     sys.exit(1 if wrong or not totals else 0)
 

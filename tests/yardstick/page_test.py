@@ -7,8 +7,8 @@ from pathlib import Path
 
 PAGE = Path(__file__).parents[2] / 'bench/haptic/page.py'
 COLUMNS = (
-    'direction_p50_deg direction_p95_deg magnitude_p50 magnitude_p95 torque_p50 torque_p95 step noise loop_lost frame_p50_us '
-    'frame_p99_us evaluation_p50_us unsettled memory_mib prepare_s'
+    'direction_p50_deg direction_p95_deg magnitude_p50 magnitude_p95 torque_p50 torque_p95 step noise'
+    ' loop_lost frame_p50_us frame_p99_us evaluation_p50_us unsettled memory_mib prepare_s'
 ).split()
 
 

@@ -8,6 +8,7 @@
 #include "compute/gpu/prepare/partition.h"
 #include "model/lattice/voxel_size.h"
 #include "shaders/code.h"
+#include "shaders/shared/frame.h"
 #include "shaders/shared/prepare.h"
 
 namespace palpate {
@@ -240,6 +241,16 @@ VoxelPairs ListBuilder::build() {
 }
 
 }  // namespace
+
+void check_lists(PrepareSteps& steps, const PartitionView& partition, const std::string& name) {
+  std::uint32_t longest = 0;
+  for (std::size_t i = 1; i < partition.list_begin.size(); ++i)
+    longest = std::max(longest, partition.list_begin[i] - partition.list_begin[i - 1]);
+  if (steps.ok() && longest > gpu::kLoopBudget)
+    steps.fail(bad_value(std::to_string(longest) + " triangles of the " + name + " share a voxel, at most " +
+                         std::to_string(gpu::kLoopBudget) +
+                         " are possible on a device: choose a smaller voxel"));
+}
 
 std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, const VulkanBuffer& list_begin,
                          VulkanBuffer& lists, std::uint32_t entries) {

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <string>
 
 #include "compute/gpu/prepare/prepared_scene.h"
 #include "compute/gpu/prepare/steps.h"
+#include "compute/scene/scene_tables.h"
 #include "model/lattice/lattice_mesh.h"
 #include "model/lattice/voxel_grid.h"
 
@@ -21,6 +23,10 @@ struct VoxelPairs {
 /// ("mock-up").
 VoxelPairs build_lists(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelGrid& grid,
                        std::int32_t growth, const char* name, BodyBuffers& body);
+
+/// Fails where a voxel lists more triangles than one invocation can ask, as a sample in it must. `name` as in
+/// build_lists().
+void check_lists(PrepareSteps& steps, const PartitionView& partition, const std::string& name);
 
 /// Sorts each list of a CSR of `entries` distinct-in-their-list numbers: by ranks in chunks, then by merging
 /// the chunks of long lists. `entry_voxel`: the list of every entry. Returns a number that no list's length

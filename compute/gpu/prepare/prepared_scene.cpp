@@ -78,11 +78,13 @@ void make_empty(PrepareSteps& steps, PartitionBuffers& p) {
   }
 }
 
-void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
+void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, bool refined,
+                        PreparedScene& out) {
   steps.progress("search", 0.95);
   if (!steps.ok()) return;
   PartitionCopy lists;
   if (auto r = lists.read(steps.device(), out.mockup.partition); !r) return steps.fail(r.error());
+  if (refined) check_lists(steps, lists.view(), "mock-up");
   out.occupied = steps.filled("what of the mock-up is not outside", occupied_words(lists.view()));
   out.list_boxes =
       steps.filled("boxes of the mock-up's triangles", list_boxes(geometry.mockup, lists.view()));
@@ -144,7 +146,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
       build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
   if (refined && !geometry.mockup.closed) count_shells(steps, pairs, out.mockup);
-  make_search_tables(steps, geometry, out);
+  make_search_tables(steps, geometry, refined, out);
   if (refined) {
     const VoxelPairs tool_pairs =
         build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);

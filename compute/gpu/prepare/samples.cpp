@@ -158,6 +158,7 @@ void refine_tool(PrepareSteps& steps, const SceneGeometry& geometry, PreparedSce
   if (!steps.ok()) return;
   if (auto r = fine.read(steps.device(), out.fine.brick_slot ? out.fine : out.tool.partition); !r)
     return steps.fail(r.error());
+  check_lists(steps, fine.view(), "tool");
   if (const auto near = near_tool(fine.view(), own_size); !near.empty())
     out.tool_near = steps.filled("voxels near the tool", near);
   if (geometry.tool.closed) out.fine_exit = steps.filled("ways out of the tool", ways_out(fine.view()));

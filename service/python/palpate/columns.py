@@ -133,7 +133,10 @@ class _Columns(Mapping[str, 'NDArray[Any]']):
         return sum(array.nbytes for array in self._arrays.values())
 
     def __repr__(self) -> str:
-        return f'<{type(self).__name__} of {int(np.prod(self.shape, dtype=int))} poses: {", ".join(self._arrays)}>'
+        return (
+            f'<{type(self).__name__} of {int(np.prod(self.shape, dtype=int))} poses:'
+            f' {", ".join(self._arrays)}>'
+        )
 
     def __getstate__(self) -> Any:
         return self.shape, self._arrays

@@ -314,7 +314,10 @@ class Scene:
         if self.hash != wanted:
             raise PalpateError(
                 3,
-                f'{self.file or "the scene"} has changed since it was pickled: its hash is {self.hash} instead of {wanted}',
+                (
+                    f'{self.file or "the scene"} has changed since it was pickled: its hash is'
+                    f' {self.hash} instead of {wanted}'
+                ),
             )
 
     def _asked(self) -> _Handle:
@@ -407,13 +410,18 @@ def _mesh(mesh: MeshLike) -> Optional[tuple[NDArray[np.float64], NDArray[np.uint
     if indices.ndim != 2 or indices.shape[1] != 3 or not np.issubdtype(indices.dtype, np.integer):
         raise PalpateError(
             3,
-            f'the faces of a mesh are {indices.dtype} of the shape {indices.shape}; whole numbers (F, 3) are wanted',
+            (
+                f'the faces of a mesh are {indices.dtype} of the shape {indices.shape}; whole numbers (F, 3)'
+                ' are wanted'
+            ),
         )
     if indices.size and (indices.min() < 0 or indices.max() >= len(corners)):
         raise PalpateError(
             3,
-            f'a face of a mesh has the index {indices.max() if indices.min() >= 0 else indices.min()}; '
-            f'there are {len(corners)} vertices',
+            (
+                f'a face of a mesh has the index {indices.max() if indices.min() >= 0 else indices.min()}; '
+                f'there are {len(corners)} vertices'
+            ),
         )
     return corners, np.ascontiguousarray(indices, np.uint32)
 

@@ -43,8 +43,9 @@ def main(arguments=None):
         print('palpate-sweep: stopped; the same command goes on from what is done', file=sys.stderr)
         return 130
     print(
-        f'{swept.path}: {swept.poses:,} poses in {swept.chunks:,} chunks, {swept.earlier:,} of them from before, {swept.twice:,} '
-        f'answered by two engines; {swept.rate:,.0f} poses a second\nhash {swept.hash}'
+        f'{swept.path}: {swept.poses:,} poses in {swept.chunks:,} chunks, {swept.earlier:,} of them from'
+        f' before, {swept.twice:,} answered by two engines; {swept.rate:,.0f} poses a second\nhash'
+        f' {swept.hash}'
     )
     return 0
 
@@ -52,8 +53,10 @@ def main(arguments=None):
 def _parser():
     parser = argparse.ArgumentParser(
         'palpate-sweep',
-        description='Asks a scene at very many poses and keeps the answers in a Zarr '
-        'group. Cut short, the same command goes on from what is done. docs/SWEEPS.md',
+        description=(
+            'Asks a scene at very many poses and keeps the answers in a Zarr '
+            'group. Cut short, the same command goes on from what is done. docs/SWEEPS.md'
+        ),
     )
     parser.add_argument('scene', help='scene file')
     parser.add_argument('--out', required=True, metavar='OUT.zarr')

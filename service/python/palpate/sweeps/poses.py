@@ -165,8 +165,8 @@ def _axis(name, axis):
             made, numbers = _Range(float(first), float(last), int(count)), (first, last)
             if count != int(count) or count < 1 or (count == 1 and first != last):
                 refuse(
-                    f'axis {name}: a range is (first, last, count) with a whole count from 1 on, and from 2 on if its ends '
-                    f'differ; it is {axis}'
+                    f'axis {name}: a range is (first, last, count) with a whole count from 1 on, and from 2'
+                    f' on if its ends differ; it is {axis}'
                 )
         else:
             numbers = numpy.atleast_1d(numpy.asarray(axis, dtype=numpy.float64))

@@ -36,7 +36,8 @@ class Progress:
     def line(self):
         left = (self.poses - self.done) / self.rate if self.done > self.before else None
         return (
-            f'{self.done:,} of {self.poses:,} poses ({100 * self.done / self.poses:.1f} %), {self.rate:,.0f} a second'
+            f'{self.done:,} of {self.poses:,} poses ({100 * self.done / self.poses:.1f} %),'
+            f' {self.rate:,.0f} a second'
             + (f', {_span(left)} left' if left is not None and self.done < self.poses else '')
         )
 

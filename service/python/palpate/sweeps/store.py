@@ -85,8 +85,8 @@ class Store:
             for key, value in question.items():
                 if 'question' in found and found['question'].get(key) != value:
                     refuse(
-                        f'{self.path} holds another sweep: its {key} is {_short(found["question"].get(key))}, this one\'s is '
-                        f'{_short(value)}; name another folder'
+                        f'{self.path} holds another sweep: its {key} is {_short(found["question"].get(key))},'
+                        f' this one\'s is {_short(value)}; name another folder'
                     )
             if 'question' not in found:
                 kept = {'poses': rows[:1].astype(numpy.float64)} if rows is not None else {}

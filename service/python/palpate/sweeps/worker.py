@@ -118,8 +118,8 @@ def _answer(work, number, twice):
             row, column = differs
             place = asked[row]
             refuse(
-                f'pose {start + place} ({" ".join(repr(float(x)) for x in poses[place])}): {column} is {columns[column][place]} by '
-                f'{scene.engine} and {others[column][row]} by {second.engine}'
+                f'pose {start + place} ({" ".join(repr(float(x)) for x in poses[place])}): {column} is'
+                f' {columns[column][place]} by {scene.engine} and {others[column][row]} by {second.engine}'
             )
         record['again'] = second.engine
     work.store.write(record, columns)
