@@ -59,7 +59,7 @@ void set(TriangleTree::Boxes& boxes, std::size_t i, const Int3& low, const Int3&
 }
 
 constexpr std::int32_t kNowhere = std::int32_t{1} << 30;  // beyond the lattice
-constexpr std::size_t kGroupsAShare = 256;                // of eight runs (chosen: a millisecond)
+constexpr std::size_t kGroupsAShare = 64;                 // of eight boxes (chosen: milliseconds)
 
 /// The box of a run along the mean of its normals, its longest side as seen along that, and what is at right
 /// angles to both.
@@ -154,13 +154,24 @@ TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<boo
     below = std::move(above);
   }
 
-  const std::size_t runs = (out.order.size() + kEight - 1) / kEight, groups = (runs + kEight - 1) / kEight;
+  // Boxes by their numbers in all levels that have turned ones: level after level, eight a group.
+  const std::size_t levels = std::min(out.level_begin.size(), TriangleTree::kTurnedLevels);
+  const std::size_t groups = levels < out.level_begin.size() ? out.level_begin[levels] : out.boxes.size();
   out.turned.resize(groups);
   const auto turn = [&](std::uint32_t share) {
-    for (std::size_t run = share * kGroupsAShare * kEight;
-         run < std::min((share + 1) * kGroupsAShare * kEight, runs); ++run)
-      set(out.turned[run / kEight], run % kEight, mesh,
-          std::span(out.order).subspan(kEight * run, std::min(kEight, out.order.size() - kEight * run)));
+    for (std::size_t group = share * kGroupsAShare; group < std::min((share + 1) * kGroupsAShare, groups);
+         ++group) {
+      std::size_t level = levels - 1;
+      while (out.level_begin[level] > group) --level;
+      std::size_t size = kEight;  // triangles a box
+      for (std::size_t above = 0; above < level; ++above) size *= kEight;
+      for (std::size_t i = 0; i < kEight; ++i) {
+        const std::size_t first = (kEight * (group - out.level_begin[level]) + i) * size;
+        if (first >= out.order.size()) break;
+        set(out.turned[group], i, mesh,
+            std::span(out.order).subspan(first, std::min(size, out.order.size() - first)));
+      }
+    }
   };
   if (!in_shares(static_cast<std::uint32_t>((groups + kGroupsAShare - 1) / kGroupsAShare), turn,
                  [&](std::uint32_t) { return go_on(); }))

@@ -9,8 +9,8 @@
 namespace palpate {
 
 /// A bounding volume hierarchy over triangles of a body, to begin with those that bound a solid: runs of
-/// eight triangles, eight runs, and so on, each with the boxes of its eight in its body's lattice frame; runs
-/// have boxes that lie along their triangles, too. 18 bytes a triangle.
+/// eight triangles, eight runs, and so on, each with the boxes of its eight in its body's lattice frame; the
+/// lowest levels have boxes that lie along their triangles, too. 18 bytes a triangle.
 struct TriangleTree {
   static constexpr std::size_t kEight = 8;
   /// Lows and highs by axis, steps. The last Boxes of a level may hold fewer than eight; the rest says
@@ -19,8 +19,10 @@ struct TriangleTree {
     std::array<std::array<std::int32_t, kEight>, 3> low, high;
   };
 
-  /// Boxes of eight runs along axes of their own, of unit length and at right angles but for rounding. By
-  /// axis, then by component; from the run's first corner on, steps.
+  /// Levels of which there are turned boxes: of 8, 64 and 512 triangles. Larger ones are mostly curved.
+  static constexpr std::size_t kTurnedLevels = 3;
+  /// The same boxes along axes of their own, of unit length and at right angles but for rounding. By axis,
+  /// then by component; from the first corner of the first triangle in it on, steps.
   struct TurnedBoxes {
     std::array<std::array<std::int32_t, kEight>, 3> corner;
     std::array<std::array<std::array<float, kEight>, 3>, 3> axis;
@@ -31,7 +33,7 @@ struct TriangleTree {
   std::vector<std::uint32_t> order;  ///< triangles by place; run r is what stands from place 8 r on
   std::vector<Boxes> boxes;          ///< of runs first, then of eight of these, …; the last one is the root
   std::vector<std::uint32_t> level_begin;  ///< of each level in `boxes`
-  std::vector<TurnedBoxes> turned;         ///< of runs, as the first of `boxes`
+  std::vector<TurnedBoxes> turned;         ///< as the first of `boxes`: those of kTurnedLevels levels
 
   std::uint64_t bytes() const {
     return sizeof order[0] * std::uint64_t{order.size()} + sizeof(Boxes) * std::uint64_t{boxes.size()} +

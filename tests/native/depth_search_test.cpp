@@ -85,24 +85,27 @@ TEST(TriangleTree, HoldsEveryTriangleThatBoundsASolidOnceAndItsBoxesHoldThem) {
             ASSERT_GE(boxes.high[k][node % 8], at);
           }
     EXPECT_EQ(tree.nodes(static_cast<std::uint32_t>(tree.level_begin.size())), 1u);
+    const std::size_t turned = std::min(TriangleTree::kTurnedLevels, tree.level_begin.size());
     for (std::size_t place = 0; place < tree.order.size(); ++place)
-      for (int corner = 0; corner < 3; ++corner)
-        for (std::size_t a = 0; a < 3; ++a) {
-          const TriangleTree::TurnedBoxes& boxes = tree.turned[place / 64];
-          const std::size_t i = place / 8 % 8;
-          double at = 0, length = 0, across = 0;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const double axis = boxes.axis[a][k][i];
-            at += axis * (double(c.mesh.corner(tree.order[place], corner)[static_cast<int>(k)]) -
-                          boxes.corner[k][i]);
-            length += axis * axis;
-            across += axis * boxes.axis[(a + 1) % 3][k][i];
+      for (std::size_t level = 0, node = place / 8; level < turned; ++level, node /= 8)
+        for (int corner = 0; corner < 3; ++corner)
+          for (std::size_t a = 0; a < 3; ++a) {
+            ASSERT_LT(tree.level_begin[level] + node / 8, tree.turned.size());
+            const TriangleTree::TurnedBoxes& boxes = tree.turned[tree.level_begin[level] + node / 8];
+            const std::size_t i = node % 8;
+            double at = 0, length = 0, across = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+              const double axis = boxes.axis[a][k][i];
+              at += axis * (double(c.mesh.corner(tree.order[place], corner)[static_cast<int>(k)]) -
+                            boxes.corner[k][i]);
+              length += axis * axis;
+              across += axis * boxes.axis[(a + 1) % 3][k][i];
+            }
+            ASSERT_LE(boxes.low[a][i], at);
+            ASSERT_GE(boxes.high[a][i], at);
+            ASSERT_NEAR(length, 1, 0x1p-22);  // each component is rounded by 2^-25 at most
+            ASSERT_NEAR(across, 0, 0x1p-22);
           }
-          ASSERT_LE(boxes.low[a][i], at);
-          ASSERT_GE(boxes.high[a][i], at);
-          ASSERT_NEAR(length, 1, 0x1p-22);  // each component is rounded by 2^-25 at most
-          ASSERT_NEAR(across, 0, 0x1p-22);
-        }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "compute/native/processor.h"
 #include "compute/scene/exact.h"
@@ -78,6 +79,29 @@ struct Search {
   float most() const { return best == INT64_MAX ? 0x1p50F : static_cast<float>(best + kRounding); }
 };
 
+/// By level of a node, as descend() counts them, the distance from which on turned boxes tell more than they
+/// cost: for runs any, for larger ones as much as they are long, for those that have none no distance.
+constexpr std::size_t kLevels = TriangleTree::kTurnedLevels + 1;
+std::array<float, kLevels + 1> turned_boxes_pay_from(const TriangleTree& tree) {
+  std::array<float, kLevels + 1> out;
+  out.fill(std::numeric_limits<float>::infinity());
+  out[1] = 0;
+  for (std::size_t level = 1; level < std::min(TriangleTree::kTurnedLevels, tree.level_begin.size());
+       ++level) {
+    const std::uint32_t boxes = tree.nodes(static_cast<std::uint32_t>(level));
+    double sum = 0;  // of longest sides
+    for (std::uint32_t box = 0; box < boxes; ++box) {
+      const TriangleTree::Boxes& group = tree.boxes[tree.level_begin[level] + box / kEight];
+      std::int32_t longest = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        longest = std::max(longest, group.high[k][box % kEight] - group.low[k][box % kEight]);
+      sum += longest;
+    }
+    out[level + 1] = static_cast<float>(sum / boxes);
+  }
+  return out;
+}
+
 }  // namespace
 
 struct DepthSearch::Tables {
@@ -85,6 +109,7 @@ struct DepthSearch::Tables {
   static constexpr std::uint32_t kKnown = 1024;  // triangles (chosen: 200 KiB)
   const LatticeMesh& mesh;
   const TriangleTree& tree;
+  std::array<float, kLevels + 1> turned_from = turned_boxes_pay_from(tree);
   std::vector<Run> runs = std::vector<Run>(kRuns);  ///< by run, where a newer one takes an older one's place
   std::vector<Known> known = std::vector<Known>(kKnown);  ///< by triangle, likewise
   std::uint64_t looks = 0;

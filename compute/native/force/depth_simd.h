@@ -175,10 +175,10 @@ static void descend(DepthSearch::Tables& tables, Search& search, std::uint32_t g
     const std::uint32_t first = static_cast<std::uint32_t>(kEight) * next.node;
     const unsigned there =
         0xFFU >> (kEight - std::min<std::size_t>(kEight, tables.tree.nodes(next.level - 1) - first));
-    unsigned near = there & to_boxes(tables.tree.boxes[tables.tree.level_begin[next.level - 1] + next.node],
-                                     search.point, limit, squared);
-    if (next.level == 1 && near != 0)
-      near &= to_turned(tables.tree.turned[next.node], search.point, limit, squared);
+    const std::size_t group = tables.tree.level_begin[next.level - 1] + next.node;
+    unsigned near = there & to_boxes(tables.tree.boxes[group], search.point, limit, squared);
+    if (near != 0 && most > tables.turned_from[std::min<std::size_t>(next.level, kLevels)])
+      near &= to_turned(tables.tree.turned[group], search.point, limit, squared);
     std::size_t nearest = count;
     for (; near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));

@@ -16,7 +16,7 @@
 namespace palpate::native {
 
 /// Trees over all triangles of both bodies that did not collapse, sheets too; made once a scene, read by any
-/// number of threads. Beside the field 78 bytes a triangle of the mock-up and 37 of the tool.
+/// number of threads. Beside the field 79 bytes a triangle of the mock-up and 38 of the tool.
 struct PairTrees {
   explicit PairTrees(const SceneGeometry& geometry);
   /// What making and keeping them takes at most, known before.
