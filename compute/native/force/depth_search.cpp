@@ -79,9 +79,10 @@ struct Search {
   float most() const { return best == INT64_MAX ? 0x1p50F : static_cast<float>(best + kRounding); }
 };
 
+constexpr std::size_t kLevels = TriangleTree::kTurnedLevels + 1;  // of nodes: with turned boxes, and above
+
 /// By level of a node, as descend() counts them, the distance from which on turned boxes tell more than they
 /// cost: for runs any, for larger ones as much as they are long, for those that have none no distance.
-constexpr std::size_t kLevels = TriangleTree::kTurnedLevels + 1;
 std::array<float, kLevels + 1> turned_boxes_pay_from(const TriangleTree& tree) {
   std::array<float, kLevels + 1> out;
   out.fill(std::numeric_limits<float>::infinity());
