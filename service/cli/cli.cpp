@@ -13,7 +13,10 @@
 #include <fstream>
 #include <map>
 #include <new>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "generated/commit.h"
 #include "model/files/one_line.h"
@@ -232,17 +235,16 @@ std::vector<const char*> without_help(int argc, const char* const* argv) {
   return words;
 }
 
-int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
-  CLI::App app(kAbout, "palpate");
-  app.footer(std::string(kFooter) + "\n\n" + kEnvironmentText);
-  app.set_version_flag("-V,--version", version_text(), "tell the version, the commit and the engines");
-  app.set_help_flag("-h,--help", "tell how to use it");
-  app.require_subcommand(0, 1);  // a scene may be called like a command
-  app.get_formatter()->column_width(38);
+struct PlanOptions {
+  SceneOptions scene;
+  bool json = false;
+};
+struct ManOptions {
+  std::string page;    ///< of this command; empty: the program's
+  std::string folder;  ///< for the pages of all commands; empty: none
+};
 
-  Result<void> outcome;
-
-  RunOptions run;
+void add_run_command(CLI::App& app, RunOptions& run, const Parts& parts, Result<void>& outcome) {
   CLI::App* run_app = app.add_subcommand(
       "run", "run the 1 kHz loop with a device and leave trace, frames, summary and report");
   add_scene(*run_app, run.common);
@@ -273,8 +275,9 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   run_app->add_flag("--overwrite", run.overwrite, "replace the files of a run that is in --out already");
   run_app->footer(kRunFooter);
   run_app->callback([&] { outcome = run_command(run, parts); });
+}
 
-  QueryOptions query;
+void add_query_command(CLI::App& app, QueryOptions& query, const Parts& parts, Result<void>& outcome) {
   CLI::App* query_app = app.add_subcommand(
       "query", "answer poses: contact sets, areas, force and torque, for people or as JSON lines");
   add_scene(*query_app, query.common);
@@ -321,24 +324,19 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   any->excludes(clearance);
   query_app->footer(kQueryFooter);
   query_app->callback([&] { outcome = query_command(query, parts); });
+}
 
-  PathOptions path;
-  add_path_command(app, path, parts, outcome);
-
-  CompareOptions compare;
-  add_compare_command(app, compare, outcome);
-
-  SceneOptions plan;
-  bool plan_json = false;
+void add_plan_command(CLI::App& app, PlanOptions& plan, const Parts& parts, Result<void>& outcome) {
   CLI::App* plan_app = app.add_subcommand("plan", "tell which stages a run of the scene needs, and why");
-  add_scene(*plan_app, plan);
-  plan_app->add_flag("--json", plan_json, "{\"stages\":[{\"stage\",\"kept\",\"reason\",\"memory_bytes\"}]}");
+  add_scene(*plan_app, plan.scene);
+  plan_app->add_flag("--json", plan.json, "{\"stages\":[{\"stage\",\"kept\",\"reason\",\"memory_bytes\"}]}");
   plan_app->footer(
       "Leaving a stage out never changes an answer; `--plan full` of run and query keeps them all, to "
       "compare.");
-  plan_app->callback([&] { outcome = plan_command(plan, plan_json, parts); });
+  plan_app->callback([&] { outcome = plan_command(plan.scene, plan.json, parts); });
+}
 
-  InfoOptions info;
+void add_info_command(CLI::App& app, InfoOptions& info, const Parts& parts, Result<void>& outcome) {
   CLI::App* info_app = app.add_subcommand(
       "info", "tell what is in mesh files and what import made of them; of a scene, how its tool starts");
   info_app
@@ -359,8 +357,9 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
       "Sizes are in metres where the file states its unit (STEP, IGES, 3MF), its format has one (COLLADA, "
       "glTF) or --units says it, else in the file's own.");
   info_app->callback([&] { outcome = info_command(info, parts); });
+}
 
-  GenerateOptions generate;
+void add_generate_command(CLI::App& app, GenerateOptions& generate, Result<void>& outcome) {
   CLI::App* generate_app =
       app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");
   generate_app->add_option("name", generate.name, "contacts (section 4.1) or disassembly (section 4.2)")
@@ -384,23 +383,17 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
       "  palpate generate disassembly --out try\n"
       "  palpate generate contacts --triangles 1000000 --out big");
   generate_app->callback([&] { outcome = generate_command(generate); });
+}
 
+void add_devices_command(CLI::App& app, const Parts& parts, Result<void>& outcome) {
   CLI::App* devices_app = app.add_subcommand(
       "devices", "list Vulkan and haptic devices, with the reason for each that can't be used");
   devices_app->footer(
       "Of several usable Vulkan devices the best is taken; the back end's name is in the summary of a run.");
   devices_app->callback([&] { outcome = devices_command(parts); });
+}
 
-  ServeOptions serve;
-  add_serve_command(app, serve, parts, outcome);
-
-  TuneOptions tune;
-  add_tune_command(app, tune, parts, outcome);
-
-  BenchOptions bench;
-  add_bench_command(app, bench, parts, outcome);
-
-  std::string shell, page, manual;
+void add_completions_command(CLI::App& app, std::string& shell) {
   CLI::App* completions_app = app.add_subcommand("completions", "print the completion script of a shell");
   completions_app->add_option("shell", shell, "which one")
       ->required()
@@ -410,27 +403,33 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
       "Examples:\n  source <(palpate completions bash)\n  palpate completions fish > "
       "~/.config/fish/completions/palpate.fish");
   completions_app->callback([&] { fmt::print("{}", completion_script(app, shell)); });
+}
 
+void add_man_command(CLI::App& app, ManOptions& options, Result<void>& outcome) {
   CLI::App* man_app = app.add_subcommand("man", "print a manual page, or write them all");
   auto* page_option =
-      man_app->add_option("command", page, "whose; without it the program's")->type_name("COMMAND");
-  man_app->add_option("--out", manual, "folder for the pages of all commands, palpate.1, palpate-run.1, …")
+      man_app->add_option("command", options.page, "whose; without it the program's")->type_name("COMMAND");
+  man_app
+      ->add_option("--out", options.folder,
+                   "folder for the pages of all commands, palpate.1, palpate-run.1, …")
       ->type_name("DIR")
       ->excludes(page_option);
   man_app->footer("Example:\n  palpate man run | man -l -");
   man_app->callback([&] {
-    if (!manual.empty()) {
-      outcome = write_manual(app, manual);
+    if (!options.folder.empty()) {
+      outcome = write_manual(app, options.folder);
       return;
     }
-    const std::string text = manual_page(app, page, PALPATE_VERSION);
+    const std::string text = manual_page(app, options.page, PALPATE_VERSION);
     if (text.empty())
-      outcome =
-          Error{ErrorCode::kUsage, fmt::format("'{}' is no command of palpate (see palpate --help)", page)};
+      outcome = Error{ErrorCode::kUsage,
+                      fmt::format("'{}' is no command of palpate (see palpate --help)", options.page)};
     fmt::print("{}", text);
   });
-  add_quiet(app);
+}
 
+/// Reads the words and runs the command's callback. An exit code where that is all there is to do.
+std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
   if (argc < 2) {
@@ -461,6 +460,46 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   }
   if (app.get_subcommands().empty())
     return fail({ErrorCode::kUsage, "a command is missing (see palpate --help)"});
+  return std::nullopt;
+}
+
+int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
+  CLI::App app(kAbout, "palpate");
+  app.footer(std::string(kFooter) + "\n\n" + kEnvironmentText);
+  app.set_version_flag("-V,--version", version_text(), "tell the version, the commit and the engines");
+  app.set_help_flag("-h,--help", "tell how to use it");
+  app.require_subcommand(0, 1);  // a scene may be called like a command
+  app.get_formatter()->column_width(38);
+
+  Result<void> outcome;
+  RunOptions run;
+  QueryOptions query;
+  PathOptions path;
+  CompareOptions compare;
+  PlanOptions plan;
+  InfoOptions info;
+  GenerateOptions generate;
+  ServeOptions serve;
+  TuneOptions tune;
+  BenchOptions bench;
+  std::string shell;
+  ManOptions manual;
+  add_run_command(app, run, parts, outcome);
+  add_query_command(app, query, parts, outcome);
+  add_path_command(app, path, parts, outcome);
+  add_compare_command(app, compare, outcome);
+  add_plan_command(app, plan, parts, outcome);
+  add_info_command(app, info, parts, outcome);
+  add_generate_command(app, generate, outcome);
+  add_devices_command(app, parts, outcome);
+  add_serve_command(app, serve, parts, outcome);
+  add_tune_command(app, tune, parts, outcome);
+  add_bench_command(app, bench, parts, outcome);
+  add_completions_command(app, shell);
+  add_man_command(app, manual, outcome);
+  add_quiet(app);
+
+  if (const std::optional<int> code = parse(app, argc, argv)) return *code;
   return outcome ? 0 : fail(outcome.error());
 }
 
