@@ -275,7 +275,11 @@ Ticks ticks_of(const fs::path& trace) {
   while (std::getline(in, line)) {
     std::vector<double> row;
     std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      char* end = nullptr;
+      row.push_back(std::strtod(cell.c_str(), &end));  // std::stod throws at a number below 1e-307
+      EXPECT_TRUE(end != cell.c_str() && *end == '\0') << "not a number: " << cell;
+    }
     if (row.size() < 17) continue;
     ticks.z.push_back(row[3]);
     ticks.force.push_back(std::hypot(row[8], row[9], row[10]));
