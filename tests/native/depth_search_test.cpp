@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cpu_ref/box_tree.h"
 #include "cpu_ref/depth.h"
 #include "tests/cpu_ref/lattice_scene.h"
 
@@ -153,6 +156,26 @@ TEST(DepthSearch, SaysWhatAskingEveryTriangleSays) {
       ASSERT_EQ(tree.order[found.place], found.triangle);
       last = found.place;
     }
+  }
+}
+
+TEST(Reference, FindsTheNearestThatBoundsASolid) {
+  LatticeMesh mesh = soup(100, 1000, 100, 7);
+  for (std::size_t id = 0; id < mesh.flags.size(); id += 2) mesh.flags[id] |= kTriangleSheet;
+  std::vector<cpu_ref::Box> boxes(mesh.triangles.size());
+  for (std::uint32_t id = 0; id < boxes.size(); ++id)
+    for (int k = 0; k < 3; ++k) boxes[id].include(mesh.corner(id, k));
+  cpu_ref::BoxTree tree;
+  tree.build(std::move(boxes));
+  std::mt19937 random(12);
+  const auto within = [&] { return std::uniform_int_distribution<std::int32_t>(-1200, 1200)(random); };
+  for (int i = 0; i < 200; ++i) {
+    const Int3 point(within(), within(), within());
+    const DepthSearch::Depth wanted = of_all(mesh, point);
+    const std::optional<cpu_ref::Depth> found = cpu_ref::nearest(mesh, tree, point);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->steps, wanted.steps);
+    EXPECT_EQ(found->triangle, wanted.triangle);
   }
 }
 
