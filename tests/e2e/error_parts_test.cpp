@@ -67,6 +67,12 @@ TEST(MethodLead, IsOfTheSoonestSettingThatIsNoWorse) {
   EXPECT_NE(lead_summary("By one engine, gpu", {{"a", *lead}, {"b", *none}})
                 .find("sooner or more on 1 of 2: a (20 ×)."),
             std::string::npos);
+  MethodLead large = *lead;
+  large.paper_us = *large.us * 205;
+  large.paper_error = 1.5;
+  EXPECT_NE(lead_sentence(large).find("150 % off in 9.22 ms; refined is 10 % off in 45 µs, 205 times sooner"),
+            std::string::npos)
+      << lead_sentence(large);
 }
 
 TEST(Promise, IsBrokenWhereLuckHardlyLooksSoBad) {

@@ -24,9 +24,16 @@ std::vector<std::pair<double, double>> points_of(const ErrorCurves& curves, cons
 }
 
 std::string time_text(double us) {
-  return us < 1000 ? fmt::format("{:.3g} µs", us) : fmt::format("{:.3g} ms", us / 1000);
+  return us < 999.5       ? fmt::format("{:.3g} µs", us)
+         : us < 999'500.0 ? fmt::format("{:.3g} ms", us / 1000)
+                          : fmt::format("{:.0f} ms", us / 1000);
 }
-std::string share_text(double part) { return fmt::format("{:.2g} %", 100 * part); }
+/// Two digits, or all before the point: no exponents in sentences.
+std::string number_text(double value) {
+  return value < 99.5 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::string share_text(double part) { return number_text(100 * part) + " %"; }
 
 /// The least error that is there after so long; empty: nothing answers yet.
 std::optional<double> best_by(const std::vector<std::pair<double, double>>& points, double us) {
@@ -86,8 +93,8 @@ std::string lead_sentence(const MethodLead& lead) {
   if (!lead.us)
     return fmt::format("{}; refined gets no nearer than {}, so paper wins where so much time is left", best,
                        share_text(lead.refined_best_error));
-  std::string out = fmt::format("{}; refined is {} off in {}, {:.2g} times sooner", best,
-                                share_text(*lead.error), time_text(*lead.us), lead.factor());
+  std::string out = fmt::format("{}; refined is {} off in {}, {} times sooner", best, share_text(*lead.error),
+                                time_text(*lead.us), number_text(lead.factor()));
   if (lead.factor() >= kTenfold) return out;
   if (*lead.us <= 1.2 * lead.refined_least_us)  // within a fifth, which like runs differ by
     return out + ": less than ten times, for that is its soonest frame: no setting of it takes less";
@@ -105,7 +112,7 @@ std::string lead_summary(const std::string& engines,
   for (const auto& [name, lead] : leads) {
     std::string& list = !lead.us ? none : lead.factor() >= kTenfold ? tenfold : less;
     list += (list.empty() ? "" : "; ") + name;
-    if (lead.us) list += fmt::format(" ({:.2g} ×)", lead.factor());
+    if (lead.us) list += fmt::format(" ({} ×)", number_text(lead.factor()));
     if (lead.us && lead.factor() >= kTenfold) ++count;
   }
   std::string out = fmt::format(
