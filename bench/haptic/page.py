@@ -340,15 +340,30 @@ def commit():
 
 
 STYLE = '''
-:root { color-scheme: light; }
-body { font: 15px/1.45 system-ui, sans-serif; max-width: 1080px; margin: 24px auto; padding: 0 16px; background: #fff; color: #111; }
-h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 19px; margin: 32px 0 6px; } h3 { font-size: 16px; margin: 20px 0 4px; }
-.wide { overflow-x: auto; } .chart { min-width: 760px; break-inside: avoid; } .chart svg { width: 100%; height: auto; }
+:root { --page: #fff; --ink: #111; --faint: #555; --line: #eee; --rule: #999; --bad: #b00020; --link: #00557f; }
+@media screen and (prefers-color-scheme: dark) {
+  :root { color-scheme: dark; --page: #14171a; --ink: #e6e8ea; --faint: #a8adb2; --line: #2a2f34; --rule: #6b7278;
+    --bad: #ff7a8a; --link: #6cb8d6; }
+  .chart svg { filter: invert(0.92) hue-rotate(180deg); }
+}
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 1080px; margin: 24px auto; padding: 0 16px;
+  background: var(--page); color: var(--ink); }
+a { color: var(--link); } nav a { margin-right: 14px; }
+h1 { font-size: 24px; margin: 0 0 4px; }
+h2 { font-size: 19px; margin: 32px 0 6px; }
+h3 { font-size: 16px; margin: 20px 0 4px; }
+.wide { overflow-x: auto; }
+.chart { min-width: 760px; break-inside: avoid; } .chart svg { width: 100%; height: auto; }
 table { border-collapse: collapse; font-size: 12.5px; margin: 6px 0; }
-th { text-align: left; vertical-align: bottom; font-weight: 600; border-bottom: 1px solid #999; padding: 2px 10px 2px 0; }
-td { padding: 2px 10px 2px 0; border-bottom: 1px solid #eee; font-variant-numeric: tabular-nums; }
-.bad { color: #b00020; font-weight: 600; white-space: nowrap; } .best { color: #666; font-weight: 400; } .name { white-space: nowrap; } .small { font-size: 13px; color: #444; } nav a { margin-right: 14px; }
-@media print { .wide { overflow: visible; } .chart { min-width: 0; } table { font-size: 9px; } h2, h3 { break-after: avoid; } tr { break-inside: avoid; } }
+th { text-align: left; vertical-align: bottom; font-weight: 600; border-bottom: 1px solid var(--rule);
+  padding: 2px 10px 2px 0; }
+td { padding: 2px 10px 2px 0; border-bottom: 1px solid var(--line); font-variant-numeric: tabular-nums; }
+.bad { color: var(--bad); font-weight: 600; white-space: nowrap; } .best { color: var(--faint); font-weight: 400; }
+.name { white-space: nowrap; } .small { font-size: 13px; color: var(--faint); }
+@media print {
+  .wide { overflow: visible; } .chart { min-width: 0; } table { font-size: 9px; }
+  h2, h3 { break-after: avoid; } tr { break-inside: avoid; }
+}
 '''
 
 
