@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <iterator>
 
 #include "service/report/markup.h"
@@ -49,6 +51,13 @@ std::vector<double> ChartAxis::ticks() const {
     for (double v = std::ceil(low / step) * step; v <= high + step * 1e-9; v += step) out.push_back(v);
   }
   return out;
+}
+
+std::string tick_text(double value) {
+  const double size = std::abs(value);
+  if (!(size >= 999.5 && size < 999'500)) return fmt::format("{:.3g}", value);
+  const long whole = std::lround(value);
+  return fmt::format("{},{:03}", whole / 1000, std::labs(whole) % 1000);
 }
 
 std::string chart_head(const std::string& title, const std::string& unit, double height) {

@@ -18,6 +18,9 @@ struct ChartAxis {
   std::vector<double> ticks() const;
 };
 
+/// A tick's number: three digits, thousands in full ("20,000"), an exponent from a million on.
+std::string tick_text(double value);
+
 /// The beginning of a picture: ground, title and unit.
 std::string chart_head(const std::string& title, const std::string& unit, double height);
 

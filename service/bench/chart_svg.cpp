@@ -89,13 +89,13 @@ std::string axis_marks(const ChartAxis* x, const ChartAxis& y, const std::string
     for (const double tick : x->ticks())
       out += fmt::format(
           "<path class=\"grid\" d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" "
-          "text-anchor=\"middle\">{4:.3g}</text>\n",
-          x->at(tick), kChartTop, kBottom, kBottom + 17, tick);
+          "text-anchor=\"middle\">{4}</text>\n",
+          x->at(tick), kChartTop, kBottom, kBottom + 17, tick_text(tick));
   for (const double tick : y.ticks())
     out += fmt::format(
         "<path class=\"grid\" d=\"M{1} {0:.1f}H{2}\" stroke=\"#ddd\"/><text x=\"{3}\" y=\"{4:.1f}\" "
-        "text-anchor=\"end\">{5:.3g}</text>\n",
-        y.at(tick), kChartLeft, kChartWidth - kChartRight, kChartLeft - 7, y.at(tick) + 4, tick);
+        "text-anchor=\"end\">{5}</text>\n",
+        y.at(tick), kChartLeft, kChartWidth - kChartRight, kChartLeft - 7, y.at(tick) + 4, tick_text(tick));
   return out + fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                            (kChartLeft + kChartWidth - kChartRight) / 2, kBottom + 36, markup_text(x_title));
 }

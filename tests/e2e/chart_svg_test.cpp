@@ -1,4 +1,5 @@
 #include "service/bench/chart_svg.h"
+#include "service/bench/chart_axis.h"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,16 @@ TEST(ChartSvg, BarsStandBesideOrOnEachOther) {
   chart.stacked = true;
   const std::string stacked = chart_svg(chart);
   EXPECT_NE(stacked.find("height=\"247.5\""), std::string::npos) << "3 of 4";
+}
+
+TEST(ChartSvg, TicksAreWrittenAsPeopleWriteThem) {
+  EXPECT_EQ(tick_text(0.001), "0.001");
+  EXPECT_EQ(tick_text(1e-7), "1e-07");
+  EXPECT_EQ(tick_text(100), "100");
+  EXPECT_EQ(tick_text(1000), "1,000");
+  EXPECT_EQ(tick_text(20'000), "20,000");
+  EXPECT_EQ(tick_text(-1005), "-1,005");
+  EXPECT_EQ(tick_text(1e6), "1e+06");
 }
 
 TEST(ChartSvg, WhatDivergedIsMarkedAtTheEdgeAndStretchesNoAxis) {
