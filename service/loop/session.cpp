@@ -303,7 +303,9 @@ std::string ticks_text(double ticks) {
   return number(std::round(ticks)) + (std::round(ticks) == 1 ? " tick" : " ticks");
 }
 std::string position_text(const Pose& pose) {
-  return number(pose.position.x) + " " + number(pose.position.y) + " " + number(pose.position.z) + " m";
+  const auto micrometres = [](double m) { return number(std::round(m * 1e6) / 1e6 + 0.0); };  // no "-0"
+  return micrometres(pose.position.x) + " " + micrometres(pose.position.y) + " " +
+         micrometres(pose.position.z) + " m";
 }
 
 /// What a run in virtual time shows is what a hand would have felt only where the machine would have brought
