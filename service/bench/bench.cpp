@@ -123,10 +123,9 @@ class Benches {
   }
 
   void add_latency() {
-    CLI::App* latency =
-        bench_.add_subcommand("latency",
-                              "a frame's time by stage: p50, p95, p99, p99.9 (of 1,000 frames "
-                              "and more), max; contact and free apart");
+    CLI::App* latency = bench_.add_subcommand("latency",
+                                              "a frame's time by stage: p50, p95, p99, p99.9 (of 1,000 "
+                                              "frames and more), max; contact and free apart");
     add_common(*latency, options_);
     add_poses(*latency, options_);
     add_backends(*latency, options_, "in turns");
@@ -134,12 +133,10 @@ class Benches {
         "Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing "
         "near). Stages are the\n"
         "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to "
-        "wrench "
-        "out. The frames are a loop's\n"
+        "wrench out. The frames are a loop's\n"
         "that nobody watches: without lists of triangles, and `refined` without areas.\n"
         "Of several engines the report says on how many frames the first is slower than each other one. A "
-        "frame "
-        "that looks so is asked\n"
+        "frame that looks so is asked\n"
         "up to 20 times more, and the least times count.\n"
         "Rows of `total` have what a frame asks of a device, the median of each: submissions, dispatches, "
         "barriers, bytes that the frame writes for it and\n"
@@ -159,8 +156,7 @@ class Benches {
         "balance of spring and field that `palpate query` finds by asking for more poses. Always the wall's "
         "clock: a batch takes all cores. share_of_single: time\n"
         "of a pose in the batch over that of one asked singly, by as many threads as its engine gives a "
-        "frame "
-        "(cpu: two). Then what a batch asks of a device.");
+        "frame (cpu: two). Then what a batch asks of a device.");
     measure(*throughput, bench_throughput);
   }
 
@@ -193,8 +189,7 @@ class Benches {
     add_clock(*prepare, options_, "wall, or cpu: time that this process itself ran (wall)");
     prepare->footer(
         "The first start finds nothing in the cache and keeps what it makes; the second finds it. Shaders "
-        "that "
-        "the driver has compiled before are not compiled again.\n"
+        "that the driver has compiled before are not compiled again.\n"
         "Trees are built by a build with -DPALPATE_BENCH_PEERS=ON alone.");
     measure(*prepare, bench_prepare);
   }
@@ -218,18 +213,13 @@ class Benches {
                     "two closed forms, eight poses, six spacings: to see that it works");
     error->footer(
         "Errors in results.csv are absolute: d and cp in m, n_c in degrees, F in N, T in N·m; p50 and p99 "
-        "over "
-        "the poses in contact; truth_p50 is the truth's median. Times are whole frames.\n"
+        "over the poses in contact; truth_p50 is the truth's median. Times are whole frames.\n"
         "Each method is judged against its own truth: a closed form, else itself with samples a 16th of a "
-        "voxel "
-        "apart (refined), or with the mock-up cut finer than in\n"
+        "voxel apart (refined), or with the mock-up cut finer than in\n"
         "the sweep (paper). Without --poses a scene is measured at the poses of a hand in virtual time and "
-        "at "
-        "its "
-        "path's, deeper than a hand gets; SCENE=POSES.csv\n"
+        "at its path's, deeper than a hand gets; SCENE=POSES.csv\n"
         "gives a scene poses of its own. Poses and rounds are 12 and 1 unless said otherwise. The report "
-        "begins "
-        "with what the figures say in sentences.");
+        "begins with what the figures say in sentences.");
     error->callback([*this, error]() mutable {
       if (error->count("--frames") == 0) options_.frames = 12;
       if (error->count("--rounds") == 0) options_.rounds = 1;
@@ -249,11 +239,9 @@ class Benches {
         ->type_name("NAME");
     peers->footer(
         "palpate's time is a whole frame: sets, areas, wrench. The others' is the pairs alone. Before "
-        "anything "
-        "is timed, each library's pairs\n"
+        "anything is timed, each library's pairs\n"
         "are held against the exact ones: `missing` and `extra` count pairs over all poses. Ratios are those "
-        "of "
-        "the engine that is named first.");
+        "of the engine that is named first.");
     measure(*peers, bench_peers);
   }
 
@@ -263,21 +251,17 @@ class Benches {
     add_common(*questions, options_);
     add_poses(*questions, options_);
     questions
-        ->add_option(
-            "--reach", options_.reach,
-            "poses are moved and turned at random, by up to so many radii of the tool and radians, mostly "
-            "by far less; 0: as they are (0.5)")
+        ->add_option("--reach", options_.reach,
+                     "poses are moved and turned at random, by up to so many radii of the tool and radians, "
+                     "mostly by far less; 0: as they are (0.5)")
         ->check(CLI::Range(0.0, 1000.0).description(""))
         ->type_name("X");
     add_one_backend(*questions, options_);
     questions->footer(
         "Other libraries are there in a build with -DPALPATE_BENCH_PEERS=ON. Each is asked at the same "
-        "poses, "
-        "in "
-        "turns. `poses_different`\n"
+        "poses, in turns. `poses_different`\n"
         "counts where it disagrees with palpate, a distance by more than two lattice steps; a tool wholly "
-        "inside "
-        "is left out, for they see\n"
+        "inside is left out, for they see\n"
         "surfaces alone. `first contact` goes from each pose to the next; `frame` is a whole frame, for "
         "comparison.");
     measure(*questions, bench_questions);
@@ -294,8 +278,7 @@ class Benches {
     add_out(*stability, options_);
     stability->footer(
         "In virtual time: the shipped law closed over springs, over a bouncing wall, over tools in six "
-        "degrees "
-        "of\n"
+        "degrees of\n"
         "freedom, and over the real collision query. critical_k is found by\n"
         "bisection to half a percent between 10 and 20,000 N/m. The report has maps, jumps of force and "
         "torque, and energy given out.");
@@ -312,27 +295,23 @@ class Benches {
     add_clock(*plan, options_, "wall, or cpu: time that this process itself ran (wall)");
     plan->footer(
         "A row a scene, plan and stage; `total` is the whole frame, its median over the poses in contact, "
-        "and "
-        "all memory. A stage that a plan leaves\n"
+        "and all memory. A stage that a plan leaves\n"
         "out has no row. Before anything is written, both plans' answers are held against each other bit by "
         "bit. The report begins with what each thing left out gives, and where.");
     measure(*plan, bench_plan);
   }
 
   void add_numerics() {
-    CLI::App* numerics =
-        bench_.add_subcommand("numerics",
-                              "stiff and extreme cases beside the same method in plain single "
-                              "and double precision: where each breaks");
+    CLI::App* numerics = bench_.add_subcommand("numerics",
+                                               "stiff and extreme cases beside the same method in plain "
+                                               "single and double precision: where each breaks");
     add_out(*numerics, options_);
     add_one_backend(*numerics, options_);
     numerics->footer(
         "Swept: K, scale, offset from the origin, aspect of triangles and of patches, number of patches, "
-        "depth, "
-        "sample spacing, play, interference, stiffness of the\n"
+        "depth, sample spacing, play, interference, stiffness of the\n"
         "contact beside the spring's, gaps, age of results, ticks of the law. The error is of the force, "
-        "relative; "
-        "for\n"
+        "relative; for\n"
         "gaps the share of wrong answers. The outcome is held, lost, no contact, or refused with the reason; "
         "`breaks` in results.json sums up.");
     measure(*numerics, bench_numerics);
@@ -347,8 +326,7 @@ class Benches {
     add_one_backend(*force, options_);
     force->footer(
         "A row a path: the largest force, the largest step between neighbours in K times the tool's way, "
-        "work "
-        "lost round loops, how far ∂F is from symmetric, what is lost\n"
+        "work lost round loops, how far ∂F is from symmetric, what is lost\n"
         "while going deeper, turns by more than 90° between neighbours, poses without a direction, and in "
         "words what breaks a limit. A scene's path is divided evenly into --frames poses.");
     measure(*force, bench_force);
@@ -364,8 +342,7 @@ class Benches {
     add_one_backend(*jitter, options_);
     jitter->footer(
         "The session of the (first) scene runs in real time along its path, to and fro, its back end asked "
-        "as "
-        "fast as it\n"
+        "as fast as it\n"
         "answers. cyclictest (Debian: rt-tests) runs meanwhile with the same period,\n"
         "priority and processor, where it is installed. What was not allowed is said. A tick that comes a "
         "whole period late is missed.");
@@ -383,8 +360,8 @@ class Benches {
 void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts, Result<void>& outcome) {
   CLI::App* bench =
       app.add_subcommand("bench",
-                         "measure: a frame, batches, growth, preparation, other libraries, questions, "
-                         "plans, the force's error and stability, the loop's punctuality");
+                         "measure: a frame, batches, growth, preparation, other libraries, questions, plans, "
+                         "the force's error and stability, the loop's punctuality");
   bench->require_subcommand(1);
   bench->footer(kFooter);
   Benches(*bench, options, parts, outcome).add_all();

@@ -1,7 +1,8 @@
 #include "service/bench/chart_svg.h"
-#include "service/bench/chart_axis.h"
 
 #include <gtest/gtest.h>
+
+#include "service/bench/chart_axis.h"
 
 namespace palpate {
 namespace {
