@@ -17,8 +17,10 @@ struct GuideState {
   Vec3 turning{0};  ///< the frame's rotation per travel, world, rad/m
 };
 
-/// Linear and slerp between guide points; `travel_m` is clamped to the guide. `guide` has at least two
-/// points, travel strictly ascending. O(log n), never allocates.
+/// Through the guide's points, cubic in travel between them, so that tangent and turning have no jumps (a
+/// force resolved along the guide would have them, too); `travel_m` is clamped to the guide. `guide` has at
+/// least two points, travel strictly ascending; from rotation to rotation it
+/// goes the short way. O(log n), never allocates.
 GuideState guide_at(const std::vector<GuidePoint>& guide, double travel_m);
 
 }  // namespace palpate

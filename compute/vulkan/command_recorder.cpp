@@ -1,12 +1,15 @@
 #include "compute/vulkan/command_recorder.h"
 
 #include <array>
+#include <chrono>
 #include <utility>
 
 namespace palpate {
 namespace {
 constexpr std::uint32_t kMostBindings = 32;
-}
+// How long a GPU is asked again and again: to be woken takes as long as a short frame (chosen).
+constexpr std::chrono::microseconds kSpin{500};
+}  // namespace
 
 Result<CommandRecorder> CommandRecorder::create(VulkanDevice& device, std::uint32_t stages) {
   CommandRecorder out;
@@ -188,6 +191,7 @@ Result<void> CommandRecorder::submit() {
 
 Result<void> CommandRecorder::wait(std::uint64_t timeout_ns) {
   VkResult waited = device_->injected(GpuFault::Call::kWait);
+  if (waited == VK_SUCCESS && !device_->unified()) spin();
   if (waited == VK_SUCCESS) waited = vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, timeout_ns);
   pending_ = false;
   if (waited != VK_SUCCESS) {
@@ -195,6 +199,13 @@ Result<void> CommandRecorder::wait(std::uint64_t timeout_ns) {
     return vulkan_error("vkWaitForFences", waited);
   }
   return device_->take_validation_error();
+}
+
+void CommandRecorder::spin() const {
+  const auto end = std::chrono::steady_clock::now() + kSpin;
+  while (vkGetFenceStatus(device_->handle(), fence_) == VK_NOT_READY &&
+         std::chrono::steady_clock::now() < end) {
+  }
 }
 
 Result<void> CommandRecorder::submit_and_wait() {

@@ -123,6 +123,8 @@ class CommandRecorder {
   static constexpr std::uint32_t push_size() {
     return std::is_same_v<Push, NoPush> ? 0 : static_cast<std::uint32_t>(sizeof(Push));
   }
+  /// Until the last submit is finished, or some time has gone by.
+  void spin() const;
   /// False: there is no such pipeline; end() tells why.
   bool bind(const ComputePipeline& pipeline, std::span<const BufferView> buffers, const void* push,
             std::uint32_t push_bytes);

@@ -71,7 +71,10 @@ MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uin
   const VkResult made =
       vkCreateComputePipelines(out->device, VK_NULL_HANDLE, 1, &create, nullptr, &out->pipeline);
   vkDestroyShaderModule(out->device, shader, nullptr);
-  if (made != VK_SUCCESS) return vulkan_error("vkCreateComputePipelines", made);
+  if (made != VK_SUCCESS)
+    return Error{ErrorCode::kInternal, "the driver of " + device.name() + " can't compile shader " +
+                                           code.name + " (" +
+                                           vulkan_error("vkCreateComputePipelines", made).sentence + ")"};
   // A module that the layout does not fit is a bug of ours that the layer finds here.
   if (auto r = device.take_validation_error(); !r)
     return Error{ErrorCode::kInternal, std::string("shader ") + code.name + ": " + r.error().sentence};

@@ -150,8 +150,14 @@ class Benches {
     add_common(*throughput, options_);
     add_poses(*throughput, options_);
     add_backends(*throughput, options_, "one after the other");
+    throughput
+        ->add_option("--largest", options_.largest_batch,
+                     "poses of the largest batch, 1 to 65,536 (1,024); a GPU gets busy with 8,192")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{65'536}).description(""))
+        ->type_name("N");
     throughput->footer(
-        "Batches of 1 to 1,024 poses, in turns with the same poses asked singly. `frames` are a session's, "
+        "Batches of 1, 4, 16 and so on to --largest poses, in turns with the same poses asked singly. "
+        "`frames` are a session's, "
         "without balance; `answers` a lone query's, with the\n"
         "balance of spring and field that `palpate query` finds by asking for more poses. Always the wall's "
         "clock: a batch takes all cores. share_of_single: time\n"

@@ -27,6 +27,7 @@ struct BenchOptions {
   std::vector<std::string> peers;  ///< names to measure; empty: all
   double reach = 0.5;              ///< questions: poses are moved by up to so many radii of the tool
   std::uint64_t most_triangles = 1'000'000;  ///< scale: of the largest mock-up
+  std::uint64_t largest_batch = 1024;        ///< throughput: poses
   double seconds = 60;                       ///< jitter: how long
   std::string out;
   bool overwrite = false;  ///< results of a bench that `out` has already

@@ -14,7 +14,6 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/set_name.glsl"
 
 layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
-layout(constant_id = 8) const bool CARRIERS = true;   // as in lib/field_sums.glsl
 
 READ(kBindMockupInfo, uint32_t, mockup_info);
 READ(kBindMockupExtras, ExtraSample, mockup_extras);

@@ -23,12 +23,13 @@ struct Push {
 };
 
 const uint32_t kTerms = kFieldBinWords + kCarrierSumWords;
-shared int64_t terms[kTerms * kGroupSize];
+const uint32_t kTermsApart = kGroupSize + 1u;   // so that kinds side by side lie in different banks
+shared int64_t terms[kTerms * kTermsApart];
 shared uint32_t term_bins[kGroupSize], term_slots[kGroupSize];
 shared uint64_t deepest[2u * kGroupSize];
 shared uint32_t any_sheet;
 
-void put_term(uint32_t kind, int64_t term) { terms[kind * kGroupSize + gl_LocalInvocationIndex] = term; }
+void put_term(uint32_t kind, int64_t term) { terms[kind * kTermsApart + gl_LocalInvocationIndex] = term; }
 
 // Three sums of terms that may not fit 64 bits, as low and high halves.
 void put_wide(uint32_t kind, i64vec3 term) {
@@ -124,7 +125,7 @@ void add_pushes(bool pushes, Push push) {
         key = its;
         sum = 0l;
       }
-      sum += terms[lane * kGroupSize + i];
+      sum += terms[lane * kTermsApart + i];
     }
     flush_term(lane, key, sum);
   } else if (!BATCH && lane >= kTerms && lane < kTerms + 2u) {

@@ -50,6 +50,9 @@ bool grid_point_inside(SampledTriangle t, ivec2 g) {
 // floor(a_k − (N_u (g_u − a_u) + N_v (g_v − a_v)) / N_k), for g in the triangle's box.
 // |N_u|, |N_v| ≤ |N_k| < 2^60 and |g − a| ≤ 2^29 + 1. The estimate from the leading 31 bits of N_k is at most
 // 4 off, so that the exact remainder is within 5 · 2^59.2 and may be computed modulo 2^64.
+// Bit by bit: here NVIDIA's compiler (driver 580) fails on a division of 64-bit integers, and on float quotients
+// of them. Loops of fixed lengths, which llvmpipe rolls out (lib/budget.glsl; equivalence case
+// many_samples_of_a_voxel).
 int32_t height_on_triangle(SampledTriangle t, ivec2 g) {
   const ivec2 d = g - seen_along(t.axis, t.a);
   const int64_t nk = t.normal[t.axis];
@@ -61,11 +64,29 @@ int32_t height_on_triangle(SampledTriangle t, ivec2 g) {
   }
   const uint32_t top = uint32_t(m >> 31);
   const int shift = top != 0u ? findMSB(top) + 1 : 0;
-  int64_t q = ((nu >> shift) * int64_t(d.x) + (nv >> shift) * int64_t(d.y)) / (m >> shift);
-  const int64_t rest = nu * int64_t(d.x) + nv * int64_t(d.y) - q * m;
-  const int64_t more = rest / m;
-  q += more - int64_t(rest < more * m);
-  return t.a[t.axis] + int32_t(q);
+  const int64_t leading = m >> shift;
+  int64_t left = (nu >> shift) * int64_t(d.x) + (nv >> shift) * int64_t(d.y);
+  int32_t q = 0;
+  const bool below = left < 0l;
+  left = below ? -left : left;
+  for (int bit = 30; bit >= 0; --bit)
+    if (left >= leading << bit) {
+      left -= leading << bit;
+      q += 1 << bit;
+    }
+  q = below ? -q : q;
+  int64_t rest = nu * int64_t(d.x) + nv * int64_t(d.y) - int64_t(q) * m;
+  for (int i = 0; i < 8; ++i)
+    if (rest < 0l) {
+      rest += m;
+      q -= 1;
+    }
+  for (int i = 0; i < 8; ++i)
+    if (rest >= m) {
+      rest -= m;
+      q += 1;
+    }
+  return t.a[t.axis] + q;
 }
 
 // The sample at g.

@@ -175,6 +175,53 @@ TEST(SimulatedDevice, IgnoresAWrenchThatIsNotFinite) {
   EXPECT_EQ(press(*device, {Vec3(0), Vec3(0, INFINITY, 0)}, 10).position, Vec3(0));
 }
 
+/// Bends and turns about all axes, at uneven travels.
+std::vector<GuidePoint> crooked_guide() {
+  std::vector<GuidePoint> guide;
+  const Vec3 turns[] = {{0, 0, 0}, {0.3, -0.2, 0.1}, {0.9, 0.4, -0.3}, {0.2, 1.1, 0.8}, {0.1, 1.1, 0.9}};
+  const Vec3 places[] = {{0, 0, 0}, {0.1, 0, 0.02}, {0.15, 0.12, 0}, {0.1, 0.2, -0.1}, {0.1, 0.2, -0.2}};
+  const double travels[] = {0, 0.1, 0.25, 0.3, 0.5};
+  for (std::size_t i = 0; i < 5; ++i) guide.push_back({travels[i], {places[i], rotation_by(turns[i])}});
+  return guide;
+}
+
+TEST(Guide, GoesThroughItsPoints) {
+  const std::vector<GuidePoint> guide = crooked_guide();
+  for (const GuidePoint& point : guide) {
+    const Pose at = guide_at(guide, point.travel_m).frame;
+    EXPECT_LT(length(at.position - point.frame.position), 1e-15);
+    EXPECT_LT(length(rotation_vector(at.rotation * glm::conjugate(point.frame.rotation))), 1e-14);
+  }
+}
+
+TEST(Guide, TangentAndTurningAreWhatItsFramesDo) {
+  const std::vector<GuidePoint> guide = crooked_guide();
+  constexpr double kStep = 1e-6;
+  for (double travel = 0.0013; travel < 0.499; travel += 0.0037) {
+    const GuideState at = guide_at(guide, travel), before = guide_at(guide, travel - kStep),
+                     after = guide_at(guide, travel + kStep);
+    // Central differences of something with third derivatives below 10^5 per m³, and their rounding.
+    EXPECT_LT(length((after.frame.position - before.frame.position) / (2 * kStep) - at.tangent), 1e-6);
+    EXPECT_LT(
+        length(rotation_vector(after.frame.rotation * glm::conjugate(before.frame.rotation)) / (2 * kStep) -
+               at.turning),
+        1e-6)
+        << "travel " << travel;
+  }
+}
+
+TEST(Guide, TangentAndTurningDoNotJump) {
+  // A force that is resolved along the guide would jump with them.
+  const std::vector<GuidePoint> guide = crooked_guide();
+  constexpr double kStep = 1e-9;  // over which they change by less than 10^4 per m times it
+  for (std::size_t i = 1; i + 1 < guide.size(); ++i) {
+    const GuideState before = guide_at(guide, guide[i].travel_m - kStep),
+                     after = guide_at(guide, guide[i].travel_m + kStep);
+    EXPECT_LT(length(after.tangent - before.tangent), 1e-5);
+    EXPECT_LT(length(after.turning - before.turning), 1e-5);
+  }
+}
+
 TEST(SimulatedDevice, MovesAlongItsGuideUnderTheForceAlongItAlone) {
   auto device = make(guided());
   const GuideState at = guide_at(guided().guide, 0.4);

@@ -19,12 +19,13 @@ constexpr std::int32_t kTimes = 64;  // of a large_rule
 
 /// A rule of bodies, voxels and poses that are 64 times as large: what culls rays has a margin of a thousand
 /// steps.
-Case large_rule(const char* name, const char* about, Triangles mockup, Triangles tool, PoseOf pose) {
+Case large_rule(const char* name, const char* about, Triangles mockup, Triangles tool, PoseOf pose,
+                std::int32_t spacing = kTimes * kVoxel / 2) {
   for (Triangles* body : {&mockup, &tool})
     for (LatticeTriangle& t : *body) t = {kTimes * t.a, kTimes * t.b, kTimes * t.c};
   Case c = rule(name, about, {}, {}, {});
   c.make = [=](std::uint64_t) -> Result<TestScene> {
-    auto geometry = lattice_scene(mockup, tool, kTimes * kVoxel, kTimes * kVoxel / 2);
+    auto geometry = lattice_scene(mockup, tool, kTimes * kVoxel, spacing);
     if (!geometry) return geometry.error();
     TestScene scene;
     scene.geometry = std::move(*geometry);
@@ -315,6 +316,22 @@ Case samples_on_last_rows() {
       {}, 7);
 }
 
+/// A triangle has 62² samples in a voxel, whose places take more steps together than llvmpipe lets one
+/// invocation's loops have, were these not rolled out.
+Case many_samples_of_a_voxel() {
+  Case c = large_rule(
+      "many_samples_of_a_voxel", "voxels of as many spacings as there may be", box_of(Int3(-64), Int3(64)),
+      small_box(),
+      [](const SceneGeometry&, Random& random, Known&) {
+        LatticePose pose = leaning(random, Int3(0));
+        pose.translation = Int3(random.between(-20, 20), random.between(-20, 20), random.between(70, 100));
+        return pose;
+      },
+      kTimes + 2);
+  c.poses = 4;
+  return c;
+}
+
 /// A box whose lower side along x, where rays along x begin, is bars with gaps narrower than a voxel: open,
 /// and yet with an inside.
 Case open_at_its_low_end() {
@@ -387,11 +404,12 @@ Case large_sheet_among_small() {
 }  // namespace
 
 std::vector<Case> limit_cases() {
-  return {needle_in_a_bud(32),        needle_in_a_bud(50),    needle_of_pieces(),       needle_with_a_foot(),
-          swallowed_round_a_cavity(), swallowed_from_afar(),  folds_in_a_row(),         too_many_folds(),
-          smooth_bead_in_a_tool(),    pierced_near_corners(), crossed_backs(),          stacked_tool(false),
-          stacked_tool(true),         between_the_samples(),  samples_on_last_rows(),   open_at_its_low_end(),
-          beads_in_balance(),         sheets_in_a_row(),      large_sheet_among_small()};
+  return {
+      needle_in_a_bud(32),        needle_in_a_bud(50),    needle_of_pieces(),     needle_with_a_foot(),
+      swallowed_round_a_cavity(), swallowed_from_afar(),  folds_in_a_row(),       too_many_folds(),
+      smooth_bead_in_a_tool(),    pierced_near_corners(), crossed_backs(),        stacked_tool(false),
+      stacked_tool(true),         between_the_samples(),  samples_on_last_rows(), many_samples_of_a_voxel(),
+      open_at_its_low_end(),      beads_in_balance(),     sheets_in_a_row(),      large_sheet_among_small()};
 }
 
 }  // namespace palpate::equivalence

@@ -161,7 +161,7 @@ void FrameDecoder::decode(const FrameOutput& output, Contacts& out) {
   if (!sets_are_whole(result.state)) return;
   out.contact = result.state.contact != 0;
   out.pairs = result.pair_count;
-  decode_sets(output, out);
+  if (out.lists || output.areas) decode_sets(output, out);
   if (!out.contact || out.truncated) return;
   if (output.areas) decode_areas(output, out);
 }

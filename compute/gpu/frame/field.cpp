@@ -13,7 +13,7 @@ using namespace gpu;  // names of shaders/shared/frame_field.h
 
 namespace {
 
-constexpr std::uint32_t kCarriersId = 8;  // of the specialisation constant CARRIERS
+constexpr std::uint32_t kCarriersId = 8;  // of the constant CARRIERS: somebody looks at triangles
 
 WideSum wide(std::int64_t low, std::int64_t high) { return {low, high}; }
 

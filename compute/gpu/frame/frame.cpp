@@ -278,8 +278,8 @@ void RecordedFrame::read(Contacts& out) {
   pairs_ = out.pairs;
   out.flags |= frame_flags_;
   if (field_ && out.contact && !out.truncated) field_->decode(buffers_, *result, out);
-  work_.bytes_down += offsetof(gpu::FrameResult, areas) + result->area_count * sizeof(gpu::AreaResult) +
-                      result->static_count * sizeof(gpu::StaticResult);
+  work_.bytes_down += offsetof(gpu::FrameResult, areas) + result->area_count * sizeof(gpu::AreaResult);
+  if (out.lists || response_) work_.bytes_down += result->static_count * sizeof(gpu::StaticResult);
   if (out.lists)
     work_.bytes_down +=
         result->mobile_count * sizeof(gpu::MobileResult) + result->member_count * sizeof(gpu::AreaMember);

@@ -13,8 +13,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSizes[] = {1, 4, 16, 64, 256, 1024};
-
 /// Poses asked together, and what they took.
 struct Series {
   bool answers = false;         ///< with a lone query's balance
@@ -27,6 +25,14 @@ double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double v : values) sum += v;
   return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+/// Four times as many each time.
+std::vector<std::size_t> batch_sizes(std::size_t largest) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t size = 1; size < largest; size *= 4) sizes.push_back(size);
+  sizes.push_back(largest);
+  return sizes;
 }
 
 /// Frames of a batch as a session asks for them: contacts and responses.
@@ -74,11 +80,11 @@ Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& sc
   std::vector<Series> out;
   for (const bool answers : {false, true}) {
     out.push_back({answers, 0, {}, {}});
-    for (const std::size_t size : kSizes) out.push_back({answers, size, {}, {}});
+    for (const std::size_t size : batch_sizes(options.largest_batch)) out.push_back({answers, size, {}, {}});
   }
   // The same poses for all: as many as the largest batch has, gone through as often as need be.
   std::vector<Pose> all;
-  for (std::size_t i = 0; i < kSizes[std::size(kSizes) - 1]; ++i) all.push_back(poses[i % poses.size()]);
+  for (std::size_t i = 0; i < options.largest_batch; ++i) all.push_back(poses[i % poses.size()]);
   Answer answer;
   BatchAnswer batch;
   console.step("measuring");
@@ -87,7 +93,8 @@ Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& sc
       const DeviceWork before = scene.backend->device_work();
       const auto us = ask_all(series, scene, all, answer, batch);
       if (!us) return us.error();
-      const std::uint64_t batches = all.size() / std::max<std::size_t>(series.size, 1);
+      const std::uint64_t size = std::max<std::size_t>(series.size, 1),
+                          batches = (all.size() + size - 1) / size;
       series.work = since(before, scene.backend->device_work());
       for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers,
                                 &DeviceWork::bytes_up, &DeviceWork::bytes_down})
@@ -137,7 +144,7 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
         } else {
           line.x.push_back(static_cast<double>(series.size));
           line.y.push_back(1e6 / us);
-          if (series.size == kSizes[std::size(kSizes) - 1]) chart.series.push_back(line);
+          if (series.size == options.largest_batch) chart.series.push_back(line);
         }
         auto& row = table.rows.emplace_back(std::vector<BenchCell>{
             name, backend, asked,
