@@ -55,6 +55,9 @@ class VulkanDevice {
   /// Device memory is host memory (lavapipe, integrated GPUs): buffers are written in place, without staging.
   bool unified() const { return unified_; }
 
+  /// The device is the host's own processor (lavapipe).
+  bool processor() const { return processor_; }
+
   /// Buffers lie in host memory that several devices may import at once (lavapipe): what one has made,
   /// another can use without a copy.
   bool shares_memory() const { return page_ != 0; }
@@ -120,7 +123,7 @@ class VulkanDevice {
   Limits limits_;
   std::string name_, driver_;
   bool unified_ = false;
-  bool processor_ = false;  ///< the host's own
+  bool processor_ = false;
   std::uint64_t page_ = 0;  ///< 0: does not share memory
   std::shared_ptr<GpuFault> fault_;
   std::mutex message_mutex_;

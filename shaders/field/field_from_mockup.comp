@@ -1,5 +1,5 @@
 #version 460
-// One invocation: a sample of the mock-up that counts; behind the last one's workgroup an extra one, which is
+// LANES invocations: a sample of the mock-up that counts; behind the last one's workgroup an extra one, which is
 // asked first whether it lies inside the tool. Adds how the tool's depth there pushes.
 // Reads samples or mockup_points, both bodies, the tool's fine partition. Writes field_work, carrier_work,
 // ignored patches.
@@ -61,34 +61,41 @@ bool inside_tool(ivec3 point, ivec3 at) {
   return CLOSED ? tool_winding(point) != 0 : body_vote_inside(at, voxel);
 }
 
-// False: nothing pushes.
-bool push_of(bool extra, uint32_t item, out Push push) {
-  ivec3 point;
+struct Asked {
+  ivec3 point, at;   // world lattice, tool lattice
   uint32_t entry, id, weight;
+};
+
+// False: it does not count.
+bool asked_of(bool extra, uint32_t item, out Asked asked) {
   if (extra) {
     const FieldPoint work = mockup_points[item];
-    point = work.point;
-    entry = work.triangle;
-    id = static_id(entry);
-    weight = work.weight;
-    take_pose(static_pose(entry));
+    asked.point = work.point;
+    asked.entry = work.triangle;
+    asked.id = static_id(asked.entry);
+    asked.weight = work.weight;
+    take_pose(static_pose(asked.entry));
   } else {
     const FrameSample work = frame_samples[item];
-    point = work.point;
-    entry = work.static_id;
-    id = static_id(entry);
-    take_pose(static_pose(entry));
+    asked.point = work.point;
+    asked.entry = work.static_id;
+    asked.id = static_id(asked.entry);
+    take_pose(static_pose(asked.entry));
     if (!in_contact()) return false;
-    const uint32_t axis = mockup_info[id] >> kInfoAxisShift & 3u;
-    const ivec2 ij =
-        cell_of_sample(ivec2(point[(axis + 1u) % 3u], point[(axis + 2u) % 3u]), scene.sample_spacing);
-    weight = uint32_t(mockup_weight(id, mockup_weights[id], ij) >> 6);
+    const uint32_t axis = mockup_info[asked.id] >> kInfoAxisShift & 3u;
+    const ivec2 ij = cell_of_sample(
+        ivec2(asked.point[(axis + 1u) % 3u], asked.point[(axis + 2u) % 3u]), scene.sample_spacing);
+    asked.weight = uint32_t(mockup_weight(asked.id, mockup_weights[asked.id], ij) >> 6);
   }
-  const ivec3 at = tool_from_world(point);
-  if (weight == 0u || (extra && !inside_tool(point, at))) return false;
-  const Depth depth = body_depth(at);
+  asked.at = tool_from_world(asked.point);
+  return asked.weight != 0u && (!extra || inside_tool(asked.point, asked.at));
+}
+
+// False: nothing pushes.
+bool push_of(Asked asked, Depth depth, out Push push) {
+  const uint32_t entry = asked.entry, id = asked.id, weight = asked.weight;
   if (depth.triangle == kNone || is_ignored(id)) return false;
-  push.at = point;
+  push.at = asked.point;
   push.against = -turned(body_normals[depth.triangle]);
   push.sheet = (mockup_info[id] & kInfoSheet) != 0u;
   push.along = push.sheet ? push.against : mockup_normals[id];
@@ -108,10 +115,13 @@ bool push_of(bool extra, uint32_t item, out Push push) {
 
 void main() {
   const uint32_t samples = list_count(kListSamples), rounded = groups_to(samples) * kGroupSize;
-  const uint32_t i = flat_invocation();
+  const uint32_t i = pushing_item();
   const bool extra = i >= rounded;
+  Asked asked;
+  const bool counts = (extra ? i - rounded < list_count(kListMockupPoints) : i < samples) &&
+                      asked_of(extra, extra ? i - rounded : i, asked);
+  const Depth depth = body_depth(counts, asked.at);
   Push push;
-  const bool pushes = (extra ? i - rounded < list_count(kListMockupPoints) : i < samples) &&
-                      push_of(extra, extra ? i - rounded : i, push);
+  const bool pushes = counts && speaks() && push_of(asked, depth, push);
   add_pushes(pushes, push);
 }

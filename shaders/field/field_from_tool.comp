@@ -1,5 +1,5 @@
 #version 460
-// One invocation: a sample of a triangle of C_m in a V_bnd or V_int voxel of the mock-up, or an extra one.
+// LANES invocations: a sample of a triangle of C_m in a V_bnd or V_int voxel of the mock-up, or an extra one.
 // Where it lies inside, adds how the mock-up's depth there pushes.
 // Reads tool_points, both bodies, the mock-up's partition. Writes field_work, ignored patches.
 // Before: field_points; the list is closed.
@@ -53,16 +53,18 @@ bool inside_mockup(ivec3 point) {
   return CLOSED ? body_winding_inside(point, voxel) : body_vote_inside(point, voxel);
 }
 
-// False: nothing pushes.
-bool push_of(uint32_t item, out Push push) {
-  const FieldPoint work = tool_points[item];
-  const uint32_t mobile = mobile_id(work.triangle);
+// Whether it lies inside the mock-up.
+bool is_inside(FieldPoint work) {
   take_pose(mobile_pose(work.triangle));
   // What touches nothing is on one side of the mock-up, with its first corner.
   const bool hit = (mobile_state[work.triangle] & kMobileHit) != 0u;
-  if (!inside_mockup(hit ? work.point : world_from_tool(tool_vertices[tool_triangles[mobile].x])))
-    return false;
-  const Depth depth = body_depth(work.point);
+  return inside_mockup(hit ? work.point
+                           : world_from_tool(tool_vertices[tool_triangles[mobile_id(work.triangle)].x]));
+}
+
+// False: nothing pushes.
+bool push_of(FieldPoint work, Depth depth, out Push push) {
+  const uint32_t mobile = mobile_id(work.triangle);
   if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
   push.at = work.point;
   push.against = body_normals[depth.triangle];
@@ -82,8 +84,15 @@ bool push_of(uint32_t item, out Push push) {
 }
 
 void main() {
-  const uint32_t item = flat_invocation();
+  const uint32_t item = pushing_item();
+  FieldPoint work;
+  bool inside = item < list_count(kListToolPoints);
+  if (inside) {
+    work = tool_points[item];
+    inside = is_inside(work);
+  }
+  const Depth depth = body_depth(inside, work.point);
   Push push;
-  const bool pushes = item < list_count(kListToolPoints) && push_of(item, push);
+  const bool pushes = inside && speaks() && push_of(work, depth, push);
   add_pushes(pushes, push);
 }

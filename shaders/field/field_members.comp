@@ -46,8 +46,9 @@ void list_static_extras(uint32_t id, uint32_t entry) {
     if (at >= frame_lists[kListMockupPoints].capacity) continue;
     mockup_points[at] = FieldPoint(mockup_extras[first + i].point, entry, weight);
     if (begins_group(at, 1u))
-      grow_placed_groups(kGroupsMockupPush,
-                         groups_to(list_count(kListSamples)) + groups_to(at + 1u));  // behind the samples
+      grow_placed_groups_deep(kGroupsMockupPush,
+                              groups_to(list_count(kListSamples)) + groups_to(at + 1u),  // behind the samples
+                              LANES);
   }
 }
 
@@ -60,7 +61,7 @@ void list_mobile_extras(uint32_t mobile, uint32_t entry) {
     const uint32_t at = take_room(kListToolPoints, 1u);
     if (at >= frame_lists[kListToolPoints].capacity) continue;
     tool_points[at] = FieldPoint(world_from_tool(tool_extras[first + i].point), entry, weight);
-    if (begins_group(at, 1u)) grow_pushed_groups(0u, groups_to(at + 1u));
+    if (begins_group(at, 1u)) grow_pushed_groups_deep(0u, groups_to(at + 1u), LANES);
   }
 }
 

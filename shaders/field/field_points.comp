@@ -51,7 +51,7 @@ void take(FieldTile tile, uint32_t mobile, SampledTriangle triangle, uint32_t ce
   const uint32_t at = take_room(kListToolPoints, 1u);
   if (at >= frame_lists[kListToolPoints].capacity) return;
   tool_points[at] = FieldPoint(p, tile.mobile, weight);
-  if (begins_group(at, 1u)) grow_pushed_groups(0u, groups_to(at + 1u));
+  if (begins_group(at, 1u)) grow_pushed_groups_deep(0u, groups_to(at + 1u), LANES);
 }
 
 void main() {

@@ -9,6 +9,13 @@
 
 layout(constant_id = 8) const bool CARRIERS = true;   // somebody wants to know what each triangle carries
 
+// Of a stage whose groups are LANES deep along z: the item of LANES invocations that follow each other, and
+// which of them says what it pushes.
+uint32_t pushing_item() {
+  return flat_group() * kGroupSize + (gl_WorkGroupID.z * kGroupSize + gl_LocalInvocationIndex) / LANES;
+}
+bool speaks() { return gl_LocalInvocationIndex % LANES == 0u; }
+
 // A sample inside the other body.
 struct Push {
   ivec3 at;            // world lattice

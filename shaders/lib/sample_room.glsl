@@ -11,7 +11,7 @@ bool take_sample(out uint32_t at) {
   at = take_room(kListSamples, 1u);
   if (BATCH) atomicAdd(frame_state.samples, 1u);
   if (at >= frame_lists[kListSamples].capacity) return false;
-  if (begins_group(at, 1u)) grow_placed_groups(kGroupsMockupPush, groups_to(at + 1u));
+  if (begins_group(at, 1u)) grow_placed_groups_deep(kGroupsMockupPush, groups_to(at + 1u), LANES);
   return true;
 }
 #endif

@@ -44,6 +44,7 @@ PALPATE_CONSTANT uint32_t kListToolPoints = 18u;
 PALPATE_CONSTANT uint32_t kFieldTile = 64u;      // most cells of a tile of tool samples
 PALPATE_CONSTANT uint32_t kFieldTileLanes = 8u;  // invocations that go through it (chosen: most triangles
                                                  // have no more cells, and llvmpipe takes eight at once)
+PALPATE_CONSTANT uint32_t kLanesConstant = 21;   // id of LANES (lib/frame.glsl)
 PALPATE_CONSTANT int32_t kDepthSlack = 16;       // steps by which a distance may be off, and more (section 4)
 
 // ---- structs

@@ -8,6 +8,7 @@
 #include "compute/scene/tool_order.h"
 #include "shaders/code.h"
 #include "shaders/shared/frame_batch.h"
+#include "shaders/shared/frame_field.h"
 
 namespace palpate {
 
@@ -189,6 +190,8 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   if (device.shares_memory() || batch_) brick_groups_ = 2;
   std::vector<SpecConstant> plan = plan_constants(plan_);
   if (batch_) plan.push_back({kBatchConstant, 1});
+  if (const std::uint32_t lanes = depth_lanes(device, batch_); lanes > 1)
+    plan.push_back({kLanesConstant, lanes});
   const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}}, of_points[] = {{0, wide_ ? 1u : 0u}},
                      of_search[] = {{0, !inside_  ? 0u
                                         : listed_ ? 2u

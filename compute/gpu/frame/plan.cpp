@@ -5,6 +5,10 @@
 namespace palpate {
 namespace {
 
+// A GPU has far more invocations than a contact has samples, and each waits for its loads (chosen, not yet
+// measured).
+constexpr std::uint32_t kLanesOfGpu = 16;
+
 bool turned(const LatticePose& pose) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c)
@@ -27,6 +31,10 @@ std::vector<SpecConstant> plan_constants(const Plan& plan) {
   if (!plan.zones) out.push_back({18, 0});
   if (!plan.contact_point) out.push_back({19, 0});
   return out;
+}
+
+std::uint32_t depth_lanes(const VulkanDevice& device, bool batch) {
+  return device.processor() || batch ? 1 : kLanesOfGpu;
 }
 
 std::uint32_t flags_of_frames(const gpu::SceneConstants& scene) {

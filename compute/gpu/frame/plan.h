@@ -1,6 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <vector>
 
+#include "compute/vulkan/device.h"
 #include "compute/vulkan/pipeline.h"
 #include "model/contact/contacts.h"
 #include "model/lattice/lattice.h"
@@ -18,6 +20,9 @@ Plan frame_plan(const Plan& plan, bool has_internal);
 /// The constants of shaders/lib/plan.glsl that differ from what stands there, so that the whole plan's
 /// pipelines need none.
 std::vector<SpecConstant> plan_constants(const Plan& plan);
+
+/// How many invocations look for a sample's depth together (constant LANES).
+std::uint32_t depth_lanes(const VulkanDevice& device, bool batch);
 
 /// ContactFlag bits of every answer within the lattice.
 std::uint32_t flags_of_frames(const gpu::SceneConstants& scene);

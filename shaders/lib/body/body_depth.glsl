@@ -118,9 +118,12 @@ uint32_t word_bits(int32_t y, ivec3 low, ivec3 high) {
   return row * 0x01010101u & 0xFFFFFFFFu >> uint32_t(8 * (3 - end)) & 0xFFFFFFFFu << uint32_t(8 * first);
 }
 
-Depth body_depth(ivec3 p) {
-  Depth best = Depth(0x7FFFFFFF, kNone);
-  NearTriangles near = none_near(reach_along_axes(p, body_voxel_of(p)));
+const Depth kNoDepth = Depth(0x7FFFFFFF, kNone);
+
+// Of those within reach, `part` and every LANES-th entry of a list from there on.
+Depth nearest_within(float reach, ivec3 p, uint32_t part) {
+  Depth best = kNoDepth;
+  NearTriangles near = none_near(reach);
 
   // All voxels within reach of what was found, brick by brick, as far as they may hold something nearer.
   const int32_t size = BODY_GRID.size;
@@ -140,7 +143,7 @@ Depth body_depth(ivec3 p) {
     while (room && !spent(1u)) {
       if (entry < last) {
         room = keep_near(body_list[entry], p, near);
-        entry += uint32_t(room);
+        entry += room ? LANES : 0u;
       } else if (bits != 0u) {
         const uint32_t bit = uint32_t(findLSB(bits));
         bits &= bits - 1u;
@@ -149,7 +152,7 @@ Depth body_depth(ivec3 p) {
         if (!reaches(near.reach, p, corner, corner + size)) continue;
         const uint32_t boundary =
             body_bricks[slot].first[word] + uint32_t(bitCount(whole & ((1u << bit) - 1u)));
-        entry = body_list_begin[boundary];
+        entry = body_list_begin[boundary] + part;
         last = body_list_begin[boundary + 1u];
       } else if (word + 1u < words) {
         ++word;
@@ -177,6 +180,38 @@ Depth body_depth(ivec3 p) {
     decide_nearest(p, near, best);
     near = none_near(min(near.reach, float(best.steps) + float(2 * kDepthSlack)));
   }
+  return best;
+}
+
+// What the invocations of a workgroup have found, which look for a point's depth together.
+shared float found_reach[kGroupSize];
+shared int32_t found_steps[kGroupSize];
+shared uint32_t found_nearest[kGroupSize];
+
+// Of the whole workgroup, LANES invocations that follow each other with the same point, and `asks` false where
+// they have none.
+Depth body_depth(bool asks, ivec3 p) {
+  if (LANES == 1u) return asks ? nearest_within(reach_along_axes(p, body_voxel_of(p)), p, 0u) : kNoDepth;
+  const uint32_t lane = gl_LocalInvocationIndex, part = lane % LANES, first = lane - part;
+  float reach = kFar;
+  const uint32_t home = asks ? body_boundary_index(body_voxel_of(p)) : kNoVoxel;
+  if (home != kNoVoxel)
+    for (uint32_t i = body_list_begin[home] + part; i < body_list_begin[home + 1u] && !spent(1u); i += LANES)
+      reach = min(reach, bounds_of(body_list[i], p).most);
+  found_reach[lane] = reach;
+  barrier();
+  for (uint32_t i = 0u; i < LANES; ++i) reach = min(reach, found_reach[first + i]);
+  Depth best = kNoDepth;
+  if (asks) {
+    if (reach == kFar) reach = reach_along_axes(p, body_voxel_of(p));
+    best = nearest_within(reach, p, part);
+  }
+  found_steps[lane] = best.steps;
+  found_nearest[lane] = best.triangle;
+  barrier();
+  for (uint32_t i = first; i < first + LANES; ++i)
+    if (found_steps[i] < best.steps || (found_steps[i] == best.steps && found_nearest[i] < best.triangle))
+      best = Depth(found_steps[i], found_nearest[i]);
   return best;
 }
 #endif
