@@ -11,9 +11,9 @@
 #include <thread>
 
 #include "generated/commit.h"
-#include "service/bench/chart_svg.h"
 #include "service/cli/scene_host.h"
 #include "service/cli/text_output.h"
+#include "service/report/chart_svg.h"
 #include "service/report/markup.h"
 #include "service/report/provenance.h"
 #include "service/report/report_assets.h"
@@ -101,7 +101,7 @@ std::string findings_of(const BenchFacts& facts, const std::string& group) {
   return out.empty() ? out : "<ul class=\"findings\">" + out + "</ul>";
 }
 
-std::string figure(const BenchChart& chart, std::size_t number) {
+std::string figure(const Chart& chart, std::size_t number) {
   std::string out = "<figure class=\"bench\" id=\"" + anchor(number) + "\"><div class=\"picture scroll\">" +
                     chart_svg(chart) + "</div>";
   if (!chart.caption.empty()) out += "<p class=\"note\">" + markup_text(chart.caption) + "</p>";
@@ -111,7 +111,7 @@ std::string figure(const BenchChart& chart, std::size_t number) {
 /// A page without scripts: contents, what the figures say, the charts with their captions, what was measured
 /// on, the figures folded. Where charts have chapters, the contents name those.
 std::string page(const BenchFacts& facts, const Json& head, const BenchTable& table,
-                 const std::vector<BenchChart>& charts) {
+                 const std::vector<Chart>& charts) {
   const std::string title = "palpate bench " + head["bench"].get<std::string>();
   std::string body = "<header><h1>" + markup_text(title) + "</h1><p>" +
                      markup_text(head["device"].get<std::string>()) + "</p></header>";
@@ -205,7 +205,7 @@ double load_average() {
 }
 
 Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table,
-                         const std::vector<BenchChart>& charts) {
+                         const std::vector<Chart>& charts) {
   const std::filesystem::path root = directory;
   std::error_code error;
   std::filesystem::create_directories(root, error);

@@ -12,6 +12,7 @@
 #include "service/bench/bench.h"
 #include "service/cli/cli.h"
 #include "service/cli/console.h"
+#include "service/report/chart_svg.h"
 
 namespace palpate {
 
@@ -31,37 +32,6 @@ std::vector<BenchCell> work_cells(const DeviceWork& work);
 struct BenchTable {
   std::vector<std::string> columns;
   std::vector<std::vector<BenchCell>> rows;
-};
-
-/// A picture of the report. Bars: `labels` and a value a label in each series' y. Lines: points (x, y). A
-/// map: `labels` are its columns, each series a row of it, the colour of a cell the logarithm of its value.
-struct BenchChart {
-  enum class Marker : std::uint8_t { kCircle, kSquare, kTriangle, kDiamond, kCross, kNone };
-  struct Series {
-    std::string label;
-    std::vector<double> x, y;
-    bool expected = false;  ///< lines: what theory says of the series before it, in its ink, dashed
-    std::optional<std::size_t> ink{};  ///< number of a colour; empty: the series' own
-    Marker marker = Marker::kCircle;
-    bool dashed = false, line = true;  ///< line false: markers alone
-    bool guide = false;                ///< thin and grey: a slope to compare with
-    std::vector<std::string> names{};  ///< beside the points, one each; may be empty
-  };
-  struct Rule {
-    double x = 0;
-    std::string label;
-  };
-  std::string title, unit;
-  std::vector<std::string> labels;  ///< empty: lines
-  std::vector<Series> series;
-  bool stacked = false, log_x = false, log_y = false;
-  std::string x_title, y_title = {};  ///< y_title: of a map
-  bool map = false;
-  double map_low = 0, map_high = 0;  ///< of a map's colours; 0: from its values
-  std::string caption = {};          ///< below it in the report: what is shown, and how it is meant
-  std::vector<Rule> rules = {};      ///< upright lines
-  double y_most = 0;  ///< what lies above is marked at the upper edge, as diverged; 0: everything is shown
-  std::string group = {};  ///< chapter of the report that it stands in; empty: none
 };
 
 /// What figures belong to.
@@ -93,6 +63,6 @@ Result<std::unique_ptr<CollisionBackend>> bench_backend(const BenchOptions& opti
 /// missing), each with machine, device, commit and version, and prints the table. CSV: `table`'s columns and
 /// then machine, device, commit.
 Result<void> write_bench(const std::string& directory, const BenchFacts& facts, const BenchTable& table,
-                         const std::vector<BenchChart>& charts);
+                         const std::vector<Chart>& charts);
 
 }  // namespace palpate

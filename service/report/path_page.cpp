@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "service/bench/chart_svg.h"
 #include "service/cli/numbers.h"
+#include "service/report/chart_svg.h"
 #include "service/report/markup.h"
 #include "service/report/report_assets.h"
 #include "service/report/section_svg.h"
@@ -80,7 +80,7 @@ std::string pictures(const LoadedScene& scene, const PathMoment& moment, const s
 
 std::string chart(const PathReport& report, const char* title, const char* label,
                   const std::function<std::optional<double>(const PathMoment&)>& value) {
-  BenchChart out{.title = title, .unit = "mm", .labels = {}, .series = {{label, {}, {}}}, .x_title = "pose"};
+  Chart out{.title = title, .unit = "mm", .labels = {}, .series = {{label, {}, {}}}, .x_title = "pose"};
   for (std::size_t i = 0; i < report.moments.size(); ++i)
     if (const auto v = value(report.moments[i])) {
       out.series[0].x.push_back(static_cast<double>(i));

@@ -1,8 +1,8 @@
-#include "service/bench/chart_svg.h"
+#include "service/report/chart_svg.h"
 
 #include <gtest/gtest.h>
 
-#include "service/bench/chart_axis.h"
+#include "service/report/chart_axis.h"
 
 namespace palpate {
 namespace {
@@ -14,7 +14,7 @@ std::size_t count(const std::string& text, const std::string& word) {
 }
 
 TEST(ChartSvg, DrawsWhatTheoryExpectsDashedInTheInkOfWhatItIsOf) {
-  BenchChart chart;
+  Chart chart;
   chart.title = "K < all & more";
   chart.log_x = chart.log_y = true;
   chart.series = {
@@ -27,7 +27,7 @@ TEST(ChartSvg, DrawsWhatTheoryExpectsDashedInTheInkOfWhatItIsOf) {
 }
 
 TEST(ChartSvg, AMapHasACellAValueAndDarkensWithIt) {
-  BenchChart chart;
+  Chart chart;
   chart.map = true;
   chart.labels = {"1", "2", "5"};
   chart.series = {{"n 1", {}, {10, 100, 1000}}, {"n 2", {}, {20, 200, 0}}};
@@ -42,7 +42,7 @@ TEST(ChartSvg, AMapHasACellAValueAndDarkensWithIt) {
 }
 
 TEST(ChartSvg, BarsStandBesideOrOnEachOther) {
-  BenchChart chart;
+  Chart chart;
   chart.labels = {"a", "b"};
   chart.series = {{"x", {}, {1, 2}}, {"y", {}, {3, 0}}};
   const std::string beside = chart_svg(chart);
@@ -64,7 +64,7 @@ TEST(ChartSvg, TicksAreWrittenAsPeopleWriteThem) {
 }
 
 TEST(ChartSvg, WhatDivergedIsMarkedAtTheEdgeAndStretchesNoAxis) {
-  BenchChart chart;
+  Chart chart;
   chart.log_y = true;
   chart.y_most = 10;
   chart.series = {{"a", {1, 2, 3}, {1, 5, 1e104}}};

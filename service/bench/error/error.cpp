@@ -549,7 +549,7 @@ class ErrorBench {
       leads_;  ///< by engine that knows paper: of each subject and its poses
   BenchFacts facts_{.command = "error", .device = {}, .more = {}};
   BenchTable table_ = columns();
-  std::vector<BenchChart> charts_;
+  std::vector<Chart> charts_;
 };
 
 }  // namespace

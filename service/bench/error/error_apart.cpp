@@ -24,13 +24,13 @@ void ErrorApart::rows(const std::string& scene, const std::string& method, const
 }
 
 void ErrorApart::tessellation() {
-  BenchChart chart{.title = "sphere_plane: error of d by tessellation alone",
-                   .unit = "m",
-                   .labels = {},
-                   .series = {{"p50", {}, {}}, {"p99", {}, {}}},
-                   .log_x = true,
-                   .log_y = true,
-                   .x_title = "triangles of the ball"};
+  Chart chart{.title = "sphere_plane: error of d by tessellation alone",
+              .unit = "m",
+              .labels = {},
+              .series = {{"p50", {}, {}}, {"p99", {}, {}}},
+              .log_x = true,
+              .log_y = true,
+              .x_title = "triangles of the ball"};
   std::vector<std::pair<double, double>> curve;
   for (const std::uint64_t triangles : {80u, 320u, 1280u, 5120u, 20480u, 81920u}) {
     const std::vector<double> errors = tessellation_errors(triangles);
@@ -53,7 +53,7 @@ void ErrorApart::tessellation() {
 }
 
 void ErrorApart::control() {
-  const auto add = [&](LawKind law, int age, int n, const char* knob, double value, BenchChart& chart) {
+  const auto add = [&](LawKind law, int age, int n, const char* knob, double value, Chart& chart) {
     const ControlError result = control_error(law, age, n);
     const char* name = law == LawKind::kHold ? "hold" : law == LawKind::kPrinted ? "printed" : "corrected";
     rows("control", name, knob, value, "F_N", result.errors_n, result.step_us, result.step_us);
@@ -68,20 +68,20 @@ void ErrorApart::control() {
       series->y.push_back(error);
     }
   };
-  BenchChart ages{.title = "control: force felt against force at zero delay, n = age",
-                  .unit = "N",
-                  .labels = {},
-                  .series = {},
-                  .log_x = true,
-                  .log_y = true,
-                  .x_title = "age of results, ticks"};
-  BenchChart ramps{.title = "control: the same with results 10 ticks old, over n",
-                   .unit = "N",
-                   .labels = {},
-                   .series = {},
-                   .log_x = true,
-                   .log_y = true,
-                   .x_title = "n, ticks"};
+  Chart ages{.title = "control: force felt against force at zero delay, n = age",
+             .unit = "N",
+             .labels = {},
+             .series = {},
+             .log_x = true,
+             .log_y = true,
+             .x_title = "age of results, ticks"};
+  Chart ramps{.title = "control: the same with results 10 ticks old, over n",
+              .unit = "N",
+              .labels = {},
+              .series = {},
+              .log_x = true,
+              .log_y = true,
+              .x_title = "n, ticks"};
   for (const LawKind law : {LawKind::kHold, LawKind::kPrinted, LawKind::kCorrected}) {
     for (const int age : {1, 2, 3, 5, 10, 20, 50}) add(law, age, age, "age", age, ages);
     if (law == LawKind::kHold) continue;
@@ -105,13 +105,13 @@ Result<void> ErrorApart::lattice_step(CollisionBackend& backend, bool cpu_clock,
   std::vector<std::optional<ContactTruth>> truths;
   for (const Pose& pose : corner.poses) truths.emplace_back(corner.field_truth(pose));
   const double reference_area = 0.02 * 0.02 / 64;  // of a cube of 20 mm
-  BenchChart chart{.title = "corner_plane: error of d over the step between numbers",
-                   .unit = "m",
-                   .labels = {},
-                   .series = {{"palpate", {}, {}}, {"fp32", {}, {}}, {"fp64", {}, {}}},
-                   .log_x = true,
-                   .log_y = true,
-                   .x_title = "step, m"};
+  Chart chart{.title = "corner_plane: error of d over the step between numbers",
+              .unit = "m",
+              .labels = {},
+              .series = {{"palpate", {}, {}}, {"fp32", {}, {}}, {"fp64", {}, {}}},
+              .log_x = true,
+              .log_y = true,
+              .x_title = "step, m"};
   const auto put = [&](std::size_t k, const char* method, double step, const std::vector<double>& errors,
                        double us50, double us99) {
     rows("corner_plane", method, "lattice_step", step, "d_m", errors, us50, us99);

@@ -9,7 +9,7 @@ namespace palpate {
 /// What stands apart from methods and knobs of `bench error`: rows, charts and facts are added to its own.
 struct ErrorApart {
   BenchTable& table;
-  std::vector<BenchChart>& charts;
+  std::vector<Chart>& charts;
   BenchFacts& facts;
 
   /// What a ball's triangles cost by themselves: no method can be nearer to the round ball than its mesh is.

@@ -17,11 +17,11 @@ const char* method_of(const ErrorPoint& point) {
   return point.setting.profile == Profile::kPaper ? "paper" : "refined";
 }
 
-BenchChart::Marker marker_of(const std::string& knob) {
-  return knob == "sample_spacing"    ? BenchChart::Marker::kCircle
-         : knob == "voxel_size"      ? BenchChart::Marker::kSquare
-         : knob == "contact_samples" ? BenchChart::Marker::kDiamond
-                                     : BenchChart::Marker::kTriangle;
+Chart::Marker marker_of(const std::string& knob) {
+  return knob == "sample_spacing"    ? Chart::Marker::kCircle
+         : knob == "voxel_size"      ? Chart::Marker::kSquare
+         : knob == "contact_samples" ? Chart::Marker::kDiamond
+                                     : Chart::Marker::kTriangle;
 }
 
 /// Millimetres of what is a length, else a number.
@@ -110,16 +110,16 @@ double own_error(double finest_error, double finest_spacing, double truth_spacin
   return rest < 1 ? finest_error * rest / (1 - rest) : HUGE_VAL;
 }
 
-BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
-                            std::size_t quantity) {
-  BenchChart chart{.title = fmt::format("{}, engine {}: error of {} against time", subject, curves.engine,
-                                        kNames[quantity]),
-                   .unit = unit_of(quantity),
-                   .labels = {},
-                   .series = {},
-                   .log_x = true,
-                   .log_y = true,
-                   .x_title = "median time of a frame, µs"};
+Chart error_time_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
+                       std::size_t quantity) {
+  Chart chart{.title = fmt::format("{}, engine {}: error of {} against time", subject, curves.engine,
+                                   kNames[quantity]),
+              .unit = unit_of(quantity),
+              .labels = {},
+              .series = {},
+              .log_x = true,
+              .log_y = true,
+              .x_title = "median time of a frame, µs"};
   chart.rules = {{kMillisecond, "1 ms"}};
   chart.group = subject;
   chart.y_most = 10 * truths.largest[quantity];
@@ -132,7 +132,7 @@ BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curve
       auto series = std::find_if(chart.series.begin(), chart.series.end(),
                                  [&](const auto& s) { return s.label == label; });
       if (series == chart.series.end()) {
-        BenchChart::Series fresh{.label = label, .x = {}, .y = {}};
+        Chart::Series fresh{.label = label, .x = {}, .y = {}};
         fresh.ink = point.setting.profile == Profile::kPaper ? 2 : 0;
         fresh.marker = marker_of(point.setting.knob);
         fresh.dashed = fraction > 0.5;
@@ -151,9 +151,9 @@ BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curve
     if (const double error = shown(point, truths, quantity, 0.5); error > 0 && error <= chart.y_most)
       medians.emplace_back(percentile(point.result.times_us, 0.5), error);
   std::sort(medians.begin(), medians.end());
-  BenchChart::Series front{.label = "Pareto front of the medians", .x = {}, .y = {}};
+  Chart::Series front{.label = "Pareto front of the medians", .x = {}, .y = {}};
   front.guide = true;
-  front.marker = BenchChart::Marker::kNone;
+  front.marker = Chart::Marker::kNone;
   for (const auto& [us, error] : medians)
     if (front.y.empty() || error < front.y.back()) {
       if (!front.y.empty()) front.x.push_back(us), front.y.push_back(front.y.back());
@@ -170,21 +170,21 @@ BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curve
   return chart;
 }
 
-BenchChart convergence_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
-                             std::size_t quantity) {
-  BenchChart chart{.title = fmt::format("{}: convergence of {}", subject, kNames[quantity]),
-                   .unit = kUnits[quantity],
-                   .labels = {},
-                   .series = {},
-                   .log_x = true,
-                   .log_y = true,
-                   .x_title = "sample spacing h, mm"};
+Chart convergence_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
+                        std::size_t quantity) {
+  Chart chart{.title = fmt::format("{}: convergence of {}", subject, kNames[quantity]),
+              .unit = kUnits[quantity],
+              .labels = {},
+              .series = {},
+              .log_x = true,
+              .log_y = true,
+              .x_title = "sample spacing h, mm"};
   chart.group = subject;
   std::string orders;
   double coarsest = 0, from = 0, to = HUGE_VAL;
   for (const double fraction : {0.5, 0.99}) {
     const auto curve = over_spacing(curves, quantity, fraction);
-    BenchChart::Series series{.label = fmt::format("refined, p{:.0f}", 100 * fraction), .x = {}, .y = {}};
+    Chart::Series series{.label = fmt::format("refined, p{:.0f}", 100 * fraction), .x = {}, .y = {}};
     series.ink = 0;
     series.dashed = fraction > 0.5;
     for (const auto& [spacing, error] : curve) {
@@ -201,9 +201,9 @@ BenchChart convergence_chart(const std::string& subject, const ErrorCurves& curv
   }
   if (coarsest > 0)
     for (const int slope : {1, 2}) {
-      BenchChart::Series guide{.label = fmt::format("order {}", slope), .x = {from, to}, .y = {}};
+      Chart::Series guide{.label = fmt::format("order {}", slope), .x = {from, to}, .y = {}};
       guide.guide = guide.dashed = true;
-      guide.marker = BenchChart::Marker::kNone;
+      guide.marker = Chart::Marker::kNone;
       guide.y = {coarsest, coarsest * std::pow(to / from, slope)};
       chart.series.push_back(std::move(guide));
     }
@@ -212,18 +212,18 @@ BenchChart convergence_chart(const std::string& subject, const ErrorCurves& curv
   return chart;
 }
 
-BenchChart engines_chart(const std::string& subject, const std::vector<ErrorCurves>& engines) {
-  BenchChart chart{.title = subject + ": engines, refined over the sample spacing",
-                   .unit = "error of F, p50, N",
-                   .labels = {},
-                   .series = {},
-                   .log_x = true,
-                   .log_y = true,
-                   .x_title = "median time of a frame, µs"};
+Chart engines_chart(const std::string& subject, const std::vector<ErrorCurves>& engines) {
+  Chart chart{.title = subject + ": engines, refined over the sample spacing",
+              .unit = "error of F, p50, N",
+              .labels = {},
+              .series = {},
+              .log_x = true,
+              .log_y = true,
+              .x_title = "median time of a frame, µs"};
   chart.rules = {{kMillisecond, "1 ms"}};
   chart.group = subject;
   for (const ErrorCurves& curves : engines) {
-    BenchChart::Series series{.label = curves.engine, .x = {}, .y = {}};
+    Chart::Series series{.label = curves.engine, .x = {}, .y = {}};
     for (const ErrorPoint& point : curves.points) {
       if (point.setting.knob != "sample_spacing") continue;
       series.x.push_back(percentile(point.result.times_us, 0.5));

@@ -53,14 +53,14 @@ double own_error(double finest_error, double finest_spacing, double truth_spacin
 
 /// Error of a quantity against the median time of a frame: a colour a method, a marker a knob, the line's
 /// style a percentile, the knob's value at each point, 1 ms, the Pareto front of the medians.
-BenchChart error_time_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
-                            std::size_t quantity);
+Chart error_time_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
+                       std::size_t quantity);
 
 /// Error of a quantity against the sample spacing, with slopes of order one and two to compare with.
-BenchChart convergence_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
-                             std::size_t quantity);
+Chart convergence_chart(const std::string& subject, const ErrorCurves& curves, const ErrorTruths& truths,
+                        std::size_t quantity);
 
 /// Engines beside each other: the median error of F of `refined` over spacings, against the median time.
-BenchChart engines_chart(const std::string& subject, const std::vector<ErrorCurves>& engines);
+Chart engines_chart(const std::string& subject, const std::vector<ErrorCurves>& engines);
 
 }  // namespace palpate

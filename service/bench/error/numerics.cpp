@@ -427,28 +427,28 @@ class NumericsBench {
     }
   }
 
-  std::vector<BenchChart> charts() const {
-    std::vector<BenchChart> out;
+  std::vector<Chart> charts() const {
+    std::vector<Chart> out;
     for (const auto& [name, all] : seen_) {
-      BenchChart chart{.title = "Relative error of the force: " + name,
-                       .unit = "",
-                       .labels = {},
-                       .series = {},
-                       .log_x = true,
-                       .log_y = true,
-                       .x_title = all.front().parameter};
+      Chart chart{.title = "Relative error of the force: " + name,
+                  .unit = "",
+                  .labels = {},
+                  .series = {},
+                  .log_x = true,
+                  .log_y = true,
+                  .x_title = all.front().parameter};
       // A colour a precision; circles where it held, crosses where it is lost, triangles at 100 % where it
       // refused.
       std::size_t ink = 0;
       for (const char* precision : kPrecisions) {
-        BenchChart::Series line{.label = precision, .x = {}, .y = {}};
+        Chart::Series line{.label = precision, .x = {}, .y = {}};
         line.ink = ink;
-        BenchChart::Series lost{.label = std::string(precision) + ", lost", .x = {}, .y = {}}, refused = lost;
+        Chart::Series lost{.label = std::string(precision) + ", lost", .x = {}, .y = {}}, refused = lost;
         lost.ink = refused.ink = ink++;
         lost.line = refused.line = false;
-        lost.marker = BenchChart::Marker::kCross;
+        lost.marker = Chart::Marker::kCross;
         refused.label = std::string(precision) + ", refused";
-        refused.marker = BenchChart::Marker::kTriangle;
+        refused.marker = Chart::Marker::kTriangle;
         for (const Seen& seen : all) {
           if (seen.precision != precision || !(seen.value > 0)) continue;
           if (seen.outcome.text.starts_with("refused")) {
@@ -457,7 +457,7 @@ class NumericsBench {
             continue;
           }
           if (!(seen.outcome.error > 0) || !std::isfinite(seen.outcome.error)) continue;
-          for (BenchChart::Series* series : {&line, &lost})
+          for (Chart::Series* series : {&line, &lost})
             if (series == &line || seen.outcome.text != "held") {
               series->x.push_back(seen.value);
               series->y.push_back(seen.outcome.error);

@@ -24,12 +24,12 @@ void add_row(BenchTable& table, const std::string& name, const std::string& back
                         std::uint64_t{f.made_up}, std::uint64_t{f.unsettled}, broken});
 }
 
-BenchChart chart_of(const std::string& name) {
+Chart chart_of(const std::string& name) {
   return {.title = name, .unit = "N", .labels = {}, .series = {}, .x_title = "pose"};
 }
 
-void add_line(BenchChart& chart, const std::string& label, const ForceFigures& figures) {
-  BenchChart::Series line{label, {}, {}};
+void add_line(Chart& chart, const std::string& label, const ForceFigures& figures) {
+  Chart::Series line{label, {}, {}};
   for (std::size_t i = 0; i < figures.force_n.size(); ++i) {
     line.x.push_back(static_cast<double>(i));
     line.y.push_back(figures.force_n[i]);
@@ -47,7 +47,7 @@ Result<void> bench_force(const BenchOptions& options, const Parts& parts) {
       {"case", "backend", "profile", "voxels", "touching", "largest_n", "largest_step", "loop_percent",
        "antisymmetry_percent", "loss_percent", "reversals", "no_direction", "unsettled", "broken"},
       {}};
-  std::vector<BenchChart> charts;
+  std::vector<Chart> charts;
   const std::vector<Profile> profiles =
       options.profile ? std::vector{*options.profile} : std::vector{Profile::kRefined, Profile::kPaper};
   std::size_t judged = 0, broken = 0;
@@ -57,7 +57,7 @@ Result<void> bench_force(const BenchOptions& options, const Parts& parts) {
     const std::vector<ForceCaseMaker> cases = force_cases();
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const ForceCase subject = cases[i].make();
-      BenchChart chart = chart_of(subject.name);
+      Chart chart = chart_of(subject.name);
       for (const Profile profile : profiles)
         for (const double voxels :
              profile == Profile::kRefined ? std::vector{1.0, 0.5, 2.0} : std::vector{1.0}) {

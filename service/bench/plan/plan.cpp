@@ -27,7 +27,7 @@ class PlanBench {
     for (const PlanSubject& subject : plan_subjects())
       if (auto done = one(subject); !done)
         return Error{done.error().code, subject.name + ": " + done.error().sentence};
-    for (BenchChart* chart : {&time_, &memory_}) chart->series = {{"whole", {}, {}}, {"lean", {}, {}}};
+    for (Chart* chart : {&time_, &memory_}) chart->series = {{"whole", {}, {}}, {"lean", {}, {}}};
     for (std::size_t k = 0; k < names_.size(); ++k)
       for (std::size_t lean = 0; lean < 2; ++lean) {
         time_.series[lean].y.push_back(us_[k][lean]);
@@ -180,12 +180,12 @@ class PlanBench {
   BenchTable table_{{"scene", "plan", "stage", "time_us_p50", "memory_bytes", "left_out", "ratio",
                      "ratio_low", "ratio_high"},
                     {}};
-  BenchChart time_{.title = "A frame, median over the poses in contact",
-                   .unit = "µs",
-                   .labels = {},
-                   .series = {},
-                   .x_title = {}};
-  BenchChart memory_{.title = "Memory", .unit = "MiB", .labels = {}, .series = {}, .x_title = {}};
+  Chart time_{.title = "A frame, median over the poses in contact",
+              .unit = "µs",
+              .labels = {},
+              .series = {},
+              .x_title = {}};
+  Chart memory_{.title = "Memory", .unit = "MiB", .labels = {}, .series = {}, .x_title = {}};
   std::vector<Worth> worths_;
   std::vector<std::string> names_;
   std::vector<std::array<double, 2>> us_, mib_;

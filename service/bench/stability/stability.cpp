@@ -81,8 +81,6 @@ void add_cell(BenchTable& table, const std::string& model, const Cell& cell, dou
                         std::isfinite(theory_k) ? BenchCell(theory_k) : BenchCell(std::string())});
 }
 
-using Chart = BenchChart;
-
 Chart lines(std::string title, std::string x_title, std::string unit, bool log_x, bool log_y) {
   Chart chart;
   chart.title = std::move(title);

@@ -143,11 +143,10 @@ void repeat(std::vector<PathPoint>& path, double seconds) {
   }
 }
 
-void add(BenchTable& table, BenchChart& chart, BenchChart& histogram, const std::string& who,
-         const Lateness& late) {
+void add(BenchTable& table, Chart& chart, Chart& histogram, const std::string& who, const Lateness& late) {
   table.rows.push_back({who, late.ticks, late.missed, late.p50, late.p99, late.p999, late.max});
   chart.series.push_back({who, {}, {late.p50, late.p99, late.p999, late.max}});
-  BenchChart::Series counts{who, {}, {}};
+  Chart::Series counts{who, {}, {}};
   for (const HistogramBin& bin : late.bins)
     counts.x.push_back(std::sqrt(std::max(bin.low, 0.5) * bin.high)),
         counts.y.push_back(static_cast<double>(bin.count));
@@ -192,12 +191,12 @@ Result<void> bench_jitter(const BenchOptions& options, const Parts& parts) {
 
   BenchTable table{{"loop", "ticks", "missed", "late_p50_us", "late_p99_us", "late_p999_us", "late_max_us"},
                    {}};
-  BenchChart chart;
+  Chart chart;
   chart.title = "How late a tick comes";
   chart.unit = "µs";
   chart.log_y = true;
   chart.labels = {"p50", "p99", "p99.9", "largest"};
-  BenchChart histogram;
+  Chart histogram;
   histogram.title = "Ticks by their lateness, a point a quarter of an octave";
   histogram.unit = "ticks";
   histogram.x_title = "µs after the scheduled time";

@@ -111,18 +111,18 @@ Result<void> bench_latency(const BenchOptions& options, const Parts& parts) {
       {"scene", "backend", "frames", "stage", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us"},
       {}};
   table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
-  BenchChart stages{.title = "Median of each stage, frames in contact",
-                    .unit = "µs",
-                    .labels = {},
-                    .series = {},
-                    .stacked = true,
-                    .x_title = {}};
-  BenchChart tails{.title = "Whole frame, all frames",
-                   .unit = "µs",
-                   .labels = {"p50", "p95", "p99", "max"},
-                   .series = {},
-                   .log_y = true,
-                   .x_title = {}};
+  Chart stages{.title = "Median of each stage, frames in contact",
+               .unit = "µs",
+               .labels = {},
+               .series = {},
+               .stacked = true,
+               .x_title = {}};
+  Chart tails{.title = "Whole frame, all frames",
+              .unit = "µs",
+              .labels = {"p50", "p95", "p99", "max"},
+              .series = {},
+              .log_y = true,
+              .x_title = {}};
   const double load = load_average();
   for (const std::string& file : options.scenes) {
     const auto subjects = measure(options, file, parts, console);

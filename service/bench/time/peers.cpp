@@ -221,13 +221,13 @@ void add_rows(const std::string& scene, const Race& race, BenchTable& table) {
   }
 }
 
-void add_chart(const std::string& scene, const Race& race, std::vector<BenchChart>& charts) {
-  BenchChart chart{.title = scene,
-                   .unit = "µs, logarithmic",
-                   .labels = {"contact, p50", "all, p99", "free, p50"},
-                   .series = {},
-                   .log_y = true,
-                   .x_title = {}};
+void add_chart(const std::string& scene, const Race& race, std::vector<Chart>& charts) {
+  Chart chart{.title = scene,
+              .unit = "µs, logarithmic",
+              .labels = {"contact, p50", "all, p99", "free, p50"},
+              .series = {},
+              .log_y = true,
+              .x_title = {}};
   const auto series = [&](const std::string& name, const TimeTable& times) {
     chart.series.push_back(
         {name,
@@ -255,7 +255,7 @@ Result<void> bench_peers(const BenchOptions& options, const Parts& parts) {
                     "palpate_p50_ratio", "palpate_p99_ratio", "pairs", "missing", "extra", "poses_different"},
                    {}};
   table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
-  std::vector<BenchChart> charts;
+  std::vector<Chart> charts;
   const double load = load_average();
   for (const std::string& file : options.scenes) {
     const Result<Race> race = run_race(options, file, parts, console);

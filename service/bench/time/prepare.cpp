@@ -93,11 +93,11 @@ Result<void> bench_prepare(const BenchOptions& options, const Parts& parts) {
   BenchTable table{{"scene", "who", "stage", "seconds", "us_per_triangle", "times_fcl",
                     "kept_bytes_per_triangle", "peak_bytes"},
                    {}};
-  BenchChart chart{.title = "Preparation",
-                   .unit = "µs a triangle",
-                   .labels = {},
-                   .series = {{"whole", {}, {}}},
-                   .x_title = {}};
+  Chart chart{.title = "Preparation",
+              .unit = "µs a triangle",
+              .labels = {},
+              .series = {{"whole", {}, {}}},
+              .x_title = {}};
   const double load = load_average();
   const std::string none;
   for (const std::string& file : options.scenes) {

@@ -224,7 +224,7 @@ Result<void> bench_questions(const BenchOptions& options, const Parts& parts) {
       {"scene", "question", "library", "frames", "count", "p50_us", "p95_us", "p99_us", "p999_us", "max_us",
        "palpate_p50_ratio", "palpate_p99_ratio", "poses_different", "largest_error_m"},
       {}};
-  std::vector<BenchChart> charts;
+  std::vector<Chart> charts;
   const double load = load_average();
   for (const std::string& file : options.scenes) {
     const Result<Inquiry> inquiry = inquire(options, file, parts, console);
@@ -232,12 +232,12 @@ Result<void> bench_questions(const BenchOptions& options, const Parts& parts) {
     const std::string name = scene_name(file);
     const SceneGeometry& geometry = inquiry->scene->loaded.geometry;
     add_rows(name, *inquiry, table);
-    BenchChart chart{.title = name,
-                     .unit = "µs, logarithmic",
-                     .labels = {"any, p50", "any, p99", "distance, p50", "distance, p99"},
-                     .series = {},
-                     .log_y = true,
-                     .x_title = {}};
+    Chart chart{.title = name,
+                .unit = "µs, logarithmic",
+                .labels = {"any, p50", "any, p99", "distance, p50", "distance, p99"},
+                .series = {},
+                .log_y = true,
+                .x_title = {}};
     for (const Asked& asked : inquiry->asked) {
       const TimePercentiles any = percentiles(asked.times[kAny].times(3, "total")),
                             distance = percentiles(asked.times[kDistance].times(3, "total"));

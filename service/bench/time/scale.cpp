@@ -158,7 +158,7 @@ class Scale {
     facts_.more.emplace_back("clock", options_.cpu_clock ? "CPU time of this process" : "wall");
     facts_.more.emplace_back("load average",
                              fmt::format("{:.1f} at the start, {:.1f} at the end", load_, load_average()));
-    std::vector<BenchChart> charts;
+    std::vector<Chart> charts;
     for (auto& [backend, chart] : growth_) charts.push_back(std::move(chart));
     return write_bench(options_.out, facts_, table_, charts);
   }
@@ -183,17 +183,16 @@ class Scale {
       for (BenchCell& cell : work_cells(figures->times.work(kind)))
         table_.rows.back().push_back(std::move(cell));
       if (kind != 0) continue;
-      BenchChart& growth =
-          growth_
-              .try_emplace(figures->backend,
-                           BenchChart{.title = "Median of a frame in contact, " + figures->backend,
-                                      .unit = "µs",
-                                      .labels = {},
-                                      .series = {},
-                                      .log_x = true,
-                                      .log_y = true,
-                                      .x_title = "triangles of the mock-up, or of the tool"})
-              .first->second;
+      Chart& growth = growth_
+                          .try_emplace(figures->backend,
+                                       Chart{.title = "Median of a frame in contact, " + figures->backend,
+                                             .unit = "µs",
+                                             .labels = {},
+                                             .series = {},
+                                             .log_x = true,
+                                             .log_y = true,
+                                             .x_title = "triangles of the mock-up, or of the tool"})
+                          .first->second;
       if (growth.series.empty() || growth.series.back().label != step.series)
         growth.series.push_back({step.series, {}, {}});
       growth.series.back().x.push_back(
@@ -215,7 +214,7 @@ class Scale {
       spacing_m_;  ///< by series, of its first: other samples would be another contact
   BenchFacts facts_{.command = "scale", .device = {}, .more = {}};
   BenchTable table_ = columns();
-  std::map<std::string, BenchChart> growth_;  ///< by engine
+  std::map<std::string, Chart> growth_;  ///< by engine
 };
 
 Result<void> write_json(const std::string& file, const Json& scene) {

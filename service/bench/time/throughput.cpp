@@ -116,12 +116,12 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
   BenchFacts facts{.command = "throughput", .device = {}, .more = {}};
   BenchTable table{{"scene", "backend", "asked", "batch", "poses_per_s", "pose_us", "share_of_single"}, {}};
   table.columns.insert(table.columns.end(), kWorkColumns.begin(), kWorkColumns.end());
-  BenchChart chart{.title = "Poses a second",
-                   .unit = "1/s",
-                   .labels = {},
-                   .series = {},
-                   .log_x = true,
-                   .x_title = "poses a batch"};
+  Chart chart{.title = "Poses a second",
+              .unit = "1/s",
+              .labels = {},
+              .series = {},
+              .log_x = true,
+              .x_title = "poses a batch"};
   const double load = load_average();
   for (const std::string& file : options.scenes)
     for (const std::string& wanted : asked_backends(options)) {
@@ -134,7 +134,7 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
       if (!outcome) return outcome.error();
       const std::string name = scene_name(file), backend = scene.backend->name();
       double single = 0;
-      BenchChart::Series line{};
+      Chart::Series line{};
       for (const Series& series : *outcome) {
         const double us = mean(series.pose_us);
         const std::string asked = series.answers ? "answers" : "frames";

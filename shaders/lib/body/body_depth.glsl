@@ -184,7 +184,7 @@ Depth nearest_within(float reach, ivec3 p, uint32_t part) {
 }
 
 // What the invocations of a workgroup have found, which look for a point's depth together.
-shared float found_reach[kGroupSize];
+shared uint32_t found_reach[kGroupSize];   // rounded up; kNone: nothing
 shared int32_t found_steps[kGroupSize];
 shared uint32_t found_nearest[kGroupSize];
 
@@ -198,12 +198,14 @@ Depth body_depth(bool asks, ivec3 p) {
   if (home != kNoVoxel)
     for (uint32_t i = body_list_begin[home] + part; i < body_list_begin[home + 1u] && !spent(1u); i += LANES)
       reach = min(reach, bounds_of(body_list[i], p).most);
-  found_reach[lane] = reach;
+  found_reach[lane] = reach < kFar ? uint32_t(reach) + 1u : kNone;
   barrier();
-  for (uint32_t i = 0u; i < LANES; ++i) reach = min(reach, found_reach[first + i]);
+  uint32_t least = kNone;
+  for (uint32_t i = first; i < first + LANES; ++i) least = min(least, found_reach[i]);
   Depth best = kNoDepth;
   if (asks) {
-    if (reach == kFar) reach = reach_along_axes(p, body_voxel_of(p));
+    // As a float it may be a 2^-24th less.
+    reach = least != kNone ? float(least) * (1.0 + 1.0 / 4194304.0) : reach_along_axes(p, body_voxel_of(p));
     best = nearest_within(reach, p, part);
   }
   found_steps[lane] = best.steps;

@@ -1,4 +1,4 @@
-#include "service/bench/chart_axis.h"
+#include "service/report/chart_axis.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "service/bench/chart_svg.h"
+#include "service/report/chart_svg.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "service/bench/chart_axis.h"
+#include "service/report/chart_axis.h"
 #include "service/report/markup.h"
 
 namespace palpate {
@@ -27,7 +27,7 @@ std::array<int, 3> shade(double part) {
   return out;
 }
 
-std::string map_svg(const BenchChart& chart) {
+std::string map_svg(const Chart& chart) {
   constexpr double kRow = 34;
   double low = HUGE_VAL, high = 0;
   for (const auto& row : chart.series)
@@ -64,20 +64,20 @@ std::string map_svg(const BenchChart& chart) {
   return out + "</svg>\n";
 }
 
-std::string marker(BenchChart::Marker shape, double x, double y, const char* ink) {
+std::string marker(Chart::Marker shape, double x, double y, const char* ink) {
   switch (shape) {
-    case BenchChart::Marker::kCircle:
+    case Chart::Marker::kCircle:
       return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", x, y, ink);
-    case BenchChart::Marker::kSquare:
+    case Chart::Marker::kSquare:
       return fmt::format("<path d=\"M{:.1f} {:.1f}h6v6h-6Z\" fill=\"{}\"/>", x - 3, y - 3, ink);
-    case BenchChart::Marker::kTriangle:
+    case Chart::Marker::kTriangle:
       return fmt::format("<path d=\"M{:.1f} {:.1f}l4 7h-8Z\" fill=\"{}\"/>", x, y - 4, ink);
-    case BenchChart::Marker::kDiamond:
+    case Chart::Marker::kDiamond:
       return fmt::format("<path d=\"M{:.1f} {:.1f}l4 4l-4 4l-4 -4Z\" fill=\"{}\"/>", x, y - 4, ink);
-    case BenchChart::Marker::kCross:
+    case Chart::Marker::kCross:
       return fmt::format("<path d=\"M{:.1f} {:.1f}l7 7m0 -7l-7 7\" stroke=\"{}\" stroke-width=\"2\"/>",
                          x - 3.5, y - 3.5, ink);
-    case BenchChart::Marker::kNone:
+    case Chart::Marker::kNone:
       break;
   }
   return "";
@@ -107,12 +107,12 @@ std::pair<double, double> legend_place(std::size_t number) {
           kBottom + 58 + kLegendRow * static_cast<double>(row)};
 }
 
-double lines_height(const BenchChart& chart) {
+double lines_height(const Chart& chart) {
   const std::size_t rows = (chart.series.size() + 1) / 2;
   return kBottom + 52 + kLegendRow * static_cast<double>(rows);
 }
 
-std::string lines_svg(const BenchChart& chart) {
+std::string lines_svg(const Chart& chart) {
   ChartAxis x{.log = chart.log_x}, y{.log = chart.log_y};
   for (const auto& series : chart.series)
     for (std::size_t i = 0; i < series.x.size(); ++i) {
@@ -162,9 +162,9 @@ std::string lines_svg(const BenchChart& chart) {
     out += dots + "\n";
     out += fmt::format(
         "<rect x=\"{}\" y=\"{}\" width=\"12\" height=\"{}\" fill=\"{}\"/>", column,
-        series.marker == BenchChart::Marker::kCircle && !series.dashed && !series.guide ? row - 10 : row - 5,
-        series.marker == BenchChart::Marker::kCircle && !series.dashed && !series.guide ? 12 : 2, ink);
-    if (series.marker != BenchChart::Marker::kCircle && !series.guide)
+        series.marker == Chart::Marker::kCircle && !series.dashed && !series.guide ? row - 10 : row - 5,
+        series.marker == Chart::Marker::kCircle && !series.dashed && !series.guide ? 12 : 2, ink);
+    if (series.marker != Chart::Marker::kCircle && !series.guide)
       out += marker(series.marker, column + 6, row - 4, ink);
     out += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", column + 18, row, markup_text(series.label));
   }
@@ -172,7 +172,7 @@ std::string lines_svg(const BenchChart& chart) {
 }
 
 /// Bars beside each other, or on each other; a name for each group below, slanted where there are many.
-std::string bars_svg(const BenchChart& chart) {
+std::string bars_svg(const Chart& chart) {
   ChartAxis y{.log = chart.log_y && !chart.stacked};
   std::vector<double> sums(chart.labels.size(), 0.0);
   for (const auto& series : chart.series)
@@ -227,7 +227,7 @@ std::string bars_svg(const BenchChart& chart) {
 
 }  // namespace
 
-std::string chart_svg(const BenchChart& chart) {
+std::string chart_svg(const Chart& chart) {
   return chart.map ? map_svg(chart) : chart.labels.empty() ? lines_svg(chart) : bars_svg(chart);
 }
 
