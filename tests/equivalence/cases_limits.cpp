@@ -19,7 +19,7 @@ constexpr std::int32_t kTimes = 64;  // of a large_rule
 
 /// A rule of bodies, voxels and poses that are 64 times as large: what culls rays has a margin of a thousand
 /// steps.
-Case large_rule(const char* name, const char* about, Triangles mockup, Triangles tool, PoseOf pose,
+Case large_rule(const char* name, const char* about, Triangles mockup, Triangles tool, const PoseOf& pose,
                 std::int32_t spacing = kTimes * kVoxel / 2) {
   for (Triangles* body : {&mockup, &tool})
     for (LatticeTriangle& t : *body) t = {kTimes * t.a, kTimes * t.b, kTimes * t.c};
