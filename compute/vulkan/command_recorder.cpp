@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 constexpr std::uint32_t kMostBindings = 32;
-// How long a GPU is asked again and again: to be woken takes as long as a short frame (chosen).
+// How long a GPU is asked again and again before the thread sleeps (chosen: a short frame is over by then).
 constexpr std::chrono::microseconds kSpin{500};
 }  // namespace
 

@@ -151,8 +151,7 @@ class Benches {
     add_poses(*throughput, options_);
     add_backends(*throughput, options_, "one after the other");
     throughput
-        ->add_option("--largest", options_.largest_batch,
-                     "poses of the largest batch, 1 to 65,536 (1,024); a GPU gets busy with 8,192")
+        ->add_option("--largest", options_.largest_batch, "poses of the largest batch, 1 to 65,536 (1,024)")
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{65'536}).description(""))
         ->type_name("N");
     throughput->footer(

@@ -38,7 +38,7 @@ struct Chart {
   std::string group = {};  ///< chapter of the report that it stands in; empty: none
 };
 
-/// A chart of lines or a map as a picture by itself, for documents; bars are left to report.html: empty.
+/// A chart as a picture by itself, for documents.
 std::string chart_svg(const Chart& chart);
 
 }  // namespace palpate
