@@ -94,19 +94,19 @@ class Summing {
     Box everywhere;
     everywhere.min = Int3(std::numeric_limits<std::int32_t>::min());
     everywhere.max = Int3(std::numeric_limits<std::int32_t>::max());
-    const std::int32_t spacing = frame_.scene.geometry->tool_sample_spacing;
+    const std::int32_t spacing = frame_.scene.geometry->sample_spacing;
     for (const std::uint32_t m : frame_.contact_mobile) {
       if (tool.field_weight_q30[m] == 0) continue;
       for_each_sample(tool, m, spacing, everywhere, [&](const Int3& own) {
         if (const std::uint64_t weight = weight_of(tool, m, own, spacing); weight != 0)
-          tool_sample(m, own, static_cast<std::uint32_t>(weight >> 4));
+          tool_sample(m, own, static_cast<std::uint32_t>(weight >> 6));
       });
     }
     for (const ExtraSample& extra : tool.extra_samples)
       if (const std::uint64_t weight = weight_of(extra);
           weight != 0 &&
           std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle))
-        tool_sample(extra.triangle, extra.point, static_cast<std::uint32_t>(weight >> 4));
+        tool_sample(extra.triangle, extra.point, static_cast<std::uint32_t>(weight >> 6));
   }
 
   /// CST and EST, ascending, with nothing on them yet.

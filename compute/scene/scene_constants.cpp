@@ -31,7 +31,6 @@ gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& p
     out.tool_extras = static_cast<std::uint32_t>(geometry.tool.extra_samples.size());
   }
   out.sample_spacing = geometry.sample_spacing;
-  out.tool_sample_spacing = geometry.tool_sample_spacing;
   out.contact_samples = geometry.contact_samples;
   out.fine = fine;
   return out;

@@ -84,7 +84,6 @@ void archive_shape(Archive& a, Geometry& g) {
   archive_grid(a, g.mockup_grid);
   archive_grid(a, g.tool_grid);
   a(g.sample_spacing);
-  a(g.tool_sample_spacing);
   a(g.contact_samples);
   a(g.reference_area_m2);
   a(g.tool_gyration_m);

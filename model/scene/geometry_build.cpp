@@ -259,19 +259,15 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
       choose_sample_spacing(*size, out.lattice.step_m, settings.sample_spacing_m);
   if (!spacing) return spacing.error();
   out.sample_spacing = *spacing;
-  out.tool_sample_spacing =
-      2 *
-      *spacing;  // a force needs the tool's samples less: they fill in for the mock-up's (docs/ACCURACY.md)
   out.contact_samples = settings.contact_samples;
   const Int3 extent = out.tool.box_max - out.tool.box_min;
   const double side = out.lattice.step_m * std::max({extent.x, extent.y, extent.z});
   out.reference_area_m2 = side * side / 64;  // (side / 8)², chosen
   out.tool_gyration_m = out.lattice.step_m *
                         gyration_radius(out.tool, (out.tool_gc_m - out.tool_centre_m) / out.lattice.step_m);
-  for (const auto& [mesh, sampled_at] :
-       {std::pair{&out.mockup, out.sample_spacing}, std::pair{&out.tool, out.tool_sample_spacing}}) {
+  for (LatticeMesh* mesh : {&out.mockup, &out.tool}) {
     if (go_on && !go_on()) return Error{ErrorCode::kInternal, "loading was cancelled"};
-    weigh_for_field(sampled_at, *mesh);
+    weigh_for_field(out.sample_spacing, *mesh);
     mark_thin_pieces(out.sample_spacing, *mesh);
   }
   return out;

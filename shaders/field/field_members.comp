@@ -56,7 +56,7 @@ void list_mobile_extras(uint32_t mobile, uint32_t entry) {
   const uint32_t first = first_tool_extra(mobile, scene.tool_extras),
                  count = tool_extras_from(first, mobile, scene.tool_extras);
   for (uint32_t i = 0u; i < count; ++i) {
-    const uint32_t weight = uint32_t(extra_weight(tool_extras[first + i].weights) >> 4);
+    const uint32_t weight = uint32_t(extra_weight(tool_extras[first + i].weights) >> 6);
     if (weight == 0u) continue;
     const uint32_t at = take_room(kListToolPoints, 1u);
     if (at >= frame_lists[kListToolPoints].capacity) continue;
@@ -71,7 +71,7 @@ void list_tiles(uint32_t mobile, uint32_t entry, uint32_t info) {
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
   const uint32_t axis = info >> kInfoAxisShift & 3u, u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
   const ivec3 low = min(min(a, b), c), high = max(max(a, b), c);
-  const int32_t s = scene.tool_sample_spacing;
+  const int32_t s = scene.sample_spacing;
   const int32_t u_first = floor_div(low[u], s), v_first = floor_div(low[v], s);
   const uint32_t across = uint32_t(floor_div(high[u], s) - u_first) + 1u;
   const uint32_t down = uint32_t(floor_div(high[v], s) - v_first) + 1u;

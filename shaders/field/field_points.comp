@@ -41,9 +41,9 @@ SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
 void take(FieldTile tile, uint32_t mobile, SampledTriangle triangle, uint32_t cell) {
   const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
-              g = sample_of_cell(ij, scene.tool_sample_spacing);
+              g = sample_of_cell(ij, scene.sample_spacing);
   if (!grid_point_inside(triangle, g)) return;
-  const uint32_t weight = uint32_t(tool_weight(mobile, tool_weights[mobile], ij) >> 4);
+  const uint32_t weight = uint32_t(tool_weight(mobile, tool_weights[mobile], ij) >> 6);
   if (weight == 0u) return;
   const ivec3 p = world_from_tool(sample_point(triangle, g));
   const bool hit = (mobile_state[tile.mobile] & kMobileHit) != 0u;

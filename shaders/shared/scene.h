@@ -68,11 +68,10 @@ struct SceneConstants {
   uint32_t refined;        // 1: profile `refined`, 0: `paper`
   uint32_t mockup_extras;  // extra samples; refined
   uint32_t tool_extras;
-  int32_t tool_sample_spacing;  // steps
-  uint32_t contact_samples;     // of a body, that say what a contact pushes with; 0: all
+  uint32_t contact_samples;  // of a body, that say what a contact pushes with; 0: all
   GridConstants fine;  // a second, finer partition of a closed tool, or its own: early answers for samples
 };
-PALPATE_ASSERT_SIZE(SceneConstants, 184);
+PALPATE_ASSERT_SIZE(SceneConstants, 180);
 PALPATE_ASSERT_OFFSET(SceneConstants, tool_radius, 112);
 
 PALPATE_SHARED_END

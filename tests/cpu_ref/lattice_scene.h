@@ -49,9 +49,8 @@ inline SceneGeometry scene_of(const std::vector<Triangle>& mockup, const std::ve
   scene.mockup_grid = make_grid(scene.mockup.box_min, scene.mockup.box_max, voxel);
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;
-  scene.tool_sample_spacing = 2 * spacing;
   weigh_for_field(scene.sample_spacing, scene.mockup);
-  weigh_for_field(scene.tool_sample_spacing, scene.tool);
+  weigh_for_field(scene.sample_spacing, scene.tool);
   scene.reference_area_m2 = 1;
   scene.tool_gyration_m = 1;
   return scene;

@@ -324,7 +324,7 @@ Case many_samples_of_a_voxel() {
       small_box(),
       [](const SceneGeometry&, Random& random, Known&) {
         LatticePose pose = leaning(random, Int3(0));
-        pose.translation = Int3(random.between(-20, 20), random.between(-20, 20), random.between(70, 100));
+        pose.translation = Int3{random.between(-20, 20), random.between(-20, 20), random.between(70, 100)};
         return pose;
       },
       kTimes + 2);

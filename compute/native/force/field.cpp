@@ -132,7 +132,7 @@ PressureField PressureField::make(const SceneGeometry& geometry, const TriangleT
   out.lever_shift_ = lever_shift(geometry.tool_radius);
   out.own_begin_.assign(1, 0);
   const std::size_t triangles = geometry.tool.triangles.size();
-  const double density = static_cast<double>(geometry.tool_sample_spacing) * geometry.tool_sample_spacing;
+  const double density = static_cast<double>(geometry.sample_spacing) * geometry.sample_spacing;
   if (geometry.tool_surface.area / density + static_cast<double>(triangles) >
       static_cast<double>(kMostListed)) {
     out.own_begin_.clear();
@@ -165,7 +165,7 @@ void PressureField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
   const exact::Corners corners{tool.corner(mobile, 0), tool.corner(mobile, 1), tool.corner(mobile, 2)};
   const exact::Box box = exact::box_of(corners);
   const int axis = tool.sample_axis[mobile];
-  const std::int32_t spacing = geometry_->tool_sample_spacing;
+  const std::int32_t spacing = geometry_->sample_spacing;
   exact::for_samples(
       corners, axis, spacing, box.low - Int3(1), box.high + Int3(1),
       [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
@@ -283,7 +283,7 @@ void PressureField::push_from_tool(const LatticePose& pose, std::uint32_t mobile
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
   const bool thin = is_thin(geometry_->tool, mobile), in_thin = is_thin(geometry_->mockup, below.triangle);
-  const auto weight = static_cast<std::uint32_t>(weight_q30 >> 4);
+  const auto weight = static_cast<std::uint32_t>(weight_q30 >> 6);
   add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]),
        against, below.steps, weight, counted(weight, sheet, thin, in_thin), sheet},
       below.triangle, mobile, nullptr, lane);

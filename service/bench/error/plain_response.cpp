@@ -168,8 +168,7 @@ PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool_mesh, const Pose
   const Body<Real> statics = body_of<Real>(mockup), tool = moved(body_of<Real>(tool_mesh), pose);
   const auto spacing = static_cast<Real>(spacing_m), area = static_cast<Real>(reference_area_m2),
              stiffness = static_cast<Real>(stiffness_n_per_m);
-  const Sums<Real> own = sum_samples(statics, tool, spacing),
-                   others = sum_samples(tool, statics, Real(2) * spacing);
+  const Sums<Real> own = sum_samples(statics, tool, spacing), others = sum_samples(tool, statics, spacing);
   PlainAnswer out;
   if (!(own.weight > Real(0)) && !(others.weight > Real(0))) return out;
   out.contact = true;

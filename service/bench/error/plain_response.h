@@ -12,10 +12,10 @@ struct PlainAnswer {
 };
 
 /// The pressure field of `refined` in floating point throughout, as one would write it first: the tool's
-/// vertices transformed, samples on a square grid over each triangle (the tool's twice as far apart), inside
-/// the other body or not by the winding along a ray, its depth the distance to the nearest triangle, F = K /
-/// (2 A_ref) Σ w φ n. No lattice, no exact predicate, no tolerance. For comparison alone (`bench numerics`):
-/// brute force over all triangles.
+/// vertices transformed, samples on a square grid over each triangle, inside the other body or not by
+/// the winding along a ray, its depth the distance to the nearest triangle, F = K / (2 A_ref) Σ w φ n. No
+/// lattice, no exact predicate, no tolerance. For comparison alone (`bench numerics`): brute force over all
+/// triangles.
 template <class Real>
 PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool, const Pose& pose, double spacing_m,
                            double stiffness_n_per_m, double reference_area_m2);
