@@ -74,11 +74,12 @@ class CollisionBackend : public PoseQuery {
  public:
   /// Builds the voxel partition and whatever else a query needs. `geometry` must outlive the back end.
   /// Allocates; takes as long as it takes. A second call replaces the first scene. What only rare queries
-  /// need may still be made beside when this comes back; the first of them waits for it.
+  /// need may be made on another thread and not be there yet on return: the first such query waits for it, or
+  /// finish_preparing() does.
   virtual Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) = 0;
 
-  /// Waits for what prepare() or replan() left to be made beside, so that no query has to: before a loop
-  /// begins, not while a query runs. Error: it can't be made.
+  /// Waits for what prepare() or replan() left to another thread, so that no query has to. Call it before a
+  /// loop begins, not while a query runs. Error: it can't be made.
   virtual Result<void> finish_preparing() { return {}; }
 
   /// The same prepared scene under another plan of the same profile: what it adds is made, what it leaves out

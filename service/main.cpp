@@ -1,4 +1,5 @@
-// The program: the one place that knows every driver by name.
+// The program `palpate`: gives the engines (service/engines.h) and the devices (driver/device_list.h, which
+// alone knows every driver by name) to the command line (service/cli/cli.h).
 #include <string>
 
 #include "compute/gpu/gpu_backend.h"

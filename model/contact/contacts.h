@@ -54,17 +54,21 @@ struct Ignored {
   static constexpr std::uint32_t kCoarsest = 256 * kSampleLevels;
 };
 
-/// The exact outcome of one pose: identical on every back end.
+/// The exact outcome of one pose: identical on every back end. *Static* is the mock-up, *mobile* the tool;
+/// docs/NOTATION.md has the symbols.
 struct Contacts {
   const char* engine =
       "";  ///< who answered: the back end's name, "gpu", "cpu" or "ref"; empty: nobody had to be asked
   bool contact = false;
   bool truncated = false;  ///< a capacity was too small; `truncated_capacity` names it; no force
   const char* truncated_capacity = "";
-  std::uint64_t pairs = 0;                                  ///< distinct intersecting (static, mobile) pairs
-  std::vector<std::uint32_t> cst, bst, cmt, bmt, imt, est;  ///< ascending
-  std::vector<ContactArea> areas;                           ///< ascending id; empty without contact
-  FieldSums field;                                          ///< `refined`: what pushes the tool
+  std::uint64_t pairs = 0;  ///< distinct intersecting (static, mobile) pairs
+  /// The six sets: triangle ids, ascending. Static: cst intersect a mobile one, est lie inside the tool
+  /// (`refined`), bst lie near. Mobile: cmt intersect a static one, imt lie inside the mock-up, bmt lie near.
+  /// Near: in a boundary voxel that a mobile triangle touches.
+  std::vector<std::uint32_t> cst, bst, cmt, bmt, imt, est;
+  std::vector<ContactArea> areas;  ///< ascending id; empty without contact
+  FieldSums field;                 ///< `refined`: what pushes the tool
   std::vector<std::uint32_t>
       ignored_touched;  ///< `refined`: ignored patches in which something would push, ascending
   std::vector<CarrierSums>

@@ -20,8 +20,9 @@ inline constexpr std::size_t kMaxStages = 256;  ///< stages that a run can tell 
 /// allocation, no lock, no exception.
 class ControlTick {
  public:
-  /// `device` outlives this. `tool_gc` in the tool's frame, m. A coupling goes with law `corrected` alone;
-  /// `field`: with which of the two the run begins, before results say it.
+  /// `device` outlives this. `tool_gc`: the tool's centre of mass in its own frame, m. A coupling goes with
+  /// law `corrected` alone. `field`: whether the run begins with the coupling of profile `refined` or with
+  /// that of `paper`; later on each result says which.
   ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc,
               const Couplings& couplings = {}, bool field = true);
 

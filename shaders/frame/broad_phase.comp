@@ -1,11 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What comes near at the pose. The first workgroups: runs of the tool that come near what is not V_ext;
-// kGroupSize clusters each, an invocation one of them, then one of the runs of those that are near. The
-// BRICK_GROUPS others: V_bnd voxels of the mock-up that the tool's solid may reach into, and so samples; in
-// rounds of kGroupSize bricks of those that the tool's fine grid may meet, an invocation one of them, then
-// one of the voxels of those that are near. In a batch so many workgroups a pose, a row each. Reads boxes of
-// the tool, occupied cubes and both partitions; appends near_runs and sample_chunks. Errs towards near.
+// The search: what of tool and mock-up may meet at the pose. It may name too much, never too little.
+// A run is 8 tool triangles, a cluster is 8 runs (kRunSize, kClusterSize); a brick is 8 x 8 x 8 voxels.
+//  - The first workgroups look for runs of the tool that come near what is not V_ext. Each has kGroupSize
+//    clusters: an invocation asks one cluster, and then runs of those clusters that are near.
+//  - The other BRICK_GROUPS look for V_bnd voxels of the mock-up that the tool's solid may reach into, and so
+//    for samples. They take in turn the bricks that the tool's fine grid may meet, kGroupSize in a round: an
+//    invocation asks one brick, and then voxels of those bricks that are near.
+// In a batch each pose has as many workgroups, in a row of its own.
+// Reads boxes of the tool, occupied cubes and both partitions; appends near_runs and sample_chunks.
 #include "shaders/lib/frame.glsl"
 
 layout(constant_id = 0) const uint32_t SAMPLES = 2u;   // 1: chunks of voxels' lists; 2: of listed points

@@ -1,9 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Which triangles that a voxel lists intersect a tool triangle that touches it, exactly: CST and CMT; and
-// what touched voxels list: BST. An invocation a PairChunk. Each goes through its entries in rounds; those
-// whose boxes in the voxel meet the tool triangle's box and plane are shared out, kept once of all voxels
-// (pair_table) and asked. Reads both bodies; appends pairs, marks kStaticHit, kStaticListed and kMobileHit.
+// Which triangles of the mock-up intersect which of the tool, exactly: CST and CMT. And what touched voxels
+// list: BST. An invocation has a PairChunk: a tool triangle, and entries of the list of a voxel that it
+// touches. In each round
+//  1. it looks at its next entries, and keeps those whose box in the voxel meets the tool triangle's box and
+//     plane;
+//  2. the workgroup shares these out, and drops the pairs that another voxel has brought before (pair_table);
+//  3. an invocation asks each pair that is left whether its triangles intersect.
+// Reads both bodies; appends pairs, marks kStaticHit, kStaticListed and kMobileHit.
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/triangle_pair.glsl"
 
