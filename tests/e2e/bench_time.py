@@ -1,0 +1,68 @@
+"""`palpate bench throughput` and `latency`: each engine has rows of its own, a batch or frame of the device is
+one submission of few dispatches whatever its size, and --largest bounds the batches."""
+import csv
+
+from harness import *
+
+MOST_DISPATCHES = 10  # docs/ARCHITECTURE.md: of a frame, and of a batch of any size
+
+
+def scene_in(folder):
+    folder.write('block.stl', stl(box((0.06, 0.06, 0.03), (0, 0, -0.015))))
+    folder.write('ball.stl', stl(sphere(0.01)))
+    folder.write(
+        'poses.csv',
+        'x,y,z,qx,qy,qz,qw\n'
+        + ''.join(f'{0.001 * i},{0.0007 * i},{0.009 - 0.0002 * i},0,0,0,1\n' for i in range(8)),
+    )
+    return folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
+
+
+def measured(folder, bench, *words):
+    out = folder / bench
+    done = palpate(
+        'bench', bench, scene_in(folder), '--poses', folder / 'poses.csv', '--rounds', '3', '--out', out,
+        '--backend', 'cpu', 'gpu', *words,
+    )  # fmt: skip
+    expect(done.code == 0, done)
+    with open(out / 'results.csv') as file:
+        return list(csv.DictReader(file))
+
+
+def test_throughput_by_batch():
+    rows = measured(Folder(), 'throughput', '--largest', '8')
+    for engine in ('cpu', 'gpu'):
+        for asked in ('frames', 'answers'):
+            sizes = [r['batch'] for r in rows if (r['backend'], r['asked']) == (engine, asked)]
+            expect(sizes == ['single', '1', '4', '8'], f'{engine}, {asked}: {sizes}')
+    expect(all(float(r['poses_per_s']) > 0 for r in rows), rows)
+    batches = [r for r in rows if (r['backend'], r['asked']) == ('gpu', 'frames') and r['batch'] != 'single']
+    for row in batches:
+        expect(float(row['submissions']) == 1 and float(row['dispatches']) <= MOST_DISPATCHES, row)
+    expect(len({row['dispatches'] for row in batches}) == 1, f'as many dispatches whatever the size: {batches}')
+    # As much comes back as there are poses.
+    expect(float(batches[-1]['bytes_down']) > 2 * float(batches[0]['bytes_down']), batches)
+
+
+def test_the_largest_batch_is_bounded():
+    folder = Folder()
+    scene = scene_in(folder)
+    for wrong in ('0', '65537', 'many'):
+        expect_refused(
+            palpate('bench', 'throughput', scene, '--largest', wrong, '--out', folder / 'none'), 3, '--largest', wrong
+        )
+    expect(not (folder / 'none').exists(), 'nothing is left behind')
+
+
+def test_latency_by_engine():
+    rows = measured(Folder(), 'latency', '--frames', '8')
+    for engine in ('cpu', 'gpu'):
+        total = [r for r in rows if (r['backend'], r['frames'], r['stage']) == (engine, 'contact', 'total')]
+        expect(len(total) == 1 and float(total[0]['p50_us']) > 0, f'{engine}: {rows}')
+        expect(total[0]['p999_us'] == '', 'no p99.9 of eight frames')
+        if engine == 'gpu':
+            expect(float(total[0]['submissions']) == 1, total)
+            expect(float(total[0]['dispatches']) <= MOST_DISPATCHES, total)
+
+
+main(globals())
