@@ -370,11 +370,11 @@ def report(name, verdicts):
 
 def main():
     test_the_judge()
-    scenes, poses = (12, 50) if FULL else (1, 16)
+    scenes, poses = (6, 40) if FULL else (1, 16)
     families = {name: lambda name=name: soups(name, scenes, poses) for name in FAMILIES}
-    families['contacts'] = lambda: chapter_scene('contacts', 300 if FULL else 12, stride=1 if FULL else 50)
+    families['contacts'] = lambda: chapter_scene('contacts', 60 if FULL else 12, stride=5 if FULL else 50)
     if FULL:
-        families['disassembly'] = lambda: chapter_scene('disassembly', 300, stride=1)
+        families['disassembly'] = lambda: chapter_scene('disassembly', 60, stride=5)
     totals = [report(name, verdicts()) for name, verdicts in families.items() if ONLY in name]
     everything = {key: sum(t[key] for t in totals) for key in COUNTS}
     if not ONLY and (everything['touch'] < everything['pairs'] / 20 or everything['inside'] == 0):
