@@ -16,13 +16,6 @@ constexpr std::size_t kUsualItems =
     1u
     << 14;  // of a list to begin with (chosen: a deep contact of 100,000 by 2,000 triangles takes half of it)
 
-bool turned(const LatticePose& pose) {
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c)
-      if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
-  return false;
-}
-
 /// Free of contact, but for the times.
 void clear(Contacts& out) {
   out.contact = out.truncated = false;
@@ -119,8 +112,6 @@ Result<void> Frame::query(const LatticePose& pose, const Ignored* ignored, Conta
     stage("cull", 0);
     return {};
   }
-  if (!plan_.transform_rotates && turned(pose))
-    return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
   out.flags = flags_;
   posed_.begin(pose);
   Candidates near;

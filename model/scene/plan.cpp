@@ -9,21 +9,6 @@
 namespace palpate {
 namespace {
 
-bool is_identity(const Quat& q) { return q.x == 0 && q.y == 0 && q.z == 0; }
-
-/// Whether any pose of the session may be turned. Only the simulated device tells its poses beforehand: it
-/// follows its path, and leaves the path's rotation only if a torque can turn it away.
-bool session_rotates(const Scene& scene) {
-  const DeviceSettings& device = scene.device;
-  if (device.driver != "simulated") return true;
-  if (device.actuated[3] || device.actuated[4] || device.actuated[5]) return true;
-  if (!is_identity(scene.start.rotation)) return true;
-  const auto turned = [](const auto& point) { return !is_identity(point.pose.rotation); };
-  if (std::any_of(device.path.begin(), device.path.end(), turned)) return true;
-  return std::any_of(device.guide.begin(), device.guide.end(),
-                     [](const GuidePoint& point) { return !is_identity(point.frame.rotation); });
-}
-
 PlanFacts scene_facts(const Scene& scene, const SceneGeometry& geometry) {
   PlanFacts facts;
   facts.profile = scene.response.profile;
@@ -45,7 +30,6 @@ PlanFacts session_facts(const Scene& scene, const SceneGeometry& geometry, bool 
   PlanFacts facts = scene_facts(scene, geometry);
   const auto& actuated = scene.device.actuated;
   facts.torque_wanted = actuated[3] || actuated[4] || actuated[5];
-  facts.tool_rotates = session_rotates(scene);
   facts.subscribers = subscribers;
   return facts;
 }
@@ -66,10 +50,7 @@ PlanDecision decide_plan(const PlanFacts& facts) {
   plan.profile = facts.profile;
   plan.spare_absent = !facts.full;
 
-  plan.transform_rotates = facts.tool_rotates || facts.full;
-  line("transform", true,
-       plan.transform_rotates ? "the tool rotates and moves"
-                              : "the tool only translates: no rotation is applied");
+  line("transform", true, "the tool moves");
   line("cull", true, "only the parts of the tool near the mock-up's surface or inside go on");
   line("pairs", true, "the intersecting triangles are the contact");
   if (facts.internal_voxels.value_or(true))
@@ -114,7 +95,6 @@ Plan whole_plan_without(Profile profile, const std::string& stage) {
   Plan plan;
   plan.profile = profile;
   plan.est = profile == Profile::kRefined;
-  if (stage == "transform") plan.transform_rotates = false;
   if (stage == "imt") plan.imt = false;
   if (stage == "zones") plan.zones = false;
   if (stage == "contact_point") plan.contact_point = plan.torque = false;

@@ -13,10 +13,9 @@ enum class Profile : std::uint8_t { kPaper, kRefined };
 /// As it stands: everything.
 struct Plan {
   Profile profile = Profile::kRefined;
-  bool transform_rotates = true;  ///< false: the tool's rotation is the identity at every pose
-  bool imt = true;                ///< mock-up has V_int voxels
-  bool est = true;                ///< refined
-  bool zones = true;              ///< some edge is not smooth
+  bool imt = true;    ///< mock-up has V_int voxels
+  bool est = true;    ///< refined
+  bool zones = true;  ///< some edge is not smooth
   bool contact_point = true;
   bool torque = true;
   bool telemetry = true;      ///< somebody reads lists of triangle ids
@@ -30,8 +29,7 @@ struct PlanStage {
   std::string stage;  ///< transform, cull, pairs, imt, bmt, bst, est, areas, zones, rays, contact_point,
                       ///< torque, telemetry
   bool kept = true;
-  std::string
-      reason;  ///< why it is kept, left out, or simpler than it could be: a clause without a full stop
+  std::string reason;                ///< why it is kept or left out: a clause without a full stop
   std::uint64_t memory_bytes = 0;    ///< what this stage keeps for the prepared scene; 0 when left out
   std::uint64_t saved_bytes = 0;     ///< that leaving it out spares
   std::optional<double> saved_us{};  ///< likewise, of a median frame; empty: not measured
@@ -45,7 +43,6 @@ struct PlanFacts {
   Profile profile = Profile::kRefined;
   bool full = false;          ///< `--plan full`: keep all that the profile defines
   bool rough_edges = true;    ///< some mock-up edge is not smooth
-  bool tool_rotates = true;   ///< some pose may have a rotation that is not the identity
   bool torque_wanted = true;  ///< the device has torque axes, or the answer is a query's
   bool subscribers =
       false;  ///< somebody reads what frames tell beside forces: telemetry, a recording, a query's answer

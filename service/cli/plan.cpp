@@ -35,10 +35,8 @@ Result<void> measure_savings(HostedScene& hosted, Console& console) {
   if (path.empty()) question.poses.push_back(loaded.scene.start);
   const Plan whole = whole_plan_without(hosted.plan.plan.profile, {});
   for (PlanStage& stage : hosted.plan.stages) {
-    const Plan less = whole_plan_without(
-        hosted.plan.plan.profile,
-        stage.stage == "transform" && hosted.plan.plan.transform_rotates ? "" : stage.stage);
-    if (less == whole || (stage.kept && stage.stage != "transform")) continue;
+    const Plan less = whole_plan_without(hosted.plan.plan.profile, stage.stage);
+    if (less == whole || stage.kept) continue;
     console.step(("measuring " + stage.stage).c_str());
     PlanTrial with, without;
     for (std::uint64_t round = 0; round < kRounds; ++round)

@@ -85,12 +85,11 @@ void cull_tool(uint32_t lane, uint32_t cluster) {
 bool grid_near(ivec3 brick) {
   const int32_t half_side = 4 * scene.mockup.grid.size;
   const ivec3 centre = tool_from_world(scene.mockup.grid.origin + half_side * (2 * brick + 1));
-  ivec3 reach = ivec3(half_side);
-  if (ROTATES)
-    for (int c = 0; c < 3; ++c)
-      reach[c] = int32_t((abs(float(INPUT(rotation_q30[c]))) + abs(float(INPUT(rotation_q30[3 + c]))) +
-                          abs(float(INPUT(rotation_q30[6 + c])))) *
-                         (float(half_side) * ((1.0 + 1.0 / 1048576.0) / 1073741824.0))) + 4;
+  ivec3 reach;
+  for (int c = 0; c < 3; ++c)
+    reach[c] = int32_t((abs(float(INPUT(rotation_q30[c]))) + abs(float(INPUT(rotation_q30[3 + c]))) +
+                        abs(float(INPUT(rotation_q30[6 + c])))) *
+                       (float(half_side) * ((1.0 + 1.0 / 1048576.0) / 1073741824.0))) + 4;
   const ivec3 low = scene.fine.origin, high = low + 8 * scene.fine.size * scene.fine.bricks;
   return all(greaterThanEqual(centre + reach, low)) && all(lessThanEqual(centre - reach, high));
 }

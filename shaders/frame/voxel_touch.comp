@@ -25,6 +25,7 @@ EDIT(kBindTouchedVoxels, uvec4, touched_voxels);
 EDIT(kBindPairChunks, PairChunk, pair_chunks);
 
 #include "shaders/lib/budget.glsl"
+#include "shaders/lib/plan.glsl"
 #include "shaders/lib/batch/group_poses.glsl"
 #include "shaders/lib/broad_phase/turned_box.glsl"
 #include "shaders/lib/broad_phase/occupied.glsl"

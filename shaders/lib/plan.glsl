@@ -2,7 +2,6 @@
 // that differ from these.
 #ifndef PALPATE_LIB_PLAN
 #define PALPATE_LIB_PLAN
-layout(constant_id = 16) const bool ROTATES = true;         // false: every pose's rotation is the identity
 layout(constant_id = 17) const bool INTERNAL = true;        // false: the mock-up has no V_int voxel
 // False: all edges of the mock-up are smooth, an area is one zone.
 layout(constant_id = 18) const bool ZONES = true;

@@ -268,8 +268,7 @@ inline std::vector<gpu::DirectionCase> directions() {
   return cases;
 }
 
-/// Points up to 2^28 and rotations whose rows are no longer than one; every third for a plan in which nothing
-/// turns.
+/// Points up to 2^28 and rotations whose rows are no longer than one.
 inline std::vector<gpu::PoseCase> poses() {
   std::mt19937_64 engine(9);
   const auto within = [&](std::int32_t reach) {
@@ -278,7 +277,6 @@ inline std::vector<gpu::PoseCase> poses() {
   std::vector<gpu::PoseCase> cases(10000);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     auto& c = cases[i];
-    c.rotates = i % 3 == 0 ? 0 : 1;
     const std::int32_t reach = 1 << (1 + i % 28);
     for (int k = 0; k < 3; ++k) {
       c.point[k] = within(reach);

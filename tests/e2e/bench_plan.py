@@ -10,17 +10,16 @@ LEFT_OUT = {
     'no_inside': 'imt',
     'all_smooth': 'zones',
     'sheet': 'imt zones',
-    'translation': 'rotation',
     'no_torque': 'contact_point torque',
     'nobody_watching': 'telemetry',
     'one_triangle': 'imt zones',
     'swallowed': 'contact_point torque',
-    'large_sheet': 'rotation imt zones contact_point torque',
+    'large_sheet': 'imt zones contact_point torque',
     'paper_thin': 'imt est',
     'large_contact': 'zones contact_point torque',
     'paper': 'est contact_point torque',
     'paper_smooth': 'est zones telemetry',
-    'nothing': 'rotation imt zones contact_point torque telemetry',
+    'nothing': 'imt zones contact_point torque telemetry',
 }
 
 

@@ -39,7 +39,9 @@ def test_throughput_by_batch():
     batches = [r for r in rows if (r['backend'], r['asked']) == ('gpu', 'frames') and r['batch'] != 'single']
     for row in batches:
         expect(float(row['submissions']) == 1 and float(row['dispatches']) <= MOST_DISPATCHES, row)
-    expect(len({row['dispatches'] for row in batches}) == 1, f'as many dispatches whatever the size: {batches}')
+    expect(
+        len({row['dispatches'] for row in batches}) == 1, f'as many dispatches whatever the size: {batches}'
+    )
     # As much comes back as there are poses.
     expect(float(batches[-1]['bytes_down']) > 2 * float(batches[0]['bytes_down']), batches)
 
@@ -49,7 +51,10 @@ def test_the_largest_batch_is_bounded():
     scene = scene_in(folder)
     for wrong in ('0', '65537', 'many'):
         expect_refused(
-            palpate('bench', 'throughput', scene, '--largest', wrong, '--out', folder / 'none'), 3, '--largest', wrong
+            palpate('bench', 'throughput', scene, '--largest', wrong, '--out', folder / 'none'),
+            3,
+            '--largest',
+            wrong,
         )
     expect(not (folder / 'none').exists(), 'nothing is left behind')
 

@@ -18,7 +18,6 @@ const PlanStage& stage(const PlanDecision& decision, const std::string& name) {
 PlanFacts poor_facts() {
   PlanFacts facts;
   facts.rough_edges = false;
-  facts.tool_rotates = false;
   facts.torque_wanted = false;
   facts.internal_voxels = false;
   return facts;
@@ -91,19 +90,11 @@ TEST(Plan, ASessionsFactsComeFromItsDeviceAndPath) {
   SceneGeometry geometry;
   geometry.mockup.neighbours = {3, 5, 7};  // lowest bit set: all smooth
   scene.device.actuated = {true, true, true, false, false, false};
-  EXPECT_FALSE(session_facts(scene, geometry, false).tool_rotates);
   EXPECT_FALSE(session_facts(scene, geometry, false).torque_wanted);
   EXPECT_FALSE(session_facts(scene, geometry, false).rough_edges);
   EXPECT_TRUE(query_facts(scene, geometry).torque_wanted) << "a query always reports torque";
-  EXPECT_TRUE(query_facts(scene, geometry).tool_rotates) << "a query may ask for any pose";
-
-  PathPoint turned;
-  turned.pose.rotation = Quat(0.8, 0.6, 0, 0);
-  scene.device.path = {turned};
-  EXPECT_TRUE(session_facts(scene, geometry, false).tool_rotates);
-  scene.device.path.clear();
   scene.device.actuated[4] = true;
-  EXPECT_TRUE(session_facts(scene, geometry, false).tool_rotates) << "a torque turns the tool";
+  EXPECT_TRUE(session_facts(scene, geometry, false).torque_wanted);
   geometry.mockup.neighbours = {3, 4};
   EXPECT_TRUE(session_facts(scene, geometry, false).rough_edges);
 }

@@ -223,7 +223,7 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
   out.times.clear();
   decoder_.clear(out);
   pairs_ = 0;
-  if (auto r = begin_answer(plan_, pose, out); !r) return r;
+  begin_answer(plan_, out);
   if (pose.beyond_lattice) return {};
   out.flags = frame_flags_;
   if (auto r = finish(); !r) return r;

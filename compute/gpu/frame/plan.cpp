@@ -9,13 +9,6 @@ namespace {
 // measured).
 constexpr std::uint32_t kLanesOfGpu = 16;
 
-bool turned(const LatticePose& pose) {
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c)
-      if (pose.rotation_q30[r][c] != (r == c ? 1 << 30 : 0)) return true;
-  return false;
-}
-
 }  // namespace
 
 Plan frame_plan(const Plan& plan, bool has_internal) {
@@ -26,7 +19,6 @@ Plan frame_plan(const Plan& plan, bool has_internal) {
 
 std::vector<SpecConstant> plan_constants(const Plan& plan) {
   std::vector<SpecConstant> out;
-  if (!plan.transform_rotates) out.push_back({16, 0});
   if (!plan.imt) out.push_back({17, 0});
   if (!plan.zones) out.push_back({18, 0});
   if (!plan.contact_point) out.push_back({19, 0});
@@ -50,13 +42,10 @@ gpu::FrameInput frame_input(const LatticePose& pose) {
   return out;
 }
 
-Result<void> begin_answer(const Plan& plan, const LatticePose& pose, Contacts& out) {
+void begin_answer(const Plan& plan, Contacts& out) {
   out.engine = "gpu";
   out.contact_points = plan.contact_point;
   out.lists = plan.telemetry;
-  if (!plan.transform_rotates && !pose.beyond_lattice && turned(pose))
-    return Error{ErrorCode::kInternal, "the plan leaves rotation out, but the tool is turned"};
-  return {};
 }
 
 }  // namespace palpate

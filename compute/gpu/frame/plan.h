@@ -31,7 +31,7 @@ std::uint32_t flags_of_frames(const gpu::SceneConstants& scene);
 /// A pose as shaders read it; nothing is ignored, nothing coarser.
 gpu::FrameInput frame_input(const LatticePose& pose);
 
-/// What an emptied answer says whatever the pose finds. Error: the plan does not know such a pose.
-Result<void> begin_answer(const Plan& plan, const LatticePose& pose, Contacts& out);
+/// What an emptied answer says whatever the pose finds.
+void begin_answer(const Plan& plan, Contacts& out);
 
 }  // namespace palpate

@@ -117,7 +117,6 @@ class PlanBench {
     for (const PlanStage& stage : lean.stages) {
       if (!stage.kept) left_out += (left_out.empty() ? "" : " ") + stage.stage;
     }
-    if (!lean.plan.transform_rotates) left_out = "rotation" + (left_out.empty() ? "" : " " + left_out);
     const auto contacts = std::count_if(trials[0].frames.begin(), trials[0].frames.end(),
                                         [](const auto& frame) { return frame.contacts.contact; });
     facts_.more.emplace_back(

@@ -100,10 +100,6 @@ std::vector<PlanSubject> plan_subjects() {
       [&](PlanSubject& s) { s.mockup = round_block(30 * kMm, 6000); });
   add("sheet", "an open, bent sheet: no inside, no sharp edge",
       [&](PlanSubject& s) { s.mockup = bent_sheet(40 * kMm, 24); });
-  add("translation", "a tool that doesn't turn", [&](PlanSubject& s) {
-    s.tool_rotates = false;
-    s.poses = presses(8 * kMm, 9 * kMm, false);
-  });
   add("no_torque", "a device without torque axes", [](PlanSubject& s) { s.torque_wanted = false; });
   add("nobody_watching", "no viewer and no recording", [](PlanSubject& s) { s.subscribers = false; });
   add("far_tool", "a tool that stays away", [](PlanSubject& s) {
@@ -140,17 +136,17 @@ std::vector<PlanSubject> plan_subjects() {
     s.profile = Profile::kPaper;
     s.mockup = block(2);
   });
-  add("large_sheet", "a sheet of many triangles, no rotation, no torque", [&](PlanSubject& s) {
+  add("large_sheet", "a sheet of many triangles, no torque", [&](PlanSubject& s) {
     s.mockup = bent_sheet(40 * kMm, 320);
     s.tool = ball;
-    s.tool_rotates = s.torque_wanted = false;
+    s.torque_wanted = false;
     s.poses = presses(radius, 6 * kMm, false);
     s.poses.resize(12);
   });
-  add("nothing", "a sheet, no rotation, no torque, nobody watching", [&](PlanSubject& s) {
+  add("nothing", "a sheet, no torque, nobody watching", [&](PlanSubject& s) {
     s.mockup = bent_sheet(40 * kMm, 24);
     s.tool = ball;
-    s.tool_rotates = s.torque_wanted = s.subscribers = false;
+    s.torque_wanted = s.subscribers = false;
     s.poses = presses(radius, 6 * kMm, false);
   });
   return out;
@@ -160,7 +156,6 @@ PlanFacts facts_of(const PlanSubject& subject, const SceneGeometry& geometry) {
   Scene scene;
   scene.response.profile = subject.profile;
   PlanFacts facts = query_facts(scene, geometry);
-  facts.tool_rotates = subject.tool_rotates;
   facts.torque_wanted = subject.torque_wanted;
   facts.subscribers = subject.subscribers;
   return facts;

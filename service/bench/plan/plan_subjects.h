@@ -16,7 +16,7 @@ struct PlanSubject {
   Mesh mockup, tool;
   GeometrySettings settings;
   Profile profile = Profile::kRefined;
-  bool tool_rotates = true, torque_wanted = true, subscribers = true;
+  bool torque_wanted = true, subscribers = true;
   std::vector<Pose> poses;
 };
 

@@ -24,14 +24,10 @@ bool voxels_of_turned(ivec3 low, ivec3 high, out ivec3 first, out ivec3 last) {
   const vec3 half_size = vec3(high - middle);
   ivec3 reach;
   for (int r = 0; r < 3; ++r) {
-    if (ROTATES) {
-      const vec3 along = abs(vec3(INPUT(rotation_q30[3 * r]), INPUT(rotation_q30[3 * r + 1]),
-                                  INPUT(rotation_q30[3 * r + 2]))) *
-                         half_size;
-      reach[r] = int32_t((along.x + along.y + along.z) * ((1.0 + 1.0 / 1048576.0) / 1073741824.0)) + 3;
-    } else {
-      reach[r] = int32_t(half_size[r] * (1.0 + 1.0 / 1048576.0)) + 3;
-    }
+    const vec3 along = abs(vec3(INPUT(rotation_q30[3 * r]), INPUT(rotation_q30[3 * r + 1]),
+                                INPUT(rotation_q30[3 * r + 2]))) *
+                       half_size;
+    reach[r] = int32_t((along.x + along.y + along.z) * ((1.0 + 1.0 / 1048576.0) / 1073741824.0)) + 3;
   }
   return voxels_of(at - reach, at + reach, first, last);
 }

@@ -9,9 +9,8 @@ struct PoseCase {
   int32_t rotation_q30[9];
   ivec3 translation;
   ivec3 point;
-  uint32_t rotates;  // 0: as where a plan knows that no pose does
 };
-PALPATE_ASSERT_SIZE(PoseCase, 64);
+PALPATE_ASSERT_SIZE(PoseCase, 60);
 
 struct PoseAnswer {
   ivec3 world, tool;  // of the point, from the tool and from the world

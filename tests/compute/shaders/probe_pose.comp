@@ -11,7 +11,6 @@ layout(push_constant) uniform Push { uint32_t count; };
 
 uint32_t probed;
 #define frame_input cases[probed]
-#define ROTATES (cases[probed].rotates != 0u)
 #include "shaders/lib/pose.glsl"
 
 void main() {
