@@ -160,13 +160,12 @@ std::string lines_svg(const Chart& chart) {
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}/>", path, ink,
                          series.guide ? 1 : 2, dashed ? " stroke-dasharray=\"6 4\"" : "");
     out += dots + "\n";
-    out += fmt::format(
-        "<rect x=\"{}\" y=\"{}\" width=\"12\" height=\"{}\" fill=\"{}\"/>", column,
-        series.marker == Chart::Marker::kCircle && !series.dashed && !series.guide ? row - 10 : row - 5,
-        series.marker == Chart::Marker::kCircle && !series.dashed && !series.guide ? 12 : 2, ink);
-    if (series.marker != Chart::Marker::kCircle && !series.guide)
-      out += marker(series.marker, column + 6, row - 4, ink);
-    out += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", column + 18, row, markup_text(series.label));
+    // The legend shows a series as it is drawn.
+    if (series.line)
+      out += fmt::format("<path d=\"M{} {}h20\" stroke=\"{}\" stroke-width=\"{}\"{}/>", column, row - 4, ink,
+                         series.guide ? 1 : 2, dashed ? " stroke-dasharray=\"6 4\"" : "");
+    if (!series.expected && !series.guide) out += marker(series.marker, column + 10, row - 4, ink);
+    out += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", column + 26, row, markup_text(series.label));
   }
   return out + "</svg>\n";
 }

@@ -20,9 +20,11 @@ TEST(ChartSvg, DrawsWhatTheoryExpectsDashedInTheInkOfWhatItIsOf) {
   chart.series = {
       {"law", {1, 10}, {100, 50}}, {"law, theory", {1, 10}, {110, 55}, true}, {"other", {1, 10}, {7, 8}}};
   const std::string picture = chart_svg(chart);
-  EXPECT_EQ(count(picture, "<circle"), 4u);  // theory has no dots
-  EXPECT_EQ(count(picture, "stroke-dasharray"), 1u);
-  EXPECT_EQ(count(picture, "stroke=\"#4269d0\""), 2u);
+  // Theory has no dots, and the legend shows each series as it is drawn.
+  EXPECT_EQ(count(picture, "<circle"), 4u + 2u);
+  EXPECT_EQ(count(picture, "stroke-dasharray"), 1u + 1u);
+  EXPECT_EQ(count(picture, "stroke=\"#4269d0\""), 2u + 2u);
+  EXPECT_EQ(count(picture, "<rect"), 1u);  // the ground
   EXPECT_NE(picture.find("K &lt; all &amp; more"), std::string::npos);
 }
 
@@ -69,7 +71,7 @@ TEST(ChartSvg, WhatDivergedIsMarkedAtTheEdgeAndStretchesNoAxis) {
   chart.y_most = 10;
   chart.series = {{"a", {1, 2, 3}, {1, 5, 1e104}}};
   const std::string picture = chart_svg(chart);
-  EXPECT_EQ(count(picture, "<circle"), 2u);
+  EXPECT_EQ(count(picture, "<circle"), 2u + 1u);  // the legend's
   EXPECT_EQ(count(picture, "l5 9h-10Z"), 1u);
   EXPECT_EQ(picture.find("1e+104"), std::string::npos);
 }
