@@ -21,8 +21,7 @@ std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std
 void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh);
 
 /// Sets kTriangleThin on the triangles of pieces, joined over edges, that are closed and whose width 4 V / A
-/// is below 4.5 spacings (EXACTNESS section 4). Neighbours must be there. `spacing`: the mock-up's, for
-/// either body.
+/// is below 4.5 spacings (EXACTNESS section 4). Neighbours must be there.
 void mark_thin_pieces(std::int32_t spacing, LatticeMesh& mesh);
 
 }  // namespace palpate

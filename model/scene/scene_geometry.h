@@ -24,7 +24,7 @@ struct SceneGeometry {
   std::int32_t tool_radius = 0;  ///< steps: ≥ |v| of every tool vertex + 2, Euclidean
   VoxelGrid mockup_grid;
   VoxelGrid tool_grid;                ///< in the tool's lattice frame, same voxel size
-  std::int32_t sample_spacing = 0;    ///< steps, ≥ 1, ≥ voxel size / 63
+  std::int32_t sample_spacing = 0;    ///< of both bodies; steps, ≥ 1, ≥ voxel size / 63
   std::uint32_t contact_samples = 0;  ///< about so many samples of each body say what a contact pushes with;
                                       ///< larger ones are taken at a coarser level; 0: all
   double reference_area_m2 = 0;       ///< A_ref: a flat contact of this area is as stiff as K, m²

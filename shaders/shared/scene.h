@@ -64,7 +64,7 @@ struct SceneConstants {
   BodyConstants tool;
   int32_t tool_radius;     // steps
   int32_t lever_shift;     // of it (model/contact/field.h)
-  int32_t sample_spacing;  // steps
+  int32_t sample_spacing;  // steps, of both bodies
   uint32_t refined;        // 1: profile `refined`, 0: `paper`
   uint32_t mockup_extras;  // extra samples; refined
   uint32_t tool_extras;

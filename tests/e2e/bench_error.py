@@ -157,14 +157,7 @@ def test_the_closed_forms_converge_and_paper_does_not():
 
 def test_a_scene_is_judged_against_a_converged_run():
     folder = Folder()
-    folder.write('block.stl', stl(box((0.08, 0.08, 0.04), (0, 0, -0.02))))
-    folder.write('ball.stl', stl(sphere(0.01)))
-    folder.write(
-        'poses.csv',
-        'x,y,z,qx,qy,qz,qw\n'
-        + ''.join(f'{0.001 * i},{0.0007 * i},{0.009 - 0.0001 * i},0,0,0,1\n' for i in range(12)),
-    )
-    scene = folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
+    scene = ball_on_block(folder, side=0.08, poses=12, step=0.0001)
     done = palpate(
         'bench',
         'error',

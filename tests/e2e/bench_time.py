@@ -7,21 +7,10 @@ from harness import *
 MOST_DISPATCHES = 10  # docs/ARCHITECTURE.md: of a frame, and of a batch of any size
 
 
-def scene_in(folder):
-    folder.write('block.stl', stl(box((0.06, 0.06, 0.03), (0, 0, -0.015))))
-    folder.write('ball.stl', stl(sphere(0.01)))
-    folder.write(
-        'poses.csv',
-        'x,y,z,qx,qy,qz,qw\n'
-        + ''.join(f'{0.001 * i},{0.0007 * i},{0.009 - 0.0002 * i},0,0,0,1\n' for i in range(8)),
-    )
-    return folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
-
-
 def measured(folder, bench, *words):
     out = folder / bench
     done = palpate(
-        'bench', bench, scene_in(folder), '--poses', folder / 'poses.csv', '--rounds', '3', '--out', out,
+        'bench', bench, ball_on_block(folder), '--poses', folder / 'poses.csv', '--rounds', '3', '--out', out,
         '--backend', 'cpu', 'gpu', *words,
     )  # fmt: skip
     expect(done.code == 0, done)
@@ -48,7 +37,7 @@ def test_throughput_by_batch():
 
 def test_the_largest_batch_is_bounded():
     folder = Folder()
-    scene = scene_in(folder)
+    scene = ball_on_block(folder)
     for wrong in ('0', '65537', 'many'):
         expect_refused(
             palpate('bench', 'throughput', scene, '--largest', wrong, '--out', folder / 'none'),

@@ -165,6 +165,19 @@ class Folder:
         return self.path / name
 
 
+def ball_on_block(folder, side=0.06, poses=8, step=0.0002):
+    """A scene of a ball of 10 mm pressed by `step` m a pose, from 1 mm on, into a block of `side` m, with
+    poses.csv beside it."""
+    folder.write('block.stl', stl(box((side, side, side / 2), (0, 0, -side / 4))))
+    folder.write('ball.stl', stl(sphere(0.01)))
+    folder.write(
+        'poses.csv',
+        'x,y,z,qx,qy,qz,qw\n'
+        + ''.join(f'{0.001 * i},{0.0007 * i},{0.009 - step * i},0,0,0,1\n' for i in range(poses)),
+    )
+    return folder.save()
+
+
 def main(cases):
     wanted = sys.argv[3] if len(sys.argv) > 3 else ''
     passed = failed = 0

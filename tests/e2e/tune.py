@@ -5,17 +5,6 @@ import json
 from harness import *
 
 
-def scene_in(folder):
-    folder.write('block.stl', stl(box((0.06, 0.06, 0.03), (0, 0, -0.015))))
-    folder.write('ball.stl', stl(sphere(0.01)))
-    folder.write(
-        'poses.csv',
-        'x,y,z,qx,qy,qz,qw\n'
-        + ''.join(f'{0.001 * i},{0.0007 * i},{0.009 - 0.0002 * i},0,0,0,1\n' for i in range(8)),
-    )
-    return folder.save(static=[{'mesh': 'block.stl', 'units': 'm'}], tool={'mesh': 'ball.stl', 'units': 'm'})
-
-
 def tuned(scene, folder, budget):
     done = palpate(
         'tune', scene, '--budget-us', repr(budget), '--poses', folder / 'poses.csv', '--rounds', '2', '--json'
@@ -47,7 +36,7 @@ def tuned(scene, folder, budget):
 
 def test_three_budgets():
     folder = Folder()
-    scene = scene_in(folder)
+    scene = ball_on_block(folder)
     ample = tuned(scene, folder, 1e7)
     expect(len(ample['measured']) >= 8, ample['measured'])
     expect(
@@ -84,7 +73,7 @@ def test_three_budgets():
 
 def test_apply_writes_the_choice_and_leaves_the_rest():
     folder = Folder()
-    scene = scene_in(folder)
+    scene = ball_on_block(folder)
     before = json.loads(pathlib.Path(scene).read_text())
     done = palpate(
         'tune',
@@ -117,7 +106,7 @@ def test_apply_writes_the_choice_and_leaves_the_rest():
 
 def test_a_budget_that_nothing_keeps_is_refused_with_the_fastest():
     folder = Folder()
-    scene = scene_in(folder)
+    scene = ball_on_block(folder)
     expect_refused(
         palpate(
             'tune',
