@@ -16,8 +16,8 @@ using namespace gpu;  // names of shaders/shared/frame.h
 namespace {
 
 constexpr std::size_t kMostListed = std::size_t{1} << 22;  // samples of the tool (chosen: 48 MiB)
-constexpr std::size_t kPart =
-    64;  // samples or triangles of a part of the sum (chosen: a tenth of a millisecond)
+constexpr std::size_t kPart = 64;           // samples that count, of a part of the sum (chosen: some 10 us)
+constexpr std::size_t kMostOfABody = 4096;  // of either body; beyond, parts are larger (chosen)
 
 bool is_sheet(const LatticeMesh& mesh, std::uint32_t id) { return (mesh.flags[id] & kTriangleSheet) != 0; }
 
@@ -138,28 +138,25 @@ PressureField PressureField::make(const SceneGeometry& geometry, const TriangleT
     out.own_begin_.clear();
     return out;
   }
-  std::vector<std::uint32_t> begin{0};
-  std::vector<Int3> samples;
   for (std::uint32_t id = 0; id < triangles; ++id) {
-    out.own_begin_.clear();  // for_tool_samples then works them out
-    out.for_tool_samples(id, [&](const Int3& p, int level) {
-      samples.push_back(p);
+    out.work_out_tool_samples(id, [&](const Int3& p, int level) {
+      out.own_samples_.push_back(p);
       out.own_levels_.push_back(static_cast<std::uint8_t>(level));
     });
-    begin.push_back(static_cast<std::uint32_t>(samples.size()));
+    out.own_begin_.push_back(static_cast<std::uint32_t>(out.own_samples_.size()));
   }
-  out.own_begin_ = std::move(begin);
-  out.own_samples_ = std::move(samples);
   return out;
 }
 
+/// How many of a tool triangle's samples are listed.
+std::uint32_t PressureField::own_count(std::uint32_t mobile) const {
+  return own_begin_.empty() || geometry_->tool.field_weight_q30[mobile] == 0
+             ? 0
+             : own_begin_[mobile + 1] - own_begin_[mobile];
+}
+
 template <class Take>
-void PressureField::for_tool_samples(std::uint32_t mobile, Take&& take) const {
-  if (!own_begin_.empty()) {
-    for (std::uint32_t i = own_begin_[mobile]; i < own_begin_[mobile + 1]; ++i)
-      take(own_samples_[i], own_levels_[i]);
-    return;
-  }
+void PressureField::work_out_tool_samples(std::uint32_t mobile, Take&& take) const {
   const LatticeMesh& tool = geometry_->tool;
   if (tool.collapsed(mobile)) return;
   const exact::Corners corners{tool.corner(mobile, 0), tool.corner(mobile, 1), tool.corner(mobile, 2)};
@@ -334,11 +331,36 @@ void PressureField::sum_extras(const LatticePose& pose, const ContactSets& sets,
         push_from_mockup(pose, result.id, extra.point, weight, carrier_of(carriers, result.id), lane);
 }
 
-/// Of the samples of C_m inside the mock-up.
-void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResult> mobiles,
+/// Parts of C_m's samples, alike in size: one triangle may have thousands.
+void PressureField::divide_tool(std::span<const MobileResult> mobiles) {
+  const std::size_t size = std::max(kPart << level_, own_samples_.size() / kMostOfABody);
+  tool_parts_.clear();
+  std::size_t room = 0;  // of the last part
+  for (std::uint32_t i = 0; i < mobiles.size(); ++i) {
+    const std::size_t count = own_count(mobiles[i].id);
+    for (std::size_t first = 0; first == 0 || first < count;) {
+      if (room == 0) {
+        tool_parts_.push_back({i, static_cast<std::uint32_t>(first)});
+        room = size;
+      }
+      const std::size_t taken =
+          std::clamp<std::size_t>(count - first, 1, room);  // 1: a triangle costs a look
+      room -= taken;
+      first += taken;
+    }
+  }
+}
+
+/// Of the samples of C_m inside the mock-up, those of a part.
+void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResult> mobiles, std::size_t part,
                              Lane& lane) const {
   const LatticeMesh& own = geometry_->tool;
-  for (const MobileResult& result : mobiles) {
+  const ToolPart begin = tool_parts_[part],
+                 end = part + 1 < tool_parts_.size()
+                           ? tool_parts_[part + 1]
+                           : ToolPart{static_cast<std::uint32_t>(mobiles.size()), 0};
+  for (std::uint32_t i = begin.mobile; i < end.mobile || (i == end.mobile && end.sample != 0); ++i) {
+    const MobileResult& result = mobiles[i];
     // What touches nothing is on one side of the mock-up, with its first corner.
     const bool hit = (result.state & kMobileHit) != 0;
     std::optional<bool> inside;
@@ -348,10 +370,17 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
       if (!hit && !inside) inside = lane.in_mockup.inside(transform(pose, own.corner(result.id, 0)));
       if (hit ? lane.in_mockup.inside(point) : *inside) push_from_tool(pose, result.id, point, weight, lane);
     };
-    if (own.field_weight_q30[result.id] != 0)
-      for_tool_samples(result.id,
-                       [&](const Int3& p, int level) { push(p, weight_of(own, result.id, level)); });
-    for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, weight_of(extra));
+    const auto weighed = [&](const Int3& p, int level) { push(p, weight_of(own, result.id, level)); };
+    const std::uint32_t first = i == begin.mobile ? begin.sample : 0;
+    if (own_begin_.empty()) {
+      if (own.field_weight_q30[result.id] != 0) work_out_tool_samples(result.id, weighed);
+    } else {
+      const std::uint32_t all = own_begin_[result.id],
+                          last = i == end.mobile ? end.sample : own_count(result.id);
+      for (std::uint32_t k = all + first; k < all + last; ++k) weighed(own_samples_[k], own_levels_[k]);
+    }
+    if (first == 0)
+      for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, weight_of(extra));
   }
 }
 
@@ -379,19 +408,21 @@ void PressureField::sum(const LatticePose& pose, const ContactSets& sets, const 
 
   // Whole numbers are summed, so it is the same who sums which. Carriers are written by whoever has the
   // mock-up's samples, so where they are wanted these are one part.
-  const auto parts_of = [](std::size_t count, bool one) {
-    return one ? std::size_t{1} : (count + kPart - 1) / kPart;
+  const auto parts_of = [&](std::size_t count) {
+    if (wanted.carriers) return std::size_t{1};
+    const std::size_t size = kPart << level_;
+    return std::min((count + size - 1) / size, kMostOfABody);
   };
   const std::span<const StaticResult> statics = tool_has_inside_ && !mockup_extras_.empty()
                                                     ? std::span(found.statics)
                                                     : std::span<const StaticResult>();
-  const std::size_t of_samples = parts_of(found.samples.size(), wanted.carriers),
-                    of_statics = parts_of(statics.size(), wanted.carriers),
-                    of_tool = parts_of(found.mobiles.size(), false);
+  const std::size_t of_samples = parts_of(found.samples.size()), of_statics = parts_of(statics.size());
+  divide_tool(found.mobiles);
   const auto piece = []<class T>(std::span<const T> all, std::size_t part, std::size_t parts) {
-    return parts == 1 ? all : all.subspan(part * kPart, std::min(kPart, all.size() - part * kPart));
+    const std::size_t first = all.size() * part / parts;
+    return all.subspan(first, all.size() * (part + 1) / parts - first);
   };
-  share_parts(helper, static_cast<std::uint32_t>(of_samples + of_statics + of_tool),
+  share_parts(helper, static_cast<std::uint32_t>(of_samples + of_statics + tool_parts_.size()),
               [&](std::uint32_t part, int number) {
                 Lane& lane = lanes_[static_cast<std::size_t>(number)];
                 if (part < of_samples)
@@ -400,10 +431,7 @@ void PressureField::sum(const LatticePose& pose, const ContactSets& sets, const 
                 else if (part < of_samples + of_statics)
                   sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), out.carriers, lane);
                 else
-                  sum_tool(pose,
-                           piece(std::span<const MobileResult>(found.mobiles), part - of_samples - of_statics,
-                                 of_tool),
-                           lane);
+                  sum_tool(pose, found.mobiles, part - of_samples - of_statics, lane);
               });
 
   const Lane &first = lanes_[0], &second = lanes_[1];

@@ -46,6 +46,10 @@ class PressureField {
     std::uint32_t flags = 0;
     std::vector<std::uint32_t> touched;  ///< ignored patches, in any order
   };
+  /// Where a part of C_m's samples begins: which of C_m, and which of its samples.
+  struct ToolPart {
+    std::uint32_t mobile, sample;
+  };
   /// Extra samples by triangle; few have some.
   class Extras {
    public:
@@ -70,10 +74,13 @@ class PressureField {
   void sum_extras(const LatticePose& pose, const ContactSets& sets,
                   std::span<const gpu::StaticResult> statics, std::span<CarrierSums> carriers,
                   Lane& lane) const;
-  void sum_tool(const LatticePose& pose, std::span<const gpu::MobileResult> mobiles, Lane& lane) const;
+  std::uint32_t own_count(std::uint32_t mobile) const;
+  void divide_tool(std::span<const gpu::MobileResult> mobiles);
+  void sum_tool(const LatticePose& pose, std::span<const gpu::MobileResult> mobiles, std::size_t part,
+                Lane& lane) const;
   bool is_ignored(std::uint32_t static_id, Lane& lane) const;
   template <class Take>
-  void for_tool_samples(std::uint32_t mobile, Take&& take) const;
+  void work_out_tool_samples(std::uint32_t mobile, Take&& take) const;
   void choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser);
   std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const;
   std::uint64_t weight_of(const ExtraSample& extra) const;
@@ -89,6 +96,7 @@ class PressureField {
   std::uint32_t level_ = 0,
                 between_ = 0;         ///< of this frame: the level of samples, and how far to the next, 1/256
   const Ignored* ignored_ = nullptr;  ///< of this frame
+  std::vector<ToolPart> tool_parts_;  ///< of this frame
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
 };
 
