@@ -57,8 +57,13 @@ class Summing {
   Summing(const Frame& frame, Contacts& out)
       : frame_(frame), out_(out), shift_(lever_shift(frame.scene.geometry->tool_radius)) {
     const std::int64_t wanted = frame.scene.geometry->contact_samples;
+    std::int64_t deep = 0;
+    for (const std::uint32_t m : out.imt) deep += frame.tool_mesh().grid_samples[m];
     const auto count = static_cast<std::int64_t>(frame.counting.size() + frame.contact_mobile.size() / 16);
-    if (wanted > 0 && count > wanted) grade_ = binary_log_q8(count) - binary_log_q8(wanted);
+    if (wanted > 0 && count > wanted)
+      grade_ = std::min<std::int64_t>(binary_log_q8(count) - binary_log_q8(wanted), 256 * kSurfaceLevels);
+    if (wanted > 0 && deep / 4 > wanted)
+      grade_ = std::max(grade_, binary_log_q8(deep / 4) - binary_log_q8(wanted));
     if (frame.ignored != nullptr) grade_ += frame.ignored->coarser;
     grade_ = std::min<std::int64_t>(grade_, 256 * kSampleLevels);
   }
@@ -195,7 +200,7 @@ class Summing {
   std::uint64_t weight_of(const ExtraSample& extra) const {
     return blended([&](std::int64_t wanted) -> std::uint64_t {
       if (wanted == 0) return extra.weight_q30;
-      const std::int64_t taken = std::min<std::int64_t>(wanted, kSampleLevels);
+      const std::int64_t taken = std::min<std::int64_t>(wanted, kSurfaceLevels);
       return std::uint64_t{extra.coarse_q30[static_cast<std::size_t>(taken - 1)]} << taken;
     });
   }

@@ -40,6 +40,7 @@ void archive_mesh(Archive& a, LatticeMeshOrConst& mesh) {
   a(mesh.extra_samples);
   a(mesh.levels_of);
   a(mesh.side_levels);
+  a(mesh.grid_samples);
   a(mesh.closed);
   a(mesh.box_min);
   a(mesh.box_max);

@@ -25,14 +25,17 @@ inline constexpr std::uint32_t kNoPatch = 0xFFFFFFFF;
 
 /// Every second sample, every fourth …: the field leaves samples out of large contacts, level by level
 /// (docs/EXACTNESS.md section 4).
-inline constexpr int kSampleLevels = 4;
+inline constexpr int kSampleLevels = 6;  // of more a weight might not fit into 32 bits, Q24
+/// Samples of a contact at the surfaces, and extra samples, which are few, thin out up to this level; the
+/// tool's samples far inside a mock-up, where all are much alike, go on to kSampleLevels.
+inline constexpr int kSurfaceLevels = 4;
 
 /// A point of a triangle that stands for what the grid of samples misses (docs/EXACTNESS.md section 4).
 struct ExtraSample {
   std::uint32_t triangle = 0;
   Int3 point{0};                 ///< within a step of the triangle's plane
   std::uint32_t weight_q30 = 0;  ///< of s², > 0
-  std::array<std::uint32_t, kSampleLevels>
+  std::array<std::uint32_t, kSurfaceLevels>
       coarse_q30{};  ///< of levels 1, 2, …, of 2^level s²: its own and those of others that it stands for
                      ///< there; 0: another stands for it
   bool operator==(const ExtraSample&) const = default;
@@ -70,8 +73,10 @@ struct LatticeMesh {
   std::vector<std::uint32_t>
       levels_of;  ///< by triangle: 1 + its place in `side_levels`; 0: all its samples count always
   std::vector<SideLevels> side_levels;  ///< of large sides
-  bool closed = false;                  ///< edges, each with its direction, cancel point for point
-  Int3 box_min{0}, box_max{0};          ///< of all triangles that did not collapse
+  std::vector<std::uint32_t>
+      grid_samples;             ///< of the tool, by triangle: how many weigh something (count_grid_samples())
+  bool closed = false;          ///< edges, each with its direction, cancel point for point
+  Int3 box_min{0}, box_max{0};  ///< of all triangles that did not collapse
 
   /// Corner k (0, 1, 2) of a triangle, lattice steps.
   Int3 corner(std::uint32_t triangle, int k) const {

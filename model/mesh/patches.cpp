@@ -309,7 +309,7 @@ void level_extras(std::int32_t spacing, LatticeMesh& mesh) {
   std::vector<Int3> corner(mesh.patch_count, Int3(std::numeric_limits<std::int32_t>::max()));
   for (const ExtraSample& extra : extras)
     corner[mesh.patch[extra.triangle]] = glm::min(corner[mesh.patch[extra.triangle]], extra.point);
-  for (int level = 1; level <= kSampleLevels; ++level) {
+  for (int level = 1; level <= kSurfaceLevels; ++level) {
     const std::int64_t edge = spacing * cube_of_level(level);
     const auto place = [&](std::uint32_t i) {
       return extras[i].point - corner[mesh.patch[extras[i].triangle]];
@@ -456,6 +456,16 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),
                    [](const ExtraSample& a, const ExtraSample& b) { return a.triangle < b.triangle; });
   level_extras(spacing, mesh);
+}
+
+void count_grid_samples(std::int32_t spacing, LatticeMesh& tool) {
+  const auto count = static_cast<std::uint32_t>(tool.triangles.size());
+  const std::uint32_t most = std::numeric_limits<std::uint32_t>::max() / std::max(count, 1U);
+  tool.grid_samples.assign(count, 0);
+  for (std::uint32_t t = 0; t < count; ++t)
+    if (tool.field_weight_q30[t] != 0)
+      tool.grid_samples[t] =
+          static_cast<std::uint32_t>(std::min<double>(count_samples(tool, t, spacing)[0], most));
 }
 
 void mark_thin_pieces(std::int32_t spacing, LatticeMesh& mesh) {

@@ -20,6 +20,10 @@ std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std
 /// a fixed order: made once at load, read by every back end.
 void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh);
 
+/// Fills `grid_samples` of a tool: how many samples of each triangle weigh something, cut so that all
+/// together are below 2^32 (EXACTNESS section 4). Its field weights must be there.
+void count_grid_samples(std::int32_t spacing, LatticeMesh& tool);
+
 /// Sets kTriangleThin on the triangles of pieces, joined over edges, that are closed and whose width 4 V / A
 /// is below 4.5 spacings (EXACTNESS section 4). Neighbours must be there.
 void mark_thin_pieces(std::int32_t spacing, LatticeMesh& mesh);

@@ -270,6 +270,7 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
     weigh_for_field(out.sample_spacing, *mesh);
     mark_thin_pieces(out.sample_spacing, *mesh);
   }
+  count_grid_samples(out.sample_spacing, out.tool);
   return out;
 }
 

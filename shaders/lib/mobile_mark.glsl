@@ -1,11 +1,21 @@
-// Sets a bit of a tool triangle's state; the first of kMobileSets enters it in C_m. The including file has
-// mobile_state, contact_mobiles, frame_lists and frame_state.
+// Sets a bit of a tool triangle's state; the first of kMobileSets enters it in C_m. Its samples count as deep
+// while it is in IMT: V_int voxels are marked before pairs. The including file has scene, mobile_state,
+// contact_mobiles, frame_lists and frame_state.
 #ifndef PALPATE_MOBILE_MARK_GLSL
 #define PALPATE_MOBILE_MARK_GLSL
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/member_groups.glsl"
 #include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(mobile, kBindMobileKeys)
+READ(kBindToolSamples, uint32_t, tool_samples);
+
+void count_deep(uint32_t mobile, uint32_t before, uint32_t bit) {
+  if (scene.refined == 0u || (before & bit) != 0u) return;
+  if (bit == kMobileInternal)
+    atomicAdd(frame_state.deep_samples, tool_samples[mobile]);
+  else if (bit == kMobileHit && (before & kMobileInternal) != 0u)
+    atomicAdd(frame_state.deep_samples, 0u - tool_samples[mobile]);
+}
 
 void mark_mobile(uint32_t mobile, uint32_t bit) {
   if (bit == kMobileInternal) frame_state.meets = 1u;   // whoever writes it
@@ -15,6 +25,7 @@ void mark_mobile(uint32_t mobile, uint32_t bit) {
     return;
   }
   const uint32_t before = atomicOr(mobile_state[entry], bit);
+  count_deep(mobile, before, bit);
   if ((before & kMobileSets) != 0u) return;
   if (BATCH) atomicAdd(frame_state.mobiles, 1u);
   const uint32_t at = take_room(kListContactMobiles, 1u);

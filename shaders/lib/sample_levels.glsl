@@ -25,20 +25,25 @@ uint32_t log_q8(uint32_t count) {
   return 256u * whole + uint32_t(uint64_t(count) << 8 >> whole) - 256u;
 }
 
+// By how many levels, Q8, samples are too many.
+uint32_t levels_beyond(uint32_t count) {
+  const uint32_t wanted = scene.contact_samples;
+  return wanted != 0u && count > wanted ? log_q8(count) - log_q8(wanted) : 0u;
+}
+
 // Of this frame, Q8.
 uint32_t frame_level() {
   const uint32_t samples = BATCH ? frame_state.samples : list_count(kListSamples),
                  mobiles = BATCH ? frame_state.mobiles : list_count(kListContactMobiles),
-                 count = samples + mobiles / 16u,
-                 wanted = scene.contact_samples;
-  const uint32_t by_size = wanted != 0u && count > wanted ? log_q8(count) - log_q8(wanted) : 0u;
+                 by_size = max(min(levels_beyond(samples + mobiles / 16u), 256u * kMostSurfaceLevel),
+                               levels_beyond(frame_state.deep_samples / 4u));
   return min(by_size + INPUT(coarser), 256u * kMostSampleLevel);
 }
 
 // Q30. `weights`: an extra sample's.
-uint64_t extra_weight(uint32_t weights[kMostSampleLevel + 1u]) {
-  const uint32_t now = frame_level(), part = now & 255u, level = now >> 8,
-                 next = min(level + 1u, kMostSampleLevel);
+uint64_t extra_weight(uint32_t weights[kMostSurfaceLevel + 1u]) {
+  const uint32_t now = frame_level(), part = now & 255u, level = min(now >> 8, kMostSurfaceLevel),
+                 next = min(level + 1u, kMostSurfaceLevel);
   return (uint64_t(256u - part) * (uint64_t(weights[level]) << level) +
           uint64_t(part) * (uint64_t(weights[next]) << next)) >>
          8;

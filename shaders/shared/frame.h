@@ -100,10 +100,12 @@ PALPATE_CONSTANT int32_t kBindNearRuns = 41;     // kListNearRuns: NearRun
 PALPATE_CONSTANT int32_t kBindVoxelState = 42;  // uint32_t[boundary voxels]: kVoxel… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindTouchedVoxels =
     43;  // kListTouchedVoxels: FrameVoxel, each V_bnd voxel touched by a mobile triangle once
-PALPATE_CONSTANT int32_t kBindPairChunks = 45;  // kListPairChunks: PairChunk
-PALPATE_CONSTANT int32_t kBindPairTable = 47;   // uint64_t[a power of two]: hash table of pairs to test,
-                                                // (static id + 1) · 2^32 + place; 0 between frames
-PALPATE_CONSTANT int32_t kBindPairs = 48;       // kListPairs: ContactPair, distinct intersecting pairs
+PALPATE_CONSTANT int32_t kBindPairChunks = 45;   // kListPairChunks: PairChunk
+PALPATE_CONSTANT int32_t kBindToolSamples = 63;  // uint32_t, by tool triangle: its grid samples that weigh
+                                                 // something; refined only
+PALPATE_CONSTANT int32_t kBindPairTable = 47;    // uint64_t[a power of two]: hash table of pairs to test,
+                                                 // (static id + 1) · 2^32 + place; 0 between frames
+PALPATE_CONSTANT int32_t kBindPairs = 48;        // kListPairs: ContactPair, distinct intersecting pairs
 PALPATE_CONSTANT int32_t kBindStaticState =
     49;  // uint32_t[static triangles]: kStatic… bits; 0 between frames
 PALPATE_CONSTANT int32_t kBindStaticSlot =
@@ -215,6 +217,7 @@ struct FrameState {
                      // the end (lib/list_room.glsl: in_contact())
   uint32_t meets;    // 1: something was marked that is in CST, IMT or EST
   uint32_t cst, bst, est, cmt, bmt, imt;      // sizes of the sets
+  uint32_t deep_samples;                      // of triangles in IMT: kBindToolSamples (refined)
   uint32_t pairs, samples, statics, mobiles;  // of a batch's pose: how many it has in the lists of all poses
 };
 // Samples are rounded by less than a step, transformed corners too. Bodies that keep this distance have no
@@ -359,7 +362,8 @@ PALPATE_ASSERT_SIZE(ToolRecord, 48);
 PALPATE_ASSERT_SIZE(NearRun, 20);
 PALPATE_ASSERT_SIZE(PairChunk, 24);
 PALPATE_ASSERT_SIZE(AreaResult, 64);
-PALPATE_ASSERT_SIZE(FrameResult, 80 + 4 * kListCount + 64 * kMaxFrameAreas);
+PALPATE_ASSERT_SIZE(FrameResult,
+                    84 + 4 * kListCount + 4 + 64 * kMaxFrameAreas);  // areas begin at a multiple of 8
 
 PALPATE_SHARED_END
 #endif

@@ -34,7 +34,8 @@ PALPATE_CONSTANT int32_t kBindMockupShells =
 PALPATE_CONSTANT int32_t kBindFineShells =
     109;  // likewise of the tool's fine partition, where it has an inside
 
-PALPATE_CONSTANT uint32_t kMostSampleLevel = 4u;  // kSampleLevels of model/lattice/lattice_mesh.h
+PALPATE_CONSTANT uint32_t kMostSampleLevel = 6u;   // kSampleLevels of model/lattice/lattice_mesh.h
+PALPATE_CONSTANT uint32_t kMostSurfaceLevel = 4u;  // kSurfaceLevels
 PALPATE_CONSTANT uint32_t kSideLevelWords = 1u + kMostSampleLevel;
 
 PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
@@ -54,7 +55,7 @@ PALPATE_CONSTANT int32_t kDepthSlack = 16;       // steps by which a distance ma
 struct ExtraSample {
   uint32_t triangle;
   ivec3 point;
-  uint32_t weights[kMostSampleLevel + 1u];  // by level, Q30, of 2^level s²
+  uint32_t weights[kMostSurfaceLevel + 1u];  // by level, Q30, of 2^level s²
 };
 
 // A sample that pushes if it lies inside the other body.

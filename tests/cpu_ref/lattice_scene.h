@@ -51,6 +51,7 @@ inline SceneGeometry scene_of(const std::vector<Triangle>& mockup, const std::ve
   scene.sample_spacing = spacing;
   weigh_for_field(scene.sample_spacing, scene.mockup);
   weigh_for_field(scene.sample_spacing, scene.tool);
+  count_grid_samples(scene.sample_spacing, scene.tool);
   scene.reference_area_m2 = 1;
   scene.tool_gyration_m = 1;
   return scene;

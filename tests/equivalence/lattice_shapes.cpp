@@ -51,6 +51,7 @@ Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& to
   scene.contact_samples = 12;  // few, so that many contacts are sampled coarsely
   weigh_for_field(scene.sample_spacing, scene.mockup);
   weigh_for_field(scene.sample_spacing, scene.tool);
+  count_grid_samples(scene.sample_spacing, scene.tool);
   scene.reference_area_m2 = 1;
   scene.tool_gyration_m = 1;
   double radius = 0;

@@ -167,6 +167,29 @@ TEST(FieldWeights, CountTheSamplesOfAVastTriangleByItsArea) {
   EXPECT_NEAR(visited, counted[0], counted[0] / 400);
 }
 
+TEST(FieldWeights, CountOfATriangleTheSamplesThatWeighSomething) {
+  // A ball, whose samples the grid has, with a pin that extra samples stand for.
+  Mesh both = solids::sphere(0.03, 48, 24);
+  solids::append(both, solids::moved(solids::cylinder(0.0004, 0.02, 8), {Vec3(0.1, 0, 0), Quat(1, 0, 0, 0)}),
+                 "pin");
+  LatticeMesh mesh = build(both);
+  count_grid_samples(kSpacing, mesh);
+  ASSERT_EQ(mesh.grid_samples.size(), mesh.triangles.size());
+  cpu_ref::Box everywhere;
+  everywhere.min = Int3(-(1 << 20));
+  everywhere.max = Int3(1 << 20);
+  std::uint64_t counted = 0, weightless = 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::uint32_t visited = 0;
+    cpu_ref::for_each_sample(mesh, t, kSpacing, everywhere, [&](const Int3&) { ++visited; });
+    if (mesh.field_weight_q30[t] == 0) weightless += std::exchange(visited, 0);
+    ASSERT_EQ(mesh.grid_samples[t], visited) << t;
+    counted += visited;
+  }
+  EXPECT_GT(counted, 3000);
+  EXPECT_GT(weightless, 0);
+}
+
 /// The largest and the smallest number of samples that lie in a strip of `width` × `length` steps along an
 /// axis, wherever it begins.
 std::pair<double, double> in_strips(std::int32_t width, std::int32_t length, bool along_u, int level,
@@ -374,7 +397,7 @@ TEST(ExtraSamples, OfCoarserLevelsAreFewerAndStandForTheSameAreaPatchByPatch) {
   for (const ExtraSample& extra : mesh.extra_samples)
     area[mesh.patch[extra.triangle]] += extra.weight_q30 * 0x1p-30;
   std::size_t before = mesh.extra_samples.size();
-  for (int level = 1; level <= kSampleLevels; ++level) {
+  for (int level = 1; level <= kSurfaceLevels; ++level) {
     std::vector<double> coarse(mesh.patch_count, 0);
     std::size_t count = 0;
     for (const ExtraSample& extra : mesh.extra_samples) {
@@ -397,7 +420,7 @@ TEST(ExtraSamples, OfOneLevelLieInTheCubesOfThoseTheyStandFor) {
   std::vector<Int3> corner(mesh.patch_count, Int3(std::numeric_limits<std::int32_t>::max()));
   for (const ExtraSample& one : mesh.extra_samples)
     corner[mesh.patch[one.triangle]] = glm::min(corner[mesh.patch[one.triangle]], one.point);
-  for (int level = 1; level <= kSampleLevels; ++level) {
+  for (int level = 1; level <= kSurfaceLevels; ++level) {
     const int edge = kSpacing << level / 2;
     for (const ExtraSample& one : mesh.extra_samples) {
       bool stood_for = false;

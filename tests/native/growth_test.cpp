@@ -17,9 +17,7 @@ namespace {
 /// out unevenly a little more).
 constexpr double kMost = 2.3;
 
-std::map<std::string, double> looks(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings,
-                                    const Pose& pose) {
-  std::map<std::string, double> out;
+Contacts answer(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings, const Pose& pose) {
   auto geometry = build_geometry(mockup, tool, settings);
   EXPECT_TRUE(geometry) << geometry.error().sentence;
   const auto backend = make_native_backend();
@@ -33,6 +31,14 @@ std::map<std::string, double> looks(const Mesh& mockup, const Mesh& tool, const 
     EXPECT_TRUE(answered) << answered.error().sentence;
   }
   EXPECT_TRUE(contacts.contact);
+  return contacts;
+}
+
+/// By stage.
+std::map<std::string, double> looks(const Mesh& mockup, const Mesh& tool, const GeometrySettings& settings,
+                                    const Pose& pose) {
+  std::map<std::string, double> out;
+  const Contacts contacts = answer(mockup, tool, settings, pose);
   for (const Contacts::StageTime& stage : contacts.times)
     out[stage.stage] += static_cast<double>(stage.looks);
   return out;
@@ -94,6 +100,33 @@ TEST(Growth, ASwallowedToolOfTwiceTheAreaIsAtMostALittleMoreThanTwiceTheWork) {
     EXPECT_LT(large.at(stage) / small.at(stage), kMost)
         << stage << ": " << small.at(stage) << " and " << large.at(stage);
   EXPECT_GT(small.at("field"), 1000);
+}
+
+// Whatever such a tool has of them, about four times `contact_samples` are asked, or twice as many between
+// two levels; and they say the same.
+TEST(Growth, ASwallowedToolIsAskedAtFewOfItsSamples) {
+  GeometrySettings settings;
+  settings.voxel_size_m = 0.004;
+  const auto ask = [&](std::uint32_t contact_samples) {
+    settings.contact_samples = contact_samples;
+    return answer(solids::sphere_of(0.1, 40'000), solids::sphere_of(0.03, 8'000), settings,
+                  {Vec3(0.02, 0.03, 0.003), Quat(1, 0, 0, 0)});
+  };
+  const auto count = [](const Contacts& contacts) {
+    std::uint64_t out = 0;
+    for (const FieldBin& bin : contacts.field.bins) out += bin.samples;
+    return out;
+  };
+  const Contacts all = ask(0), few = ask(256);
+  EXPECT_GT(count(all), 8'000u);
+  EXPECT_LT(count(few), 2u * 4 * 256);
+  EXPECT_GT(count(few), 4u * 256 / 2);
+  const auto area = [](const Contacts& contacts) {
+    double out = 0;
+    for (const FieldBin& bin : contacts.field.bins) out += static_cast<double>(bin.give);
+    return out;
+  };
+  EXPECT_NEAR(area(few) / area(all), 1, 0.02);  // a level's factors make it so, side by side
 }
 
 }  // namespace

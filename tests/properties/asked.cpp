@@ -114,6 +114,7 @@ std::vector<Answer> ask(const Question& question, const std::vector<LatticePose>
   geometry.contact_samples = 12;  // few, so that many contacts are sampled coarsely
   weigh_for_field(geometry.sample_spacing, geometry.mockup);
   weigh_for_field(geometry.sample_spacing, geometry.tool);
+  count_grid_samples(geometry.sample_spacing, geometry.tool);
   geometry.reference_area_m2 = 1;
   geometry.tool_gyration_m = 1;
   double radius = 0;

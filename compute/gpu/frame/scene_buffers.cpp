@@ -35,6 +35,7 @@ void name_scene(const PreparedScene& scene, FrameBuffers& buffers) {
       {kBindToolWeights, &t.field_weight},
       {kBindToolExtras, &t.extras},
       {kBindToolLevels, &t.levels},
+      {kBindToolSamples, &t.samples},
       {kBindFineBrickSlot, &fine.brick_slot},
       {kBindFineBricks, &fine.bricks},
       {kBindFineListBegin, &fine.list_begin},

@@ -32,7 +32,7 @@ std::vector<gpu::ExtraSample> extras_of(const LatticeMesh& mesh) {
 
 /// A mesh's sample levels as shaders read them.
 std::vector<std::uint32_t> levels_of(const LatticeMesh& mesh) {
-  static_assert(kSampleLevels == gpu::kMostSampleLevel);
+  static_assert(kSampleLevels == gpu::kMostSampleLevel && kSurfaceLevels == gpu::kMostSurfaceLevel);
   std::vector<std::uint32_t> out = mesh.levels_of;
   for (const SideLevels& side : mesh.side_levels) {
     out.push_back(side.coarsest);
@@ -58,6 +58,7 @@ BodyBuffers upload_body(PrepareSteps& steps, const LatticeMesh& mesh, bool mocku
   out.patch = steps.filled("patches", mockup && refined ? mesh.patch : none);
   out.extras = steps.filled("extra samples", refined ? extras_of(mesh) : std::vector<gpu::ExtraSample>());
   out.levels = steps.filled("levels of samples", refined ? levels_of(mesh) : none);
+  out.samples = steps.filled("numbers of samples", !mockup && refined ? mesh.grid_samples : none);
   out.neighbour_begin = steps.filled("neighbours", mockup ? mesh.neighbour_begin : none);
   out.neighbours = steps.filled("neighbours", mockup ? mesh.neighbours : none);
   return out;

@@ -37,6 +37,7 @@ struct BodyBuffers {
   VulkanBuffer patch;            ///< uint32; mock-up only, `refined`
   VulkanBuffer extras;           ///< gpu::ExtraSample, ascending by triangle; `refined`
   VulkanBuffer levels;           ///< uint32: kBindMockupLevels in shaders/shared/frame_field.h; `refined`
+  VulkanBuffer samples;          ///< uint32, one a triangle: LatticeMesh::grid_samples; tool only, `refined`
   VulkanBuffer neighbour_begin;  ///< uint32, CSR over triangles, + 1; mock-up only
   VulkanBuffer neighbours;       ///< uint32: id · 2 + smooth; mock-up only
   PartitionBuffers partition;    ///< empty for the tool in `paper`
@@ -90,9 +91,9 @@ template <class Scene, class Visit>
 void for_each_buffer(Scene& scene, Visit visit) {
   for_each_made_buffer(scene, visit);
   for (auto* body : {&scene.mockup, &scene.tool})
-    for (auto* buffer :
-         {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal, &body->field_weight,
-          &body->patch, &body->extras, &body->levels, &body->neighbour_begin, &body->neighbours})
+    for (auto* buffer : {&body->vertices, &body->triangles, &body->triangle_info, &body->unit_normal,
+                         &body->field_weight, &body->patch, &body->extras, &body->levels, &body->samples,
+                         &body->neighbour_begin, &body->neighbours})
       visit(*buffer);
 }
 

@@ -168,10 +168,20 @@ void PressureField::work_out_tool_samples(std::uint32_t mobile, Take&& take) con
       [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
 }
 
-void PressureField::choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser) {
-  const std::uint64_t wanted = geometry_->contact_samples, count = samples + mobiles / 16;
-  const std::uint32_t level = std::min(
-      (wanted != 0 && count > wanted ? log_q8(count) - log_q8(wanted) : 0) + coarser, Ignored::kCoarsest);
+void PressureField::choose_level(const FoundSets& found, std::uint32_t coarser) {
+  std::uint64_t deep = 0;  // samples of triangles in IMT: the tool's that lie deep inside
+  if (found.state.imt != 0)
+    for (const MobileResult& result : found.mobiles)
+      if ((result.state & (kMobileHit | kMobileInternal)) == kMobileInternal)
+        deep += geometry_->tool.grid_samples[result.id];
+  const std::uint64_t wanted = geometry_->contact_samples;
+  const auto beyond = [&](std::uint64_t count) {
+    return wanted != 0 && count > wanted ? log_q8(count) - log_q8(wanted) : 0;
+  };
+  const std::uint32_t by_size = std::max(std::min(beyond(found.samples.size() + found.mobiles.size() / 16),
+                                                  256U * kSurfaceLevels),
+                                         beyond(deep / 4)),
+                      level = std::min(by_size + coarser, Ignored::kCoarsest);
   level_ = level >> 8;
   between_ = level & 255;
 }
@@ -193,7 +203,7 @@ std::uint64_t PressureField::weight_of(const LatticeMesh& mesh, std::uint32_t tr
 
 std::uint64_t PressureField::weight_of(const ExtraSample& extra) const {
   const auto at = [&](std::uint32_t level) -> std::uint64_t {
-    level = std::min<std::uint32_t>(level, kSampleLevels);
+    level = std::min<std::uint32_t>(level, kSurfaceLevels);
     return level == 0 ? extra.weight_q30 : std::uint64_t{extra.coarse_q30[level - 1]} << level;
   };
   return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
@@ -392,8 +402,7 @@ std::uint64_t PressureField::looks() const {
 
 void PressureField::sum(const LatticePose& pose, const ContactSets& sets, const FoundSets& found,
                         const Wanted& wanted, FrameHelper* helper, Contacts& out) {
-  choose_level(found.samples.size(), found.mobiles.size(),
-               wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
+  choose_level(found, wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
   out.carriers.clear();
   ignored_ = wanted.ignored;
   for (Lane& lane : lanes_) {

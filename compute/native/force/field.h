@@ -81,7 +81,7 @@ class PressureField {
   bool is_ignored(std::uint32_t static_id, Lane& lane) const;
   template <class Take>
   void work_out_tool_samples(std::uint32_t mobile, Take&& take) const;
-  void choose_level(std::size_t samples, std::size_t mobiles, std::uint32_t coarser);
+  void choose_level(const FoundSets& found, std::uint32_t coarser);
   std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const;
   std::uint64_t weight_of(const ExtraSample& extra) const;
 
