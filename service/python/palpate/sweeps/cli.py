@@ -42,8 +42,9 @@ def main(arguments=None):
     except KeyboardInterrupt:
         print('palpate-sweep: stopped; the same command goes on from what is done', file=sys.stderr)
         return 130
+    chunks = 'chunk' if swept.chunks == 1 else 'chunks'
     print(
-        f'{swept.path}: {swept.poses:,} poses in {swept.chunks:,} chunks, {swept.earlier:,} of them from'
+        f'{swept.path}: {swept.poses:,} poses in {swept.chunks:,} {chunks}, {swept.earlier:,} of them from'
         f' before, {swept.twice:,} answered by two engines; {swept.rate:,.0f} poses a second\nhash'
         f' {swept.hash}'
     )
