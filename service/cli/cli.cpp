@@ -47,7 +47,7 @@ A first quarter of an hour, as README.md has it:
   palpate generate disassembly --triangles 20000 --out engine      stands for a mesh of yours: mock-up, tool, scene
   palpate info engine/mockup.stl                                   what was read: parts, size, closed or open
   palpate query engine/scene.json --pose "0 0 0 0 0 0 1"           contact, force and torque at one pose
-  palpate query engine/scene.json --pose "0 0 0 0 0 0 1" --clearance   how far apart, where, between which parts
+  palpate query engine/scene.json --pose "0.1 0 0 0 0 0 1" --clearance   how far apart, where, between which parts
   palpate plan engine/scene.json                                   what this scene needs, and why
   palpate run engine/scene.json --pace asap --out run              the whole task; then open run/report.html
 
