@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -59,7 +60,8 @@ class PairSearch {
  private:
   struct Node {  ///< of the mock-up's tree
     std::uint32_t level, index;
-    double squared;  ///< gap of its box
+    double squared;     ///< gap of its box
+    unsigned runs = 0;  ///< of a lowest node those of its runs that may matter: a bit each
   };
   struct Group {  ///< of the tool's spheres
     std::uint32_t level, number;
@@ -69,14 +71,20 @@ class PairSearch {
     std::uint32_t run, mask;  ///< of its triangles those that may matter
     std::array<double, kLanes> rooms;
   };
-  /// Whether RoomField::all_beyond() has paid so far in a search: where all is as near it never does.
-  struct Balls {
+  /// Whether a test, RoomField::all_beyond() or that of whole runs in ask(), has paid so far in a search:
+  /// where all is as near, or triangles are large, it never does.
+  struct Worth {
     std::uint32_t asked = 0, beyond = 0;
     bool worth_asking() const { return asked < 16 || 4 * beyond >= asked; }  // chosen
     void count(bool is_beyond) {
       ++asked;
       beyond += is_beyond ? 1u : 0u;
     }
+  };
+  struct Around {                    ///< a sphere that holds a run of the tool at the pose
+    std::array<double, 9> centre{};  ///< as of a triangle without a size
+    PairLanes point{};               ///< likewise, rounded
+    double radius = std::numeric_limits<double>::infinity();  ///< with what both are off by
   };
   struct Mobile {  ///< a triangle of the tool at the pose
     std::uint32_t id;
@@ -98,6 +106,13 @@ class PairSearch {
   template <class Policy>
   bool gather(Policy& policy);
   template <class Policy>
+  bool look_about(const Policy& policy, const BoxOf& box);
+  Around around(std::uint32_t run) const;
+  template <class Policy>
+  unsigned near_runs(const Policy& policy, const BoxOf& box, Around& around, std::uint32_t number);
+  template <class Policy>
+  bool ask(Policy& policy, const Lead& lead, const BoxOf& box);
+  template <class Policy>
   void pose(const Policy& policy, const Lead& lead);
   template <class Policy>
   bool descend(Policy& policy, const Lead& lead);
@@ -106,7 +121,7 @@ class PairSearch {
                               const std::array<double, kLanes>& gaps, std::uint32_t all,
                               std::array<std::uint32_t, kLanes>& order);
   template <class Policy>
-  bool group(Policy& policy, const Mobile& m, std::uint32_t number);
+  bool group(Policy& policy, const Mobile& m, std::uint32_t number, unsigned runs);
   template <class Policy>
   bool leaf(Policy& policy, const Mobile& m, std::uint32_t run, const BoxOf& run_box);
   exact::Corners mobile(std::uint32_t id) const;
@@ -123,8 +138,10 @@ class PairSearch {
   RoomField::Turn turn_{};
   std::vector<Group> groups_;
   std::vector<Lead> leads_;
-  Balls balls_;
+  Worth balls_, runs_;
   std::vector<Node> open_;
+  std::vector<std::uint32_t> about_;    ///< groups of the mock-up's runs near eight runs of the tool
+  bool looked_about_ = false;           ///< whether these are all
   std::array<Mobile, kLanes> mobiles_;  ///< of a run
   std::size_t count_ = 0;
   BoxOf run_box_{};  ///< of these

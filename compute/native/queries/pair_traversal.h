@@ -87,7 +87,29 @@ inline unsigned up_to(const Vec& way, const std::array<std::array<std::int32_t, 
   return out;
 }
 
+constexpr unsigned kAllRuns = ~0U;
+constexpr std::size_t kFewRuns = 64;    // of the tool: what meets is mostly found among so many (chosen)
+constexpr std::size_t kMostAbout = 16;  // chosen
+constexpr std::uint32_t kMany = 5;      // of eight, from which on it pays to ask about all at once (chosen)
 constexpr double kAlongSlack = 0x1p-8;  // more than places along a way are off by, steps
+
+/// What holds those of eight spheres that a mask names, at the pose.
+inline BoxOf box_of(const RoomField& field, const RoomField::Turn& turn, const EightSpheres& spheres,
+                    unsigned mask) {
+  BoxOf out;
+  out.low.fill(std::numeric_limits<double>::infinity());
+  out.high.fill(-std::numeric_limits<double>::infinity());
+  for (; mask != 0; mask &= mask - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(mask));
+    const Vec centre = field.centre(turn, spheres, i);
+    const double reach = static_cast<double>(spheres.radius[i]) + turn.slack;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.low[k] = std::min(out.low[k], centre[k] - reach);
+      out.high[k] = std::max(out.high[k], centre[k] + reach);
+    }
+  }
+  return out;
+}
 
 /// Runs of the tool whose spheres come so near that the policy may want them: kept in leads_, or asked about
 /// at once, the nearest sphere of each eight first. False: the policy knows enough.
@@ -98,6 +120,7 @@ bool PairSearch::gather(Policy& policy) {
   groups_.clear();
   groups_.push_back({spheres.top(), 0});
   EightFloats squared;
+  std::size_t runs_asked = 0;
   while (!groups_.empty()) {
     const Group group = groups_.back();
     groups_.pop_back();
@@ -122,14 +145,121 @@ bool PairSearch::gather(Policy& policy) {
       order[at] = i;
     }
     if (count == 0) continue;
+    // Eight runs that are asked about one after the other are near the same of the mock-up.
+    if (!Policy::kNearestFirst && group.level == std::min(1U, spheres.top()))
+      looked_about_ = runs_asked > kFewRuns && count >= kMany && runs_.worth_asking() &&
+                      look_about(policy, box_of(trees_->field, turn_, eight, lead.mask));
     if (group.level != 0)
       for (std::uint32_t n = 0; n < count; ++n)
         groups_.push_back({group.level - 1, kWide * group.number + order[n]});
     else if (Policy::kNearestFirst)
       leads_.push_back(lead);
-    else if (!descend(policy, lead))
+    else if (!(++runs_asked > kFewRuns && looked_about_ && count >= kMany
+                   ? ask(policy, lead, box_of(trees_->field, turn_, eight, lead.mask))
+                   : descend(policy, lead)))
       return false;
   }
+  return true;
+}
+
+/// The groups of eight runs of the mock-up that are near a box: in about_. False: there are many, and each
+/// run of the tool finds its own sooner.
+template <class Policy>
+bool PairSearch::look_about(const Policy& policy, const BoxOf& box) {
+  const TriangleTree& mockup = trees_->mockup;
+  about_.clear();
+  open_.clear();
+  open_.push_back({static_cast<std::uint32_t>(mockup.level_begin.size()), 0, 0});
+  std::array<double, kLanes> gaps;
+  while (!open_.empty()) {
+    const Node node = open_.back();
+    open_.pop_back();
+    if (node.level == 1) {
+      if (about_.size() == kMostAbout) return false;
+      about_.push_back(node.index);
+      continue;
+    }
+    box_gaps(box, mockup.boxes[group_of(mockup, node.level, node.index)], gaps);
+    for (std::uint32_t i = 0; i < children(mockup, node.level, node.index); ++i)
+      if (policy.near(gaps[i])) open_.push_back({node.level - 1, kWide * node.index + i, gaps[i]});
+  }
+  return true;
+}
+
+/// What holds a run of the tool at the pose.
+inline PairSearch::Around PairSearch::around(std::uint32_t run) const {
+  Around out;
+  const ToolSpheres& spheres = trees_->spheres;
+  if (spheres.top() == 0) return out;  // one run: it has no sphere
+  const EightSpheres& eight = spheres.group(1, run / kWide);
+  const Vec at = trees_->field.centre(turn_, eight, run % kWide);
+  for (std::size_t k = 0; k < 9; ++k) out.centre[k] = at[k % 3];
+  const Int3 whole(Vec3(std::floor(at[0] + 0.5), std::floor(at[1] + 0.5), std::floor(at[2] + 0.5)));
+  out.point.take({whole, whole, whole});  // within a step of it
+  out.radius = static_cast<double>(eight.radius[run % kWide]) + turn_.slack + 1;
+  return out;
+}
+
+/// Of eight runs of the mock-up those that may matter to a run of the tool in a box: a bit each. By their
+/// boxes, by those along their own axes, and by their triangles' planes, for where a shaft is in a hole all
+/// boxes about the hole's wall hold the shaft.
+template <class Policy>
+unsigned PairSearch::near_runs(const Policy& policy, const BoxOf& box, Around& around, std::uint32_t number) {
+  const TriangleTree& mockup = trees_->mockup;
+  const double reach = around.radius + policy.within_steps(), most = reach + kRoomError;
+  std::array<double, kLanes> gaps, turned;
+  box_gaps(box, mockup.boxes[group_of(mockup, 1, number)], gaps);
+  unsigned out = 0;
+  for (std::uint32_t i = 0; i < children(mockup, 1, number); ++i) out |= policy.near(gaps[i]) ? 1u << i : 0u;
+  if (out == 0 || reach == std::numeric_limits<double>::infinity()) return out;
+  turned_gaps(around.centre, mockup.turned[number], turned);
+  for (unsigned left = out; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    const std::uint32_t run = kWide * number + i,
+                        count =
+                            std::min(kWide, static_cast<std::uint32_t>(mockup.order.size()) - kWide * run);
+    bool near = turned[i] <= reach * reach;
+    if (near) {
+      around.point.s = &trees_->corners[run];
+      std::array<double, kLanes> squared;
+      rooms(around.point, squared);
+      near =
+          std::any_of(squared.begin(), squared.begin() + count, [&](double s) { return s <= most * most; });
+    }
+    if (!near) out &= ~(1u << i);
+  }
+  return out;
+}
+
+/// Asks about a run of the tool, that lies in a box, and what look_about() has found. False: the policy knows
+/// enough.
+template <class Policy>
+bool PairSearch::ask(Policy& policy, const Lead& lead, const BoxOf& box) {
+  const TriangleTree& mockup = trees_->mockup;
+  Around near = around(lead.run);
+  open_.clear();
+  for (const std::uint32_t number : about_)
+    if (const unsigned runs = near_runs(policy, box, near, number); runs != 0)
+      open_.push_back({1, number, 0, runs});
+  runs_.count(open_.empty());
+  if (open_.empty()) return true;
+  pose(policy, lead);
+  if (count_ == 0) return true;
+  // Those that overlap most first.
+  std::array<double, kLanes> gaps;
+  for (Node& node : open_) {
+    const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, 1, node.index)];
+    box_gaps(run_box_, boxes, gaps);
+    node.squared = std::numeric_limits<double>::infinity();
+    for (unsigned left = node.runs; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      node.squared = std::min(node.squared, gaps[i] > 0 ? gaps[i] : -overlap(run_box_, boxes, i));
+    }
+  }
+  std::sort(open_.begin(), open_.end(), [](const Node& a, const Node& b) { return a.squared < b.squared; });
+  for (const Node& node : open_)
+    for (std::size_t i = 0; i < count_; ++i)
+      if (!group(policy, mobiles_[i], node.index, node.runs)) return false;
   return true;
 }
 
@@ -168,7 +298,7 @@ bool PairSearch::dive(Policy& policy) {
 template <class Policy>
 void PairSearch::search(Policy& policy) {
   if (trees_->tool.order.empty() || trees_->mockup.order.empty()) return;
-  balls_ = {};
+  balls_ = runs_ = {};
   if (Policy::kNearestFirst && !dive(policy)) return;
   if (!gather(policy)) return;
   std::sort(leads_.begin(), leads_.end(), [](const Lead& a, const Lead& b) { return a.room < b.room; });
@@ -221,7 +351,7 @@ bool PairSearch::descend(Policy& policy, const Lead& lead) {
     if (!policy.near(node.squared)) continue;
     if (node.level == 1) {
       for (std::size_t i = 0; i < count_; ++i)
-        if (!group(policy, mobiles_[i], node.index)) return false;
+        if (!group(policy, mobiles_[i], node.index, kAllRuns)) return false;
       continue;
     }
     const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, node.level, node.index)];
@@ -253,9 +383,9 @@ std::uint32_t PairSearch::sorted(const Policy& policy, const BoxOf& box, const T
   return count;
 }
 
-/// A triangle and eight runs.
+/// A triangle and those of eight runs that `runs` has a bit for.
 template <class Policy>
-bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number) {
+bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number, unsigned runs) {
   const TriangleTree& mockup = trees_->mockup;
   const TriangleTree::Boxes& boxes = mockup.boxes[group_of(mockup, 1, number)];
   const std::uint32_t all = children(mockup, 1, number);
@@ -263,12 +393,12 @@ bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number) {
   std::array<std::uint32_t, kLanes> order;
   box_gaps(m.box, boxes, gaps);
   bool any = false;
-  for (std::uint32_t i = 0; i < all; ++i) any = any || policy.near(gaps[i]);
+  for (std::uint32_t i = 0; i < all; ++i) any = any || ((runs >> i & 1) != 0 && policy.near(gaps[i]));
   if (!any) return true;
   turned_gaps(m.corners, mockup.turned[number], turned);
   policy.aim({&m, 1});
   for (std::uint32_t n = sorted(policy, m.box, boxes, gaps, all, order); n-- > 0;)
-    if (policy.near(std::max(gaps[order[n]], turned[order[n]])) &&
+    if ((runs >> order[n] & 1) != 0 && policy.near(std::max(gaps[order[n]], turned[order[n]])) &&
         !leaf(policy, m, kWide * number + order[n], box_at(boxes, order[n])))
       return false;
   return true;
