@@ -105,6 +105,11 @@ class CollisionBackend : public PoseQuery {
     return {};
   }
 
+  /// Whether query() is to tell the times of a frame's stages also where the plan is nobody's who watches: on
+  /// a device a frame takes longer that tells them. False: this engine tells them always. Not while a query
+  /// runs.
+  virtual bool time_stages(bool) { return false; }
+
   /// How many of so many poses a piece of share() best asks together; 1: nothing is gained by it. May set
   /// helpers up, as share().
   virtual std::size_t poses_together(std::size_t count) {

@@ -74,6 +74,8 @@ class GpuBackend final : public CollisionBackend {
     return device_->check_guards();
   }
 
+  bool time_stages(bool wanted) override { return frame_ && static_cast<bool>(frame_->time_stages(wanted)); }
+
   std::size_t poses_together(std::size_t count) override {
     if (frame_ && shared_ + count >= kWorthThreads) set_helpers_up();
     return workers_ ? workers_->poses_together(count) : 1;

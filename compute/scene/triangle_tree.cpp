@@ -104,7 +104,7 @@ void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mes
 }  // namespace
 
 TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<bool()>& go_on,
-                                std::uint8_t without) {
+                                std::uint8_t without, bool turns) {
   std::vector<Centre> centres;
   centres.reserve(mesh.triangles.size());
   for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id)
@@ -154,6 +154,7 @@ TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<boo
     below = std::move(above);
   }
 
+  if (!turns) return out;
   // Boxes by their numbers in all levels that have turned ones: level after level, eight a group.
   const std::size_t levels = std::min(out.level_begin.size(), TriangleTree::kTurnedLevels);
   const std::size_t groups = levels < out.level_begin.size() ? out.level_begin[levels] : out.boxes.size();

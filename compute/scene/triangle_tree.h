@@ -47,10 +47,13 @@ struct TriangleTree {
            level_begin[level - 1];
   }
 
+  /// TriangleFlag bits of what bounds no solid.
+  static constexpr std::uint8_t kNotSolid = kTriangleCollapsed | kTriangleSheet;
+
   /// On all cores; `go_on` is asked now and then on this thread. Cancelled: empty. `without`: TriangleFlag
-  /// bits of what is left out.
+  /// bits of what is left out. `turns`: false leaves `turned` empty.
   static TriangleTree make(const LatticeMesh& mesh, const std::function<bool()>& go_on,
-                           std::uint8_t without = kTriangleCollapsed | kTriangleSheet);
+                           std::uint8_t without = kNotSolid, bool turns = true);
 };
 
 }  // namespace palpate

@@ -132,7 +132,9 @@ class Benches {
     latency->footer(
         "Frames are `contact`, `free` (the tool is near, nothing meets) or `apart` (the search finds nothing "
         "near). Stages are the\n"
-        "device's own times; `submit` is what waiting cost beyond them, `host` all else from pose in to "
+        "device's own times, told by frames of their own, which take longer; `submit` is what waiting cost "
+        "beyond them, `device` all\n"
+        "of it, `host` all else from pose in to "
         "wrench out. The frames are a loop's\n"
         "that nobody watches: without lists of triangles, and `refined` without areas.\n"
         "Of several engines the report says on how many frames the first is slower than each other one. A "

@@ -36,6 +36,7 @@ class SteadyBackend final : public CollisionBackend, public SharedBackend {
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<void> share(std::size_t count, const PoseWork& work) override;
   std::size_t poses_together(std::size_t count) override;
+  bool time_stages(bool wanted) override { return first_ready_ && first_->time_stages(wanted); }
   Result<void> query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) override;
   // Of the first back end; what it doesn't answer the spare does.
   Result<void> touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override;

@@ -1,9 +1,8 @@
 #version 460
-// LANES invocations: a sample of the mock-up that counts; behind the last one's workgroup an extra one, which is
-// asked first whether it lies inside the tool. Adds how the tool's depth there pushes.
-// Reads samples or mockup_points, both bodies, the tool's fine partition. Writes field_work, carrier_work,
-// ignored patches.
-// Before: field_members; the lists are closed.
+// LANES invocations: a sample of the mock-up inside the tool that weighs something, or an extra one, which is
+// asked first whether it lies there. Adds how the tool's depth there pushes.
+// Reads mockup_points, both bodies, the tool's fine partition. Writes field_work, carrier_work, ignored patches.
+// Before: field_points; the list is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
 #include "shaders/shared/frame_field.h"
@@ -14,13 +13,10 @@ CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
-READ(kBindSamples, FrameSample, frame_samples);
 READ(kBindMockupPoints, FieldPoint, mockup_points);
 READ(kBindMockupInfo, uint32_t, mockup_info);
 READ(kBindMockupNormals, ivec3, mockup_normals);
-READ(kBindMockupWeights, uint32_t, mockup_weights);
 READ(kBindMockupPatches, uint32_t, mockup_patches);
-READ(kBindMockupLevels, uint32_t, mockup_levels);
 READ(kBindStaticState, uint32_t, static_state);
 READ(kBindStaticSlot, uint32_t, static_slot);
 READ(kBindToolRecords, uint64_t, tool_records);
@@ -28,6 +24,7 @@ READ(kBindToolVertices, ivec3, body_vertices);
 READ(kBindToolTriangles, uvec3, body_triangles);
 READ(kBindToolInfo, uint32_t, body_info);
 READ(kBindToolNormals, ivec3, body_normals);
+READ(kBindToolTree, uint32_t, body_tree);
 READ(kBindFineBrickSlot, uint32_t, body_brick_slot);
 READ(kBindFineBricks, Brick, body_bricks);
 READ(kBindFineListBegin, uint32_t, body_list_begin);
@@ -43,7 +40,6 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 
 #define BODY_GRID scene.fine
 #include "shaders/lib/list_room.glsl"
-#include "shaders/lib/group_count.glsl"
 #include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(static, kBindStaticKeys)
 #include "shaders/lib/body/body_depth.glsl"
@@ -51,8 +47,6 @@ POSED_TABLE(static, kBindStaticKeys)
 #include "shaders/lib/field_sums.glsl"
 #include "shaders/lib/ignored.glsl"
 #include "shaders/lib/tool_winding.glsl"
-#include "shaders/lib/sample_levels.glsl"
-SAMPLE_WEIGHT(mockup_weight, mockup_levels, scene.mockup.triangles)
 
 bool inside_tool(ivec3 point, ivec3 at) {
   const ivec3 voxel = body_voxel_of(at);
@@ -67,28 +61,14 @@ struct Asked {
 };
 
 // False: it does not count.
-bool asked_of(bool extra, uint32_t item, out Asked asked) {
-  if (extra) {
-    const FieldPoint work = mockup_points[item];
-    asked.point = work.point;
-    asked.entry = work.triangle;
-    asked.id = static_id(asked.entry);
-    asked.weight = work.weight;
-    take_pose(static_pose(asked.entry));
-  } else {
-    const FrameSample work = frame_samples[item];
-    asked.point = work.point;
-    asked.entry = work.static_id;
-    asked.id = static_id(asked.entry);
-    take_pose(static_pose(asked.entry));
-    if (!in_contact()) return false;
-    const uint32_t axis = mockup_info[asked.id] >> kInfoAxisShift & 3u;
-    const ivec2 ij = cell_of_sample(
-        ivec2(asked.point[(axis + 1u) % 3u], asked.point[(axis + 2u) % 3u]), scene.sample_spacing);
-    asked.weight = uint32_t(mockup_weight(asked.id, mockup_weights[asked.id], ij) >> 6);
-  }
+bool asked_of(FieldPoint work, out Asked asked) {
+  asked.point = work.point;
+  asked.entry = work.triangle & ~kExtraPoint;
+  asked.id = static_id(asked.entry);
+  asked.weight = work.weight;
+  take_pose(static_pose(asked.entry));
   asked.at = tool_from_world(asked.point);
-  return asked.weight != 0u && (!extra || inside_tool(asked.point, asked.at));
+  return (work.triangle & kExtraPoint) == 0u || inside_tool(asked.point, asked.at);
 }
 
 // False: nothing pushes.
@@ -114,12 +94,9 @@ bool push_of(Asked asked, Depth depth, out Push push) {
 }
 
 void main() {
-  const uint32_t samples = list_count(kListSamples), rounded = groups_to(samples) * kGroupSize;
-  const uint32_t i = pushing_item();
-  const bool extra = i >= rounded;
+  const uint32_t item = pushing_item();
   Asked asked;
-  const bool counts = (extra ? i - rounded < list_count(kListMockupPoints) : i < samples) &&
-                      asked_of(extra, extra ? i - rounded : i, asked);
+  const bool counts = item < list_count(kListMockupPoints) && asked_of(mockup_points[item], asked);
   const Depth depth = body_depth(counts, asked.at);
   Push push;
   const bool pushes = counts && speaks() && push_of(asked, depth, push);

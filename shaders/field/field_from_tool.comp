@@ -24,6 +24,7 @@ READ(kBindMockupVertices, ivec3, body_vertices);
 READ(kBindMockupTriangles, uvec3, body_triangles);
 READ(kBindMockupInfo, uint32_t, body_info);
 READ(kBindMockupNormals, ivec3, body_normals);
+READ(kBindMockupTree, uint32_t, body_tree);
 READ(kBindMockupPatches, uint32_t, mockup_patches);
 READ(kBindMockupBrickSlot, uint32_t, body_brick_slot);
 READ(kBindMockupBricks, Brick, body_bricks);

@@ -1,8 +1,9 @@
 #version 460
-// One invocation: a slot of C_s and a member of C_m. Names their sets; in contact, empties what the slot
-// carries, and lists extra samples that weigh something and the tiles of the member's sample grid.
-// Reads C_s and C_m, both bodies' extra samples, the tool's triangles in its own frame. Writes the sets'
-// results, carrier_work, mockup_points, tool_points, field_tiles.
+// One invocation: a slot of C_s, a member of C_m, and a sample inside the tool. Names their sets; in contact,
+// empties what the slot carries, and lists the tiles of the member's sample grid and of both bodies' extra
+// samples, and the sample if it weighs something.
+// Reads C_s, C_m, samples, both bodies' triangles and extra samples. Writes the sets' results, carrier_work,
+// mockup_points, field_tiles.
 // Before: the lists of samples, C_s and C_m are closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -15,7 +16,10 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 
 layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
 
+READ(kBindSamples, FrameSample, frame_samples);
 READ(kBindMockupInfo, uint32_t, mockup_info);
+READ(kBindMockupWeights, uint32_t, mockup_weights);
+READ(kBindMockupLevels, uint32_t, mockup_levels);
 READ(kBindMockupExtras, ExtraSample, mockup_extras);
 READ(kBindToolVertices, ivec3, tool_vertices);
 READ(kBindToolTriangles, uvec3, tool_triangles);
@@ -24,44 +28,31 @@ READ(kBindToolWeights, uint32_t, tool_weights);
 READ(kBindToolExtras, ExtraSample, tool_extras);
 EDIT(kBindCarrierWork, int64_t, carrier_work);
 EDIT(kBindMockupPoints, FieldPoint, mockup_points);
-EDIT(kBindToolPoints, FieldPoint, tool_points);
 EDIT(kBindFieldTiles, FieldTile, field_tiles);
 
-#include "shaders/lib/pose.glsl"
 #include "shaders/lib/extra_samples.glsl"
 #include "shaders/lib/sample_levels.glsl"
+SAMPLE_WEIGHT(mockup_weight, mockup_levels, scene.mockup.triangles)
 EXTRA_SAMPLES(mockup, mockup_extras)
 EXTRA_SAMPLES(tool, tool_extras)
 #include "shaders/lib/group_count.glsl"
 GROUP_COUNTS(kBindPlacedGroups, placed_groups)
 GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 
-void list_static_extras(uint32_t id, uint32_t entry) {
-  const uint32_t first = first_mockup_extra(id, scene.mockup_extras),
-                 count = mockup_extras_from(first, id, scene.mockup_extras);
-  for (uint32_t i = 0u; i < count; ++i) {
-    const uint32_t weight = uint32_t(extra_weight(mockup_extras[first + i].weights) >> 6);
-    if (weight == 0u) continue;
-    const uint32_t at = take_room(kListMockupPoints, 1u);
-    if (at >= frame_lists[kListMockupPoints].capacity) continue;
-    mockup_points[at] = FieldPoint(mockup_extras[first + i].point, entry, weight);
-    if (begins_group(at, 1u))
-      grow_placed_groups_deep(kGroupsMockupPush,
-                              groups_to(list_count(kListSamples)) + groups_to(at + 1u),  // behind the samples
-                              LANES);
-  }
+// Room for so many tiles: the first, and the first that there is no room for.
+uvec2 take_tiles(uint32_t tiles) {
+  const uint32_t first = take_room(kListFieldTiles, tiles),
+                 end = min(first + tiles, frame_lists[kListFieldTiles].capacity);
+  if (first < end) grow_placed_groups(0u, groups_to(end * kFieldTileLanes));
+  return uvec2(first, end);
 }
 
-void list_mobile_extras(uint32_t mobile, uint32_t entry) {
-  const uint32_t first = first_tool_extra(mobile, scene.tool_extras),
-                 count = tool_extras_from(first, mobile, scene.tool_extras);
-  for (uint32_t i = 0u; i < count; ++i) {
-    const uint32_t weight = uint32_t(extra_weight(tool_extras[first + i].weights) >> 6);
-    if (weight == 0u) continue;
-    const uint32_t at = take_room(kListToolPoints, 1u);
-    if (at >= frame_lists[kListToolPoints].capacity) continue;
-    tool_points[at] = FieldPoint(world_from_tool(tool_extras[first + i].point), entry, weight);
-    if (begins_group(at, 1u)) grow_pushed_groups_deep(0u, groups_to(at + 1u), LANES);
+void list_extras(int32_t body, uint32_t entry, uvec2 extras) {
+  if (extras.x == extras.y) return;
+  const uvec2 tiles = take_tiles((extras.y - extras.x + kExtraTile - 1u) / kExtraTile);
+  for (uint32_t t = tiles.x; t < tiles.y && !spent(1u); ++t) {
+    const uint32_t begin = extras.x + (t - tiles.x) * kExtraTile;
+    field_tiles[t] = FieldTile(entry, body, 0, 0u, begin, min(begin + kExtraTile, extras.y));
   }
 }
 
@@ -80,13 +71,12 @@ void list_tiles(uint32_t mobile, uint32_t entry, uint32_t info) {
     atomicOr(frame_state.overflow_other, kOverflowLoop);
     return;
   }
-  const uint32_t tiles = (uint32_t(cells) + kFieldTile - 1u) / kFieldTile;
-  const uint32_t first = take_room(kListFieldTiles, tiles), capacity = frame_lists[kListFieldTiles].capacity;
-  if (first < capacity)
-    grow_placed_groups(kGroupsTiles, groups_to(min(first + tiles, capacity) * kFieldTileLanes));
-  for (uint32_t t = 0u; t < tiles && first + t < capacity && !spent(1u); ++t)
-    field_tiles[first + t] = FieldTile(entry, u_first, v_first, across, t * kFieldTile,
-                                       min((t + 1u) * kFieldTile, uint32_t(cells)));
+  const uvec2 tiles = take_tiles((uint32_t(cells) + kFieldTile - 1u) / kFieldTile);
+  for (uint32_t t = tiles.x; t < tiles.y && !spent(1u); ++t) {
+    const uint32_t begin = (t - tiles.x) * kFieldTile;
+    field_tiles[t] =
+        FieldTile(entry, u_first, v_first, across, begin, min(begin + kFieldTile, uint32_t(cells)));
+  }
 }
 
 void take_static(uint32_t slot) {
@@ -96,7 +86,8 @@ void take_static(uint32_t slot) {
   if (!in_contact()) return;
   if (CARRIERS)
     for (uint32_t i = 0u; i < kCarrierWords; ++i) carrier_work[kCarrierWords * slot + i] = 0l;
-  if (INSIDE && (mockup_info[id] & kInfoHasExtra) != 0u) list_static_extras(id, entry);
+  if (INSIDE && (mockup_info[id] & kInfoHasExtra) != 0u)
+    list_extras(1, entry, mockup_extras_of(id, scene.mockup_extras));
 }
 
 void take_mobile(uint32_t place) {
@@ -105,12 +96,29 @@ void take_mobile(uint32_t place) {
   name_mobile(place);
   if (!in_contact()) return;
   const uint32_t mobile = mobile_id(entry), info = tool_info[mobile];
-  if ((info & kInfoHasExtra) != 0u) list_mobile_extras(mobile, entry);
+  if ((info & kInfoHasExtra) != 0u) list_extras(0, entry, tool_extras_of(mobile, scene.tool_extras));
   if (tool_weights[mobile] != 0u) list_tiles(mobile, entry, info);
+}
+
+void take_sample(uint32_t i) {
+  const FrameSample work = frame_samples[i];
+  const uint32_t entry = work.static_id, id = static_id(entry);
+  take_pose(static_pose(entry));
+  if (!in_contact()) return;
+  const uint32_t axis = mockup_info[id] >> kInfoAxisShift & 3u;
+  const ivec2 ij =
+      cell_of_sample(ivec2(work.point[(axis + 1u) % 3u], work.point[(axis + 2u) % 3u]), scene.sample_spacing);
+  const uint32_t weight = uint32_t(mockup_weight(id, mockup_weights[id], ij) >> 6);
+  if (weight == 0u) return;
+  const uint32_t at = take_room(kListMockupPoints, 1u);
+  if (at >= frame_lists[kListMockupPoints].capacity) return;
+  mockup_points[at] = FieldPoint(work.point, entry, weight);
+  if (begins_group(at, 1u)) grow_pushed_groups_deep(kGroupsMockupPush, groups_to(at + 1u), LANES);
 }
 
 void main() {
   const uint32_t i = flat_invocation();
   if (i < list_count(kListContactStatics)) take_static(i);
   if (i < list_count(kListContactMobiles)) take_mobile(i);
+  if (INSIDE && i < list_count(kListSamples)) take_sample(i);
 }

@@ -1,8 +1,9 @@
 #version 460
-// kFieldTileLanes invocations: a tile of a tool triangle's sample grid, a cell each at a time. Lists the samples that
-// weigh something, and lie in a V_bnd or V_int voxel of the mock-up, or with their triangle's first corner
-// where it touches nothing.
-// Reads field_tiles, the tool in its own frame, the mock-up's partition. Writes tool_points.
+// kFieldTileLanes invocations: a tile of a tool triangle's sample grid, a cell each at a time, or of extra samples.
+// Lists the samples that weigh something; of the tool's grid those that lie in a V_bnd or V_int voxel of the
+// mock-up, or with their triangle's first corner where it touches nothing.
+// Reads field_tiles, both bodies' extra samples, the tool in its own frame, the mock-up's partition. Writes
+// tool_points, mockup_points.
 // Before: field_members; its list is closed.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/frame.glsl"
@@ -23,12 +24,16 @@ READ(kBindToolLevels, uint32_t, tool_levels);
 READ(kBindMobileState, uint32_t, mobile_state);
 READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
 READ(kBindMockupBricks, Brick, mockup_bricks);
+READ(kBindMockupExtras, ExtraSample, mockup_extras);
+READ(kBindToolExtras, ExtraSample, tool_extras);
 EDIT(kBindToolPoints, FieldPoint, tool_points);
+EDIT(kBindMockupPoints, FieldPoint, mockup_points);
 
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/group_count.glsl"
 #include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(mobile, kBindMobileKeys)
+POSED_TABLE(static, kBindStaticKeys)
 GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #include "shaders/lib/pose.glsl"
 #define PARTITION(name) mockup_##name
@@ -39,6 +44,27 @@ GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #include "shaders/lib/sample_levels.glsl"
 SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
+void list_tool_point(FieldPoint point) {
+  const uint32_t at = take_room(kListToolPoints, 1u);
+  if (at >= frame_lists[kListToolPoints].capacity) return;
+  tool_points[at] = point;
+  if (begins_group(at, 1u)) grow_pushed_groups_deep(kGroupsToolPush, groups_to(at + 1u), LANES);
+}
+
+void take_tool_extra(FieldTile tile, uint32_t i) {
+  const uint32_t weight = uint32_t(extra_weight(tool_extras[i].weights) >> 6);
+  if (weight != 0u) list_tool_point(FieldPoint(world_from_tool(tool_extras[i].point), tile.triangle, weight));
+}
+
+void take_mockup_extra(FieldTile tile, uint32_t i) {
+  const uint32_t weight = uint32_t(extra_weight(mockup_extras[i].weights) >> 6);
+  if (weight == 0u) return;
+  const uint32_t at = take_room(kListMockupPoints, 1u);
+  if (at >= frame_lists[kListMockupPoints].capacity) return;
+  mockup_points[at] = FieldPoint(mockup_extras[i].point, tile.triangle | kExtraPoint, weight);
+  if (begins_group(at, 1u)) grow_pushed_groups_deep(kGroupsMockupPush, groups_to(at + 1u), LANES);
+}
+
 void take(FieldTile tile, uint32_t mobile, SampledTriangle triangle, uint32_t cell) {
   const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
               g = sample_of_cell(ij, scene.sample_spacing);
@@ -46,24 +72,38 @@ void take(FieldTile tile, uint32_t mobile, SampledTriangle triangle, uint32_t ce
   const uint32_t weight = uint32_t(tool_weight(mobile, tool_weights[mobile], ij) >> 6);
   if (weight == 0u) return;
   const ivec3 p = world_from_tool(sample_point(triangle, g));
-  const bool hit = (mobile_state[tile.mobile] & kMobileHit) != 0u;
+  const bool hit = (mobile_state[tile.triangle] & kMobileHit) != 0u;
   if (mockup_class_of(mockup_voxel_of(hit ? p : world_from_tool(triangle.a))) == kVoxelExternal) return;
-  const uint32_t at = take_room(kListToolPoints, 1u);
-  if (at >= frame_lists[kListToolPoints].capacity) return;
-  tool_points[at] = FieldPoint(p, tile.mobile, weight);
-  if (begins_group(at, 1u)) grow_pushed_groups_deep(0u, groups_to(at + 1u), LANES);
+  list_tool_point(FieldPoint(p, tile.triangle, weight));
 }
 
-void main() {
-  const uint32_t item = flat_invocation() / kFieldTileLanes;
-  if (item >= list_count(kListFieldTiles)) return;
-  const FieldTile tile = field_tiles[item];
-  const uint32_t mobile = mobile_id(tile.mobile);
-  take_pose(mobile_pose(tile.mobile));
+void take_grid(FieldTile tile) {
+  const uint32_t mobile = mobile_id(tile.triangle);
+  take_pose(mobile_pose(tile.triangle));
   const uvec3 corners = tool_triangles[mobile];
   const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
   const int32_t axis = int32_t(tool_info[mobile] >> kInfoAxisShift & 3u);
   const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
   for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end; cell += kFieldTileLanes)
     take(tile, mobile, triangle, cell);
+}
+
+void take_extras(FieldTile tile) {
+  const bool of_mockup = tile.first_u != 0;
+  take_pose(of_mockup ? static_pose(tile.triangle) : mobile_pose(tile.triangle));
+  for (uint32_t i = tile.begin + flat_invocation() % kFieldTileLanes; i < tile.end; i += kFieldTileLanes)
+    if (of_mockup)
+      take_mockup_extra(tile, i);
+    else
+      take_tool_extra(tile, i);
+}
+
+void main() {
+  const uint32_t item = flat_invocation() / kFieldTileLanes;
+  if (item >= list_count(kListFieldTiles)) return;
+  const FieldTile tile = field_tiles[item];
+  if (tile.across != 0u)
+    take_grid(tile);
+  else
+    take_extras(tile);
 }

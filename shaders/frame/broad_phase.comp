@@ -5,15 +5,16 @@
 //  - The first workgroups look for runs of the tool that come near what is not V_ext. Each has kGroupSize
 //    clusters: an invocation asks one cluster, and then runs of those clusters that are near.
 //  - The other BRICK_GROUPS look for V_bnd voxels of the mock-up that the tool's solid may reach into, and so
-//    for samples. They take in turn the bricks that the tool's fine grid may meet, kGroupSize in a round: an
-//    invocation asks one brick, and then voxels of those bricks that are near.
+//    for samples. They take in turn the bricks that the tool's fine grid may meet, BRICKS_AT_ONCE in a round:
+//    an invocation asks one brick, and all of them then voxels of those bricks that are near, brick by brick.
 // In a batch each pose has as many workgroups, in a row of its own.
 // Reads boxes of the tool, occupied cubes and both partitions; appends near_runs and sample_chunks.
 #include "shaders/lib/frame.glsl"
 
 layout(constant_id = 0) const uint32_t SAMPLES = 2u;   // 1: chunks of voxels' lists; 2: of listed points
 layout(constant_id = 1) const bool HAS_NEAR = true;    // false: tool_near says nothing
-layout(constant_id = 2) const uint32_t BRICK_GROUPS = 2u;   // workgroups that look for bricks
+layout(constant_id = 2) const uint32_t BRICK_GROUPS = 2u;   // workgroups that look for bricks, …
+layout(constant_id = 3) const uint32_t BRICKS_AT_ONCE = 64u;   // … each so many in a round, kGroupSize at most
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
@@ -130,7 +131,7 @@ void append_chunks(ivec3 voxel, uint32_t boundary) {
                     min(begin + (i + 1u) * chunk, end));
 }
 
-void cull_samples(uint32_t lane, uint32_t item) {
+void cull_samples(uint32_t lane, uint32_t group) {
   // Bricks of the mock-up that the tool's fine grid may meet; all of its solid lies in that.
   ivec3 first, last;
   const ivec3 low = scene.fine.origin;
@@ -139,10 +140,11 @@ void cull_samples(uint32_t lane, uint32_t item) {
   const uvec3 n = any ? uvec3((last >> 3) - first + 1) : uvec3(0u);
   const ivec3 all_bricks = scene.mockup.grid.bricks;
   const int32_t size = scene.mockup.grid.size;
-  const uint32_t count = n.x * n.y * n.z, all = BRICK_GROUPS * kGroupSize,
+  const uint32_t count = n.x * n.y * n.z, all = BRICK_GROUPS * BRICKS_AT_ONCE,
                  rounds = (count + all - 1u) / all;
+  uint32_t item = group * BRICKS_AT_ONCE + lane;
   for (uint32_t round = 0u; round < rounds; ++round, item += all) {
-    if (item < count) {
+    if (lane < BRICKS_AT_ONCE && item < count) {
       const ivec3 brick = first + ivec3(item % n.x, item / n.x % n.y, item / (n.x * n.y));
       const uint32_t number = uint32_t(brick.x + all_bricks.x * (brick.y + all_bricks.y * brick.z));
       if (mockup_brick_slot[number] < kBrickInternal && grid_near(brick))
@@ -176,5 +178,5 @@ void main() {
   if (group < tool_groups)
     cull_tool(lane, group * kGroupSize + lane);
   else if (SAMPLES != 0u)
-    cull_samples(lane, (group - tool_groups) * kGroupSize + lane);
+    cull_samples(lane, group - tool_groups);
 }

@@ -1,4 +1,4 @@
-// Adds a workgroup's pushes to the field (docs/EXACTNESS.md section 8). Invocations put their terms side by
+// Adds a workgroup's pushes to the field (docs/EXACTNESS.md section 8). Invocations that speak put their terms side by
 // side in shared memory; then each of the first ones adds up one kind of term over the workgroup, and goes to
 // the buffer only where the bin, or the carrier, changes: neighbours mostly share theirs.
 // The including shader has scene, frame_input, int64_t field_work[] and carrier_work[] (both writable).
@@ -30,13 +30,16 @@ struct Push {
 };
 
 const uint32_t kTerms = kFieldBinWords + kCarrierSumWords;
-const uint32_t kTermsApart = kGroupSize + 1u;   // so that kinds side by side lie in different banks
+// Of invocations that speak; one more, so that kinds side by side lie in different banks.
+const uint32_t kSpeakers = kGroupSize / LANES, kTermsApart = kSpeakers + 1u;
 shared int64_t terms[kTerms * kTermsApart];
-shared uint32_t term_bins[kGroupSize], term_slots[kGroupSize];
-shared uint64_t deepest[2u * kGroupSize];
+shared uint32_t term_bins[kSpeakers], term_slots[kSpeakers];
+shared uint64_t deepest[2u * kSpeakers];
 shared uint32_t any_sheet;
 
-void put_term(uint32_t kind, int64_t term) { terms[kind * kTermsApart + gl_LocalInvocationIndex] = term; }
+uint32_t speaker() { return gl_LocalInvocationIndex / LANES; }
+
+void put_term(uint32_t kind, int64_t term) { terms[kind * kTermsApart + speaker()] = term; }
 
 // Three sums of terms that may not fit 64 bits, as low and high halves.
 void put_wide(uint32_t kind, i64vec3 term) {
@@ -80,7 +83,7 @@ void put_push(Push push) {
     put_term(17u + k, (moment[k] * lever[k]) >> 8);
     put_term(20u + k, (moment[k] * lever[(k + 1u) % 3u]) >> 8);
   }
-  term_bins[gl_LocalInvocationIndex] = bin_of(push.along);
+  term_bins[speaker()] = bin_of(push.along);
   const uint64_t depth = uint64_t(push.depth) << 32, by_static = depth | uint64_t(~push.static_id),
                  by_mobile = depth | uint64_t(~push.mobile);
   if (BATCH) {   // a workgroup has several poses
@@ -88,8 +91,8 @@ void put_push(Push push) {
     atomicMax(field_work[field_word(kWordDeepest + 1u)], int64_t(by_mobile));
     if (push.sheet) atomicOr(field_work[field_word(kWordSheet)], 1l);
   } else {
-    deepest[gl_LocalInvocationIndex] = by_static;
-    deepest[kGroupSize + gl_LocalInvocationIndex] = by_mobile;
+    deepest[speaker()] = by_static;
+    deepest[kSpeakers + speaker()] = by_mobile;
     if (push.sheet) any_sheet = 1u;   // whoever writes it
   }
   if (!CARRIERS || push.slot == kNone) return;
@@ -99,7 +102,7 @@ void put_push(Push push) {
   put_term(kFieldBinWords + 2u, whole);
   put_wide(kFieldBinWords + 3u, whole * (n >> 10));
   put_wide(kFieldBinWords + 9u, (whole >> 10) * r);
-  term_slots[gl_LocalInvocationIndex] = push.slot;
+  term_slots[speaker()] = push.slot;
   atomicMax(carrier_work[kCarrierWords * push.slot + kWordCarrierDepth], int64_t(push.depth));
 }
 
@@ -113,10 +116,12 @@ void flush_term(uint32_t kind, uint32_t key, int64_t sum) {
 // Of the whole workgroup, all of it at once: what `push` says counts where `pushes`.
 void add_pushes(bool pushes, Push push) {
   const uint32_t lane = gl_LocalInvocationIndex;
-  term_bins[lane] = kNone;
-  term_slots[lane] = kNone;
-  deepest[lane] = 0ul;
-  deepest[kGroupSize + lane] = 0ul;
+  if (lane < kSpeakers) {
+    term_bins[lane] = kNone;
+    term_slots[lane] = kNone;
+    deepest[lane] = 0ul;
+    deepest[kSpeakers + lane] = 0ul;
+  }
   if (lane == 0u) any_sheet = 0u;
   barrier();
   if (pushes) put_push(push);
@@ -124,7 +129,7 @@ void add_pushes(bool pushes, Push push) {
   if (lane < (CARRIERS ? kTerms : kFieldBinWords)) {
     uint32_t key = kNone;
     int64_t sum = 0l;
-    for (uint32_t i = 0u; i < kGroupSize; ++i) {
+    for (uint32_t i = 0u; i < kSpeakers; ++i) {
       const uint32_t its = lane < kFieldBinWords ? term_bins[i] : term_slots[i];
       if (its == kNone) continue;
       if (its != key) {
@@ -138,7 +143,7 @@ void add_pushes(bool pushes, Push push) {
   } else if (!BATCH && lane >= kTerms && lane < kTerms + 2u) {
     const uint32_t which = lane - kTerms;
     uint64_t most = 0ul;
-    for (uint32_t i = 0u; i < kGroupSize; ++i) most = max(most, deepest[which * kGroupSize + i]);
+    for (uint32_t i = 0u; i < kSpeakers; ++i) most = max(most, deepest[which * kSpeakers + i]);
     if (most != 0ul) atomicMax(field_work[kWordDeepest + which], int64_t(most));   // depths are below 2^31
   } else if (!BATCH && lane == kTerms + 2u && any_sheet != 0u) {
     atomicOr(field_work[kWordSheet], 1l);

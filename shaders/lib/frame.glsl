@@ -10,7 +10,7 @@ layout(local_size_x = kGroupSize) in;
 layout(constant_id = 20) const bool BATCH = false;   // kBatchConstant: many poses (shared/frame_batch.h)
 uint32_t frame_pose = 0u;   // of the invocation's item; lib/batch/batch.glsl
 // kLanesConstant: how many invocations look for a sample's depth together (shared/frame_field.h).
-layout(constant_id = 21) const uint32_t LANES = 1u;
+layout(constant_id = 21) const uint32_t LANES = 8u;
 
 // An array of T behind `bind`, called `name`; and a single T.
 #define READ(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name[]; }

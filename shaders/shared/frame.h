@@ -80,14 +80,15 @@ PALPATE_CONSTANT int32_t kBindFinePlaces =
     31;  // uint32_t: kBindFineListTriangles as places in the order of clusters; of a closed tool (refined)
 
 // The frame.
-PALPATE_CONSTANT int32_t kBindFrameInput = 32;     // FrameInput, one; mapped, written by the host
-PALPATE_CONSTANT int32_t kBindFrameLists = 33;     // FrameList[kListCount]
-PALPATE_CONSTANT int32_t kBindFrameState = 34;     // FrameState, one
-PALPATE_CONSTANT int32_t kBindDispatches = 35;     // DispatchArguments[kDispatchCount]: of `paper`'s response
-PALPATE_CONSTANT int32_t kBindListedGroups = 39;   // DispatchArguments: kGroupsStatics, kGroupsOpen
-PALPATE_CONSTANT int32_t kBindMembersGroups = 46;  // one: an invocation a slot of C_s and a member of C_m
-PALPATE_CONSTANT int32_t kBindPlacedGroups = 56;   // kGroupsTiles, kGroupsMockupPush
-PALPATE_CONSTANT int32_t kBindPushedGroups = 57;   // one: an invocation a sample of the tool
+PALPATE_CONSTANT int32_t kBindFrameInput = 32;    // FrameInput, one; mapped, written by the host
+PALPATE_CONSTANT int32_t kBindFrameLists = 33;    // FrameList[kListCount]
+PALPATE_CONSTANT int32_t kBindFrameState = 34;    // FrameState, one
+PALPATE_CONSTANT int32_t kBindDispatches = 35;    // DispatchArguments[kDispatchCount]: of `paper`'s response
+PALPATE_CONSTANT int32_t kBindListedGroups = 39;  // DispatchArguments: kGroupsStatics, kGroupsOpen
+PALPATE_CONSTANT int32_t kBindMembersGroups =
+    46;  // one: an invocation a slot of C_s, a member of C_m, a sample
+PALPATE_CONSTANT int32_t kBindPlacedGroups = 56;  // one: kFieldTileLanes invocations a tile
+PALPATE_CONSTANT int32_t kBindPushedGroups = 57;  // kGroupsToolPush, kGroupsMockupPush
 PALPATE_CONSTANT int32_t kBindResultGroups =
     62;  // one: an invocation an entry of whatever the host gets, and of whatever is emptied
 PALPATE_CONSTANT int32_t kBindListsAnew =
@@ -174,13 +175,12 @@ struct FrameList {
 };
 
 // Entries of the stages' group counts.
-PALPATE_CONSTANT uint32_t kGroupsTouch = 0;    // a workgroup kRunsAGroup NearRuns
-PALPATE_CONSTANT uint32_t kGroupsSamples = 1;  // an invocation a SampleChunk
-PALPATE_CONSTANT uint32_t kGroupsPairs = 0;    // an invocation a PairChunk
-PALPATE_CONSTANT uint32_t kGroupsOpen = 1;     // an invocation an open sample
-PALPATE_CONSTANT uint32_t kGroupsTiles = 0;    // kFieldTileLanes invocations a tile
-PALPATE_CONSTANT uint32_t kGroupsMockupPush =
-    1;  // an invocation a sample, then an invocation an extra sample
+PALPATE_CONSTANT uint32_t kGroupsTouch = 0;       // a workgroup kRunsAGroup NearRuns
+PALPATE_CONSTANT uint32_t kGroupsSamples = 1;     // an invocation a SampleChunk
+PALPATE_CONSTANT uint32_t kGroupsPairs = 0;       // an invocation a PairChunk
+PALPATE_CONSTANT uint32_t kGroupsOpen = 1;        // an invocation an open sample
+PALPATE_CONSTANT uint32_t kGroupsToolPush = 0;    // LANES invocations a sample of the tool that weighs
+PALPATE_CONSTANT uint32_t kGroupsMockupPush = 1;  // likewise of the mock-up
 
 // Group counts; 0 in a frame that does not need them. `One` is a single workgroup.
 PALPATE_CONSTANT uint32_t kDispatchContactOne = 0;       // contact

@@ -16,7 +16,8 @@ PALPATE_SHARED_BEGIN
 PALPATE_CONSTANT int32_t kBindFieldWork = 96;      // int64_t[kFieldWords]: FieldWork
 PALPATE_CONSTANT int32_t kBindCarrierWork = 97;    // int64_t[kCarrierWords · C_s], by slot: CarrierWork
 PALPATE_CONSTANT int32_t kBindFieldTiles = 98;     // kListFieldTiles: FieldTile
-PALPATE_CONSTANT int32_t kBindMockupPoints = 99;   // kListMockupPoints: FieldPoint, extra samples of C_s
+PALPATE_CONSTANT int32_t kBindMockupPoints = 99;   // kListMockupPoints: FieldPoint, samples inside the tool
+                                                   // that weigh something, and extra ones of C_s
 PALPATE_CONSTANT int32_t kBindToolPoints = 100;    // kListToolPoints: FieldPoint, samples of C_m in V_bnd or
                                                    // V_int voxels of the mock-up, and its extra ones
 PALPATE_CONSTANT int32_t kBindIgnored = 101;       // a bit a patch; mapped
@@ -34,6 +35,10 @@ PALPATE_CONSTANT int32_t kBindMockupShells =
 PALPATE_CONSTANT int32_t kBindFineShells =
     109;  // likewise of the tool's fine partition, where it has an inside
 
+PALPATE_CONSTANT int32_t kBindMockupTree =
+    110;  // uint32_t: kTreeHeaderWords of shared/scene.h and what follows
+PALPATE_CONSTANT int32_t kBindToolTree = 111;  // likewise, tool lattice frame
+
 PALPATE_CONSTANT uint32_t kMostSampleLevel = 6u;   // kSampleLevels of model/lattice/lattice_mesh.h
 PALPATE_CONSTANT uint32_t kMostSurfaceLevel = 4u;  // kSurfaceLevels
 PALPATE_CONSTANT uint32_t kSideLevelWords = 1u + kMostSampleLevel;
@@ -45,6 +50,7 @@ PALPATE_CONSTANT uint32_t kListToolPoints = 18u;
 PALPATE_CONSTANT uint32_t kFieldTile = 64u;      // most cells of a tile of tool samples
 PALPATE_CONSTANT uint32_t kFieldTileLanes = 8u;  // invocations that go through it (chosen: most triangles
                                                  // have no more cells, and llvmpipe takes eight at once)
+PALPATE_CONSTANT uint32_t kExtraTile = 16u;      // most extra samples of a tile
 PALPATE_CONSTANT uint32_t kLanesConstant = 21;   // id of LANES (lib/frame.glsl)
 PALPATE_CONSTANT int32_t kDepthSlack = 16;       // steps by which a distance may be off, and more (section 4)
 
@@ -61,14 +67,18 @@ struct ExtraSample {
 // A sample that pushes if it lies inside the other body.
 struct FieldPoint {
   ivec3 point;        // world lattice
-  uint32_t triangle;  // its own; of a batch: entry of the tables
+  uint32_t triangle;  // its own; of a batch: entry of the tables. With kExtraPoint: an extra one of the
+                      // mock-up, of which nobody knows yet whether it lies inside the tool
   uint32_t weight;    // Q24
 };
 
+PALPATE_CONSTANT uint32_t kExtraPoint = 1u << 31;  // more triangles than this do not fit a lattice mesh
+
 // Cells begin … end − 1 of a tool triangle's box, which is `across` cells wide and begins at cell (first_u,
-// first_v), row by row.
+// first_v), row by row. Or, where `across` is 0, extra samples begin … end − 1: first_u 0, of the tool; 1, of
+// the mock-up.
 struct FieldTile {
-  uint32_t mobile;  // of a batch: entry of the tables
+  uint32_t triangle;  // of a batch: entry of the tables
   int32_t first_u, first_v;
   uint32_t across;
   uint32_t begin, end;

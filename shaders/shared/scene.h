@@ -48,6 +48,17 @@ struct Brick {
 };
 PALPATE_ASSERT_SIZE(Brick, 192);
 
+// Words of a body's tree as shaders read it: a header, TriangleTree::Boxes of compute/scene/triangle_tree.h
+// level by level, and TriangleTree::order.
+PALPATE_CONSTANT uint32_t kMostTreeLevels = 11u;  // 8^11 triangles are more than a mesh can have
+PALPATE_CONSTANT uint32_t kTreeTriangles = 0u;    // how many it has
+PALPATE_CONSTANT uint32_t kTreeLevels = 1u;       // likewise
+PALPATE_CONSTANT uint32_t kTreeOrder = 2u;        // the word with which the order begins
+PALPATE_CONSTANT uint32_t kTreeBegin = 3u;        // by level: the word with which its groups of eight begin
+PALPATE_CONSTANT uint32_t kTreeNodes = kTreeBegin + kMostTreeLevels;  // by level: how many boxes it has
+PALPATE_CONSTANT uint32_t kTreeHeaderWords = kTreeNodes + kMostTreeLevels;
+PALPATE_CONSTANT uint32_t kTreeGroupWords = 48u;  // of eight boxes: lows by axis, then highs
+
 // A body: mock-up (world lattice frame) or tool (tool lattice frame).
 struct BodyConstants {
   uint32_t vertices;

@@ -51,8 +51,8 @@ CELL = (
 DEPTH = (
     'in which cell a coordinate lies (as above), quotients and roots of lib/distance.glsl, which integer'
     ' remainders settle, and which triangles a segment crosses or may be nearest (lib/segment_estimate.glsl,'
-    ' lib/distance_estimate.glsl): margins cover every rounding, contracted or not, and exact tests decide'
-    ' the rest'
+    ' lib/distance_estimate.glsl, lib/body/body_depth.glsl, whose invocations tell each other bounds as bits):'
+    ' margins cover every rounding, contracted or not, and exact tests decide the rest'
 )
 WALK = (
     'in which cell a coordinate lies (as above), and which triangles a segment crosses for sure'

@@ -33,7 +33,7 @@ constexpr std::array<const char*, 20> kListNames = {"",
                                                     "",
                                                     "",
                                                     "tiles of tool samples",
-                                                    "extra samples",
+                                                    "samples that weigh something",
                                                     "samples of the tool",
                                                     "ignored patches"};
 static_assert(kListFieldTiles == 16 && kListIgnored == 19);
@@ -82,7 +82,7 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand,
   l[kListOpenSamples] = l[kListSamples] = room(0, samples);
   l[kListMembers] = room(2, tool * kMaxFrameAreas);
   l[kListFieldTiles] = refined ? room(2, ~0u) : 1;
-  l[kListMockupPoints] = room(0, scene.mockup_extras);
+  l[kListMockupPoints] = room(0, samples + scene.mockup_extras);
   l[kListToolPoints] = refined ? room(0, ~0u) : 1;
   l[kListIgnored] = room(0, refined ? mockup : 1);
   override_lists(l, wanted);
@@ -97,7 +97,7 @@ FrameCapacity FrameCapacity::first_of_batch(std::uint32_t poses,
       {kListNearRuns, 64},        {kListTouchedVoxels, 256},  {kListPairChunks, 512},
       {kListPairCandidates, 512}, {kListContactStatics, 256}, {kListContactMobiles, 128},
       {kListSampleChunks, 256},   {kListOpenSamples, 256},    {kListSamples, 512},
-      {kListFieldTiles, 128},     {kListMockupPoints, 64},    {kListToolPoints, 256}};
+      {kListFieldTiles, 128},     {kListMockupPoints, 256},   {kListToolPoints, 256}};
   FrameCapacity out;
   out.poses = poses;
   out.lists.fill(1);

@@ -187,17 +187,17 @@ Result<void> FrameDetection::upload_bounds(VulkanDevice& device, const LatticeMe
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   // llvmpipe takes its time for one without work, too; of a batch other poses keep a device busy.
-  if (device.shares_memory() || batch_) brick_groups_ = 2;
+  const bool few = device.shares_memory() || batch_;
+  if (few) brick_groups_ = 2;
   std::vector<SpecConstant> plan = plan_constants(plan_);
   if (batch_) plan.push_back({kBatchConstant, 1});
-  if (const std::uint32_t lanes = depth_lanes(device, batch_); lanes > 1)
-    plan.push_back({kLanesConstant, lanes});
   const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}}, of_points[] = {{0, wide_ ? 1u : 0u}},
                      of_search[] = {{0, !inside_  ? 0u
                                         : listed_ ? 2u
                                                   : 1u},
                                     {1, has_near_ ? 1u : 0u},
-                                    {2, brick_groups_}};
+                                    {2, brick_groups_},
+                                    {3, few ? kGroupSize : kBricksAtOnce}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;

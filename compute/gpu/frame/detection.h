@@ -56,11 +56,14 @@ class FrameDetection {
   bool refined_ = false;
   bool inside_ =
       false;  ///< samples are asked whether they lie inside the tool: refined, and it has an inside
-  bool closed_ = false;              ///< the tool's surface, in `refined`: open samples ask for the winding
-  bool listed_ = false;              ///< samples were listed by preparation …
-  bool wide_ = false;                ///< … three words each
-  std::uint32_t brick_groups_ = 64;  ///< of broad_phase (chosen)
-  bool has_near_ = false;            ///< tool_near says something
+  bool closed_ = false;  ///< the tool's surface, in `refined`: open samples ask for the winding
+  bool listed_ = false;  ///< samples were listed by preparation …
+  bool wide_ = false;    ///< … three words each
+  // Of broad_phase on a GPU (chosen): near bricks lie side by side, and a workgroup takes one after the
+  // other.
+  static constexpr std::uint32_t kBricksAtOnce = 4;
+  std::uint32_t brick_groups_ = 512;
+  bool has_near_ = false;  ///< tool_near says something
   std::vector<std::uint32_t> order_;
   FrameShader broad_phase_, voxel_touch_, pair_test_, tool_clusters_place_, sample_scan_, sample_listed_,
       sample_walk_, set_decide_, set_name_, frame_result_;

@@ -71,7 +71,7 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
     std::vector<SpecConstant> constants = plan_constants(plan);
     if (!plan.telemetry) constants.push_back({kCarriersId, 0u});
     if (batch) constants.push_back({kBatchConstant, 1u});
-    if (lanes > 1) constants.push_back({kLanesConstant, lanes});
+    constants.push_back({kLanesConstant, lanes});
     constants.insert(constants.end(), made_for.constants.begin(), made_for.constants.end());
     auto made = make_frame_shader(device, made_for.code, 0, constants);
     if (!made) return made.error();
@@ -128,11 +128,11 @@ void FrameField::record(FrameRecorder& recorder) const {
   recorder.run_stage(members_, kBindMembersGroups);
   recorder.barrier();
   recorder.stage("samples");
-  recorder.run_stage(points_, kBindPlacedGroups, kGroupsTiles);
-  recorder.stage("field");
-  if (inside_) recorder.run_stage(from_mockup_, kBindPlacedGroups, kGroupsMockupPush);
+  recorder.run_stage(points_, kBindPlacedGroups);
   recorder.barrier();
-  recorder.run_stage(from_tool_, kBindPushedGroups);
+  recorder.stage("field");
+  recorder.run_stage(from_tool_, kBindPushedGroups, kGroupsToolPush);
+  if (inside_) recorder.run_stage(from_mockup_, kBindPushedGroups, kGroupsMockupPush);
   recorder.barrier();
   recorder.stage("reset");
   recorder.run_stage(result_, kBindResultGroups);

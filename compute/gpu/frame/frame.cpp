@@ -44,6 +44,7 @@ class RecordedFrame final : public Frame {
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;
   Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const override;
   Result<void> enlarge() override;
+  Result<void> time_stages(bool wanted) override;
   DeviceWork work() const override { return work_; }
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
   std::vector<StageMemory> memory_by_stage() const override { return stage_memory(buffers_, plan_.zones); }
@@ -77,6 +78,7 @@ class RecordedFrame final : public Frame {
   DeviceWork work_;
   std::vector<const ComputePipeline*> pipelines_;
   std::vector<CommandRecorder::StageTime> times_;
+  bool timed_ = false;     ///< stages' times are wanted though nobody watches
   bool finished_ = false;  ///< pipelines are there and commands recorded
   bool tables_clear_ = false;
   std::uint64_t pairs_ = 0;        ///< that the last query counted
@@ -169,7 +171,7 @@ template <class Body>
 Result<std::unique_ptr<CommandRecorder>> RecordedFrame::recorded(Body&& body) {
   constexpr std::uint32_t kStages = 32;  // most calls of stage()
   times_.reserve(kStages);
-  auto commands = CommandRecorder::create(device_, kStages);
+  auto commands = CommandRecorder::create(device_, plan_.telemetry || timed_ ? kStages : 0);
   if (!commands) return commands.error();
   auto out = std::make_unique<CommandRecorder>(std::move(*commands));
   out->begin();
@@ -201,6 +203,12 @@ Result<void> RecordedFrame::record() {
   if (!commands) return commands.error();
   commands_ = std::move(*commands);
   return {};
+}
+
+Result<void> RecordedFrame::time_stages(bool wanted) {
+  if (timed_ == wanted) return {};
+  timed_ = wanted;
+  return record_again();
 }
 
 void RecordedFrame::write_input(const LatticePose& pose, const Ignored* ignored) {
@@ -236,8 +244,8 @@ Result<void> RecordedFrame::answer(const LatticePose& pose, const Ignored* ignor
 
   if (!commands_) return Error{ErrorCode::kInternal, "the frame could not be recorded when it was enlarged"};
   if (auto r = run(*commands_, out); !r) return r;
-  out.times.push_back(
-      {"submit", std::max(0.0, waited_us_ - staged_us_)});  // what waiting cost beyond the stages themselves
+  // What waiting cost beyond the stages themselves, or in all.
+  out.times.push_back({times_.empty() ? "device" : "submit", std::max(0.0, waited_us_ - staged_us_)});
   const auto finished = Clock::now();
   read(out);
   out.times.push_back({"readback", us_since(finished)});

@@ -31,6 +31,8 @@ class Frame {
   virtual Result<void> finish() = 0;
   virtual Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) = 0;
   virtual Result<void> enlarge() = 0;
+  /// As CollisionBackend::time_stages.
+  virtual Result<void> time_stages(bool wanted) = 0;
   /// As CollisionBackend::pairs.
   virtual Result<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs() const = 0;
   /// As CollisionBackend::device_work, of this frame alone.

@@ -5,9 +5,8 @@
 namespace palpate {
 namespace {
 
-// A GPU has far more invocations than a contact has samples, and each waits for its loads (chosen, not yet
-// measured).
-constexpr std::uint32_t kLanesOfGpu = 16;
+// A GPU has far more invocations than a contact has samples, and each waits for its loads.
+constexpr std::uint32_t kLanesOfGpu = 64, kLanes = 1;
 
 }  // namespace
 
@@ -26,7 +25,7 @@ std::vector<SpecConstant> plan_constants(const Plan& plan) {
 }
 
 std::uint32_t depth_lanes(const VulkanDevice& device, bool batch) {
-  return device.processor() || batch ? 1 : kLanesOfGpu;
+  return device.processor() || batch ? kLanes : kLanesOfGpu;
 }
 
 std::uint32_t flags_of_frames(const gpu::SceneConstants& scene) {

@@ -21,8 +21,8 @@ Plan frame_plan(const Plan& plan, bool has_internal);
 /// pipelines need none.
 std::vector<SpecConstant> plan_constants(const Plan& plan);
 
-/// How many invocations look for a sample's depth together (constant LANES): 1 on a processor, and in a
-/// batch, whose samples keep a GPU busy.
+/// How many invocations look for a sample's depth together (constant LANES), from 8 on: few on a processor,
+/// and in a batch, whose samples keep a GPU busy.
 std::uint32_t depth_lanes(const VulkanDevice& device, bool batch);
 
 /// ContactFlag bits of every answer within the lattice.

@@ -36,6 +36,8 @@ void name_scene(const PreparedScene& scene, FrameBuffers& buffers) {
       {kBindToolExtras, &t.extras},
       {kBindToolLevels, &t.levels},
       {kBindToolSamples, &t.samples},
+      {kBindMockupTree, &m.tree},
+      {kBindToolTree, &t.tree},
       {kBindFineBrickSlot, &fine.brick_slot},
       {kBindFineBricks, &fine.bricks},
       {kBindFineListBegin, &fine.list_begin},

@@ -57,7 +57,8 @@ const BufferUse kUses[] = {
     {"rays",
      {kBindMockupWeights, kBindMockupPatches, kBindMockupExtras, kBindToolWeights, kBindToolExtras,
       kBindFieldWork, kBindCarrierWork, kBindFieldTiles, kBindMockupPoints, kBindToolPoints, kBindIgnored,
-      kBindIgnoredState, kBindResultIgnored, kBindResultField, kBindResultCarriers, kBindMockupShells}},
+      kBindIgnoredState, kBindResultIgnored, kBindResultField, kBindResultCarriers, kBindMockupShells,
+      kBindMockupTree, kBindToolTree}},
     {"areas",
      {kBindNeighbourBegin, kBindNeighbours, kBindMockupNormals, kBindToolNormals, kBindResultMembers}},
 };

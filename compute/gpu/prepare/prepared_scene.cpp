@@ -89,6 +89,13 @@ void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, bool
   out.occupied = steps.filled("what of the mock-up is not outside", occupied_words(lists.view()));
   out.list_boxes =
       steps.filled("boxes of the mock-up's triangles", list_boxes(geometry.mockup, lists.view()));
+  if (!refined) return;
+  const auto go_on = [&] {
+    steps.progress("search", 0.95);
+    return steps.ok();
+  };
+  out.mockup.tree = steps.filled("the mock-up's tree", tree_words(geometry.mockup, go_on));
+  out.tool.tree = steps.filled("the tool's tree", tree_words(geometry.tool, go_on));
 }
 
 }  // namespace

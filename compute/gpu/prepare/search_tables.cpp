@@ -1,11 +1,14 @@
 #include "compute/gpu/prepare/search_tables.h"
 
+#include <cstring>
 #include <utility>
 
 #include "compute/scene/brick_bits.h"
 #include "compute/scene/occupied_cubes.h"
 #include "compute/scene/search_tables.h"
+#include "compute/scene/triangle_tree.h"
 #include "shaders/shared/frame.h"
+#include "shaders/shared/scene.h"
 
 namespace palpate {
 
@@ -34,6 +37,23 @@ std::vector<std::uint32_t> occupied_words(const PartitionView& mockup) {
           words.push_back(static_cast<std::uint32_t>(plane >> 32));
         }
   }
+  return words;
+}
+
+std::vector<std::uint32_t> tree_words(const LatticeMesh& mesh, const std::function<bool()>& go_on) {
+  using namespace gpu;
+  static_assert(sizeof(TriangleTree::Boxes) == 4 * kTreeGroupWords);
+  const TriangleTree tree = TriangleTree::make(mesh, go_on, TriangleTree::kNotSolid, false);
+  std::vector<std::uint32_t> words(kTreeHeaderWords + kTreeGroupWords * tree.boxes.size());
+  words[kTreeTriangles] = static_cast<std::uint32_t>(tree.order.size());
+  words[kTreeLevels] = static_cast<std::uint32_t>(tree.level_begin.size());
+  words[kTreeOrder] = static_cast<std::uint32_t>(words.size());
+  for (std::uint32_t level = 0; level < tree.level_begin.size(); ++level) {
+    words[kTreeBegin + level] = kTreeHeaderWords + kTreeGroupWords * tree.level_begin[level];
+    words[kTreeNodes + level] = tree.nodes(level);
+  }
+  std::memcpy(words.data() + kTreeHeaderWords, tree.boxes.data(), sizeof tree.boxes[0] * tree.boxes.size());
+  words.insert(words.end(), tree.order.begin(), tree.order.end());
   return words;
 }
 

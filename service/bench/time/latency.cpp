@@ -19,7 +19,21 @@ struct Subject {
   std::unique_ptr<HostedScene> scene;
   TimeTable times;
   std::vector<double> least_us = {};  ///< by pose
+  bool apart = false;                 ///< stages are told by frames of their own, which take longer
 };
+
+/// Asks all poses once more, for the times of their stages alone.
+Result<void> time_stages(const BenchOptions& options, const std::vector<Pose>& poses, Subject& subject) {
+  Answer answer;
+  subject.scene->backend->time_stages(true);
+  for (const Pose& pose : poses) {
+    const Stopwatch watch(options.cpu_clock);
+    if (auto done = answer_frame(*subject.scene, pose, answer); !done) return done;
+    subject.times.add_stages(answer.contacts, watch.us());
+  }
+  subject.scene->backend->time_stages(false);
+  return {};
+}
 
 /// Asks the first two once more where the first looks the slower, for a machine has other things to do as
 /// well: what stays slower is.
@@ -58,7 +72,8 @@ Result<std::vector<Subject>> measure(const BenchOptions& options, const std::str
   for (const std::string& backend : asked_backends(options)) {
     auto prepared = ready_scene(options, file, backend, Purpose::kSession, parts, console);
     if (!prepared) return prepared.error();
-    subjects.push_back({std::move(*prepared), {}, {}});
+    const bool apart = (*prepared)->backend->time_stages(false);
+    subjects.push_back({std::move(*prepared), {}, {}, apart});
   }
   const Result<std::vector<Pose>> poses = bench_poses(options, *subjects.front().scene, parts, console);
   if (!poses) return poses.error();
@@ -76,13 +91,20 @@ Result<std::vector<Subject>> measure(const BenchOptions& options, const std::str
         const double total_us = watch.us();
         subject.least_us.resize(poses->size(), HUGE_VAL);
         subject.least_us[i] = std::min(subject.least_us[i], total_us);
-        if (round > 0)
-          subject.times.add(answer.contacts, total_us, since(before, subject.scene->backend->device_work()));
+        if (round == 0) continue;
+        const DeviceWork work = since(before, subject.scene->backend->device_work());
+        if (subject.apart)
+          subject.times.add(frame_kind(answer.contacts), total_us, work);
+        else
+          subject.times.add(answer.contacts, total_us, work);
       }
       const double done = static_cast<double>(round * poses->size() + i) /
                           static_cast<double>((options.rounds + 1) * poses->size());
       if (i % 16 == 0 && !console.progress("poses", done)) return Error{ErrorCode::kInternal, "interrupted"};
     }
+  for (Subject& subject : subjects)
+    for (std::uint64_t round = 0; subject.apart && round < options.rounds; ++round)
+      if (auto done = time_stages(options, *poses, subject); !done) return done.error();
   if (auto done = ask_again(options, *poses, subjects); !done) return done.error();
   console.finish();
   return subjects;

@@ -52,8 +52,12 @@ void TimeTable::add(FrameKind kind, double total_us, const DeviceWork& work) {
 }
 
 void TimeTable::add(const Contacts& contacts, double total_us, const DeviceWork& work) {
+  add(frame_kind(contacts), total_us, work);
+  add_stages(contacts, total_us);
+}
+
+void TimeTable::add_stages(const Contacts& contacts, double total_us) {
   const FrameKind kind = frame_kind(contacts);
-  add(kind, total_us, work);
   // A stage may come several times in a frame; its time is their sum.
   std::vector<std::pair<std::string_view, double>> sums;
   double known = 0;

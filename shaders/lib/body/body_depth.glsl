@@ -1,8 +1,9 @@
 // How deep a lattice point lies below the surface of a body that does not move, in its own frame
-// (docs/EXACTNESS.md section 4, "Depth"), exact. Floats say which triangles may be the nearest; integers
-// decide among those few when all have been seen, for llvmpipe runs exact distances for all lanes that stand
-// side by side as soon as one asks.
-// The including shader has what lib/body/body.glsl asks for, ivec3 body_normals[] and frame_state (writable).
+// (docs/EXACTNESS.md section 4, "Depth"), exact. LANES invocations go down the body's tree together, eight
+// boxes or triangles of a node at a time. Floats say which triangles may be the nearest; integers decide among
+// those few at the end.
+// The including shader has what lib/body/body.glsl asks for, ivec3 body_normals[], uint32_t body_tree[]
+// (TreeHeader and what follows) and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_DEPTH
 #define PALPATE_LIB_BODY_DEPTH
 #include "shaders/shared/frame_field.h"
@@ -16,204 +17,158 @@ struct Depth {
   uint32_t triangle;   // the nearest one, of several the smallest id; kNone: there is none
 };
 
-const uint32_t kKept = 8u;
+const Depth kNoDepth = Depth(0x7FFFFFFF, kNone);
 const float kFar = 4294967296.0;   // beyond every distance
 
-// What may be the nearest. A place is free where `least` is beyond `reach`.
-struct NearTriangles {
-  float reach;   // what is further is not the nearest
-  uint32_t id[kKept];
-  float least[kKept];
-};
+// What is open of a search: a level of boxes << kLevelShift | a node of eight of them, or a run.
+const uint32_t kLevelShift = 28u, kNodeBits = (1u << kLevelShift) - 1u, kRun = 15u << kLevelShift;
 
-NearTriangles none_near(float reach) {
-  NearTriangles near;
-  near.reach = reach;
-  for (uint32_t i = 0u; i < kKept; ++i) {
-    near.id[i] = kNone;
-    near.least[i] = 2.0 * kFar;
-  }
-  return near;
+// By team of LANES invocations that look for a point's depth together. Of a team: the nodes left to look into,
+// the last ones first, each with the square of its distance (a float's bits); triangles that may be the
+// nearest, with their least distance (likewise); and how far the nearest one is at most.
+const uint32_t kTeams = kGroupSize / LANES;
+const uint32_t kOpenRoom = 12u * LANES, kKeptRoom = 4u * LANES;
+shared uint32_t open_nodes[12u * kGroupSize], open_squares[12u * kGroupSize];
+shared uint32_t kept_triangles[4u * kGroupSize];
+shared int32_t kept_least[4u * kGroupSize];
+shared uint32_t open_count[kGroupSize], kept_count[kGroupSize], team_reach[kGroupSize];
+shared uint32_t team_nearest[kGroupSize];
+shared int32_t team_steps[kGroupSize];
+shared uint32_t gave_up;
+
+uint32_t tree_word(uint32_t word) { return body_tree[word]; }
+
+// A box that is so far away along each axis: a triangle in it is no nearer than the square's root less
+// kDepthSlack, and in `most` how far one of it is at most.
+float square_to_box(ivec3 p, ivec3 low, ivec3 high, out float most) {
+  const vec3 gap = vec3(max(max(low - p, p - high), ivec3(0))), far = vec3(max(abs(p - low), abs(high - p)));
+  most = sqrt(far.x * far.x + far.y * far.y + far.z * far.z) * (1.0 + 1.0 / 262144.0) + float(kDepthSlack);
+  return gap.x * gap.x + gap.y * gap.y + gap.z * gap.z;
+}
+
+// The square within which a box must lie.
+float square_of(float reach) {
+  const float most = reach + float(kDepthSlack);
+  return most * most * (1.0 + 1.0 / 262144.0);
 }
 
 DistanceBounds bounds_of(uint32_t id, ivec3 p) {
-  if (!body_bounds_solid(id)) return DistanceBounds(2.0 * kFar, kFar);
   const uvec3 ids = body_triangles[id];
   return distance_bounds(body_vertices[ids.x], body_vertices[ids.y], body_vertices[ids.z], body_normals[id], p);
 }
 
-// Keeps a triangle if it may be the nearest. False: there is no room.
-bool keep_near(uint32_t id, ivec3 p, inout NearTriangles near) {
-  const DistanceBounds bounds = bounds_of(id, p);
-  near.reach = min(near.reach, bounds.most);
-  uint32_t place = kKept;
-  for (uint32_t i = 0u; i < kKept; ++i)
-    if (near.least[i] > near.reach) place = i;
-  for (uint32_t i = 0u; i < kKept; ++i)
-    if (near.id[i] == id) place = i;   // another voxel lists it, too
-  if (bounds.least > near.reach) return true;
-  for (uint32_t i = 0u; i < kKept; ++i)
-    if (i == place) {
-      near.id[i] = id;
-      near.least[i] = bounds.least;
-    }
-  return place != kKept;
-}
-
-// Integers on what has been kept.
-void decide_nearest(ivec3 p, NearTriangles near, inout Depth best) {
-  uint32_t open = 0u;
-  for (uint32_t i = 0u; i < kKept; ++i)
-    if (near.least[i] <= near.reach) open |= 1u << i;
-  while (open != 0u && !spent(1u)) {
-    const uint32_t id = near.id[findLSB(open)];
-    open &= open - 1u;
-    const uvec3 ids = body_triangles[id];
-    const ivec3 a = body_vertices[ids.x], n = body_normals[id];
-    const int32_t steps =
-        distance_at(height_above(n, a, p), n, a, body_vertices[ids.y], body_vertices[ids.z], p);
-    if (steps < best.steps || (steps == best.steps && id < best.triangle)) best = Depth(steps, id);
+// Box number i of a level.
+void box_of(uint32_t level, uint32_t i, out ivec3 low, out ivec3 high) {
+  const uint32_t at = tree_word(kTreeBegin + level) + kTreeGroupWords * (i / 8u) + i % 8u;
+  for (uint32_t k = 0u; k < 3u; ++k) {
+    low[k] = int32_t(body_tree[at + 8u * k]);
+    high[k] = int32_t(body_tree[at + 24u + 8u * k]);
   }
 }
 
-// Whether a closed box that is so far away along each axis reaches there.
-bool reaches(float reach, ivec3 p, ivec3 low, ivec3 high) {
-  const vec3 gap = vec3(max(max(low - p, p - high), ivec3(0)));
-  return gap.x * gap.x + gap.y * gap.y + gap.z * gap.z <= reach * reach * 1.0001;
+// Integers on one of those that have been kept.
+void decide_nearest(ivec3 p, uint32_t id, inout Depth best) {
+  const uvec3 ids = body_triangles[id];
+  const ivec3 a = body_vertices[ids.x], n = body_normals[id];
+  const int32_t steps = distance_at(height_above(n, a, p), n, a, body_vertices[ids.y], body_vertices[ids.z], p);
+  if (steps < best.steps || (steps == best.steps && id < best.triangle)) best = Depth(steps, id);
 }
 
-// How far the nearest triangle is at most: by what the nearest V_bnd voxels along the axes list, the point's
-// own first; kFar where there is none.
-float reach_along_axes(ivec3 p, ivec3 home) {
-  const ivec3 cells = 8 * BODY_GRID.bricks;
-  const int32_t last_ring = max(cells.x, max(cells.y, cells.z));
-  float reach = kFar;
-  int32_t ring = 0;
-  uint32_t way = 0u, entry = 0u, last = 0u;
-  while (!spent(1u)) {
-    if (entry == last) {
-      if (way == 6u) {
-        if (reach < kFar || ring == last_ring) break;
-        way = 0u;
-        ++ring;
+// Looks into the team's last open nodes, an invocation a box or a triangle. Of the whole workgroup.
+void look_into(uint32_t team, uint32_t part, ivec3 p) {
+  const uint32_t open = open_count[team], first = kOpenRoom * team;
+  // One node leaves at most seven more than there were on each of its levels; several at a time need more room.
+  const uint32_t taken = min(open, open + 8u * LANES <= kOpenRoom ? LANES / 8u : 1u);
+  uint32_t node = kNone;
+  if (part / 8u < taken) {
+    const uint32_t at = first + open - 1u - part / 8u;
+    if (uintBitsToFloat(open_squares[at]) <= square_of(uintBitsToFloat(team_reach[team])))
+      node = open_nodes[at];
+  }
+  barrier();
+  if (part == 0u) open_count[team] = open - taken;
+  uint32_t below = kNone, triangle = kNone;
+  float square = 0.0, least = 0.0, most;
+  if (node != kNone) {
+    const uint32_t child = 8u * (node & kNodeBits) + part % 8u;
+    if (node >= kRun) {
+      if (child < tree_word(kTreeTriangles)) {
+        triangle = body_tree[tree_word(kTreeOrder) + child];
+        const DistanceBounds bounds = bounds_of(triangle, p);
+        least = bounds.least;
+        atomicMin(team_reach[team], floatBitsToUint(bounds.most));
       }
-      ivec3 voxel = home;
-      voxel[int(way >> 1)] += (way & 1u) != 0u ? ring : -ring;
-      way = ring == 0 ? 6u : way + 1u;
-      const uint32_t boundary = body_boundary_index(voxel);
-      if (boundary == kNoVoxel) continue;
-      entry = body_list_begin[boundary];
-      last = body_list_begin[boundary + 1u];
-    }
-    reach = min(reach, bounds_of(body_list[entry++], p).most);
-  }
-  return reach;
-}
-
-// Bits of a brick's word (4 rows of 8 voxels, from y on) within low … high of the brick.
-uint32_t word_bits(int32_t y, ivec3 low, ivec3 high) {
-  const int32_t first = max(low.y - y, 0), end = min(high.y - y, 3);
-  if (first > 3 || end < 0) return 0u;
-  const uint32_t row = 0xFFu >> uint32_t(7 - high.x) & 0xFFu << uint32_t(low.x);
-  return row * 0x01010101u & 0xFFFFFFFFu >> uint32_t(8 * (3 - end)) & 0xFFFFFFFFu << uint32_t(8 * first);
-}
-
-const Depth kNoDepth = Depth(0x7FFFFFFF, kNone);
-
-// Of those within reach, `part` and every LANES-th entry of a list from there on.
-Depth nearest_within(float reach, ivec3 p, uint32_t part) {
-  Depth best = kNoDepth;
-  NearTriangles near = none_near(reach);
-
-  // All voxels within reach of what was found, brick by brick, as far as they may hold something nearer.
-  const int32_t size = BODY_GRID.size;
-  ivec3 low = ivec3(0), high = 8 * BODY_GRID.bricks - 1;
-  if (near.reach < kFar / 8.0) {   // 2^29, so that sums fit
-    const int32_t reach = int32_t(near.reach) + 1;
-    low = max(low, body_voxel_of(p - reach));
-    high = min(high, body_voxel_of(p + reach));
-  }
-  const ivec3 first = low >> 3, end = high >> 3;
-  ivec3 brick = first;
-  uint32_t slot = 0u, word = 0u, words = 0u, bits = 0u, whole = 0u, entry = 0u, last = 0u;
-  ivec3 in_low = ivec3(0), in_high = ivec3(0), at = first;   // `at`: the present brick; `brick`: the next one
-  bool more = true;
-  while (more && !spent(1u)) {
-    bool room = true;
-    while (room && !spent(1u)) {
-      if (entry < last) {
-        room = keep_near(body_list[entry], p, near);
-        entry += room ? LANES : 0u;
-      } else if (bits != 0u) {
-        const uint32_t bit = uint32_t(findLSB(bits));
-        bits &= bits - 1u;
-        const ivec3 voxel = 8 * at + ivec3(bit & 7u, 4u * (word & 1u) + (bit >> 3), word >> 1);
-        const ivec3 corner = BODY_GRID.origin + size * voxel;
-        if (!reaches(near.reach, p, corner, corner + size)) continue;
-        const uint32_t boundary =
-            body_bricks[slot].first[word] + uint32_t(bitCount(whole & ((1u << bit) - 1u)));
-        entry = body_list_begin[boundary] + part;
-        last = body_list_begin[boundary + 1u];
-      } else if (word + 1u < words) {
-        ++word;
-        const uint32_t wanted = word_bits(int32_t(4u * (word & 1u)), in_low, in_high);
-        if (wanted == 0u) continue;
-        whole = body_bricks[slot].boundary[word];
-        bits = whole & wanted;
-      } else {
-        more = all(lessThanEqual(brick, end));
-        if (!more) break;
-        at = brick;
-        brick = ivec3(brick.x + 1, brick.yz);
-        if (brick.x > end.x) brick = ivec3(first.x, brick.y + 1, brick.z);
-        if (brick.y > end.y) brick = brick.z < end.z ? ivec3(first.xy, brick.z + 1) : end + 1;
-        slot = body_slot_of(at);
-        words = 0u;
-        const ivec3 corner = BODY_GRID.origin + 8 * size * at;
-        if (slot >= kBrickInternal || !reaches(near.reach, p, corner, corner + 8 * size)) continue;
-        in_low = clamp(low - 8 * at, ivec3(0), ivec3(7));
-        in_high = clamp(high - 8 * at, ivec3(0), ivec3(7));
-        word = 2u * uint32_t(in_low.z) - 1u;   // the one before the first; runs round at 0
-        words = 2u * uint32_t(in_high.z) + 2u;
+    } else {
+      const uint32_t level = node >> kLevelShift;
+      if (child < tree_word(kTreeNodes + level)) {
+        ivec3 low, high;
+        box_of(level, child, low, high);
+        square = square_to_box(p, low, high, most);
+        atomicMin(team_reach[team], floatBitsToUint(most));
+        below = level == 0u ? kRun | child : (level - 1u) << kLevelShift | child;
       }
     }
-    decide_nearest(p, near, best);
-    near = none_near(min(near.reach, float(best.steps) + float(2 * kDepthSlack)));
   }
-  return best;
+  barrier();
+  const float reach = uintBitsToFloat(team_reach[team]);
+  if (below != kNone && square <= square_of(reach)) {
+    const uint32_t at = first + atomicAdd(open_count[team], 1u);
+    open_nodes[at] = below;
+    open_squares[at] = floatBitsToUint(square);
+  }
+  if (triangle != kNone && least <= reach) {
+    const uint32_t at = kKeptRoom * team + atomicAdd(kept_count[team], 1u);
+    kept_triangles[at] = triangle;
+    kept_least[at] = floatBitsToInt(least);
+  }
 }
 
-// What the invocations of a workgroup have found, which look for a point's depth together.
-shared uint32_t found_reach[kGroupSize];   // rounded up; kNone: nothing
-shared int32_t found_steps[kGroupSize];
-shared uint32_t found_nearest[kGroupSize];
+#include "shaders/lib/body/body_depth_alone.glsl"
 
 // Of the whole workgroup, LANES invocations that follow each other with the same point, and `asks` false where
 // they have none.
 Depth body_depth(bool asks, ivec3 p) {
-  if (LANES == 1u) return asks ? nearest_within(reach_along_axes(p, body_voxel_of(p)), p, 0u) : kNoDepth;
-  const uint32_t lane = gl_LocalInvocationIndex, part = lane % LANES, first = lane - part;
-  float reach = kFar;
-  const uint32_t home = asks ? body_boundary_index(body_voxel_of(p)) : kNoVoxel;
-  if (home != kNoVoxel)
-    for (uint32_t i = body_list_begin[home] + part; i < body_list_begin[home + 1u] && !spent(1u); i += LANES)
-      reach = min(reach, bounds_of(body_list[i], p).most);
-  found_reach[lane] = reach < kFar ? uint32_t(reach) + 1u : kNone;
-  barrier();
-  uint32_t least = kNone;
-  for (uint32_t i = first; i < first + LANES; ++i) least = min(least, found_reach[i]);
-  Depth best = kNoDepth;
-  if (asks) {
-    // As a float it may be a 2^-24th less.
-    reach = least != kNone ? float(least) * (1.0 + 1.0 / 4194304.0) : reach_along_axes(p, body_voxel_of(p));
-    best = nearest_within(reach, p, part);
+  if (LANES == 1u) return asks ? depth_alone(p) : kNoDepth;
+  const uint32_t lane = gl_LocalInvocationIndex, team = lane / LANES, part = lane % LANES;
+  if (part == 0u) {
+    const uint32_t levels = tree_word(kTreeLevels);
+    open_nodes[kOpenRoom * team] = (levels - 1u) << kLevelShift;
+    open_squares[kOpenRoom * team] = 0u;
+    open_count[team] = asks && levels != 0u ? 1u : 0u;
+    kept_count[team] = 0u;
+    team_reach[team] = floatBitsToUint(kFar);
+    team_steps[team] = kNoDepth.steps;
+    team_nearest[team] = kNone;
   }
-  found_steps[lane] = best.steps;
-  found_nearest[lane] = best.triangle;
+  if (lane == 0u) gave_up = 0u;
+  Depth best = kNoDepth;
+  bool more = true;
+  while (more) {
+    if (spent(2u)) gave_up = 1u;
+    barrier();
+    bool open = false, full = false;
+    for (uint32_t t = 0u; t < kTeams; ++t) {
+      open = open || open_count[t] != 0u;
+      full = full || kept_count[t] + LANES > kKeptRoom;
+    }
+    more = open && gave_up == 0u;
+    if (more && !full) {
+      look_into(team, part, p);
+    } else {
+      const float reach = uintBitsToFloat(team_reach[team]);
+      for (uint32_t i = part; i < kept_count[team] && !spent(1u); i += LANES)
+        if (intBitsToFloat(kept_least[kKeptRoom * team + i]) <= reach)
+          decide_nearest(p, kept_triangles[kKeptRoom * team + i], best);
+      barrier();
+      if (best.triangle != kNone)
+        atomicMin(team_reach[team], floatBitsToUint(float(best.steps) + float(2 * kDepthSlack)));
+      if (part == 0u) kept_count[team] = 0u;
+    }
+  }
+  atomicMin(team_steps[team], best.steps);
   barrier();
-  for (uint32_t i = first; i < first + LANES; ++i)
-    if (found_steps[i] < best.steps || (found_steps[i] == best.steps && found_nearest[i] < best.triangle))
-      best = Depth(found_steps[i], found_nearest[i]);
-  return best;
+  if (best.steps == team_steps[team]) atomicMin(team_nearest[team], best.triangle);
+  barrier();
+  return Depth(team_steps[team], team_nearest[team]);
 }
 #endif
