@@ -158,10 +158,11 @@ class Benches {
         ->type_name("N");
     throughput->footer(
         "Batches of 1, 4, 16 and so on to --largest poses, in turns with the same poses asked singly. "
-        "`frames` are a session's, "
-        "without balance; `answers` a lone query's, with the\n"
-        "balance of spring and field that `palpate query` finds by asking for more poses. Always the wall's "
-        "clock: a batch takes all cores. share_of_single: time\n"
+        "`touch` is yes or no, `forces` are those\n"
+        "of frames that nobody watches, without lists; `frames` have triangles and areas; `answers` a lone "
+        "query's balance\n"
+        "of spring and field besides, which it finds by asking for more poses. Always the wall's clock: a "
+        "batch takes all cores. share_of_single: time\n"
         "of a pose in the batch over that of one asked singly, by as many threads as its engine gives a "
         "frame (cpu: two). Then what a batch asks of a device.");
     measure(*throughput, bench_throughput);

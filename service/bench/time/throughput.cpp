@@ -13,9 +13,14 @@
 namespace palpate {
 namespace {
 
+/// What is asked of a pose: whether it touches; the force alone, as loops and planners want it; the lists of
+/// triangles and areas, too; and a lone query's balance besides.
+enum class Wanted : std::uint8_t { kTouch, kForces, kFrames, kAnswers };
+constexpr const char* kWantedNames[] = {"touch", "forces", "frames", "answers"};
+
 /// Poses asked together, and what they took.
 struct Series {
-  bool answers = false;         ///< with a lone query's balance
+  Wanted wanted{};
   std::size_t size = 0;         ///< 0: asked singly
   std::vector<double> pose_us;  ///< a round each: the mean over all poses
   DeviceWork work;              ///< of one batch
@@ -35,16 +40,30 @@ std::vector<std::size_t> batch_sizes(std::size_t largest) {
   return sizes;
 }
 
-/// Frames of a batch as a session asks for them: contacts and responses.
-Result<void> ask_frames(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
-  const Stopwatch watch(false);
-  const ResponseSettings& settings = scene.loaded.scene.response;
+Result<void> to_lattice_poses(const HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
   out.poses.clear();
   for (const Pose& pose : poses) {
     const auto lattice = to_lattice(pose, scene.loaded.geometry);
     if (!lattice) return lattice.error();
     out.poses.push_back(*lattice);
   }
+  return {};
+}
+
+Result<void> ask_touches(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
+  const Stopwatch watch(false);
+  if (auto done = to_lattice_poses(scene, poses, out); !done) return done;
+  std::vector<std::uint8_t> bits(poses.size());
+  if (auto done = scene.backend->touches(out.poses, bits); !done) return done;
+  out.total_us = watch.us();
+  return {};
+}
+
+/// Frames of a batch as a session asks for them: contacts and responses.
+Result<void> ask_frames(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
+  const Stopwatch watch(false);
+  const ResponseSettings& settings = scene.loaded.scene.response;
+  if (auto done = to_lattice_poses(scene, poses, out); !done) return done;
   out.contacts.resize(poses.size());
   out.responses.resize(poses.size());
   if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
@@ -63,11 +82,15 @@ Result<double> ask_all(const Series& series, HostedScene& scene, std::span<const
     const auto poses =
         all.subspan(first, std::min(std::max<std::size_t>(series.size, 1), all.size() - first));
     Result<void> done = {};
-    if (series.size == 0)
-      done = series.answers ? answer_pose(scene, poses.front(), answer)
-                            : answer_frame(scene, poses.front(), answer);
+    if (series.wanted == Wanted::kTouch) {
+      done = ask_touches(scene, poses, batch);
+      answer.total_us = batch.total_us;
+    } else if (series.size == 0)
+      done = series.wanted == Wanted::kAnswers ? answer_pose(scene, poses.front(), answer)
+                                               : answer_frame(scene, poses.front(), answer);
     else
-      done = series.answers ? answer_batch(scene, poses, batch) : ask_frames(scene, poses, batch);
+      done = series.wanted == Wanted::kAnswers ? answer_batch(scene, poses, batch)
+                                               : ask_frames(scene, poses, batch);
     if (!done) return done.error();
     us += series.size == 0 ? answer.total_us : batch.total_us;
   }
@@ -75,12 +98,12 @@ Result<double> ask_all(const Series& series, HostedScene& scene, std::span<const
 }
 
 /// In turns: single poses, then a batch of each size, again and again; the first round warms up.
-Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& scene,
-                                    const std::vector<Pose>& poses, Console& console) {
+Result<void> measure(const BenchOptions& options, HostedScene& scene, const std::vector<Pose>& poses,
+                     std::initializer_list<Wanted> what, Console& console, std::vector<Series>& measured) {
   std::vector<Series> out;
-  for (const bool answers : {false, true}) {
-    out.push_back({answers, 0, {}, {}});
-    for (const std::size_t size : batch_sizes(options.largest_batch)) out.push_back({answers, size, {}, {}});
+  for (const Wanted wanted : what) {
+    out.push_back({wanted, 0, {}, {}});
+    for (const std::size_t size : batch_sizes(options.largest_batch)) out.push_back({wanted, size, {}, {}});
   }
   // The same poses for all: as many as the largest batch has, gone through as often as need be.
   std::vector<Pose> all;
@@ -105,6 +128,22 @@ Result<std::vector<Series>> measure(const BenchOptions& options, HostedScene& sc
         return Error{ErrorCode::kInternal, "interrupted"};
     }
   console.finish();
+  measured.insert(measured.end(), out.begin(), out.end());
+  return {};
+}
+
+/// Forces first, under a plan that leaves lists out; then the rest.
+Result<std::vector<Series>> measure_all(const BenchOptions& options, HostedScene& scene,
+                                        const std::vector<Pose>& poses, Console& console) {
+  std::vector<Series> out;
+  Plan bare = scene.plan.plan;
+  bare.telemetry = false;
+  if (auto done = scene.backend->replan(bare); !done) return done.error();
+  if (auto done = measure(options, scene, poses, {Wanted::kTouch, Wanted::kForces}, console, out); !done)
+    return done.error();
+  if (auto done = scene.backend->replan(scene.plan.plan); !done) return done.error();
+  if (auto done = measure(options, scene, poses, {Wanted::kFrames, Wanted::kAnswers}, console, out); !done)
+    return done.error();
   return out;
 }
 
@@ -130,14 +169,14 @@ Result<void> bench_throughput(const BenchOptions& options, const Parts& parts) {
       HostedScene& scene = **prepared;
       const Result<std::vector<Pose>> poses = bench_poses(options, scene, parts, console);
       if (!poses) return poses.error();
-      const auto outcome = measure(options, scene, *poses, console);
+      const auto outcome = measure_all(options, scene, *poses, console);
       if (!outcome) return outcome.error();
       const std::string name = scene_name(file), backend = scene.backend->name();
       double single = 0;
       Chart::Series line{};
       for (const Series& series : *outcome) {
         const double us = mean(series.pose_us);
-        const std::string asked = series.answers ? "answers" : "frames";
+        const std::string asked = kWantedNames[static_cast<std::size_t>(series.wanted)];
         if (series.size == 0) {
           single = us;
           line = {name + ", " + backend + ", " + asked, {}, {}};
