@@ -67,15 +67,16 @@ void list_tiles(uint32_t mobile, uint32_t entry, uint32_t info) {
   const uint32_t across = uint32_t(floor_div(high[u], s) - u_first) + 1u;
   const uint32_t down = uint32_t(floor_div(high[v], s) - v_first) + 1u;
   const uint64_t cells = uint64_t(across) * uint64_t(down);
-  if (cells >= uint64_t(kLoopBudget) * uint64_t(kFieldTile)) {
+  if (cells >= uint64_t(kLoopBudget) * uint64_t(kMostTiles)) {
     atomicOr(frame_state.overflow_other, kOverflowLoop);
     return;
   }
-  const uvec2 tiles = take_tiles((uint32_t(cells) + kFieldTile - 1u) / kFieldTile);
+  const uint32_t tile = chunk_of(uint32_t(cells), FIELD_TILE, kMostTiles);
+  const uvec2 tiles = take_tiles((uint32_t(cells) + tile - 1u) / tile);
   for (uint32_t t = tiles.x; t < tiles.y && !spent(1u); ++t) {
-    const uint32_t begin = (t - tiles.x) * kFieldTile;
+    const uint32_t begin = (t - tiles.x) * tile;
     field_tiles[t] =
-        FieldTile(entry, u_first, v_first, across, begin, min(begin + kFieldTile, uint32_t(cells)));
+        FieldTile(entry, u_first, v_first, across, begin, min(begin + tile, uint32_t(cells)));
   }
 }
 

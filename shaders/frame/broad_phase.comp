@@ -51,7 +51,7 @@ void append(NearRun part) {
   const uint32_t at = take_room(kListNearRuns, 1u);
   if (at >= frame_lists[kListNearRuns].capacity) return;
   near_runs[at] = part;
-  if (at % kRunsAGroup == 0u) grow_near_groups(kGroupsTouch, at / kRunsAGroup + 1u);
+  if (at % RUNS_A_GROUP == 0u) grow_near_groups(kGroupsTouch, at / RUNS_A_GROUP + 1u);
 }
 
 // As it is, or in slabs of bricks along z, bars of those along y, or pieces of those.
@@ -112,7 +112,7 @@ void append_chunks(ivec3 voxel, uint32_t boundary) {
   const bool listed = SAMPLES == 2u;
   const uint32_t begin = listed ? sample_begin[boundary] : mockup_list_begin[boundary],
                  end = listed ? sample_begin[boundary + 1u] : mockup_list_begin[boundary + 1u];
-  const uint32_t chunk = chunk_of(end - begin, listed ? kListedChunk : kSampleChunk, kMostSampleChunks),
+  const uint32_t chunk = chunk_of(end - begin, listed ? LISTED_CHUNK : kSampleChunk, kMostSampleChunks),
                  chunks = (end - begin + chunk - 1u) / chunk;
   // An invocation of sample_scan goes through a chunk's cells of samples.
   const uint32_t along = uint32_t(scene.mockup.grid.size / scene.sample_spacing) + 2u;

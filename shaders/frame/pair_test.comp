@@ -37,9 +37,9 @@ EDIT(kBindPairs, ContactPair, pairs);
 #include "shaders/lib/mobile_mark.glsl"
 #include "shaders/lib/static_mark.glsl"
 
-// What a round has found among its entries, kPairChunk an invocation, as static triangle + 2^32 · invocation:
+// What a round has found among its entries, PAIR_CHUNK an invocation, as static triangle + 2^32 · invocation:
 // from the front on what may meet, from the back what is to be marked.
-const uint32_t kRoom = 2u * kPairChunk * kGroupSize;
+const uint32_t kRoom = 2u * PAIR_CHUNK * kGroupSize;
 shared uint64_t found[kRoom];
 shared uint32_t meet_count, mark_count, unfinished;
 shared int32_t corners[9u * kGroupSize];   // of the invocations' tool triangles
@@ -161,7 +161,7 @@ void main() {
   while (again) {
     if (lane == 0u) meet_count = mark_count = unfinished = 0u;
     barrier();
-    const uint32_t last = min(entry + kPairChunk, end);
+    const uint32_t last = min(entry + PAIR_CHUNK, end);
     for (; entry < last && !spent(1u); ++entry) {
       const uint64_t work = uint64_t(mockup_list_triangles[entry]) | uint64_t(lane) << 32;
       if (is_first) found[kRoom - 1u - atomicAdd(mark_count, 1u)] = work;

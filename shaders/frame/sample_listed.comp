@@ -37,7 +37,7 @@ EDIT(kBindSamples, FrameSample, samples);
 #define PARTITION(name) fine_##name
 #include "shaders/lib/partition.glsl"
 
-const uint32_t kRoom = kListedChunk * kGroupSize;
+const uint32_t kRoom = LISTED_CHUNK * kGroupSize;
 shared uint64_t found[kRoom];   // a round's points that are not in V_ext: point + 2^32 · invocation
 shared int32_t lows[3u * kGroupSize];   // of the invocations' voxels
 shared uint32_t inside_count, open_count, unfinished;
@@ -87,7 +87,7 @@ void main() {
   while (again) {
     if (lane == 0u) inside_count = open_count = unfinished = 0u;
     barrier();
-    const uint32_t last = min(point + kListedChunk, end);
+    const uint32_t last = min(point + LISTED_CHUNK, end);
     for (; point < last && !spent(1u); ++point) {
       const ivec3 at = low + point_at(point);
       const uint32_t voxel_class = fine_class_of(fine_voxel_of(tool_from_world(at)));

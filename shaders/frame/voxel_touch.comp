@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Which voxels the triangles of near runs touch, exactly: IMT and BMT. A workgroup kRunsAGroup NearRuns, an
+// Which voxels the triangles of near runs touch, exactly: IMT and BMT. A workgroup RUNS_A_GROUP NearRuns, an
 // invocation a triangle. Each goes through its box for voxels that are not V_ext and that its plane may
 // cross, in rounds; what a round has found is shared out and asked. Reads tool_records and the mock-up's
 // partition; sets kMobileInternal or kMobileBoundary; a touched V_bnd voxel enters touched_voxels once, and
@@ -195,7 +195,7 @@ void mark_voxel(uint32_t place, uint32_t boundary, uvec3 voxel) {
     }
   }
   const uint32_t list_begin = mockup_list_begin[boundary], list_end = mockup_list_begin[boundary + 1u];
-  const uint32_t chunk = chunk_of(list_end - list_begin, kPairChunk, kMostChunks),
+  const uint32_t chunk = chunk_of(list_end - list_begin, PAIR_CHUNK, kMostChunks),
                  chunks = (list_end - list_begin + chunk - 1u) / chunk;
   if (chunks == 0u) return;
   const uint32_t at = take_room(kListPairChunks, chunks), capacity = frame_lists[kListPairChunks].capacity;
@@ -226,7 +226,8 @@ void decide(uint64_t work) {
 
 void main() {
   const uint32_t lane = gl_LocalInvocationIndex;
-  begin(lane, flat_group() * kRunsAGroup + lane / kRunSize);
+  const uint32_t run = lane / kRunSize;
+  begin(lane, run < RUNS_A_GROUP ? flat_group() * RUNS_A_GROUP + run : kNone);
   bool again = true;
   while (again) {
     if (lane == 0u) found_count = unfinished = 0u;

@@ -9,8 +9,14 @@ layout(local_size_x = kGroupSize) in;
 
 layout(constant_id = 20) const bool BATCH = false;   // kBatchConstant: many poses (shared/frame_batch.h)
 uint32_t frame_pose = 0u;   // of the invocation's item; lib/batch/batch.glsl
-// kLanesConstant: how many invocations look for a sample's depth together (shared/frame_field.h).
+// How finely work is cut (ids in shared/frame.h, choices in compute/gpu/frame/plan.cpp): invocations that look
+// for a sample's depth together; NearRuns of a workgroup, kGroupSize / kRunSize at most; entries of a
+// PairChunk; points of a SampleChunk, where they are listed; cells of a tile of tool samples.
 layout(constant_id = 21) const uint32_t LANES = 8u;
+layout(constant_id = 22) const uint32_t RUNS_A_GROUP = 8u;
+layout(constant_id = 23) const uint32_t PAIR_CHUNK = 16u;
+layout(constant_id = 24) const uint32_t LISTED_CHUNK = 16u;
+layout(constant_id = 25) const uint32_t FIELD_TILE = 64u;
 
 // An array of T behind `bind`, called `name`; and a single T.
 #define READ(bind, T, name) layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name[]; }

@@ -34,6 +34,10 @@ PALPATE_CONSTANT uint32_t kRunSize = 8;          // tool triangles in a run; 8 r
 PALPATE_CONSTANT uint32_t kMaxFrameAreas = 256;  // kMaxAreas of model/contact/contacts.h
 PALPATE_CONSTANT uint32_t kNone = 0xFFFFFFFFu;   // no item
 
+// Ids of what lib/frame.glsl lets the host choose.
+PALPATE_CONSTANT uint32_t kLanesConstant = 21, kRunsAGroupConstant = 22, kPairChunkConstant = 23,
+                          kListedChunkConstant = 24, kFieldTileConstant = 25;
+
 // ---- bindings
 // ------------------------------------------------------------------------------------------------------------
 
@@ -175,7 +179,7 @@ struct FrameList {
 };
 
 // Entries of the stages' group counts.
-PALPATE_CONSTANT uint32_t kGroupsTouch = 0;       // a workgroup kRunsAGroup NearRuns
+PALPATE_CONSTANT uint32_t kGroupsTouch = 0;       // a workgroup RUNS_A_GROUP NearRuns
 PALPATE_CONSTANT uint32_t kGroupsSamples = 1;     // an invocation a SampleChunk
 PALPATE_CONSTANT uint32_t kGroupsPairs = 0;       // an invocation a PairChunk
 PALPATE_CONSTANT uint32_t kGroupsOpen = 1;        // an invocation an open sample
@@ -263,7 +267,6 @@ struct NearRun {
   uint32_t x, y, z;  // low + 2^16 · high
   uint32_t pose;     // of a batch
 };
-PALPATE_CONSTANT uint32_t kRunsAGroup = kGroupSize / kRunSize;
 PALPATE_CONSTANT int32_t kBricksAPart = 64;     // of a NearRun (chosen), …
 PALPATE_CONSTANT int32_t kMostParts = 1 << 14;  // … and more where so many parts would not do
 
@@ -288,9 +291,7 @@ struct SampleChunk {
   ivec3 voxel;          // whose samples are asked for; of a batch z + 2^16 · pose
   uint32_t begin, end;  // of its list, or of its points, where samples are listed
 };
-PALPATE_CONSTANT uint32_t kPairChunk = 16;   // entries in a PairChunk (chosen: most lists are shorter)
-PALPATE_CONSTANT uint32_t kSampleChunk = 2;  // entries in a SampleChunk, and points, where they are listed
-PALPATE_CONSTANT uint32_t kListedChunk = 16;
+PALPATE_CONSTANT uint32_t kSampleChunk = 2;  // entries in a SampleChunk where points are not listed
 PALPATE_CONSTANT int32_t kNarrowVoxel = 1 << 20;  // steps
 PALPATE_CONSTANT uint32_t kMostChunks = 1024,
                           kMostSampleChunks = 1

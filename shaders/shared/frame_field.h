@@ -47,11 +47,10 @@ PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
 PALPATE_CONSTANT uint32_t kListMockupPoints = 17u;
 PALPATE_CONSTANT uint32_t kListToolPoints = 18u;
 
-PALPATE_CONSTANT uint32_t kFieldTile = 64u;      // most cells of a tile of tool samples
+PALPATE_CONSTANT uint32_t kMostTiles = 256u;     // of a triangle: where it is large, tiles are larger
 PALPATE_CONSTANT uint32_t kFieldTileLanes = 8u;  // invocations that go through it (chosen: most triangles
                                                  // have no more cells, and llvmpipe takes eight at once)
 PALPATE_CONSTANT uint32_t kExtraTile = 16u;      // most extra samples of a tile
-PALPATE_CONSTANT uint32_t kLanesConstant = 21;   // id of LANES (lib/frame.glsl)
 PALPATE_CONSTANT int32_t kDepthSlack = 16;       // steps by which a distance may be off, and more (section 4)
 
 // ---- structs

@@ -72,13 +72,13 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand,
   auto& l = out.lists;
   l[kListNearRuns] = room(1, ~0u);
   l[kListTouchedVoxels] = room(kPerTriangle, voxels);
-  l[kListPairChunks] = room(kLookedAt, tool * (voxels + entries / kPairChunk));  // both below 2^32
+  l[kListPairChunks] = room(kLookedAt, tool * (voxels + entries / demand.cut.pair_chunk));  // both below 2^32
   l[kListPairCandidates] = room(kLookedAt, tool * mockup);
   l[kListPairs] = room(kPerTriangle, tool * mockup);
   l[kListContactStatics] = room(0, mockup);
   l[kListContactMobiles] = items(tool, ~0u);
   l[kListSampleChunks] = room(
-      kLookedAt, !refined ? 1 : voxels + (demand.samples ? samples / kListedChunk : entries / kSampleChunk));
+      kLookedAt, !refined ? 1 : voxels + (demand.samples ? samples / demand.cut.listed_chunk : entries / kSampleChunk));
   l[kListOpenSamples] = l[kListSamples] = room(0, samples);
   l[kListMembers] = room(2, tool * kMaxFrameAreas);
   l[kListFieldTiles] = refined ? room(2, ~0u) : 1;

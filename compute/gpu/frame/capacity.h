@@ -11,9 +11,15 @@
 
 namespace palpate {
 
+/// How finely a frame's work is cut: the constants of shaders/lib/frame.glsl.
+struct WorkCut {
+  std::uint32_t lanes, runs_a_group, pair_chunk, listed_chunk, field_tile;
+};
+
 /// What a frame of a scene can ask for.
 struct FrameDemand {
   const gpu::SceneConstants& scene;
+  const WorkCut& cut;
   std::optional<std::uint64_t>
       samples;  ///< of the mock-up, where preparation has listed them and the host searches among them
 };

@@ -190,6 +190,7 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
   const bool few = device.shares_memory() || batch_;
   if (few) brick_groups_ = 2;
   std::vector<SpecConstant> plan = plan_constants(plan_);
+  add_constants(work_cut(device, batch_), plan);
   if (batch_) plan.push_back({kBatchConstant, 1});
   const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}}, of_points[] = {{0, wide_ ? 1u : 0u}},
                      of_search[] = {{0, !inside_  ? 0u

@@ -53,7 +53,7 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
   out.plan_ = plan;
   const BodyConstants &mockup = scene.constants.mockup, &tool = scene.constants.tool;
   out.inside_ = tool.closed != 0 || tool.has_internal != 0;
-  const std::uint32_t inside = out.inside_ ? 1 : 0, lanes = depth_lanes(device, batch);
+  const std::uint32_t inside = out.inside_ ? 1 : 0;
   struct ShaderPlan {
     FrameShader& shader;
     const ShaderCode& code;
@@ -71,7 +71,7 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
     std::vector<SpecConstant> constants = plan_constants(plan);
     if (!plan.telemetry) constants.push_back({kCarriersId, 0u});
     if (batch) constants.push_back({kBatchConstant, 1u});
-    constants.push_back({kLanesConstant, lanes});
+    add_constants(work_cut(device, batch), constants);
     constants.insert(constants.end(), made_for.constants.begin(), made_for.constants.end());
     auto made = make_frame_shader(device, made_for.code, 0, constants);
     if (!made) return made.error();

@@ -94,7 +94,8 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   std::optional<std::uint64_t> samples;
   if (scene_.sample_ids && (constants.tool.closed != 0 || constants.tool.has_internal != 0))
     samples = scene_.sample_ids.bytes() / sizeof(std::uint32_t);
-  capacity_ = FrameCapacity::first({.scene = constants, .samples = samples}, first_capacity);
+  const WorkCut cut = work_cut(device_, false);
+  capacity_ = FrameCapacity::first({.scene = constants, .cut = cut, .samples = samples}, first_capacity);
   if (auto r = make_buffers(); !r) return r;
   return finish();
 }

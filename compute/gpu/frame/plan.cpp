@@ -5,8 +5,10 @@
 namespace palpate {
 namespace {
 
-// A GPU has far more invocations than a contact has samples, and each waits for its loads.
-constexpr std::uint32_t kLanesOfGpu = 64, kLanes = 1;
+// A GPU has far more invocations than a contact has parts, and each waits for its loads; other poses keep it
+// busy in a batch. llvmpipe pays for each workgroup and barrier.
+constexpr WorkCut kFine{.lanes = 64, .runs_a_group = 1, .pair_chunk = 4, .listed_chunk = 4, .field_tile = 16},
+    kCoarse{.lanes = 1, .runs_a_group = 8, .pair_chunk = 16, .listed_chunk = 16, .field_tile = 64};
 
 }  // namespace
 
@@ -24,8 +26,16 @@ std::vector<SpecConstant> plan_constants(const Plan& plan) {
   return out;
 }
 
-std::uint32_t depth_lanes(const VulkanDevice& device, bool batch) {
-  return device.processor() || batch ? kLanes : kLanesOfGpu;
+WorkCut work_cut(const VulkanDevice& device, bool batch) {
+  return device.processor() || batch ? kCoarse : kFine;
+}
+
+void add_constants(const WorkCut& cut, std::vector<SpecConstant>& to) {
+  to.insert(to.end(), {{gpu::kLanesConstant, cut.lanes},
+                       {gpu::kRunsAGroupConstant, cut.runs_a_group},
+                       {gpu::kPairChunkConstant, cut.pair_chunk},
+                       {gpu::kListedChunkConstant, cut.listed_chunk},
+                       {gpu::kFieldTileConstant, cut.field_tile}});
 }
 
 std::uint32_t flags_of_frames(const gpu::SceneConstants& scene) {

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute/gpu/frame/capacity.h"
 #include "compute/vulkan/device.h"
 #include "compute/vulkan/pipeline.h"
 #include "model/contact/contacts.h"
@@ -21,9 +22,11 @@ Plan frame_plan(const Plan& plan, bool has_internal);
 /// pipelines need none.
 std::vector<SpecConstant> plan_constants(const Plan& plan);
 
-/// How many invocations look for a sample's depth together (constant LANES), from 8 on: few on a processor,
-/// and in a batch, whose samples keep a GPU busy.
-std::uint32_t depth_lanes(const VulkanDevice& device, bool batch);
+/// What a device does best with, on frames alone or in a batch.
+WorkCut work_cut(const VulkanDevice& device, bool batch);
+
+/// The cut as shaders are told it.
+void add_constants(const WorkCut& cut, std::vector<SpecConstant>& to);
 
 /// ContactFlag bits of every answer within the lattice.
 std::uint32_t flags_of_frames(const gpu::SceneConstants& scene);
