@@ -67,4 +67,5 @@ void main() {
       ignored_state[result_ignored[patch_at] >> 5] = 0u;
   }
   reset_entry(i);
+  leave_anew();
 }

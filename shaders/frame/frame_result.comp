@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// `paper`: hands the counts to the host and empties tables. Invocation i empties entry i of each list. Reads
-// frame_lists, frame_state; writes the result's head.
+// `paper`: hands the counts to the host and empties tables. Invocation i empties entry i of each list. Writes
+// the result's head.
 // Before: everything else of the frame.
 #include "shaders/lib/frame.glsl"
 CONSTANT(kBindScene, SceneConstants, scene);
@@ -14,4 +14,5 @@ void main() {
   const uint32_t i = flat_invocation();
   write_head(i);
   reset_entry(i);
+  leave_anew();
 }

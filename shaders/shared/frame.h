@@ -95,8 +95,7 @@ PALPATE_CONSTANT int32_t kBindPlacedGroups = 56;  // one: kFieldTileLanes invoca
 PALPATE_CONSTANT int32_t kBindPushedGroups = 57;  // kGroupsToolPush, kGroupsMockupPush
 PALPATE_CONSTANT int32_t kBindResultGroups =
     62;  // one: an invocation an entry of whatever the host gets, and of whatever is emptied
-PALPATE_CONSTANT int32_t kBindListsAnew =
-    36;  // FrameLists: what frame_lists and result_groups are between frames
+PALPATE_CONSTANT int32_t kBindListsAnew = 36;  // BatchLists of frame_batch.h, one
 PALPATE_CONSTANT int32_t kBindClusterBoxes =
     37;  // LatticeBox[clusters]: of the transformed triangles of a cluster, closed
 PALPATE_CONSTANT int32_t kBindMobileState = 38;  // uint32_t[tool triangles]: kMobile… bits; 0 between frames
@@ -145,6 +144,7 @@ PALPATE_CONSTANT int32_t kBindResponseFirst =
 // ---------------------------------------------------------------------------------------------------------------
 
 // 0: frame_batch.h
+PALPATE_CONSTANT uint32_t kListDone = 1;  // its count: workgroups of a frame's last stage that are done
 PALPATE_CONSTANT uint32_t kListNearRuns = 2;
 PALPATE_CONSTANT uint32_t kListTouchedVoxels = 3;
 PALPATE_CONSTANT uint32_t kListPairChunks = 5;
@@ -207,12 +207,6 @@ struct FrameInput {
 
 // ---- what it keeps
 // -------------------------------------------------------------------------------------------------------
-
-// What buffers begin each frame with.
-struct FrameLists {
-  FrameList lists[kListCount];
-  DispatchArguments result;  // as many workgroups as a field without contact triangles takes
-};
 
 struct FrameState {
   uint32_t overflow;        // bit per list
@@ -291,7 +285,7 @@ struct SampleChunk {
   ivec3 voxel;          // whose samples are asked for; of a batch z + 2^16 · pose
   uint32_t begin, end;  // of its list, or of its points, where samples are listed
 };
-PALPATE_CONSTANT uint32_t kSampleChunk = 2;  // entries in a SampleChunk where points are not listed
+PALPATE_CONSTANT uint32_t kSampleChunk = 2;       // entries in a SampleChunk where points are not listed
 PALPATE_CONSTANT int32_t kNarrowVoxel = 1 << 20;  // steps
 PALPATE_CONSTANT uint32_t kMostChunks = 1024,
                           kMostSampleChunks = 1

@@ -26,6 +26,12 @@ PALPATE_CONSTANT uint32_t kListPoses = 0;  // its count: poses of this batch
 PALPATE_CONSTANT uint32_t kMostProbes = 256;     // of a hash table, which is at most half full (chosen)
 PALPATE_CONSTANT uint32_t kResultPoseShift = 8;  // MobileResult::state has the pose above its bits
 
+// What lists and group counts of a batch begin with.
+struct FrameLists {
+  FrameList lists[kListCount];
+  DispatchArguments result;  // as many workgroups as the fields of all poses take
+};
+
 // What buffers begin each batch with; mapped, written by the host.
 struct BatchLists {
   FrameLists anew;

@@ -78,7 +78,8 @@ FrameCapacity FrameCapacity::first(const FrameDemand& demand,
   l[kListContactStatics] = room(0, mockup);
   l[kListContactMobiles] = items(tool, ~0u);
   l[kListSampleChunks] = room(
-      kLookedAt, !refined ? 1 : voxels + (demand.samples ? samples / demand.cut.listed_chunk : entries / kSampleChunk));
+      kLookedAt,
+      !refined ? 1 : voxels + (demand.samples ? samples / demand.cut.listed_chunk : entries / kSampleChunk));
   l[kListOpenSamples] = l[kListSamples] = room(0, samples);
   l[kListMembers] = room(2, tool * kMaxFrameAreas);
   l[kListFieldTiles] = refined ? room(2, ~0u) : 1;

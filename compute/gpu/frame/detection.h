@@ -40,7 +40,7 @@ class FrameDetection {
   void record_names(FrameRecorder& recorder) const;
   /// `paper`, after the response: counts to the host, tables back to 0.
   void record_end(FrameRecorder& recorder) const;
-  /// Last of all, in a batch first: lists, state and group counts as each frame finds them.
+  /// First of all in a batch: lists, state and group counts as a batch finds them.
   static void record_anew(FrameRecorder& recorder);
   /// Ids of the tool's triangles in the order of clusters and runs.
   const std::vector<std::uint32_t>& order() const { return order_; }
@@ -61,8 +61,8 @@ class FrameDetection {
   bool wide_ = false;    ///< … three words each
   // Of broad_phase on a GPU (chosen): near bricks lie side by side, and a workgroup takes one after the
   // other.
-  static constexpr std::uint32_t kBricksAtOnce = 4;
-  std::uint32_t brick_groups_ = 512;
+  static constexpr std::uint32_t kBricksAtOnce = 1;
+  std::uint32_t brick_groups_ = 2048;
   bool has_near_ = false;  ///< tool_near says something
   std::vector<std::uint32_t> order_;
   FrameShader broad_phase_, voxel_touch_, pair_test_, tool_clusters_place_, sample_scan_, sample_listed_,

@@ -134,13 +134,11 @@ Result<void> RecordedFrame::make_buffers() {
 }
 
 Result<void> RecordedFrame::set_capacities() {
-  gpu::FrameLists anew{};
-  for (std::size_t i = 0; i < gpu::kListCount; ++i) anew.lists[i].capacity = capacity_.lists[i];
-  anew.result = dispatch_of_items(field_ ? gpu::kFieldWords : 1);
-  if (auto r = upload(device_, buffers_[gpu::kBindListsAnew], &anew, sizeof anew); !r) return r;
-  if (auto r = upload(device_, buffers_[gpu::kBindResultGroups], &anew.result, sizeof anew.result); !r)
-    return r;
-  return upload(device_, buffers_[gpu::kBindFrameLists], anew.lists, sizeof anew.lists);
+  std::array<gpu::FrameList, gpu::kListCount> lists{};
+  for (std::size_t i = 0; i < gpu::kListCount; ++i) lists[i].capacity = capacity_.lists[i];
+  const gpu::DispatchArguments result = dispatch_of_items(field_ ? gpu::kFieldWords : 1);
+  if (auto r = upload(device_, buffers_[gpu::kBindResultGroups], &result, sizeof result); !r) return r;
+  return upload(device_, buffers_[gpu::kBindFrameLists], lists.data(), sizeof lists);
 }
 
 /// All that is 0 between frames.
@@ -198,8 +196,6 @@ Result<void> RecordedFrame::record() {
       recorder.barrier();
       detection_->record_end(recorder);
     }
-    recorder.barrier();
-    FrameDetection::record_anew(recorder);
   });
   if (!commands) return commands.error();
   commands_ = std::move(*commands);

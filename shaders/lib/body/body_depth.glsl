@@ -130,11 +130,19 @@ void look_into(uint32_t team, uint32_t part, ivec3 p) {
 Depth body_depth(bool asks, ivec3 p) {
   if (LANES == 1u) return asks ? depth_alone(p) : kNoDepth;
   const uint32_t lane = gl_LocalInvocationIndex, team = lane / LANES, part = lane % LANES;
+  // The lowest level that they can look into at once.
+  const uint32_t levels = asks ? tree_word(kTreeLevels) : 0u;
+  uint32_t level = levels - 1u, nodes = 0u;
+  if (levels != 0u) {
+    while (level > 0u && tree_word(kTreeNodes + level - 1u) <= LANES) --level;
+    nodes = (tree_word(kTreeNodes + level) + 7u) / 8u;
+  }
+  if (part < nodes) {
+    open_nodes[kOpenRoom * team + part] = level << kLevelShift | part;
+    open_squares[kOpenRoom * team + part] = 0u;
+  }
   if (part == 0u) {
-    const uint32_t levels = tree_word(kTreeLevels);
-    open_nodes[kOpenRoom * team] = (levels - 1u) << kLevelShift;
-    open_squares[kOpenRoom * team] = 0u;
-    open_count[team] = asks && levels != 0u ? 1u : 0u;
+    open_count[team] = nodes;
     kept_count[team] = 0u;
     team_reach[team] = floatBitsToUint(kFar);
     team_steps[team] = kNoDepth.steps;
