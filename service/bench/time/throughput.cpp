@@ -32,6 +32,9 @@ double mean(const std::vector<double>& values) {
   return values.empty() ? 0 : sum / static_cast<double>(values.size());
 }
 
+// Of a round of one series (chosen): small batches take long, and a thousand poses tell their mean.
+constexpr std::size_t kLeastPoses = 1024, kBatches = 8;
+
 /// Four times as many each time.
 std::vector<std::size_t> batch_sizes(std::size_t largest) {
   std::vector<std::size_t> sizes;
@@ -114,10 +117,12 @@ Result<void> measure(const BenchOptions& options, HostedScene& scene, const std:
   for (std::uint64_t round = 0; round <= options.rounds; ++round)
     for (Series& series : out) {
       const DeviceWork before = scene.backend->device_work();
-      const auto us = ask_all(series, scene, all, answer, batch);
+      const std::uint64_t size = std::max<std::size_t>(series.size, 1);
+      const auto some = std::span<const Pose>(all).first(
+          std::min<std::size_t>(all.size(), std::max(kLeastPoses, kBatches * size)));
+      const std::uint64_t batches = (some.size() + size - 1) / size;
+      const auto us = ask_all(series, scene, some, answer, batch);
       if (!us) return us.error();
-      const std::uint64_t size = std::max<std::size_t>(series.size, 1),
-                          batches = (all.size() + size - 1) / size;
       series.work = since(before, scene.backend->device_work());
       for (const auto member : {&DeviceWork::submissions, &DeviceWork::dispatches, &DeviceWork::barriers,
                                 &DeviceWork::bytes_up, &DeviceWork::bytes_down})
