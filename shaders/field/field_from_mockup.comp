@@ -48,11 +48,13 @@ POSED_TABLE(static, kBindStaticKeys)
 #include "shaders/lib/ignored.glsl"
 #include "shaders/lib/tool_winding.glsl"
 
-bool inside_tool(ivec3 point, ivec3 at) {
+// The invocation's part of a sum that is not 0 where the point is inside a closed tool, and above 0 where it is
+// inside one that is not.
+int32_t inside_tool(ivec3 point, ivec3 at) {
   const ivec3 voxel = body_voxel_of(at);
   const uint32_t voxel_class = body_class_of(voxel);
-  if (voxel_class != kVoxelBoundary) return voxel_class == kVoxelInternal;
-  return CLOSED ? tool_winding(point) != 0 : body_vote_inside(at, voxel);
+  if (voxel_class != kVoxelBoundary) return speaks() && voxel_class == kVoxelInternal ? 1 : 0;
+  return CLOSED ? tool_winding(point) : body_shells_at(at, voxel);
 }
 
 struct Asked {
@@ -60,15 +62,16 @@ struct Asked {
   uint32_t entry, id, weight;
 };
 
-// False: it does not count.
-bool asked_of(FieldPoint work, out Asked asked) {
+// The invocation's part of a sum as above, of what counts if it lies inside.
+int32_t ask(FieldPoint work, out Asked asked) {
   asked.point = work.point;
   asked.entry = work.triangle & ~kExtraPoint;
   asked.id = static_id(asked.entry);
   asked.weight = work.weight;
   take_pose(static_pose(asked.entry));
   asked.at = tool_from_world(asked.point);
-  return (work.triangle & kExtraPoint) == 0u || inside_tool(asked.point, asked.at);
+  if ((work.triangle & kExtraPoint) == 0u) return speaks() ? 1 : 0;
+  return inside_tool(asked.point, asked.at);
 }
 
 // False: nothing pushes.
@@ -94,9 +97,10 @@ bool push_of(Asked asked, Depth depth, out Push push) {
 }
 
 void main() {
-  const uint32_t item = pushing_item();
+  const uint32_t item = team_item();
   Asked asked;
-  const bool counts = item < list_count(kListMockupPoints) && asked_of(mockup_points[item], asked);
+  const int32_t sum = team_sum(item < list_count(kListMockupPoints) ? ask(mockup_points[item], asked) : 0);
+  const bool counts = CLOSED ? sum != 0 : sum > 0;
   const Depth depth = body_depth(counts, asked.at);
   Push push;
   const bool pushes = counts && speaks() && push_of(asked, depth, push);

@@ -47,15 +47,16 @@ POSED_TABLE(mobile, kBindMobileKeys)
 #include "shaders/lib/field_sums.glsl"
 #include "shaders/lib/ignored.glsl"
 
-bool inside_mockup(ivec3 point) {
+// The invocation's part of a sum that is not 0 where the point is inside a closed mock-up, and above 0 where it
+// is inside one that is not.
+int32_t inside_mockup(ivec3 point) {
   const ivec3 voxel = body_voxel_of(point);
   const uint32_t voxel_class = body_class_of(voxel);
-  if (voxel_class != kVoxelBoundary) return voxel_class == kVoxelInternal;
-  return CLOSED ? body_winding_inside(point, voxel) : body_vote_inside(point, voxel);
+  if (voxel_class != kVoxelBoundary) return speaks() && voxel_class == kVoxelInternal ? 1 : 0;
+  return CLOSED ? body_winding(point, voxel) : body_shells_at(point, voxel);
 }
 
-// Whether it lies inside the mock-up.
-bool is_inside(FieldPoint work) {
+int32_t inside_mockup(FieldPoint work) {
   take_pose(mobile_pose(work.triangle));
   // What touches nothing is on one side of the mock-up, with its first corner.
   const bool hit = (mobile_state[work.triangle] & kMobileHit) != 0u;
@@ -85,13 +86,15 @@ bool push_of(FieldPoint work, Depth depth, out Push push) {
 }
 
 void main() {
-  const uint32_t item = pushing_item();
+  const uint32_t item = team_item();
   FieldPoint work;
-  bool inside = item < list_count(kListToolPoints);
-  if (inside) {
+  int32_t sum = 0;
+  if (item < list_count(kListToolPoints)) {
     work = tool_points[item];
-    inside = is_inside(work);
+    sum = inside_mockup(work);
   }
+  sum = team_sum(sum);
+  const bool inside = CLOSED ? sum != 0 : sum > 0;
   const Depth depth = body_depth(inside, work.point);
   Push push;
   const bool pushes = inside && speaks() && push_of(work, depth, push);

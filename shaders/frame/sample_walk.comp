@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Whether an open sample lies inside the tool: where it is closed by the winding there, else by the vote in
-// its own frame. An invocation a sample.
+// its own frame. LANES invocations a sample.
 // Reads the tool and its fine partition; appends samples, marks kStaticSampled. A first corner (kCornerProbe)
 // tells EST and does not count.
 #include "shaders/lib/frame.glsl"
@@ -37,16 +37,31 @@ EDIT(kBindSamples, ivec4, samples);
 #include "shaders/lib/tool_winding.glsl"
 #include "shaders/lib/body/body_walks.glsl"
 
-void decide(uint32_t item) {
-  if (item >= list_count(kListOpenSamples)) return;
-  const ivec4 work = open_samples[item];   // FrameSample
-  if (BATCH) take_pose(open_poses[item]);
-  const ivec3 at = tool_from_world(work.xyz), voxel = body_voxel_of(at);
-  if (!(CLOSED ? tool_winding(work.xyz) != 0 : body_vote_inside(at, voxel))) return;
+// The invocation's part of a sum that is not 0 where it is inside a closed tool, and above 0 where it is inside
+// one that is not.
+int32_t inside_tool(ivec3 point) {
+  if (CLOSED) return tool_winding(point);
+  const ivec3 at = tool_from_world(point);
+  return body_shells_at(at, body_voxel_of(at));
+}
+
+void take(ivec4 work) {
   const uint32_t entry = mark_static(uint32_t(work.w) & ~kCornerProbe, kStaticSampled);
   if ((uint32_t(work.w) & kCornerProbe) != 0u || entry == kNone) return;
   uint32_t place;
   if (take_sample(place)) samples[place] = ivec4(work.xyz, int32_t(entry));
 }
 
-void main() { decide(flat_invocation()); }
+void main() {
+  const uint32_t item = team_item();
+  const bool there = item < list_count(kListOpenSamples);
+  ivec4 work;   // FrameSample
+  int32_t sum = 0;
+  if (there) {
+    work = open_samples[item];
+    if (BATCH) take_pose(open_poses[item]);
+    sum = inside_tool(work.xyz);
+  }
+  sum = team_sum(sum);
+  if (there && speaks() && (CLOSED ? sum != 0 : sum > 0)) take(work);
+}

@@ -1,20 +1,14 @@
-// Adds a workgroup's pushes to the field (docs/EXACTNESS.md section 8). Invocations that speak put their terms side by
-// side in shared memory; then each of the first ones adds up one kind of term over the workgroup, and goes to
+// Adds a workgroup's pushes to the field (docs/EXACTNESS.md section 8). Who speaks for a team puts its terms
+// side by side in shared memory; then each of the first ones adds up one kind of term over the workgroup, and goes to
 // the buffer only where the bin, or the carrier, changes: neighbours mostly share theirs.
 // The including shader has scene, frame_input, int64_t field_work[] and carrier_work[] (both writable).
 #ifndef PALPATE_LIB_FIELD_SUMS
 #define PALPATE_LIB_FIELD_SUMS
 #include "shaders/shared/frame_field.h"
+#include "shaders/lib/team.glsl"
 #include "shaders/lib/wide_integer.glsl"
 
 layout(constant_id = 8) const bool CARRIERS = true;   // somebody wants to know what each triangle carries
-
-// Of a stage whose groups are LANES deep along z: the item of LANES invocations that follow each other, and
-// which of them says what it pushes.
-uint32_t pushing_item() {
-  return flat_group() * kGroupSize + (gl_WorkGroupID.z * kGroupSize + gl_LocalInvocationIndex) / LANES;
-}
-bool speaks() { return gl_LocalInvocationIndex % LANES == 0u; }
 
 // A sample inside the other body.
 struct Push {
@@ -30,16 +24,14 @@ struct Push {
 };
 
 const uint32_t kTerms = kFieldBinWords + kCarrierSumWords;
-// Of invocations that speak; one more, so that kinds side by side lie in different banks.
-const uint32_t kSpeakers = kGroupSize / LANES, kTermsApart = kSpeakers + 1u;
+// Of teams; one more, so that kinds side by side lie in different banks.
+const uint32_t kTermsApart = kTeams + 1u;
 shared int64_t terms[kTerms * kTermsApart];
-shared uint32_t term_bins[kSpeakers], term_slots[kSpeakers];
-shared uint64_t deepest[2u * kSpeakers];
+shared uint32_t term_bins[kTeams], term_slots[kTeams];
+shared uint64_t deepest[2u * kTeams];
 shared uint32_t any_sheet;
 
-uint32_t speaker() { return gl_LocalInvocationIndex / LANES; }
-
-void put_term(uint32_t kind, int64_t term) { terms[kind * kTermsApart + speaker()] = term; }
+void put_term(uint32_t kind, int64_t term) { terms[kind * kTermsApart + team()] = term; }
 
 // Three sums of terms that may not fit 64 bits, as low and high halves.
 void put_wide(uint32_t kind, i64vec3 term) {
@@ -83,7 +75,7 @@ void put_push(Push push) {
     put_term(17u + k, (moment[k] * lever[k]) >> 8);
     put_term(20u + k, (moment[k] * lever[(k + 1u) % 3u]) >> 8);
   }
-  term_bins[speaker()] = bin_of(push.along);
+  term_bins[team()] = bin_of(push.along);
   const uint64_t depth = uint64_t(push.depth) << 32, by_static = depth | uint64_t(~push.static_id),
                  by_mobile = depth | uint64_t(~push.mobile);
   if (BATCH) {   // a workgroup has several poses
@@ -91,8 +83,8 @@ void put_push(Push push) {
     atomicMax(field_work[field_word(kWordDeepest + 1u)], int64_t(by_mobile));
     if (push.sheet) atomicOr(field_work[field_word(kWordSheet)], 1l);
   } else {
-    deepest[speaker()] = by_static;
-    deepest[kSpeakers + speaker()] = by_mobile;
+    deepest[team()] = by_static;
+    deepest[kTeams + team()] = by_mobile;
     if (push.sheet) any_sheet = 1u;   // whoever writes it
   }
   if (!CARRIERS || push.slot == kNone) return;
@@ -102,7 +94,7 @@ void put_push(Push push) {
   put_term(kFieldBinWords + 2u, whole);
   put_wide(kFieldBinWords + 3u, whole * (n >> 10));
   put_wide(kFieldBinWords + 9u, (whole >> 10) * r);
-  term_slots[speaker()] = push.slot;
+  term_slots[team()] = push.slot;
   atomicMax(carrier_work[kCarrierWords * push.slot + kWordCarrierDepth], int64_t(push.depth));
 }
 
@@ -116,11 +108,11 @@ void flush_term(uint32_t kind, uint32_t key, int64_t sum) {
 // Of the whole workgroup, all of it at once: what `push` says counts where `pushes`.
 void add_pushes(bool pushes, Push push) {
   const uint32_t lane = gl_LocalInvocationIndex;
-  if (lane < kSpeakers) {
+  if (lane < kTeams) {
     term_bins[lane] = kNone;
     term_slots[lane] = kNone;
     deepest[lane] = 0ul;
-    deepest[kSpeakers + lane] = 0ul;
+    deepest[kTeams + lane] = 0ul;
   }
   if (lane == 0u) any_sheet = 0u;
   barrier();
@@ -129,7 +121,7 @@ void add_pushes(bool pushes, Push push) {
   if (lane < (CARRIERS ? kTerms : kFieldBinWords)) {
     uint32_t key = kNone;
     int64_t sum = 0l;
-    for (uint32_t i = 0u; i < kSpeakers; ++i) {
+    for (uint32_t i = 0u; i < kTeams; ++i) {
       const uint32_t its = lane < kFieldBinWords ? term_bins[i] : term_slots[i];
       if (its == kNone) continue;
       if (its != key) {
@@ -143,7 +135,7 @@ void add_pushes(bool pushes, Push push) {
   } else if (!BATCH && lane >= kTerms && lane < kTerms + 2u) {
     const uint32_t which = lane - kTerms;
     uint64_t most = 0ul;
-    for (uint32_t i = 0u; i < kSpeakers; ++i) most = max(most, deepest[which * kSpeakers + i]);
+    for (uint32_t i = 0u; i < kTeams; ++i) most = max(most, deepest[which * kTeams + i]);
     if (most != 0ul) atomicMax(field_work[kWordDeepest + which], int64_t(most));   // depths are below 2^31
   } else if (!BATCH && lane == kTerms + 2u && any_sheet != 0u) {
     atomicOr(field_work[kWordSheet], 1l);

@@ -1,6 +1,6 @@
 // The winding of the closed tool at its pose round a world lattice point in a V_bnd voxel of its fine
 // partition: what a walk out of the tool crosses, along an axis of that grid, from voxel to voxel, and each
-// voxel lists all that may be crossed in it.
+// voxel lists all that may be crossed in it. Shared out as in lib/body/body_walks.glsl.
 // The including shader has what lib/body/body.glsl asks for, of the tool and its fine partition, and
 // tool_records[], fine_places[], fine_exit[], frame_input, frame_state (writable).
 //
@@ -15,6 +15,7 @@
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/segment.glsl"
 #include "shaders/lib/segment_estimate.glsl"
+#include "shaders/lib/team.glsl"
 #include "shaders/lib/tool_record.glsl"
 
 // Corners of an entry of the lists at the pose.
@@ -25,23 +26,24 @@ void posed_corners(uint32_t entry, out ivec3 a, out ivec3 b, out ivec3 c) {
   c = world_from_tool(t.c);
 }
 
-// Σ of what the way from one point to another crosses of what a voxel lists: as body_crossings().
+// Σ of what the way from one point to another crosses of the invocation's share of what a voxel lists: as
+// body_crossings().
 int32_t posed_crossings(ivec3 from, ivec3 to, uint32_t boundary) {
   const ivec3 low = min(from, to), high = max(from, to);
   const uint32_t last = body_list_begin[boundary + 1u];
   int32_t net = 0;
-  for (uint32_t first = body_list_begin[boundary]; first < last && !spent(1u); first += 32u) {
+  for (uint32_t first = body_list_begin[boundary] + team_part(); first < last && !spent(1u); first += 32u * LANES) {
     uint32_t unsure = 0u;
     ivec3 a, b, c;
-    for (uint32_t i = 0u; i < min(last - first, 32u) && !spent(1u); ++i) {
-      posed_corners(first + i, a, b, c);
+    for (uint32_t i = 0u; i < 32u && first + i * LANES < last && !spent(1u); ++i) {
+      posed_corners(first + i * LANES, a, b, c);
       if (any(greaterThan(min(min(a, b), c), high)) || any(lessThan(max(max(a, b), c), low))) continue;
       const int32_t crossing = segment_estimate(from, to, a, b, c);
       if (crossing == kUnsure) unsure |= 1u << i;
       else net += crossing;
     }
     while (unsure != 0u && !spent(1u)) {
-      posed_corners(first + uint32_t(findLSB(unsure)), a, b, c);
+      posed_corners(first + uint32_t(findLSB(unsure)) * LANES, a, b, c);
       unsure &= unsure - 1u;
       net += segment_crossing(from, to, a, b, c);
     }

@@ -182,7 +182,7 @@ struct FrameList {
 PALPATE_CONSTANT uint32_t kGroupsTouch = 0;       // a workgroup RUNS_A_GROUP NearRuns
 PALPATE_CONSTANT uint32_t kGroupsSamples = 1;     // an invocation a SampleChunk
 PALPATE_CONSTANT uint32_t kGroupsPairs = 0;       // an invocation a PairChunk
-PALPATE_CONSTANT uint32_t kGroupsOpen = 1;        // an invocation an open sample
+PALPATE_CONSTANT uint32_t kGroupsOpen = 1;        // LANES invocations an open sample
 PALPATE_CONSTANT uint32_t kGroupsToolPush = 0;    // LANES invocations a sample of the tool that weighs
 PALPATE_CONSTANT uint32_t kGroupsMockupPush = 1;  // likewise of the mock-up
 

@@ -9,6 +9,7 @@
 #include "shaders/shared/frame_field.h"
 #include "shaders/lib/body/body.glsl"
 #include "shaders/lib/budget.glsl"
+#include "shaders/lib/team.glsl"
 #include "shaders/lib/distance.glsl"
 #include "shaders/lib/distance_estimate.glsl"
 
@@ -26,7 +27,6 @@ const uint32_t kLevelShift = 28u, kNodeBits = (1u << kLevelShift) - 1u, kRun = 1
 // By team of LANES invocations that look for a point's depth together. Of a team: the nodes left to look into,
 // the last ones first, each with the square of its distance (a float's bits); triangles that may be the
 // nearest, with their least distance (likewise); and how far the nearest one is at most.
-const uint32_t kTeams = kGroupSize / LANES;
 const uint32_t kOpenRoom = 12u * LANES, kKeptRoom = 4u * LANES;
 shared uint32_t open_nodes[12u * kGroupSize], open_squares[12u * kGroupSize];
 shared uint32_t kept_triangles[4u * kGroupSize];
@@ -75,18 +75,18 @@ void decide_nearest(ivec3 p, uint32_t id, inout Depth best) {
 }
 
 // Looks into the team's last open nodes, an invocation a box or a triangle. Of the whole workgroup.
-void look_into(uint32_t team, uint32_t part, ivec3 p) {
-  const uint32_t open = open_count[team], first = kOpenRoom * team;
+void look_into(uint32_t mine, uint32_t part, ivec3 p) {
+  const uint32_t open = open_count[mine], first = kOpenRoom * mine;
   // One node leaves at most seven more than there were on each of its levels; several at a time need more room.
   const uint32_t taken = min(open, open + 8u * LANES <= kOpenRoom ? LANES / 8u : 1u);
   uint32_t node = kNone;
   if (part / 8u < taken) {
     const uint32_t at = first + open - 1u - part / 8u;
-    if (uintBitsToFloat(open_squares[at]) <= square_of(uintBitsToFloat(team_reach[team])))
+    if (uintBitsToFloat(open_squares[at]) <= square_of(uintBitsToFloat(team_reach[mine])))
       node = open_nodes[at];
   }
   barrier();
-  if (part == 0u) open_count[team] = open - taken;
+  if (part == 0u) open_count[mine] = open - taken;
   uint32_t below = kNone, triangle = kNone;
   float square = 0.0, least = 0.0, most;
   if (node != kNone) {
@@ -96,7 +96,7 @@ void look_into(uint32_t team, uint32_t part, ivec3 p) {
         triangle = body_tree[tree_word(kTreeOrder) + child];
         const DistanceBounds bounds = bounds_of(triangle, p);
         least = bounds.least;
-        atomicMin(team_reach[team], floatBitsToUint(bounds.most));
+        atomicMin(team_reach[mine], floatBitsToUint(bounds.most));
       }
     } else {
       const uint32_t level = node >> kLevelShift;
@@ -104,20 +104,20 @@ void look_into(uint32_t team, uint32_t part, ivec3 p) {
         ivec3 low, high;
         box_of(level, child, low, high);
         square = square_to_box(p, low, high, most);
-        atomicMin(team_reach[team], floatBitsToUint(most));
+        atomicMin(team_reach[mine], floatBitsToUint(most));
         below = level == 0u ? kRun | child : (level - 1u) << kLevelShift | child;
       }
     }
   }
   barrier();
-  const float reach = uintBitsToFloat(team_reach[team]);
+  const float reach = uintBitsToFloat(team_reach[mine]);
   if (below != kNone && square <= square_of(reach)) {
-    const uint32_t at = first + atomicAdd(open_count[team], 1u);
+    const uint32_t at = first + atomicAdd(open_count[mine], 1u);
     open_nodes[at] = below;
     open_squares[at] = floatBitsToUint(square);
   }
   if (triangle != kNone && least <= reach) {
-    const uint32_t at = kKeptRoom * team + atomicAdd(kept_count[team], 1u);
+    const uint32_t at = kKeptRoom * mine + atomicAdd(kept_count[mine], 1u);
     kept_triangles[at] = triangle;
     kept_least[at] = floatBitsToInt(least);
   }
@@ -129,7 +129,7 @@ void look_into(uint32_t team, uint32_t part, ivec3 p) {
 // they have none.
 Depth body_depth(bool asks, ivec3 p) {
   if (LANES == 1u) return asks ? depth_alone(p) : kNoDepth;
-  const uint32_t lane = gl_LocalInvocationIndex, team = lane / LANES, part = lane % LANES;
+  const uint32_t mine = team(), part = team_part();
   // The lowest level that they can look into at once.
   const uint32_t levels = asks ? tree_word(kTreeLevels) : 0u;
   uint32_t level = levels - 1u, nodes = 0u;
@@ -138,17 +138,17 @@ Depth body_depth(bool asks, ivec3 p) {
     nodes = (tree_word(kTreeNodes + level) + 7u) / 8u;
   }
   if (part < nodes) {
-    open_nodes[kOpenRoom * team + part] = level << kLevelShift | part;
-    open_squares[kOpenRoom * team + part] = 0u;
+    open_nodes[kOpenRoom * mine + part] = level << kLevelShift | part;
+    open_squares[kOpenRoom * mine + part] = 0u;
   }
   if (part == 0u) {
-    open_count[team] = nodes;
-    kept_count[team] = 0u;
-    team_reach[team] = floatBitsToUint(kFar);
-    team_steps[team] = kNoDepth.steps;
-    team_nearest[team] = kNone;
+    open_count[mine] = nodes;
+    kept_count[mine] = 0u;
+    team_reach[mine] = floatBitsToUint(kFar);
+    team_steps[mine] = kNoDepth.steps;
+    team_nearest[mine] = kNone;
   }
-  if (lane == 0u) gave_up = 0u;
+  if (gl_LocalInvocationIndex == 0u) gave_up = 0u;
   Depth best = kNoDepth;
   bool more = true;
   while (more) {
@@ -161,22 +161,22 @@ Depth body_depth(bool asks, ivec3 p) {
     }
     more = open && gave_up == 0u;
     if (more && !full) {
-      look_into(team, part, p);
+      look_into(mine, part, p);
     } else {
-      const float reach = uintBitsToFloat(team_reach[team]);
-      for (uint32_t i = part; i < kept_count[team] && !spent(1u); i += LANES)
-        if (intBitsToFloat(kept_least[kKeptRoom * team + i]) <= reach)
-          decide_nearest(p, kept_triangles[kKeptRoom * team + i], best);
+      const float reach = uintBitsToFloat(team_reach[mine]);
+      for (uint32_t i = part; i < kept_count[mine] && !spent(1u); i += LANES)
+        if (intBitsToFloat(kept_least[kKeptRoom * mine + i]) <= reach)
+          decide_nearest(p, kept_triangles[kKeptRoom * mine + i], best);
       barrier();
       if (best.triangle != kNone)
-        atomicMin(team_reach[team], floatBitsToUint(float(best.steps) + float(2 * kDepthSlack)));
-      if (part == 0u) kept_count[team] = 0u;
+        atomicMin(team_reach[mine], floatBitsToUint(float(best.steps) + float(2 * kDepthSlack)));
+      if (part == 0u) kept_count[mine] = 0u;
     }
   }
-  atomicMin(team_steps[team], best.steps);
+  atomicMin(team_steps[mine], best.steps);
   barrier();
-  if (best.steps == team_steps[team]) atomicMin(team_nearest[team], best.triangle);
+  if (best.steps == team_steps[mine]) atomicMin(team_nearest[mine], best.triangle);
   barrier();
-  return Depth(team_steps[team], team_nearest[team]);
+  return Depth(team_steps[mine], team_nearest[mine]);
 }
 #endif

@@ -11,6 +11,6 @@ void put_open(FrameSample sample_) {
   if (at >= frame_lists[kListOpenSamples].capacity) return;
   open_samples[at] = sample_;
   if (BATCH) open_poses[at] = frame_pose;
-  if (begins_group(at, 1u)) grow_listed_groups(kGroupsOpen, groups_to(at + 1u));
+  if (begins_group(at, 1u)) grow_listed_groups_deep(kGroupsOpen, groups_to(at + 1u), LANES);
 }
 #endif
