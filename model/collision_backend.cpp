@@ -5,6 +5,14 @@
 #include <vector>
 
 namespace palpate {
+namespace {
+
+Error no_room(const Contacts& contacts) {
+  return {ErrorCode::kInternal,
+          std::string("a frame of a batch had too little room for ") + contacts.truncated_capacity};
+}
+
+}  // namespace
 
 Result<void> CollisionBackend::query_batch(std::span<const LatticePose> poses, std::span<Contacts> out) {
   const std::size_t each = poses_together(poses.size());
@@ -19,6 +27,16 @@ Result<void> CollisionBackend::query_batch(std::span<const LatticePose> poses, s
   });
 }
 
+Result<void> PoseQuery::touch_together(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
+  Contacts contacts;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (auto done = query(poses[i], nullptr, contacts); !done) return done;
+    if (contacts.truncated) return no_room(contacts);
+    bits[i] = contacts.contact ? 1 : 0;
+  }
+  return {};
+}
+
 Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
   constexpr std::size_t kAtOnce = 1024;  // contacts that are held (chosen: some megabytes)
   std::vector<Contacts> contacts(std::min(kAtOnce, poses.size()));
@@ -27,9 +45,7 @@ Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::
     if (auto done = query_batch(poses.subspan(first, count), std::span(contacts).first(count)); !done)
       return done;
     for (std::size_t i = 0; i < count; ++i) {
-      if (contacts[i].truncated)
-        return Error{ErrorCode::kInternal, std::string("a frame of a batch had too little room for ") +
-                                               contacts[i].truncated_capacity};
+      if (contacts[i].truncated) return no_room(contacts[i]);
       bits[first + i] = contacts[i].contact ? 1 : 0;
     }
   }

@@ -61,6 +61,9 @@ class PoseQuery {
       if (auto done = query(poses[i], nullptr, *out[i]); !done) return done;
     return {};
   }
+  /// Whether the tool touches at each of many poses: bits[i] = 1 where query() would find contact. As many
+  /// `bits` as `poses`. Error: as query(), or a frame was truncated.
+  virtual Result<void> touch_together(std::span<const LatticePose> poses, std::span<std::uint8_t> bits);
 };
 
 /// Piece `i` of some work: asks `asked`, and nobody else, for as many poses as it needs. An error ends the

@@ -43,6 +43,21 @@ class BatchWorkers::Asked final : public PoseQuery {
     return {};
   }
 
+  Result<void> touch_together(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override {
+    if (!grid_) return PoseQuery::touch_together(poses, bits);
+    for (std::size_t first = 0, count = 0; first < poses.size(); first += count) {
+      count = std::min(grid_->most(), poses.size() - first);
+      const auto to = bits.subspan(first, count);
+      if (auto answered = grid_->touch(poses.subspan(first, count), to); !answered) return answered;
+      for (std::size_t i = 0; i < count; ++i)
+        if (to[i] == PoseGrid::kOpen)
+          if (auto answered = PoseQuery::touch_together(poses.subspan(first + i, 1), to.subspan(i, 1));
+              !answered)
+            return answered;
+    }
+    return {};
+  }
+
   const PoseGrid* grid() const { return grid_.get(); }
 
  private:

@@ -81,6 +81,15 @@ class GpuBackend final : public CollisionBackend {
     return workers_ ? workers_->poses_together(count) : 1;
   }
 
+  Result<void> touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override {
+    const std::size_t each = poses_together(poses.size());
+    if (each <= 1) return CollisionBackend::touches(poses, bits);
+    return share((poses.size() + each - 1) / each, [&](PoseQuery& asked, std::size_t i) {
+      const std::size_t first = i * each, count = std::min(each, poses.size() - first);
+      return asked.touch_together(poses.subspan(first, count), bits.subspan(first, count));
+    });
+  }
+
   Result<void> enlarge() override {
     if (!frame_) return Error{ErrorCode::kInternal, "enlarge before prepare"};
     return frame_->enlarge();

@@ -13,6 +13,7 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/frame_reset.glsl"
 
 layout(constant_id = 8) const bool CARRIERS = true;   // as in lib/field_sums.glsl
+layout(constant_id = 9) const bool FIELD = true;       // false: of a batch that has none, of which the states are all
 
 EDIT(kBindFieldWork, int64_t, field_work);
 READ(kBindCarrierWork, int64_t, carrier_work);
@@ -38,7 +39,7 @@ void hand_out_batch(uint32_t i) {
     result_states[i] = frame_state;
     result_states[i].contact = in_contact() ? 1u : 0u;
   }
-  if (i < poses * kFieldWords) {
+  if (FIELD && i < poses * kFieldWords) {
     frame_pose = i / kFieldWords;
     if (in_contact()) {
       result_field[i] = field_work[i];

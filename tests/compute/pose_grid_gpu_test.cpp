@@ -106,6 +106,49 @@ TEST(PoseGrid, APosesOwnCoarsenessCountsAndAPoseBeyondTheLatticeIsFree) {
   EXPECT_FALSE(answers[7].contact);
 }
 
+TEST(PoseGrid, WhetherPosesTouchIsTheirFramesContact) {
+  const Subject scene = subject("disassembly", 4000, 300);
+  std::vector<LatticePose> poses = scene.poses;
+  poses[7].beyond_lattice = true;
+  for (const bool small : {false, true}) {
+    SCOPED_TRACE(small);
+    Grid on(scene, small ? std::map<std::string, std::uint32_t>{{"lists of touched voxels", 40}}
+                         : std::map<std::string, std::uint32_t>{});
+    std::size_t contacts = 0, open = 0, free = 0;
+    Contacts single;
+    for (std::size_t first = 0; first < poses.size(); first += on.grid->most()) {
+      const auto some =
+          std::span<const LatticePose>(poses).subspan(first, std::min(on.grid->most(), poses.size() - first));
+      std::vector<std::uint8_t> bits(some.size(), 7);
+      const DeviceWork before = on.grid->work();
+      ASSERT_TRUE(on.grid->touch(some, bits));
+      ASSERT_TRUE(on.device->check_guards());
+      const DeviceWork after = on.grid->work();
+      EXPECT_EQ(after.submissions - before.submissions, 1u);
+      EXPECT_EQ(after.dispatches - before.dispatches, 6u);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        ASSERT_TRUE(on.frame->query(some[i], nullptr, single));
+        open += bits[i] == PoseGrid::kOpen ? 1u : 0u;
+        if (bits[i] != PoseGrid::kOpen) {
+          EXPECT_EQ(bits[i], single.contact ? 1 : 0) << first + i;
+        }
+        contacts += single.contact ? 1u : 0u;
+        free += single.contact ? 0u : 1u;
+      }
+      // Forces after touches, and the other way round, on the same tables.
+      ASSERT_TRUE(on.ask(some));
+      for (std::size_t i = 0; i < some.size(); ++i)
+        if (!on.answers[i].truncated && bits[i] != PoseGrid::kOpen) {
+          EXPECT_EQ(on.answers[i].contact, bits[i] == 1);
+        }
+    }
+    EXPECT_GT(contacts, 90u);
+    EXPECT_GT(free, 20u);
+    EXPECT_LT(open, poses.size() / 2);
+    EXPECT_TRUE(open > 0 || !small);
+  }
+}
+
 // Each list far too small for all: what there was no room for is flagged and the rest is right; room grows
 // until all is.
 TEST(PoseGrid, WhatAListHasNoRoomForIsFlaggedPoseByPoseAndNothingElse) {
@@ -117,7 +160,8 @@ TEST(PoseGrid, WhatAListHasNoRoomForIsFlaggedPoseByPoseAndNothingElse) {
   for (const char* list :
        {"near parts of the tool", "touched voxels", "lists of touched voxels", "pairs to test",
         "contact triangles of the mock-up", "contact triangles of the tool", "lists with samples",
-        "samples near the tool's surface", "samples", "tiles of tool samples", "samples of the tool"}) {
+        "samples near the tool's surface", "samples", "samples that weigh something", "tiles of tool samples",
+        "samples of the tool"}) {
     SCOPED_TRACE(list);
     Grid on(scene, {{list, 40}});
     std::size_t flagged = 1, most_flagged = 0, least_flagged = singles.size();

@@ -14,6 +14,7 @@ using namespace gpu;  // names of shaders/shared/frame_field.h
 namespace {
 
 constexpr std::uint32_t kCarriersId = 8;  // of the constant CARRIERS: somebody looks at triangles
+constexpr std::uint32_t kFieldId = 9;     // of the constant FIELD of field_result
 
 WideSum wide(std::int64_t low, std::int64_t high) { return {low, high}; }
 
@@ -66,10 +67,11 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
            {out.from_mockup_, spirv::field_from_mockup, {{0, tool.closed}}, out.inside_},
            {out.from_tool_, spirv::field_from_tool, {{0, mockup.closed}, {1, inside}}},
            {out.result_, spirv::field_result},
+           {out.touch_result_, spirv::field_result, {{kFieldId, 0u}}, batch},
        }) {
     if (!made_for.kept) continue;
     std::vector<SpecConstant> constants = plan_constants(plan);
-    if (!plan.telemetry) constants.push_back({kCarriersId, 0u});
+    if (!plan.telemetry || &made_for.shader == &out.touch_result_) constants.push_back({kCarriersId, 0u});
     if (batch) constants.push_back({kBatchConstant, 1u});
     add_constants(work_cut(device, batch), constants);
     constants.insert(constants.end(), made_for.constants.begin(), made_for.constants.end());
@@ -136,6 +138,11 @@ void FrameField::record(FrameRecorder& recorder) const {
   recorder.barrier();
   recorder.stage("reset");
   recorder.run_stage(result_, kBindResultGroups);
+}
+
+void FrameField::record_touch(FrameRecorder& recorder) const {
+  recorder.stage("reset");
+  recorder.run_stage(touch_result_, kBindResultGroups);
 }
 
 bool FrameField::ignore(const Ignored* ignored, const FrameBuffers& buffers) {

@@ -30,6 +30,8 @@ class FrameField {
   /// Records every dispatch, from the lists that detection has left to the results and the tables as they
   /// were.
   void record(FrameRecorder& recorder) const;
+  /// Of a batch that only asks whether there is contact: the poses' states and the tables as they were.
+  void record_touch(FrameRecorder& recorder) const;
 
   /// Puts down for the next frame what is ignored; null: nothing. Writes only what has changed. True: some
   /// patch is.
@@ -42,7 +44,7 @@ class FrameField {
  private:
   const SceneGeometry* geometry_ = nullptr;
   Plan plan_;
-  FrameShader members_, points_, from_mockup_, from_tool_, result_;
+  FrameShader members_, points_, from_mockup_, from_tool_, result_, touch_result_;
   bool inside_ = true;                       ///< the tool has one
   std::vector<std::uint32_t> ignored_;       ///< what the bits say
   std::vector<std::uint32_t> ignored_bits_;  ///< as the device has them

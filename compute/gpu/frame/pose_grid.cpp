@@ -49,6 +49,7 @@ class RecordedGrid final : public PoseGrid {
   Result<void> make(const std::map<std::string, std::uint32_t>& first_capacity);
   std::size_t most() const override { return most_; }
   Result<void> ask(std::span<const GridPose> poses) override;
+  Result<void> touch(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override;
   DeviceWork work() const override { return work_; }
   std::uint64_t memory_bytes() const override { return buffers_.owned_bytes(); }
 
@@ -65,7 +66,10 @@ class RecordedGrid final : public PoseGrid {
 
   Result<void> make_buffers();
   Result<void> record();
-  Result<void> submit(std::span<const GridPose> poses);
+  template <class Body>
+  Result<std::unique_ptr<CommandRecorder>> recorded(Body&& body);
+  Result<void> submit(const std::unique_ptr<CommandRecorder>& commands, std::size_t fields);
+  void finish(const FrameState& overflow);
   void read(std::span<const GridPose> poses);
   void read_pose(std::size_t number, const GridPose& asked);
   void grow(const std::array<std::uint32_t, kListCount>& asked, FrameState overflow);
@@ -82,13 +86,15 @@ class RecordedGrid final : public PoseGrid {
   std::unique_ptr<FrameDetection> detection_;
   std::optional<FrameField> field_;
   std::unique_ptr<CommandRecorder> commands_;
+  std::unique_ptr<CommandRecorder> touch_commands_;  ///< of touch(); null before the first
   std::vector<const ComputePipeline*> pipelines_;
   std::size_t most_ = 0;
   bool tables_clear_ = false;
   DeviceWork work_;
   std::vector<CommandRecorder::StageTime> times_;
 
-  std::vector<GridPose> asked_;  ///< those within the lattice
+  std::vector<GridPose> asked_;            ///< those within the lattice
+  std::vector<std::size_t> touch_places_;  ///< of touch(): theirs among all
   std::vector<FrameInput> inputs_;
   FrameDecoder decoder_;
   FrameResult result_{};  ///< of one pose, for the decoder
@@ -119,9 +125,9 @@ Result<void> RecordedGrid::make_buffers() {
   return field_->make_buffers(device_, capacity_, buffers_);
 }
 
-Result<void> RecordedGrid::record() {
-  commands_.reset();
-  pipelines_.clear();
+/// A command buffer with what `body(FrameRecorder&)` records behind the search and the sets.
+template <class Body>
+Result<std::unique_ptr<CommandRecorder>> RecordedGrid::recorded(Body&& body) {
   times_.reserve(kStages);
   auto commands = CommandRecorder::create(device_, kStages);
   if (!commands) return commands.error();
@@ -132,38 +138,43 @@ Result<void> RecordedGrid::record() {
   recorder.barrier();
   detection_->record(recorder);
   recorder.barrier();
-  field_->record(recorder);
+  body(recorder);
   pipelines_ = recorder.used();
-  if (auto r = out->end(); !r) return r;
-  commands_ = std::move(out);
+  if (auto r = out->end(); !r) return r.error();
+  return out;
+}
+
+Result<void> RecordedGrid::record() {
+  commands_.reset();
+  touch_commands_.reset();
+  auto commands = recorded([&](FrameRecorder& recorder) { field_->record(recorder); });
+  if (!commands) return commands.error();
+  commands_ = std::move(*commands);
   return {};
 }
 
-Result<void> RecordedGrid::submit(std::span<const GridPose> poses) {
+/// Of `inputs_`. `fields`: words of the fields of all poses that the last stage hands out.
+Result<void> RecordedGrid::submit(const std::unique_ptr<CommandRecorder>& commands, std::size_t fields) {
   if (!tables_clear_)
     if (auto r = buffers_.clear_tables(device_); !r) return r;
   tables_clear_ = false;  // until the batch has run to its end
-  const auto count = static_cast<std::uint32_t>(poses.size());
-  inputs_.clear();
-  for (const GridPose& asked : poses) {
-    inputs_.push_back(frame_input(asked.pose));
-    inputs_.back().coarser = asked.coarser;
-  }
+  const auto count = static_cast<std::uint32_t>(inputs_.size());
   BatchLists lists{};
   for (std::size_t i = 0; i < kListCount; ++i) lists.anew.lists[i].capacity = capacity_.lists[i];
   lists.anew.lists[kListPoses].count = count;
-  lists.anew.result = dispatch_of_items(std::max(count * kFieldWords, kListCount));
+  lists.anew.result = dispatch_of_items(
+      static_cast<std::uint32_t>(std::max({fields, inputs_.size(), std::size_t{kListCount}})));
   lists.cull = {detection_->cull_groups(), count, 1};
   buffers_[kBindBatchInputs].write(0, inputs_.data(), inputs_.size() * sizeof inputs_[0]);
   buffers_[kBindListsAnew].write(0, &lists, sizeof lists);
   work_.bytes_up += inputs_.size() * sizeof inputs_[0] + sizeof lists;
-  if (!commands_) return Error{ErrorCode::kInternal, "the batch could not be recorded when it was enlarged"};
-  if (auto r = commands_->submit(); !r) return r;
-  if (auto r = commands_->wait(); !r) return r;
+  if (!commands) return Error{ErrorCode::kInternal, "the batch could not be recorded when it was enlarged"};
+  if (auto r = commands->submit(); !r) return r;
+  if (auto r = commands->wait(); !r) return r;
   ++work_.submissions;
-  work_.dispatches += commands_->dispatches();
-  work_.barriers += commands_->barriers();
-  return commands_->times(times_);
+  work_.dispatches += commands->dispatches();
+  work_.barriers += commands->barriers();
+  return commands->times(times_);
 }
 
 /// Counting sort of a list that the device has written, by pose.
@@ -229,6 +240,11 @@ void RecordedGrid::read(std::span<const GridPose> poses) {
     for (const auto& stage : times_)
       poses[i].out->times.push_back({stage.name, stage.us / static_cast<double>(poses.size())});
   }
+  finish(overflow);
+}
+
+/// `overflow`: of all poses together.
+void RecordedGrid::finish(const FrameState& overflow) {
   tables_clear_ = (overflow.overflow | overflow.overflow_other) == 0;
   if (overflow.overflow == 0) return;
   std::array<std::uint32_t, kListCount> asked{};
@@ -259,10 +275,50 @@ Result<void> RecordedGrid::ask(std::span<const GridPose> poses) {
     if (!one.pose.beyond_lattice) asked_.push_back(one);
   }
   if (asked_.empty()) return {};
+  inputs_.clear();
+  for (const GridPose& asked : asked_) {
+    inputs_.push_back(frame_input(asked.pose));
+    inputs_.back().coarser = asked.coarser;
+  }
   const auto submitted = Clock::now();
-  const Result<void> done = submit(asked_);
+  const Result<void> done = submit(commands_, asked_.size() * kFieldWords);
   const double waited = us_since(submitted);
   if (done) read(asked_);
+  work_.host_us += us_since(start) - waited;
+  return done;
+}
+
+Result<void> RecordedGrid::touch(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
+  const auto start = Clock::now();
+  touch_places_.clear();
+  inputs_.clear();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    bits[i] = 0;
+    if (poses[i].beyond_lattice) continue;
+    touch_places_.push_back(i);
+    inputs_.push_back(frame_input(poses[i]));
+  }
+  if (inputs_.empty()) return {};
+  if (!touch_commands_) {
+    auto commands = recorded([&](FrameRecorder& recorder) { field_->record_touch(recorder); });
+    if (!commands) return commands.error();
+    touch_commands_ = std::move(*commands);
+  }
+  const auto submitted = Clock::now();
+  const Result<void> done = submit(touch_commands_, 0);
+  const double waited = us_since(submitted);
+  if (done) {
+    const auto* states = buffers_[kBindResultStates].as<FrameState>();
+    FrameState overflow{};
+    for (std::size_t k = 0; k < touch_places_.size(); ++k) {
+      overflow.overflow |= states[k].overflow;
+      overflow.overflow_other |= states[k].overflow_other;
+      const bool open = (states[k].overflow | states[k].overflow_other) != 0;
+      bits[touch_places_[k]] = open ? kOpen : static_cast<std::uint8_t>(states[k].contact);
+    }
+    work_.bytes_down += touch_places_.size() * sizeof(FrameState) + sizeof FrameResult::asked;
+    finish(overflow);
+  }
   work_.host_us += us_since(start) - waited;
   return done;
 }

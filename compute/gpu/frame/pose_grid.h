@@ -39,6 +39,10 @@ class PoseGrid {
   /// Answers up to most() poses. One that the lists had no room for is `truncated`, for a lone frame to
   /// answer; they have grown when this comes back. Error: the device failed, and no answer counts.
   virtual Result<void> ask(std::span<const GridPose> poses) = 0;
+  /// Whether the tool touches at up to most() poses: bits[i] is 0 or 1, or kOpen where the lists had no room,
+  /// for a lone frame to answer. Error: as ask().
+  virtual Result<void> touch(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) = 0;
+  static constexpr std::uint8_t kOpen = 2;
   /// As Frame::work and Frame::memory_bytes.
   virtual DeviceWork work() const = 0;
   virtual std::uint64_t memory_bytes() const = 0;
