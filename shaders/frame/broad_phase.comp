@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // The search: what of tool and mock-up may meet at the pose. It may name too much, never too little.
 // A run is 8 tool triangles, a cluster is 8 runs (kRunSize, kClusterSize); a brick is 8 x 8 x 8 voxels.
-//  - The first workgroups look for runs of the tool that come near what is not V_ext. Each has kGroupSize
-//    clusters: an invocation asks one cluster, and then runs of those clusters that are near.
+//  - The first workgroups look for runs of the tool that come near what is not V_ext. Each has CLUSTERS:
+//    an invocation asks one cluster, and then runs of those clusters that are near.
 //  - The other BRICK_GROUPS look for V_bnd voxels of the mock-up that the tool's solid may reach into, and so
 //    for samples. They take in turn the bricks that the tool's fine grid may meet, BRICKS_AT_ONCE in a round:
 //    an invocation asks one brick, and all of them then voxels of those bricks that are near, brick by brick.
@@ -15,6 +15,7 @@ layout(constant_id = 0) const uint32_t SAMPLES = 2u;   // 1: chunks of voxels' l
 layout(constant_id = 1) const bool HAS_NEAR = true;    // false: tool_near says nothing
 layout(constant_id = 2) const uint32_t BRICK_GROUPS = 2u;   // workgroups that look for bricks, …
 layout(constant_id = 3) const uint32_t BRICKS_AT_ONCE = 64u;   // … each so many in a round, kGroupSize at most
+layout(constant_id = 4) const uint32_t CLUSTERS = 64u;   // of a workgroup, kGroupSize at most
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
@@ -69,11 +70,12 @@ void append_parts(uint32_t run, ivec3 first, ivec3 last) {
       }
 }
 
-void cull_tool(uint32_t lane, uint32_t cluster) {
+void cull_tool(uint32_t lane, uint32_t group) {
   const uint32_t runs = (scene.tool.triangles + kRunSize - 1u) / kRunSize,
                  clusters = (scene.tool.triangles + kClusterSize - 1u) / kClusterSize;
+  const uint32_t cluster = group * CLUSTERS + lane;
   ivec3 first, last;
-  if (cluster < clusters && is_near(cluster, first, last)) near_items[atomicAdd(near_count, 1u)] = cluster;
+  if (lane < CLUSTERS && cluster < clusters && is_near(cluster, first, last)) near_items[atomicAdd(near_count, 1u)] = cluster;
   barrier();
   const uint32_t each = kClusterSize / kRunSize;
   for (uint32_t i = lane; i < each * near_count; i += kGroupSize) {
@@ -171,12 +173,12 @@ void cull_samples(uint32_t lane, uint32_t group) {
 
 void main() {
   const uint32_t lane = gl_LocalInvocationIndex, group = BATCH ? gl_WorkGroupID.x : flat_group();
-  const uint32_t all = kClusterSize * kGroupSize, tool_groups = (scene.tool.triangles + all - 1u) / all;
+  const uint32_t all = kClusterSize * CLUSTERS, tool_groups = (scene.tool.triangles + all - 1u) / all;
   take_pose(gl_WorkGroupID.y);
   if (lane == 0u) near_count = 0u;
   barrier();
   if (group < tool_groups)
-    cull_tool(lane, group * kGroupSize + lane);
+    cull_tool(lane, group);
   else if (SAMPLES != 0u)
     cull_samples(lane, group - tool_groups);
 }

@@ -11,8 +11,9 @@
 
 namespace palpate {
 
-/// How finely a frame's work is cut: the constants of shaders/lib/frame.glsl.
+/// How finely a frame's work is cut: the constants of shaders/lib/frame.glsl, and those of the search.
 struct WorkCut {
+  std::uint32_t clusters, brick_groups, bricks_at_once;
   std::uint32_t lanes, runs_a_group, pair_chunk, listed_chunk, field_tile;
 };
 

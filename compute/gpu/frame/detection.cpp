@@ -185,19 +185,18 @@ Result<void> FrameDetection::upload_bounds(VulkanDevice& device, const LatticeMe
 }
 
 Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
-  // llvmpipe takes its time for one without work, too; of a batch other poses keep a device busy.
-  const bool few = device.shares_memory() || batch_;
-  if (few) brick_groups_ = 2;
+  cut_ = work_cut(device, batch_);
   std::vector<SpecConstant> plan = plan_constants(plan_);
-  add_constants(work_cut(device, batch_), plan);
+  add_constants(cut_, plan);
   if (batch_) plan.push_back({kBatchConstant, 1});
   const SpecConstant of_tool[] = {{0, closed_ ? 1u : 0u}}, of_points[] = {{0, wide_ ? 1u : 0u}},
                      of_search[] = {{0, !inside_  ? 0u
                                         : listed_ ? 2u
                                                   : 1u},
                                     {1, has_near_ ? 1u : 0u},
-                                    {2, brick_groups_},
-                                    {3, few ? kGroupSize : kBricksAtOnce}};
+                                    {2, cut_.brick_groups},
+                                    {3, cut_.bricks_at_once},
+                                    {4, cut_.clusters}};
   struct Made {
     FrameShader* shader;
     const ShaderCode* code;
@@ -229,10 +228,8 @@ Result<void> FrameDetection::make_shaders(VulkanDevice& device) {
 }
 
 std::uint32_t FrameDetection::cull_groups() const {
-  const auto groups = [](std::size_t items) {
-    return static_cast<std::uint32_t>((items + kGroupSize - 1) / kGroupSize);
-  };
-  return groups((order_.size() + kClusterSize - 1) / kClusterSize) + (inside_ ? brick_groups_ : 0);
+  const std::size_t all = std::size_t{kClusterSize} * cut_.clusters;
+  return static_cast<std::uint32_t>((order_.size() + all - 1) / all) + (inside_ ? cut_.brick_groups : 0);
 }
 
 void FrameDetection::record(FrameRecorder& recorder) const {

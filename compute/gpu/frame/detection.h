@@ -59,10 +59,7 @@ class FrameDetection {
   bool closed_ = false;  ///< the tool's surface, in `refined`: open samples ask for the winding
   bool listed_ = false;  ///< samples were listed by preparation …
   bool wide_ = false;    ///< … three words each
-  // Of broad_phase on a GPU (chosen): near bricks lie side by side, and a workgroup takes one after the
-  // other.
-  static constexpr std::uint32_t kBricksAtOnce = 1;
-  std::uint32_t brick_groups_ = 2048;
+  WorkCut cut_{};
   bool has_near_ = false;  ///< tool_near says something
   std::vector<std::uint32_t> order_;
   FrameShader broad_phase_, voxel_touch_, pair_test_, tool_clusters_place_, sample_scan_, sample_listed_,

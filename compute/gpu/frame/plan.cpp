@@ -5,10 +5,25 @@
 namespace palpate {
 namespace {
 
-// A GPU has far more invocations than a contact has parts, and each waits for its loads; other poses keep it
-// busy in a batch. llvmpipe pays for each workgroup and barrier.
-constexpr WorkCut kFine{.lanes = 64, .runs_a_group = 1, .pair_chunk = 4, .listed_chunk = 4, .field_tile = 16},
-    kCoarse{.lanes = 1, .runs_a_group = 8, .pair_chunk = 16, .listed_chunk = 16, .field_tile = 64};
+// A GPU has far more invocations than a contact has parts, and each waits for its loads: what one does after
+// the other is what a frame takes. In a batch other poses keep it busy. llvmpipe pays for each workgroup,
+// without work, too, and for barriers.
+constexpr WorkCut kFine{.clusters = 8,
+                        .brick_groups = 2048,
+                        .bricks_at_once = 1,
+                        .lanes = 64,
+                        .runs_a_group = 1,
+                        .pair_chunk = 4,
+                        .listed_chunk = 4,
+                        .field_tile = 16},
+    kCoarse{.clusters = 64,
+            .brick_groups = 2,
+            .bricks_at_once = 64,
+            .lanes = 1,
+            .runs_a_group = 8,
+            .pair_chunk = 16,
+            .listed_chunk = 16,
+            .field_tile = 64};
 
 }  // namespace
 
