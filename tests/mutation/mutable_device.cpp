@@ -49,8 +49,9 @@ Words bound_alike(const Words& original, Words mutant, const Words& numbered) {
 
 }  // namespace
 
-MutableDevice::MutableDevice() {
+MutableDevice::MutableDevice(bool as_gpu) {
   GpuOptions options;
+  options.own_memory = as_gpu;
   options.guard_buffers = true;
   auto device = VulkanDevice::create(options);
   if (!device) throw std::runtime_error(device.error().sentence);

@@ -20,8 +20,9 @@ namespace palpate::mutation {
 /// prepared of a geometry by the unchanged modules is kept, for mutants that run in frames only.
 class MutableDevice final : public CollisionBackend {
  public:
-  /// Throws std::runtime_error where there is no device.
-  MutableDevice();
+  /// `as_gpu`: frames run as on a GPU with memory of its own. Throws std::runtime_error where there is no
+  /// device.
+  explicit MutableDevice(bool as_gpu);
 
   Result<void> prepare(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) override;
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override;

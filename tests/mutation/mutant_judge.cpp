@@ -285,8 +285,9 @@ void ready(const Oracle& oracle) {
 
 using Words = std::vector<std::string>;
 
-void judge_shaders(const std::string& root, bool killers, bool probes_alone, const Words& without) {
-  MutableDevice device;
+void judge_shaders(const std::string& root, bool killers, bool probes_alone, bool as_gpu,
+                   const Words& without) {
+  MutableDevice device(as_gpu);
   int put_aside = 0;
   Oracle oracle(device, killers, without, [&](bool begins) {
     if (!begins) {
@@ -337,13 +338,15 @@ void judge_reference(bool killers, const Words& without) {
 
 int main(int count, char** arguments) {
   const std::vector<std::string> words(arguments + 1, arguments + count);
-  const bool killers = std::find(words.begin(), words.end(), "--killers") != words.end();
-  const bool probes_alone = std::find(words.begin(), words.end(), "--probes") != words.end();
+  const auto has = [&](const char* word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  const bool killers = has("--killers"), probes_alone = has("--probes"), as_gpu = has("--as-gpu");
   const auto left_out = std::find(words.begin(), words.end(), "--without");
   const std::vector<std::string> without(left_out == words.end() ? left_out : left_out + 1, words.end());
   try {
     if (words.size() >= 2 && words[0] == "gpu")
-      palpate::mutation::judge_shaders(words[1], killers, probes_alone, without);
+      palpate::mutation::judge_shaders(words[1], killers, probes_alone, as_gpu, without);
     else
       palpate::mutation::judge_reference(killers, without);
     return 0;

@@ -289,6 +289,11 @@ def main():
         action="store_true",
         help="ask shaders' mutants the probes of tests/compute alone: a first pass of seconds",
     )
+    arguments.add_argument(
+        "--as-gpu",
+        action="store_true",
+        help="shaders run as on a GPU with memory of its own: teams of invocations, work cut finely",
+    )
     arguments.add_argument("--known", action="store_true", help="judge nothing: only what the cache knows")
     options = arguments.parse_args()
 
@@ -296,7 +301,9 @@ def main():
     if options.sample:
         jobs = jobs[:: max(1, len(jobs) // options.sample)]
     known = json.loads(options.cache.read_text()) if options.cache and options.cache.exists() else {}
-    flags = [f"--{name}" for name in ("killers", "probes") if getattr(options, name)]
+    flags = [
+        f"--{name}" for name in ("killers", "probes", "as-gpu") if getattr(options, name.replace("-", "_"))
+    ]
     version = oracle_version() + "".join(f" {flag[2:]}" for flag in flags)
     for job in jobs:
         row = known.get(job.key)

@@ -43,36 +43,46 @@ std::vector<std::size_t> batch_sizes(std::size_t largest) {
   return sizes;
 }
 
-Result<void> to_lattice_poses(const HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
+Result<void> ask_touches(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
+  const Stopwatch watch(false);
   out.poses.clear();
   for (const Pose& pose : poses) {
     const auto lattice = to_lattice(pose, scene.loaded.geometry);
     if (!lattice) return lattice.error();
     out.poses.push_back(*lattice);
   }
-  return {};
-}
-
-Result<void> ask_touches(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
-  const Stopwatch watch(false);
-  if (auto done = to_lattice_poses(scene, poses, out); !done) return done;
   std::vector<std::uint8_t> bits(poses.size());
   if (auto done = scene.backend->touches(out.poses, bits); !done) return done;
   out.total_us = watch.us();
   return {};
 }
 
-/// Frames of a batch as a session asks for them: contacts and responses.
+/// Frames of a batch: contacts and responses, piece by piece on all threads, as the library asks for them.
 Result<void> ask_frames(HostedScene& scene, std::span<const Pose> poses, BatchAnswer& out) {
   const Stopwatch watch(false);
+  const SceneGeometry& geometry = scene.loaded.geometry;
   const ResponseSettings& settings = scene.loaded.scene.response;
-  if (auto done = to_lattice_poses(scene, poses, out); !done) return done;
+  out.poses.resize(poses.size());
   out.contacts.resize(poses.size());
   out.responses.resize(poses.size());
-  if (auto done = scene.backend->query_batch(out.poses, out.contacts); !done) return done;
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    respond(out.contacts[i], out.poses[i], scene.loaded.geometry, settings.profile,
-            settings.stiffness_n_per_m, out.responses[i]);
+  const std::size_t each = scene.backend->poses_together(poses.size());
+  const auto ask = [&](PoseQuery& asked, std::size_t piece) -> Result<void> {
+    const std::size_t first = piece * each, count = std::min(each, poses.size() - first);
+    std::vector<Contacts*> contacts;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const auto lattice = to_lattice(poses[i], geometry);
+      if (!lattice) return lattice.error();
+      out.poses[i] = *lattice;
+      contacts.push_back(&out.contacts[i]);
+    }
+    if (auto done = asked.query_together(std::span(out.poses).subspan(first, count), contacts); !done)
+      return done;
+    for (std::size_t i = first; i < first + count; ++i)
+      respond(out.contacts[i], out.poses[i], geometry, settings.profile, settings.stiffness_n_per_m,
+              out.responses[i]);
+    return {};
+  };
+  if (auto done = scene.backend->share((poses.size() + each - 1) / each, ask); !done) return done;
   out.total_us = watch.us();
   return {};
 }
