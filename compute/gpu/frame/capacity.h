@@ -11,10 +11,16 @@
 
 namespace palpate {
 
-/// How finely a frame's work is cut: the constants of shaders/lib/frame.glsl, and those of the search.
+/// How finely a frame's work is cut: constants of shaders/frame/broad_phase.comp and shaders/lib/frame.glsl.
 struct WorkCut {
-  std::uint32_t clusters, brick_groups, bricks_at_once;
-  std::uint32_t lanes, runs_a_group, pair_chunk, listed_chunk, field_tile;
+  std::uint32_t clusters;        ///< of the tool, a workgroup of the search
+  std::uint32_t brick_groups;    ///< workgroups that look for bricks of the mock-up
+  std::uint32_t bricks_at_once;  ///< by one of them
+  std::uint32_t lanes;           ///< invocations a sample; 1, or a multiple of 8 that divides 64
+  std::uint32_t runs_a_group;    ///< of tool triangles, a workgroup
+  std::uint32_t pair_chunk;      ///< entries of a voxel's list
+  std::uint32_t listed_chunk;    ///< samples of a voxel
+  std::uint32_t field_tile;      ///< cells of a tool triangle's sample grid
 };
 
 /// What a frame of a scene can ask for.
