@@ -52,7 +52,8 @@ std::vector<std::uint32_t> tree_words(const LatticeMesh& mesh, const std::functi
     words[kTreeBegin + level] = kTreeHeaderWords + kTreeGroupWords * tree.level_begin[level];
     words[kTreeNodes + level] = tree.nodes(level);
   }
-  std::memcpy(words.data() + kTreeHeaderWords, tree.boxes.data(), sizeof tree.boxes[0] * tree.boxes.size());
+  if (!tree.boxes.empty())
+    std::memcpy(words.data() + kTreeHeaderWords, tree.boxes.data(), sizeof tree.boxes[0] * tree.boxes.size());
   words.insert(words.end(), tree.order.begin(), tree.order.end());
   return words;
 }
