@@ -108,9 +108,9 @@ class CollisionBackend : public PoseQuery {
     return {};
   }
 
-  /// Whether query() is to tell the times of a frame's stages also where the plan is nobody's who watches: on
-  /// a device a frame takes longer that tells them. False: this engine tells them always. Not while a query
-  /// runs.
+  /// True: from now on query() tells the times of a frame's stages under a plan without telemetry, too. On a
+  /// device such a frame takes longer. Returns false where the engine tells them always, and nothing changes.
+  /// Not while a query runs.
   virtual bool time_stages(bool) { return false; }
 
   /// How many of so many poses a piece of share() best asks together; 1: nothing is gained by it. May set

@@ -88,7 +88,7 @@ PALPATE_CONSTANT int32_t kBindFrameInput = 32;    // FrameInput, one; mapped, wr
 PALPATE_CONSTANT int32_t kBindFrameLists = 33;    // FrameList[kListCount]
 PALPATE_CONSTANT int32_t kBindFrameState = 34;    // FrameState, one
 PALPATE_CONSTANT int32_t kBindDispatches = 35;    // DispatchArguments[kDispatchCount]: of `paper`'s response
-PALPATE_CONSTANT int32_t kBindListedGroups = 39;  // DispatchArguments: kGroupsStatics, kGroupsOpen
+PALPATE_CONSTANT int32_t kBindListedGroups = 39;  // DispatchArguments: kGroupsPairs, kGroupsOpen
 PALPATE_CONSTANT int32_t kBindMembersGroups =
     46;  // one: an invocation a slot of C_s, a member of C_m, a sample
 PALPATE_CONSTANT int32_t kBindPlacedGroups = 56;  // one: kFieldTileLanes invocations a tile

@@ -47,7 +47,7 @@ PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
 PALPATE_CONSTANT uint32_t kListMockupPoints = 17u;
 PALPATE_CONSTANT uint32_t kListToolPoints = 18u;
 
-PALPATE_CONSTANT uint32_t kMostTiles = 256u;     // of a triangle: where it is large, tiles are larger
+PALPATE_CONSTANT uint32_t kMostTiles = 256u;     // of a triangle (chosen): where it is large, tiles are
 PALPATE_CONSTANT uint32_t kFieldTileLanes = 8u;  // invocations that go through it (chosen: most triangles
                                                  // have no more cells, and llvmpipe takes eight at once)
 PALPATE_CONSTANT uint32_t kExtraTile = 16u;      // most extra samples of a tile

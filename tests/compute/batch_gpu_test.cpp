@@ -121,6 +121,29 @@ TEST_P(Batch, OfEverySizeIsTheBitsOfSingleQueries) {
   }
 }
 
+// Asked without the field; what a grid's lists have no room for a lone frame answers.
+TEST(Touches, AreTheContactOfSingleQueries) {
+  const Subject scene = subject("disassembly", 4000, 260);
+  for (const bool small : {false, true}) {
+    GpuOptions options;
+    if (small) options.first_capacity = {{"lists of touched voxels", 40}};
+    const auto backend = prepared(options, scene);
+    const std::vector<Contacts> all = singles(*backend, scene.poses);
+    std::size_t touching = 0;
+    for (const std::size_t size : {257u, 1u, 64u, 257u}) {
+      SCOPED_TRACE(size);
+      std::vector<std::uint8_t> bits(size, 7);
+      const auto done = backend->touches(std::span(scene.poses).first(size), bits);
+      ASSERT_TRUE(done) << done.error().sentence;
+      for (std::size_t i = 0; i < size; ++i) {
+        EXPECT_EQ(bits[i], all[i].contact ? 1 : 0) << "pose " << i;
+        touching += bits[i];
+      }
+    }
+    EXPECT_GT(touching, 60u);
+  }
+}
+
 // A pose that is more than a frame may ever take (`paper`: 289 areas) is cut short alone.
 TEST_P(Batch, AnOverflowThatNoRoomMendsHarmsNoOtherPose) {
   Mesh posts;

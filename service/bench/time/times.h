@@ -46,7 +46,7 @@ class TimeTable {
  public:
   /// Adds a frame's total, its stages, as `host` what is left, and what it asked of a device.
   void add(const Contacts& contacts, double total_us, const DeviceWork& work);
-  /// A frame's stages alone, `total_us` of which nobody counts.
+  /// A frame's stages, and as `host` what of `total_us` is left; the total itself is not added.
   void add_stages(const Contacts& contacts, double total_us);
   void add(FrameKind kind, double total_us) { put(kind, "total", total_us); }
   void add(FrameKind kind, double total_us, const DeviceWork& work);  ///< a frame without its stages

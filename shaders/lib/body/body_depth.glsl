@@ -3,7 +3,7 @@
 // boxes or triangles of a node at a time. Floats say which triangles may be the nearest; integers decide among
 // those few at the end.
 // The including shader has what lib/body/body.glsl asks for, ivec3 body_normals[], uint32_t body_tree[]
-// (TreeHeader and what follows) and frame_state (writable).
+// (kTreeTriangles … of shared/scene.h) and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_DEPTH
 #define PALPATE_LIB_BODY_DEPTH
 #include "shaders/shared/frame_field.h"

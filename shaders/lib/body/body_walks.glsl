@@ -1,6 +1,6 @@
 // Whether a lattice point in a V_bnd voxel lies inside a body that does not move, in its own frame
-// (docs/EXACTNESS.md section 4). A team goes the same way; each invocation counts its share of what a voxel lists,
-// and team_sum() tells.
+// (docs/EXACTNESS.md section 4). A team goes the same way; each invocation counts its share of what a voxel
+// lists, and team_sum() tells.
 // The including shader has what lib/body/body.glsl asks for, int32_t body_shells[] and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_WALKS
 #define PALPATE_LIB_BODY_WALKS
@@ -19,8 +19,8 @@ void body_corners(uint32_t id, out ivec3 a, out ivec3 b, out ivec3 c) {
 }
 
 // Σ of what the way from one point to another crosses of the invocation's share of what a voxel lists;
-// `sheets`: of those in sheets, too. Floats say it first, for llvmpipe runs exact tests for all lanes that stand side by side as
-// soon as one asks: what they leave open, a bit each, is then asked by itself.
+// `sheets`: of those in sheets, too. Floats say it first, for llvmpipe runs exact tests for all lanes that
+// stand side by side as soon as one asks: what they leave open, a bit each, is then asked by itself.
 int32_t body_crossings(ivec3 from, ivec3 to, uint32_t boundary, bool sheets) {
   const ivec3 low = min(from, to), high = max(from, to);
   const uint32_t last = body_list_begin[boundary + 1u];
