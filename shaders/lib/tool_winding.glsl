@@ -13,43 +13,19 @@
 #include "shaders/lib/body/body.glsl"
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/pose.glsl"
-#include "shaders/lib/segment.glsl"
-#include "shaders/lib/segment_estimate.glsl"
-#include "shaders/lib/team.glsl"
+#include "shaders/lib/body/listed_crossings.glsl"
 #include "shaders/lib/tool_record.glsl"
 
-// Corners of an entry of the lists at the pose.
-void posed_corners(uint32_t entry, out ivec3 a, out ivec3 b, out ivec3 c) {
+// Corners of an entry of the lists at the pose. All count.
+bool posed_corners(uint32_t entry, bool sheets, out ivec3 a, out ivec3 b, out ivec3 c) {
   const RecordCorners t = record_at(fine_places[entry]);
   a = world_from_tool(t.a);
   b = world_from_tool(t.b);
   c = world_from_tool(t.c);
+  return true;
 }
 
-// Σ of what the way from one point to another crosses of the invocation's share of what a voxel lists: as
-// body_crossings().
-int32_t posed_crossings(ivec3 from, ivec3 to, uint32_t boundary) {
-  const ivec3 low = min(from, to), high = max(from, to);
-  const uint32_t last = body_list_begin[boundary + 1u];
-  int32_t net = 0;
-  for (uint32_t first = body_list_begin[boundary] + team_part(); first < last && !spent(1u); first += 32u * LANES) {
-    uint32_t unsure = 0u;
-    ivec3 a, b, c;
-    for (uint32_t i = 0u; i < 32u && first + i * LANES < last && !spent(1u); ++i) {
-      posed_corners(first + i * LANES, a, b, c);
-      if (any(greaterThan(min(min(a, b), c), high)) || any(lessThan(max(max(a, b), c), low))) continue;
-      const int32_t crossing = segment_estimate(from, to, a, b, c);
-      if (crossing == kUnsure) unsure |= 1u << i;
-      else net += crossing;
-    }
-    while (unsure != 0u && !spent(1u)) {
-      posed_corners(first + uint32_t(findLSB(unsure)) * LANES, a, b, c);
-      unsure &= unsure - 1u;
-      net += segment_crossing(from, to, a, b, c);
-    }
-  }
-  return net;
-}
+LISTED_CROSSINGS(posed_crossings, posed_corners)
 
 int32_t tool_winding(ivec3 point) {
   ivec3 from = point, to = point, at = tool_from_world(point);
@@ -64,7 +40,7 @@ int32_t tool_winding(ivec3 point) {
     from = to;
     at[axis] = BODY_GRID.origin[axis] + BODY_GRID.size * (voxel[axis] + up);
     to = world_from_tool(at);
-    if (boundary != kNoVoxel && from != to) winding += posed_crossings(from, to, boundary);
+    if (boundary != kNoVoxel && from != to) winding += posed_crossings(from, to, boundary, true);
     voxel[axis] += 2 * up - 1;
   }
   return winding;

@@ -6,46 +6,20 @@
 #define PALPATE_LIB_BODY_WALKS
 #include "shaders/lib/body/body.glsl"
 #include "shaders/lib/budget.glsl"
-#include "shaders/lib/segment.glsl"
-#include "shaders/lib/segment_estimate.glsl"
-#include "shaders/lib/team.glsl"
+#include "shaders/lib/body/listed_crossings.glsl"
 
-// Corners of a body's triangle.
-void body_corners(uint32_t id, out ivec3 a, out ivec3 b, out ivec3 c) {
+// Corners of an entry of the lists. False: it does not count. `sheets`: those of sheets do.
+bool body_corners(uint32_t entry, bool sheets, out ivec3 a, out ivec3 b, out ivec3 c) {
+  const uint32_t id = body_list[entry];
+  if (!sheets && !body_bounds_solid(id)) return false;
   const uvec3 corners = body_triangles[id];
   a = body_vertices[corners.x];
   b = body_vertices[corners.y];
   c = body_vertices[corners.z];
+  return true;
 }
 
-// Σ of what the way from one point to another crosses of the invocation's share of what a voxel lists;
-// `sheets`: of those in sheets, too. Floats say it first, for llvmpipe runs exact tests for all lanes that
-// stand side by side as soon as one asks: what they leave open, a bit each, is then asked by itself.
-int32_t body_crossings(ivec3 from, ivec3 to, uint32_t boundary, bool sheets) {
-  const ivec3 low = min(from, to), high = max(from, to);
-  const uint32_t last = body_list_begin[boundary + 1u];
-  int32_t net = 0;
-  for (uint32_t first = body_list_begin[boundary] + team_part(); first < last && !spent(1u); first += 32u * LANES) {
-    uint32_t unsure = 0u;
-    ivec3 a, b, c;
-    for (uint32_t i = 0u; i < 32u && first + i * LANES < last && !spent(1u); ++i) {
-      const uint32_t id = body_list[first + i * LANES];
-      if (!sheets && !body_bounds_solid(id)) continue;
-      body_corners(id, a, b, c);
-      // A perturbed segment that crosses a triangle touches its closed box.
-      if (any(greaterThan(min(min(a, b), c), high)) || any(lessThan(max(max(a, b), c), low))) continue;
-      const int32_t crossing = segment_estimate(from, to, a, b, c);
-      if (crossing == kUnsure) unsure |= 1u << i;
-      else net += crossing;
-    }
-    while (unsure != 0u && !spent(1u)) {
-      body_corners(body_list[first + uint32_t(findLSB(unsure)) * LANES], a, b, c);
-      unsure &= unsure - 1u;
-      net += segment_crossing(from, to, a, b, c);
-    }
-  }
-  return net;
-}
+LISTED_CROSSINGS(body_crossings, body_corners)
 
 // A body that is not closed: the point is inside where the team's sum is above 0. In how many shells the
 // voxel's middle is, as preparation has asked six walks (compute/gpu/prepare/shells.cpp), and what lies
