@@ -503,6 +503,44 @@ def test_a_near_pose_is_answered_from_the_one_before_and_a_pose_alone_as_a_query
             expect(refused['type'] == 'error' and refused['problem']['field'] == 'near', refused)
 
 
+def test_planes_say_what_pushes_where_the_tool_is():
+    folder, arguments = rooted()
+    pressed = [0.0003, 0, 0.018, 0.02, 0.01, 0, 0.99975]
+    with Server(*arguments) as server:
+        name = named(server)
+        (felt,) = lines_of(
+            palpate('query', folder / 'scene.json', '--pose', ' '.join(map(str, pressed)), '--backend', 'cpu')
+        )
+        with WebSocket(server, f'/v1/scenes/{name}/haptic') as loop:
+            loop.json()
+
+            def ask(seq, pose, **more):
+                loop.send({'type': 'pose', 'seq': seq, 'pose': pose, **more})
+                return loop.json()
+
+            # Where the spring holds the tool of a hand at `pressed`, the field pushes as much as is felt.
+            there = ask(1, felt['tool'], planes=True)
+            expect(there['areas'] == [] and len(there['planes']) > 1, there)
+            size = math.hypot(*felt['force'])
+            expect(math.dist(there['force'], felt['force']) < 1e-4 * size, (there, felt))
+            for told, part in (('force', 'normal'), ('torque', 'lever')):
+                total = [sum(p['force'] * p[part][k] for p in there['planes']) for k in range(3)]
+                expect(math.dist(total, there[told]) < 1e-9 * size, (told, total, there))
+            expect(
+                all(p['stiffness'] > 0 and abs(math.hypot(*p['normal']) - 1) < 1e-9 for p in there['planes']),
+                there,
+            )
+            # Nothing is felt through a spring: no balance is looked for, and the next answer has one again.
+            framed = ask(2, felt['tool'], planes=True, full=True)
+            expect('evaluations' not in framed['frame'] and framed['force'] == there['force'], framed)
+            plain = ask(3, pressed)
+            expect(plain['force'] == felt['force'] and 'planes' not in plain, plain)
+            free = ask(4, [0, 0, 1, 0, 0, 0, 1], planes=True)
+            expect(not free['contact'] and free['planes'] == [], free)
+            refused = ask(5, pressed, planes=1)
+            expect(refused['type'] == 'error' and refused['problem']['field'] == 'planes', refused)
+
+
 def test_sigterm_in_mid_session_sends_zero_force_tells_clients_and_exits_0():
     folder, arguments = rooted()
     simulated(folder)

@@ -34,7 +34,7 @@ struct PoseMessage {
   std::uint64_t seq = 0;
   double time = 0;
   Pose pose;
-  bool full = false, near = false, binary = false;
+  bool full = false, near = false, planes = false, binary = false;
   Clock::time_point arrived{};
 };
 
@@ -52,7 +52,7 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
     out.pose = std::get<Pose>(pose);
     return out;
   }
-  const auto read = read_json_object(data, depth, {"type", "seq", "time", "pose", "full", "near"});
+  const auto read = read_json_object(data, depth, {"type", "seq", "time", "pose", "full", "near", "planes"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
   if (!json.contains("type") || json["type"] != "pose")
@@ -64,13 +64,12 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
     if (!json["time"].is_number()) return bad_request("\"time\" is no number", "time");
     out.time = json["time"];
   }
-  if (json.contains("full")) {
-    if (!json["full"].is_boolean()) return bad_request("\"full\" is neither true nor false", "full");
-    out.full = json["full"];
-  }
-  if (json.contains("near")) {
-    if (!json["near"].is_boolean()) return bad_request("\"near\" is neither true nor false", "near");
-    out.near = json["near"];
+  for (const auto& [key, value] :
+       {std::pair{"full", &out.full}, {"near", &out.near}, {"planes", &out.planes}}) {
+    if (!json.contains(key)) continue;
+    if (!json[key].is_boolean())
+      return bad_request(fmt::format("\"{}\" is neither true nor false", key), key);
+    *value = json[key];
   }
   const auto pose = pose_from_json(json.contains("pose") ? json["pose"] : nlohmann::json(), "pose");
   if (const auto* problem = std::get_if<Problem>(&pose)) return *problem;
@@ -112,6 +111,18 @@ std::vector<AreaResponse> felt_area(const ContactResponse& response, double stif
   return {area};
 }
 
+/// Appends what pushes at the pose and how that gives way, as a session's control law gets it.
+void put_planes(const PlaneSet& set, std::string& out) {
+  out += R"(,"planes":[)";
+  for (std::uint32_t i = 0; i < set.plane_count; ++i) {
+    const ContactPlane& plane = set.planes[i];
+    fmt::format_to(std::back_inserter(out), R"({}{{"normal":{},"lever":{},"force":{},"stiffness":{}}})",
+                   i ? "," : "", json_text(plane.normal), json_text(plane.lever), json_text(plane.force),
+                   json_text(plane.stiffness));
+  }
+  out += "]";
+}
+
 /// What a loop hears last: nothing pushes any more.
 SocketMessage zero_wrench(const PoseMessage& pose, const Vec3& gc) {
   SocketMessage message;
@@ -137,11 +148,13 @@ struct RemoteLoops::Loop {
         lone((*use)->loaded.geometry, (*use)->loaded.scene.response.stiffness_n_per_m),
         field((*use)->loaded.scene.response.profile == Profile::kRefined) {}
 
-  /// The pose in `slot`. `near`: from the answer before on.
-  Result<void> solve(bool near) noexcept {
-    if (auto solved = frame.solve(slot, result); !solved || !field || !slot.response.contact) return solved;
+  /// The pose in `slot`: what would be felt there, unless its planes are wanted. `near`: from the answer
+  /// before on.
+  Result<void> solve(const PoseMessage& asked) noexcept {
+    if (auto solved = frame.solve(slot, result); !solved || !field || asked.planes || !slot.response.contact)
+      return solved;
     try {
-      return lone.feel(backend, frame.ignored(), slot.sample.pose, slot.response, near);
+      return lone.feel(backend, frame.ignored(), slot.sample.pose, slot.response, asked.near);
     } catch (const std::exception& error) {  // a library's, as in CollisionFrame::solve
       return Error{ErrorCode::kInternal, std::string("the collision query failed: ") + error.what()};
     } catch (...) {
@@ -305,7 +318,7 @@ void RemoteLoops::answer(Loop& loop) {
   }
   if (!pose) return;
   loop.slot.sample = {loop.count++, pose->pose};
-  const Result<void> solved = loop.solve(pose->near);
+  const Result<void> solved = loop.solve(*pose);
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - pose->arrived).count();
   ++metrics_.loop_poses;
   metrics_.loop_s.add(us / 1e6);
@@ -313,8 +326,9 @@ void RemoteLoops::answer(Loop& loop) {
   SocketMessage message;
   const Contacts& contacts = loop.slot.contacts;
   const ContactResponse& response = loop.slot.response;
-  const std::vector<AreaResponse> areas =
-      loop.field ? felt_area(response, (*loop.use)->loaded.scene.response.stiffness_n_per_m) : response.areas;
+  const double stiffness = (*loop.use)->loaded.scene.response.stiffness_n_per_m;
+  std::vector<AreaResponse> areas;
+  if (!pose->planes) areas = loop.field ? felt_area(response, stiffness) : response.areas;
   if (!solved) {
     ++metrics_.backend_errors;
     message = {error_message(Problem{500, "internal", solved.error().sentence, ""}), nullptr, false, true};
@@ -333,7 +347,7 @@ void RemoteLoops::answer(Loop& loop) {
       put_vector(area.normal);
       put_vector(area.point);
       put(area.depth);
-      put((*loop.use)->loaded.scene.response.stiffness_n_per_m);
+      put(stiffness);
     }
     message.binary = true;
   } else {
@@ -352,6 +366,7 @@ void RemoteLoops::answer(Loop& loop) {
                      json_text(area.depth), json_text(area.force), json_text(area.torque));
     }
     out += "]";
+    if (pose->planes) put_planes(loop.result, out);
     if (pose->full) {
       out += ",\"frame\":";
       append_query_line({.number = pose->seq,

@@ -48,6 +48,12 @@ function geometry() {
   ]);
 }
 
+/** An area of a frame as a plane about a pose's own place. */
+const plane_of = (pose) => ({normal, point, depth, force}) => {
+  const [x, y, z] = [0, 1, 2].map((k) => point[k] - pose[k]), [a, b, c] = normal, size = Math.hypot(...force);
+  return {normal, lever: [y * c - z * b, z * a - x * c, x * b - y * a], force: size, stiffness: size / depth};
+};
+
 const run_names = readdirSync(runs_folder).filter((name) => existsSync(join(runs_folder, name, 'trace.csv')));
 const lines = (file) => readFileSync(join(runs_folder, run_names[0], file), 'utf8').trim().split('\n');
 const rows = lines('trace.csv').slice(1).map((line) => line.split(',').map(Number));
@@ -314,7 +320,8 @@ createServer((request, response) => {
                 gc: pose.slice(0, 3),
                 force: near.force,
                 torque: near.torque,
-                areas: near.areas,
+                areas: [],
+                planes: near.areas.filter(({depth}) => depth > 0).map(plane_of(pose)),
                 frame: near
               });
             }

@@ -1,20 +1,24 @@
 // The tool between the mouse and the mock-up: a spring pulls it to where the mouse is, contact pushes it
-// back, and it moves without inertia. The answer is carried on along each area's own line, F = max(0, depth −
-// n·Δx)·K, as docs/SERVICE.md asks of a far loop: held forces would make it jitter.
+// back, and it moves without inertia. The planes of the last answer say how contact goes on where the tool
+// has got to since, as they do to the control law (docs/CONTROL.md): held forces would make it jitter.
 import {Quaternion, Vector3} from 'three';
-import type {Area, Pose, Vec3} from '../server/protocol.js';
+
+import {solve_symmetric} from './solve_symmetric.js';
+
+import type {Plane, Pose, Vec3} from '../server/protocol.js';
 
 export interface Answer {
   gc: Vec3;
   rotation: Quaternion;
-  areas: Area[]
+  planes: Plane[]
 }
 
-const STEP_S = 0.002;
-const SETTLE_S = 0.01;       // time in which contact settles
+const STEP_S = 0.004;
+const SETTLE_S = 0.01;       // what contact and spring as stiff as the mock-up would settle in
 const SPRING_SHARE = 0.25;   // of the mock-up's stiffness: contact wins
-const DEEPEST_SHARE = 0.06;  // of the tool's radius: as deep as the hand may press
+const DEEPEST_SHARE = 0.06;  // of the tool's radius: as far as a spring of the mock-up's stiffness may give
 const TURN_SHARE = 0.4;      // a solid's radius of gyration squared, over its radius squared
+const WAY_SHARE = 0.05, TURN_STEP = 0.05;  // of the tool's radius, and rad: no step leads further
 
 function rotation_vector(rotation: Quaternion): Vector3 {
   const q = rotation.w < 0 ? new Quaternion(-rotation.x, -rotation.y, -rotation.z, -rotation.w) : rotation;
@@ -69,32 +73,43 @@ export class Coupling {
       return;
     }
     this.rest = Math.min(this.rest + seconds, 0.1);
+    if (this.rest < STEP_S) return;
     for (; this.rest >= STEP_S; this.rest -= STEP_S) this.step(answer);
+    this.feel(answer, null);
   }
 
-  private step(answer: Answer): void {
-    // Contact, carried on from the pose that was asked to this one.
-    const gc = this.gc();
-    const moved = gc.clone().sub(vector(answer.gc));
+  /** What contact pushes where the tool is; adds to `slope`, 6 × 6, how that gives way. */
+  private feel(answer: Answer, slope: Float64Array|null): void {
+    const moved = this.gc().sub(vector(answer.gc));
     const turned = rotation_vector(this.rotation.clone().multiply(answer.rotation.clone().invert()));
     this.force.set(0, 0, 0);
     this.torque.set(0, 0, 0);
-    let stiffness_sum = 0;
-    for (const area of answer.areas) {
-      const size = Math.hypot(...area.force);
-      if (!(size > 0) || !(area.depth > 0)) continue;  // pierced, or without a direction
-      const stiffness = size / area.depth;
-      const normal = vector(area.force).divideScalar(size);
-      const arm = vector(area.point).sub(vector(answer.gc));
-      const shift = moved.clone().add(turned.clone().cross(arm)).dot(normal);
-      const push = normal.multiplyScalar(Math.max(0, area.depth - shift) * stiffness);
-      stiffness_sum += stiffness;
-      this.force.add(push);
-      this.torque.add(arm.clone().cross(push));
+    for (const {normal, lever, force, stiffness} of answer.planes) {
+      const along = [...normal, ...lever];
+      const way = along[0] * moved.x + along[1] * moved.y + along[2] * moved.z + along[3] * turned.x +
+          along[4] * turned.y + along[5] * turned.z;
+      const push = force - stiffness * way;
+      if (!(push > 0)) continue;
+      this.force.addScaledVector(vector(normal), push);
+      this.torque.addScaledVector(vector(lever), push);
+      if (!slope) continue;
+      for (let row = 0; row < 6; ++row)
+        for (let column = 0; column <= row; ++column)
+          slope[6 * row + column] += stiffness * along[row] * along[column];
     }
+  }
+
+  /**
+   * Without inertia, what pushes is velocity times a damping. The spring and the planes are taken where the
+   * step leads, so that no wall is too stiff for it.
+   */
+  private step(answer: Answer): void {
+    const slope = new Float64Array(36);
+    this.feel(answer, slope);
     // The hand: a spring with a limit, so that nobody presses through a wall.
     if (!this.held) this.let_go();
     const spring = this.stiffness * SPRING_SHARE;
+    const gc = this.gc();
     const pull = this.gc(this.target_position, this.target_rotation).sub(gc).multiplyScalar(spring);
     pull.clampLength(0, this.stiffness * this.radius * DEEPEST_SHARE);
     const inertia = TURN_SHARE * this.radius * this.radius;
@@ -102,11 +117,13 @@ export class Coupling {
                       .multiplyScalar(spring * inertia);
     twist.clampLength(0, this.stiffness * this.radius * this.radius * DEEPEST_SHARE);
 
-    // Without inertia, velocity is force over damping; the damping grows with the areas so that the step
-    // stays stable.
-    const damping = (spring + Math.max(this.stiffness, stiffness_sum)) * SETTLE_S;
-    const way = pull.add(this.force).multiplyScalar(STEP_S / damping).clampLength(0, this.radius * 0.05);
-    const turn = twist.add(this.torque).multiplyScalar(STEP_S / (damping * inertia)).clampLength(0, 0.05);
+    const damping = (spring + this.stiffness) * SETTLE_S;
+    for (let axis = 0; axis < 6; ++axis)
+      slope[7 * axis] += (spring + damping / STEP_S) * (axis < 3 ? 1 : inertia);
+    const step =
+        solve_symmetric(slope, [...pull.add(this.force).toArray(), ...twist.add(this.torque).toArray()]);
+    const way = new Vector3(step[0], step[1], step[2]).clampLength(0, this.radius * WAY_SHARE);
+    const turn = new Vector3(step[3], step[4], step[5]).clampLength(0, TURN_STEP);
     const angle = turn.length();
     const next_gc = gc.add(way);
     if (angle > 1e-12)

@@ -13,8 +13,8 @@ const ASK_SHARE =
     2;  // of the server's time for an answer: half of a processor is left to who draws the pictures; chosen
 const UNWATCHED_MS = 600;  // without a picture for so long nobody looks, and between pictures nothing moves;
                            // chosen: longer than a slow picture takes
-const MOVES_SHARE = 1e-5, RESTS_SHARE = 1e-7;  // of the tool's radius, from one question to the next: what
-                                               // moves is told to a thousandth, sooner; chosen
+const RESTS_SHARE = 1e-6;  // of the tool's radius, and rad: a tool that has moved no further since it was
+                           // asked about rests; chosen: far less than a pixel
 
 export class MouseSource {
   /**
@@ -27,8 +27,7 @@ export class MouseSource {
   private hello: HapticHello|null = null;
   private answer: Answer|null = null;
   private asked: {seq: number; pose: Pose; at: number}|null = null;
-  private asked_at = 0;
-  private near = false;  // what was asked last is told to a thousandth
+  private asked_at = -Infinity;
   private readonly asked_position = new Vector3();
   private readonly asked_rotation = new Quaternion();
   private stale = true;
@@ -39,7 +38,6 @@ export class MouseSource {
   private round_ms = NaN;
   private response: Moment['response'] = null;
   private engine: string;
-  private last_pose = '';
   private wants_frame = true;  // a picture has come since the last frame was asked for
   private framed = true;       // the newest answer has its frame
   private timer: ReturnType<typeof setTimeout>|undefined;
@@ -87,7 +85,7 @@ export class MouseSource {
     this.answer = null;
     this.response = null;
     this.asked = null;
-    this.last_pose = '';
+    this.asked_at = -Infinity;
   }
 
   private take(wrench: Wrench): void {
@@ -111,27 +109,20 @@ export class MouseSource {
     this.answer = {
       gc: wrench.gc,
       rotation: new Quaternion(pose[3], pose[4], pose[5], pose[6]),
-      areas: wrench.truncated ? [] : wrench.areas
+      planes: wrench.truncated ? [] : wrench.planes
     };
   }
 
   private ask(): void {
     if (this.link.state !== 'open' || this.asked) return;
-    const pose = this.coupling.pose();
-    const text = pose.join();
+    const {position, rotation, radius} = this.coupling;
+    const rests = position.distanceTo(this.asked_position) <= RESTS_SHARE * radius &&
+        rotation.angleTo(this.asked_rotation) <= RESTS_SHARE;
     // At rest nothing is asked, but once in 20 s: the server closes a connection that says nothing for a
     // minute.
-    if (text === this.last_pose && !this.near && (this.framed || !this.wants_frame) &&
-        performance.now() - this.asked_at < 20_000)
-      return;
-    this.last_pose = text;
+    if (rests && (this.framed || !this.wants_frame) && performance.now() - this.asked_at < 20_000) return;
+    const pose = this.coupling.pose();
     this.asked_at = performance.now();
-    // A tool that comes to rest is told exactly, and then so until it moves again: two answers that differ a
-    // little would keep it moving.
-    const {position, rotation, radius} = this.coupling;
-    const share = this.near ? RESTS_SHARE : MOVES_SHARE;
-    this.near = position.distanceTo(this.asked_position) > share * radius ||
-        rotation.angleTo(this.asked_rotation) > share;
     this.asked_position.copy(position);
     this.asked_rotation.copy(rotation);
     this.asked = {seq: ++this.seq, pose, at: this.asked_at};
@@ -141,7 +132,7 @@ export class MouseSource {
       time: (this.asked_at - this.began) / 1000,
       pose,
       full: this.wants_frame,
-      near: this.near
+      planes: true  // the coupling has a spring of its own
     }));
     this.wants_frame = false;
   }

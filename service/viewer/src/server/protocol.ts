@@ -195,6 +195,13 @@ export interface HapticHello {
   tool_gc: Vec3;
   start: Pose
 }
+/** What pushes along `normal` with max(0, force − stiffness·(normal·Δgc + lever·Δturn)), N and N/m. */
+export interface Plane {
+  normal: Vec3;
+  lever: Vec3;
+  force: number;
+  stiffness: number
+}
 export interface Wrench {
   type: 'wrench';
   seq: number;
@@ -208,7 +215,7 @@ export interface Wrench {
   gc: Vec3;
   force: Vec3;
   torque: Vec3;
-  areas: Area[];
+  planes: Plane[];
   frame?: Frame;
 }
 export interface Bye {

@@ -20,7 +20,7 @@ export class Readout {
   set_profile(profile: string|null): void {
     const [word, sentence] = profile === 'paper' ? ['force N', 'What the area adds to the response'] : [
       'field N',
-      'What the field would push where the tool is asked about. The response is less: the tool hangs on a spring, and gives way'
+      'What the field pushes where the tool is asked about. A device\'s tool hangs on a spring and gives way, so its response is less'
     ];
     write(element('areas-force'), word);
     element('areas-force').title = sentence;
