@@ -2,9 +2,9 @@
 # service/viewer/CMakeLists.txt: MODE (AUTO, ON, OFF), MISSING (why it can't be built, or empty), NODE, NPM,
 # SOURCE, WORK (where packages and bundle go), OUT. With MODE=AUTO a failure (no network, say) leaves a
 # program without a viewer that says so; with ON it is an error.
-set(names index_html viewer_js viewer_css)
-set(types text/html text/javascript text/css)
-set(files index.html viewer.js viewer.css)
+set(names index_html viewer_js mouse_worker_js viewer_css)
+set(types text/html text/javascript text/javascript text/css)
+set(files index.html viewer.js mouse_worker.js viewer.css)
 
 function(step what)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${WORK}" RESULT_VARIABLE status OUTPUT_VARIABLE output

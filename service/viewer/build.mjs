@@ -1,5 +1,5 @@
-// Bundles the viewer: node build.mjs OUT. Writes OUT/index.html, OUT/viewer.js, OUT/viewer.css; nothing is
-// fetched at run time.
+// Bundles the viewer: node build.mjs OUT. Writes OUT/index.html, OUT/viewer.js, OUT/mouse_worker.js,
+// OUT/viewer.css; nothing is fetched at run time.
 import {build} from 'esbuild';
 import {copyFileSync, mkdirSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
@@ -13,7 +13,7 @@ mkdirSync(out, {recursive: true});
 const three = dirname(dirname(createRequire(import.meta.url).resolve('three')));
 const licence = readFileSync(join(three, 'LICENSE'), 'utf8').trim();
 await build({
-  entryPoints: {viewer: join(here, 'src/main.ts')},
+  entryPoints: {viewer: join(here, 'src/main.ts'), mouse_worker: join(here, 'src/mouse/mouse_worker.ts')},
   outdir: out,
   bundle: true,
   minify: true,

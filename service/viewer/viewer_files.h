@@ -6,7 +6,7 @@ namespace palpate {
 
 /// A file of the viewer, part of the program. Constant data; any thread.
 struct ViewerFile {
-  std::string_view path;  ///< below `/`: "index.html", "viewer.js", "viewer.css"
+  std::string_view path;  ///< below `/`: "index.html", "viewer.js", …
   std::string_view type;  ///< "text/html; charset=utf-8"
   std::string_view content;
 };

@@ -191,7 +191,7 @@ export class App {
     clearTimeout(this.rest_timer);
     if (this.awake || this.picture.view.presenting) return;
     this.awake = true;
-    requestAnimationFrame((now) => {
+    this.picture.view.before_next((now) => {
       this.awake = false;
       this.tick(now);
       if (this.source === 'run' && this.player.playback?.playing) this.wake();
@@ -318,7 +318,7 @@ export class App {
       }
       await this.hold();
       await this.choose(this.source);
-      this.mouse?.link.hurry();
+      this.mouse?.hurry();
       this.say('Connected again.');
     } catch (error) {
       this.failed(error);
@@ -407,9 +407,12 @@ export class App {
     this.mouse = scene &&
         new MouseSource(
                      scene, this.picture.bodies.tool.visible ? this.picture.pose_of_tool() : null,
-                     () => this.hold_for_mouse(), () => this.api.socket(`v1/scenes/${scene.id}/haptic`),
-                     (reason) => this.mouse_lost(reason));
-    this.picture.drag.coupling = this.mouse?.coupling ?? null;
+                     this.api.socket_address(`v1/scenes/${scene.id}/haptic`), {
+                       ready: () => this.hold_for_mouse(),
+                       moved: () => this.wake(),
+                       lost: (reason) => this.mouse_lost(reason)
+                     });
+    this.picture.drag.hand = this.mouse?.hand ?? null;
     element('mouse-pause').textContent = 'Pause';
     this.wake();
   }
@@ -572,7 +575,7 @@ export class App {
         (text, bad) => this.say(text, bad));
     new Headset(picture.view, {
       bounds: () => picture.view.bounds,
-      coupling: () => this.mouse?.coupling ?? null,
+      hand: () => this.mouse?.hand ?? null,
       frame: (now) => this.tick(now),
       ended: () => this.touch(),
       failed: (error) => this.failed(error)

@@ -1,11 +1,12 @@
 // Where the tool is, for the camera: its triangles may lie far from its file's origin.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {BoxGeometry, Scene} from 'three';
+import {BoxGeometry, DoubleSide, FrontSide, Scene} from 'three';
 
 import {Bodies} from '../src/draw/bodies.js';
 import {with_faces} from '../src/draw/flat_shading.js';
 import {sharp_edges} from '../src/draw/sharp_edges.js';
+import {is_solid} from '../src/draw/solid_surface.js';
 
 const box_at = (x: number) => {
   const vertices = new Float32Array([x, 0, 0, x + 2, 0, 0, x, 2, 0]);
@@ -70,4 +71,31 @@ test('each triangle has a corner of its own with its normal, and stays where it 
     assert.equal(faced.faces[4 * own + axis], 32767 * Math.sign(faced.vertices[3 * own + axis]));
   }
   assert.equal(owners.size, 12);
+});
+
+test('a solid is closed and faces outwards, each piece of it', () => {
+  const {vertices, corners} = box();
+  assert.ok(is_solid(vertices, corners));
+  assert.ok(!is_solid(vertices, corners.slice(3)), 'open');
+  const inwards = corners.map((_, i) => corners[i - (i % 3) + (2 - (i % 3))]);
+  assert.ok(!is_solid(vertices, inwards), 'inside out');
+  const two = (second: Uint32Array) => is_solid(
+      Float32Array.from([...vertices, ...vertices.map((v) => v / 9 + 7)]),
+      Uint32Array.from([...corners, ...second.map((corner) => corner + vertices.length / 3)]));
+  assert.ok(two(corners));
+  assert.ok(!two(inwards), 'a small piece beside a large one');
+  assert.ok(!is_solid(vertices, new Uint32Array(0)));
+});
+
+test('a solid tool has no far side where that is not wanted, an open one always', () => {
+  const bodies = new Bodies(new Scene());
+  const {vertices, corners} = box();
+  const tool = (some: Uint32Array) => ({vertices, corners: some, ids: new Uint32Array(some.length / 3)});
+  for (const [shape, on, side] of [
+           [corners, false, FrontSide], [corners, true, DoubleSide], [corners.slice(3), false, DoubleSide]] as
+       const) {
+    bodies.set({reduced: false, mockup: box_at(0), tool: tool(shape)});
+    bodies.show_far_side(on);
+    assert.equal(bodies.tool_mesh.material.side, side);
+  }
 });

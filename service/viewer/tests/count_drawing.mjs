@@ -1,6 +1,7 @@
 /**
  * For a page's start (addInitScript): counts what each picture hands to WebGL and strokes on other canvases,
  * and how long the page works for it. `window.drawing.take()` gives what came since the last call.
+ * `window.drawing.began`, where it is set, is asked at each picture, and its answer kept as `told`.
  */
 export function count_drawing() {
   let pictures = [], tasks = [], last = NaN;
@@ -17,6 +18,7 @@ export function count_drawing() {
     ++now.strokes;
   }, CanvasRenderingContext2D);
   const draw = (mode, count) => {
+    if (!now.drawn) now.told = window.drawing.began?.();
     if (mode === WebGL2RenderingContext.TRIANGLES) {
       if (count > 3) now.triangles += count / 3;
       now.drawn = true;

@@ -1,153 +1,105 @@
-// The mouse's end of the remote loop: how often it asks, and for what.
+// The mouse as the page has it: what it tells its worker, and what it believes.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
+import type {ToPage, ToWorker} from '../src/mouse/messages.js';
 import {MouseSource} from '../src/mouse/mouse_source.js';
 
-import type {Scene} from '../src/server/protocol.js';
+import type {Moment} from '../src/moment.js';
+import type {Frame, Pose, Scene} from '../src/server/protocol.js';
 
 const SCENE = {
   id: 's',
-  start: [0, 0, 0, 0, 0, 0, 1],
+  start: [0, 0, 0.1, 0, 0, 0, 1],
   tool_gc: [0, 0, 0],
   tool_radius: 0.05,
-  stiffness: 2000,
-  backend: 'cpu'
 } as unknown as Scene;
-interface Asked {
-  seq: number;
-  full: boolean;
-  planes: boolean;
-  pose: number[]
-}
 
-/** A server that answers when it is told to. */
-class Socket {
-  readonly CONNECTING = 0;
-  readyState = 1;
-  asked: Asked[] = [];
-  onmessage: (event: {data: string}) => void = () => {};
-  onclose = (): void => {};
-  send(text: string): void {
-    this.asked.push(JSON.parse(text) as Asked);
+class Beside {
+  onmessage: (event: {data: ToPage}) => void = () => {};
+  told: ToWorker[] = [];
+  postMessage(message: ToWorker): void {
+    this.told.push(message);
   }
-  close(): void {
-    this.onclose();
-  }
-  say(message: unknown): void {
-    this.onmessage({data: JSON.stringify(message)});
-  }
-  answer(): void {
-    const {seq, full} = this.asked.at(-1)!;
-    const empty = {contact: false, planes: [], force: [0, 0, 0], torque: [0, 0, 0]};
-    this.say({
-      type: 'wrench',
-      seq,
-      server_us: 100,
-      truncated: false,
-      gc: [0, 0, 0],
-      engine: 'cpu',
-      ...empty,
-      ...(full ? {frame: empty} : {})
-    });
+  say(data: ToPage): void {
+    this.onmessage({data});
   }
 }
-
-// A clock of our own: what is due then is called then, however busy the machine is.
-let clock = 0;
-let due: {at: number; call: () => void; id: number}[] = [];
-let ids = 0;
-Object.defineProperty(globalThis, 'performance', {value: {now: () => clock}, configurable: true});
-globalThis.setTimeout = ((call: () => void, ms = 0) => {
-                          due.push({at: clock + ms, call, id: ++ids});
-                          return ids;
-                        }) as unknown as typeof setTimeout;
-globalThis.clearTimeout = ((id: number) => {
-                            due = due.filter((one) => one.id !== id);
-                          }) as unknown as typeof clearTimeout;
-function pass(ms: number): void {
-  for (const end = clock + ms;;) {
-    const next = due.filter(({at}) => at <= end).sort((a, b) => a.at - b.at)[0];
-    if (!next) {
-      clock = end;
-      return;
-    }
-    due = due.filter((one) => one !== next);
-    clock = Math.max(clock, next.at);
-    next.call();
-  }
+function begun(ready: () => Promise<void> = async () => {}) {
+  const worker = new Beside();
+  const heard: string[] = [];
+  const mouse = new MouseSource(
+      SCENE, null, {url: 'ws://here/', protocols: []},
+      {ready, moved: () => heard.push('moved'), lost: (reason) => heard.push(`lost ${reason}`)},
+      worker as unknown as Worker);
+  return {worker, heard, mouse};
 }
-async function begun() {
-  const socket = new Socket();
-  const mouse = new MouseSource(SCENE, null, async () => {}, () => socket as unknown as WebSocket, () => {});
-  for (let i = 0; i < 5; ++i) await Promise.resolve();  // the scene is ready
-  socket.say(
-      {type: 'hello', scene: 's', stiffness: 2000, watchdog_ms: 20, tool_gc: [0, 0, 0], start: SCENE.start});
-  return {socket, mouse};
-}
-
-test(
-    'between two pictures a moving tool is asked about again, and a picture alone asks for its frame',
-    async () => {
-      const {socket, mouse} = await begun();
-      assert.deepEqual(socket.asked.map(({full}) => full), [true]);
-      socket.answer();
-      mouse.coupling.held = true;
-      mouse.coupling.target_position.set(0.1, 0, 0);
-      pass(40);  // no picture meanwhile
-      assert.ok(socket.asked.length === 2, `${socket.asked.length} questions`);
-      assert.equal(socket.asked[1].full, false);
-      assert.ok(socket.asked[1].pose[0] > 0);
-      mouse.close();
-    });
-
-test('a tool that has come to rest is shown with its own frame', async () => {
-  const {socket, mouse} = await begun();
-  socket.answer();
-  mouse.coupling.held = true;
-  mouse.coupling.target_position.set(0.001, 0, 0);
-  pass(40);
-  socket.answer();          // without a frame
-  mouse.coupling.let_go();  // and nothing moves any more
-  mouse.advance();
-  assert.deepEqual([socket.asked.length, socket.asked.at(-1)!.full], [3, true]);
-  socket.answer();
-  mouse.advance();
-  assert.equal(socket.asked.length, 3);  // at rest nothing is asked
-  mouse.close();
+const moment = (pose: Pose): Omit<Moment, 'frame'> => ({
+  time: 7,
+  pose,
+  force: [0, 0, 1],
+  torque: [0, 0, 0],
+  response: null,
+  depth: 0,
+  contact: true,
+  frame_us: 900,
+  late: 2,
+  stage: 0,
+  note: ''
 });
+const FRAME = {
+  tick: 3
+} as unknown as Frame;
 
-test('without pictures nothing goes on', async () => {
-  const {socket, mouse} = await begun();
-  mouse.advance();
-  mouse.coupling.held = true;
-  mouse.coupling.target_position.set(0.1, 0, 0);
-  pass(650);
-  const before = socket.asked.length;
-  socket.answer();
-  pass(50);
-  assert.equal(socket.asked.length, before);
-  mouse.close();
+test('what the loop says is the moment; a frame stays until there is another', () => {
+  const {worker, heard, mouse} = begun();
+  assert.deepEqual([mouse.moment().note, mouse.moment().pose], ['connecting', SCENE.start]);
+  worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.09, 0, 0, 0, 1]), frame: FRAME, asked_at: 1});
+  worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.08, 0, 0, 0, 1]), asked_at: 2});
+  const {pose, frame, time} = mouse.moment();
+  assert.deepEqual([pose[2], frame, heard.length], [0.08, FRAME, 2]);
+  assert.ok(time < 5, 'times are the page\'s');
+  worker.say({type: 'moment', turn: 0, moment: moment(pose), frame: null, asked_at: 3});
+  assert.equal(mouse.moment().frame, null);
 });
-
-test('planes are asked for, and what has hardly moved since rests', async () => {
-  const {socket, mouse} = await begun();
-  socket.answer();
-  mouse.coupling.held = true;
-  mouse.coupling.target_position.set(0.001, 0, 0);
+test('an open hand goes with the tool, one that holds it stays', () => {
+  const {worker, mouse} = begun();
+  worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.05, 0, 0, 0, 1]), asked_at: 1});
+  assert.equal(mouse.hand.target_position.z, 0.05);
+  mouse.hand.held = true;
+  mouse.hand.target_position.z = 0.01;
+  worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.04, 0, 0, 0, 1]), asked_at: 2});
   mouse.advance();
-  for (let i = 0, answered = 1; i < 100; ++i) {  // 2 s
-    for (; answered < socket.asked.length; ++answered) socket.answer();
-    pass(20);
-    mouse.advance();
+  assert.deepEqual([mouse.hand.position.z, mouse.hand.target_position.z], [0.04, 0.01]);
+  const told = worker.told.at(-1)!;
+  assert.ok(told.type === 'picture' && told.hand.held && told.hand.target[2] === 0.01);
+  mouse.paused = true;
+  mouse.advance();
+  const open = worker.told.at(-1)!;
+  assert.ok(open.type === 'picture' && !open.hand.held && open.hand.paused && open.hand.target[2] === 0.04);
+});
+test('after a restart nothing from before it counts', () => {
+  const {worker, mouse} = begun();
+  worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.05, 0, 0, 0, 1]), asked_at: 1});
+  mouse.restart();
+  worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.04, 0, 0, 0, 1]), asked_at: 2});
+  assert.deepEqual([mouse.moment().pose, mouse.moment().note], [SCENE.start, 'connecting']);
+  const told = worker.told.at(-1)!;
+  assert.ok(told.type === 'restart');
+  worker.say({type: 'moment', turn: told.turn, moment: moment([0, 0, 0.03, 0, 0, 0, 1]), asked_at: 3});
+  assert.equal(mouse.moment().pose[2], 0.03);
+});
+test('the page says whether the server holds the scene', async () => {
+  for (const ready of [true, false]) {
+    const {worker, heard, mouse} = begun(async () => {
+      if (!ready) throw new Error('no');
+    });
+    worker.say({type: 'prepare'});
+    for (let i = 0; i < 5; ++i) await Promise.resolve();
+    assert.deepEqual(worker.told.at(-1), {type: 'prepared', ready});
+    worker.say({type: 'lost', reason: 'the server stops'});
+    assert.deepEqual(heard, ['lost the server stops']);
+    mouse.close();
+    assert.deepEqual(worker.told.at(-1), {type: 'close'});
   }
-  const {pose, planes, full} = socket.asked.at(-1)!;
-  assert.deepEqual([planes, full], [true, true]);
-  assert.ok(Math.abs(pose[0] - 0.001) < 1e-6, `${pose[0]} m of 1 mm`);
-  const asked = socket.asked.length;
-  assert.ok(asked > 10 && asked < 50, `${asked} questions`);
-  pass(1000);
-  mouse.advance();
-  assert.equal(socket.asked.length, asked);
-  mouse.close();
 });

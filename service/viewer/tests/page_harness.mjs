@@ -50,6 +50,9 @@ export async function server_of(palpate, root, backend = 'cpu') {
       }
       throw new Error('the server does not start');
     },
+    /** Whatever it is asked waits until it goes on. */
+    pause: () => process_.kill('SIGSTOP'),
+    go_on: () => process_.kill('SIGCONT'),
     stop: () => new Promise((resolve) => {
       if (!process_ || process_.exitCode !== null) {
         resolve();

@@ -29,40 +29,34 @@ const names = scenes.map((file) => {
   return name;
 });
 
-/** For the page's start: when each question was sent, and which the newest answers were to. */
+/** For the page's start: what the mouse's worker says, and how old it is in each picture. */
 function count_answers() {
-  const Real = window.WebSocket;
-  const asked = new Map();
+  const Real = window.Worker;
   const now = {force: NaN, frame: NaN};
-  let trips = [], pictures = [], contacts = 0, answers = 0;
-  window.WebSocket = class extends Real {
+  let trips = [], contacts = 0, answers = 0;
+  window.Worker = class extends Real {
     constructor(...args) {
       super(...args);
       this.addEventListener('message', ({data}) => {
-        if (typeof data !== 'string' || !data.startsWith('{"type":"wrench"')) return;
-        const {seq, server_us, contact, frame} = JSON.parse(data);
-        now.force = asked.get(seq) ?? NaN;
-        if (frame) now.frame = now.force;
-        trips.push([performance.now() - now.force, server_us / 1000]);
+        if (data.type !== 'moment' || !(data.asked_at > 0)) return;
+        const {frame_us, late, contact} = data.moment;
+        if (data.frame) now.frame = data.asked_at;
+        if (data.asked_at === now.force) return;  // the tool has moved on by the same answer
+        now.force = data.asked_at;
+        trips.push([late, frame_us / 1000]);
         ++answers;
         if (contact) ++contacts;
-        asked.delete(seq);
       });
     }
-    send(data) {
-      if (typeof data === 'string' && data.startsWith('{"type":"pose"'))
-        asked.set(JSON.parse(data).seq, performance.now());
-      super.send(data);
-    }
+  };
+  window.drawing.began = () => {
+    const time = performance.timeOrigin + performance.now();
+    return [time - now.force, time - now.frame];
   };
   window.answers = {
-    picture() {
-      pictures.push([performance.now() - now.force, performance.now() - now.frame]);
-    },
     take() {
-      const taken = {trips, pictures, contacts, answers};
+      const taken = {trips, contacts, answers};
       trips = [];
-      pictures = [];
       contacts = 0;
       answers = 0;
       return taken;
@@ -89,7 +83,6 @@ const lead = (page, [x, y], lasts) => page.evaluate(
       const step = (now) => {
         const angle = ((now - began) / 2000) * 2 * Math.PI;
         event('pointermove', 25 * Math.sin(angle), 25 * (1 - Math.cos(angle)));
-        window.answers.picture();
         if (now - began < 1000 * time)
           requestAnimationFrame(step);
         else {
@@ -142,7 +135,8 @@ try {
     const before = processor_times();
     await lead(page, grip, seconds);
     const {pictures} = await page.evaluate(() => window.drawing.take());
-    const {trips, pictures: ages, contacts, answers} = await page.evaluate(() => window.answers.take());
+    const ages = pictures.map(({told}) => told);
+    const {trips, contacts, answers} = await page.evaluate(() => window.answers.take());
     const processor = used_since(before, pictures.length);
     const between = pictures.map((picture) => picture.between);
     console.log(JSON.stringify({

@@ -216,17 +216,6 @@ async function felt() {
 /** Placed by its handles into contact: the start is told, and can be left out; then answers come late. */
 async function starts_in_contact() {
   const {page, errors, text, picture, force, loop} = await new_page();
-  // Answers of the remote loop are held back once the test says so.
-  await page.addInitScript(() => {
-    const Real = window.WebSocket;
-    window.WebSocket = class extends Real {
-      set onmessage(take) {
-        super.onmessage = (event) => {
-          setTimeout(() => take(event), window.held_back ?? 0);
-        };
-      }
-    };
-  });
   await page.goto(server.address);
   await drop_gearbox(page, text);
   await choose(page, 'handle');
@@ -275,18 +264,14 @@ async function starts_in_contact() {
                       await page.textContent('#start-note p').catch(() => '')) &&
           (await force()) === 0);
   await loop();
-  await page.evaluate(() => {
-    window.held_back = 2500;
-  });
+  server.pause();
   await page.evaluate(() => document.activeElement?.blur());
   await until('where an answer stays away, it says for how long and on which engine', async () => {
     await page.keyboard.press('ArrowUp');
     return /^this contact takes more than [0-9.]+ m?s on cpu/.test(await text('contact'));
   });
   check((await force()) === 0, 'and no force is shown');
-  await page.evaluate(() => {
-    window.held_back = 0;
-  });
+  server.go_on();
   await loop();
   check(errors.length === 0, `no error on the console${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
   await page.context().close();

@@ -7,6 +7,7 @@ import type {Theme} from './palette.js';
 import type {Pose, SceneParts} from '../server/protocol.js';
 import {flat_material, geometry_of, with_faces} from './flat_shading.js';
 import {shown_corners} from './shown_parts.js';
+import {is_solid} from './solid_surface.js';
 
 export class Bodies {
   readonly tool = new three.Group();
@@ -19,6 +20,7 @@ export class Bodies {
     ids: new Uint32Array(0)
   };  // the tool as it came: each vertex once
   private shape_corners = this.shape.corners;
+  private solid = false;  // the tool as it is drawn
   private parts: SceneParts = {static: [], tool: []};
   private hidden: HiddenParts = {mockup: new Set(), tool: new Set()};
 
@@ -66,6 +68,7 @@ export class Bodies {
         mesh.geometry.setIndex(new three.BufferAttribute(corners, 1));
     }
     this.shape_corners = shown_corners(this.shape, this.parts.tool, this.hidden.tool);
+    this.solid = is_solid(this.shape.vertices, this.shape_corners);
   }
   /** The tool's triangles that are drawn, in its frame; each vertex once. */
   shape_of_tool(): {vertices: Float32Array; corners: Uint32Array} {
@@ -88,6 +91,17 @@ export class Bodies {
     material.opacity = on ? (which === 'tool' ? 0.62 : 0.22) : 1;
     material.depthWrite =
         !on || which === 'tool';  // a glass tool hides its own far side, or it would look like a net
+    material.needsUpdate = true;
+  }
+  /**
+   * Whether a tool of glass shows its far side, too, which takes as long again. One that is no solid always
+   * does.
+   */
+  show_far_side(on: boolean): void {
+    const {material} = this.tool_mesh;
+    const side = on || !this.solid ? three.DoubleSide : three.FrontSide;
+    if (material.side === side) return;
+    material.side = side;
     material.needsUpdate = true;
   }
   theme(theme: Theme): void {

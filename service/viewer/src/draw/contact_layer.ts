@@ -23,10 +23,14 @@ class Patch {
   constructor(private readonly store: TriangleStore) {
     const common = {vertexColors: true, side: three.DoubleSide, toneMapped: false};
     this.front = new three.Mesh(this.geometry, new three.MeshBasicMaterial(common));
-    this.behind = new three.Mesh(
-        this.geometry,
-        new three.MeshBasicMaterial(
-            {...common, transparent: true, opacity: 0.45, depthFunc: three.GreaterDepth, depthWrite: false}));
+    this.behind = new three.Mesh(this.geometry, new three.MeshBasicMaterial({
+      ...common,
+      transparent: true,
+      opacity: 0.45,
+      depthFunc: three.GreaterDepth,
+      depthWrite: false,
+      forceSinglePass: true  // which side is drawn first can't be told
+    }));
     this.front.frustumCulled = this.behind.frustumCulled = false;
     this.front.renderOrder = 2;
     this.behind.renderOrder = 3;

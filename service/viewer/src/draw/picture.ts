@@ -58,6 +58,10 @@ export class Picture {
       };
     this.levels.may_coarsen = this.pace.may_coarsen = this.view.software;
     this.pace.level = 0;
+    this.view.before_draw.push(() => {
+      // One that is cut open shows its inside.
+      this.bodies.show_far_side(!this.view.software || this.view.renderer.clippingPlanes.length > 0);
+    });
     this.view.after_draw.push((ms, whole) => {
       if (!this.scene || !Number.isFinite(ms)) return;
       if (whole === 2 && this.levels.take(ms, this.scene.static_triangles ?? 0))
@@ -142,7 +146,7 @@ export class Picture {
     this.bodies.tool.updateMatrixWorld();
     this.centre.set(gc[0], gc[1], gc[2]).applyMatrix4(this.bodies.tool.matrixWorld);
     this.areas.set(moment.frame?.contact ? moment.frame.areas : [], this.centre, moment.force, moment.torque);
-    this.ghost.set(this.drag.coupling, this.drag.holding !== null);
+    this.ghost.set(this.drag.hand, this.drag.holding !== null);
     this.view.request();
   }
   /** Draws the contact again, in the colours and kinds that are chosen now. */

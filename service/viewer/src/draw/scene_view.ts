@@ -63,6 +63,7 @@ export class SceneView {
   private grid_colour = 0xffffff;
   private dirty = false;
   private running = false;
+  private readonly waiting: ((now: number) => void)[] = [];
   private quiet = 0;
   private last_draw = NaN;
   private drew_at = -Infinity;
@@ -106,10 +107,22 @@ export class SceneView {
    */
   request(): void {
     this.dirty = true;
+    if (!this.running) {
+      this.quiet = 0;
+      this.last_draw = NaN;
+    }
+    this.run();
+  }
+  /**
+   * Calls `call` once, when the next picture may be drawn and before it is; that it is drawn is not asked.
+   */
+  before_next(call: (now: number) => void): void {
+    this.waiting.push(call);
+    this.run();
+  }
+  private run(): void {
     if (this.running || this.presenting) return;
     this.running = true;
-    this.quiet = 0;
-    this.last_draw = NaN;
     requestAnimationFrame(this.draw);
   }
   private readonly draw = (now: number): void => {
@@ -117,12 +130,13 @@ export class SceneView {
       this.running = false;
       return;
     }
-    if (this.software && this.dirty && now - this.drew_at < PACE_MS) {
+    if (this.software && (this.dirty || this.waiting.length > 0) && now - this.drew_at < PACE_MS) {
       requestAnimationFrame(this.draw);
       return;
     }
+    for (const call of this.waiting.splice(0)) call(now);
     this.quiet = this.dirty ? 0 : this.quiet + 1;
-    this.running = this.quiet < 20;
+    this.running = this.quiet < 20 || this.waiting.length > 0;
     if (this.running) requestAnimationFrame(this.draw);
     const before = this.renderer.getPixelRatio();
     const rests = this.quiet === SHARP_AFTER &&

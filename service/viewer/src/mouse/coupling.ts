@@ -3,6 +3,7 @@
 // has got to since, as they do to the control law (docs/CONTROL.md): held forces would make it jitter.
 import {Quaternion, Vector3} from 'three';
 
+import {Hand} from './hand.js';
 import {solve_symmetric} from './solve_symmetric.js';
 
 import type {Plane, Pose, Vec3} from '../server/protocol.js';
@@ -28,40 +29,17 @@ function rotation_vector(rotation: Quaternion): Vector3 {
 }
 const vector = (v: Vec3): Vector3 => new Vector3(v[0], v[1], v[2]);
 
-export class Coupling {
-  readonly position = new Vector3();
-  readonly rotation = new Quaternion();
-  readonly target_position = new Vector3();
-  readonly target_rotation = new Quaternion();
+export class Coupling extends Hand {
   /** Of the last step: on the tool, about its centre of mass. */
   readonly force = new Vector3();
   readonly torque = new Vector3();
   stiffness = 2000;  // N/m
-  radius = 0.05;     // m
-  /** Whether a hand holds the tool: without one no spring pulls, and contact pushes the tool out. */
-  held = false;
-  private centre = new Vector3();  // of mass, tool frame
   private rest = 0;
 
-  reset(pose: Pose, centre: Vec3): void {
-    this.position.set(pose[0], pose[1], pose[2]);
-    this.rotation.set(pose[3], pose[4], pose[5], pose[6]).normalize();
-    this.centre.fromArray(centre);
+  override reset(pose: Pose, centre: Vec3): void {
+    super.reset(pose, centre);
     this.force.set(0, 0, 0);
     this.torque.set(0, 0, 0);
-    this.let_go();
-  }
-  let_go(): void {
-    this.held = false;
-    this.target_position.copy(this.position);
-    this.target_rotation.copy(this.rotation);
-  }
-  gc(position = this.position, rotation = this.rotation): Vector3 {
-    return this.centre.clone().applyQuaternion(rotation).add(position);
-  }
-  pose(): Pose {
-    return [...this.position.toArray(), this.rotation.x, this.rotation.y, this.rotation.z, this.rotation.w] as
-        Pose;
   }
 
   /** Moves on by `seconds`, against the newest answer; with none the tool stands still and feels nothing. */

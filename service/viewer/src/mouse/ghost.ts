@@ -2,7 +2,7 @@
 // is the resistance.
 import * as three from 'three';
 import type {Bodies} from '../draw/bodies.js';
-import type {Coupling} from './coupling.js';
+import type {Hand} from './hand.js';
 import type {Theme} from '../draw/palette.js';
 import {sharp_edges} from '../draw/sharp_edges.js';
 
@@ -29,13 +29,13 @@ export class Ghost {
     this.shell.material.color.setHex(theme.ghost);
     this.line.material.color.setHex(theme.ghost);
   }
-  set(coupling: Coupling|null, holding: boolean): void {
+  set(hand: Hand|null, holding: boolean): void {
     this.object.visible = false;
-    if (!coupling || !holding) return;
-    const from = coupling.gc();
-    const to = coupling.gc(coupling.target_position, coupling.target_rotation);
-    const apart = from.distanceTo(to) > coupling.radius * 0.02 ||
-        coupling.rotation.angleTo(coupling.target_rotation) > 0.03;
+    if (!hand || !holding) return;
+    const from = hand.gc();
+    const to = hand.gc(hand.target_position, hand.target_rotation);
+    const apart =
+        from.distanceTo(to) > hand.radius * 0.02 || hand.rotation.angleTo(hand.target_rotation) > 0.03;
     if (!apart) return;
     this.object.visible = true;
     const {vertices, corners} = this.bodies.shape_of_tool();
@@ -46,10 +46,10 @@ export class Ghost {
       this.shell.geometry.setAttribute('position', new three.BufferAttribute(vertices, 3));
       this.shell.geometry.setIndex(new three.BufferAttribute(sharp_edges(vertices, corners, MOST_EDGES), 1));
     }
-    this.shell.position.copy(coupling.target_position);
-    this.shell.quaternion.copy(coupling.target_rotation);
+    this.shell.position.copy(hand.target_position);
+    this.shell.quaternion.copy(hand.target_rotation);
     this.line.geometry.setFromPoints([from, to]);
-    this.line.material.dashSize = this.line.material.gapSize = coupling.radius * 0.06;
+    this.line.material.dashSize = this.line.material.gapSize = hand.radius * 0.06;
     this.line.computeLineDistances();
   }
 }

@@ -2,7 +2,7 @@
 // farther, right button or Shift turns it.
 import * as three from 'three';
 import type {Bodies} from '../draw/bodies.js';
-import type {Coupling} from './coupling.js';
+import type {Hand} from './hand.js';
 import type {SceneView} from '../draw/scene_view.js';
 
 const GRAB_PX = 10;  // how far beside the tool a press still takes it
@@ -13,8 +13,8 @@ const NUDGE_MS = 400;                                // chosen: a key that repea
 export type Drag = 'move'|'turn'|'depth';
 
 export class MouseDrag {
-  /** The coupling that is moved; null while the mouse is no device. */
-  coupling: Coupling|null = null;
+  /** The hand that is moved; null while the mouse is no device. */
+  hand: Hand|null = null;
   holding: Drag|null = null;
   /** What a plain drag does: fingers have no other keys. */
   plain: Drag = 'move';
@@ -53,19 +53,19 @@ export class MouseDrag {
   }
 
   private press(event: PointerEvent): void {
-    if (!this.coupling || this.holding || event.button === 1) return;
+    if (!this.hand || this.holding || event.button === 1) return;
     const point = this.hit(event);
     if (!point) return;
     event.stopImmediatePropagation();
     this.view.canvas.setPointerCapture(event.pointerId);
-    this.coupling.held = true;
+    this.hand.held = true;
     this.holding = event.button === 2 || event.shiftKey || event.ctrlKey ? 'turn' : this.plain;
     this.plane.setFromNormalAndCoplanarPoint(this.view.camera.getWorldDirection(new three.Vector3()), point);
     this.last.copy(point);
     document.body.classList.add('holding');
   }
   private move(event: PointerEvent): void {
-    if (!this.coupling) return;
+    if (!this.hand) return;
     if (!this.holding) {
       if (event.buttons === 0) this.view.canvas.style.cursor = this.hit(event) ? 'grab' : '';
       return;
@@ -74,10 +74,10 @@ export class MouseDrag {
       this.aim(event);
       const point = this.ray.ray.intersectPlane(this.plane, new three.Vector3());
       if (!point) return;
-      this.coupling.target_position.add(point.clone().sub(this.last));
+      this.hand.target_position.add(point.clone().sub(this.last));
       this.last.copy(point);
     } else if (this.holding === 'depth') {
-      this.deepen(-event.movementY * this.coupling.radius * 0.01);
+      this.deepen(-event.movementY * this.hand.radius * 0.01);
     } else {
       const turn = new three.Quaternion();
       const camera = this.view.camera.quaternion;
@@ -93,27 +93,27 @@ export class MouseDrag {
   }
   /** Turns the target about the centre of mass. */
   turn(by: three.Quaternion): void {
-    const coupling = this.coupling;
-    if (!coupling) return;
-    const centre = coupling.gc(coupling.target_position, coupling.target_rotation);
-    coupling.target_rotation.premultiply(by).normalize();
-    const moved = coupling.gc(coupling.target_position, coupling.target_rotation);
-    coupling.target_position.add(centre.sub(moved));
+    const {hand} = this;
+    if (!hand) return;
+    const centre = hand.gc(hand.target_position, hand.target_rotation);
+    hand.target_rotation.premultiply(by).normalize();
+    const moved = hand.gc(hand.target_position, hand.target_rotation);
+    hand.target_position.add(centre.sub(moved));
   }
   /**
    * A small step by the keyboard: right, up and away as the camera sees it; or turns about these. The hand
    * lets go a moment later.
    */
   nudge(right: number, up: number, away: number, turning: boolean): void {
-    const {coupling} = this;
-    if (!coupling || this.holding) return;
-    coupling.held = true;
+    const {hand} = this;
+    if (!hand || this.holding) return;
+    hand.held = true;
     const way = new three.Vector3(right, up, -away).applyQuaternion(this.view.camera.quaternion);
     if (turning)
       this.turn(new three.Quaternion().setFromAxisAngle(
           new three.Vector3(-up, right, -away).applyQuaternion(this.view.camera.quaternion), 0.02));
     else
-      coupling.target_position.addScaledVector(way, coupling.radius * 0.02);
+      hand.target_position.addScaledVector(way, hand.radius * 0.02);
     this.let_go_later();
     this.view.request();
   }
@@ -122,13 +122,13 @@ export class MouseDrag {
    * each. Returns whether it is pushed.
    */
   steer(wish: readonly number[], seconds: number): boolean {
-    const {coupling} = this;
-    if (!coupling || this.holding || wish.every((value) => value === 0)) return false;
-    coupling.held = true;
+    const {hand} = this;
+    if (!hand || this.holding || wish.every((value) => value === 0)) return false;
+    hand.held = true;
     const camera = this.view.camera.quaternion;
     const seen = (first: number) =>
         new three.Vector3(wish[first], wish[first + 1], -wish[first + 2]).applyQuaternion(camera);
-    coupling.target_position.addScaledVector(seen(0), coupling.radius * RADII_A_SECOND * seconds);
+    hand.target_position.addScaledVector(seen(0), hand.radius * RADII_A_SECOND * seconds);
     const turn = seen(3);
     const angle = turn.length();
     if (angle > 0)
@@ -141,27 +141,27 @@ export class MouseDrag {
   private let_go_later(): void {
     clearTimeout(this.nudged);
     this.nudged = window.setTimeout(() => {
-      if (!this.holding) this.coupling?.let_go();
+      if (!this.holding) this.hand?.let_go();
     }, NUDGE_MS);
   }
   private nudged = 0;
   private release(): void {
     if (!this.holding) return;
     this.holding = null;
-    this.coupling?.let_go();  // an open hand presses on nothing
+    this.hand?.let_go();  // an open hand presses on nothing
     document.body.classList.remove('holding');
     this.view.request();
   }
   private wheel(event: WheelEvent): void {
-    if (!this.coupling || !this.holding) return;
+    if (!this.hand || !this.holding) return;
     event.preventDefault();
     event.stopImmediatePropagation();
-    this.deepen(-Math.sign(event.deltaY) * this.coupling.radius * 0.08);
+    this.deepen(-Math.sign(event.deltaY) * this.hand.radius * 0.08);
   }
   /** Moves what is held away from the eye, m. */
   private deepen(metres: number): void {
     const away = this.view.camera.getWorldDirection(new three.Vector3()).multiplyScalar(metres);
-    this.coupling?.target_position.add(away);
+    this.hand?.target_position.add(away);
     this.plane.translate(away);
     this.last.add(away);
   }

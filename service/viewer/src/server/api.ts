@@ -173,8 +173,13 @@ export class Api {
   }
 
   socket(path: string): WebSocket {
+    const {url, protocols} = this.socket_address(path);
+    return new WebSocket(url, protocols);
+  }
+  /** For who opens it: a WebSocket of a browser can't set headers, so the token is a protocol. */
+  socket_address(path: string): {url: string; protocols: string[]} {
     const url = new URL(path, location.href);
     url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-    return this.token ? new WebSocket(url, ['palpate', `palpate.token.${this.token}`]) : new WebSocket(url);
+    return {url: url.href, protocols: this.token ? ['palpate', `palpate.token.${this.token}`] : []};
   }
 }

@@ -5,7 +5,7 @@ import * as three from 'three';
 import {element, write} from '../dom.js';
 
 import type {SceneView} from '../draw/scene_view.js';
-import type {Coupling} from '../mouse/coupling.js';
+import type {Hand} from '../mouse/hand.js';
 
 const RADIUS = 0.35;                               // of the mock-up as it is seen, m; chosen
 const BEFORE = new three.Vector3(0, -0.15, -0.9);  // where its middle is, from the head that begins; chosen
@@ -14,7 +14,7 @@ export interface HeadsetHooks {
   /** Where the mock-up is. */
   bounds: () => three.Sphere;
   /** What a hand can hold; null: nothing. */
-  coupling: () => Coupling | null;
+  hand: () => Hand | null;
   /** Before each picture. */
   frame: (now: number) => void;
   /** The headset is off; the page draws again. */
@@ -107,27 +107,27 @@ export class Headset {
   }
 
   private take(hand: three.Object3D): void {
-    const coupling = this.hooks.coupling();
-    if (!coupling || this.grip) return;
+    const taken = this.hooks.hand();
+    if (!taken || this.grip) return;
     hand.updateWorldMatrix(true, false);
-    coupling.held = true;
+    taken.held = true;
     this.grip = {
       hand,
       hand_then: hand.matrixWorld.clone(),
-      tool_then: new three.Matrix4().compose(coupling.position, coupling.rotation, new three.Vector3(1, 1, 1))
+      tool_then: new three.Matrix4().compose(taken.position, taken.rotation, new three.Vector3(1, 1, 1))
     };
   }
   /** The target follows the hand as if it were fixed to it. */
   private move(): void {
-    const coupling = this.hooks.coupling();
-    if (!this.grip || !coupling) return;
+    const taken = this.hooks.hand();
+    if (!this.grip || !taken) return;
     const {hand, hand_then, tool_then} = this.grip;
     hand.updateWorldMatrix(true, false);
     const place = hand.matrixWorld.clone().multiply(hand_then.clone().invert()).multiply(tool_then);
-    place.decompose(coupling.target_position, coupling.target_rotation, new three.Vector3());
+    place.decompose(taken.target_position, taken.target_rotation, new three.Vector3());
   }
   private let_go(): void {
     this.grip = null;
-    this.hooks.coupling()?.let_go();
+    this.hooks.hand()?.let_go();
   }
 }
