@@ -16,37 +16,72 @@ namespace {
 constexpr std::size_t kEight = TriangleTree::kEight;
 constexpr std::size_t kWorthSharing = std::size_t{1} << 15;  // triangles (chosen: milliseconds)
 
-struct Centre {
-  Int3 sum;  ///< of the corners, within 3 · 2^28
+constexpr std::size_t kTried = 64;  // triangles by which a cut is judged, a power of two (chosen)
+
+struct Item {
+  Int3 low, high;  ///< the triangle's box
   std::uint32_t id;
+
+  std::int32_t middle(int axis) const { return low[axis] + high[axis]; }  ///< twice that, within 2^29
 };
 
 struct Part {
   std::size_t begin, size;
 };
 
-/// Halves of a part, of which the first fills children of its node: cut across the longest side of the box of
-/// all centres.
-std::array<Part, 2> halves(std::span<Centre> all, const Part& part) {
+/// The first `first` are those of the lowest middles along an axis.
+void cut(std::span<Item> items, std::size_t first, int axis) {
+  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(first), items.end(),
+                   [&](const Item& a, const Item& b) {
+                     return a.middle(axis) != b.middle(axis) ? a.middle(axis) < b.middle(axis) : a.id < b.id;
+                   });
+}
+
+/// Along which axis to cut so that halves cost least: half the surface of each one's box, times its
+/// triangles, which is about how often they are looked at. `share`: of the triangles that go into the first.
+int best_axis(std::span<const Item> items, double share) {
+  std::array<Item, kTried> tried;
+  const std::size_t count = std::min(items.size(), kTried);
+  for (std::size_t i = 0; i < count; ++i) tried[i] = items[i * items.size() / count];
+  const std::size_t first =
+      std::clamp<std::size_t>(static_cast<std::size_t>(share * static_cast<double>(count)), 1, count - 1);
+  int best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<std::int64_t, kTried> order;  // by middle; the place in `tried` below
+    for (std::size_t i = 0; i < count; ++i)
+      order[i] = std::int64_t{tried[i].middle(axis)} * std::int64_t{kTried} + static_cast<std::int64_t>(i);
+    std::nth_element(order.begin(), order.begin() + first, order.begin() + count);
+    const auto cost = [&](std::size_t begin, std::size_t end) {
+      Int3 low(INT32_MAX), high(INT32_MIN);
+      for (std::size_t i = begin; i < end; ++i) {
+        const Item& item = tried[static_cast<std::uint64_t>(order[i]) % kTried];
+        low = glm::min(low, item.low);
+        high = glm::max(high, item.high);
+      }
+      const Vec3 side(high - low);
+      return (side.x * side.y + side.y * side.z + side.z * side.x) * static_cast<double>(end - begin);
+    };
+    const double costs = cost(0, first) + cost(first, count);
+    if (costs < least) {
+      least = costs;
+      best = axis;
+    }
+  }
+  return best;
+}
+
+/// Halves of a part, of which the first fills children of its node.
+std::array<Part, 2> halves(std::span<Item> all, const Part& part) {
   std::size_t child = kEight;
   while (child * kEight < part.size) child *= kEight;
   const std::size_t children = (part.size + child - 1) / child, first = child * (children / 2);
-  const std::span<Centre> centres = all.subspan(part.begin, part.size);
-  Int3 low = centres[0].sum, high = low;
-  for (const Centre& c : centres) {
-    low = glm::min(low, c.sum);
-    high = glm::max(high, c.sum);
-  }
-  const Int3 side = high / 2 - low / 2;
-  const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-  std::nth_element(centres.begin(), centres.begin() + static_cast<std::ptrdiff_t>(first), centres.end(),
-                   [&](const Centre& a, const Centre& b) {
-                     return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.id < b.id;
-                   });
+  const std::span<Item> items = all.subspan(part.begin, part.size);
+  cut(items, first, best_axis(items, static_cast<double>(first) / static_cast<double>(part.size)));
   return {{{part.begin, first}, {part.begin + first, part.size - first}}};
 }
 
-void sort_part(std::span<Centre> all, const Part& part) {
+void sort_part(std::span<Item> all, const Part& part) {
   if (part.size <= kEight) return;
   for (const Part& half : halves(all, part)) sort_part(all, half);
 }
@@ -105,13 +140,15 @@ void set(TriangleTree::TurnedBoxes& boxes, std::size_t i, const LatticeMesh& mes
 
 TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<bool()>& go_on,
                                 std::uint8_t without, bool turns) {
-  std::vector<Centre> centres;
-  centres.reserve(mesh.triangles.size());
-  for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id)
-    if ((mesh.flags[id] & without) == 0)
-      centres.push_back({mesh.corner(id, 0) + mesh.corner(id, 1) + mesh.corner(id, 2), id});
+  std::vector<Item> items;
+  items.reserve(mesh.triangles.size());
+  for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id) {
+    if ((mesh.flags[id] & without) != 0) continue;
+    const Int3 a = mesh.corner(id, 0), b = mesh.corner(id, 1), c = mesh.corner(id, 2);
+    items.push_back({glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c), id});
+  }
 
-  std::vector<Part> large{{0, centres.size()}}, shares;
+  std::vector<Part> large{{0, items.size()}}, shares;
   while (!large.empty()) {
     const Part part = large.back();
     large.pop_back();
@@ -119,25 +156,22 @@ TriangleTree TriangleTree::make(const LatticeMesh& mesh, const std::function<boo
     if (part.size <= kWorthSharing)
       shares.push_back(part);
     else
-      for (const Part& half : halves(centres, part)) large.push_back(half);
+      for (const Part& half : halves(items, part)) large.push_back(half);
   }
   if (!in_shares(
           static_cast<std::uint32_t>(shares.size()),
-          [&](std::uint32_t share) { sort_part(centres, shares[share]); },
+          [&](std::uint32_t share) { sort_part(items, shares[share]); },
           [&](std::uint32_t) { return go_on(); }))
     return {};
 
   TriangleTree out;
-  out.order.reserve(centres.size());
-  for (const Centre& c : centres) out.order.push_back(c.id);
+  out.order.reserve(items.size());
+  for (const Item& item : items) out.order.push_back(item.id);
   std::vector<std::array<Int3, 2>> below;
-  for (std::size_t first = 0; first < centres.size(); first += kEight) {
+  for (std::size_t first = 0; first < items.size(); first += kEight) {
     std::array<Int3, 2>& box = below.emplace_back(std::array{Int3(kNowhere), Int3(-kNowhere)});
-    for (std::size_t place = first; place < std::min(first + kEight, centres.size()); ++place)
-      for (int corner = 0; corner < 3; ++corner) {
-        const Int3 p = mesh.corner(out.order[place], corner);
-        box = {glm::min(box[0], p), glm::max(box[1], p)};
-      }
+    for (std::size_t place = first; place < std::min(first + kEight, items.size()); ++place)
+      box = {glm::min(box[0], items[place].low), glm::max(box[1], items[place].high)};
   }
   while (!below.empty()) {
     out.level_begin.push_back(static_cast<std::uint32_t>(out.boxes.size()));
