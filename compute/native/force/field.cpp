@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -138,21 +139,31 @@ PressureField PressureField::make(const SceneGeometry& geometry, const TriangleT
     out.own_begin_.clear();
     return out;
   }
+  std::vector<std::pair<int, Int3>> samples;  // level and point, of a triangle
   for (std::uint32_t id = 0; id < triangles; ++id) {
-    out.work_out_tool_samples(id, [&](const Int3& p, int level) {
-      out.own_samples_.push_back(p);
+    samples.clear();
+    out.work_out_tool_samples(id, [&](const Int3& p, int level) { samples.emplace_back(level, p); });
+    std::ranges::stable_sort(samples, std::ranges::greater{}, &std::pair<int, Int3>::first);
+    for (const auto& [level, point] : samples) {
+      out.own_samples_.push_back(point);
       out.own_levels_.push_back(static_cast<std::uint8_t>(level));
-    });
+    }
     out.own_begin_.push_back(static_cast<std::uint32_t>(out.own_samples_.size()));
   }
   return out;
 }
 
-/// How many of a tool triangle's samples are listed.
+/// How many of a tool triangle's listed samples weigh something in this frame: the first ones.
 std::uint32_t PressureField::own_count(std::uint32_t mobile) const {
-  return own_begin_.empty() || geometry_->tool.field_weight_q30[mobile] == 0
-             ? 0
-             : own_begin_[mobile + 1] - own_begin_[mobile];
+  const LatticeMesh& tool = geometry_->tool;
+  if (own_begin_.empty() || tool.field_weight_q30[mobile] == 0) return 0;
+  const std::uint32_t begin = own_begin_[mobile], end = own_begin_[mobile + 1],
+                      place = tool.levels_of[mobile];
+  if (level_ == 0 || place == 0) return end - begin;
+  const std::uint32_t least = std::min(level_, tool.side_levels[place - 1].coarsest);
+  const auto first = own_levels_.begin() + begin;
+  return static_cast<std::uint32_t>(
+      std::upper_bound(first, own_levels_.begin() + end, least, std::greater{}) - first);
 }
 
 template <class Take>
@@ -343,7 +354,7 @@ void PressureField::sum_extras(const LatticePose& pose, const ContactSets& sets,
 
 /// Parts of C_m's samples, alike in size: one triangle may have thousands.
 void PressureField::divide_tool(std::span<const MobileResult> mobiles) {
-  const std::size_t size = std::max(kPart << level_, own_samples_.size() / kMostOfABody);
+  const std::size_t size = std::max(kPart, own_samples_.size() / kMostOfABody);
   tool_parts_.clear();
   std::size_t room = 0;  // of the last part
   for (std::uint32_t i = 0; i < mobiles.size(); ++i) {
@@ -374,13 +385,19 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
     // What touches nothing is on one side of the mock-up, with its first corner.
     const bool hit = (result.state & kMobileHit) != 0;
     std::optional<bool> inside;
-    const auto push = [&](const Int3& p, std::uint64_t weight) {
-      if (weight == 0) return;
+    const auto push = [&](const Int3& p, std::uint64_t weight_q30) {
+      if (weight_q30 == 0) return;
       const Int3 point = transform(pose, p);
       if (!hit && !inside) inside = lane.in_mockup.inside(transform(pose, own.corner(result.id, 0)));
-      if (hit ? lane.in_mockup.inside(point) : *inside) push_from_tool(pose, result.id, point, weight, lane);
+      if (hit ? lane.in_mockup.inside(point) : *inside)
+        push_from_tool(pose, result.id, point, weight_q30, lane);
     };
-    const auto weighed = [&](const Int3& p, int level) { push(p, weight_of(own, result.id, level)); };
+    int level = -1;  // of the sample before
+    std::uint64_t weight = 0;
+    const auto weighed = [&](const Int3& p, int of) {
+      if (of != level) weight = weight_of(own, result.id, level = of);
+      push(p, weight);
+    };
     const std::uint32_t first = i == begin.mobile ? begin.sample : 0;
     if (own_begin_.empty()) {
       if (own.field_weight_q30[result.id] != 0) work_out_tool_samples(result.id, weighed);

@@ -91,7 +91,7 @@ class PressureField {
   int lever_shift_ = 0;
   std::vector<std::uint32_t>
       own_begin_;  ///< by tool triangle, and one more; empty: the tool's samples are too many to list
-  std::vector<Int3> own_samples_;         ///< of the tool, in its lattice frame
+  std::vector<Int3> own_samples_;  ///< of the tool, in its lattice frame; of a triangle the coarsest first
   std::vector<std::uint8_t> own_levels_;  ///< of these
   std::uint32_t level_ = 0,
                 between_ = 0;         ///< of this frame: the level of samples, and how far to the next, 1/256
