@@ -11,6 +11,7 @@ import palpate
 from cluster import wait_for
 from palpate import PalpateError, Scene
 from palpate.sweeps import Grid, sweep
+from palpate.sweeps.drive import _CtrlC
 
 BALL = {'radius': 0.7}
 GRID = Grid(x=(-1, 1, 40), y=(-1, 1, 40), z=(-1, 1, 20), rx=(0, 90, 3))
@@ -179,6 +180,24 @@ def test_ctrl_c_leaves_what_is_done_and_says_so(command):
     assert 'Traceback' not in err
     code, out, err = one.run()
     assert code == 0 and 'chunks were done before' in err
+
+
+def test_ctrl_c_is_not_lost_where_exceptions_are():
+    class Ended:
+        def __del__(self):
+            os.kill(os.getpid(), signal.SIGINT)
+
+    woken = []
+    with _CtrlC(lambda: woken.append(True)) as ctrl_c:
+        ended = Ended()
+        ctrl_c.look()
+        del ended  # what it raises nobody hears
+        assert woken == [True]
+        with pytest.raises(KeyboardInterrupt):
+            ctrl_c.look()
+        with pytest.raises(KeyboardInterrupt):  # the second one is not waited for
+            os.kill(os.getpid(), signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_two_sweeps_do_not_write_to_one_folder_at_once(command):

@@ -5,6 +5,8 @@ Dask schedules: it moves a lost worker's tasks to the others. What it doesn't do
 scheduler is gone nothing is known of the tasks. The markers are, so whatever has none is handed in again. """
 import contextlib
 import queue
+import signal
+import threading
 import time
 
 from distributed import KilledWorker
@@ -18,6 +20,35 @@ AHEAD = 3
 PATIENCE_S = 120  # for a scheduler to come back, or a first worker to come (chosen)
 
 
+class _CtrlC:
+    """Ctrl-C as a flag that the loop asks for: raised wherever Python is at the moment it gets lost where
+    exceptions are (a finalizer of Dask's, say), and the sweep goes on. The second one is raised at once. Where
+    somebody else handles it, or outside the main thread, all stays as it is. `wake` is called with it."""
+
+    def __init__(self, wake):
+        self._wake, self._pressed, self._before = wake, False, None
+
+    def __enter__(self):
+        ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        if ours and threading.current_thread() is threading.main_thread():
+            self._before = signal.signal(signal.SIGINT, self._press)
+        return self
+
+    def __exit__(self, *_):
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _press(self, *_):
+        if self._pressed:
+            raise KeyboardInterrupt
+        self._pressed = True
+        self._wake()
+
+    def look(self):
+        if self._pressed:
+            raise KeyboardInterrupt
+
+
 class Driver:
     """Has `job` done by the workers of `client`. `connect`: gives a client anew when this one is closed, or
     None."""
@@ -26,15 +57,21 @@ class Driver:
         self._client, self._job, self._progress, self._connect = client, job, progress, connect
         self._ended = queue.SimpleQueue()
         self._round, self._alone = 0, False
+        self._ctrl_c = _CtrlC(lambda: self._ended.put((None, None)))  # such a queue may be put to anywhere
 
     def run(self, todo, twice):
         """Does the chunks `todo`, in their order; those also in `twice` are asked of two engines. Full,
-        PalpateError: it stopped; what is done stays done."""
+        PalpateError, KeyboardInterrupt: it stopped; what is done stays done."""
+        with self._ctrl_c:
+            self._run(todo, twice)
+
+    def _run(self, todo, twice):
         waiting, running = list(reversed(todo)), {}
         self._deliver()
         room, counted = self._room(), time.monotonic()
         try:
             while waiting or running:
+                self._ctrl_c.look()
                 while waiting and len(running) < room:
                     running[waiting[-1]] = self._submit(waiting[-1], waiting[-1] in twice)
                     waiting.pop()
@@ -107,6 +144,7 @@ class Driver:
         self._progress.note('the connection to the scheduler is lost; waiting for it to come back')
         until = time.monotonic() + PATIENCE_S
         while time.monotonic() < until:
+            self._ctrl_c.look()
             try:
                 if self._client.status == 'closed' and self._connect:
                     self._client = self._connect()
