@@ -10,7 +10,7 @@
 namespace palpate {
 
 /// Default of SceneGeometry::contact_samples (docs/ACCURACY.md).
-inline constexpr std::uint32_t kContactSamples = 512;
+inline constexpr std::uint32_t kContactSamples = 1024;
 
 /// Everything a back end needs to know of a scene's shape: integers only, the same for every back end.
 struct SceneGeometry {

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kConverged = 48;  ///< of a voxel: samples of a run that stands in for a closed form lie so
                                    ///< close (chosen: three times as close as the closest that is judged)
-constexpr std::uint32_t kSampleCounts[] = {32, 64, 128, 256, 512, 1024, 2048};  ///< a contact; 512 is usual
+constexpr std::uint32_t kSampleCounts[] = {32, 64, 128, 256, 512, 1024, 2048};  ///< a contact; 1024 is usual
 constexpr double kVoxelTimes[] = {2.0, 1.4, 1.0, 0.7, 0.5, 0.35};               ///< of the scene's own
 constexpr int kCuts = 6;  ///< finenesses of the mock-up in `paper`
 constexpr double kMostFiner = 16, kAnyTriangles = 40'000,
