@@ -23,7 +23,8 @@ class FrameBudget {
     if (coarser_ > 0) ++coarse_frames_;
     coarsest_ = std::max(coarsest_, coarser_);
     if (total_us > budget_us_) {
-      if (field_us * kWorth > total_us) coarser_ = std::min(coarser_ + kUp, Ignored::kCoarsest);
+      if (field_us * (coarser_ < kFew ? kWorth : kWorthFew) > total_us)
+        coarser_ = std::min(coarser_ + kUp, Ignored::kCoarsest);
     } else if (total_us < kRoom * budget_us_) {
       coarser_ -= std::min(coarser_, kDown);
     }
@@ -39,7 +40,10 @@ class FrameBudget {
   static constexpr std::uint32_t kUp = 16, kDown = 4;
   static constexpr double kRoom =
       0.75;  ///< of the budget: below it samples come back; half of them more cost less than the rest
-  static constexpr double kWorth = 8;  ///< coarser samples are of use while they take that part of a frame
+  static constexpr double kWorth = 8;  ///< coarser samples are of use while they take that part of a frame, …
+  static constexpr std::uint32_t kFew =
+      2 * 256;                            ///< … and below a quarter of them, where forces get rough, …
+  static constexpr double kWorthFew = 2;  ///< … while they take that one
 
   double budget_us_;
   std::uint32_t coarser_ = 0, coarsest_ = 0;

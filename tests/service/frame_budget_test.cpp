@@ -46,6 +46,16 @@ TEST(FrameBudget, WhereSamplesTakeLittleNoneAreLeftOut) {
   EXPECT_EQ(budget.coarser(), 0u);
 }
 
+TEST(FrameBudget, FewerThanAQuarterCountOnlyWhereTheyTakeHalfOfAFrame) {
+  FrameBudget little(4000), much(4000);
+  for (int i = 0; i < 300; ++i) {
+    ask(little, 3900, 8000);
+    ask(much, 1000, 40'000);
+  }
+  EXPECT_NEAR(little.coarser(), 512, 16) << "a third of a frame is not worth a rough force";
+  EXPECT_GT(much.coarser(), 900u) << "some 1,000 us and a 13th of the samples are within the budget";
+}
+
 TEST(FrameBudget, ThereIsAnEndToIt) {
   FrameBudget budget(1);
   for (int i = 0; i < 1000; ++i) budget.frame(10'000, 9000);
