@@ -1,5 +1,5 @@
 // Small solids of plain colours, drawn over all else, in the order in which they are added. All are one mesh:
-// where there is no GPU, each one drawn by itself costs as much as a thousand triangles.
+// where there is no GPU, drawing each by itself costs more than its triangles do.
 import * as three from 'three';
 
 const UP = new three.Vector3(0, 1, 0);
