@@ -17,6 +17,7 @@ const SCENE = {
 
 class Beside {
   onmessage: (event: {data: ToPage}) => void = () => {};
+  onerror: (event: {message?: string}) => void = () => {};
   told: ToWorker[] = [];
   postMessage(message: ToWorker): void {
     this.told.push(message);
@@ -102,4 +103,14 @@ test('the page says whether the server holds the scene', async () => {
     mouse.close();
     assert.deepEqual(worker.told.at(-1), {type: 'close'});
   }
+});
+test('a worker that fails leaves no force, and is told', () => {
+  const {worker, heard, mouse} = begun();
+  worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.09, 0, 0, 0, 1]), frame: FRAME, asked_at: 1});
+  assert.equal(mouse.moment().force[2], 1);
+  worker.onerror({message: 'no such thing'});
+  assert.deepEqual([mouse.moment().force, mouse.moment().note], [[0, 0, 0], 'stopped']);
+  worker.onerror({});  // a script that can't be had has no message
+  assert.match(heard.at(-2)!, /^lost .*has failed: no such thing\./);
+  assert.match(heard.at(-1)!, /^lost .*has failed to load\./);
 });

@@ -44,6 +44,11 @@ export class MouseSource {
           break;
       }
     };
+    worker.onerror = ({message}) => {
+      this.newest = {...this.newest, force: [0, 0, 0], torque: [0, 0, 0], response: null, note: 'stopped'};
+      hooks.lost(`The mouse moves nothing any more, for its worker has failed${
+          message ? `: ${message}` : ' to load'}. Load the page again.`);
+    };
     this.tell({type: 'begin', scene, at, url, protocols});
   }
   private tell(message: ToWorker): void {
