@@ -63,13 +63,15 @@ struct VoxelSamples {
     const std::uint32_t* at = &words[wide ? 2 * number : number];
     const std::uint32_t height = wide ? at[0] : at[0] & 0xFFFFF, place = wide ? at[1] : at[0] >> 20;
     const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-    Int3 out;
-    out[axis] = voxel.low[axis] + static_cast<std::int32_t>(height);
     const std::int32_t i = voxel.first[u] + static_cast<std::int32_t>(place & 63),
-                       j = voxel.first[v] + static_cast<std::int32_t>(place >> 6);
-    out[u] = static_cast<std::int32_t>(voxel.grid.u(i, j));
-    out[v] = static_cast<std::int32_t>(voxel.grid.v(i, j));
-    return out;
+                       j = voxel.first[v] + static_cast<std::int32_t>(place >> 6),
+                       along = voxel.low[axis] + static_cast<std::int32_t>(height),
+                       at_u = static_cast<std::int32_t>(voxel.grid.u(i, j)),
+                       at_v = static_cast<std::int32_t>(voxel.grid.v(i, j));
+    // Not component by component: what is written so must go through memory before it can be read as a whole.
+    return axis == 0   ? Int3(along, at_u, at_v)
+           : axis == 1 ? Int3(at_v, along, at_u)
+                       : Int3(at_u, at_v, along);
   }
 };
 

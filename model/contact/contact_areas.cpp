@@ -1,6 +1,7 @@
 #include "model/contact/contact_areas.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <numeric>
@@ -32,6 +33,30 @@ class Sets {
 
  private:
   std::vector<std::uint32_t> parent_;
+};
+
+/// Which of the carriers a triangle is.
+class Places {
+ public:
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  explicit Places(const std::vector<CarrierSums>& carriers)
+      : entries_(std::bit_ceil(2 * carriers.size() + 1), Entry{kNone, kNone}) {
+    for (std::uint32_t i = 0; i < carriers.size(); ++i) entries_[entry(carriers[i].id)] = {carriers[i].id, i};
+  }
+  /// kNone: it is none.
+  std::uint32_t of(std::uint32_t id) const { return entries_[entry(id)].place; }
+
+ private:
+  struct Entry {
+    std::uint32_t id, place;
+  };
+  /// Where the id is, or would be. At most half of the entries are taken.
+  std::size_t entry(std::uint32_t id) const {
+    std::size_t at = id * std::size_t{0x9E3779B97F4A7C15} >> 32;
+    while (entries_[at &= entries_.size() - 1].id != id && entries_[at].id != kNone) ++at;
+    return at;
+  }
+  std::vector<Entry> entries_;
 };
 
 void add(WideSum& to, const WideSum& from) {
@@ -109,14 +134,12 @@ void gather_areas(const SceneGeometry& geometry, const LatticePose& pose, Contac
   const std::vector<CarrierSums>& carriers = contacts.carriers;
   const LatticeMesh& mesh = geometry.mockup;
   Sets areas(carriers.size()), zones(carriers.size());
+  const Places places(carriers);
   for (std::uint32_t i = 0; i < carriers.size(); ++i)
     for (std::uint32_t n = mesh.neighbour_begin[carriers[i].id]; n < mesh.neighbour_begin[carriers[i].id + 1];
          ++n) {
-      const std::uint32_t other = mesh.neighbours[n] >> 1;
-      const auto found = std::lower_bound(carriers.begin(), carriers.end(), other,
-                                          [](const CarrierSums& a, std::uint32_t b) { return a.id < b; });
-      if (found == carriers.end() || found->id != other) continue;
-      const auto j = static_cast<std::uint32_t>(found - carriers.begin());
+      const std::uint32_t j = places.of(mesh.neighbours[n] >> 1);
+      if (j == Places::kNone) continue;
       areas.join(i, j);
       if ((mesh.neighbours[n] & 1u) != 0) zones.join(i, j);
     }

@@ -32,7 +32,8 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-bool alone = false;  // distances of cpu alone, for their time
+bool alone = false;      // distances of cpu alone, for their time
+std::size_t dense = 24;  // poses of each motion that are sampled
 
 struct Counts {
   std::uint64_t poses = 0, touching = 0, apart = 0, further = 0, differences = 0;
@@ -160,7 +161,7 @@ Pose pose_of(const LatticePose& at, const SceneGeometry& geometry) {
 void motions(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
              Counts& counts) {
   constexpr int kClosePoses = 20'000;
-  constexpr int kSamples = 24, kMostTries = 12;  // of starts, the further the more: a free one is wanted
+  constexpr int kMostTries = 12;  // of starts, the further the more: a free one is wanted
   const auto native = make_native_backend();
   if (failed(native->prepare(geometry, Plan{}, [](const char*, double) { return true; }))) return;
   const TouchRule rule = TouchRule::of(geometry, 0);
@@ -169,8 +170,8 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
   std::uint64_t late = 0, early = 0, undecided = 0, from_contact = 0;
   const double voxel = geometry.mockup_grid.size * geometry.lattice.step_m;
   const auto some = [&] { return 2 * random.unit() - 1; };
-  std::vector<LatticePose> samples(kSamples);
-  std::vector<std::uint8_t> bits(kSamples);
+  std::vector<LatticePose> samples(dense);
+  std::vector<std::uint8_t> bits(dense);
   Contacts contacts;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (poses[i].beyond_lattice) continue;
@@ -201,11 +202,13 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
     }
     const Screw screw(from, to, geometry);
     // Sparse all along, dense before the contact.
-    for (int k = 0; k < kSamples; ++k)
-      samples[static_cast<std::size_t>(k)] = *to_lattice(
-          screw.at(found->time * (k % 2 == 0 ? k / static_cast<double>(kSamples)
-                                             : 1 - 0.02 * random.unit() * random.unit() / (1 + k))),
+    for (std::size_t k = 0; k < dense; ++k) {
+      const auto number = static_cast<double>(k);
+      samples[k] = *to_lattice(
+          screw.at(found->time * (k % 2 == 0 ? number / static_cast<double>(dense)
+                                             : 1 - 0.02 * random.unit() * random.unit() / (1 + number))),
           geometry);
+    }
     if (failed(native->touches(samples, bits))) ++counts.differences;
     // Contact without a pair is none of its own: into an open body one gets through the opening, and a tool
     // smaller than a voxel may start inside a boundary voxel, where no set knows of it (docs/EXACTNESS.md,
@@ -264,6 +267,8 @@ int run(int argc, char** argv) {
   app.add_option("--reach", reach);
   app.add_flag("--killer", killer);
   app.add_flag("--alone", alone, "distance: cpu alone, for its time");
+  app.add_option("--samples", dense, "motions: poses of each that are asked whether they touch")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--path", path, "poses along the scene's own path");
   app.add_option("--pull", pull, "poses along this CSV file's");
   CLI11_PARSE(app, argc, argv);

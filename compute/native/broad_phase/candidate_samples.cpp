@@ -71,7 +71,7 @@ struct NearCells {
 /// Points in cubes of the tool.
 struct SolidPoints {
   unsigned may, unsure;  ///< a bit each: may lie in the solid; the cube may be the next one
-  std::uint32_t brick[kEight], bit[kEight];  ///< which cube, where it is sure (BrickBits)
+  std::uint32_t block[kEight], bit[kEight];  ///< which cube, where it is sure (SolidBits)
 };
 
 namespace plain {
@@ -95,7 +95,7 @@ std::size_t near_voxels(const NearTurn& turn, const BrickVoxels& voxels, const N
   return plain::near_voxels(turn, voxels, cells, near);
 }
 
-void solid_points(const PointTurn& turn, const float (&low)[3], const BrickBits& solid,
+void solid_points(const PointTurn& turn, const float (&low)[3], const SolidBits& solid,
                   const std::uint32_t* points, SolidPoints& out) {
 #if PALPATE_TWO_CODES
   if (has_second_code()) return second::solid_points(turn, low, solid, points, out);
@@ -147,9 +147,10 @@ CandidateSamples CandidateSamples::make(const SceneGeometry& geometry, const Sce
   out.list_begin_ = m.list_begin;
   if (out.listed_) {
     out.list_triangles_ = m.list_triangles;
-    out.cubes_ = {fine.origin, 1.0 / fine.size, fine.bricks, {}, {}};
-    out.cubes_.may.make(scene.fine, BrickBits::Of::kOccupied);
-    out.cubes_.all.make(scene.fine, BrickBits::Of::kInternal);
+    BrickBits may, all;
+    may.make(scene.fine, BrickBits::Of::kOccupied);
+    all.make(scene.fine, BrickBits::Of::kInternal);
+    out.cubes_ = {fine.origin, 1.0 / fine.size, fine.bricks, {may, all}};
   }
   out.use({fine.origin, 1.0 / fine.size, fine.bricks, scene.tool_near});
   return out;
@@ -177,11 +178,13 @@ void CandidateSamples::use(const Near& near) {
 
 void CandidateSamples::use(std::shared_ptr<const OpenInside> known, const PartitionView& partition) {
   Cubes cells;
-  if (!listed_ || !known->cells.spread(partition, cells.may, cells.all)) return;
+  BrickBits may, all;
+  if (!listed_ || !known->cells.spread(partition, may, all)) return;
   const gpu::GridConstants& grid = partition.grid;
   cells.origin = grid.origin;
   cells.per_step = static_cast<double>(InsideCells::kCells) / grid.size;
   cells.bricks = InsideCells::kCells * grid.bricks;
+  cells.solid = {may, all};
   cubes_ = std::move(cells);
   known_ = std::move(known);
   if (!known_->near.empty())
@@ -224,11 +227,11 @@ std::uint32_t CandidateSamples::class_at(const Int3& p) const {
     if (!(along >= 0 && along < 8 * cubes_.bricks[k])) return gpu::kVoxelExternal;
     v[k] = static_cast<std::int32_t>(along);
   }
-  const std::size_t brick = cubes_.may.number(v.x >> 3, v.y >> 3, v.z >> 3);
+  const SolidBits::Block& block = cubes_.solid.block(cubes_.solid.number(at(v >> 3, cubes_.bricks)));
   const auto bit = static_cast<std::uint32_t>((v.x & 7) | (v.y & 7) << 3 | (v.z & 7) << 6);
-  return cubes_.all.at(brick, bit)   ? gpu::kVoxelInternal
-         : cubes_.may.at(brick, bit) ? gpu::kVoxelBoundary
-                                     : gpu::kVoxelExternal;
+  return block.all_at(bit)   ? gpu::kVoxelInternal
+         : block.may_at(bit) ? gpu::kVoxelBoundary
+                             : gpu::kVoxelExternal;
 }
 
 bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint32_t boundary) const {
@@ -250,14 +253,15 @@ bool CandidateSamples::take_listed(Search& search, const Int3& voxel, std::uint3
   const std::uint16_t* const owners = from.owners.data() + begin.owner;
   for (std::uint32_t first = begin.point; first < end.point; first += kEight) {
     SolidPoints solid;
-    solid_points(search.points, low, cubes_.may, &from.points[first], solid);
+    solid_points(search.points, low, cubes_.solid, &from.points[first], solid);
     if (end.point - first < kEight) solid.may &= (1u << (end.point - first)) - 1;
     for (; solid.may != 0; solid.may &= solid.may - 1) {
       const auto lane = static_cast<unsigned>(std::countr_zero(solid.may));
       const std::uint32_t point = first + lane;
       const bool sure = (solid.unsure >> lane & 1) == 0;
-      std::uint32_t kind = sure && cubes_.all.at(solid.brick[lane], solid.bit[lane]) ? gpu::kVoxelInternal
-                                                                                     : gpu::kVoxelBoundary;
+      std::uint32_t kind = sure && cubes_.solid.block(solid.block[lane]).all_at(solid.bit[lane])
+                               ? gpu::kVoxelInternal
+                               : gpu::kVoxelBoundary;
       gpu::FrameSample sample{};
       std::span<const std::uint16_t> triangles(&from.entries[point], 1);
       std::uint32_t mark = 0;
@@ -345,6 +349,8 @@ void CandidateSamples::take_brick(Search& search, const Int3& brick, std::uint32
       const std::uint32_t point = sampled_->begin[boundary].point;
       __builtin_prefetch(sampled_->points.data() + point);
       __builtin_prefetch(sampled_->entries.data() + point);
+      __builtin_prefetch(sampled_->words.data() +
+                         std::size_t{sampled_->wide ? 2U : 1U} * sampled_->begin[boundary].sample);
       __builtin_prefetch(sampled_->owners.data() + sampled_->begin[boundary].owner);
       __builtin_prefetch(&list_triangles_[list_begin_[boundary]]);
     }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "compute/native/broad_phase/candidates.h"
+#include "compute/native/broad_phase/solid_bits.h"
 #include "compute/native/narrow_phase/open_inside.h"
-#include "compute/scene/brick_bits.h"
 #include "compute/scene/samples.h"
 #include "compute/scene/scene_tables.h"
 #include "model/lattice/lattice.h"
@@ -63,7 +63,7 @@ class CandidateSamples {
     Int3 origin{0};
     double per_step = 1;  ///< cubes a step
     Int3 bricks{0};       ///< of 8³ of them
-    BrickBits may, all;   ///< those that may hold a point inside, those that hold nothing else
+    SolidBits solid;
   };
   Cubes cubes_;
   const LatticeMesh* mesh_ = nullptr;

@@ -40,7 +40,7 @@ static std::size_t near_voxels(const NearTurn& turn, const BrickVoxels& voxels, 
 }
 
 // Of kEight points of a voxel (words of VoxelSamples::points) those that may lie in the solid.
-static void solid_points(const PointTurn& turn, const float (&low)[3], const BrickBits& solid,
+static void solid_points(const PointTurn& turn, const float (&low)[3], const SolidBits& solid,
                          const std::uint32_t* points, SolidPoints& out) {
   out.may = out.unsure = 0;
   for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
@@ -64,12 +64,15 @@ static void solid_points(const PointTurn& turn, const float (&low)[3], const Bri
       bit = bit << 3 | (cell & 7);
     }
     std::uint32_t good[kWidth], unsure[kWidth];
-    std::memcpy(out.brick + begin, &brick, sizeof brick);
+    std::uint32_t bricks[kWidth];
+    std::memcpy(bricks, &brick, sizeof brick);
     std::memcpy(out.bit + begin, &bit, sizeof bit);
     std::memcpy(good, &may, sizeof may);
     std::memcpy(unsure, &beside, sizeof beside);
     for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      const auto in = static_cast<std::uint32_t>(solid.at(out.brick[begin + lane], out.bit[begin + lane]));
+      out.block[begin + lane] = solid.number(bricks[lane]);
+      const auto in =
+          static_cast<std::uint32_t>(solid.block(out.block[begin + lane]).may_at(out.bit[begin + lane]));
       out.may |= ((in | unsure[lane]) & good[lane] & 1u) << (begin + lane);
       out.unsure |= (unsure[lane] & 1u) << (begin + lane);
     }

@@ -42,11 +42,11 @@ constexpr float kFloatSlack = 0x1p-19F;
 /// A sum of squares is off by less than this part of it.
 constexpr float kSquareSlack = 0x1p-20F;
 
-/// Eight triangles as floats, in steps from their first corners. By edge: its first corner, and two vectors
-/// of unit length, along it and in the plane away from the triangle.
+/// Eight triangles as floats, in steps from their first corners. By edge: two vectors of unit length, along
+/// it and in the plane away from the triangle, and where the second and the third begin.
 struct TriangleRun {
   std::int32_t corner[3][kEight];
-  float from[3][3][kEight], along[3][3][kEight], out[3][3][kEight], length[3][kEight];
+  float from[2][3][kEight], along[3][3][kEight], out[3][3][kEight], length[3][kEight];
   float normal[3][kEight];
   float room[kEight];  ///< by how much a distance may be off, but for the way to the first corner
 };
@@ -141,7 +141,7 @@ const Run& DepthSearch::Tables::run(std::uint32_t number) {
                    along[3] = {way.x / length, way.y / length, way.z / length};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-        run.from[edge][k][i] = static_cast<float>(from[static_cast<int>(k)]);
+        if (edge != 0) run.from[edge - 1][k][i] = static_cast<float>(from[static_cast<int>(k)]);
         run.along[edge][k][i] = static_cast<float>(along[k]);
         run.out[edge][k][i] = static_cast<float>(along[l] * normal[m] - along[m] * normal[l]);
         sides += std::abs(static_cast<double>(way[static_cast<int>(k)]));

@@ -32,7 +32,27 @@ static unsigned bits_of(const Words* lanes) {
 #endif
 }
 
-// Squared distances from a point to eight boxes. Bits: those that are within the limit.
+// The first lane of eight that has the least of them.
+static unsigned least_of(const float* lanes) {
+  Floats least = load(lanes);
+#ifdef PALPATE_SIGN_BITS
+  least = smaller(least, __builtin_shufflevector(least, least, 4, 5, 6, 7, 0, 1, 2, 3));
+  least = smaller(least, __builtin_shufflevector(least, least, 2, 3, 0, 1, 6, 7, 4, 5));
+  least = smaller(least, __builtin_shufflevector(least, least, 1, 0, 3, 2, 5, 4, 7, 6));
+#else
+  least = smaller(least, load(lanes + kWidth));
+  least = smaller(least, __builtin_shufflevector(least, least, 2, 3, 0, 1));
+  least = smaller(least, __builtin_shufflevector(least, least, 1, 0, 3, 2));
+#endif
+  Words same[kEight / kWidth];
+  for (std::size_t begin = 0; begin < kEight; begin += kWidth)
+    same[begin / kWidth] = load(lanes + begin) == least;
+  return static_cast<unsigned>(std::countr_zero(bits_of(same)));
+}
+
+constexpr float kFurther = std::numeric_limits<float>::infinity();  // of a lane that is not near
+
+// Squared distances from a point to eight boxes, kFurther beyond the limit. Bits: those that are within it.
 static unsigned to_boxes(const TriangleTree::Boxes& boxes, const Int3& point, float limit, float* squared) {
   Words near[kEight / kWidth];
   for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
@@ -45,13 +65,14 @@ static unsigned to_boxes(const TriangleTree::Boxes& boxes, const Int3& point, fl
       const Floats away = __builtin_convertvector(gap, Floats);
       sum += away * away;
     }
-    std::memcpy(squared + begin, &sum, sizeof sum);
     near[begin / kWidth] = sum <= limit;
+    sum = near[begin / kWidth] != 0 ? sum : Floats{} + kFurther;
+    std::memcpy(squared + begin, &sum, sizeof sum);
   }
   return bits_of(near);
 }
 
-// The same of boxes along axes of their own, less what rounding may add.
+// The same of boxes along axes of their own, less what rounding may add, where to_boxes() has come before.
 static unsigned to_turned(const TriangleTree::TurnedBoxes& boxes, const Int3& point, float limit,
                           float* squared) {
   Words near[kEight / kWidth];
@@ -70,15 +91,16 @@ static unsigned to_turned(const TriangleTree::TurnedBoxes& boxes, const Int3& po
           Floats{});
       sum += gap * gap;
     }
+    near[begin / kWidth] = (sum <= limit) & (load(squared + begin) <= limit);
+    sum = near[begin / kWidth] != 0 ? sum : Floats{} + kFurther;
     std::memcpy(squared + begin, &sum, sizeof sum);
-    near[begin / kWidth] = sum <= limit;
   }
   return bits_of(near);
 }
 
-// Squared distances from a point to eight triangles, and their slacks: by how much their roots may be too
-// large. Bits: those that may be no further than `most`, and those whose distance is the height above their
-// plane.
+// Squared distances from a point to eight triangles, kFurther where one is further than `most`, and their
+// slacks: by how much their roots may be too large. Bits: those that may be no further than `most`, and those
+// whose distance is the height above their plane.
 static NearTriangles to_triangles(const TriangleRun& run, const Int3& point, float most, float* squared,
                                   float* slack) {
   Words near[kEight / kWidth], above[kEight / kWidth];
@@ -93,8 +115,11 @@ static NearTriangles to_triangles(const TriangleRun& run, const Int3& point, flo
     Words outside{}, inside = Words{} - 1;
     Floats least = Floats{} + 0x1p120F;
     for (std::size_t edge = 0; edge < 3; ++edge) {
-      const Floats x = d[0] - load(run.from[edge][0] + begin), y = d[1] - load(run.from[edge][1] + begin),
-                   z = d[2] - load(run.from[edge][2] + begin);
+      // The first edge begins at the first corner.
+      const auto from = [&](std::size_t k) {
+        return edge == 0 ? d[k] : d[k] - load(run.from[edge - 1][k] + begin);
+      };
+      const Floats x = from(0), y = from(1), z = from(2);
       const Floats side = load(run.out[edge][0] + begin) * x + load(run.out[edge][1] + begin) * y +
                           load(run.out[edge][2] + begin) * z;
       const Floats at = load(run.along[edge][0] + begin) * x + load(run.along[edge][1] + begin) * y +
@@ -107,10 +132,12 @@ static NearTriangles to_triangles(const TriangleRun& run, const Int3& point, flo
     }
     const Floats height = load(run.normal[0] + begin) * d[0] + load(run.normal[1] + begin) * d[1] +
                           load(run.normal[2] + begin) * d[2];
-    const Floats out = height * height + (outside != 0 ? least : Floats{}), reach = most + room;
+    Floats out = height * height + (outside != 0 ? least : Floats{});
+    const Floats reach = most + room;
+    near[begin / kWidth] = out <= reach * reach * (1 + kSquareSlack);
+    out = near[begin / kWidth] != 0 ? out : Floats{} + kFurther;
     std::memcpy(squared + begin, &out, sizeof out);
     std::memcpy(slack + begin, &room, sizeof room);
-    near[begin / kWidth] = out <= reach * reach * (1 + kSquareSlack);
     above[begin / kWidth] = inside;
   }
   return {bits_of(near), bits_of(above)};
@@ -135,57 +162,59 @@ static void look_into(DepthSearch::Tables& tables, Search& search, std::uint32_t
   const NearTriangles found = to_triangles(tables.run(number), search.point, search.most(), squared, slack);
   unsigned near = there & found.near;
   if (near == 0) return;
-  int i = std::countr_zero(near);
-  for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1)
-    if (squared[std::countr_zero(rest)] < squared[i]) i = std::countr_zero(rest);
-  for (;;) {
-    tables.look_at(search, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(i),
-                   (found.above >> i & 1) != 0);
+  for (unsigned i = least_of(squared);;) {
+    tables.look_at(search, static_cast<std::uint32_t>(first) + i, (found.above >> i & 1) != 0);
     near &= ~(1U << i);
     if (near == 0) return;
     near &= within(squared, slack, search.most());
     if (near == 0) return;
-    i = std::countr_zero(near);
+    i = static_cast<unsigned>(std::countr_zero(near));
   }
 }
 
 // From the root to runs, the nearest of each node first.
 static void descend(DepthSearch::Tables& tables, Search& search, std::uint32_t guess) {
-  struct Open {
-    std::uint32_t level, node;
+  struct Node {
+    std::uint32_t level, number;  // level 0: a run; level n: a node of level n - 1's boxes
     float squared;
   };
-  std::array<Open, kEight * 12>
+  std::array<Node, kEight * 12>
       open;  // a level leaves at most seven nodes waiting, and 8^12 triangles are more than a mesh can have
+  std::size_t count = 0;
   const std::uint32_t seen = guess == kNobody ? kNobody : guess / static_cast<std::uint32_t>(kEight);
   if (seen != kNobody) look_into(tables, search, seen);
-  std::size_t count = 0;
-  open[count++] = {static_cast<std::uint32_t>(tables.tree.level_begin.size()), 0,
-                   0};  // level 0: a run; level n: a node of level n - 1's boxes
   alignas(32) float squared[kEight];
-  while (count != 0) {
-    const Open next = open[--count];
-    const float most = search.most(), limit = most * most * (1 + kSquareSlack);
-    if (next.squared > limit) continue;
-    if (next.level == 0) {
-      if (next.node != seen) look_into(tables, search, next.node);
-      continue;
-    }
+  Node next{static_cast<std::uint32_t>(tables.tree.level_begin.size()), 0, 0};
+  // Down to the nearest child of each node without a way through memory; the others wait.
+  const auto nearest_child = [&](float most, float limit) {
     ++tables.looks;
-    const std::uint32_t first = static_cast<std::uint32_t>(kEight) * next.node;
-    const unsigned there =
-        0xFFU >> (kEight - std::min<std::size_t>(kEight, tables.tree.nodes(next.level - 1) - first));
-    const std::size_t group = tables.tree.level_begin[next.level - 1] + next.node;
-    unsigned near = there & to_boxes(tables.tree.boxes[group], search.point, limit, squared);
+    const std::uint32_t level = next.level - 1, first = static_cast<std::uint32_t>(kEight) * next.number;
+    const std::size_t group = tables.tree.level_begin[level] + next.number,
+                      there = tables.tree.nodes(level) - first;
+    unsigned near = to_boxes(tables.tree.boxes[group], search.point, limit, squared);
     if (near != 0 && most > tables.turned_from[std::min<std::size_t>(next.level, kLevels)])
-      near &= to_turned(tables.tree.turned[group], search.point, limit, squared);
-    std::size_t nearest = count;
-    for (; near != 0; near &= near - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
-      open[count] = {next.level - 1, first + i, squared[i]};
-      if (squared[i] < open[nearest].squared) nearest = count;
-      ++count;
+      near = to_turned(tables.tree.turned[group], search.point, limit, squared);
+    if (there < kEight) near &= 0xFFU >> (kEight - there);
+    if (near == 0) return false;
+    unsigned nearest = least_of(squared);
+    if ((near >> nearest & 1) == 0) nearest = static_cast<unsigned>(std::countr_zero(near));  // it is none
+    for (unsigned rest = near & ~(1U << nearest); rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+      open[count++] = {level, first + i, squared[i]};
     }
-    if (nearest != count) std::swap(open[nearest], open[count - 1]);
+    next = {level, first + nearest, squared[nearest]};
+    return true;
+  };
+  for (;;) {
+    const float most = search.most(), limit = most * most * (1 + kSquareSlack);
+    if (next.squared <= limit) {
+      if (next.level != 0) {
+        if (nearest_child(most, limit)) continue;
+      } else if (next.number != seen) {
+        look_into(tables, search, next.number);
+      }
+    }
+    if (count == 0) return;
+    next = open[--count];
   }
 }
