@@ -89,10 +89,23 @@ struct Bounds {
 void associate(const SceneGeometry& geometry, const LatticePose& pose, const std::vector<Bounds>& bounds,
                Contacts& contacts) {
   if (contacts.areas.empty()) return;
-  std::vector<std::uint32_t> mobile;
-  for (const auto* set : {&contacts.cmt, &contacts.bmt, &contacts.imt})
+  std::vector<std::uint32_t> mobile;  // ascending, as each of the sets does
+  mobile.reserve(contacts.cmt.size() + contacts.bmt.size() + contacts.imt.size());
+  for (const auto* set : {&contacts.cmt, &contacts.bmt, &contacts.imt}) {
+    const auto before = static_cast<std::ptrdiff_t>(mobile.size());
     mobile.insert(mobile.end(), set->begin(), set->end());
-  std::sort(mobile.begin(), mobile.end());
+    std::inplace_merge(mobile.begin(), mobile.begin() + before, mobile.end());
+  }
+  struct Sphere {
+    Long3 twice_middle;
+    std::int64_t squared_diameter;
+  };
+  std::vector<Sphere> spheres;
+  for (const Bounds& box : bounds) {
+    const Long3 diagonal = Long3(box.high) - Long3(box.low);
+    spheres.push_back({Long3(box.low) + Long3(box.high), diagonal.x * diagonal.x + diagonal.y * diagonal.y +
+                                                             diagonal.z * diagonal.z});  // within 3 · 2^60
+  }
   for (const std::uint32_t m : mobile) {
     Long3 sum(0);
     for (int k = 0; k < 3; ++k) sum += Long3(transform(pose, geometry.tool.corner(m, k)));
@@ -100,11 +113,10 @@ void associate(const SceneGeometry& geometry, const LatticePose& pose, const std
     std::size_t nearest = 0;
     std::int64_t nearest_distance = -1;
     bool held = false;
-    for (std::size_t a = 0; a < bounds.size(); ++a) {
-      const Long3 away = std::int64_t{2} * g - Long3(bounds[a].low) - Long3(bounds[a].high),
-                  diagonal = Long3(bounds[a].high) - Long3(bounds[a].low);
-      const std::int64_t distance = away.x * away.x + away.y * away.y + away.z * away.z;  // within 3 · 2^60
-      if (distance <= diagonal.x * diagonal.x + diagonal.y * diagonal.y + diagonal.z * diagonal.z) {
+    for (std::size_t a = 0; a < spheres.size(); ++a) {
+      const Long3 away = std::int64_t{2} * g - spheres[a].twice_middle;
+      const std::int64_t distance = away.x * away.x + away.y * away.y + away.z * away.z;  // likewise
+      if (distance <= spheres[a].squared_diameter) {
         contacts.areas[a].mobile_ids.push_back(m);
         held = true;
       }

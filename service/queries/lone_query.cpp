@@ -36,7 +36,11 @@ constexpr int kMostTries =
     10;  // places along one step (chosen: a stiff wall is found to a thousandth of the step)
 constexpr double kLevel =
     0.1;  // of the slope where a step begins: lower it need not get (chosen; Wolfe's second condition)
-constexpr double kNear = 1e-2;  // of the way: from here on planes lead on by themselves (chosen)
+constexpr int kMostIdle = 12;    // evaluations that lead no nearer (chosen: a search that gets on halves what
+                                 // is left every two or three)
+constexpr double kFound = 1e-3;  // of the way: what nobody feels (chosen) …
+constexpr double kFoundM = 1e-7;  // … and m
+constexpr double kNear = 1e-2;    // of the way: from here on planes lead on by themselves (chosen)
 
 }  // namespace
 
@@ -164,17 +168,22 @@ void LoneQuery::begin(const Pose& pose, const ContactResponse& at_pose, bool fro
   apart_ = {};
   rest_ = pull(at_pose.wrench, apart_);
   image_ = best_ = next(apart_);
-  left_ = least_ = anderson_.length(plus(image_, -1, apart_));
+  left_ = least_ = halved_ = anderson_.length(plus(image_, -1, apart_));
+  idle_ = 0;
   if (first)
     want(*first, Stage::kFromBefore);
   else
     begin_step();
 }
 
+/// Whether the best place is near enough for a hand. Where thousands of newtons push from all round and
+/// cancel but for a few, one cannot get nearer: every sample is rounded to the lattice.
+bool LoneQuery::found() const { return least_ <= kFoundM + kFound * anderson_.length(best_); }
+
 bool LoneQuery::settled() const { return left_ <= enough_ + enough_share_ * anderson_.length(image_); }
 
 void LoneQuery::begin_step() {
-  if (settled() || felt_.evaluations >= kMostEvaluations) {
+  if (settled() || felt_.evaluations >= kMostEvaluations || (idle_ >= kMostIdle && found())) {
     finish();
     return;
   }
@@ -209,6 +218,11 @@ void LoneQuery::take(const ContactResponse& there) {
   if (nearer) {
     least_ = left_there;
     best_ = image_there;
+  }
+  ++idle_;
+  if (least_ < 0.5 * halved_) {
+    halved_ = least_;
+    idle_ = 0;
   }
   if (stage_ == Stage::kFromBefore) {
     if (nearer)  // least_ was left_
@@ -247,7 +261,7 @@ void LoneQuery::take(const ContactResponse& there) {
 
 void LoneQuery::finish() {
   stage_ = Stage::kDone;
-  felt_.settled = settled();
+  felt_.settled = settled() || found();
   before_ = best_;
   felt_.wrench.force = spring_.stiffness_n_per_m * Vec3(best_[0], best_[1], best_[2]);
   felt_.wrench.torque = spring_.stiffness_nm_per_rad * Vec3(best_[3], best_[4], best_[5]);

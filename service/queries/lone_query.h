@@ -83,6 +83,7 @@ class LoneQuery {
   Vec6 pull(const Wrench& push, const Vec6& apart) const;
   Vec6 next(const Vec6& apart) const;
   bool settled() const;
+  bool found() const;
   void begin_step();
   void want(const Vec6& apart, Stage stage);
   void finish();
@@ -104,6 +105,8 @@ class LoneQuery {
   Anderson anderson_;
   Vec6 apart_{}, rest_{}, image_{}, best_{};
   double left_ = 0, least_ = 0;
+  double halved_ = 0;  ///< least_ when it last was half of what it had been
+  int idle_ = 0;       ///< evaluations since
   // Of its present step.
   Vec6 way_{}, step_{};
   double slope_here_ = 0, low_ = 0, low_slope_ = 0, high_ = 0, high_slope_ = 0, share_ = 1;

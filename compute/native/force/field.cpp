@@ -109,12 +109,34 @@ PressureField::Extras::Extras(const LatticeMesh& mesh)
     : all_(mesh.extra_samples), has_((mesh.triangles.size() + 63) / 64) {
   for (const ExtraSample& extra : all_)
     has_[extra.triangle >> 6] |= std::uint64_t{1} << (extra.triangle & 63);
+  std::uint32_t bits = 0;
+  for (const std::uint64_t word : has_) {
+    before_.push_back(bits);
+    bits += static_cast<std::uint32_t>(std::popcount(word));
+  }
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    const auto weighs = [&](const ExtraSample& extra, std::size_t at) {
+      return at == 0 || extra.coarse_q30[at - 1] != 0;
+    };
+    Level& out = levels_[level];
+    for (std::uint32_t i = 0; i < all_.size(); ++i) {
+      if (i == 0 || all_[i].triangle != all_[i - 1].triangle)
+        out.begin.push_back(static_cast<std::uint32_t>(out.number.size()));
+      if (weighs(all_[i], level) || weighs(all_[i], std::min(level + 1, levels_.size() - 1)))
+        out.number.push_back(i);
+    }
+    out.begin.push_back(static_cast<std::uint32_t>(out.number.size()));
+  }
 }
 
-std::span<const ExtraSample> PressureField::Extras::of(std::uint32_t triangle) const {
-  if ((has_[triangle >> 6] >> (triangle & 63) & 1) == 0) return {};
-  const auto first = std::ranges::lower_bound(all_, triangle, {}, &ExtraSample::triangle);
-  return {first, std::ranges::upper_bound(first, all_.end(), triangle, {}, &ExtraSample::triangle)};
+template <class Take>
+void PressureField::Extras::for_each(std::uint32_t triangle, std::uint32_t level, Take&& take) const {
+  const std::uint64_t word = has_[triangle >> 6], bit = std::uint64_t{1} << (triangle & 63);
+  if ((word & bit) == 0) return;
+  const std::size_t place =
+      before_[triangle >> 6] + static_cast<std::size_t>(std::popcount(word & (bit - 1)));
+  const Level& from = levels_[std::min<std::size_t>(level, levels_.size() - 1)];
+  for (std::uint32_t i = from.begin[place]; i < from.begin[place + 1]; ++i) take(all_[from.number[i]]);
 }
 
 PressureField PressureField::make(const SceneGeometry& geometry, const TriangleTree& mockup,
@@ -343,13 +365,27 @@ void PressureField::sum_samples(const LatticePose& pose, std::span<const FrameSa
 }
 
 /// Of the mock-up's extra samples that lie inside the tool.
-void PressureField::sum_extras(const LatticePose& pose, const ContactSets& sets,
+void PressureField::sum_extras(const LatticePose& pose, ContactSets& sets,
                                std::span<const StaticResult> statics, std::span<CarrierSums> carriers,
-                               Lane& lane) const {
+                               int number) {
+  Lane& lane = lanes_[static_cast<std::size_t>(number)];
+  lane.asked.clear();
+  lane.extras.clear();
+  const auto [low, high] = sets.reach(pose);
   for (const StaticResult& result : statics)
-    for (const ExtraSample& extra : mockup_extras_.of(result.id))
-      if (const std::uint64_t weight = weight_of(extra); weight != 0 && sets.inside(pose, extra.point))
-        push_from_mockup(pose, result.id, extra.point, weight, carrier_of(carriers, result.id), lane);
+    mockup_extras_.for_each(result.id, level_, [&](const ExtraSample& extra) {
+      const Int3& p = extra.point;
+      if (p.x < low.x || p.x > high.x || p.y < low.y || p.y > high.y || p.z < low.z || p.z > high.z) return;
+      const std::uint64_t weight = weight_of(extra);
+      if (weight == 0) return;
+      lane.asked.push_back({extra.point, static_cast<std::uint32_t>(lane.extras.size())});
+      lane.extras.push_back({result.id, weight});
+    });
+  for (const FrameSample& inside : sets.inside_of(pose, lane.asked, number)) {
+    const AskedExtra& extra = lane.extras[inside.static_id];
+    push_from_mockup(pose, extra.triangle, inside.point, extra.weight_q30,
+                     carrier_of(carriers, extra.triangle), lane);
+  }
 }
 
 /// Parts of C_m's samples, alike in size: one triangle may have thousands.
@@ -407,7 +443,8 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
       for (std::uint32_t k = all + first; k < all + last; ++k) weighed(own_samples_[k], own_levels_[k]);
     }
     if (first == 0)
-      for (const ExtraSample& extra : tool_extras_.of(result.id)) push(extra.point, weight_of(extra));
+      tool_extras_.for_each(result.id, level_,
+                            [&](const ExtraSample& extra) { push(extra.point, weight_of(extra)); });
   }
 }
 
@@ -417,7 +454,7 @@ std::uint64_t PressureField::looks() const {
   return out;
 }
 
-void PressureField::sum(const LatticePose& pose, const ContactSets& sets, const FoundSets& found,
+void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundSets& found,
                         const Wanted& wanted, FrameHelper* helper, Contacts& out) {
   choose_level(found, wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
   out.carriers.clear();
@@ -455,7 +492,7 @@ void PressureField::sum(const LatticePose& pose, const ContactSets& sets, const 
                   sum_samples(pose, piece(std::span<const FrameSample>(found.samples), part, of_samples),
                               out.carriers, lane);
                 else if (part < of_samples + of_statics)
-                  sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), out.carriers, lane);
+                  sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), out.carriers, number);
                 else
                   sum_tool(pose, found.mobiles, part - of_samples - of_statics, lane);
               });

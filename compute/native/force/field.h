@@ -28,13 +28,18 @@ class PressureField {
     bool carriers = true;
   };
   /// Writes `out`'s field, carriers and ignored_touched whole, and adds flags. `helper` may be null.
-  void sum(const LatticePose& pose, const ContactSets& sets, const FoundSets& found, const Wanted& wanted,
+  void sum(const LatticePose& pose, ContactSets& sets, const FoundSets& found, const Wanted& wanted,
            FrameHelper* helper, Contacts& out);
   /// Groups of eight boxes or triangles that sums have looked at in all.
   std::uint64_t looks() const;
 
  private:
   struct Push;
+  /// An extra sample of the mock-up that is asked whether it lies in the tool.
+  struct AskedExtra {
+    std::uint32_t triangle;
+    std::uint64_t weight_q30;
+  };
   /// What one of a frame's threads needs for itself, and what its samples say.
   struct Lane {
     DepthSearch mockup_depth, tool_depth;
@@ -44,23 +49,33 @@ class PressureField {
                       DepthSearch::kNobody;  ///< places of the last samples' nearest triangles in their trees
     FieldSums field;
     std::uint32_t flags = 0;
-    std::vector<std::uint32_t> touched;  ///< ignored patches, in any order
+    std::vector<std::uint32_t> touched;   ///< ignored patches, in any order
+    std::vector<gpu::FrameSample> asked;  ///< extra samples; for a triangle their place in the next one
+    std::vector<AskedExtra> extras;
   };
   /// Where a part of C_m's samples begins: which of C_m, and which of its samples.
   struct ToolPart {
     std::uint32_t mobile, sample;
   };
-  /// Extra samples by triangle; few have some.
+  /// Extra samples by triangle, of which few have some, and by level, for a part with many small faces has
+  /// hundreds of thousands, of which a coarse level takes few.
   class Extras {
    public:
     Extras() = default;
     explicit Extras(const LatticeMesh& mesh);
     bool empty() const { return all_.empty(); }
-    std::span<const ExtraSample> of(std::uint32_t triangle) const;
+    /// Calls take(extra) for each of a triangle's that may weigh something between a level and the next.
+    template <class Take>
+    void for_each(std::uint32_t triangle, std::uint32_t level, Take&& take) const;
 
    private:
     std::span<const ExtraSample> all_;
-    std::vector<std::uint64_t> has_;  ///< a bit a triangle
+    std::vector<std::uint64_t> has_;     ///< a bit a triangle
+    std::vector<std::uint32_t> before_;  ///< by word of these: bits in the words before
+    struct Level {
+      std::vector<std::uint32_t> begin, number;  ///< by bit that is set, and one more; of `all_`
+    };
+    std::array<Level, kSurfaceLevels + 1> levels_;
   };
   void add_push(const Push& push, Lane& lane) const;
   void add(const Push& push, std::uint32_t static_id, std::uint32_t mobile, CarrierSums* carrier,
@@ -71,9 +86,8 @@ class PressureField {
                       std::uint64_t weight_q30, Lane& lane) const;
   void sum_samples(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
                    std::span<CarrierSums> carriers, Lane& lane) const;
-  void sum_extras(const LatticePose& pose, const ContactSets& sets,
-                  std::span<const gpu::StaticResult> statics, std::span<CarrierSums> carriers,
-                  Lane& lane) const;
+  void sum_extras(const LatticePose& pose, ContactSets& sets, std::span<const gpu::StaticResult> statics,
+                  std::span<CarrierSums> carriers, int number);
   std::uint32_t own_count(std::uint32_t mobile) const;
   void divide_tool(std::span<const gpu::MobileResult> mobiles);
   void sum_tool(const LatticePose& pose, std::span<const gpu::MobileResult> mobiles, std::size_t part,

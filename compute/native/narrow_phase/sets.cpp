@@ -22,6 +22,15 @@ constexpr std::int32_t kWalkSlack = 8;
 constexpr std::size_t kAhead =
     4;  // voxels whose lists are called for before their turn: they lie far apart (chosen)
 
+std::uint32_t parts_of(std::size_t count, std::size_t part) {
+  return static_cast<std::uint32_t>((count + part - 1) / part);
+}
+
+template <class T>
+std::span<const T> piece(std::span<const T> all, std::size_t part, std::size_t size) {
+  return all.subspan(part * size, std::min(size, all.size() - part * size));
+}
+
 }  // namespace
 
 ContactSets ContactSets::make(const SceneGeometry& geometry, const SceneTables& scene,
@@ -52,13 +61,18 @@ Int3 ContactSets::tool_point(const LatticePose& pose, const Int3& point) const {
   return at;
 }
 
+/// Whether a point of the tool's lattice is beyond a closed tool's box, where its winding is 0. A voxel much
+/// larger than the tool lists points far from it.
+bool ContactSets::off(const Int3& at) const {
+  return glm::any(glm::lessThan(at, geometry_->tool.box_min - kWalkSlack)) ||
+         glm::any(glm::greaterThan(at, geometry_->tool.box_max + kWalkSlack));
+}
+
+/// Whether a world lattice point lies inside the tool.
 bool ContactSets::inside(const LatticePose& pose, const Int3& point) const {
   const Int3 at = tool_point(pose, point);
   if (!geometry_->tool.closed) return in_tool_->inside(at);
-  // A closed body's winding is 0 beyond its box. A voxel much larger than the tool lists points far from it.
-  if (glm::any(glm::lessThan(at, geometry_->tool.box_min - kWalkSlack)) ||
-      glm::any(glm::greaterThan(at, geometry_->tool.box_max + kWalkSlack)))
-    return false;
+  if (off(at)) return false;
   const std::uint32_t kind = fine_.at(fine_.voxel_of(at)).kind;
   return kind == kVoxelInternal || (kind == kVoxelBoundary && walks_out(pose, point));
 }
@@ -184,6 +198,41 @@ void ContactSets::decide_open(const LatticePose& pose, std::span<const FrameSamp
   }
 }
 
+std::array<Int3, 2> ContactSets::reach(const LatticePose& pose) const {
+  std::array<Int3, 2> out{Int3(INT32_MIN), Int3(INT32_MAX)};
+  if (!geometry_->tool.closed) return out;  // V_int voxels may stand out of its triangles' box
+  const std::array<Int3, 2> own{geometry_->tool.box_min - kWalkSlack, geometry_->tool.box_max + kWalkSlack};
+  std::swap(out[0], out[1]);
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const Int3 p = transform(pose, Int3(own[corner & 1].x, own[corner >> 1 & 1].y, own[corner >> 2].z));
+    out[0] = glm::min(out[0], p - kWalkSlack);
+    out[1] = glm::max(out[1], p + kWalkSlack);
+  }
+  return out;
+}
+
+std::span<const FrameSample> ContactSets::inside_of(const LatticePose& pose,
+                                                    std::span<const FrameSample> samples, int number) {
+  Lane& lane = lanes_[static_cast<std::size_t>(number)];
+  lane.inside.clear();
+  if (geometry_->tool.closed) {
+    lane.near.clear();
+    for (const FrameSample& sample : samples) {
+      const Int3 at = tool_point(pose, sample.point);
+      if (off(at)) continue;
+      const std::uint32_t kind = fine_.at(fine_.voxel_of(at)).kind;
+      if (kind == kVoxelInternal)
+        lane.inside.push_back(sample);
+      else if (kind == kVoxelBoundary)
+        lane.near.push_back(sample);
+    }
+    samples = lane.near;
+  }
+  for (std::uint32_t part = 0; part < parts_of(samples.size(), kOpenPart); ++part)
+    decide_open(pose, piece(samples, part, kOpenPart), lane);
+  return lane.inside;
+}
+
 /// Pairs that meet. The search has moved their tool triangles.
 void ContactSets::decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates,
                                Lane& found) const {
@@ -295,12 +344,6 @@ void ContactSets::decide(PosedTool& tool, const Candidates& near, IdMarks& stati
     lane.pairs.clear();
     lane.inside.clear();
   }
-  const auto parts_of = [](std::size_t count, std::size_t part) {
-    return static_cast<std::uint32_t>((count + part - 1) / part);
-  };
-  const auto piece = [](auto all, std::size_t part, std::size_t size) {
-    return all.subspan(part * size, std::min(size, all.size() - part * size));
-  };
   const auto lane_of = [&](int lane) -> Lane& { return lanes_[static_cast<std::size_t>(lane)]; };
 
   const std::span<const PairCandidate> candidates = near.pairs.room.first(near.pairs.count);

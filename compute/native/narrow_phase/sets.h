@@ -42,8 +42,12 @@ class ContactSets {
   /// there (kStatic…) and numbered. `helper` may be null.
   void decide(PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
 
-  /// Whether a world lattice point lies inside the tool (section 4). Any number of threads.
-  bool inside(const LatticePose& pose, const Int3& point) const;
+  /// A box of world lattice points, low and high, that holds all that may lie inside the tool.
+  std::array<Int3, 2> reach(const LatticePose& pose) const;
+  /// Those of some samples that lie inside the tool (section 4), in any order, until the next call. `lane`:
+  /// the frame's thread that asks.
+  std::span<const gpu::FrameSample> inside_of(const LatticePose& pose,
+                                              std::span<const gpu::FrameSample> samples, int lane);
 
  private:
   void decide_voxels(PosedTool& tool, const Candidates& near);
@@ -66,6 +70,7 @@ class ContactSets {
     std::vector<OpenPoint> open;           ///< of the part at hand
     std::vector<Int3> points;              ///< likewise, in the tool's frame
     std::vector<gpu::FrameSample> inside;  ///< of this frame: those that lie inside
+    std::vector<gpu::FrameSample> near;    ///< in V_bnd voxels of the fine partition
   };
   void decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& lane) const;
   void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
@@ -73,6 +78,8 @@ class ContactSets {
   void decide_open(const LatticePose& pose, std::span<const gpu::FrameSample> samples, Lane& lane);
   bool open_inside(const LatticePose& pose, const Int3& point, const OpenPoint& open);
   Int3 tool_point(const LatticePose& pose, const Int3& point) const;
+  bool inside(const LatticePose& pose, const Int3& point) const;
+  bool off(const Int3& at) const;
   bool walks_out(const LatticePose& pose, const Int3& point) const;
   template <class Take>
   void scan(const gpu::SampleChunk& chunk, Take&& take) const;
