@@ -38,7 +38,7 @@ struct Twist {
 struct FreeTime {
   double time = 0;         ///< units of time; at most what was asked for
   bool blocked = false;    ///< `time` ends because of the pair below, else because no more was asked for
-  std::int32_t steps = 0;  ///< how far this pair is apart at the pose, floor
+  std::int32_t steps = 0;  ///< how far this pair is apart at the pose, floor, or the next whole number
   std::uint32_t static_id = kNoTriangle, mobile_id = kNoTriangle;
 };
 

@@ -255,7 +255,7 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
 
 int run(int argc, char** argv) {
   CLI::App app("the planner's questions against other answers");
-  std::string mode, file, pull;
+  std::string mode, file, pull, name;
   std::size_t poses = 24;
   std::uint64_t seed = 1;
   double reach = 4;
@@ -266,6 +266,7 @@ int run(int argc, char** argv) {
   app.add_option("--seed", seed);
   app.add_option("--reach", reach);
   app.add_flag("--killer", killer);
+  app.add_option("--case", name, "the case of this name alone");
   app.add_flag("--alone", alone, "distance: cpu alone, for its time");
   app.add_option("--samples", dense, "motions: poses of each that are asked whether they touch")
       ->check(CLI::PositiveNumber);
@@ -294,7 +295,8 @@ int run(int argc, char** argv) {
         counts);
   } else {
     for (const equivalence::Case& c : equivalence::all_cases()) {
-      if (c.profile != Profile::kRefined || (killer && !c.killer)) continue;
+      if (c.profile != Profile::kRefined || (killer && !c.killer) || (!name.empty() && name != c.name))
+        continue;
       auto scene = c.make(seed);
       if (!scene) continue;
       equivalence::Random random(seed);

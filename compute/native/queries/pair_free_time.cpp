@@ -143,7 +143,7 @@ struct PairSearch::Timed {
     if (sooner >= time) return;
     out = {.time = sooner,
            .blocked = true,
-           .steps = static_cast<std::int32_t>(std::max(distance, 0.0)),
+           .steps = static_cast<std::int32_t>(std::max(distance + error, 0.0)),  // they are no further apart
            .static_id = s_id,
            .mobile_id = m_id};
     set(sooner);

@@ -21,7 +21,9 @@ void add_row(BenchTable& table, const std::string& name, const std::string& back
   table.rows.push_back({name, backend, std::string(profile == Profile::kPaper ? "paper" : "refined"), voxels,
                         std::uint64_t{f.touching}, f.largest_n, f.largest_step, 100 * f.loop_share,
                         100 * f.antisymmetry, 100 * f.largest_loss, std::uint64_t{f.reversals},
-                        std::uint64_t{f.made_up}, std::uint64_t{f.unsettled}, broken});
+                        std::uint64_t{f.made_up}, std::uint64_t{f.unsettled}, cell_of(f.hand_step),
+                        f.hand_step ? BenchCell(std::uint64_t{f.hand_reversals}) : BenchCell(std::string()),
+                        broken});
 }
 
 Chart chart_of(const std::string& name) {
@@ -43,10 +45,10 @@ Result<void> bench_force(const BenchOptions& options, const Parts& parts) {
   catch_interrupts();
   Console console;
   BenchFacts facts{.command = "force", .device = {}, .more = {}};
-  BenchTable table{
-      {"case", "backend", "profile", "voxels", "touching", "largest_n", "largest_step", "loop_percent",
-       "antisymmetry_percent", "loss_percent", "reversals", "no_direction", "unsettled", "broken"},
-      {}};
+  BenchTable table{{"case", "backend", "profile", "voxels", "touching", "largest_n", "largest_step",
+                    "loop_percent", "antisymmetry_percent", "loss_percent", "reversals", "no_direction",
+                    "unsettled", "hand_step", "hand_reversals", "broken"},
+                   {}};
   std::vector<Chart> charts;
   const std::vector<Profile> profiles =
       options.profile ? std::vector{*options.profile} : std::vector{Profile::kRefined, Profile::kPaper};
@@ -89,9 +91,13 @@ Result<void> bench_force(const BenchOptions& options, const Parts& parts) {
     const ForceCase subject{
         .name = scene_name(file), .mockup = {}, .tool = {}, .path = finer_path(*poses, options.frames)};
     const Profile profile = scene.plan.plan.profile;
-    const Result<ForceFigures> figures = judge_path(subject, scene.loaded.geometry, *scene.backend, profile,
-                                                    scene.loaded.scene.response.stiffness_n_per_m);
+    const double stiffness = scene.loaded.scene.response.stiffness_n_per_m;
+    Result<ForceFigures> figures =
+        judge_path(subject, scene.loaded.geometry, *scene.backend, profile, stiffness);
     if (!figures) return figures.error();
+    if (profile == Profile::kRefined)
+      if (auto done = judge_hand(subject, scene.loaded.geometry, *scene.backend, stiffness, *figures); !done)
+        return done.error();
     add_row(table, subject.name, scene.backend->name(), profile, 1, *figures);
     charts.push_back(chart_of(subject.name));
     add_line(charts.back(), profile == Profile::kPaper ? "paper" : "refined", *figures);

@@ -31,14 +31,15 @@ class Asking {
         stiffness_(stiffness),
         lone_(geometry, stiffness) {}
 
-  Result<Answer> at(const Pose& pose) {
+  /// `going_on`: from the balance of the pose before.
+  Result<Answer> at(const Pose& pose, bool going_on = false) {
     const Result<LatticePose> rounded = to_lattice(pose, geometry_);
     if (!rounded) return rounded.error();
     if (auto done = backend_.query(*rounded, nullptr, contacts_); !done) return done.error();
     respond(contacts_, *rounded, geometry_, profile_, stiffness_, response_);
     Answer out{response_.wrench, response_.flags, response_.contact};
     if (profile_ == Profile::kRefined) {
-      if (auto done = lone_.feel(backend_, nullptr, pose, response_); !done) return done.error();
+      if (auto done = lone_.feel(backend_, nullptr, pose, response_, going_on); !done) return done.error();
       if (response_.felt) out.wrench = response_.felt->wrench;
       out.flags = response_.flags;
     }
@@ -123,6 +124,19 @@ std::size_t pose_of_slope(const ForceCase& subject, const std::vector<double>& f
   return out;
 }
 
+/// From a pose to the next.
+struct Step {
+  Vec3 way, turn;  ///< of the centre of mass; rad
+  double size;     ///< m, the turn at the tool's radius of gyration
+};
+
+Step step_between(const SceneGeometry& geometry, const Pose& p, const Pose& q) {
+  const Vec3 turn = turn_between(p.rotation, q.rotation);
+  const Vec3 way =
+      (q.position + q.rotation * geometry.tool_gc_m) - (p.position + p.rotation * geometry.tool_gc_m);
+  return {way, turn, glm::length(way) + geometry.tool_gyration_m * glm::length(turn)};
+}
+
 void judge_truths(const ForceCase& subject, const std::vector<Answer>& answers, ForceFigures& out) {
   for (const ForceCase::Truth& truth : subject.truths) {
     const Wrench& wrench = answers[truth.at].wrench;
@@ -175,7 +189,6 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
     if ((answer->flags & kFlagUnsettled) != 0) ++out.unsettled;
     out.largest_n = std::max(out.largest_n, force);
   }
-  const double rho = geometry.tool_gyration_m;
   double work = 0, moved_work = 0, deepest = 0;
   bool touched = false;
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -192,11 +205,7 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
     }
     if (i == 0) continue;
     const Wrench& before = answers[i - 1].wrench;
-    const Pose &p = subject.path[i - 1], &q = subject.path[i];
-    const Vec3 turn = turn_between(p.rotation, q.rotation);
-    const Vec3 way =
-        (q.position + q.rotation * geometry.tool_gc_m) - (p.position + p.rotation * geometry.tool_gc_m);
-    const double size = glm::length(way) + rho * glm::length(turn);
+    const auto [way, turn, size] = step_between(geometry, subject.path[i - 1], subject.path[i]);
     if (size > 0 && glm::length(here.force - before.force) / (stiffness * size) > out.largest_step) {
       out.largest_step = glm::length(here.force - before.force) / (stiffness * size);
       out.largest_step_at = i;
@@ -229,6 +238,28 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
   if (out.largest_loss > kMostLoss)
     out.broken.push_back(fmt::format("{:.1f} % less while going deeper", 100 * out.largest_loss));
   return out;
+}
+
+Result<void> judge_hand(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend,
+                        double stiffness, ForceFigures& out) {
+  Asking asking(geometry, backend, Profile::kRefined, stiffness);
+  out.hand_step = 0;
+  out.hand_reversals = 0;
+  const double floor = 0.01 * out.largest_n;
+  Vec3 before(0);
+  for (std::size_t i = 0; i < subject.path.size(); ++i) {
+    const Result<Answer> answer = asking.at(subject.path[i], true);
+    if (!answer) return answer.error();
+    const Vec3 here = answer->wrench.force;
+    if (i > 0) {
+      const double size = step_between(geometry, subject.path[i - 1], subject.path[i]).size;
+      if (size > 0) out.hand_step = std::max(*out.hand_step, glm::length(here - before) / (stiffness * size));
+      if (glm::length(here) > floor && glm::length(before) > floor && glm::dot(here, before) < 0)
+        ++out.hand_reversals;
+    }
+    before = here;
+  }
+  return {};
 }
 
 Result<ForceFigures> judge_force(const ForceCase& subject, CollisionBackend& backend, Profile profile,

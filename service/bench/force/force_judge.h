@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,12 @@ struct ForceFigures {
       0;  ///< neighbours whose forces, both above a hundredth of the largest, are more than 90° apart
   std::size_t made_up = 0, unsettled = 0;  ///< poses in contact where no direction is known; where spring and
                                            ///< field were not brought to balance
-  double loop_share = 0;                   ///< |∮ dW| / ∮ |dW|, where the case is a loop
+  /// Largest step and reversals of a hand that goes along the path, each pose's balance looked for from the
+  /// one before; of poses before real parts. Where a wall is thin or a shell open there may be two balances,
+  /// and lone poses step from one to the other where a hand stays in its own.
+  std::optional<double> hand_step;
+  std::size_t hand_reversals = 0;
+  double loop_share = 0;  ///< |∮ dW| / ∮ |dW|, where the case is a loop
   /// |A − Aᵀ| / |A + Aᵀ| of A = ∂(F, T/ρ)/∂(x, ρθ) at the pose of the largest force; where the tool slips, of
   /// the largest up to half of it
   double antisymmetry = 0;
@@ -40,6 +46,10 @@ Result<ForceFigures> judge_force(const ForceCase& subject, CollisionBackend& bac
 /// The same for geometry that is prepared already. `ignored` may be null.
 Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& geometry,
                                 CollisionBackend& backend, Profile profile, double stiffness);
+
+/// Adds `hand_step` and `hand_reversals` to the figures of a path in `refined`.
+Result<void> judge_hand(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend,
+                        double stiffness, ForceFigures& out);
 
 /// `count` poses along a path, evenly by its numbers, straight between two and turned evenly.
 std::vector<Pose> finer_path(const std::vector<Pose>& path, std::size_t count);
