@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "compute/native/native_backend.h"
+#include "model/generate/solids.h"
+#include "model/scene/geometry_build.h"
 #include "service/bench/force/force_judge.h"
 
 namespace palpate {
@@ -106,6 +108,31 @@ TEST(ForceJudge, SeesAStepAndALossThatAreThere) {
     return;
   }
   FAIL() << "no such case";
+}
+
+TEST(ForceJudge, TellsAHandFromLonePosesWhereAWallHasTwoSides) {
+  // A cube pulled through a wall of 4 mm: past the wall's middle a lone pose is pushed out on the far side,
+  // and a hand that came from above still stands on it, with K times its way.
+  const Mesh wall = solids::box(Vec3(-0.05, -0.05, -0.002), Vec3(0.05, 0.05, 0.002), Int3(20, 20, 2)),
+             cube = solids::box(Vec3(-0.005), Vec3(0.005), Int3(6, 6, 6));
+  ForceCase subject{.name = "cube through a wall", .mockup = {}, .tool = {}, .path = {}};
+  constexpr int kPoses = 50;
+  for (int i = 0; i <= kPoses; ++i)
+    subject.path.push_back({Vec3(0.001, 0.002, 0.0075 - 0.0105 * i / kPoses), Quat(1, 0, 0, 0)});
+  const auto geometry = build_geometry(wall, cube, {});
+  ASSERT_TRUE(geometry);
+  const auto backend = make_native_backend();
+  ASSERT_TRUE(backend->prepare(*geometry, Plan{}, {}));
+  Result<ForceFigures> figures = judge_path(subject, *geometry, *backend, Profile::kRefined, kForceStiffness);
+  ASSERT_TRUE(figures) << figures.error().sentence;
+  EXPECT_FALSE(figures->hand_step.has_value());
+  ASSERT_TRUE(judge_hand(subject, *geometry, *backend, kForceStiffness, *figures));
+  EXPECT_GE(figures->reversals, 1u);
+  EXPECT_GT(figures->largest_step, kMostStep);
+  EXPECT_EQ(figures->hand_reversals, 0u);
+  EXPECT_GT(*figures->hand_step, 0.5);
+  EXPECT_LT(*figures->hand_step, 1.05);  // of a spring before a wall: no more than the spring's own
+  EXPECT_EQ(figures->unsettled, 0u);
 }
 
 }  // namespace
