@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -34,6 +37,62 @@ class Counting final : public PoseQuery {
  private:
   PoseQuery& asked_;
 };
+
+/// A field that trembles from place to place by a part of its pushes, as roundings make it.
+class Trembling final : public PoseQuery {
+ public:
+  Trembling(PoseQuery& asked, double part) : asked_(asked), part_(part) {}
+  Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
+    if (auto done = asked_.query(pose, ignored, out); !done) return done;
+    std::mt19937 random(static_cast<std::uint32_t>(pose.translation.x) * 31U +
+                        static_cast<std::uint32_t>(pose.translation.y) * 37U +
+                        static_cast<std::uint32_t>(pose.translation.z));
+    std::uniform_real_distribution<double> some(-part_, part_);
+    for (FieldBin& bin : out.field.bins)
+      for (WideSum& push : bin.push)
+        push.low += static_cast<std::int64_t>(
+            some(random) * (static_cast<double>(push.high) * 0x1p32 + static_cast<double>(push.low)));
+    return {};
+  }
+
+ private:
+  PoseQuery& asked_;
+  double part_;
+};
+
+TEST(LoneQuery, EndsWhereRoundingDoesAndSaysSoWhereItEndsTooEarly) {
+  const auto scene = generate_scene("contacts", 8000, 1000);
+  ASSERT_TRUE(scene);
+  const auto geometry = build_geometry(scene->mockup, scene->tool, {});
+  ASSERT_TRUE(geometry);
+  const auto backend = make_native_backend();
+  ASSERT_TRUE(backend->prepare(*geometry, Plan{}, {}));
+  Contacts contacts;
+  const auto ask = [&](PoseQuery& asked, const Pose& pose) {
+    const LatticePose lattice = *to_lattice(pose, *geometry);
+    ContactResponse response;
+    EXPECT_TRUE(asked.query(lattice, nullptr, contacts));
+    respond(contacts, lattice, *geometry, Profile::kRefined, kStiffness, response);
+    return *LoneQuery(*geometry, kStiffness).ask(asked, nullptr, pose, response);
+  };
+  Trembling little(*backend, 1e-5), much(*backend, 0.1);
+  int asked = 0, lost = 0;
+  for (std::size_t i = 0; i < scene->path.size(); i += 20) {
+    const Pose pose = path_pose(scene->path[i], scene->guide);
+    const Felt still = ask(*backend, pose);
+    if (glm::length(still.wrench.force) < 1) continue;
+    ++asked;
+    const Felt felt = ask(little, pose);
+    EXPECT_TRUE(felt.settled) << i;
+    EXPECT_LT(felt.evaluations, LoneQuery::kMostEvaluations) << i;
+    EXPECT_LT(glm::length(felt.wrench.force - still.wrench.force),
+              2e-3 * glm::length(still.wrench.force) + 1e-3)
+        << i;
+    lost += ask(much, pose).settled ? 0 : 1;
+  }
+  EXPECT_GT(asked, 5);
+  EXPECT_GT(lost, asked / 2);
+}
 
 TEST(LoneQueries, FindTheBalancesOfLoneQueriesInAsManyRoundsAsTheLongestTakes) {
   const auto scene = generate_scene("contacts", 8000, 1000);
