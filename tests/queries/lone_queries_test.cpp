@@ -75,7 +75,7 @@ TEST(LoneQuery, EndsWhereRoundingDoesAndSaysSoWhereItEndsTooEarly) {
     respond(contacts, lattice, *geometry, Profile::kRefined, kStiffness, response);
     return *LoneQuery(*geometry, kStiffness).ask(asked, nullptr, pose, response);
   };
-  Trembling little(*backend, 1e-5), much(*backend, 0.1);
+  Trembling little(*backend, 1e-4), much(*backend, 0.1);
   int asked = 0, lost = 0;
   for (std::size_t i = 0; i < scene->path.size(); i += 20) {
     const Pose pose = path_pose(scene->path[i], scene->guide);
