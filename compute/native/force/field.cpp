@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdlib>
 #include <functional>
+#include <glm/vector_relational.hpp>
 #include <optional>
 #include <utility>
 
@@ -371,11 +372,11 @@ void PressureField::sum_extras(const LatticePose& pose, ContactSets& sets,
   Lane& lane = lanes_[static_cast<std::size_t>(number)];
   lane.asked.clear();
   lane.extras.clear();
-  const auto [low, high] = sets.reach(pose);
+  const std::array<Int3, 2> box = sets.reach(pose);
   for (const StaticResult& result : statics)
     mockup_extras_.for_each(result.id, level_, [&](const ExtraSample& extra) {
       const Int3& p = extra.point;
-      if (p.x < low.x || p.x > high.x || p.y < low.y || p.y > high.y || p.z < low.z || p.z > high.z) return;
+      if (glm::any(glm::lessThan(p, box[0])) || glm::any(glm::greaterThan(p, box[1]))) return;
       const std::uint64_t weight = weight_of(extra);
       if (weight == 0) return;
       lane.asked.push_back({extra.point, static_cast<std::uint32_t>(lane.extras.size())});
