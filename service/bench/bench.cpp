@@ -336,7 +336,10 @@ class Benches {
         "A row a path: the largest force, the largest step between neighbours in K times the tool's way, "
         "work lost round loops, how far ∂F is from symmetric, what is lost\n"
         "while going deeper, turns by more than 90° between neighbours, poses without a direction, and in "
-        "words what breaks a limit. A scene's path is divided evenly into --frames poses.");
+        "words what breaks a limit. A scene's path is divided evenly into --frames poses.\n"
+        "Poses are asked each by itself; hand_step and hand_reversals are a scene's largest step and turns "
+        "for a "
+        "hand that goes along, each balance looked for from the one before.");
     measure(*force, bench_force);
   }
 

@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPathFooter =
     R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
 (pose, with its fraction on the way to the next; parts), least clearance, worst depth, the parts that touch by name, and what was examined. A first contact is never late, and early
-by no more than early_m. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
+by no more than early_m and a lattice step. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
 Exit codes: 0 the path is clear, 5 it is not, others as ever. A path of which nothing was examined is an error, never clear.
 
 Examples:

@@ -11,7 +11,7 @@ namespace palpate {
 struct TouchRule {
   std::int32_t tolerance = 0;  ///< steps; > 0: contact no deeper does not count. The back end then has been
                                ///< prepared with `contact_samples` = 0
-  std::int32_t early = 16;     ///< steps by which a first contact may be early
+  std::int32_t early = 16;     ///< whole steps by which a first contact may be early: less than one more
 
   /// A tolerance in metres, rounded down, and the larger of 1 µm and 16 steps.
   static TouchRule of(const SceneGeometry& geometry, double tolerance_m);
@@ -37,7 +37,8 @@ struct FirstContact {
 
 inline constexpr std::uint64_t kMostSteps = 100'000;  ///< evaluations on one screw (chosen: half a minute)
 
-/// Never late, early by at most `rule.early`. Errors: a pose that is none (kBadValue), the back end's.
+/// Never late, early by at most `rule.early` whole steps. Errors: a pose that is none (kBadValue), the back
+/// end's.
 Result<FirstContact> first_contact(CollisionBackend& backend, const SceneGeometry& geometry, const Pose& from,
                                    const Pose& to, const TouchRule& rule);
 
