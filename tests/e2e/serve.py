@@ -297,6 +297,10 @@ def test_geometry_triangles_and_voxels_are_what_was_uploaded():
         few = server.ask('GET', f'/v1/scenes/{name}/geometry?max_triangles=100').body
         bits, _, st, _, tt = struct.unpack_from('<5I', few, 8)
         expect(bits == 1 and st == 12 and 20 < tt <= 100, (bits, st, tt))
+        alone = server.ask('GET', f'/v1/scenes/{name}/geometry?max_triangles=100&body=tool').body
+        bits, sv, st, tv, tt = struct.unpack_from('<5I', alone, 8)
+        expect(bits == 1 and (sv, st) == (0, 0) and alone[32:] == few[-(12 * tv + 16 * tt) :], (bits, sv, st))
+        expect(server.ask('GET', f'/v1/scenes/{name}/geometry?body=both').status == 400, 'body=both')
         voxels = server.ask('GET', f'/v1/scenes/{name}/voxels?class=internal').body
         kind = struct.unpack_from('<4s3I', voxels)
         (size,) = struct.unpack_from('<d', voxels, 40)

@@ -43,14 +43,15 @@ BodyView view_of(const SceneGeometry& geometry, bool tool) {
   return {geometry.mockup, geometry.lattice.origin_m, geometry.lattice.step_m};
 }
 
-/// `PGEO`, made as it is sent.
+/// `PGEO`, made as it is sent. `tool`: that body alone, the other one has nothing.
 class Geometry final : public BodySource {
  public:
-  Geometry(SceneUse use, std::optional<std::size_t> most)
+  Geometry(SceneUse use, std::optional<bool> tool, std::optional<std::size_t> most)
       : use_(std::move(use)),
         bodies_{Body{view_of((*use_)->loaded.geometry, false)},
                 Body{view_of((*use_)->loaded.geometry, true)}} {
     bool any = false;
+    if (tool) bodies_[*tool ? 0 : 1].drawn.emplace();
     for (Body& body : bodies_)
       if (most && body.triangles().size() > *most) {
         body.drawn = reduced(body.view, *most);
@@ -123,9 +124,13 @@ HttpResponse geometry(SceneStore& store, const HttpRequest& request) {
                          "max_triangles");
     most = value;
   }
+  const auto tool = is_tool(request);
+  if (!tool) return bad_body();
   auto use = store.use(request.segments[2], false);
   if (const auto* problem = std::get_if<Problem>(&use)) return *problem;
-  const auto source = std::make_shared<Geometry>(std::get<SceneUse>(use), most);
+  const bool both = request.query_or("body", "").empty();
+  const auto source =
+      std::make_shared<Geometry>(std::get<SceneUse>(use), both ? std::optional<bool>() : tool, most);
   HttpResponse response = binary({});
   response.source = source;
   response.source_length = source->length();

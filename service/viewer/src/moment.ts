@@ -15,5 +15,6 @@ export interface Moment {
   late: number;   // what the last strip shows: lateness in µs, age in ticks or the way there and back in ms;
                   // NaN when unknown
   stage: number;  // from 1; 0: none
-  note: string;   // "", or what holds the force back: "paused", …
+  asked_at?: number;  // when the server was asked for what the tool feels, ms since 1970; NaN: never
+  note: string;       // "", or what holds the force back: "paused", …
 }

@@ -99,3 +99,34 @@ test('a solid tool has no far side where that is not wanted, an open one always'
     assert.equal(bodies.tool_mesh.material.side, side);
   }
 });
+
+test(
+    'coarse pictures have the tool in few triangles, without its hidden parts; all else has the whole',
+    () => {
+      const bodies = new Bodies(new Scene());
+      const shape = (triangles: number) => {
+        const one = box_at(0);
+        return {
+          ...one,
+          corners: Uint32Array.from({length: 3 * triangles}, (_, i) => i % 3),
+          ids: Uint32Array.from({length: triangles}, (_, i) => i * 12 / triangles)
+        };
+      };
+      const drawn = () => bodies.tool_mesh.geometry.index!.count / 3;
+      bodies.set({reduced: false, mockup: box_at(0), tool: shape(12)}, shape(4));
+      assert.equal(drawn(), 12);
+      bodies.draw_few(true);
+      assert.equal(drawn(), 4);
+      bodies.draw_few(false);
+      bodies.hide(
+          {static: [], tool: [{path: 'a', triangles: 6}, {path: 'b', triangles: 6}]},
+          {mockup: new Set(), tool: new Set([1])});
+      assert.equal(drawn(), 6);
+      bodies.draw_few(true);
+      assert.equal(drawn(), 2);
+      bodies.draw_few(false);
+      bodies.clear();
+  bodies.set({reduced: false, mockup: box_at(0), tool: shape(3)});
+      bodies.draw_few(true);
+      assert.equal(drawn(), 3, 'one that has few anyway');
+    });

@@ -1,6 +1,6 @@
 // Whether a picture laid on what is kept is the one that is drawn whole, pixel by pixel, whatever changed
-// before it, and colours are those of three's flat Lambert material: node kept.mjs, in the build's
-// service/viewer/work. In chromium.
+// before it, and colours are those of three's flat Lambert and of its unlit material: node kept.mjs, in the
+// build's service/viewer/work. In chromium.
 import {createRequire} from 'node:module';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -32,7 +32,7 @@ try {
   await page.addScriptTag({type: 'module', content: outputFiles[0].text});
   await page.waitForFunction(() => window.changes);
   for (const name of await page.evaluate(() => window.changes)) {
-    const {differ, most, kept, new_pixels, lambert} =
+    const {differ, most, kept, new_pixels, lambert, basic} =
         await page.evaluate((what) => window.change(what), name);
     check(
         new_pixels > 100,
@@ -45,6 +45,10 @@ try {
         lambert.far < 20,
         `${name}: colours are those of flat Lambert (${
             lambert.far} pixels of 200,000 differ by more than 2 of 255, by ${lambert.most} at most)`);
+    check(
+        basic.most <= 1,  // rounded once more or less
+        `${name}: colours of the contact are those of three's (${basic.differ} pixels differ, by ${
+            basic.most} at most)`);
   }
   check(errors.length === 0, `no word on the console${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
   status = 0;

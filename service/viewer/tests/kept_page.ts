@@ -137,6 +137,39 @@ function as_lambert(): Apart {
   return apart(ours, theirs);
 }
 
+/** Contact triangles drawn as three draws unlit colours. */
+function as_basic(): Apart {
+  const ours = pixels(as_whole);
+  const meshes = [contact.mockup, contact.tool].flatMap(({object}) => object.children as three.Mesh[]);
+  const materials = meshes.map(({material}) => material as three.ShaderMaterial);
+  for (const [i, mesh] of meshes.entries()) {
+    const colours = mesh.geometry.getAttribute('colour');
+    const linear = new three.BufferAttribute(new Float32Array(3 * colours.count), 3);
+    for (let at = 0; at < colours.count; ++at)
+      linear.setXYZ(
+          at,
+          ...new three.Color()
+              .setRGB(colours.getX(at), colours.getY(at), colours.getZ(at), three.SRGBColorSpace)
+              .toArray());
+    mesh.geometry.setAttribute('color', linear);
+    const {side, transparent, depthFunc, depthWrite, forceSinglePass, uniforms} = materials[i];
+    mesh.material = new three.MeshBasicMaterial({
+      vertexColors: true,
+      opacity: uniforms['opacity'].value as number,
+      side,
+      transparent,
+      depthFunc,
+      depthWrite,
+      forceSinglePass
+    });
+  }
+  const theirs = pixels(as_whole);
+  meshes.forEach((mesh, i) => {
+    mesh.material = materials[i];
+  });
+  return apart(ours, theirs);
+}
+
 const plane = new three.Plane(new three.Vector3(-1, 0, 0), 0.02);
 /** What is done, one after the other; after each the pictures are compared. */
 const CHANGES: Record<string, () => void> = {
@@ -189,6 +222,6 @@ Object.assign(window, {
   changes: Object.keys(CHANGES),
   change: (name: string) => {
     CHANGES[name]();
-    return {...compare(), lambert: as_lambert()};
+    return {...compare(), lambert: as_lambert(), basic: as_basic()};
   }
 });

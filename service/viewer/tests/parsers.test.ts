@@ -2,7 +2,6 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {LevelKeeper, next_level} from '../src/draw/lod.js';
 import {FrameIndex} from '../src/run/frame_index.js';
 import {LineSplitter} from '../src/run/text_lines.js';
 import {Trace} from '../src/run/trace.js';
@@ -96,49 +95,6 @@ test('ids: as many as a request holds, the smallest first', () => {
   assert.deepEqual([ids[0], text], [9_999_999 - 6993, id_ranges(ids)]);
   assert.deepEqual(ids_within([3, 1, 2], 1800), {ids: [1, 2, 3], text: '1-3'});
 });
-test('level of detail: where pixels take the time, they go before triangles do', () => {
-  const keeper = new LevelKeeper();
-  keeper.may_coarsen = true;
-  const feed = (ms: number, pictures: number) => {
-    for (let i = 0; i < pictures; ++i) keeper.take(ms, 1e6);
-    return [keeper.coarse, keeper.level];
-  };
-  assert.deepEqual(
-      [feed(30, 40), feed(60, 25), feed(30, 40), feed(60, 25), feed(5, 40)],
-      [[false, 1], [true, 1], [true, 1], [true, 0], [true, 0]]);
-});
-test(
-    'level of detail: down when pictures are slow, up when they are fast and there is more, and not back to one that was slow',
-    () => {
-      assert.deepEqual(
-          [
-            next_level(1, 60, 1e6), next_level(0, 60, 1e6), next_level(1, 5, 1e6), next_level(1, 5, 1e5),
-            next_level(1, 20, 1e6)
-          ],
-          [0, 0, 2, 1, 1]);
-      const keeper = new LevelKeeper();
-      const feed = (ms: number) => {
-        for (let i = 0; i < 40; ++i) keeper.take(ms, 1e6);
-        return keeper.level;
-      };
-      assert.deepEqual([feed(5), feed(60), feed(5)], [2, 1, 1]);
-    });
-test(
-    'level of detail: pictures of a second go down after a few, two levels at once; one that waited does not decide',
-    () => {
-      const keeper = new LevelKeeper();
-      keeper.level = 3;
-      assert.deepEqual(
-          [1000, 1000, 1000, 1000].map((ms) => keeper.take(ms, 1e7)), [false, false, false, true]);
-      assert.equal(keeper.level, 1);
-      const waited = new LevelKeeper();
-      assert.deepEqual([25, 3000, 25, 25].map((ms) => waited.take(ms, 1e7)), [false, false, false, false]);
-      assert.equal(waited.level, 1);
-      const stutters = new LevelKeeper();
-      for (let i = 0; i < 8; ++i)
-        stutters.take(i % 2 ? 16 : 500, 1e7);  // two pictures at once, then none for long
-      assert.equal(stutters.level, 0);
-    });
 test('strips: the newest samples stay, and a range is 1, 2 or 5 times a power of ten', () => {
   const samples = new Samples(8);
   for (let i = 0; i < 11; ++i) samples.add(i, [i, 0, 0, 0, 0, 0, 0, 0, 0]);

@@ -4,7 +4,7 @@ import * as three from 'three';
 import type {HiddenParts} from '../scene_parts_panel.js';
 import type {Body, Geometry} from '../server/binary.js';
 import type {Theme} from './palette.js';
-import type {Pose, SceneParts} from '../server/protocol.js';
+import type {NamedPart, Pose, SceneParts} from '../server/protocol.js';
 import {flat_material, geometry_of, with_faces} from './flat_shading.js';
 import {shown_corners} from './shown_parts.js';
 import {is_solid} from './solid_surface.js';
@@ -14,6 +14,8 @@ export class Bodies {
   readonly mockup_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   readonly tool_mesh: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   private drawn: {mockup: Body; tool: Body}|null = null;
+  private few: {body: Body; geometry: three.BufferGeometry}|null = null;  // the tool for coarse pictures
+  private whole_tool = new three.BufferGeometry();
   private shape: Body = {
     vertices: new Float32Array(0),
     corners: new Uint32Array(0),
@@ -37,20 +39,29 @@ export class Bodies {
     this.glass('tool', true);
   }
 
-  set(geometry: Geometry): void {
-    const faced = (mesh: three.Mesh, body: Body): Body => {
+  /** `few`: the tool in fewer triangles, for coarse pictures. */
+  set(geometry: Geometry, few: Body|null = null): void {
+    this.dispose();
+    const faced = (body: Body): {body: Body; geometry: three.BufferGeometry} => {
       const made = with_faces(body.vertices, body.corners);
-      mesh.geometry.dispose();
-      mesh.geometry = geometry_of(made);
-      return {...body, vertices: made.vertices, corners: made.corners};
+      return {body: {...body, vertices: made.vertices, corners: made.corners}, geometry: geometry_of(made)};
     };
     this.shape = geometry.tool;
-    this.drawn = {
-      mockup: faced(this.mockup_mesh, geometry.mockup),
-      tool: faced(this.tool_mesh, geometry.tool)
-    };
+    const mockup = faced(geometry.mockup), tool = faced(geometry.tool);
+    this.mockup_mesh.geometry = mockup.geometry;
+    this.tool_mesh.geometry = this.whole_tool = tool.geometry;
+    this.few = few ? faced(few) : null;
+    this.drawn = {mockup: mockup.body, tool: tool.body};
     this.leave_out();
     this.tool.visible = true;
+  }
+  private dispose(): void {
+    for (const geometry of [this.mockup_mesh.geometry, this.whole_tool, this.few?.geometry])
+      geometry?.dispose();
+  }
+  /** Whether the next picture is a coarse one. All else asks the whole tool, so it is back after each. */
+  draw_few(on: boolean): void {
+    this.tool_mesh.geometry = on && this.few ? this.few.geometry : this.whole_tool;
   }
   /** Of these parts those that are hidden are not drawn; boxes and spheres stay those of the whole. */
   hide(parts: SceneParts, hidden: HiddenParts): void {
@@ -60,13 +71,15 @@ export class Bodies {
   }
   private leave_out(): void {
     if (!this.drawn) return;
-    for (const [mesh, body, parts, hidden] of [
-             [this.mockup_mesh, this.drawn.mockup, this.parts.static, this.hidden.mockup],
-             [this.tool_mesh, this.drawn.tool, this.parts.tool, this.hidden.tool]] as const) {
-      const corners = shown_corners(body, parts, hidden);
-      if (mesh.geometry.index?.array !== corners)
-        mesh.geometry.setIndex(new three.BufferAttribute(corners, 1));
-    }
+    const leave_out =
+        (geometry: three.BufferGeometry, body: Body, parts: readonly NamedPart[],
+         hidden: ReadonlySet<number>) => {
+          const corners = shown_corners(body, parts, hidden);
+          if (geometry.index?.array !== corners) geometry.setIndex(new three.BufferAttribute(corners, 1));
+        };
+    leave_out(this.mockup_mesh.geometry, this.drawn.mockup, this.parts.static, this.hidden.mockup);
+    leave_out(this.whole_tool, this.drawn.tool, this.parts.tool, this.hidden.tool);
+    if (this.few) leave_out(this.few.geometry, this.few.body, this.parts.tool, this.hidden.tool);
     this.shape_corners = shown_corners(this.shape, this.parts.tool, this.hidden.tool);
     this.solid = is_solid(this.shape.vertices, this.shape_corners);
   }
@@ -75,10 +88,11 @@ export class Bodies {
     return {vertices: this.shape.vertices, corners: this.shape_corners};
   }
   clear(): void {
-    this.drawn = null;
+    this.dispose();
+    this.drawn = this.few = null;
     this.hidden = {mockup: new Set(), tool: new Set()};
     this.mockup_mesh.geometry = new three.BufferGeometry();
-    this.tool_mesh.geometry = new three.BufferGeometry();
+    this.tool_mesh.geometry = this.whole_tool = new three.BufferGeometry();
     this.tool.visible = false;
   }
   move(pose: Pose): void {

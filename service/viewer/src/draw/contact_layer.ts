@@ -2,12 +2,18 @@
 // surfaces shows through them, weaker.
 import * as three from 'three';
 
+import {coloured_material} from './flat_shading.js';
 import {CYCLE, KIND_COLOUR} from './palette.js';
 
 import {KINDS, MOBILE_KINDS, STATIC_KINDS, type Frame, type Kind} from '../server/protocol.js';
 import type {TriangleStore} from './triangle_store.js';
 
 export type Colouring = 'kind'|'area'|'zone';
+
+/** Red, green and blue as they are shown (sRGB), 0 to 1. */
+type Shown = readonly[number, number, number];
+const shown_as =
+    (colour: number): Shown => [(colour >> 16 & 255) / 255, (colour >> 8 & 255) / 255, (colour & 255) / 255];
 
 /** One body's coloured triangles. */
 class Patch {
@@ -17,20 +23,13 @@ class Patch {
   private readonly behind: three.Mesh;
   private capacity = 0;
   private positions = new Float32Array(0);
-  private colours = new Uint8Array(0);
+  private colours = new Float32Array(0);  // bytes would be turned into floats anew for each picture
   count = 0;
 
   constructor(private readonly store: TriangleStore) {
-    const common = {vertexColors: true, side: three.DoubleSide, toneMapped: false};
-    this.front = new three.Mesh(this.geometry, new three.MeshBasicMaterial(common));
-    this.behind = new three.Mesh(this.geometry, new three.MeshBasicMaterial({
-      ...common,
-      transparent: true,
-      opacity: 0.45,
-      depthFunc: three.GreaterDepth,
-      depthWrite: false,
-      forceSinglePass: true  // which side is drawn first can't be told
-    }));
+    this.front = new three.Mesh(this.geometry, coloured_material());
+    this.behind = new three.Mesh(
+        this.geometry, coloured_material(0.45, {depthFunc: three.GreaterDepth, depthWrite: false}));
     this.front.frustumCulled = this.behind.frustumCulled = false;
     this.front.renderOrder = 2;
     this.behind.renderOrder = 3;
@@ -41,25 +40,28 @@ class Patch {
     if (most <= this.capacity) return;
     this.capacity = Math.max(1024, 2 * most);
     this.positions = new Float32Array(9 * this.capacity);
-    this.colours = new Uint8Array(9 * this.capacity);
+    this.colours = new Float32Array(9 * this.capacity);
     this.geometry.dispose();
     this.geometry = new three.BufferGeometry();
     this.geometry.setAttribute(
         'position', new three.BufferAttribute(this.positions, 3).setUsage(three.DynamicDrawUsage));
     this.geometry.setAttribute(
-        'color', new three.BufferAttribute(this.colours, 3, true).setUsage(three.DynamicDrawUsage));
+        'colour', new three.BufferAttribute(this.colours, 3).setUsage(three.DynamicDrawUsage));
     this.front.geometry = this.behind.geometry = this.geometry;
   }
-  add(id: number, colour: three.Color): void {
-    const at = 9 * this.count;
-    if (!this.store.copy(id, this.positions, at)) return;
-    const rgb = [Math.round(colour.r * 255), Math.round(colour.g * 255), Math.round(colour.b * 255)];
-    for (let i = 0; i < 9; ++i) this.colours[at + i] = rgb[i % 3];
+  add(id: number, [red, green, blue]: Shown): void {
+    const end = 9 * (this.count + 1);
+    if (!this.store.copy(id, this.positions, end - 9)) return;
+    for (let at = end - 9; at < end; at += 3) {
+      this.colours[at] = red;
+      this.colours[at + 1] = green;
+      this.colours[at + 2] = blue;
+    }
     ++this.count;
   }
   end(): void {
     this.geometry.setDrawRange(0, 3 * this.count);
-    for (const name of ['position', 'color']) {
+    for (const name of ['position', 'colour']) {
       const attribute = this.geometry.getAttribute(name) as three.BufferAttribute | undefined;
       if (!attribute) continue;
       attribute.clearUpdateRanges();
@@ -76,9 +78,8 @@ export class ContactLayer {
   readonly shown = new Set<Kind>(KINDS);
   colouring: Colouring = 'kind';
   private readonly kind_colours =
-      Object.fromEntries(KINDS.map((kind) => [kind, new three.Color(KIND_COLOUR[kind])])) as
-      Record<Kind, three.Color>;
-  private readonly cycle = CYCLE.map((colour) => new three.Color(colour));
+      Object.fromEntries(KINDS.map((kind) => [kind, shown_as(KIND_COLOUR[kind])])) as Record<Kind, Shown>;
+  private readonly cycle = CYCLE.map(shown_as);
 
   constructor(mockup_store: TriangleStore, tool_store: TriangleStore) {
     this.mockup = new Patch(mockup_store);

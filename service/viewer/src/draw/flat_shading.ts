@@ -80,6 +80,37 @@ export function geometry_of({vertices, corners, faces}: Faced): three.BufferGeom
   return geometry;
 }
 
+/** Triangles of plain colours, unlit: the attribute `colour` of their corners, as it is shown (sRGB). */
+export function coloured_material(
+    opacity = 1, parameters: three.ShaderMaterialParameters = {}): three.ShaderMaterial {
+  return new three.ShaderMaterial({
+    ...parameters,
+    transparent: opacity < 1,
+    side: three.DoubleSide,
+    forceSinglePass: true,  // which side is drawn first can't be told
+    clipping: true,
+    uniforms: {opacity: {value: opacity}},
+    vertexShader: `
+      #include <clipping_planes_pars_vertex>
+      attribute vec3 colour;
+      flat varying vec3 shade;
+      void main() {
+        #include <begin_vertex>
+        #include <project_vertex>
+        #include <clipping_planes_vertex>
+        shade = colour;
+      }`,
+    fragmentShader: `
+      #include <clipping_planes_pars_fragment>
+      uniform float opacity;
+      flat varying vec3 shade;
+      void main() {
+        #include <clipping_planes_fragment>
+        gl_FragColor = vec4(shade, opacity);
+      }`,
+  });
+}
+
 /** `change`: what else the shaders are to do. */
 export function flat_material(
     parameters: three.MeshLambertMaterialParameters,

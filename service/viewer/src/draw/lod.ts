@@ -5,7 +5,8 @@ export const LEVELS = [30_000, 120_000, 400_000, 1_500_000];
 const SLOW_MS = 36;  // chosen: what is paced (scene_view.ts) at 33 ms, and a tenth
 const FAST_MS =
     18;  // chosen: keeps up with a screen of 60 Hz; whether four times as much does, too, is tried once
-const ENOUGH = 40;  // pictures that tell; where they are slow, those of ENOUGH_MS, and FEWEST at least
+const FRESH_SHARE = 0.5;  // chosen: of an answer's age to a picture's time
+const ENOUGH = 40;        // pictures that tell; where they are slow, those of ENOUGH_MS, and FEWEST at least
 const ENOUGH_MS = 1500;
 const FEWEST = 4;  // one that waits for something else does not decide
 
@@ -34,11 +35,13 @@ export class LevelKeeper {
 
   /**
    * Takes the time since the picture before in an unbroken row of them, ms, however long; true when the
-   * level changed.
+   * level changed. `answer_ms`: how old the engine's answer in the picture is. Pictures that come in time but
+   * leave the engine too little of the processors are too slow, too.
    */
-  take(picture_ms: number, total: number): boolean {
-    this.times.push(picture_ms);
-    this.spent += picture_ms;
+  take(picture_ms: number, total: number, answer_ms = 0): boolean {
+    const slow_ms = Math.max(picture_ms, answer_ms / FRESH_SHARE);
+    this.times.push(slow_ms);
+    this.spent += slow_ms;
     if (this.times.length < ENOUGH && (this.times.length < FEWEST || this.spent < ENOUGH_MS)) return false;
     // The mean without the longest: a browser that draws without a GPU shows two pictures at once and then
     // none for long.

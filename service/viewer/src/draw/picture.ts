@@ -15,7 +15,9 @@ import {SceneView} from './scene_view.js';
 import {TriangleStore} from './triangle_store.js';
 import {VoxelLayer} from './voxel_layer.js';
 
-const STRONG_N = 3;  // chosen: arrows and heights are scaled so that this fills the tool's size
+const FEW = 3000;  // triangles of the tool in a coarse picture; chosen: that has 300 pixels across, no more
+const LATE_MS = 250;  // an older one is not late: what rests is not asked about
+const STRONG_N = 3;   // chosen: arrows and heights are scaled so that this fills the tool's size
 
 export class Picture {
   readonly view: SceneView;
@@ -36,6 +38,7 @@ export class Picture {
   private readonly shown = new three.Group();
   private readonly stores: {mockup: TriangleStore; tool: TriangleStore};
   private shown_frame: Frame|null = null;
+  private asked_at = NaN;
   private loading: AbortController|null = null;
   private centre = new three.Vector3();
   private following = false;
@@ -61,12 +64,14 @@ export class Picture {
     this.view.before_draw.push(() => {
       // One that is cut open shows its inside.
       this.bodies.show_far_side(!this.view.software || this.view.renderer.clippingPlanes.length > 0);
+      this.bodies.draw_few(this.view.draws_coarsely);
     });
     this.view.after_draw.push((ms, whole) => {
+      this.bodies.draw_few(false);
       if (!this.scene || !Number.isFinite(ms)) return;
       if (whole === 2 && this.levels.take(ms, this.scene.static_triangles ?? 0))
         void this.load_level(this.scene);
-      if (whole === 0) this.pace.take(ms, 0);
+      if (whole === 0) this.pace.take(ms, 0, this.age());
       this.view.coarse = this.levels.coarse;
       this.view.coarse_standing = this.pace.coarse;
     });
@@ -124,8 +129,11 @@ export class Picture {
     const loading = (this.loading = new AbortController());
     try {
       const geometry = await this.api.geometry(scene.id, LEVELS[this.levels.level], loading.signal);
+      const few = this.view.software && geometry.tool.ids.length > FEW ?
+          await this.api.tool_geometry(scene.id, FEW, loading.signal) :
+          null;
       if (this.scene !== scene) return;
-      this.bodies.set(geometry);
+      this.bodies.set(geometry, few);
       this.reduced = geometry.reduced;
       this.drawn_triangles = geometry.mockup.ids.length + geometry.tool.ids.length;
       this.stores.mockup.set_body(geometry.mockup, !geometry.reduced);
@@ -138,6 +146,7 @@ export class Picture {
   }
 
   show(moment: Moment): void {
+    this.asked_at = moment.asked_at ?? NaN;
     const before = this.bodies.tool_sphere().center;
     this.bodies.move(moment.pose);
     if (this.following && !this.drag.holding) this.view.shift(this.bodies.tool_sphere().center.sub(before));
@@ -148,6 +157,11 @@ export class Picture {
     this.areas.set(moment.frame?.contact ? moment.frame.areas : [], this.centre, moment.force, moment.torque);
     this.ghost.set(this.drag.hand, this.drag.holding !== null);
     this.view.request();
+  }
+  /** Of the answer that is shown, ms; 0: it rests, or nobody was asked. */
+  private age(): number {
+    const age = performance.timeOrigin + performance.now() - this.asked_at;
+    return age < LATE_MS ? age : 0;
   }
   /** Draws the contact again, in the colours and kinds that are chosen now. */
   redraw_contact(): void {

@@ -163,6 +163,10 @@ export class SceneView {
     this.last_whole = whole;
   };
 
+  /** Whether the picture that is drawn now has half the width and height. */
+  get draws_coarsely(): boolean {
+    return this.renderer.getPixelRatio() < this.sharp;
+  }
   /**
    * Makes the programs of all that may come to be drawn, so that the first contact does not wait for its own
    * in the middle of a motion.

@@ -102,6 +102,7 @@ export class MouseLoop {
       return;  // one question is under way at a time: anything else is stale
     const {pose, at: asked} = this.asked;
     this.round_ms = performance.now() - asked;
+    this.clock.answered(this.round_ms);
     this.asked = null;
     this.answered = asked;
     this.server_us = wrench.server_us;
@@ -125,7 +126,7 @@ export class MouseLoop {
     const now = performance.now();
     clearTimeout(this.timer);
     if (this.link.state !== 'open' || this.asked || now - this.last_picture >= UNWATCHED_MS) return;
-    const for_picture = this.clock.ask_at(Number.isFinite(this.round_ms) ? this.round_ms : 0, this.asked_at);
+    const for_picture = this.clock.ask_at(this.asked_at);
     const at = Math.max(this.next_at, Number.isNaN(for_picture) ? this.asked_at + ASK_MS : for_picture);
     if (now < at) {
       this.timer = setTimeout(() => this.move(), at - now);

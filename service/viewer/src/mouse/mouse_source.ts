@@ -35,7 +35,11 @@ export class MouseSource {
           break;
         case 'moment':
           if (data.turn !== this.turn) break;  // from before a restart
-          this.newest = {...data.moment, frame: data.frame === undefined ? this.newest.frame : data.frame};
+          this.newest = {
+            ...data.moment,
+            frame: data.frame === undefined ? this.newest.frame : data.frame,
+            asked_at: data.asked_at
+          };
           this.hand.put(data.moment.pose);
           hooks.moved();
           break;

@@ -4,12 +4,15 @@
 const REMEMBERED =
     4;  // chosen: the shortest of these is the period, for a picture that comes late is the exception
 const LONGEST_MS = 100;  // longer ones are no row of pictures
-const ROUND_SHARE = 1.5,
-      AHEAD_MS = 4;  // of the way to the server and back, and for the page to hear of it; chosen
+const ROUNDS =
+    16;  // ways to the server and back that are remembered; the longest but one is what the next may take:
+         // with it 9 of 10 answers make their picture. A longer wait for the tenth makes all older.
+const AHEAD_MS = 4;  // for the page to hear of it; chosen
 
 export class PictureClock {
   private last = NaN;
   private periods: number[] = [];
+  private rounds: number[] = [];
 
   /** A picture comes, at a time in ms. */
   tick(now: number): void {
@@ -20,13 +23,19 @@ export class PictureClock {
     else if (period > 0)
       this.periods = [...this.periods, period].slice(-REMEMBERED);
   }
+  /** An answer has come, so long after its question. */
+  answered(round_ms: number): void {
+    this.rounds = [...this.rounds, round_ms].slice(-ROUNDS);
+  }
   /**
-   * When to ask for the next picture, where the way there and back takes `round_ms`; a question that was sent
-   * at `asked_at` does for it, if it was late enough. NaN: there is no row of pictures, or it has been asked.
+   * When to ask for the next picture; a question that was sent at `asked_at` does for it, if it was late
+   * enough. NaN: there is no row of pictures, or it has been asked.
    */
-  ask_at(round_ms: number, asked_at: number): number {
+  ask_at(asked_at: number): number {
     if (this.periods.length === 0) return NaN;
-    const lead = Math.min(ROUND_SHARE * round_ms + AHEAD_MS, Math.min(...this.periods));
+    const longest_first = [...this.rounds].sort((a, b) => b - a);
+    const round = longest_first[1] ?? longest_first[0] ?? 0;
+    const lead = Math.min(round + AHEAD_MS, Math.min(...this.periods));
     const at = this.last + Math.min(...this.periods) - lead;
     return asked_at < at - lead / 2 ? at : NaN;
   }

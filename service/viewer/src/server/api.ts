@@ -1,7 +1,7 @@
 // The server's HTTP endpoints. Every failure is an ApiError: a problem of the server's, or `status` 0 when
 // nobody answered.
 import type {Assembly, ClearanceAnswer, Device, Frame, Pose, Problem, Run, Scene, SceneList, SceneParts, Session} from './protocol.js';
-import {read_geometry, read_voxels, type Geometry, type Voxels} from './binary.js';
+import {read_geometry, read_voxels, type Body, type Geometry, type Voxels} from './binary.js';
 
 export class ApiError extends Error {
   constructor(readonly status: number, readonly problem: Problem|null, message: string) {
@@ -95,6 +95,10 @@ export class Api {
   }
   async geometry(id: string, max_triangles: number, signal?: AbortSignal): Promise<Geometry> {
     return read_geometry(await this.bytes(`v1/scenes/${id}/geometry?max_triangles=${max_triangles}`, signal));
+  }
+  async tool_geometry(id: string, max_triangles: number, signal?: AbortSignal): Promise<Body> {
+    const asked = `v1/scenes/${id}/geometry?max_triangles=${max_triangles}&body=tool`;
+    return read_geometry(await this.bytes(asked, signal)).tool;
   }
   async triangles(id: string, body: 'static'|'tool', ids: string): Promise<Float32Array> {
     return new Float32Array(await this.bytes(`v1/scenes/${id}/triangles?body=${body}&ids=${ids}`));
