@@ -117,7 +117,7 @@ void write_area(Writer& json, const QueryLine& line, const ContactArea& area, co
   json.open('{');
   json.key("id");
   json.integer(area.id);
-  if (line.sets) {
+  if (line.sets && line.area_lists) {
     json.key("zones");
     json.open('[');
     for (const auto& zone : area.zones) json.ids(zone);

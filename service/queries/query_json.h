@@ -19,6 +19,7 @@ struct QueryLine {
   std::optional<std::uint64_t> batch;  ///< `--batch N`: times are the pose's share
   std::optional<std::int64_t> tick;    ///< frames.jsonl: the tick whose pose was judged
   bool sets = true;                    ///< false: without the lists of ids
+  bool area_lists = true;              ///< false: without those of which triangles belong to an area
   const TouchedParts* parts =
       nullptr;  ///< `parts`: the paths of the parts that touch, {"static": […], "tool": […]}; null: without
   bool heights =

@@ -40,6 +40,11 @@ TEST(QueryLine, HasTheContractsFieldsInItsOrder) {
       R"("force":[0,0,0.3333333333333333],"torque":[0,0,0],"flags":["cancelled"],"truncated":false,"engine":"gpu",)"
       R"("time_us":{"total":20,"detect":12.5},"tick":12})"
       "\n");
+  out.clear();
+  append_query_line({.number = 4, .batch = std::nullopt, .tick = std::nullopt, .area_lists = false}, contacts,
+                    response, out);
+  EXPECT_NE(out.find(R"("cst":[1,2])"), std::string::npos) << out;
+  EXPECT_NE(out.find(R"("areas":[{"id":1,"normal":[0,0,1],)"), std::string::npos) << out;
 }
 
 TEST(QueryLine, TellsWhatIsFeltAndWhereTheToolIsMeanwhile) {

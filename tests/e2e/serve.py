@@ -424,6 +424,18 @@ def test_a_remote_loop_gets_wrenches_with_its_own_stamps():
                 and wrench['frame']['cst'] == line['cst'],
                 wrench,
             )
+            loop.send({'type': 'pose', 'seq': 41, 'pose': pressed, 'full': True, 'area_lists': False})
+            bare = loop.json()['frame']
+            gone = {'zones', 'static', 'mobile'}
+            expect(
+                bare['cst'] == line['cst']
+                and bare['areas']
+                == [
+                    {key: value for key, value in area.items() if key not in gone}
+                    for area in wrench['frame']['areas']
+                ],
+                bare,
+            )
             loop.send(struct.pack('<Qd7d', 42, 1.5, *pressed))
             data = loop.receive()
             seq, time_back, *rest = struct.unpack_from('<Qd9d', data)

@@ -34,7 +34,7 @@ struct PoseMessage {
   std::uint64_t seq = 0;
   double time = 0;
   Pose pose;
-  bool full = false, near = false, planes = false, binary = false;
+  bool full = false, area_lists = true, near = false, planes = false, binary = false;
   Clock::time_point arrived{};
 };
 
@@ -52,7 +52,8 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
     out.pose = std::get<Pose>(pose);
     return out;
   }
-  const auto read = read_json_object(data, depth, {"type", "seq", "time", "pose", "full", "near", "planes"});
+  const auto read =
+      read_json_object(data, depth, {"type", "seq", "time", "pose", "full", "area_lists", "near", "planes"});
   if (const auto* problem = std::get_if<Problem>(&read)) return *problem;
   const auto& json = std::get<nlohmann::json>(read);
   if (!json.contains("type") || json["type"] != "pose")
@@ -64,8 +65,10 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
     if (!json["time"].is_number()) return bad_request("\"time\" is no number", "time");
     out.time = json["time"];
   }
-  for (const auto& [key, value] :
-       {std::pair{"full", &out.full}, {"near", &out.near}, {"planes", &out.planes}}) {
+  for (const auto& [key, value] : {std::pair{"full", &out.full},
+                                   {"area_lists", &out.area_lists},
+                                   {"near", &out.near},
+                                   {"planes", &out.planes}}) {
     if (!json.contains(key)) continue;
     if (!json[key].is_boolean())
       return bad_request(fmt::format("\"{}\" is neither true nor false", key), key);
@@ -373,6 +376,7 @@ void RemoteLoops::answer(Loop& loop) {
                          .total_us = loop.slot.total_us,
                          .batch = std::nullopt,
                          .tick = loop.slot.sample.tick,
+                         .area_lists = pose->area_lists,
                          .heights = true},
                         contacts, response, out);
       out.pop_back();  // the line feed

@@ -459,7 +459,7 @@ export class App {
           if (!moment) this.paths.show();
         } else {
           if (this.picture.drag.steer(this.space_mouse.wish(), seconds)) this.dirty = true;
-          this.mouse.advance();
+          this.mouse.advance(this.paths.recorder.recording || this.picture.contact.colouring !== 'kind');
         }
         moment ??= this.mouse.moment();
         this.paths.take(moment);

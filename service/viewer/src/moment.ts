@@ -4,9 +4,10 @@ import type {Frame, Pose, Vec3} from './server/protocol.js';
 export interface Moment {
   time: number;  // s
   pose: Pose;
-  frame: Frame|null;  // the newest one that was judged
-  force: Vec3;        // N, as the hand feels it, on the tool
-  torque: Vec3;       // N·m, about the centre of mass
+  frame: Frame|null;    // the newest one that was judged
+  listed?: Frame|null;  // the newest one that says which triangles belong to an area; absent: all do
+  force: Vec3;          // N, as the hand feels it, on the tool
+  torque: Vec3;         // N·m, about the centre of mass
   response: {force: Vec3; torque: Vec3}|
       null;       // what the contact answers, before law, limits and the device's axes; null: not known
   depth: number;  // m, the deepest area

@@ -126,7 +126,7 @@ test(
       assert.equal(drawn(), 2);
       bodies.draw_few(false);
       bodies.clear();
-  bodies.set({reduced: false, mockup: box_at(0), tool: shape(3)});
+      bodies.set({reduced: false, mockup: box_at(0), tool: shape(3)});
       bodies.draw_few(true);
       assert.equal(drawn(), 3, 'one that has few anyway');
     });

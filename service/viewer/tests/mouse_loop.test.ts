@@ -17,6 +17,7 @@ const SCENE = {
 interface Asked {
   seq: number;
   full: boolean;
+  area_lists: boolean;
   planes: boolean;
   pose: number[]
 }
@@ -38,7 +39,7 @@ class Socket {
     this.onmessage({data: JSON.stringify(message)});
   }
   answer(): void {
-    const {seq, full} = this.asked.at(-1)!;
+    const {seq, full, area_lists} = this.asked.at(-1)!;
     const empty = {contact: false, planes: [], force: [0, 0, 0], torque: [0, 0, 0]};
     this.say({
       type: 'wrench',
@@ -48,7 +49,8 @@ class Socket {
       gc: [0, 0, 0],
       engine: 'cpu',
       ...empty,
-      ...(full ? {frame: empty} : {})
+      ...(full ? {frame: {...empty, areas: [{id: 7, ...(area_lists ? {static: [1], mobile: [2]} : {})}]}} :
+                 {})
     });
   }
 }
@@ -78,9 +80,9 @@ function pass(ms: number): void {
   }
 }
 /** A picture, with a hand that is where the test left it. */
-function picture(mouse: MouseLoop): void {
+function picture(mouse: MouseLoop, lists = false): void {
   const {held} = mouse.coupling;
-  mouse.picture({held, target: mouse.coupling.target(), paused: false});
+  mouse.picture({held, target: mouse.coupling.target(), paused: false}, lists);
 }
 async function begun() {
   const socket = new Socket();
@@ -156,6 +158,34 @@ test('planes are asked for, and what has hardly moved since rests', async () => 
   assert.ok(asked > 10 && asked < 50, `${asked} questions`);
   pass(1000);
   picture(mouse);
+  assert.equal(socket.asked.length, asked);
+  mouse.close();
+});
+
+test('areas\' triangles are asked for seldom, but where they are shown, and at rest', async () => {
+  const {socket, mouse} = await begun();
+  mouse.coupling.held = true;
+  mouse.coupling.target_position.set(0.1, 0, 0);
+  const go_on = (ms: number, lists: boolean) => {
+    const before = socket.asked.length;
+    for (let i = 0, answered = before - 1; i < ms / 20; ++i) {
+      for (; answered < socket.asked.length; ++answered) socket.answer();
+      pass(20);
+      picture(mouse, lists);
+    }
+    const asked = socket.asked.slice(before);
+    return {all: asked.length, with_lists: asked.filter(({area_lists}) => area_lists).length};
+  };
+  const seldom = go_on(1000, false);
+  assert.ok(seldom.all >= 40 && seldom.with_lists >= 4 && seldom.with_lists <= 8, JSON.stringify(seldom));
+  const always = go_on(400, true);
+  assert.equal(always.with_lists, always.all);
+  go_on(100, false);
+  mouse.coupling.let_go();  // nothing moves any more
+  go_on(100, false);
+  assert.ok(socket.asked.at(-1)!.area_lists);
+  const asked = socket.asked.length;
+  go_on(400, false);
   assert.equal(socket.asked.length, asked);
   mouse.close();
 });

@@ -70,12 +70,12 @@ test('an open hand goes with the tool, one that holds it stays', () => {
   mouse.hand.held = true;
   mouse.hand.target_position.z = 0.01;
   worker.say({type: 'moment', turn: 0, moment: moment([0, 0, 0.04, 0, 0, 0, 1]), asked_at: 2});
-  mouse.advance();
+  mouse.advance(false);
   assert.deepEqual([mouse.hand.position.z, mouse.hand.target_position.z], [0.04, 0.01]);
   const told = worker.told.at(-1)!;
   assert.ok(told.type === 'picture' && told.hand.held && told.hand.target[2] === 0.01);
   mouse.paused = true;
-  mouse.advance();
+  mouse.advance(false);
   const open = worker.told.at(-1)!;
   assert.ok(open.type === 'picture' && !open.hand.held && open.hand.paused && open.hand.target[2] === 0.04);
 });
@@ -113,4 +113,21 @@ test('a worker that fails leaves no force, and is told', () => {
   worker.onerror({});  // a script that can't be had has no message
   assert.match(heard.at(-2)!, /^lost .*has failed: no such thing\./);
   assert.match(heard.at(-1)!, /^lost .*has failed to load\./);
+});
+
+test('a frame without its areas\' triangles leaves the last that has them', () => {
+  const {worker, mouse} = begun();
+  const told = (id: number, lists: boolean) => {
+    const frame = {tick: id, contact: true, areas: [{id, ...(lists ? {static: [id], mobile: [id]} : {})}]};
+    worker.say({
+      type: 'moment',
+      turn: 0,
+      moment: moment(SCENE.start!),
+      frame: frame as unknown as Frame,
+      asked_at: id
+    });
+    const {frame: newest, listed} = mouse.moment();
+    return [newest?.tick, listed?.tick];
+  };
+  assert.deepEqual([told(1, true), told(2, false), told(3, true)], [[1, 1], [2, 1], [3, 3]]);
 });

@@ -23,10 +23,11 @@ export type ToWorker =
   type: 'prepared';
   ready: boolean
 }
-/** A picture is due. */
+/** A picture is due. `lists`: in which the triangles of each area matter. */
 |{
   type: 'picture';
-  hand: HandTold
+  hand: HandTold;
+  lists: boolean
 }
 /** The tool goes to `at`, or to the scene's start. What comes back from then on has this `turn`. */
 |{

@@ -7,13 +7,14 @@ import type {HandTold} from './messages.js';
 import type {Moment} from '../moment.js';
 import {PictureClock} from './picture_clock.js';
 import {waiting_words} from './waiting.js';
-import {depth, type Frame, type HapticHello, type Pose, type Scene, type Wrench} from '../server/protocol.js';
+import {depth, has_lists, type Frame, type HapticHello, type Pose, type Scene, type Wrench} from '../server/protocol.js';
 
 const ASK_MS = 33;  // from one question to the next, where no picture wants one sooner; chosen
 const ASK_SHARE =
     2;  // of the server's time for an answer: half of a processor is left to who draws the pictures; chosen
 const UNWATCHED_MS = 600;  // without a picture for so long nobody looks, and between pictures nothing moves;
                            // chosen: longer than a slow picture takes
+const LISTS_MS = 150;  // the table of areas has their parts no more often; chosen: it can't be read faster
 const RESTS_SHARE = 1e-6;  // of the tool's radius, and rad: a tool that has moved no further since it was
                            // asked about rests; chosen: far less than a pixel
 
@@ -50,8 +51,11 @@ export class MouseLoop {
   private round_ms = NaN;
   private response: Moment['response'] = null;
   private engine: string;
-  private wants_frame = true;  // a picture has come since the last frame was asked for
-  private framed = true;       // the newest answer has its frame
+  private wants_frame = true;     // a picture has come since the last frame was asked for
+  private framed = true;          // the newest answer has its frame
+  private wants_lists = false;    // of which triangles belong to each area
+  private listed = true;          // the newest answer has them
+  private listed_at = -Infinity;  // when the last one that has was asked for
   private timer: ReturnType<typeof setTimeout>|undefined;
   private last_picture = performance.now();
   private last_advance = performance.now();
@@ -107,6 +111,8 @@ export class MouseLoop {
     this.answered = asked;
     this.server_us = wrench.server_us;
     this.framed = wrench.frame !== undefined;
+    this.listed = wrench.frame !== undefined && has_lists(wrench.frame);
+    if (this.listed) this.listed_at = asked;
     if (this.framed) this.contact = wrench.contact;  // with the frame that shows it
     this.response = {force: wrench.force, torque: wrench.torque};
     this.engine = wrench.engine ?? this.engine;
@@ -137,7 +143,7 @@ export class MouseLoop {
         rotation.angleTo(this.asked_rotation) <= RESTS_SHARE;
     // At rest nothing is asked, but once in 20 s: the server closes a connection that says nothing for a
     // minute.
-    if (rests && (this.framed || !this.wants_frame) && now - this.asked_at < 20_000) return;
+    if (rests && ((this.framed && this.listed) || !this.wants_frame) && now - this.asked_at < 20_000) return;
     const pose = this.coupling.pose();
     this.asked_at = now;
     this.asked_position.copy(position);
@@ -149,13 +155,15 @@ export class MouseLoop {
       time: (this.asked_at - this.began) / 1000,
       pose,
       full: this.wants_frame,
+      area_lists: this.wants_lists || rests || now - this.listed_at >= LISTS_MS,
       planes: true  // the coupling has a spring of its own
     }));
     this.wants_frame = false;
   }
 
-  /** Before each picture: what the hand does. */
-  picture({held, target, paused}: HandTold): void {
+  /** Before each picture: what the hand does, and whether each area's triangles are to be shown. */
+  picture({held, target, paused}: HandTold, lists: boolean): void {
+    this.wants_lists = lists;
     this.last_picture = performance.now();
     this.clock.tick(this.last_picture);
     this.wants_frame = true;

@@ -2,7 +2,7 @@
 import {Hand} from './hand.js';
 import type {ToPage, ToWorker} from './messages.js';
 import type {Moment} from '../moment.js';
-import type {Pose, Scene} from '../server/protocol.js';
+import {has_lists, type Pose, type Scene} from '../server/protocol.js';
 
 export interface SourceHooks {
   /** Resolves when the server holds the scene, ready; who refuses has said why. */
@@ -38,6 +38,8 @@ export class MouseSource {
           this.newest = {
             ...data.moment,
             frame: data.frame === undefined ? this.newest.frame : data.frame,
+            listed: data.frame === undefined || !has_lists(data.frame) ? this.newest.listed ?? null :
+                                                                         data.frame,
             asked_at: data.asked_at
           };
           this.hand.put(data.moment.pose);
@@ -67,6 +69,7 @@ export class MouseSource {
       time: 0,
       pose: this.hand.pose(),
       frame: null,
+      listed: null,
       force: [0, 0, 0],
       torque: [0, 0, 0],
       response: null,
@@ -88,11 +91,11 @@ export class MouseSource {
   hurry(): void {
     this.tell({type: 'hurry'});
   }
-  /** Before each picture: tells the loop what the hand does. */
-  advance(): void {
+  /** Before each picture: tells the loop what the hand does, and whether areas' triangles are shown. */
+  advance(areas: boolean): void {
     if (this.paused) this.hand.let_go();
     const {held} = this.hand;
-    this.tell({type: 'picture', hand: {held, target: this.hand.target(), paused: this.paused}});
+    this.tell({type: 'picture', hand: {held, target: this.hand.target(), paused: this.paused}, lists: areas});
   }
   moment(): Moment {
     return {...this.newest, time: (performance.now() - this.began) / 1000};

@@ -46,7 +46,7 @@ page.onmessage = ({data}) => {
       prepared(data.ready);
       break;
     case 'picture':
-      loop?.picture(data.hand);
+      loop?.picture(data.hand, data.lists);
       break;
     case 'restart':
       turn = data.turn;

@@ -7,7 +7,7 @@ const LONGEST_MS = 100;  // longer ones are no row of pictures
 const ROUNDS =
     16;  // ways to the server and back that are remembered; the longest but one is what the next may take:
          // with it 9 of 10 answers make their picture. A longer wait for the tenth makes all older.
-const AHEAD_MS = 4;  // for the page to hear of it; chosen
+const AHEAD_MS = 3;  // for the page to hear of it; chosen
 
 export class PictureClock {
   private last = NaN;

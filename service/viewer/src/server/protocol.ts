@@ -129,6 +129,9 @@ export type Kind = (typeof KINDS)[number];
 export const STATIC_KINDS: readonly Kind[] = ['bst', 'est', 'cst'];
 export const MOBILE_KINDS: readonly Kind[] = ['bmt', 'imt', 'cmt'];
 
+/** Whether it is said which triangles belong to each area. */
+export const has_lists = (frame: Frame|null): boolean =>
+    frame?.areas?.every((area) => area.static !== undefined) ?? true;
 export interface Area {
   id: number;
   zones?: number[][];

@@ -59,13 +59,14 @@ export class Readout {
         element('stage'),
         moment && moment.stage > 0 ? `${moment.stage}  ${stages[moment.stage - 1] ?? ''}` : '');
     for (const kind of KINDS) write(this.counts[kind], frame ? frame[kind].length.toLocaleString('en') : '');
-    if (frame === this.table_of) return;
-    this.table_of = frame;
+    const listed = frame?.contact ? moment?.listed ?? frame : frame;
+    if (listed === this.table_of) return;
+    this.table_of = listed;
     element('warning').replaceChildren(
-        ...(frame?.truncated ? ['A list was too small for this frame: no force.'] :
-                               flag_chips(frame?.flags ?? [])));
-    write(element('touching'), frame?.contact ? this.touching(frame) : '');
-    show_areas(frame?.contact ? frame.areas : [], this.names);
+        ...(listed?.truncated ? ['A list was too small for this frame: no force.'] :
+                                flag_chips(listed?.flags ?? [])));
+    write(element('touching'), listed?.contact ? this.touching(listed) : '');
+    show_areas(listed?.contact ? listed.areas : [], this.names);
   }
   /**
    * What the contact answers, and what the hand gets of it: two figures where both are known, else the one.
