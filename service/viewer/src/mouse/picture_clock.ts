@@ -4,9 +4,9 @@
 const REMEMBERED =
     4;  // chosen: the shortest of these is the period, for a picture that comes late is the exception
 const LONGEST_MS = 100;  // longer ones are no row of pictures
-const ROUNDS =
-    16;  // ways to the server and back that are remembered; the longest but one is what the next may take:
-         // with it 9 of 10 answers make their picture. A longer wait for the tenth makes all older.
+// Ways to the server and back that are remembered; the longest but two is what the next may take. So five of
+// six answers make their picture. To wait for the sixth would make all of them older, and their mean no less.
+const ROUNDS = 16, LONGER = 2;
 const AHEAD_MS = 3;  // for the page to hear of it; chosen
 
 export class PictureClock {
@@ -34,7 +34,7 @@ export class PictureClock {
   ask_at(asked_at: number): number {
     if (this.periods.length === 0) return NaN;
     const longest_first = [...this.rounds].sort((a, b) => b - a);
-    const round = longest_first[1] ?? longest_first[0] ?? 0;
+    const round = longest_first[Math.min(LONGER, longest_first.length - 1)] ?? 0;
     const lead = Math.min(round + AHEAD_MS, Math.min(...this.periods));
     const at = this.last + Math.min(...this.periods) - lead;
     return asked_at < at - lead / 2 ? at : NaN;
