@@ -100,7 +100,7 @@ void main() {
   const uint32_t item = team_item();
   Asked asked;
   const int32_t sum = team_sum(item < list_count(kListMockupPoints) ? ask(mockup_points[item], asked) : 0);
-  const bool counts = CLOSED ? sum != 0 : sum > 0;
+  const bool counts = body_says_inside(CLOSED, sum);
   const Depth depth = body_depth(counts, asked.at);
   Push push;
   const bool pushes = counts && speaks() && push_of(asked, depth, push);

@@ -94,7 +94,7 @@ void main() {
     sum = inside_mockup(work);
   }
   sum = team_sum(sum);
-  const bool inside = CLOSED ? sum != 0 : sum > 0;
+  const bool inside = body_says_inside(CLOSED, sum);
   const Depth depth = body_depth(inside, work.point);
   Push push;
   const bool pushes = inside && speaks() && push_of(work, depth, push);

@@ -37,8 +37,7 @@ EDIT(kBindSamples, ivec4, samples);
 #include "shaders/lib/tool_winding.glsl"
 #include "shaders/lib/body/body_walks.glsl"
 
-// The invocation's part of a sum that is not 0 where it is inside a closed tool, and above 0 where it is inside
-// one that is not.
+// The invocation's part of a sum that body_says_inside() reads.
 int32_t inside_tool(ivec3 point) {
   if (CLOSED) return tool_winding(point);
   const ivec3 at = tool_from_world(point);
@@ -63,5 +62,5 @@ void main() {
     sum = inside_tool(work.xyz);
   }
   sum = team_sum(sum);
-  if (there && speaks() && (CLOSED ? sum != 0 : sum > 0)) take(work);
+  if (there && speaks() && body_says_inside(CLOSED, sum)) take(work);
 }

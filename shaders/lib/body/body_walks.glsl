@@ -21,8 +21,10 @@ bool body_corners(uint32_t entry, bool sheets, out ivec3 a, out ivec3 b, out ive
 
 LISTED_CROSSINGS(body_crossings, body_corners)
 
-// A body that is not closed: the point is inside where the team's sum is above 0. In how many shells the
-// voxel's middle is, as preparation has asked six walks (compute/gpu/prepare/shells.cpp), and what lies
+// Whether the point is inside, by the team's sum: the winding about a closed body, else the shells (below).
+bool body_says_inside(bool closed, int32_t sum) { return closed ? sum != 0 : sum > 0; }
+
+// A body that is not closed. In how many shells the voxel's middle is, as preparation has asked six walks (compute/gpu/prepare/shells.cpp), and what lies
 // between it and the point. Sheets do not count.
 int32_t body_shells_at(ivec3 point, ivec3 home) {
   const ivec3 middle = BODY_GRID.origin + BODY_GRID.size * home + ivec3(BODY_GRID.size / 2);
@@ -31,8 +33,7 @@ int32_t body_shells_at(ivec3 point, ivec3 home) {
          (point == middle ? 0 : body_crossings(point, middle, boundary, false));
 }
 
-// A closed body: the point is inside where the team's sum, the winding, is not 0; from a walk out of it the
-// shortest way, at whose end it is 0.
+// A closed body: the winding, from a walk out of it the shortest way, at whose end it is 0.
 int32_t body_winding(ivec3 point, ivec3 home) {
   uint32_t way = 0u;
   for (int32_t ring = 1; way < 6u && !spent(1u);) {   // the grid's outermost layer is V_ext, so it ends
