@@ -48,7 +48,7 @@ const STEPS: Partial<Record<Action, [number, number, number]>> = {
   'farther': [0, 0, -0.1]
 };
 // From one change of figures and curves to the next: more often they can't be read, and to lay them out takes
-// as long as a picture, without a GPU half as long again. Chosen.
+// as long as a picture, which without a GPU the engine lacks. Chosen.
 const WORDS_MS = 80, WORDS_MS_WITHOUT_GPU = 160;
 const FELT: Record<Source, string> = {
   live: 'to the device',

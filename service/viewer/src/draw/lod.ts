@@ -5,7 +5,7 @@ export const LEVELS = [30_000, 120_000, 400_000, 1_500_000];
 const SLOW_MS = 36;  // chosen: what is paced (scene_view.ts) at 33 ms, and a tenth
 const FAST_MS =
     18;  // chosen: keeps up with a screen of 60 Hz; whether four times as much does, too, is tried once
-const FRESH_SHARE = 0.5;  // chosen: of an answer's age to a picture's time
+const FRESH_SHARE = 0.5;  // chosen: an answer older than this part of SLOW_MS makes a picture slow
 const ENOUGH = 40;        // pictures that tell; where they are slow, those of ENOUGH_MS, and FEWEST at least
 const ENOUGH_MS = 1500;
 const FEWEST = 4;  // one that waits for something else does not decide

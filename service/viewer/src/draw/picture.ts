@@ -16,7 +16,7 @@ import {TriangleStore} from './triangle_store.js';
 import {VoxelLayer} from './voxel_layer.js';
 
 const FEW = 3000;  // triangles of the tool in a coarse picture; chosen: that has 300 pixels across, no more
-const LATE_MS = 250;  // an older one is not late: what rests is not asked about
+const LATE_MS = 250;  // an answer older than this is none that came late: what rests is not asked about
 const STRONG_N = 3;   // chosen: arrows and heights are scaled so that this fills the tool's size
 
 export class Picture {

@@ -10,6 +10,7 @@ import {figure} from '../strips.js';
 
 export class Readout {
   private readonly counts = {} as Record<Kind, HTMLElement>;
+  private warned_of: Frame|null|undefined;
   private table_of: Frame|null|undefined;
   /** Which parts an area's triangles belong to; '' when nobody knows. */
   names: (area: Area) => string = () => '';
@@ -59,12 +60,15 @@ export class Readout {
         element('stage'),
         moment && moment.stage > 0 ? `${moment.stage}  ${stages[moment.stage - 1] ?? ''}` : '');
     for (const kind of KINDS) write(this.counts[kind], frame ? frame[kind].length.toLocaleString('en') : '');
-    const listed = frame?.contact ? moment?.listed ?? frame : frame;
+    if (frame !== this.warned_of) {
+      this.warned_of = frame;
+      element('warning').replaceChildren(
+          ...(frame?.truncated ? ['A list was too small for this frame: no force.'] :
+                                 flag_chips(frame?.flags ?? [])));
+    }
+    const listed = frame?.contact ? moment?.listed ?? frame : frame;  // names need to know whose areas are
     if (listed === this.table_of) return;
     this.table_of = listed;
-    element('warning').replaceChildren(
-        ...(listed?.truncated ? ['A list was too small for this frame: no force.'] :
-                                flag_chips(listed?.flags ?? [])));
     write(element('touching'), listed?.contact ? this.touching(listed) : '');
     show_areas(listed?.contact ? listed.areas : [], this.names);
   }
