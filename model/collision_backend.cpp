@@ -53,8 +53,10 @@ Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::
 }
 
 // No point of the tool is faster than its origin and a turn about that at the tool's radius together.
-Result<void> CollisionBackend::free_time(const LatticePose& pose, const Twist& twist, double longest,
+Result<void> CollisionBackend::free_time(const LatticePose& pose, Motion& motion, double time,
                                          FreeTime& out) {
+  const Twist twist = motion.screw.twist(time);
+  const double longest = 1 - time;
   const double speed = std::sqrt(twist.velocity.x * twist.velocity.x + twist.velocity.y * twist.velocity.y +
                                  twist.velocity.z * twist.velocity.z) +
                        twist.angle * twist.radius;
@@ -63,9 +65,9 @@ Result<void> CollisionBackend::free_time(const LatticePose& pose, const Twist& t
   Clearance near;
   if (auto done = clearance(pose, static_cast<std::int32_t>(reach), near); !done) return done;
   if (near.kind == Clearance::Kind::kFurther) return {};
-  const double time = std::max(near.steps - kMotionSlack, 0) / speed;
-  if (time >= longest) return {};
-  out = {.time = time,
+  const double free = std::max(near.steps - kMotionSlack, 0) / speed;
+  if (free >= longest) return {};
+  out = {.time = free,
          .blocked = true,
          .steps = near.steps,
          .static_id = near.static_id,

@@ -175,9 +175,8 @@ Result<void> SteadyBackend::clearance(const LatticePose& pose, std::int32_t with
   return ask_either([&](CollisionBackend& by) { return by.clearance(pose, within, out); });
 }
 
-Result<void> SteadyBackend::free_time(const LatticePose& pose, const Twist& twist, double longest,
-                                      FreeTime& out) {
-  return ask_either([&](CollisionBackend& by) { return by.free_time(pose, twist, longest, out); });
+Result<void> SteadyBackend::free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out) {
+  return ask_either([&](CollisionBackend& by) { return by.free_time(pose, motion, time, out); });
 }
 
 void SteadyBackend::first_failed(const Error& error) {

@@ -78,7 +78,8 @@ Result<FirstContact> first_contact(CollisionBackend& backend, const SceneGeometr
                                    const Pose& to, const TouchRule& rule) {
   for (const Pose* end : {&from, &to})
     if (const auto lattice = to_lattice(*end, geometry); !lattice) return lattice.error();
-  const Screw screw(from, to, geometry);
+  Motion motion(Screw(from, to, geometry));
+  const Screw& screw = motion.screw;
   const double speed = screw.length();
   FirstContact out{.time = 0};
   while (out.evaluations < kMostSteps) {
@@ -111,8 +112,7 @@ Result<FirstContact> first_contact(CollisionBackend& backend, const SceneGeometr
           return out;
         }
       }
-      if (auto done = backend.free_time(*lattice, screw.twist(out.time), longest, free); !done)
-        return done.error();
+      if (auto done = backend.free_time(*lattice, motion, out.time, free); !done) return done.error();
     }
     if (!free.blocked) {
       out.time = 1;

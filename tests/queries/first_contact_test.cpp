@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
@@ -108,6 +109,63 @@ TEST(FirstContact, OfABallThatTurnsPastAWallIsNone) {
             FirstContact::Kind::kNone);
   EXPECT_EQ(asked.first(pose_at(Vec3(-0.001, 0, -0.02)), pose_at(Vec3(-0.001, 0, 0.02), turned)).kind,
             FirstContact::Kind::kContact);
+}
+
+TEST(FirstContact, DependsOnNothingThatIsAskedInBetween) {
+  Asked asked(solids::box(Vec3(-0.03), Vec3(0.03), Int3(4, 5, 6)), solids::sphere(0.015));
+  const Screw falls(pose_at(Vec3(0.004, 0.003, 0.05)), pose_at(Vec3(0.004, 0.003, 0)), asked.geometry),
+      passes(pose_at(Vec3(-0.03, 0, 0.05), rotation_by(Vec3(1, 0, 0))),
+             pose_at(Vec3(0.03, 0, 0.0465), rotation_by(Vec3(0, 1, 2))), asked.geometry);
+  // Free times of a motion one after the other, and between them some of another.
+  const auto follow = [&](const Screw& screw, const Screw* another) {
+    std::vector<double> out;
+    Motion motion(screw);
+    double time = 0;
+    for (int i = 0; i < 6 && time < 1; ++i) {
+      FreeTime free;
+      const LatticePose pose = *to_lattice(screw.at(time), asked.geometry);
+      if (pose.beyond_lattice) break;
+      EXPECT_TRUE(asked.native->free_time(pose, motion, time, free));
+      out.push_back(free.time);
+      time += free.time;
+      if (another == nullptr) continue;
+      Motion other(*another);
+      EXPECT_TRUE(asked.native->free_time(*to_lattice(another->at(0), asked.geometry), other, 0, free));
+      asked.touches(another->at(0.5));
+    }
+    return out;
+  };
+  const std::vector<double> alone = follow(falls, nullptr);
+  EXPECT_GT(alone.size(), 1u);
+  EXPECT_EQ(alone, follow(falls, &passes));
+  EXPECT_EQ(follow(passes, nullptr), follow(passes, &falls));
+}
+
+TEST(FirstContact, OfATriangleAloneIsWhereItIs) {
+  // A tool of one run of triangles, and one of a single triangle.
+  Mesh lone;
+  lone.vertices = {Vec3(-0.01, -0.01, 0), Vec3(0.01, -0.01, 0), Vec3(0, 0.01, 0)};
+  lone.triangles = {{0, 1, 2}};
+  for (const Mesh& tool : {lone, solids::box(Vec3(-0.01, -0.01, 0), Vec3(0.01, 0.01, 0.02))}) {
+    Asked asked(solids::box(Vec3(-0.2, -0.2, -0.05), Vec3(0.2, 0.2, 0)), tool);
+    const double early = TouchRule::of(asked.geometry, 0).early * asked.geometry.lattice.step_m,
+                 step = asked.geometry.lattice.step_m;
+    const FirstContact found = asked.first(pose_at(Vec3(0, 0, 0.1)), pose_at(Vec3(0, 0, -0.02)));
+    ASSERT_EQ(found.kind, FirstContact::Kind::kContact);
+    const double height = 0.1 - 0.12 * found.time;
+    EXPECT_GE(height, -3 * step) << "late";
+    EXPECT_LE(height, early + 3 * step) << "too early";
+  }
+}
+
+TEST(FirstContact, OfALongTriangleIsDecidedThoughDoublesAreOffByMore) {
+  // Edges of a metre: a distance in doubles is off by more than contact is early.
+  Asked asked(solids::box(Vec3(-0.6, -0.02, -0.01), Vec3(0.6, 0.02, 0)),
+              solids::box(Vec3(-0.5, -0.005, 0), Vec3(0.5, 0.005, 0.004)));
+  const Quat tilted = rotation_by(Vec3(0.002, 0.003, 0.1));
+  const FirstContact found =
+      asked.first(pose_at(Vec3(0, 0, 0.05), tilted), pose_at(Vec3(0.001, 0, -0.01), tilted));
+  EXPECT_EQ(found.kind, FirstContact::Kind::kContact);
 }
 
 TEST(FirstContact, OfWhatTouchesAtTheStartIsTheStart) {

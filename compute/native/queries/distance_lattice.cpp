@@ -115,7 +115,7 @@ DistanceLattice::DistanceLattice(const LatticeMesh& mesh, const TriangleTree& tr
   in_shares(count_[1] * count_[2], fill, [](std::uint32_t) { return true; });
 }
 
-double DistanceLattice::squared(const double (&point)[3]) const {
+double DistanceLattice::squared(const std::array<double, 3>& point) const {
   double away = 0, spread = 0, part[3];
   std::size_t node[3];
   for (std::size_t k = 0; k < 3; ++k) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,7 +23,7 @@ class DistanceLattice {
   DistanceLattice(const LatticeMesh& mesh, const TriangleTree& tree, double margin);
 
   /// Square of a point's distance, steps, that it has at least.
-  double squared(const double (&point)[3]) const;
+  double squared(const std::array<double, 3>& point) const;
 
   std::uint64_t bytes() const { return sizeof squared_[0] * std::uint64_t{squared_.size()}; }
 

@@ -1,3 +1,6 @@
+#include <glm/gtc/quaternion.hpp>
+
+#include "compute/native/queries/pair_gap.h"
 #include "compute/native/queries/pair_traversal.h"
 
 namespace palpate::native {
@@ -6,7 +9,7 @@ namespace palpate::native {
 /// time δ, no further than δ v·n + ½ δ² a: v is where it goes now, and a, how much that can turn, is the
 /// angle a time times the speed across the axis, which a screw keeps.
 struct PairSearch::Timed {
-  static constexpr bool kNearestFirst = true;
+  static constexpr bool kMoves = true, kNearestFirst = true;
   const PairSearch& search;
   Vec axis, velocity, origin;
   double angle, time;                   ///< the soonest so far
@@ -24,6 +27,21 @@ struct PairSearch::Timed {
   };
   std::array<Reach, 2> ahead{};  ///< along its normal and against it, of a single triangle
   std::size_t ahead_count = 0;
+  /// How a triangle goes on.
+  struct Carried {
+    std::array<Vec, 3> speeds;       ///< of its corners
+    double faster = 0, turning = 0;  ///< the most of them, and of what of them is across the axis
+    Vec normal{};                    ///< of length 1, where it is `flat`: of a sliver it is rough
+    bool flat = false;
+    /// How far any of it may get along a direction in a time; not below 0.
+    double gets(const Vec& n, double time, double angle) const {
+      const double along = std::max({dot(n, speeds[0]), dot(n, speeds[1]), dot(n, speeds[2])});
+      return std::max(time * along + 0.5 * time * time * angle * turning, 0.0);
+    }
+  };
+  std::array<Carried, kLanes> all_carried{};  ///< of the run's
+  unsigned known_carried = 0;                 ///< which of them
+  const Carried* carried = nullptr;           ///< of the one that is looked at
 
   void set(double sooner) {
     time = sooner;
@@ -64,34 +82,45 @@ struct PairSearch::Timed {
              distance;
     return gets(n, tool) >= need;
   }
-  static bool known() { return false; }
-  static double room_along(const Vec&) { return 0; }
   void aim(std::span<const Mobile> tool) {
     aimed = turned;
     ahead_count = 0;
-    if (tool.size() == 1) look_ahead(tool.front());
+    carried = nullptr;
+    if (tool.size() == 1) {
+      look_ahead(tool.front());
+      if (!turned) return;
+      top = highest(way, tool.front().corners);
+      closed = carried->gets(way, time, angle) + kMotionSlack + 1 + kAlongSlack;
+      return;
+    }
     if (!turned) return;
     top = -std::numeric_limits<double>::infinity();
-    BoxOf box = tool.front().box;
-    for (const Mobile& m : tool) {
-      top = std::max(top, highest(way, m.corners));
-      for (std::size_t k = 0; k < 3; ++k) {
-        box.low[k] = std::min(box.low[k], m.box.low[k]);
-        box.high[k] = std::max(box.high[k], m.box.high[k]);
-      }
-    }
-    closed = std::max(gets(way, box), 0.0) + kMotionSlack + 1 + kAlongSlack;
+    for (const Mobile& m : tool) top = std::max(top, highest(way, m.corners));
+    closed = std::max(gets(way, search.run_box_), 0.0) + kMotionSlack + 1 + kAlongSlack;
   }
   /// What lies before and behind a triangle is told apart best along its normal, however slowly that moves.
   void look_ahead(const Mobile& m) {
-    const Vec a{m.corners[0], m.corners[1], m.corners[2]}, b{m.corners[3], m.corners[4], m.corners[5]},
-        c{m.corners[6], m.corners[7], m.corners[8]}, normal = cross(b - a, c - a);
-    const double size = length(normal);
-    if (!(size > 0)) return;
+    const auto place = static_cast<std::size_t>(&m - search.mobiles_.data());
+    Carried& found = all_carried[place];
+    if ((known_carried >> place & 1) == 0) {
+      known_carried |= 1u << place;
+      const Vec a{m.corners[0], m.corners[1], m.corners[2]}, b{m.corners[3], m.corners[4], m.corners[5]},
+          c{m.corners[6], m.corners[7], m.corners[8]}, normal = cross(b - a, c - a);
+      found = {.speeds = {speed_at(a), speed_at(b), speed_at(c)}};
+      for (const Vec& v : found.speeds) {
+        found.faster = std::max(found.faster, length(v));
+        found.turning = std::max(found.turning, across(v));
+      }
+      const double size = length(normal);
+      found.flat = size > 0;
+      if (found.flat) found.normal = normal * (1 / size);
+    }
+    carried = &found;
+    if (!found.flat) return;
     for (const double side : {1.0, -1.0}) {
-      const Vec n = normal * (side / size);
+      const Vec n = found.normal * side;
       ahead[ahead_count++] = {
-          n, highest(n, m.corners) + std::max(gets(n, m.box), 0.0) + kMotionSlack + 1 + kAlongSlack};
+          n, highest(n, m.corners) + found.gets(n, time, angle) + kMotionSlack + 1 + kAlongSlack};
     }
   }
   unsigned near_along(const Lanes& corners) const {
@@ -99,6 +128,37 @@ struct PairSearch::Timed {
     for (std::size_t i = 0; i < ahead_count && near != 0; ++i)
       near &= up_to(ahead[i].way, corners, ahead[i].most);
     return near;
+  }
+  /// Whether a triangle of the mock-up is met by one of the tool in `time` at most, as far as its normal
+  /// tells: it may lie wholly before or behind.
+  bool may_meet(const Mobile& m, const Vec& a, const Vec& b, const Vec& c) const {
+    Vec n = cross(b - a, c - a);
+    const double size = length(n);
+    if (!(size > 0)) return true;
+    n = n * (1 / size);
+    const double heights[3] = {0, dot(n, b - a), dot(n, c - a)};  // of a sliver the normal is rough
+    const double peak = std::max({heights[0], heights[1], heights[2]}),
+                 bottom = std::min({heights[0], heights[1], heights[2]});
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < 9; i += 3) {
+      const double at = dot(n, Vec{m.corners[i], m.corners[i + 1], m.corners[i + 2]} - a);
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    const double before = low - peak, behind = bottom - high;
+    return carried->gets(before > behind ? n * -1 : n, time, angle) >=
+           std::max(before, behind) - kMotionSlack - 1;
+  }
+  unsigned may_meet(const Mobile& m, const Lanes& s, unsigned mask) const {
+    for (unsigned left = mask; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      const auto corner = [&](std::size_t c) {
+        return Vec{static_cast<double>(s[3 * c][i]), static_cast<double>(s[3 * c + 1][i]),
+                   static_cast<double>(s[3 * c + 2][i])};
+      };
+      if (!may_meet(m, corner(0), corner(1), corner(2))) mask &= ~(1u << i);
+    }
+    return mask;
   }
   void met(std::uint32_t s, std::uint32_t m) {
     out = {.time = 0, .blocked = true, .steps = 0, .static_id = s, .mobile_id = m};
@@ -109,43 +169,40 @@ struct PairSearch::Timed {
             double error) {
     const double sure = distance - error;
     if (sure - kMotionSlack > fastest * time) return;
+    const exact::Corners s_corners = search.fixed(s_id);
+    const std::array<Vec, 3> s{vec(s_corners[0]), vec(s_corners[1]), vec(s_corners[2])},
+        m{vec(m_corners[0]), vec(m_corners[1]), vec(m_corners[2])};
+    const NearestPoints near = nearest_points(s, m);
     double sooner = 0;
     Vec found{};
-    if (sure > kMotionSlack) {
-      const exact::Corners s_corners = search.fixed(s_id);
-      const std::array<Vec, 3> s{vec(s_corners[0]), vec(s_corners[1]), vec(s_corners[2])},
-          m{vec(m_corners[0]), vec(m_corners[1]), vec(m_corners[2])};
-      const NearestPoints near = nearest_points(s, m);
-      const Vec n = (near.on_s - near.on_m) * (1 / std::sqrt(near.squared));
-      found = n;
-      double room = std::numeric_limits<double>::infinity(), front = -room, along = -room, faster = 0,
-             turning = 0;
+    if (near.squared > 0) {
+      found = (near.on_s - near.on_m) * (1 / std::sqrt(near.squared));
+      double room = std::numeric_limits<double>::infinity(), front = -room, along = -room;
       for (std::size_t c = 0; c < 3; ++c) {
-        const Vec v = speed_at(m[c]);
-        room = std::min(room, dot(n, s[c] - near.on_m));
-        front = std::max(front, dot(n, m[c] - near.on_m));
-        along = std::max(along, dot(n, v));
-        faster = std::max(faster, length(v));
-        turning = std::max(turning, across(v));
+        room = std::min(room, dot(found, s[c] - near.on_m));
+        front = std::max(front, dot(found, m[c] - near.on_m));
+        along = std::max(along, dot(found, carried->speeds[c]));
       }
-      const double need = room - front - error -
-                          kMotionSlack;  // along n there is so much room between them, whatever n is worth
+      // Along a direction there is so much room between them, however far it is from the nearest points'.
+      const double need = room - front - kRoomError - kMotionSlack;
       if (need > 0) {
-        const double a = angle * turning;
+        const double a = angle * carried->turning;
         const double under = std::sqrt(along * along + 2 * a * need);
         sooner = a > 0       ? (along > 0 ? 2 * need / (along + under) : (under - along) / a)
                  : along > 0 ? need / along
                              : std::numeric_limits<double>::infinity();
         sooner *= 1 - 0x1p-40;
       }
-      sooner = std::max(sooner, (sure - kMotionSlack) / faster * (1 - 0x1p-40));
+    }
+    sooner = std::max(sooner, (sure - kMotionSlack) / carried->faster * (1 - 0x1p-40));
+    // They are no further apart than this.
+    auto steps = static_cast<std::int32_t>(std::max(distance + error, 0.0));
+    if (sooner * carried->faster < error) {  // of large triangles doubles don't tell what is left
+      steps = exact::gap(s_corners, m_corners, INT32_MAX).steps;
+      sooner = std::max(sooner, (steps - kMotionSlack) / carried->faster * (1 - 0x1p-40));
     }
     if (sooner >= time) return;
-    out = {.time = sooner,
-           .blocked = true,
-           .steps = static_cast<std::int32_t>(std::max(distance + error, 0.0)),  // they are no further apart
-           .static_id = s_id,
-           .mobile_id = m_id};
+    out = {.time = sooner, .blocked = true, .steps = steps, .static_id = s_id, .mobile_id = m_id};
     set(sooner);
     way = found;
     turned = sooner > 0;
@@ -153,33 +210,177 @@ struct PairSearch::Timed {
   }
 };
 
-FreeTime PairSearch::free_time(const LatticePose& pose, const Twist& twist, double longest) {
-  begin(pose);
-  Timed policy{*this, vec(twist.axis), vec(twist.velocity), vec(pose.translation), twist.angle, 0, 0};
-  // The tool's points go along the axis as its origin does, and across it by that one's speed and their own
-  // turn about it.
-  const double along = dot(policy.axis, policy.velocity),
-               across = policy.across(policy.velocity) + twist.angle * twist.radius;
-  policy.fastest = std::sqrt(along * along + across * across);
-  policy.out.time = longest;
-  policy.set(longest);
-  if (blocking_[0] != kNoTriangle) {
-    const exact::Corners m = mobile(blocking_[1]), s = fixed(blocking_[0]);
-    if (!(exact::raw_normal(m) == exact::Normal{})) {
-      const exact::Box box = exact::box_of(m), other = exact::box_of(s);
-      if (gap({vec(box.low), vec(box.high)}, {vec(other.low), vec(other.high)}) >
-          0) {  // else it may meet: that is the search's to say
-        const NearestPoints d =
-            nearest_points({vec(s[0]), vec(s[1]), vec(s[2])}, {vec(m[0]), vec(m[1]), vec(m[2])});
-        const double size = std::sqrt(d.squared) + twist.radius;
-        policy.pair(blocking_[0], blocking_[1], m, std::sqrt(d.squared),
-                    distance_error(std::min(size, 0x1p29), size));
-      }
-    }
+/// The tool's lattice frame in the world's at a time of a screw, not rounded.
+struct PairSearch::Placed {
+  Vec column[3], at;
+  Placed(const Screw& screw, double time, const SceneGeometry& geometry) {
+    const Pose pose = screw.at(time);
+    const glm::dmat3 turn = glm::mat3_cast(pose.rotation);
+    for (int c = 0; c < 3; ++c) column[c] = vec(turn[c]);
+    at = vec((turn * geometry.tool_centre_m + pose.position - geometry.lattice.origin_m) /
+             geometry.lattice.step_m);
   }
-  search(policy);
-  if (policy.out.blocked) blocking_ = {policy.out.static_id, policy.out.mobile_id};
-  return policy.out;
+  /// Of a point of the tool, from its lattice origin.
+  Vec turned(const Vec& p) const { return column[0] * p[0] + column[1] * p[1] + column[2] * p[2]; }
+};
+
+/// All of the tool on a screw, in spheres, each by itself as far as it is free for certain.
+struct PairSearch::Followed final : Motion::Learned {
+  /// What is in a sphere of the tool.
+  struct Part {
+    double time;                  ///< it meets nothing before
+    std::uint32_t level, number;  ///< of ToolSpheres; level 1 at least: a run
+    double speed;                 ///< of its fastest point, at most; steps a unit of time
+    double asked = 0;             ///< how far ahead the run's triangles were asked last, and met nothing
+    bool blocked = false;         ///< at `time`, by a pair that was `steps` apart at `asked_at`
+    double asked_at = 0;
+    std::int32_t steps = 0;
+    std::uint32_t static_id = kNoTriangle, mobile_id = kNoTriangle;
+  };
+
+  explicit Followed(const Screw& along) : screw(along) {}
+  static bool later(const Part& a, const Part& b) { return a.time > b.time; }
+  const Part& first() const { return parts.front(); }
+  void push(const Part& part) {
+    parts.push_back(part);
+    std::push_heap(parts.begin(), parts.end(), later);
+  }
+  /// The first part, which is taken out; at a time where it is no further ahead.
+  Part pop(double time) {
+    std::pop_heap(parts.begin(), parts.end(), later);
+    Part out = parts.back();
+    parts.pop_back();
+    if (out.time < time + kSameTime) out.time = time;
+    return out;
+  }
+  /// A part meets nothing for so many steps.
+  void step(Part part, double steps) {
+    const double time = part.time + steps / part.speed * (1 - 0x1p-40);
+    if (!(time > part.time + kSameTime)) return stop(part);  // little more than doubles can tell
+    part.time = time;
+    part.blocked = false;
+    push(part);
+  }
+  /// Whether it goes on from here cannot be known.
+  void stop(Part part) {
+    part.blocked = true;
+    part.asked_at = part.time;
+    part.steps = std::numeric_limits<std::int32_t>::max();
+    push(part);
+  }
+
+  const Screw screw;
+  std::vector<Part> parts;  ///< a heap, that first which is least far ahead
+};
+
+/// A sphere of a level above 0. One of the only run of a small tool is that about all of the tool.
+PairSearch::Sphere PairSearch::sphere(std::uint32_t level, std::uint32_t number) const {
+  if (level > trees_->spheres.top()) return {{}, static_cast<double>(trees_->geometry->tool_radius)};
+  const EightSpheres& eight = trees_->spheres.group(level, number / kWide);
+  const std::size_t i = number % kWide;
+  return {{static_cast<double>(eight.centre[0][i]), static_cast<double>(eight.centre[1][i]),
+           static_cast<double>(eight.centre[2][i])},
+          static_cast<double>(eight.radius[i])};
+}
+
+/// Begins with all of the tool at a time.
+void PairSearch::follow(Followed& followed, double time) const {
+  const std::uint32_t level = std::max(trees_->spheres.top(), 1U);
+  auto count = static_cast<std::uint32_t>((trees_->tool.order.size() + kWide - 1) / kWide);
+  for (std::uint32_t below = 1; below < level; ++below) count = (count + kWide - 1) / kWide;
+  push_spheres(followed, level, 0, count, time);
+}
+
+/// `count` spheres from `first` on, each free until a time.
+void PairSearch::push_spheres(Followed& followed, std::uint32_t level, std::uint32_t first,
+                              std::uint32_t count, double time) const {
+  const Twist twist = followed.screw.twist(time);
+  const Placed placed(followed.screw, time, *trees_->geometry);
+  const Vec axis = vec(twist.axis);
+  for (std::uint32_t number = first; number < first + count; ++number) {
+    const Sphere own = sphere(level, number);
+    if (own.centre[0] == static_cast<double>(kNoSphere)) return;
+    // Along the axis all points are as fast, across it by how far they are from it; a screw keeps both.
+    const Vec v = vec(twist.velocity) + cross(axis, placed.turned(own.centre)) * twist.angle;
+    const double along = dot(v, axis), across = length(v - axis * along) + twist.angle * own.radius;
+    followed.push({.time = time,
+                   .level = level,
+                   .number = number,
+                   .speed = std::sqrt(along * along + across * across)});
+  }
+}
+
+/// The first part goes on from `time`, or from its own where that is later: a sphere by the room that it has,
+/// or its parts do; of a run the triangles are asked.
+void PairSearch::go_on(Followed& followed, double time) {
+  Followed::Part part = followed.pop(time);
+  const RoomField& field = trees_->field;
+  const Sphere own = sphere(part.level, part.number);
+  if (!part.blocked) {
+    const Placed placed(followed.screw, part.time, *trees_->geometry);
+    const double room = field.room_at(placed.at + placed.turned(own.centre)) - own.radius - kMotionSlack;
+    if (room > kWorthAStep * std::max(own.radius, field.cell_steps())) {
+      part.asked = 0;
+      return followed.step(part, room);
+    }
+    if (part.level > 1) return push_spheres(followed, part.level - 1, kWide * part.number, kWide, part.time);
+  }
+  const auto pose = to_lattice(followed.screw.at(part.time), *trees_->geometry);
+  if (!pose || pose->beyond_lattice) return followed.stop(part);
+  begin(*pose);
+  const double reach = std::max(kFirstReach * (own.radius + field.cell_steps()), 2 * part.asked);
+  const Twist twist = followed.screw.twist(part.time);
+  Timed policy{*this, vec(twist.axis), vec(twist.velocity), vec(pose->translation), twist.angle,
+               0,     part.speed};
+  policy.set(std::min(reach / part.speed, 1 - part.time));
+  Lead lead{std::numeric_limits<double>::infinity(), part.number, 0, {}};
+  const EightSpheres& triangles = trees_->spheres.group(0, part.number);
+  EightFloats squared;
+  field.rooms(turn_, triangles, squared);
+  for (std::uint32_t i = 0; i < kWide; ++i) {
+    lead.rooms[i] = field.room(turn_, squared[i], triangles.radius[i]);
+    lead.room = std::min(lead.room, lead.rooms[i]);
+    if (policy.within(lead.rooms[i])) lead.mask |= 1u << i;
+  }
+  if (lead.mask == 0) {
+    part.asked = 0;
+    return followed.step(part, lead.room - kMotionSlack);
+  }
+  descend(policy, lead);
+  part.asked = policy.out.blocked ? 0 : reach;
+  if (!policy.out.blocked) return followed.step(part, reach);
+  part.blocked = true;
+  part.asked_at = part.time;
+  part.time += policy.time;
+  part.steps = policy.out.steps;
+  part.static_id = policy.out.static_id;
+  part.mobile_id = policy.out.mobile_id;
+  followed.push(part);
+}
+
+/// Each part of the tool is followed by itself for as long as it is free, that first which is least far
+/// ahead: a part with much room is asked about seldom, and nothing is asked about after the first contact.
+FreeTime PairSearch::free_time(Motion& motion, double time) {
+  if (trees_->tool.order.empty() || trees_->mockup.order.empty()) return {.time = 1 - time};
+  auto* followed = dynamic_cast<Followed*>(motion.learned.get());
+  if (followed == nullptr) {
+    auto fresh = std::make_unique<Followed>(motion.screw);
+    follow(*fresh, time);
+    followed = fresh.get();
+    motion.learned = std::move(fresh);
+  }
+  while (followed->first().time < 1) {
+    const Followed::Part& first = followed->first();
+    if (first.blocked && first.asked_at >= time)
+      return {.time = std::max(first.time - time, 0.0),
+              .blocked = true,
+              // How far apart they are at this time; of a later one nothing is promised.
+              .steps = first.asked_at == time ? first.steps : std::numeric_limits<std::int32_t>::max(),
+              .static_id = first.static_id,
+              .mobile_id = first.mobile_id};
+    go_on(*followed, time);
+  }
+  return {.time = 1 - time};
 }
 
 }  // namespace palpate::native

@@ -85,7 +85,7 @@ bool PairSearch::meet(std::uint32_t static_id, std::uint32_t mobile_id) const {
 }
 
 struct PairSearch::Any {
-  static constexpr bool kNearestFirst = false;  ///< one that meets is as good as another
+  static constexpr bool kMoves = false, kNearestFirst = false;  ///< one that meets is as good as another
   bool found = false, close = false;
   std::array<std::uint32_t, 2> who{};
   double within_steps() const { return kCloseSteps; }
@@ -125,7 +125,7 @@ PairSearch::Found PairSearch::any(const LatticePose& pose) {
 /// What is nearest. What is far from each other is told apart best along the way between the two that are
 /// nearest so far: no box and no normal knows it.
 struct PairSearch::Nearest {
-  static constexpr bool kNearestFirst = true;
+  static constexpr bool kMoves = false, kNearestFirst = true;
   const PairSearch& search;
   std::vector<Candidate>& candidates;
   double most;              ///< no pair is wanted that is a step further than this

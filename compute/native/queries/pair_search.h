@@ -11,6 +11,7 @@
 #include "compute/native/queries/tool_spheres.h"
 #include "compute/scene/triangle_tree.h"
 #include "model/contact/clearance.h"
+#include "model/contact/motion.h"
 #include "model/lattice/lattice.h"
 #include "model/scene/scene_geometry.h"
 
@@ -53,7 +54,7 @@ class PairSearch {
   /// The smallest distance (section 10): kTouching where a pair meets, whether or not something is contained.
   Clearance nearest(const LatticePose& pose, std::int32_t within);
   /// As CollisionBackend::free_time().
-  FreeTime free_time(const LatticePose& pose, const Twist& twist, double longest);
+  FreeTime free_time(Motion& motion, double time);
 
   static constexpr double kCloseSteps = 8;
 
@@ -132,6 +133,17 @@ class PairSearch {
   struct Any;
   struct Nearest;
   struct Timed;
+  struct Placed;
+  struct Sphere {  ///< in the tool's frame, steps
+    std::array<double, 3> centre;
+    double radius;
+  };
+  struct Followed;
+  Sphere sphere(std::uint32_t level, std::uint32_t number) const;
+  void follow(Followed& followed, double time) const;
+  void push_spheres(Followed& followed, std::uint32_t level, std::uint32_t first, std::uint32_t count,
+                    double time) const;
+  void go_on(Followed& followed, double time);
 
   const PairTrees* trees_;
   LatticePose pose_{};
@@ -139,6 +151,7 @@ class PairSearch {
   std::vector<Group> groups_;
   std::vector<Lead> leads_;
   Worth balls_, runs_;
+  std::size_t runs_asked_ = 0;  ///< of the tool
   std::vector<Node> open_;
   std::vector<std::uint32_t> about_;    ///< groups of the mock-up's runs near eight runs of the tool
   bool looked_about_ = false;           ///< whether these are all
@@ -149,8 +162,7 @@ class PairSearch {
   PairFilter filter_;
   std::array<std::array<std::uint32_t, 2>, 2> met_{};  ///< pairs that met last
   std::size_t met_count_ = 0;
-  std::array<std::uint32_t, 2> near_{kNoTriangle, kNoTriangle},
-      blocking_{kNoTriangle, kNoTriangle};  ///< of the last answers
+  std::array<std::uint32_t, 2> near_{kNoTriangle, kNoTriangle};  ///< of the last answer
 };
 
 }  // namespace palpate::native

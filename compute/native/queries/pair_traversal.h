@@ -89,8 +89,12 @@ inline unsigned up_to(const Vec& way, const std::array<std::array<std::int32_t, 
 
 constexpr unsigned kAllRuns = ~0U;
 constexpr std::size_t kFewRuns = 64;    // of the tool: what meets is mostly found among so many (chosen)
+constexpr std::size_t kFewBalls = 3;    // of them: what meets is often found among so many (chosen)
 constexpr std::size_t kMostAbout = 16;  // chosen
 constexpr std::uint32_t kMany = 5;      // of eight, from which on it pays to ask about all at once (chosen)
+constexpr double kWorthAStep = 0.05;    // of a sphere's radius or a cell: less room is no step (chosen)
+constexpr double kFirstReach = 0.125;   // of both: how far ahead triangles are asked at first (chosen)
+constexpr double kSameTime = 0x1p-40;   // what a sum and a difference of times are off by, and more
 constexpr double kAlongSlack = 0x1p-8;  // more than places along a way are off by, steps
 
 /// What holds those of eight spheres that a mask names, at the pose.
@@ -120,7 +124,6 @@ bool PairSearch::gather(Policy& policy) {
   groups_.clear();
   groups_.push_back({spheres.top(), 0});
   EightFloats squared;
-  std::size_t runs_asked = 0;
   while (!groups_.empty()) {
     const Group group = groups_.back();
     groups_.pop_back();
@@ -147,14 +150,14 @@ bool PairSearch::gather(Policy& policy) {
     if (count == 0) continue;
     // Eight runs that are asked about one after the other are near the same of the mock-up.
     if (!Policy::kNearestFirst && group.level == std::min(1U, spheres.top()))
-      looked_about_ = runs_asked > kFewRuns && count >= kMany && runs_.worth_asking() &&
+      looked_about_ = runs_asked_ > kFewRuns && count >= kMany && runs_.worth_asking() &&
                       look_about(policy, box_of(trees_->field, turn_, eight, lead.mask));
     if (group.level != 0)
       for (std::uint32_t n = 0; n < count; ++n)
         groups_.push_back({group.level - 1, kWide * group.number + order[n]});
     else if (Policy::kNearestFirst)
       leads_.push_back(lead);
-    else if (!(++runs_asked > kFewRuns && looked_about_ && count >= kMany
+    else if (!(++runs_asked_ > kFewRuns && looked_about_ && count >= kMany
                    ? ask(policy, lead, box_of(trees_->field, turn_, eight, lead.mask))
                    : descend(policy, lead)))
       return false;
@@ -299,6 +302,7 @@ template <class Policy>
 void PairSearch::search(Policy& policy) {
   if (trees_->tool.order.empty() || trees_->mockup.order.empty()) return;
   balls_ = runs_ = {};
+  runs_asked_ = 0;
   if (Policy::kNearestFirst && !dive(policy)) return;
   if (!gather(policy)) return;
   std::sort(leads_.begin(), leads_.end(), [](const Lead& a, const Lead& b) { return a.room < b.room; });
@@ -318,7 +322,9 @@ void PairSearch::pose(const Policy& policy, const Lead& lead) {
     m.id = trees_->tool.order[kWide * lead.run + i];
     m.at = mobile(m.id);
     if (exact::raw_normal(m.at) == exact::Normal{}) continue;  // collinear at this pose: in no pair
-    if (lead.rooms[i] < trees_->field.detail_steps() && balls_.worth_asking()) {
+    // What meets is mostly found before this pays; what is nearest, or met soonest, sooner without it.
+    if (!Policy::kNearestFirst && runs_asked_ > kFewBalls && lead.rooms[i] < trees_->field.detail_steps() &&
+        balls_.worth_asking()) {
       const bool beyond = trees_->field.all_beyond(m.at, policy.within_steps());
       balls_.count(beyond);
       if (beyond) continue;
@@ -438,10 +444,14 @@ bool PairSearch::leaf(Policy& policy, const Mobile& m, std::uint32_t run, const 
   PairLanes lanes{.s = &corners};
   lanes.take(m.at);
   std::array<double, kLanes> squared;
-  rooms(lanes, squared);
-  for (std::uint32_t lane = 0; lane < count; ++lane) {
-    const double room = std::max(std::sqrt(squared[lane]) - kRoomError, 0.0);
-    if (!policy.near(room * room)) mask &= ~(1u << lane);
+  if constexpr (Policy::kMoves) {
+    mask = policy.may_meet(m, corners, mask);
+  } else {
+    rooms(lanes, squared);
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      const double room = std::max(std::sqrt(squared[lane]) - kRoomError, 0.0);
+      if (!policy.near(room * room)) mask &= ~(1u << lane);
+    }
   }
   if (mask == 0) return true;
   distances(lanes, squared);

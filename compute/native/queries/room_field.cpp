@@ -279,14 +279,12 @@ std::array<double, 3> RoomField::centre(const Turn& turn, const EightSpheres& sp
 
 double RoomField::far_room(const Turn& turn, const EightSpheres& spheres, std::size_t i,
                            float squared) const {
-  const std::array<double, 3> at = centre(turn, spheres, i);
-  const double point[3] = {at[0], at[1], at[2]},
-               known = static_cast<double>(squared) * grid_.size * grid_.size;
-  return std::sqrt(std::max(known, lattice_.squared(point))) * (1 - 0x1p-20) - spheres.radius[i] - turn.slack;
+  const double known = static_cast<double>(squared) * grid_.size * grid_.size;
+  return std::sqrt(std::max(known, lattice_.squared(centre(turn, spheres, i)))) * (1 - 0x1p-20) -
+         spheres.radius[i] - turn.slack;
 }
 
-/// Steps that a point is from the surface at least.
-double RoomField::room_at(const double (&point)[3]) const {
+double RoomField::room_at(const std::array<double, 3>& point) const {
   double away = 0;
   std::size_t brick[3], cell[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -341,7 +339,8 @@ bool RoomField::all_beyond(const exact::Corners& triangle, double steps) const {
     }
     const auto &a = part.corner[longest], &b = part.corner[(longest + 1) % 3],
                &c = part.corner[(longest + 2) % 3];
-    double middle[3], third = 0;
+    std::array<double, 3> middle;
+    double third = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       middle[k] = 0.5 * (a[k] + b[k]);
       third += (c[k] - middle[k]) * (c[k] - middle[k]);
@@ -350,9 +349,8 @@ bool RoomField::all_beyond(const exact::Corners& triangle, double steps) const {
     if (room <= 0) return false;
     const double radius = std::max(0.25 * most, third);
     if (radius < room * room) continue;
-    const std::array<double, 3> m{middle[0], middle[1], middle[2]};
-    parts[count++] = {{a, m, c}};
-    parts[count++] = {{m, b, c}};
+    parts[count++] = {{a, middle, c}};
+    parts[count++] = {{middle, b, c}};
   }
   return true;
 }

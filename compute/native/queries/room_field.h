@@ -46,6 +46,11 @@ class RoomField {
   /// Squared cells from which on the lattice may know more.
   static constexpr float kFarSquared = 64;
 
+  /// Steps that a point is from the surface at least.
+  double room_at(const std::array<double, 3>& point) const;
+  /// Side of a cell, steps.
+  double cell_steps() const { return grid_.size; }
+
   /// Whether all of a triangle, in the world, is further from the surface than so many steps, as far as the
   /// field can tell.
   bool all_beyond(const exact::Corners& triangle, double steps) const;
@@ -63,7 +68,6 @@ class RoomField {
   /// that is 0 or 1.
   RoomField(const LatticeMesh& mesh, const VoxelGrid& grid, std::vector<std::int32_t> away, std::size_t count,
             DistanceLattice lattice);
-  double room_at(const double (&point)[3]) const;
   using Cells = std::array<std::uint8_t, 512>;  ///< of a brick: sixteenths of a cell, x + 8 y + 64 z
 
   VoxelGrid grid_{};

@@ -26,9 +26,8 @@ class PoliteBackend final : public CollisionBackend {
   Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override {
     return ask([&](CollisionBackend& by) { return by.clearance(pose, within, out); });
   }
-  Result<void> free_time(const LatticePose& pose, const Twist& twist, double longest,
-                         FreeTime& out) override {
-    return ask([&](CollisionBackend& by) { return by.free_time(pose, twist, longest, out); });
+  Result<void> free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out) override {
+    return ask([&](CollisionBackend& by) { return by.free_time(pose, motion, time, out); });
   }
   std::string measured_by() const override { return measured_by_; }
   Result<VoxelPartition> partition(bool tool) const override { return scene_->backend->partition(tool); }

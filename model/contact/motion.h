@@ -1,0 +1,26 @@
+#pragma once
+#include <memory>
+#include <utility>
+
+#include "model/lattice/screw.h"
+
+namespace palpate {
+
+/// A screw that an engine is asked about at later and later times, with what the engine learned of it so far.
+/// Whoever asks holds it, so that an answer depends on nothing that others ask in between.
+struct Motion {
+  explicit Motion(Screw along) : screw(std::move(along)) {}
+
+  /// An engine's own. It is of a scene, not of the object that made it.
+  struct Learned {
+    Learned() = default;
+    Learned(const Learned&) = delete;
+    Learned& operator=(const Learned&) = delete;
+    virtual ~Learned() = default;
+  };
+
+  const Screw screw;
+  std::unique_ptr<Learned> learned;  ///< null before the first question
+};
+
+}  // namespace palpate
