@@ -53,7 +53,7 @@ Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::
 }
 
 // No point of the tool is faster than its origin and a turn about that at the tool's radius together.
-Result<void> CollisionBackend::free_time(const LatticePose& pose, Motion& motion, double time,
+Result<void> CollisionBackend::free_time(const LatticePose& pose, ScrewMotion& motion, double time,
                                          FreeTime& out) {
   const Twist twist = motion.screw.twist(time);
   const double longest = 1 - time;

@@ -9,7 +9,7 @@
 
 #include "model/contact/clearance.h"
 #include "model/contact/contacts.h"
-#include "model/contact/motion.h"
+#include "model/contact/screw_motion.h"
 #include "model/lattice/lattice.h"
 #include "model/result.h"
 #include "model/scene/plan.h"
@@ -140,7 +140,7 @@ class CollisionBackend : public PoseQuery {
   /// For how long, to the motion's end at most, a tool that has come to a time of it stays free for certain,
   /// of contact of the tool's triangles with the mock-up's at the true and at every rounded pose. `pose`: the
   /// motion's at that time, no earlier than the last, and not in contact. Error: as clearance().
-  virtual Result<void> free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out);
+  virtual Result<void> free_time(const LatticePose& pose, ScrewMotion& motion, double time, FreeTime& out);
 
   /// Name of the engine that answered the last touches(), clearance() or free_time().
   virtual std::string measured_by() const { return name(); }

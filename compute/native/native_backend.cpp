@@ -190,7 +190,7 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
     return ask().clearance(pose, within, out);
   }
 
-  Result<void> free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out) override {
+  Result<void> free_time(const LatticePose& pose, ScrewMotion& motion, double time, FreeTime& out) override {
     if (!frame_) return Error{ErrorCode::kInternal, "free_time before prepare"};
     out = pose.beyond_lattice ? FreeTime{} : ask().free_time(motion, time);
     return {};

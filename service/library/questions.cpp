@@ -245,7 +245,7 @@ class WatchedBackend final : public CollisionBackend {
   Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override {
     return watch_.cancelled() ? stopped(0, 1) : asked_.clearance(pose, within, out);
   }
-  Result<void> free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out) override {
+  Result<void> free_time(const LatticePose& pose, ScrewMotion& motion, double time, FreeTime& out) override {
     return watch_.cancelled() ? stopped(0, 1) : asked_.free_time(pose, motion, time, out);
   }
   Result<VoxelPartition> partition(bool tool) const override { return asked_.partition(tool); }

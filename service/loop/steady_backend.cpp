@@ -175,7 +175,8 @@ Result<void> SteadyBackend::clearance(const LatticePose& pose, std::int32_t with
   return ask_either([&](CollisionBackend& by) { return by.clearance(pose, within, out); });
 }
 
-Result<void> SteadyBackend::free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out) {
+Result<void> SteadyBackend::free_time(const LatticePose& pose, ScrewMotion& motion, double time,
+                                      FreeTime& out) {
   return ask_either([&](CollisionBackend& by) { return by.free_time(pose, motion, time, out); });
 }
 

@@ -41,7 +41,7 @@ class SteadyBackend final : public CollisionBackend, public SharedBackend {
   // Of the first back end; what it doesn't answer the spare does.
   Result<void> touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) override;
   Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override;
-  Result<void> free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out) override;
+  Result<void> free_time(const LatticePose& pose, ScrewMotion& motion, double time, FreeTime& out) override;
 
   /// Of the first back end: its fellows have no spare. Not while a query runs.
   Another another() const override {

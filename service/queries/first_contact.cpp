@@ -78,7 +78,7 @@ Result<FirstContact> first_contact(CollisionBackend& backend, const SceneGeometr
                                    const Pose& to, const TouchRule& rule) {
   for (const Pose* end : {&from, &to})
     if (const auto lattice = to_lattice(*end, geometry); !lattice) return lattice.error();
-  Motion motion(Screw(from, to, geometry));
+  ScrewMotion motion(Screw(from, to, geometry));
   const Screw& screw = motion.screw;
   const double speed = screw.length();
   FirstContact out{.time = 0};

@@ -119,7 +119,7 @@ TEST(FirstContact, DependsOnNothingThatIsAskedInBetween) {
   // Free times of a motion one after the other, and between them some of another.
   const auto follow = [&](const Screw& screw, const Screw* another) {
     std::vector<double> out;
-    Motion motion(screw);
+    ScrewMotion motion(screw);
     double time = 0;
     for (int i = 0; i < 6 && time < 1; ++i) {
       FreeTime free;
@@ -129,7 +129,7 @@ TEST(FirstContact, DependsOnNothingThatIsAskedInBetween) {
       out.push_back(free.time);
       time += free.time;
       if (another == nullptr) continue;
-      Motion other(*another);
+      ScrewMotion other(*another);
       EXPECT_TRUE(asked.native->free_time(*to_lattice(another->at(0), asked.geometry), other, 0, free));
       asked.touches(another->at(0.5));
     }

@@ -225,7 +225,7 @@ struct PairSearch::Placed {
 };
 
 /// All of the tool on a screw, in spheres, each by itself as far as it is free for certain.
-struct PairSearch::Followed final : Motion::Learned {
+struct PairSearch::Followed final : ScrewMotion::Learned {
   /// What is in a sphere of the tool.
   struct Part {
     double time;                  ///< it meets nothing before
@@ -360,7 +360,7 @@ void PairSearch::go_on(Followed& followed, double time) {
 
 /// Each part of the tool is followed by itself for as long as it is free, that first which is least far
 /// ahead: a part with much room is asked about seldom, and nothing is asked about after the first contact.
-FreeTime PairSearch::free_time(Motion& motion, double time) {
+FreeTime PairSearch::free_time(ScrewMotion& motion, double time) {
   if (trees_->tool.order.empty() || trees_->mockup.order.empty()) return {.time = 1 - time};
   auto* followed = dynamic_cast<Followed*>(motion.learned.get());
   if (followed == nullptr) {

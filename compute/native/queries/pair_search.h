@@ -11,7 +11,7 @@
 #include "compute/native/queries/tool_spheres.h"
 #include "compute/scene/triangle_tree.h"
 #include "model/contact/clearance.h"
-#include "model/contact/motion.h"
+#include "model/contact/screw_motion.h"
 #include "model/lattice/lattice.h"
 #include "model/scene/scene_geometry.h"
 
@@ -54,7 +54,7 @@ class PairSearch {
   /// The smallest distance (section 10): kTouching where a pair meets, whether or not something is contained.
   Clearance nearest(const LatticePose& pose, std::int32_t within);
   /// As CollisionBackend::free_time().
-  FreeTime free_time(Motion& motion, double time);
+  FreeTime free_time(ScrewMotion& motion, double time);
 
   static constexpr double kCloseSteps = 8;
 

@@ -35,7 +35,7 @@ class Questions {
 
   Result<bool> touches(const LatticePose& pose);
   Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out);
-  FreeTime free_time(Motion& motion, double time) { return pairs_.free_time(motion, time); }
+  FreeTime free_time(ScrewMotion& motion, double time) { return pairs_.free_time(motion, time); }
 
  private:
   bool surely_outside(const LatticePose& pose) const;

@@ -26,7 +26,7 @@ class PoliteBackend final : public CollisionBackend {
   Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override {
     return ask([&](CollisionBackend& by) { return by.clearance(pose, within, out); });
   }
-  Result<void> free_time(const LatticePose& pose, Motion& motion, double time, FreeTime& out) override {
+  Result<void> free_time(const LatticePose& pose, ScrewMotion& motion, double time, FreeTime& out) override {
     return ask([&](CollisionBackend& by) { return by.free_time(pose, motion, time, out); });
   }
   std::string measured_by() const override { return measured_by_; }

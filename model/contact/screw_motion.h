@@ -1,6 +1,5 @@
 #pragma once
 #include <memory>
-#include <utility>
 
 #include "model/lattice/screw.h"
 
@@ -8,8 +7,8 @@ namespace palpate {
 
 /// A screw that an engine is asked about at later and later times, with what the engine learned of it so far.
 /// Whoever asks holds it, so that an answer depends on nothing that others ask in between.
-struct Motion {
-  explicit Motion(Screw along) : screw(std::move(along)) {}
+struct ScrewMotion {
+  explicit ScrewMotion(const Screw& along) : screw(along) {}
 
   /// An engine's own. It is of a scene, not of the object that made it.
   struct Learned {
