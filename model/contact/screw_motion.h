@@ -10,7 +10,7 @@ namespace palpate {
 struct ScrewMotion {
   explicit ScrewMotion(const Screw& along) : screw(along) {}
 
-  /// An engine's own. It is of a scene, not of the object that made it.
+  /// An engine's own: what it says holds for the scene, whichever object made it.
   struct Learned {
     Learned() = default;
     Learned(const Learned&) = delete;

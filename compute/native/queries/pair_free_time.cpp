@@ -13,7 +13,7 @@ struct PairSearch::Timed {
   const PairSearch& search;
   Vec axis, velocity, origin;
   double angle, time;                   ///< the soonest so far
-  double fastest;                       ///< speed of the tool's fastest point, at most
+  double fastest;                       ///< speed of the run's fastest point, at most
   double reach = 0, reach_squared = 0;  ///< how far that one gets in `time`, and a little
   FreeTime out{};
   Vec way{};       ///< from the tool to the mock-up, of length 1: between the pair that is met soonest so far
