@@ -8,6 +8,7 @@ namespace palpate {
 /// A screw that an engine is asked about at later and later times, with what the engine learned of it so far.
 /// Whoever asks holds it, so that an answer depends on nothing that others ask in between.
 struct ScrewMotion {
+  /// Nothing of it is known yet.
   explicit ScrewMotion(const Screw& along) : screw(along) {}
 
   /// An engine's own: what it says holds for the scene, whichever object made it.
