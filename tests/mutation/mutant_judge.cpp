@@ -1,6 +1,8 @@
 // Judges mutants, one a line of standard input, one line of answer each.
 //   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
 //                         "host" NUMBER             of the host's exact code (model/)
+//   mutant_judge native: in: NUMBER                 likewise of the native engine, on one processor
+//                            "planners" NUMBER      asked distances and the planner's questions, too
 //   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES
 //                                                    bytes of a shader source become TEXT; modules with it
 //                          in: "intact"             whether the unchanged program still answers as at first
@@ -11,8 +13,9 @@
 // Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the
 // same), not-asked (no case runs the module, or the sources are not those that this program was built of). A
 // mutant costs little: scenes, their answers and all pipelines but the mutant's are there already. The
-// reference's mutants run in children of this process; the device's run in it, for Vulkan does not survive a
+// reference's and the native engine's mutants run in children of this process; the device's run in it, for Vulkan does not survive a
 // fork, and one that crashes or hangs ends the program.
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
@@ -23,12 +26,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
+#include "compute/native/native_backend.h"
 #include "cpu_ref/ref_backend.h"
 #include "tests/mutation/limits.h"
 #include "tests/mutation/module_probes.h"
@@ -58,7 +64,7 @@ void answer(const char* outcome, double seconds, const std::string& where, std::
   std::fflush(stdout);
 }
 
-// ---- the reference, in children
+// ---- the reference and the native engine, in children
 
 constexpr std::size_t kProbe = SIZE_MAX;  ///< no case but a probe
 
@@ -96,8 +102,10 @@ class ProbeAnswers {
   std::vector<std::uint64_t> answers_, host_, ways_out_;
 };
 
-[[noreturn]] void child(Oracle& oracle, const ProbeAnswers& probed, int mutant, bool host, int pipe_end,
-                        rlim_t seconds) {
+/// What a mutant is asked: what differs, and of which case.
+using Ask = std::function<std::string(std::size_t& of)>;
+
+[[noreturn]] void child(const Ask& ask, int mutant, int pipe_end, rlim_t seconds) {
   const rlimit time{seconds, seconds + 1}, no_core{0, 0}, memory{rlim_t{4} << 30, rlim_t{4} << 30};
   setrlimit(RLIMIT_CPU, &time);
   setrlimit(RLIMIT_CORE, &no_core);
@@ -105,23 +113,18 @@ class ProbeAnswers {
   if (std::freopen("/dev/null", "w", stderr) == nullptr) std::_Exit(3);
   active = mutant;
   Report report;
-  std::string difference =
-      host ? oracle.first_host_difference(report.at) : oracle.first_difference_now(report.at);
-  if (difference.empty()) {
-    report.at = kProbe;
-    difference = probed.first_difference(host);
-  }
+  const std::string difference = ask(report.at);
   std::strncpy(report.difference, difference.c_str(), sizeof report.difference - 1);
   if (write(pipe_end, &report, sizeof report) != sizeof report) std::_Exit(3);
   std::_Exit(difference.empty() ? 0 : 1);
 }
 
-void judge_reference(Oracle& oracle, const ProbeAnswers& probed, int mutant, bool host, double limit) {
+void judge_in_child(Oracle& oracle, const Ask& ask, int mutant, double limit) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   const double before = cpu_seconds(RUSAGE_CHILDREN);
   const pid_t pid = fork();
-  if (pid == 0) child(oracle, probed, mutant, host, ends[1], static_cast<rlim_t>(limit));
+  if (pid == 0) child(ask, mutant, ends[1], static_cast<rlim_t>(limit));
   close(ends[1]);
   Report report;
   const bool reported = read(ends[0], &report, sizeof report) == sizeof report;
@@ -329,7 +332,44 @@ void judge_reference(bool killers, const Words& without) {
   ready(oracle);
   for (std::string line; std::getline(std::cin, line);) {
     const bool host = line.starts_with("host ");
-    judge_reference(oracle, probed, std::stoi(host ? line.substr(5) : line), host, limit);
+    const Ask ask = [&](std::size_t& of) {
+      std::string difference = host ? oracle.first_host_difference(of) : oracle.first_difference_now(of);
+      if (!difference.empty()) return difference;
+      of = kProbe;
+      return probed.first_difference(host);
+    };
+    judge_in_child(oracle, ask, std::stoi(host ? line.substr(5) : line), limit);
+  }
+}
+
+void judge_native(bool killers, const Words& without) {
+  // A helper's thread does not survive a fork.
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(static_cast<std::size_t>(sched_getcpu()), &one);
+  if (sched_setaffinity(0, sizeof one, &one) != 0) throw std::runtime_error("not on one processor");
+  const auto backend = make_native_backend();
+  Oracle oracle(*backend, killers, without, [](bool) {});
+  oracle.refined_alone();
+  oracle.answer_all();
+  double limits[2] = {0, 0};  // without the planner's questions, and with them
+  for (const bool planners : {false, true}) {
+    const double begin = cpu_seconds(RUSAGE_SELF);
+    oracle.ask_planners(planners);
+    std::size_t at = 0;
+    if (const std::string difference = oracle.first_difference_now(at); !difference.empty())
+      throw std::runtime_error("the unchanged program differs from itself: " + oracle.name(at) + ", " +
+                               difference);
+    limits[planners ? 1 : 0] = 2 + 5 * (cpu_seconds(RUSAGE_SELF) - begin);
+  }
+  ready(oracle);
+  const Ask ask = [&](std::size_t& of) { return oracle.first_difference_now(of); };
+  constexpr std::string_view kPlanners = "planners ";
+  for (std::string line; std::getline(std::cin, line);) {
+    const bool planners = line.starts_with(kPlanners);
+    oracle.ask_planners(planners);
+    judge_in_child(oracle, ask, std::stoi(planners ? line.substr(kPlanners.size()) : line),
+                   limits[planners ? 1 : 0]);
   }
 }
 
@@ -347,6 +387,8 @@ int main(int count, char** arguments) {
   try {
     if (words.size() >= 2 && words[0] == "gpu")
       palpate::mutation::judge_shaders(words[1], killers, probes_alone, as_gpu, without);
+    else if (!words.empty() && words[0] == "native")
+      palpate::mutation::judge_native(killers, without);
     else
       palpate::mutation::judge_reference(killers, without);
     return 0;

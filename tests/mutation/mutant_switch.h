@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <initializer_list>
 #include <type_traits>
@@ -20,6 +21,11 @@ template <class T = void>
 [[noreturn]] void no_program() {
   std::_Exit(kNoProgram);
 }
+
+// The native engine's vectors (nearest_points.h) are arrays of std's, whose operators no argument leads to.
+using Vector = std::array<double, 3>;
+inline Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 enum class Op { kLess, kLessEqual, kGreater, kGreaterEqual, kEqual, kNotEqual, kPlus, kMinus };
 

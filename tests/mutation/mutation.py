@@ -47,10 +47,25 @@ shaders/frame/ shaders/""".split()
 # The host's exact code, in the order of CMakeLists.txt.
 HOST = [
     f"model/{name}.cpp"
-    for name in "mesh/boundary mesh/edges mesh/orientation contact/response mesh/side_winding mesh/smooth_angle".split()
+    for name in "mesh/boundary mesh/edges mesh/orientation contact/field_response contact/response mesh/patches mesh/side_winding mesh/smooth_angle".split()
 ]
 
-# What the device's back end does on the host at a pose. Asked of the device's judge, in its process.
+
+# What only distances and the planner's questions are answered with.
+PLANNERS = ("compute/native/queries/", "compute/scene/triangle_tree")
+
+
+def native():
+    """The native engine and what it has in common with the device's, as CMakeLists.txt lists them: not what
+    stands for eight lanes at once (tests/native/filters_test.cpp holds that against plain numbers)."""
+    return sorted(
+        str(p.relative_to(ROOT))
+        for folder in ("compute/native", "compute/scene")
+        for p in (ROOT / folder).rglob("*")
+        if p.suffix in (".h", ".cpp") and not p.name.endswith("_simd.h")
+    )
+
+
 
 
 def of_program(name):
@@ -66,7 +81,7 @@ def sources():
         for p in sorted((ROOT / folder).rglob("*"))
         if p.suffix in (".h", ".cpp", ".glsl", ".comp") and "shared" not in p.parts
     ]
-    names += HOST
+    names += HOST + native()
     return sorted(names, key=lambda n: (next(i for i, f in enumerate(FIRST) if n.startswith(f)), n))
 
 
@@ -114,7 +129,7 @@ def all_jobs(only):
     )
     first_number = 1
     numbers = {}
-    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST:
+    for name in sorted(n for n in sources() if n.startswith("cpu_ref/")) + HOST + native():
         numbers[name] = first_number
         first_number += len(mutants((ROOT / name).read_text(), cpp=True))
     for name in sources():
@@ -125,7 +140,8 @@ def all_jobs(only):
         reference = of_program(name)
         for i, m in enumerate(mutants(text, cpp=reference)):
             if reference:
-                command = ("host " if name in HOST else "") + str(numbers[name] + i)
+                planners = name.startswith(PLANNERS)
+                command = ("host " if name in HOST else "planners " if planners else "") + str(numbers[name] + i)
             else:
                 # Places in bytes, for C++.
                 begin, end = (len(text[:at].encode()) for at in (m.begin, m.end))
@@ -342,7 +358,8 @@ def main():
                 batch = work.get_nowait()
             except queue.Empty:
                 break
-            back_end = "cpu" if of_program(batch[0].name) else "gpu"
+            name = batch[0].name
+            back_end = "native" if name.startswith("compute/") else "cpu" if of_program(name) else "gpu"
             judge = judges.setdefault(back_end, Judge(options.judge, back_end, flags, options.without))
             # What is judged is kept when somebody ends us.
             for start in range(0, len(batch), Judge.CHECK_EVERY):

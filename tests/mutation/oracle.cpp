@@ -38,6 +38,10 @@ const char* difference(const LatticeMesh& a, const LatticeMesh& b) {
       a.sample_axis != b.sample_axis)
     return "normals";
   if (a.neighbour_begin != b.neighbour_begin || a.neighbours != b.neighbours) return "neighbours";
+  if (a.patch != b.patch || a.patch_count != b.patch_count) return "patches";
+  if (a.field_weight_q30 != b.field_weight_q30 || a.extra_samples != b.extra_samples) return "field weights";
+  if (a.levels_of != b.levels_of || a.side_levels != b.side_levels || a.grid_samples != b.grid_samples)
+    return "levels";
   if (a.closed != b.closed) return "closed";
   return a.box_min != b.box_min || a.box_max != b.box_max ? "box" : "";
 }
@@ -116,9 +120,14 @@ Oracle::Oracle(CollisionBackend& backend, bool killers, const std::vector<std::s
   std::iota(order_.begin(), order_.end(), std::size_t{0});
 }
 
+void Oracle::refined_alone() {
+  refined_alone_ = true;
+  std::erase_if(order_, [&](std::size_t c) { return cases_[c].wanted->profile != Profile::kRefined; });
+}
+
 void Oracle::answer_all() {
-  for (Case& c : cases_)
-    if (!c.answered) answer(c);
+  for (const std::size_t c : order_)
+    if (!cases_[c].answered) answer(cases_[c]);
 }
 
 void Oracle::answer(Case& c) {
@@ -152,6 +161,17 @@ void Oracle::answer(Case& c) {
       q.clearance = near;
     c.queries.push_back(std::move(q));
   }
+  if (refined_alone_) {
+    std::vector<LatticePose> poses;
+    std::vector<std::uint8_t> touch;
+    for (const Query& q : c.queries) {
+      poses.push_back(q.pose);
+      Contacts told;
+      must(backend_.query(q.pose, nullptr, told));
+      touch.push_back(told.contact ? 1 : 0);
+    }
+    c.questions.emplace(backend_, c.geometry, poses, touch);
+  }
   c.answered = true;
   c.seconds = processor_seconds() - begin;
   unchanged_(false);
@@ -174,11 +194,12 @@ std::string Oracle::ask(const Case& c) const {
       return r.error().sentence;
     if (const std::string difference = first_difference(answer, q.answer); !difference.empty())
       return "pose " + std::to_string(i) + ": " + difference;
-    if (!q.clearance) continue;
+    if (!q.clearance || !planners_) continue;
     Clearance near;
     if (auto r = backend_.clearance(q.pose, kAnyDistance, near); !r) return r.error().sentence;
     if (!(near == *q.clearance)) return "pose " + std::to_string(i) + ": clearance";
   }
+  if (c.questions && planners_) return c.questions->difference(backend_, c.geometry);
   return {};
 }
 

@@ -7,6 +7,7 @@
 #include "model/collision_backend.h"
 #include "model/contact/response.h"
 #include "tests/equivalence/case.h"
+#include "tests/mutation/questions.h"
 
 namespace palpate::mutation {
 
@@ -19,6 +20,14 @@ class Oracle {
   /// unchanged(false), which take a mutant out and put it back in.
   Oracle(CollisionBackend& backend, bool killers, const std::vector<std::string>& without,
          std::function<void(bool)> unchanged);
+
+  /// Of an engine that knows `refined` alone: no other case is asked, and the planner's questions are
+  /// answered, too. Before the first answer.
+  void refined_alone();
+
+  /// Whether distances and the planner's questions are asked again: what an engine makes for them takes most
+  /// of its time. They are until this says otherwise.
+  void ask_planners(bool ask) { planners_ = ask; }
 
   /// Asks for all answers now. Throws std::runtime_error where that fails, as all below do: then there is
   /// nothing to compare with.
@@ -79,6 +88,7 @@ class Oracle {
     Plan plan;
     VoxelPartition mockup, tool;
     std::vector<Query> queries;
+    std::optional<Questions> questions;  ///< where these are asked
     Ignored ignored;  ///< every second patch
   };
   /// A pose's answer when a list is too small.
@@ -98,6 +108,7 @@ class Oracle {
   std::vector<Case> cases_;
   std::vector<std::size_t> order_;
   std::vector<Overflow> overflows_;
+  bool refined_alone_ = false, planners_ = true;
 };
 
 }  // namespace palpate::mutation
