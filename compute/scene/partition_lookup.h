@@ -60,7 +60,8 @@ class PartitionLookup {
   }
   /// What the V_bnd voxel of this number lists.
   std::span<const std::uint32_t> list(std::uint32_t boundary) const {
-    return {&list_triangles_[list_begin_[boundary]], &list_triangles_[list_begin_[boundary + 1]]};
+    const std::uint32_t begin = list_begin_[boundary];
+    return list_triangles_.subspan(begin, list_begin_[boundary + 1] - begin);
   }
   /// Of the V_bnd voxel of this number: its list's first place in all lists together.
   std::uint32_t list_begin(std::uint32_t boundary) const { return list_begin_[boundary]; }
