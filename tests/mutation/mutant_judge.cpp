@@ -1,7 +1,7 @@
 // Judges mutants, one a line of standard input, one line of answer each.
 //   mutant_judge cpu: in: NUMBER                    the switch of a mutant of the reference (mutant_switch.h)
 //                         "host" NUMBER             of the host's exact code (model/)
-//   mutant_judge native: in: NUMBER                 likewise of the native engine, on one processor
+//   mutant_judge native: in: NUMBER                 likewise of the native engine
 //                            "planners" NUMBER      asked distances and the planner's questions, too
 //   mutant_judge gpu ROOT: in: FILE, BEGIN, END, TEXT, MODULES
 //                                                    bytes of a shader source become TEXT; modules with it
@@ -15,7 +15,6 @@
 // mutant costs little: scenes, their answers and all pipelines but the mutant's are there already. The
 // reference's and the native engine's mutants run in children of this process; the device's run in it, for Vulkan does not survive a
 // fork, and one that crashes or hangs ends the program.
-#include <sched.h>
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
@@ -26,8 +25,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -342,12 +343,13 @@ void judge_reference(bool killers, const Words& without) {
   }
 }
 
+/// Of this process.
+std::ptrdiff_t threads() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return std::distance(begin(tasks), end(tasks));
+}
+
 void judge_native(bool killers, const Words& without) {
-  // A helper's thread does not survive a fork.
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(static_cast<std::size_t>(sched_getcpu()), &one);
-  if (sched_setaffinity(0, sizeof one, &one) != 0) throw std::runtime_error("not on one processor");
   const auto backend = make_native_backend();
   Oracle oracle(*backend, killers, without, [](bool) {});
   oracle.refined_alone();
@@ -362,6 +364,8 @@ void judge_native(bool killers, const Words& without) {
                                difference);
     limits[planners ? 1 : 0] = 2 + 5 * (cpu_seconds(RUSAGE_SELF) - begin);
   }
+  oracle.begin_anew();
+  if (threads() != 1) throw std::runtime_error("a thread is left, and no fork takes it along");
   ready(oracle);
   const Ask ask = [&](std::size_t& of) { return oracle.first_difference_now(of); };
   constexpr std::string_view kPlanners = "planners ";

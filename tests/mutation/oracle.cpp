@@ -125,6 +125,12 @@ void Oracle::refined_alone() {
   std::erase_if(order_, [&](std::size_t c) { return cases_[c].wanted->profile != Profile::kRefined; });
 }
 
+void Oracle::begin_anew() const {
+  const Case& c = cases_[order_.front()];
+  must(backend_.prepare(c.geometry, c.plan, go_on));
+  must(backend_.finish_preparing());
+}
+
 void Oracle::answer_all() {
   for (const std::size_t c : order_)
     if (!cases_[c].answered) answer(cases_[c]);

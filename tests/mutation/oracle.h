@@ -25,6 +25,9 @@ class Oracle {
   /// answered, too. Before the first answer.
   void refined_alone();
 
+  /// Has the back end begin anew, so that no thread of its own is left, which a fork would not take along.
+  void begin_anew() const;
+
   /// Whether distances and the planner's questions are asked again: what an engine makes for them takes most
   /// of its time. They are until this says otherwise.
   void ask_planners(bool ask) { planners_ = ask; }

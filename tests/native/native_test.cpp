@@ -14,6 +14,7 @@
 #include "model/scene/geometry_build.h"
 #include "tests/driver/allocation_count.h"
 #include "tests/equivalence/contacts_difference.h"
+#include "tests/equivalence/lattice_shapes.h"
 
 namespace palpate {
 namespace {
@@ -70,6 +71,25 @@ TEST(Native, AllocatesNothingInAFrameOnceItHasSeenOneLikeIt) {
   }
   EXPECT_EQ(allocated, 0u);
   EXPECT_TRUE(out.contact);
+}
+
+/// Of samples it keeps as many as 48 MiB hold; of a tool with more they are worked out at each pose.
+TEST(Native, AnswersOfAToolWithMoreSamplesThanItKeeps) {
+  const auto scene = equivalence::lattice_scene(equivalence::box_of(Int3(0, 0, -3000), Int3(2000, 1500, 0)),
+                                                equivalence::box_of(Int3(0), Int3(12000, 12000, 40)), 504, 8);
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_GT(scene->tool_surface.area / (8 * 8), 1 << 22);
+  const auto native = make_native_backend(), ref = make_ref_backend();
+  ASSERT_TRUE(native->prepare(*scene, Plan{}, {}));
+  ASSERT_TRUE(ref->prepare(*scene, Plan{}, {}));
+  const LatticePose pose = at(*scene, Vec3(-5003, -4007, -11), glm::angleAxis(0.001, Vec3(0.6, 0.8, 0)));
+  Contacts found, expected;
+  ASSERT_TRUE(native->query(pose, nullptr, found));
+  ASSERT_TRUE(ref->query(pose, nullptr, expected));
+  std::uint32_t pushes = 0;
+  for (const FieldBin& bin : found.field.bins) pushes += bin.samples;
+  EXPECT_GT(pushes, 1000u);
+  EXPECT_EQ(first_difference(found, expected), "");
 }
 
 #ifndef PALPATE_SANITIZED                       // sanitizers take memory of their own
