@@ -151,6 +151,28 @@ def all_jobs(only):
             yield Job(name, m, command, short_hash(text))
 
 
+# Tests of the native engine's parts, the soonest done first, as CMakeLists.txt names them.
+TESTS = "brick_bits filters turned_gaps inside_cells depth_search".split()
+TESTS_OF_PLANNERS = "turned_gaps touch depth_search first_contact".split()
+TEST_SECONDS = 100  # of the processor's; the longest takes twenty
+
+
+def asked_of_tests(judge, job):
+    """What the tests of parts say of a mutant that the cases did not catch."""
+    number = job.command.split()[-1]
+    for test in TESTS_OF_PLANNERS if job.name.startswith(PLANNERS) else TESTS:
+        run = subprocess.run(
+            ["prlimit", f"--cpu={TEST_SECONDS}", str(pathlib.Path(judge).parent / f"mutant_{test}_test")],
+            env=dict(os.environ, PALPATE_MUTANT=number),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        if run.returncode != 0:
+            outcome = {1: "differs", 77: "no-program", -24: "hangs", -9: "hangs"}.get(run.returncode, "crashed")
+            return [outcome, job.row[1], f"{test}_test", f"exit status {run.returncode}"]
+    return job.row
+
+
 class Judge:
     """The judge's process, started again when a mutant ends it."""
 
@@ -366,6 +388,8 @@ def main():
                 part = batch[start : start + Judge.CHECK_EVERY]
                 for job in part:
                     judge.judge(job)
+                    if back_end == "native" and job.row[0] == "survived" and not options.killers:
+                        job.row = asked_of_tests(options.judge, job)
                 judge.check()
                 for job in part:
                     remember(job)
