@@ -130,6 +130,8 @@ Case shared(Case c, double share, int poses) {
 std::vector<Case> solid_cases() {
   const Case ball_on_block =
       solid("ball_on_block", "one area on a flat face, or on an edge between two zones", big_box, ball, near);
+  const Case deep_in_block =
+      solid("ball_deep_in_block", "EST, IMT and no crossing beside them", big_box, ball, deep);
   const Case boxes = solid("boxes_aligned", "faces on faces, edges in faces, a step above or below", big_box,
                            small_box, aligned);
   const Case ball_on_ring =
@@ -145,7 +147,8 @@ std::vector<Case> solid_cases() {
       killer(ball_on_block),
       killer(ignoring(ball_on_block)),
       killer(paper(ball_on_block)),
-      solid("ball_deep_in_block", "EST, IMT and no crossing beside them", big_box, ball, deep),
+      deep_in_block,
+      killer(coarser(deep_in_block)),
       killer(boxes),
       paper(boxes),
       shared(solid(

@@ -148,8 +148,10 @@ void Oracle::answer(Case& c) {
   c.mockup = must(backend_.partition(false));
   if (wanted.profile == Profile::kRefined) c.tool = must(backend_.partition(true));
 
-  for (std::uint32_t patch = 0; patch < c.geometry.mockup.patch_count; patch += 2)
-    c.ignored.patches.push_back(patch);
+  Ignored ignored;
+  if (wanted.ignoring)
+    for (std::uint32_t patch = 0; patch < c.geometry.mockup.patch_count; patch += 2)
+      ignored.patches.push_back(patch);
   for (int i = 0; i < wanted.poses; ++i) {
     equivalence::Random random(kSeed, static_cast<std::uint64_t>(i));
     equivalence::Known known;
@@ -158,8 +160,9 @@ void Oracle::answer(Case& c) {
       q.pose = equivalence::moved_on(c.queries.back().pose, c.geometry.mockup_grid.size, random);
     else
       q.pose = scene.pose(c.geometry, random, known);
-    q.ignoring = wanted.ignoring;
-    must(backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, q.answer));
+    if (wanted.coarser) ignored.coarser = 97 * static_cast<std::uint32_t>(i) % (Ignored::kCoarsest + 1);
+    if (wanted.ignoring || wanted.coarser) q.ignored = ignored;
+    must(backend_.query(q.pose, q.ignored ? &*q.ignored : nullptr, q.answer));
     if (q.answer.truncated && !c.name.starts_with("too_many_"))
       throw std::runtime_error(c.name + ": no room in " + q.answer.truncated_capacity);
     respond(q.answer, q.pose, c.geometry, wanted.profile, kStiffness, q.response);
@@ -196,7 +199,7 @@ std::string Oracle::ask(const Case& c) const {
   Contacts answer;
   for (std::size_t i = 0; i < c.queries.size(); ++i) {
     const Query& q = c.queries[i];
-    if (auto r = backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, answer); !r)
+    if (auto r = backend_.query(q.pose, q.ignored ? &*q.ignored : nullptr, answer); !r)
       return r.error().sentence;
     if (const std::string difference = first_difference(answer, q.answer); !difference.empty())
       return "pose " + std::to_string(i) + ": " + difference;
@@ -266,7 +269,7 @@ std::string Oracle::tell(std::size_t of, std::vector<std::string>& told) {
   told.clear();
   Contacts answer;
   for (const Query& q : std::span(c.queries).first(std::min(kPoses, c.queries.size()))) {
-    if (auto r = backend_.query(q.pose, q.ignoring ? &c.ignored : nullptr, answer); !r)
+    if (auto r = backend_.query(q.pose, q.ignored ? &*q.ignored : nullptr, answer); !r)
       return r.error().sentence;
     told.push_back(answer.truncated ? answer.truncated_capacity : first_difference(answer, q.answer));
   }

@@ -77,7 +77,7 @@ class Oracle {
  private:
   struct Query {
     LatticePose pose;
-    bool ignoring = false;
+    std::optional<Ignored> ignored;  ///< what is left out, or coarser
     Contacts answer;
     ContactResponse response;
     std::optional<Clearance> clearance;  ///< empty: the back end measures none
@@ -92,7 +92,6 @@ class Oracle {
     VoxelPartition mockup, tool;
     std::vector<Query> queries;
     std::optional<Questions> questions;  ///< where these are asked
-    Ignored ignored;  ///< every second patch
   };
   /// A pose's answer when a list is too small.
   struct Overflow {
