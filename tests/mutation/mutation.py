@@ -151,16 +151,21 @@ def all_jobs(only):
             yield Job(name, m, command, short_hash(text))
 
 
-# Tests of the native engine's parts, the soonest done first, as CMakeLists.txt names them.
-TESTS = "brick_bits filters turned_gaps inside_cells depth_search".split()
-TESTS_OF_PLANNERS = "turned_gaps touch depth_search first_contact".split()
+# Tests of the native engine's parts by what they ask, the soonest done first, as CMakeLists.txt names them.
+TESTS = {
+    "compute/native/broad_phase/": ["filters"],
+    "compute/native/force/": ["depth_search"],
+    "compute/native/narrow_phase/": ["filters", "inside_cells"],
+    "compute/native/queries/": ["turned_gaps", "touch", "first_contact"],
+    "compute/scene/": ["brick_bits", "filters", "depth_search"],
+}
 TEST_SECONDS = 100  # of the processor's; the longest takes twenty
 
 
 def asked_of_tests(judge, job):
     """What the tests of parts say of a mutant that the cases did not catch."""
     number = job.command.split()[-1]
-    for test in TESTS_OF_PLANNERS if job.name.startswith(PLANNERS) else TESTS:
+    for test in next((TESTS[of] for of in TESTS if job.name.startswith(of)), []):
         run = subprocess.run(
             ["prlimit", f"--cpu={TEST_SECONDS}", str(pathlib.Path(judge).parent / f"mutant_{test}_test")],
             env=dict(os.environ, PALPATE_MUTANT=number),

@@ -3,35 +3,50 @@
 #include <algorithm>
 
 namespace palpate::native {
+namespace {
+
+/// A point above a triangle, and there. False: beside it.
+bool foot_of(const Vec& p, const std::array<Vec, 3>& t, Vec& foot) {
+  const Vec n = cross(t[1] - t[0], t[2] - t[0]);
+  const double size = dot(n, n);
+  if (!(size > 0)) return false;
+  for (std::size_t e = 0; e < 3; ++e)
+    if (dot(cross(n, t[(e + 1) % 3] - t[e]), p - t[e]) < 0) return false;
+  foot = p - n * (dot(n, p - t[0]) / size);
+  return true;
+}
+
+}  // namespace
+
+NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m, std::size_t feature) {
+  NearestPoints out;
+  if (feature < 6) {
+    const std::size_t c = feature / 2;
+    Vec foot;
+    if (feature % 2 == 0) {
+      if (foot_of(s[c], m, foot)) out.take(s[c], foot);
+    } else if (foot_of(m[c], s, foot)) {
+      out.take(foot, m[c]);
+    }
+    return out;
+  }
+  const std::size_t i = (feature - 6) / 3, j = (feature - 6) % 3;
+  const Vec e = s[(i + 1) % 3] - s[i], f = m[(j + 1) % 3] - m[j], r = s[i] - m[j];
+  const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r),
+               under = ee * ff - ef * ef;
+  double a = under > 0 ? std::clamp((ef * fr - er * ff) / under, 0.0, 1.0) : 0.0;
+  const double b = std::clamp((ef * a + fr) / ff, 0.0, 1.0);
+  a = std::clamp((ef * b - er) / ee, 0.0, 1.0);
+  out.take(s[i] + e * a, m[j] + f * b);
+  return out;
+}
 
 NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m) {
   NearestPoints out;
-  const auto above = [&](const Vec& p, const std::array<Vec, 3>& t, bool of_m) {
-    const Vec n = cross(t[1] - t[0], t[2] - t[0]);
-    const double size = dot(n, n);
-    if (!(size > 0)) return;
-    for (std::size_t e = 0; e < 3; ++e)
-      if (dot(cross(n, t[(e + 1) % 3] - t[e]), p - t[e]) < 0) return;
-    const Vec foot = p - n * (dot(n, p - t[0]) / size);
-    if (of_m)
-      out.take(foot, p);
-    else
-      out.take(p, foot);
-  };
-  for (std::size_t c = 0; c < 3; ++c) {
-    above(m[c], s, true);
-    above(s[c], m, false);
+  for (std::size_t feature = 0; feature < kFeatures; ++feature) {
+    const NearestPoints found = nearest_points(s, m, feature);
+    if (found.squared < out.squared) out = found;
   }
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Vec e = s[(i + 1) % 3] - s[i], f = m[(j + 1) % 3] - m[j], r = s[i] - m[j];
-      const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r),
-                   under = ee * ff - ef * ef;
-      double a = under > 0 ? std::clamp((ef * fr - er * ff) / under, 0.0, 1.0) : 0.0;
-      const double b = std::clamp((ef * a + fr) / ff, 0.0, 1.0);
-      a = std::clamp((ef * b - er) / ee, 0.0, 1.0);
-      out.take(s[i] + e * a, m[j] + f * b);
-    }
   return out;
 }
 

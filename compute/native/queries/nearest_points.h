@@ -38,4 +38,10 @@ struct NearestPoints {
 /// apart is wanted of it: whatever that is worth is measured along it.
 NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m);
 
+/// Of which parts of two triangles the points may be: corner i of s with m's face (2 i), corner i of m with
+/// s's face (2 i + 1), edge i of s with edge j of m (6 + 3 i + j).
+inline constexpr std::size_t kFeatures = 15;
+/// The same of one feature alone; infinitely far where its points are none.
+NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m, std::size_t feature);
+
 }  // namespace palpate::native

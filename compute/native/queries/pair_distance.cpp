@@ -23,11 +23,18 @@ PALPATE_SECOND_CODE_END
 
 }  // namespace
 
-void distances(const PairLanes& lanes, std::array<double, kLanes>& squared) {
+void distances(const PairLanes& lanes, PairDistances& out) {
 #if PALPATE_TWO_CODES
-  if (has_second_code()) return second::judge_lanes(lanes, squared);
+  if (has_second_code()) return second::judge_lanes(lanes, out);
 #endif
-  plain::judge_lanes(lanes, squared);
+  plain::judge_lanes(lanes, out);
+}
+
+unsigned may_meet(const PairLanes& lanes, const PairMotion& motion) {
+#if PALPATE_TWO_CODES
+  if (has_second_code()) return second::may_meet_lanes(lanes, motion);
+#endif
+  return plain::may_meet_lanes(lanes, motion);
 }
 
 void rooms(const PairLanes& lanes, std::array<double, kLanes>& squared) {

@@ -25,9 +25,22 @@ struct PairLanes {
   }
 };
 
-/// Squared distances of the one to the eight, in double precision, of triangles that share no point. What
-/// stands for no triangle gives any number. They are off by at most distance_error().
-void distances(const PairLanes& lanes, std::array<double, kLanes>& squared);
+/// Squared distances of the one to the eight, in double precision, of triangles that share no point, and the
+/// features (nearest_points.h) that are so far apart. What stands for no triangle gives any number. Distances
+/// are off by at most distance_error().
+struct PairDistances {
+  std::array<double, kLanes> squared, feature;
+};
+void distances(const PairLanes& lanes, PairDistances& out);
+
+/// How the one goes on, for a time: steps, and steps a unit of time.
+struct PairMotion {
+  std::array<std::array<double, 3>, 3> speeds;  ///< of its corners
+  double time, turns;                           ///< what it may turn to in that time
+  double slack;                                 ///< by how much less it is known where it is
+};
+/// A bit for each of the eight that the one may meet, as far as their planes tell.
+unsigned may_meet(const PairLanes& lanes, const PairMotion& motion);
 
 /// Squares of what lies between the one and each of the eight along the two's normals: their distances are no
 /// smaller, but for roundings by less than kRoomError steps.

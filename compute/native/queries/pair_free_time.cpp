@@ -129,36 +129,9 @@ struct PairSearch::Timed {
       near &= up_to(ahead[i].way, corners, ahead[i].most);
     return near;
   }
-  /// Whether a triangle of the mock-up is met by one of the tool in `time` at most, as far as its normal
-  /// tells: it may lie wholly before or behind.
-  bool may_meet(const Mobile& m, const Vec& a, const Vec& b, const Vec& c) const {
-    Vec n = cross(b - a, c - a);
-    const double size = length(n);
-    if (!(size > 0)) return true;
-    n = n * (1 / size);
-    const double heights[3] = {0, dot(n, b - a), dot(n, c - a)};  // of a sliver the normal is rough
-    const double peak = std::max({heights[0], heights[1], heights[2]}),
-                 bottom = std::min({heights[0], heights[1], heights[2]});
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t i = 0; i < 9; i += 3) {
-      const double at = dot(n, Vec{m.corners[i], m.corners[i + 1], m.corners[i + 2]} - a);
-      low = std::min(low, at);
-      high = std::max(high, at);
-    }
-    const double before = low - peak, behind = bottom - high;
-    return carried->gets(before > behind ? n * -1 : n, time, angle) >=
-           std::max(before, behind) - kMotionSlack - 1;
-  }
-  unsigned may_meet(const Mobile& m, const Lanes& s, unsigned mask) const {
-    for (unsigned left = mask; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(left));
-      const auto corner = [&](std::size_t c) {
-        return Vec{static_cast<double>(s[3 * c][i]), static_cast<double>(s[3 * c + 1][i]),
-                   static_cast<double>(s[3 * c + 2][i])};
-      };
-      if (!may_meet(m, corner(0), corner(1), corner(2))) mask &= ~(1u << i);
-    }
-    return mask;
+  /// Of the triangle that is looked at, in `time`.
+  PairMotion motion() const {
+    return {carried->speeds, time, 0.5 * time * time * angle * carried->turning, kMotionSlack + 1};
   }
   void met(std::uint32_t s, std::uint32_t m) {
     out = {.time = 0, .blocked = true, .steps = 0, .static_id = s, .mobile_id = m};
@@ -166,16 +139,16 @@ struct PairSearch::Timed {
   }
   bool wants_distances() const { return true; }
   void pair(std::uint32_t s_id, std::uint32_t m_id, const exact::Corners& m_corners, double distance,
-            double error) {
+            double error, std::size_t feature) {
     const double sure = distance - error;
-    if (sure - kMotionSlack > fastest * time) return;
+    if (sure - kMotionSlack > carried->faster * time) return;
     const exact::Corners s_corners = search.fixed(s_id);
     const std::array<Vec, 3> s{vec(s_corners[0]), vec(s_corners[1]), vec(s_corners[2])},
         m{vec(m_corners[0]), vec(m_corners[1]), vec(m_corners[2])};
-    const NearestPoints near = nearest_points(s, m);
+    const NearestPoints near = nearest_points(s, m, feature);
     double sooner = 0;
     Vec found{};
-    if (near.squared > 0) {
+    if (near.squared > 0 && near.squared < std::numeric_limits<double>::infinity()) {
       found = (near.on_s - near.on_m) * (1 / std::sqrt(near.squared));
       double room = std::numeric_limits<double>::infinity(), front = -room, along = -room;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -231,7 +204,6 @@ struct PairSearch::Followed final : ScrewMotion::Learned {
     double time;                  ///< it meets nothing before
     std::uint32_t level, number;  ///< of ToolSpheres; level 1 at least: a run
     double speed;                 ///< of its fastest point, at most; steps a unit of time
-    double asked = 0;             ///< how far ahead the run's triangles were asked last, and met nothing
     bool blocked = false;         ///< at `time`, by a pair that was `steps` apart at `asked_at`
     double asked_at = 0;
     std::int32_t steps = 0;
@@ -319,16 +291,13 @@ void PairSearch::go_on(Followed& followed, double time) {
   if (!part.blocked) {
     const Placed placed(followed.screw, part.time, *trees_->geometry);
     const double room = field.room_at(placed.at + placed.turned(own.centre)) - own.radius - kMotionSlack;
-    if (room > kWorthAStep * std::max(own.radius, field.cell_steps())) {
-      part.asked = 0;
-      return followed.step(part, room);
-    }
+    if (room > kWorthAStep * std::max(own.radius, field.cell_steps())) return followed.step(part, room);
     if (part.level > 1) return push_spheres(followed, part.level - 1, kWide * part.number, kWide, part.time);
   }
   const auto pose = to_lattice(followed.screw.at(part.time), *trees_->geometry);
   if (!pose || pose->beyond_lattice) return followed.stop(part);
   begin(*pose);
-  const double reach = std::max(kFirstReach * (own.radius + field.cell_steps()), 2 * part.asked);
+  const double reach = kReach * (own.radius + field.cell_steps());
   const Twist twist = followed.screw.twist(part.time);
   Timed policy{*this, vec(twist.axis), vec(twist.velocity), vec(pose->translation), twist.angle,
                0,     part.speed};
@@ -342,12 +311,8 @@ void PairSearch::go_on(Followed& followed, double time) {
     lead.room = std::min(lead.room, lead.rooms[i]);
     if (policy.within(lead.rooms[i])) lead.mask |= 1u << i;
   }
-  if (lead.mask == 0) {
-    part.asked = 0;
-    return followed.step(part, lead.room - kMotionSlack);
-  }
+  if (lead.mask == 0) return followed.step(part, lead.room - kMotionSlack);
   descend(policy, lead);
-  part.asked = policy.out.blocked ? 0 : reach;
   if (!policy.out.blocked) return followed.step(part, reach);
   part.blocked = true;
   part.asked_at = part.time;

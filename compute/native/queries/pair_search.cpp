@@ -101,7 +101,7 @@ struct PairSearch::Any {
     who = {s, m};
   }
   bool wants_distances() const { return !close; }
-  void pair(std::uint32_t, std::uint32_t, const exact::Corners&, double distance, double error) {
+  void pair(std::uint32_t, std::uint32_t, const exact::Corners&, double distance, double error, std::size_t) {
     close = close || distance - error <= kCloseSteps;
   }
 };
@@ -168,13 +168,15 @@ struct PairSearch::Nearest {
   }
   void met(std::uint32_t, std::uint32_t) { found = true; }
   bool wants_distances() const { return true; }
-  void pair(std::uint32_t s, std::uint32_t m, const exact::Corners& tool, double distance, double error) {
+  void pair(std::uint32_t s, std::uint32_t m, const exact::Corners& tool, double distance, double error,
+            std::size_t feature) {
     if (distance - error >= most + 1) return;
     candidates.push_back({s, m, distance - error});
     if (distance + error >= most) return;
     set(distance + error);
     const exact::Corners at = search.fixed(s);
-    turn_to(nearest_points({vec(at[0]), vec(at[1]), vec(at[2])}, {vec(tool[0]), vec(tool[1]), vec(tool[2])}));
+    turn_to(nearest_points({vec(at[0]), vec(at[1]), vec(at[2])}, {vec(tool[0]), vec(tool[1]), vec(tool[2])},
+                           feature));
   }
 };
 

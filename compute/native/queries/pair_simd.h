@@ -18,16 +18,25 @@ static void cross(const Point& a, const Point& b, Point& out) {
   out.z = a.x * b.y - a.y * b.x;
 }
 static void least(Doubles& best, const Doubles& v) { best = v < best ? v : best; }
+static void most(Doubles& best, const Doubles& v) { best = v > best ? v : best; }
+// What is nearest so far, and which feature (nearest_points.h).
+struct Nearest {
+  Doubles squared, feature;
+  void take(const Masks& sooner, const Doubles& v, std::size_t number) {
+    squared = sooner ? v : squared;
+    feature = sooner ? Doubles{} + static_cast<double>(number) : feature;
+  }
+};
 static void clamp01(Doubles& v) {
   const Doubles zero{}, one = zero + 1.0;
   v = v > zero ? v : zero;
   v = v < one ? v : one;
 }
 
-// A corner above a face: `from` is the corner relative to the face's first, normal and inward normals of the
+// A corner above a face, feature `number`: `from` is the corner relative to the face's first, normal and inward normals of the
 // face's edges are given.
 static void above(const Point& corner, const Point face[3], const Point& normal, const Doubles& size2,
-                  const Point inward[3], Doubles& best) {
+                  const Point inward[3], std::size_t number, Nearest& best) {
   Point from;
   Doubles height, side;
   minus(corner, face[0], from);
@@ -39,7 +48,7 @@ static void above(const Point& corner, const Point face[3], const Point& normal,
     within &= side >= Doubles{};
   }
   const Doubles squared = height * height / size2;
-  best = (within & (squared < best)) ? squared : best;
+  best.take(within & (squared < best.squared), squared, number);
 }
 
 // The corners relative to the one's first.
@@ -69,8 +78,8 @@ static void widen(const Point a[3], const Point b[3], const Point& way, Doubles&
   for (std::size_t c = 1; c < 3; ++c) {
     least(low_a, of_a[c]);
     least(low_b, of_b[c]);
-    high_a = of_a[c] > high_a ? of_a[c] : high_a;
-    high_b = of_b[c] > high_b ? of_b[c] : high_b;
+    most(high_a, of_a[c]);
+    most(high_b, of_b[c]);
   }
   dot(way, way, size);
   const Doubles ahead = low_a - high_b, behind = low_b - high_a;
@@ -100,7 +109,54 @@ static void room_lanes(const PairLanes& in, std::array<double, kLanes>& out) {
   for (std::size_t begin = 0; begin < kLanes; begin += kWidth) rooms_from(in, begin, out);
 }
 
-static void judge_from(const PairLanes& in, std::size_t begin, std::array<double, kLanes>& out) {
+// A bit for each of the eight that the one may meet within the motion's time, as far as the eight's normals
+// tell: it may lie wholly before or behind for all of it. Normals are as long as twice the triangle's area.
+static unsigned may_meet_from(const PairLanes& in, std::size_t begin, const PairMotion& motion) {
+  Point a[3], b[3], e, f, normal;
+  corners_of(in, begin, a, b);
+  minus(a[1], a[0], e);
+  minus(a[2], a[0], f);
+  cross(e, f, normal);
+  Doubles size, own[3], other[3], along[3];
+  dot(normal, normal, size);
+  for (std::size_t l = 0; l < kWidth; ++l) size[l] = std::sqrt(size[l]);
+  for (std::size_t c = 0; c < 3; ++c) {
+    Point from, speed;
+    minus(a[c], a[0], from);  // of a sliver the normal is rough
+    dot(normal, from, own[c]);
+    minus(b[c], a[0], from);
+    dot(normal, from, other[c]);
+    set(speed.x, motion.speeds[c][0]);
+    set(speed.y, motion.speeds[c][1]);
+    set(speed.z, motion.speeds[c][2]);
+    dot(normal, speed, along[c]);
+  }
+  Doubles own_low = own[0], own_high = own[0], low = other[0], high = other[0], slowest = along[0],
+          fastest = along[0];
+  for (std::size_t c = 1; c < 3; ++c) {
+    least(own_low, own[c]);
+    most(own_high, own[c]);
+    least(low, other[c]);
+    most(high, other[c]);
+    least(slowest, along[c]);
+    most(fastest, along[c]);
+  }
+  const Doubles before = low - own_high, behind = own_low - high, zero{};
+  const Doubles towards = before > behind ? -slowest : fastest;
+  Doubles gets = towards * motion.time + size * motion.turns;
+  gets = gets > zero ? gets : zero;
+  const Masks meets = gets >= (before > behind ? before : behind) - size * motion.slack;
+  unsigned out = 0;
+  for (std::size_t l = 0; l < kWidth; ++l) out |= (meets[l] != 0 ? 1U : 0U) << (begin + l);
+  return out;
+}
+static unsigned may_meet_lanes(const PairLanes& in, const PairMotion& motion) {
+  unsigned out = 0;
+  for (std::size_t begin = 0; begin < kLanes; begin += kWidth) out |= may_meet_from(in, begin, motion);
+  return out;
+}
+
+static void judge_from(const PairLanes& in, std::size_t begin, PairDistances& out) {
   Point a[3], e[3], b[3], f[3], normal_s, normal_t, inward_s[3], inward_t[3];
   Doubles ee[3], ff[3], per_e[3], per_f[3], size_s, size_t_;
   const Doubles zero{}, one = zero + 1.0;
@@ -121,11 +177,11 @@ static void judge_from(const PairLanes& in, std::size_t begin, std::array<double
     cross(normal_s, e[c], inward_s[c]);
     cross(normal_t, f[c], inward_t[c]);
   }
-  Doubles best;
-  set(best, 1e300);
+  Nearest best{};
+  set(best.squared, 1e300);
   for (std::size_t c = 0; c < 3; ++c) {
-    above(a[c], b, normal_t, size_t_, inward_t, best);
-    above(b[c], a, normal_s, size_s, inward_s, best);
+    above(a[c], b, normal_t, size_t_, inward_t, 2 * c, best);
+    above(b[c], a, normal_s, size_s, inward_s, 2 * c + 1, best);
   }
   // Every edge with every other, ends included: the best place on one for the place on the other, once more
   // the other way round.
@@ -150,12 +206,13 @@ static void judge_from(const PairLanes& in, std::size_t begin, std::array<double
       way.z = r.z + s * e[i].z - t * f[j].z;
       Doubles squared;
       dot(way, way, squared);
-      least(best, squared);
+      best.take(squared < best.squared, squared, 6 + 3 * i + j);
     }
-  std::memcpy(out.data() + begin, &best, sizeof best);
+  std::memcpy(out.squared.data() + begin, &best.squared, sizeof best.squared);
+  std::memcpy(out.feature.data() + begin, &best.feature, sizeof best.feature);
 }
 
-static void judge_lanes(const PairLanes& in, std::array<double, kLanes>& out) {
+static void judge_lanes(const PairLanes& in, PairDistances& out) {
   for (std::size_t begin = 0; begin < kLanes; begin += kWidth) judge_from(in, begin, out);
 }
 

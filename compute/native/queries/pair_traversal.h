@@ -93,7 +93,7 @@ constexpr std::size_t kFewBalls = 3;    // of them: what meets is often found am
 constexpr std::size_t kMostAbout = 16;  // chosen
 constexpr std::uint32_t kMany = 5;      // of eight, from which on it pays to ask about all at once (chosen)
 constexpr double kWorthAStep = 0.05;    // of a sphere's radius or a cell: less room is no step (chosen)
-constexpr double kFirstReach = 0.125;   // of both: how far ahead triangles are asked at first (chosen)
+constexpr double kReach = 0.2;          // of both: how far ahead triangles are asked (chosen)
 constexpr double kSameTime = 0x1p-40;   // what a sum and a difference of times are off by, and more
 constexpr double kAlongSlack = 0x1p-8;  // more than places along a way are off by, steps
 
@@ -416,7 +416,6 @@ bool PairSearch::leaf(Policy& policy, const Mobile& m, std::uint32_t run, const 
       std::min(kWide, static_cast<std::uint32_t>(trees_->mockup.order.size()) - kWide * run);
   std::array<double, kLanes> gaps;
   box_gaps(m.box, trees_->boxes[run], gaps);
-  // Pairs that meet first: their corners and edges may be far from each other.
   unsigned mask = 0, crossing = 0;
   for (std::uint32_t lane = 0; lane < count; ++lane) {
     if (policy.near(gaps[lane])) mask |= 1u << lane;
@@ -425,6 +424,29 @@ bool PairSearch::leaf(Policy& policy, const Mobile& m, std::uint32_t run, const 
   if (mask == 0) return true;
   const auto& corners = trees_->corners[run];
   const std::uint32_t* const ids = &trees_->mockup.order[kWide * run];
+  PairLanes lanes{.s = &corners};
+  // Those that a way or a plane tells apart are left out.
+  const auto narrow = [&] {
+    mask &= policy.near_along(corners);
+    if (mask == 0) return;
+    lanes.take(m.at);
+    if constexpr (Policy::kMoves) {
+      mask &= may_meet(lanes, policy.motion());
+    } else {
+      std::array<double, kLanes> squared;
+      rooms(lanes, squared);
+      for (std::uint32_t lane = 0; lane < count; ++lane) {
+        const double room = std::max(std::sqrt(squared[lane]) - kRoomError, 0.0);
+        if (!policy.near(room * room)) mask &= ~(1u << lane);
+      }
+    }
+  };
+  if constexpr (Policy::kNearestFirst) {
+    narrow();
+    if (mask == 0) return true;
+    crossing &= mask;
+  }
+  // Pairs that meet first: their corners and edges may be far from each other.
   if (crossing != 0) {
     std::array<PairFilter::Verdict, PairFilter::kLanes> verdicts{};
     filter_.put(corners, m.at);
@@ -439,29 +461,20 @@ bool PairSearch::leaf(Policy& policy, const Mobile& m, std::uint32_t run, const 
     }
   }
   if (!policy.wants_distances()) return true;
-  mask &= policy.near_along(corners);
-  if (mask == 0) return true;
-  PairLanes lanes{.s = &corners};
-  lanes.take(m.at);
-  std::array<double, kLanes> squared;
-  if constexpr (Policy::kMoves) {
-    mask = policy.may_meet(m, corners, mask);
-  } else {
-    rooms(lanes, squared);
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const double room = std::max(std::sqrt(squared[lane]) - kRoomError, 0.0);
-      if (!policy.near(room * room)) mask &= ~(1u << lane);
-    }
+  if constexpr (!Policy::kNearestFirst) {
+    narrow();
+    if (mask == 0) return true;
   }
-  if (mask == 0) return true;
-  distances(lanes, squared);
+  PairDistances found;
+  distances(lanes, found);
   // No edge is longer than twice its box's longest side.
   const double edge = 2 * largest(m.box), reach = edge + 2 * largest(run_box);
   for (; mask != 0; mask &= mask - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
-    const double distance = std::sqrt(squared[lane]);
+    const double distance = std::sqrt(found.squared[lane]);
     policy.pair(ids[lane], m.id, m.at, distance,
-                distance_error(std::min(edge, 2 * largest(run_box)), reach + distance));
+                distance_error(std::min(edge, 2 * largest(run_box)), reach + distance),
+                static_cast<std::size_t>(found.feature[lane]));
   }
   return true;
 }
