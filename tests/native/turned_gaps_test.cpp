@@ -99,5 +99,97 @@ TEST(TurnedGaps, AreNoWiderThanWhatATriangleAndARunAreApart) {
   EXPECT_GT(tight, apart / 10);
 }
 
+/// Eight triangles and one, of a few steps to the whole lattice, some of them slivers.
+struct Eight {
+  std::array<std::array<std::int32_t, kLanes>, 9> corners;
+  std::array<std::array<Vec, 3>, kLanes> s;
+  exact::Corners m;
+  std::array<Vec, 3> one;
+  PairLanes lanes{};
+
+  Eight(Random& random, double size, double far) {
+    const auto triangle = [&](bool thin) {
+      const Int3 at = random.point(far);
+      std::array<Vec, 3> out;
+      do {  // none that is collapsed, as no tree holds one
+        for (std::size_t c = 0; c < 3; ++c)
+          out[c] = vec(c == 2 && thin ? sliver(random, out) : at + random.point(size));
+      } while (length(cross(out[1] - out[0], out[2] - out[0])) == 0);
+      return out;
+    };
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      s[lane] = triangle(lane == 0);
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t k = 0; k < 3; ++k)
+          corners[3 * c + k][lane] = static_cast<std::int32_t>(s[lane][c][k]);
+    }
+    one = triangle(random.below(4) == 0);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < 3; ++k)
+        m[c][static_cast<int>(k)] = static_cast<std::int32_t>(one[c][k]);
+    lanes.s = &corners;
+    lanes.take(m);
+  }
+};
+
+/// The nearest points are on the feature that distances() names.
+TEST(Distances, NameTheFeatureThatIsSoNear) {
+  Random random;
+  std::array<std::size_t, kFeatures> named{};
+  for (int round = 0; round < 10'000; ++round) {
+    const double size = std::pow(2, 3 + random.below(12));
+    const Eight eight(random, size, 3 * size);
+    PairDistances found;
+    distances(eight.lanes, found);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const auto feature = static_cast<std::size_t>(found.feature[lane]);
+      ASSERT_LT(feature, kFeatures);
+      ++named[feature];
+      const double distance = std::sqrt(found.squared[lane]),
+                   error = distance_error(4 * size, 12 * size) + 0.001;
+      EXPECT_NEAR(std::sqrt(nearest_points(eight.s[lane], eight.one, feature).squared), distance, error);
+      EXPECT_NEAR(std::sqrt(nearest_points(eight.s[lane], eight.one).squared), distance, error);
+    }
+  }
+  for (const std::size_t count : named) EXPECT_GT(count, 100u);
+}
+
+/// What lies on one side of another's plane at every moment is told apart, and nothing else: corners that go
+/// straight on are followed, and what may turn besides is a way in any direction.
+TEST(MayMeet, NeverLeavesOutWhatComesToThePlane) {
+  Random random;
+  std::size_t left_out = 0, asked = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    const double size = std::pow(2, 3 + random.below(20)), far = std::min(3 * size, 0x1p28);
+    const Eight eight(random, size, far);
+    PairMotion motion{{}, std::pow(2, -static_cast<double>(random.below(6))), 0, 1};
+    if (random.below(2) == 0) motion.turns = 0.1 * size * std::abs(random.some());
+    for (auto& speed : motion.speeds)
+      for (double& v : speed) v = 2 * size * random.some();
+    const unsigned may = may_meet(eight.lanes, motion);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::array<Vec, 3>& s = eight.s[lane];
+      const Vec n = cross(s[1] - s[0], s[2] - s[0]);
+      const double length_of_n = length(n);
+      ++asked;
+      if ((may >> lane & 1) != 0) continue;
+      ++left_out;
+      // What it is apart along the normal, which of a sliver is rough, at the beginning and at the end.
+      double before = std::numeric_limits<double>::infinity(), behind = before, low = before, high = before;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double own = dot(n, s[c] - s[0]) / length_of_n, other = dot(n, eight.one[c] - s[0]) / length_of_n,
+                     turned = motion.time * dot(n, motion.speeds[c]) / length_of_n;
+        low = std::min(low, own);
+        high = std::min(high, -own);
+        // A way that turns with the square of time is longest at the end, or never begins.
+        before = std::min(before, other - std::max(motion.turns - turned, 0.0));
+        behind = std::min(behind, -other - std::max(motion.turns + turned, 0.0));
+      }
+      EXPECT_TRUE(before + high > 0 || behind + low > 0) << "round " << round << ", lane " << lane;
+    }
+  }
+  EXPECT_GT(left_out, asked / 8);
+}
+
 }  // namespace
 }  // namespace palpate::native

@@ -5,15 +5,18 @@
 namespace palpate::native {
 namespace {
 
-/// A point above a triangle, and there. False: beside it.
-bool foot_of(const Vec& p, const std::array<Vec, 3>& t, Vec& foot) {
+/// Whether the foot of a point's perpendicular lies in the triangle.
+bool above(const Vec& p, const std::array<Vec, 3>& t) {
   const Vec n = cross(t[1] - t[0], t[2] - t[0]);
-  const double size = dot(n, n);
-  if (!(size > 0)) return false;
   for (std::size_t e = 0; e < 3; ++e)
     if (dot(cross(n, t[(e + 1) % 3] - t[e]), p - t[e]) < 0) return false;
-  foot = p - n * (dot(n, p - t[0]) / size);
-  return true;
+  return dot(n, n) > 0;
+}
+
+/// That foot, in the triangle or beside it.
+Vec foot_of(const Vec& p, const std::array<Vec, 3>& t) {
+  const Vec n = cross(t[1] - t[0], t[2] - t[0]);
+  return p - n * (dot(n, p - t[0]) / dot(n, n));
 }
 
 }  // namespace
@@ -22,12 +25,10 @@ NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 
   NearestPoints out;
   if (feature < 6) {
     const std::size_t c = feature / 2;
-    Vec foot;
-    if (feature % 2 == 0) {
-      if (foot_of(s[c], m, foot)) out.take(s[c], foot);
-    } else if (foot_of(m[c], s, foot)) {
-      out.take(foot, m[c]);
-    }
+    if (feature % 2 == 0)
+      out.take(s[c], foot_of(s[c], m));
+    else
+      out.take(foot_of(m[c], s), m[c]);
     return out;
   }
   const std::size_t i = (feature - 6) / 3, j = (feature - 6) % 3;
@@ -44,6 +45,7 @@ NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 
 NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m) {
   NearestPoints out;
   for (std::size_t feature = 0; feature < kFeatures; ++feature) {
+    if (feature < 6 && !(feature % 2 == 0 ? above(s[feature / 2], m) : above(m[feature / 2], s))) continue;
     const NearestPoints found = nearest_points(s, m, feature);
     if (found.squared < out.squared) out = found;
   }

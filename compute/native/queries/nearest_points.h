@@ -41,7 +41,8 @@ NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 
 /// Of which parts of two triangles the points may be: corner i of s with m's face (2 i), corner i of m with
 /// s's face (2 i + 1), edge i of s with edge j of m (6 + 3 i + j).
 inline constexpr std::size_t kFeatures = 15;
-/// The same of one feature alone; infinitely far where its points are none.
+/// The same of one feature alone, which the two are nearest on: where that is close, a foot may lie a little
+/// beside its face.
 NearestPoints nearest_points(const std::array<Vec, 3>& s, const std::array<Vec, 3>& m, std::size_t feature);
 
 }  // namespace palpate::native

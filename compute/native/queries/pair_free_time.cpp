@@ -148,7 +148,7 @@ struct PairSearch::Timed {
     const NearestPoints near = nearest_points(s, m, feature);
     double sooner = 0;
     Vec found{};
-    if (near.squared > 0 && near.squared < std::numeric_limits<double>::infinity()) {
+    if (near.squared > 0) {
       found = (near.on_s - near.on_m) * (1 / std::sqrt(near.squared));
       double room = std::numeric_limits<double>::infinity(), front = -room, along = -room;
       for (std::size_t c = 0; c < 3; ++c) {

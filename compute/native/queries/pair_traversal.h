@@ -401,11 +401,13 @@ bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number, un
   bool any = false;
   for (std::uint32_t i = 0; i < all; ++i) any = any || ((runs >> i & 1) != 0 && policy.near(gaps[i]));
   if (!any) return true;
-  turned_gaps(m.corners, mockup.turned[number], turned);
   policy.aim({&m, 1});
-  for (std::uint32_t n = sorted(policy, m.box, boxes, gaps, all, order); n-- > 0;)
-    if ((runs >> order[n] & 1) != 0 && policy.near(std::max(gaps[order[n]], turned[order[n]])) &&
-        !leaf(policy, m, kWide * number + order[n], box_at(boxes, order[n])))
+  std::uint32_t count = sorted(policy, m.box, boxes, gaps, all, order);
+  if (count == 0) return true;
+  turned_gaps(m.corners, mockup.turned[number], turned);
+  while (count-- > 0)
+    if ((runs >> order[count] & 1) != 0 && policy.near(std::max(gaps[order[count]], turned[order[count]])) &&
+        !leaf(policy, m, kWide * number + order[count], box_at(boxes, order[count])))
       return false;
   return true;
 }
