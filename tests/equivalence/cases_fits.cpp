@@ -207,6 +207,13 @@ std::vector<Case> fit_cases() {
           },
           [thin_plate] { return thin_plate; }, {.along = 0.4, .turn = 0.05}),
       fit(
+          "thin_tool_through_a_thin_plate", "two thin pieces, of which each says half",
+          [thin_plate] { return thin_plate; },
+          [] {
+            return block({-5, -0.3, -4}, {5, 0.3, 4});
+          },
+          {.along = 4, .turn = 0.3}),
+      fit(
           "pin_on_a_plate", "a contact narrower than a sample's spacing",
           [] {
             return block({-12, -12, -4}, {12, 12, 0});

@@ -13,8 +13,8 @@
 // Outcomes: survived, differs, crashed, hangs, no-program (it doesn't compile), no-change (it compiles to the
 // same), not-asked (no case runs the module, or the sources are not those that this program was built of). A
 // mutant costs little: scenes, their answers and all pipelines but the mutant's are there already. The
-// reference's and the native engine's mutants run in children of this process; the device's run in it, for Vulkan does not survive a
-// fork, and one that crashes or hangs ends the program.
+// reference's and the native engine's mutants run in children of this process; the device's run in it, for
+// Vulkan does not survive a fork, and one that crashes or hangs ends the program.
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>

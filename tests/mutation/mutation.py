@@ -66,8 +66,6 @@ def native():
     )
 
 
-
-
 def of_program(name):
     """Whether a file's mutants are switches in the judge, not texts that it compiles."""
     return not name.startswith("shaders/")
@@ -141,7 +139,9 @@ def all_jobs(only):
         for i, m in enumerate(mutants(text, cpp=reference)):
             if reference:
                 planners = name.startswith(PLANNERS)
-                command = ("host " if name in HOST else "planners " if planners else "") + str(numbers[name] + i)
+                command = ("host " if name in HOST else "planners " if planners else "") + str(
+                    numbers[name] + i
+                )
             else:
                 # Places in bytes, for C++.
                 begin, end = (len(text[:at].encode()) for at in (m.begin, m.end))
@@ -173,7 +173,9 @@ def asked_of_tests(judge, job):
             stderr=subprocess.DEVNULL,
         )
         if run.returncode != 0:
-            outcome = {1: "differs", 77: "no-program", -24: "hangs", -9: "hangs"}.get(run.returncode, "crashed")
+            outcome = {1: "differs", 77: "no-program", -24: "hangs", -9: "hangs"}.get(
+                run.returncode, "crashed"
+            )
             return [outcome, job.row[1], f"{test}_test", f"exit status {run.returncode}"]
     return job.row
 

@@ -208,6 +208,20 @@ std::string Oracle::ask(const Case& c) const {
     if (auto r = backend_.clearance(q.pose, kAnyDistance, near); !r) return r.error().sentence;
     if (!(near == *q.clearance)) return "pose " + std::to_string(i) + ": clearance";
   }
+  if (refined_alone_) {
+    // What nobody looks at is summed in parts, by two threads.
+    Plan unwatched = c.plan;
+    unwatched.telemetry = false;
+    if (auto r = backend_.replan(unwatched); !r) return r.error().sentence;
+    for (std::size_t i = 0; i < c.queries.size(); ++i) {
+      const Query& q = c.queries[i];
+      if (auto r = backend_.query(q.pose, q.ignored ? &*q.ignored : nullptr, answer); !r)
+        return r.error().sentence;
+      if (!(answer.field == q.answer.field) || answer.flags != q.answer.flags ||
+          answer.ignored_touched != q.answer.ignored_touched)
+        return "pose " + std::to_string(i) + ", unwatched: field";
+    }
+  }
   if (c.questions && planners_) return c.questions->difference(backend_, c.geometry);
   return {};
 }

@@ -125,8 +125,7 @@ struct Eight {
     }
     one = triangle(random.below(4) == 0);
     for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < 3; ++k)
-        m[c][static_cast<int>(k)] = static_cast<std::int32_t>(one[c][k]);
+      for (std::size_t k = 0; k < 3; ++k) m[c][static_cast<int>(k)] = static_cast<std::int32_t>(one[c][k]);
     lanes.s = &corners;
     lanes.take(m);
   }
@@ -177,7 +176,8 @@ TEST(MayMeet, NeverLeavesOutWhatComesToThePlane) {
       // What it is apart along the normal, which of a sliver is rough, at the beginning and at the end.
       double before = std::numeric_limits<double>::infinity(), behind = before, low = before, high = before;
       for (std::size_t c = 0; c < 3; ++c) {
-        const double own = dot(n, s[c] - s[0]) / length_of_n, other = dot(n, eight.one[c] - s[0]) / length_of_n,
+        const double own = dot(n, s[c] - s[0]) / length_of_n,
+                     other = dot(n, eight.one[c] - s[0]) / length_of_n,
                      turned = motion.time * dot(n, motion.speeds[c]) / length_of_n;
         low = std::min(low, own);
         high = std::min(high, -own);

@@ -33,8 +33,8 @@ static void clamp01(Doubles& v) {
   v = v < one ? v : one;
 }
 
-// A corner above a face, feature `number`: `from` is the corner relative to the face's first, normal and inward normals of the
-// face's edges are given.
+// A corner above a face, feature `number`: `from` is the corner relative to the face's first, normal and
+// inward normals of the face's edges are given.
 static void above(const Point& corner, const Point face[3], const Point& normal, const Doubles& size2,
                   const Point inward[3], std::size_t number, Nearest& best) {
   Point from;
