@@ -377,6 +377,16 @@ def test_bench_questions_times_all_that_a_planner_asks():
         rows,
     )
     expect_refused(palpate(*asked, '--reach', '-1', '--out', folder / 'none'), 3, '--reach')
+    # An engine that measures no distances is asked what it knows, and the page says what it is not.
+    shaders = palpate(*asked[:-1], 'gpu', '--reach', '0', '--out', folder / 'gpu')
+    expect(shaders.code == 0, shaders)
+    rows = json.loads((folder / 'gpu' / 'results.json').read_text())['rows']
+    expect(
+        {(row['library'], row['question']) for row in rows}
+        == {('palpate gpu', 'any'), ('palpate gpu', 'frame')},
+        rows,
+    )
+    expect('measures no distances' in (folder / 'gpu' / 'report.html').read_text(), 'what is left out')
 
 
 main(globals())

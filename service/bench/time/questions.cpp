@@ -39,6 +39,7 @@ struct Asked {
   std::uint64_t wrong_touch = 0, wrong_distance = 0;
   double largest_error_m = 0;
   TimeTable times[kQuestions];
+  std::string engine[kQuestions];  ///< palpate's that answered last
 };
 
 struct Inquiry {
@@ -48,6 +49,7 @@ struct Inquiry {
   std::vector<LatticePose> lattice;
   std::vector<FrameKind> kinds;
   std::uint64_t contained = 0;  ///< poses in contact without a pair: peers see surfaces alone
+  bool measures = true;         ///< palpate's engine measures distances
 };
 
 /// Poses a planner asks at: each moved, by as much as `reach` times the tool's radius and as many radians,
@@ -66,7 +68,7 @@ std::vector<Pose> moved(const std::vector<Pose>& poses, const SceneGeometry& geo
   return out;
 }
 
-/// palpate's own answer, and where it has one the time it took.
+/// palpate's own answers, and the time that each took.
 Result<void> ask_ours(Inquiry& inquiry, std::size_t i, const BenchOptions& options, Asked& ours) {
   const SceneGeometry& geometry = inquiry.scene->loaded.geometry;
   CollisionBackend& backend = *inquiry.scene->backend;
@@ -77,25 +79,29 @@ Result<void> ask_ours(Inquiry& inquiry, std::size_t i, const BenchOptions& optio
     const Stopwatch watch(options.cpu_clock);
     if (auto done = backend.touches({&pose, 1}, {&bit, 1}); !done) return done;
     ours.times[kAny].add(inquiry.kinds[i], watch.us());
+    ours.engine[kAny] = backend.measured_by();
   }
-  {
+  if (inquiry.measures) {
     const Stopwatch watch(options.cpu_clock);
     if (auto done = backend.clearance(pose, INT32_MAX - 2, clearance); !done) return done;
     ours.times[kDistance].add(inquiry.kinds[i], watch.us());
+    ours.engine[kDistance] = backend.measured_by();
   }
-  if (i + 1 < inquiry.poses.size()) {
+  if (inquiry.measures && i + 1 < inquiry.poses.size()) {
     const TouchRule rule = TouchRule::of(geometry, 0);
     const Stopwatch watch(options.cpu_clock);
     const auto found = first_contact(backend, geometry, inquiry.poses[i], inquiry.poses[i + 1], rule);
     if (!found) return found.error();
     ours.times[kFirstContact].add(inquiry.kinds[i], watch.us());
+    ours.engine[kFirstContact] = backend.measured_by();
   }
   Answer frame;
   const Stopwatch watch(options.cpu_clock);
   if (auto done = answer_frame(*inquiry.scene, inquiry.poses[i], frame); !done) return done;
   ours.times[kFrame].add(inquiry.kinds[i], watch.us());
+  ours.engine[kFrame] = backend.name();
   ours.answers.touches[i] = bit;
-  ours.answers.distance_m[i] = clearance.kind == Clearance::Kind::kFurther
+  ours.answers.distance_m[i] = !inquiry.measures || clearance.kind == Clearance::Kind::kFurther
                                    ? std::numeric_limits<double>::quiet_NaN()
                                    : clearance.steps * geometry.lattice.step_m;
   return {};
@@ -172,8 +178,10 @@ Result<Inquiry> inquire(const BenchOptions& options, const std::string& file, co
                      std::vector<double>(inquiry.poses.size())};
   // The first question makes what all read.
   Clearance first;
-  if (auto done = inquiry.scene->backend->clearance(inquiry.lattice.front(), INT32_MAX - 2, first); !done)
-    return done.error();
+  if (auto done = inquiry.scene->backend->clearance(inquiry.lattice.front(), INT32_MAX - 2, first); !done) {
+    if (done.error().code != ErrorCode::kUsage) return done.error();
+    inquiry.measures = false;
+  }
 
   // In turns, pose by pose, nobody always the first.
   const std::size_t runners = inquiry.asked.size();
@@ -196,7 +204,7 @@ Result<Inquiry> inquire(const BenchOptions& options, const std::string& file, co
 }
 
 void add_rows(const std::string& scene, const Inquiry& inquiry, BenchTable& table) {
-  const std::string none, ours_name = "palpate " + inquiry.scene->backend->measured_by();
+  const std::string none;
   for (std::size_t question = 0; question < kQuestions; ++question)
     for (std::size_t kind = 0; kind < 4; ++kind) {
       const TimePercentiles ours = percentiles(inquiry.asked.front().times[question].times(kind, "total"));
@@ -205,9 +213,11 @@ void add_rows(const std::string& scene, const Inquiry& inquiry, BenchTable& tabl
         if (p.count == 0) continue;
         const bool counts = asked.peer && kind == 3;
         table.rows.push_back(
-            {scene, kQuestionNames[question], asked.peer ? asked.peer->name() : ours_name,
-             kFrameKindNames[kind], std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max,
-             ours.p50 / p.p50, ours.p99 / p.p99,
+            {scene, kQuestionNames[question],
+             asked.peer ? asked.peer->name() : "palpate " + asked.engine[question], kFrameKindNames[kind],
+             std::uint64_t{p.count}, p.p50, p.p95, p.p99, cell_of(p.p999), p.max,
+             ours.count == 0 ? BenchCell(none) : ours.p50 / p.p50,
+             ours.count == 0 ? BenchCell(none) : ours.p99 / p.p99,
              counts ? BenchCell(question == kAny ? asked.wrong_touch : asked.wrong_distance) : none,
              counts && question == kDistance ? BenchCell(asked.largest_error_m) : none});
       }
@@ -241,8 +251,11 @@ Result<void> bench_questions(const BenchOptions& options, const Parts& parts) {
     for (const Asked& asked : inquiry->asked) {
       const TimePercentiles any = percentiles(asked.times[kAny].times(3, "total")),
                             distance = percentiles(asked.times[kDistance].times(3, "total"));
-      chart.series.push_back(
-          {asked.peer ? asked.peer->name() : "palpate", {}, {any.p50, any.p99, distance.p50, distance.p99}});
+      const double nothing = std::numeric_limits<double>::quiet_NaN();
+      chart.series.push_back({asked.peer ? asked.peer->name() : "palpate",
+                              {},
+                              {any.p50, any.p99, distance.count == 0 ? nothing : distance.p50,
+                               distance.count == 0 ? nothing : distance.p99}});
       if (asked.peer)
         facts.more.emplace_back(
             fmt::format("{}, {}", name, asked.peer->name()),
@@ -256,6 +269,10 @@ Result<void> bench_questions(const BenchOptions& options, const Parts& parts) {
                     "{} with the tool inside and no pair",
                     count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()),
                     inquiry->poses.size(), options.reach, inquiry->contained));
+    if (!inquiry->measures)
+      facts.more.emplace_back(name, fmt::format("the {} engine measures no distances: these and first "
+                                                "contacts were not asked of palpate",
+                                                inquiry->scene->backend->name()));
   }
   facts.more.emplace_back("clock", options.cpu_clock ? "CPU time of this process" : "wall");
   facts.more.emplace_back("load average",
