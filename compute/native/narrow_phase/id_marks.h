@@ -8,62 +8,43 @@
 namespace palpate {
 
 /// Marks on ids, three bits each (values 1, 2 and 4), for sets that a frame finds in any order and then wants
-/// by ascending id: marking an id twice costs nothing more, and ids need no sorting. Half a byte an id, so
-/// that what is asked again and again stays in the caches. Only resize() allocates.
+/// by ascending id: marking an id twice costs nothing more, and ids need no sorting, and
+/// so little room that what is asked again and again stays in the caches. Only resize() allocates.
 class IdMarks {
  public:
-  static constexpr std::uint32_t kNowhere = UINT32_MAX;
-
   /// From now on for ids below `ids`, none marked.
   void resize(std::size_t ids) {
     words_.assign((ids + 63) / 64, Word{});
     any_.assign((words_.size() + 63) / 64, 0);
-    count_ = 0;
   }
   void clear() {
     for (std::size_t w = next_word(0); w != words_.size(); w = next_word(w + 1)) words_[w] = Word{};
     any_.assign(any_.size(), 0);
-    count_ = 0;
   }
   /// `mark`: 1, 2 or 4.
   void add(std::uint32_t id, std::uint32_t mark) {
     Word& word = words_[id >> 6];
-    const std::uint64_t bit = std::uint64_t{1} << (id & 63), before = word.all();
-    count_ += (before & bit) == 0 ? 1u : 0u;
-    if (before == 0) any_[id >> 12] |= std::uint64_t{1} << (id >> 6 & 63);
-    word.marks[mark >> 1] |= bit;
+    if (word.all() == 0) any_[id >> 12] |= std::uint64_t{1} << (id >> 6 & 63);
+    word.marks[mark >> 1] |= std::uint64_t{1} << (id & 63);
   }
   /// All of an id's, 0: none.
   std::uint32_t marks(std::uint32_t id) const { return words_[id >> 6].of(id & 63); }
-  /// Ids that have a mark.
-  std::uint32_t count() const { return count_; }
 
-  /// Calls take(id, marks) for all that have a mark, ascending. After it place() holds until something is
-  /// marked.
+  /// Calls take(id, marks) for all that have a mark, ascending.
   template <class Take>
-  void number(Take&& take) {
-    std::uint32_t place = 0;
+  void for_each(Take&& take) const {
     for (std::size_t w = next_word(0); w != words_.size(); w = next_word(w + 1)) {
-      Word& word = words_[w];
-      word.place = place;
-      for (std::uint64_t left = word.all(); left != 0; left &= left - 1, ++place) {
+      const Word& word = words_[w];
+      for (std::uint64_t left = word.all(); left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
         take(static_cast<std::uint32_t>(64 * w) + bit, word.of(bit));
       }
     }
   }
-  /// After number(): how many smaller ids have a mark, kNowhere where this one has none.
-  std::uint32_t place(std::uint32_t id) const {
-    const Word& word = words_[id >> 6];
-    const std::uint64_t bit = std::uint64_t{1} << (id & 63), all = word.all();
-    if ((all & bit) == 0) return kNowhere;
-    return word.place + static_cast<std::uint32_t>(std::popcount(all & (bit - 1)));
-  }
 
  private:
   struct Word {                            // of 64 ids
     std::array<std::uint64_t, 3> marks{};  ///< of value 1, 2 and 4
-    std::uint32_t place = 0, unused = 0;   ///< of the first that has one
     std::uint64_t all() const { return marks[0] | marks[1] | marks[2]; }
     std::uint32_t of(std::uint32_t bit) const {
       const auto mark = [&](std::size_t i) { return static_cast<std::uint32_t>(marks[i] >> bit & 1) << i; };
@@ -81,7 +62,6 @@ class IdMarks {
 
   std::vector<Word> words_;
   std::vector<std::uint64_t> any_;  ///< a bit a word: it has a mark
-  std::uint32_t count_ = 0;
 };
 
 }  // namespace palpate

@@ -316,14 +316,14 @@ void ContactSets::mark_lists(IdMarks& statics) {
 /// C_s and C_m, and how many there are of each set.
 void ContactSets::list(IdMarks& statics, FoundSets& out) {
   FrameState& state = out.state;
-  statics.number([&](std::uint32_t id, std::uint32_t marks) {
+  statics.for_each([&](std::uint32_t id, std::uint32_t marks) {
     const bool hit = (marks & kStaticHit) != 0;
     state.cst += hit ? 1u : 0u;
     state.bst += !hit && (marks & kStaticListed) != 0 ? 1u : 0u;
     state.est += !hit && (marks & kStaticSampled) != 0 ? 1u : 0u;
     out.statics.push_back({id, marks, kNone, kNone});
   });
-  mobiles_.number([&](std::uint32_t id, std::uint32_t marks) {
+  mobiles_.for_each([&](std::uint32_t id, std::uint32_t marks) {
     ((marks & kMobileHit) != 0 ? state.cmt : (marks & kMobileInternal) != 0 ? state.imt : state.bmt) += 1;
     out.mobiles.push_back({id, marks});
   });
