@@ -179,14 +179,18 @@ TEST(SegmentCrossing, NeverSaysWhatIsNotSoOfNearMisses) {
   };
   std::size_t crossed = 0;
   for (int i = 0; i < 200'000; ++i) {
-    const std::int32_t large = 1 << (4 + random() % 23), way = 1 << (2 + random() % 24);
+    const std::int32_t large = 1 << (4 + random() % 25), way = 1 << (2 + random() % 26);
+    const bool on_it = random() % 2 == 0;  // its eighths are whole steps, so that a way meets it just there
     Corners t;
-    for (Int3& corner : t) corner = Int3(within(large), within(large), within(large));
+    for (Int3& corner : t) {
+      corner = Int3(within(large), within(large), within(large));
+      if (on_it) corner = corner / 8 * 8;
+    }
     const auto u = static_cast<std::int64_t>(random() % 9), v = static_cast<std::int64_t>(random() % 9);
     Int3 at;
     for (int k = 0; k < 3; ++k)
       at[k] = static_cast<std::int32_t>(t[0][k] + (u * (t[1][k] - t[0][k]) + v * (t[2][k] - t[0][k])) / 8) +
-              within(1);
+              (on_it ? 0 : within(1));
     const Int3 half(within(way), within(way), within(way));
     const Int3 p = random() % 4 == 0 ? at : at - half, q = at + half;
     if (p == q) continue;
