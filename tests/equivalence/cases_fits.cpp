@@ -229,6 +229,10 @@ std::vector<Case> fit_cases() {
           },
           [] { return solids::sphere(5 * kMm, 16, 8); }, {.place = {0, 0, 4}, .along = 2, .turn = 1}),
       fit(
+          "nearly_closed_ball_on_a_plates_edge", "extra samples about a tool whose inside is voted",
+          [thin_plate] { return thin_plate; }, [] { return nearly_closed(solids::sphere(6 * kMm, 24, 12)); },
+          {.place = {11, 0, 0}, .along = 2, .turn = 0.5}),
+      fit(
           "block_through_a_sheet", "no inside on either side of a surface", [] { return sheet(12); },
           [] {
             return block({-4, -4, -4}, {4, 4, 4});

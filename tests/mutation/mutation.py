@@ -52,7 +52,11 @@ HOST = [
 
 
 # What only distances and the planner's questions are answered with.
-PLANNERS = ("compute/native/queries/", "compute/scene/triangle_tree")
+PLANNERS = (
+    "compute/native/queries/",
+    "compute/native/narrow_phase/pair_filter",
+    "compute/scene/triangle_tree",
+)
 
 
 def native():
