@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compute/native/native_backend.h"
+#include "compute/scene/samples.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate.h"
 #include "model/generate/solids.h"
@@ -89,6 +90,34 @@ TEST(Native, AnswersOfAToolWithMoreSamplesThanItKeeps) {
   std::uint32_t pushes = 0;
   for (const FieldBin& bin : found.field.bins) pushes += bin.samples;
   EXPECT_GT(pushes, 1000u);
+  EXPECT_EQ(first_difference(found, expected), "");
+}
+
+/// A voxel that lists more triangles than its samples' places can tell apart: none is listed then, and what
+/// lies in the tool is looked for triangle by triangle.
+TEST(Native, AnswersWhereAVoxelListsMoreThanItsSamplesCanTellApart) {
+  GeometrySettings settings;
+  settings.voxel_size_m = 0.02;
+  settings.sample_spacing_m = 0.001;
+  const auto geometry =
+      build_geometry(solids::box(Vec3(0), Vec3(0.009, 0.009, 0.005), Int3(380, 380, 1)),
+                     solids::box(Vec3(-0.004), Vec3(0.004, 0.004, 0.03), Int3(2, 2, 2)), settings);
+  ASSERT_TRUE(geometry) << geometry.error().sentence;
+  const auto native = make_native_backend(), ref = make_ref_backend();
+  ASSERT_TRUE(native->prepare(*geometry, Plan{}, {}));
+  ASSERT_TRUE(ref->prepare(*geometry, Plan{}, {}));
+  const auto partition = native->partition(false);
+  ASSERT_TRUE(partition);
+  std::uint64_t longest = 0;
+  for (std::size_t i = 1; i < partition->list_begin.size(); ++i)
+    longest = std::max(longest, partition->list_begin[i] - partition->list_begin[i - 1]);
+  ASSERT_GT(longest, VoxelSamples::kLongestList);
+  Contacts found, expected;
+  // In the middle, where its voxels meet.
+  const LatticePose pose = at(*geometry, Vec3(0.004, 0.005, 0.0085), glm::angleAxis(0.2, Vec3(0.6, 0.8, 0)));
+  ASSERT_TRUE(native->query(pose, nullptr, found));
+  ASSERT_TRUE(ref->query(pose, nullptr, expected));
+  EXPECT_TRUE(found.contact);
   EXPECT_EQ(first_difference(found, expected), "");
 }
 
