@@ -319,7 +319,6 @@ void ContactSets::list(IdMarks& statics, FoundSets& out) {
   statics.for_each([&](std::uint32_t id, std::uint32_t marks) {
     const bool hit = (marks & kStaticHit) != 0;
     state.cst += hit ? 1u : 0u;
-    state.bst += !hit && (marks & kStaticListed) != 0 ? 1u : 0u;
     state.est += !hit && (marks & kStaticSampled) != 0 ? 1u : 0u;
     out.statics.push_back({id, marks, kNone, kNone});
   });
