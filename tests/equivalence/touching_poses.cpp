@@ -1,8 +1,8 @@
 #include "tests/equivalence/touching_poses.h"
 
-#include <cmath>
+#include <glm/gtc/quaternion.hpp>
 
-#include "model/lattice/pose.h"
+#include <cmath>
 
 namespace palpate::equivalence {
 namespace {
@@ -89,6 +89,16 @@ LatticePose moved_on(const LatticePose& from, std::int32_t voxel, Random& random
   LatticePose pose = from;
   for (int k = 0; k < 3; ++k) pose.translation[k] += random.between(-(voxel / 2), voxel / 2);
   return pose;
+}
+
+Pose pose_of(const LatticePose& at, const SceneGeometry& geometry) {
+  glm::dmat3 m;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) m[c][r] = at.rotation_q30[r][c] * 0x1p-30;
+  const Quat q = glm::normalize(glm::quat_cast(m));
+  return {
+      geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(at.translation) - q * geometry.tool_centre_m,
+      q};
 }
 
 }  // namespace palpate::equivalence

@@ -1,5 +1,6 @@
 #pragma once
 #include "model/lattice/lattice.h"
+#include "model/lattice/pose.h"
 #include "model/scene/scene_geometry.h"
 #include "tests/equivalence/random.h"
 
@@ -18,5 +19,8 @@ LatticePose quarter_turns(Random& random);
 
 /// Half a voxel or less from where the tool was, turned as before.
 LatticePose moved_on(const LatticePose& from, std::int32_t voxel, Random& random);
+
+/// The tool's pose, metres, of which this is the lattice pose, but for rounding.
+Pose pose_of(const LatticePose& at, const SceneGeometry& geometry);
 
 }  // namespace palpate::equivalence

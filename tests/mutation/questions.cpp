@@ -1,12 +1,12 @@
 #include "tests/mutation/questions.h"
 
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <stdexcept>
 
 #include "model/lattice/rotation.h"
 #include "model/lattice/screw.h"
-#include "tests/equivalence/case.h"
+#include "tests/equivalence/random.h"
+#include "tests/equivalence/touching_poses.h"
 
 namespace palpate::mutation {
 namespace {
@@ -21,16 +21,6 @@ T must(Result<T> result) {
 }
 void must(const Result<void>& result) {
   if (!result) throw std::runtime_error(result.error().sentence);
-}
-
-Pose pose_of(const LatticePose& at, const SceneGeometry& geometry) {
-  glm::dmat3 m;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) m[c][r] = at.rotation_q30[r][c] * 0x1p-30;
-  const Quat q = glm::normalize(glm::quat_cast(m));
-  return {
-      geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(at.translation) - q * geometry.tool_centre_m,
-      q};
 }
 
 /// The furthest of ever longer ways from a time on, `side` 1 or −1, before something stops being so.
@@ -56,7 +46,7 @@ Questions::Questions(CollisionBackend& backend, const SceneGeometry& geometry,
   for (const LatticePose& pose : poses) {
     if (motions_.size() == kMotions) break;
     if (pose.beyond_lattice) continue;
-    const Pose to = pose_of(pose, geometry);
+    const Pose to = equivalence::pose_of(pose, geometry);
     double reach = std::pow(10, 2 * random.unit() - 0.5);  // a third of a voxel to thirty
     for (int tries = 0; tries < kMostTries; ++tries, reach *= 1.5) {
       const Pose from = {

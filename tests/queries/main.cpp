@@ -21,6 +21,7 @@
 #include "model/lattice/screw.h"
 #include "service/cli/pose_input.h"
 #include "service/queries/first_contact.h"
+#include "tests/equivalence/touching_poses.h"
 #include "tests/queries/scene_poses.h"
 
 namespace palpate::queries {
@@ -148,16 +149,6 @@ void distance(const std::string& name, const SceneGeometry& geometry, const std:
                 us[us.size() / 2], us[us.size() * 99 / 100]);
 }
 
-Pose pose_of(const LatticePose& at, const SceneGeometry& geometry) {
-  glm::dmat3 m;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) m[c][r] = at.rotation_q30[r][c] * 0x1p-30;
-  const Quat q = glm::normalize(glm::quat_cast(m));
-  return {
-      geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(at.translation) - q * geometry.tool_centre_m,
-      q};
-}
-
 void motions(const std::string& name, const SceneGeometry& geometry, const std::vector<LatticePose>& poses,
              Counts& counts) {
   constexpr int kClosePoses = 20'000;
@@ -175,7 +166,7 @@ void motions(const std::string& name, const SceneGeometry& geometry, const std::
   Contacts contacts;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (poses[i].beyond_lattice) continue;
-    const Pose to = pose_of(poses[i], geometry);
+    const Pose to = equivalence::pose_of(poses[i], geometry);
     double reach = std::pow(10, 2 * random.unit() - 0.5);  // a third of a voxel to thirty
     Pose from;
     std::uint8_t starts_in = 1;

@@ -8,8 +8,8 @@
 namespace palpate {
 
 /// Marks on ids, three bits each (values 1, 2 and 4), for sets that a frame finds in any order and then wants
-/// by ascending id: marking an id twice costs nothing more, and ids need no sorting, and
-/// so little room that what is asked again and again stays in the caches. Only resize() allocates.
+/// by ascending id: marking an id twice costs nothing more, and ids need no sorting. All of it is so small
+/// that what is asked again and again stays in the caches. Only resize() allocates.
 class IdMarks {
  public:
   /// From now on for ids below `ids`, none marked.

@@ -313,7 +313,7 @@ void ContactSets::mark_lists(IdMarks& statics) {
   }
 }
 
-/// C_s and C_m, and how many there are of each set.
+/// C_s and C_m, and how many there are of CST, EST and the tool's sets.
 void ContactSets::list(IdMarks& statics, FoundSets& out) {
   FrameState& state = out.state;
   statics.for_each([&](std::uint32_t id, std::uint32_t marks) {

@@ -33,11 +33,13 @@ struct PairDistances {
 };
 void distances(const PairLanes& lanes, PairDistances& out);
 
-/// How the one goes on, for a time: steps, and steps a unit of time.
+/// How the one goes on for a time: a point of it gets no further along a direction than its corners' speeds
+/// along that, and `turns` besides, take it.
 struct PairMotion {
-  std::array<std::array<double, 3>, 3> speeds;  ///< of its corners
-  double time, turns;                           ///< what it may turn to in that time
-  double slack;                                 ///< by how much less it is known where it is
+  std::array<std::array<double, 3>, 3> speeds;  ///< of its corners, steps a unit of time
+  double time;                                  ///< units
+  double turns;  ///< steps, by which its way may turn aside in that time, in any direction
+  double slack;  ///< steps, by which all of it may be elsewhere, for its pose is rounded
 };
 /// A bit for each of the eight that the one may meet, as far as their planes tell.
 unsigned may_meet(const PairLanes& lanes, const PairMotion& motion);
