@@ -51,7 +51,7 @@ HOST = [
 ]
 
 
-# What only distances and the planner's questions are answered with.
+# What distances and the planner's questions are answered with: the judge asks them, too.
 PLANNERS = (
     "compute/native/queries/",
     "compute/native/narrow_phase/pair_filter",
@@ -166,12 +166,16 @@ TESTS = {
 TEST_SECONDS = 100  # of the processor's; the longest takes twenty
 
 
+def test_program(judge, test):
+    return pathlib.Path(judge).parent / f"mutant_{test}_test"
+
+
 def asked_of_tests(judge, job):
     """What the tests of parts say of a mutant that the cases did not catch."""
     number = job.command.split()[-1]
     for test in next((TESTS[of] for of in TESTS if job.name.startswith(of)), []):
         run = subprocess.run(
-            ["prlimit", f"--cpu={TEST_SECONDS}", str(pathlib.Path(judge).parent / f"mutant_{test}_test")],
+            ["prlimit", f"--cpu={TEST_SECONDS}", str(test_program(judge, test))],
             env=dict(os.environ, PALPATE_MUTANT=number),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -362,6 +366,12 @@ def main():
             job.row = row[:4]
     waiting = [j for j in jobs if j.row is None] if not options.known else []
     print(f"{len(jobs)} mutants, {len(waiting)} to judge", flush=True)
+
+    for test in sorted({test for tests in TESTS.values() for test in tests}):
+        if not test_program(
+            options.judge, test
+        ).exists():  # one that can't start would look like one that tells
+            sys.exit(f"{test_program(options.judge, test)} is not there: build the target mutant_judge")
 
     lock = threading.Lock()
 
