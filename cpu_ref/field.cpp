@@ -57,15 +57,26 @@ class Summing {
   Summing(const Frame& frame, Contacts& out)
       : frame_(frame), out_(out), shift_(lever_shift(frame.scene.geometry->tool_radius)) {
     const std::int64_t wanted = frame.scene.geometry->contact_samples;
-    std::int64_t deep = 0;
-    for (const std::uint32_t m : out.imt) deep += frame.tool_mesh().grid_samples[m];
-    const auto count = static_cast<std::int64_t>(frame.counting.size() + frame.contact_mobile.size() / 16);
-    if (wanted > 0 && count > wanted)
-      grade_ = std::min<std::int64_t>(binary_log_q8(count) - binary_log_q8(wanted), 256 * kSurfaceLevels);
-    if (wanted > 0 && deep / 4 > wanted)
-      grade_ = std::max(grade_, binary_log_q8(deep / 4) - binary_log_q8(wanted));
-    if (frame.ignored != nullptr) grade_ += frame.ignored->coarser;
-    grade_ = std::min<std::int64_t>(grade_, 256 * kSampleLevels);
+    const auto grade_of = [&](std::int64_t samples) -> std::int64_t {
+      return wanted > 0 && samples > wanted ? binary_log_q8(samples) - binary_log_q8(wanted) : 0;
+    };
+    const auto samples_of = [&](const std::vector<std::uint32_t>& set) {
+      std::int64_t sum = 0;
+      for (const std::uint32_t m : set) sum += frame.tool_mesh().grid_samples[m];
+      return sum;
+    };
+    const auto inside = static_cast<std::int64_t>(frame.counting.size()),
+               tools = static_cast<std::int64_t>(frame.contact_mobile.size());
+    const std::int64_t deep = samples_of(out.imt), most = 256 * kSurfaceLevels;
+    mockup_grade_ = std::max(std::min(grade_of(inside + tools / 16), most), grade_of(deep / 4));
+    // The tool's own samples inside are not known yet: about half of a cut triangle's, and about as many as
+    // the mock-up's.
+    tool_grade_ =
+        std::max(mockup_grade_, std::min(grade_of(deep + std::min(samples_of(out.cmt) / 2, inside)), most));
+    for (std::int64_t* grade : {&mockup_grade_, &tool_grade_}) {
+      if (frame.ignored != nullptr) *grade += frame.ignored->coarser;
+      *grade = std::min<std::int64_t>(*grade, 256 * kSampleLevels);
+    }
   }
 
   /// What a sample inside the other body adds.
@@ -80,13 +91,13 @@ class Summing {
   void mockup_in_tool() {
     const LatticeMesh& mockup = frame_.mockup();
     for (const Sample& sample : frame_.counting)
-      if (const std::uint64_t weight =
-              weight_of(mockup, sample.triangle, sample.point, frame_.scene.geometry->sample_spacing);
+      if (const std::uint64_t weight = weight_of(mockup, sample.triangle, sample.point,
+                                                 frame_.scene.geometry->sample_spacing, mockup_grade_);
           weight != 0)
         mockup_sample(sample.triangle, sample.point, static_cast<std::uint32_t>(weight >> 6));
     if (!frame_.scene.tool_has_inside) return;
     for (const ExtraSample& extra : mockup.extra_samples)
-      if (const std::uint64_t weight = weight_of(extra);
+      if (const std::uint64_t weight = weight_of(extra, mockup_grade_);
           weight != 0 &&
           std::binary_search(frame_.contact_static.begin(), frame_.contact_static.end(), extra.triangle) &&
           inside_tool(frame_, extra.point))
@@ -103,12 +114,12 @@ class Summing {
     for (const std::uint32_t m : frame_.contact_mobile) {
       if (tool.field_weight_q30[m] == 0) continue;
       for_each_sample(tool, m, spacing, everywhere, [&](const Int3& own) {
-        if (const std::uint64_t weight = weight_of(tool, m, own, spacing); weight != 0)
+        if (const std::uint64_t weight = weight_of(tool, m, own, spacing, tool_grade_); weight != 0)
           tool_sample(m, own, static_cast<std::uint32_t>(weight >> 6));
       });
     }
     for (const ExtraSample& extra : tool.extra_samples)
-      if (const std::uint64_t weight = weight_of(extra);
+      if (const std::uint64_t weight = weight_of(extra, tool_grade_);
           weight != 0 &&
           std::binary_search(frame_.contact_mobile.begin(), frame_.contact_mobile.end(), extra.triangle))
         tool_sample(extra.triangle, extra.point, static_cast<std::uint32_t>(weight >> 6));
@@ -177,7 +188,7 @@ class Summing {
 
   /// What a grid sample weighs in this frame, Q30: between what it weighs at one level and at the next.
   std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& sample,
-                          std::int32_t spacing) const {
+                          std::int32_t spacing, std::int64_t grade) const {
     const int axis = mesh.sample_axis[triangle];
     const int level = level_of({floor_divide(std::int64_t{sample[(axis + 1) % 3]}, std::int64_t{spacing}),
                                 floor_divide(std::int64_t{sample[(axis + 2) % 3]}, std::int64_t{spacing})});
@@ -193,21 +204,23 @@ class Summing {
               30)
              << taken;
     };
-    return blended(at);
+    return blended(at, grade);
   }
 
   /// Likewise of an extra sample.
-  std::uint64_t weight_of(const ExtraSample& extra) const {
-    return blended([&](std::int64_t wanted) -> std::uint64_t {
-      if (wanted == 0) return extra.weight_q30;
-      const std::int64_t taken = std::min<std::int64_t>(wanted, kSurfaceLevels);
-      return std::uint64_t{extra.coarse_q30[static_cast<std::size_t>(taken - 1)]} << taken;
-    });
+  std::uint64_t weight_of(const ExtraSample& extra, std::int64_t grade) const {
+    return blended(
+        [&](std::int64_t wanted) -> std::uint64_t {
+          if (wanted == 0) return extra.weight_q30;
+          const std::int64_t taken = std::min<std::int64_t>(wanted, kSurfaceLevels);
+          return std::uint64_t{extra.coarse_q30[static_cast<std::size_t>(taken - 1)]} << taken;
+        },
+        grade);
   }
 
   template <class AtLevel>
-  std::uint64_t blended(AtLevel&& at) const {
-    const std::int64_t whole = grade_ / 256, part = grade_ % 256;
+  static std::uint64_t blended(AtLevel&& at, std::int64_t grade) {
+    const std::int64_t whole = grade / 256, part = grade % 256;
     return (static_cast<std::uint64_t>(256 - part) * at(whole) +
             static_cast<std::uint64_t>(part) * at(whole + 1)) >>
            8;
@@ -269,8 +282,8 @@ class Summing {
   const Frame& frame_;
   Contacts& out_;
   int shift_;
-  std::int64_t grade_ = 0;           ///< the level of samples, Q8
-  std::set<std::uint32_t> touched_;  ///< ignored patches in which something would push
+  std::int64_t mockup_grade_ = 0, tool_grade_ = 0;  ///< the levels of their samples, Q8
+  std::set<std::uint32_t> touched_;                 ///< ignored patches in which something would push
 };
 
 }  // namespace

@@ -105,10 +105,12 @@ Result<std::int32_t> choose_voxel_size(const VoxelSubject& mockup, const VoxelSu
   return best;
 }
 
-Result<std::int32_t> choose_sample_spacing(std::int32_t voxel_size, double step_m,
+Result<std::int32_t> choose_sample_spacing(std::int32_t voxel_size, std::int32_t auto_voxel, double step_m,
                                            std::optional<double> asked_m) {
-  if (!asked_m) return std::max(1, voxel_size / kSamplesPerVoxelSide);
   const double least = std::max(1.0, std::ceil(voxel_size / double{kMaxSamplesPerVoxelSide}));
+  if (!asked_m)
+    return std::max(static_cast<std::int32_t>(least),
+                    std::min(voxel_size, auto_voxel) / kSamplesPerVoxelSide);
   const double most = 8.0 * voxel_size;
   const double steps = std::nearbyint(*asked_m / step_m);
   if (!(steps >= least && steps <= most))

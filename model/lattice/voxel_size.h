@@ -19,7 +19,7 @@ inline constexpr std::int32_t kMaxAutoBricksAlong =
     3500;  ///< of a grid along an axis, which every back end takes (shaders/shared/prepare.h:
            ///< kMostBricksAlong)
 inline constexpr std::int32_t kSamplesPerVoxelSide =
-    4;  ///< default sample spacing: voxel / 4 (METHOD section 4)
+    4;  ///< default sample spacing: a quarter of a voxel (METHOD section 4)
 inline constexpr std::int32_t kMaxSamplesPerVoxelSide =
     63;  ///< a voxel is reached into by at most 64 of its cells
 
@@ -35,9 +35,10 @@ struct VoxelSubject {
 Result<std::int32_t> choose_voxel_size(const VoxelSubject& mockup, const VoxelSubject& tool, double step_m,
                                        std::optional<double> asked_m);
 
-/// Sample spacing in steps. Error (kBadValue): not finite, under a step, under 1/63 of a voxel, or over 8
-/// voxels.
-Result<std::int32_t> choose_sample_spacing(std::int32_t voxel_size, double step_m,
+/// Sample spacing in steps. `asked_m` empty: a quarter of the voxel, or of `auto_voxel`, the size that `auto`
+/// chooses, where that is smaller (docs/VOXEL_SIZE.md). Error (kBadValue): a spacing asked for that is not
+/// finite, under a step, under 1/63 of a voxel, or over 8 voxels.
+Result<std::int32_t> choose_sample_spacing(std::int32_t voxel_size, std::int32_t auto_voxel, double step_m,
                                            std::optional<double> asked_m);
 
 }  // namespace palpate

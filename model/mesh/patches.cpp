@@ -34,12 +34,12 @@ constexpr double kExtraReach = 1.5;
 constexpr double kLeastOfLevel = 16;
 /// Narrower than so many s a side has extra samples (chosen, on pins and needles): a round one, a flat one;
 /// and from which sum of normals over area on it is flat.
-constexpr double kNarrowRound = 4, kNarrow = 1, kFlat = 0.98;
+constexpr double kNarrowRound = 4, kNarrow = 2, kFlat = 0.98;
 /// They lie so many of its widths apart, no closer than this part of s (chosen).
 constexpr double kOfWidth = 0.5, kClosest = 0.25;
 /// A piece whose volume is below so many s of a quarter of its area is thin (chosen: a pin then holds no more
-/// than about 16 of the other body's samples across).
-constexpr double kThin = 4.5;
+/// than about 64 of the other body's samples across).
+constexpr double kThin = 9;
 constexpr double kMostExtras = 1024;    // on one triangle (chosen: memory)
 constexpr double kMostCells = 1 << 20;  // of a triangle whose samples are counted (chosen: milliseconds; what
                                         // so many miss of its area is a thousandth)

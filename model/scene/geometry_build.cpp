@@ -255,8 +255,10 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
   if (!size) return size.error();
   out.mockup_grid = make_grid(out.mockup.box_min, out.mockup.box_max, *size);
   out.tool_grid = make_grid(out.tool.box_min, out.tool.box_max, *size);
-  const Result<std::int32_t> spacing =
-      choose_sample_spacing(*size, out.lattice.step_m, settings.sample_spacing_m);
+  const Result<std::int32_t> auto_size =
+      choose_voxel_size(mockup_subject, tool_subject, out.lattice.step_m, std::nullopt);
+  const Result<std::int32_t> spacing = choose_sample_spacing(*size, auto_size ? *auto_size : *size,
+                                                             out.lattice.step_m, settings.sample_spacing_m);
   if (!spacing) return spacing.error();
   out.sample_spacing = *spacing;
   out.contact_samples = settings.contact_samples;

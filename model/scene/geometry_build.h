@@ -11,7 +11,7 @@ namespace palpate {
 /// Settings of a scene that shape its integers. Empty means `auto`.
 struct GeometrySettings {
   std::optional<double> voxel_size_m{};      ///< rounded to an even number of steps, at least 8
-  std::optional<double> sample_spacing_m{};  ///< default a quarter of a voxel; at least 1/63 of one
+  std::optional<double> sample_spacing_m{};  ///< default: choose_sample_spacing(); at least 1/63 of a voxel
   double smooth_angle_deg = 30;
   std::optional<Vec3>
       centre_of_mass_m{};  ///< tool frame of the file; default: of the volume, of the area when open

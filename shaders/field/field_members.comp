@@ -32,7 +32,7 @@ EDIT(kBindFieldTiles, FieldTile, field_tiles);
 
 #include "shaders/lib/extra_samples.glsl"
 #include "shaders/lib/sample_levels.glsl"
-SAMPLE_WEIGHT(mockup_weight, mockup_levels, scene.mockup.triangles)
+SAMPLE_WEIGHT(mockup_weight, mockup_level, mockup_levels, scene.mockup.triangles)
 EXTRA_SAMPLES(mockup, mockup_extras)
 EXTRA_SAMPLES(tool, tool_extras)
 #include "shaders/lib/group_count.glsl"

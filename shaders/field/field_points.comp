@@ -42,7 +42,7 @@ GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #define PARTITION_BRICKS mockup_bricks
 #include "shaders/lib/partition.glsl"
 #include "shaders/lib/sample_levels.glsl"
-SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
+SAMPLE_WEIGHT(tool_weight, tool_level, tool_levels, scene.tool.triangles)
 
 void list_tool_point(FieldPoint point) {
   const uint32_t at = take_room(kListToolPoints, 1u);
@@ -52,12 +52,12 @@ void list_tool_point(FieldPoint point) {
 }
 
 void take_tool_extra(FieldTile tile, uint32_t i) {
-  const uint32_t weight = uint32_t(extra_weight(tool_extras[i].weights) >> 6);
+  const uint32_t weight = uint32_t(extra_weight(tool_extras[i].weights, tool_level()) >> 6);
   if (weight != 0u) list_tool_point(FieldPoint(world_from_tool(tool_extras[i].point), tile.triangle, weight));
 }
 
 void take_mockup_extra(FieldTile tile, uint32_t i) {
-  const uint32_t weight = uint32_t(extra_weight(mockup_extras[i].weights) >> 6);
+  const uint32_t weight = uint32_t(extra_weight(mockup_extras[i].weights, mockup_level()) >> 6);
   if (weight == 0u) return;
   const uint32_t at = take_room(kListMockupPoints, 1u);
   if (at >= frame_lists[kListMockupPoints].capacity) return;

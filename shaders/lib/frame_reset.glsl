@@ -76,6 +76,6 @@ void leave_anew() {
   if (lane != 0u) return;
   members_groups[0] = placed_groups[0] = none;
   result_groups[0] = items_for(scene.refined != 0u ? kFieldWords : 1u);
-  frame_state = FrameState(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+  frame_state = FrameState(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 }
 #endif

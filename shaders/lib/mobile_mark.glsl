@@ -1,5 +1,5 @@
 // Sets a bit of a tool triangle's state; the first of kMobileSets enters it in C_m. Its samples count as deep
-// while it is in IMT: V_int voxels are marked before pairs. The including file has scene, mobile_state,
+// while it is in IMT, as cut once it is in CMT: V_int voxels are marked before pairs. The including file has scene, mobile_state,
 // contact_mobiles, frame_lists and frame_state.
 #ifndef PALPATE_MOBILE_MARK_GLSL
 #define PALPATE_MOBILE_MARK_GLSL
@@ -9,12 +9,12 @@
 POSED_TABLE(mobile, kBindMobileKeys)
 READ(kBindToolSamples, uint32_t, tool_samples);
 
-void count_deep(uint32_t mobile, uint32_t before, uint32_t bit) {
+void count_samples(uint32_t mobile, uint32_t before, uint32_t bit) {
   if (scene.refined == 0u || (before & bit) != 0u) return;
-  if (bit == kMobileInternal)
-    atomicAdd(frame_state.deep_samples, tool_samples[mobile]);
-  else if (bit == kMobileHit && (before & kMobileInternal) != 0u)
-    atomicAdd(frame_state.deep_samples, 0u - tool_samples[mobile]);
+  if (bit == kMobileInternal) atomicAdd(frame_state.deep_samples, tool_samples[mobile]);
+  if (bit != kMobileHit) return;
+  atomicAdd(frame_state.cut_samples, tool_samples[mobile]);
+  if ((before & kMobileInternal) != 0u) atomicAdd(frame_state.deep_samples, 0u - tool_samples[mobile]);
 }
 
 void mark_mobile(uint32_t mobile, uint32_t bit) {
@@ -25,7 +25,7 @@ void mark_mobile(uint32_t mobile, uint32_t bit) {
     return;
   }
   const uint32_t before = atomicOr(mobile_state[entry], bit);
-  count_deep(mobile, before, bit);
+  count_samples(mobile, before, bit);
   if ((before & kMobileSets) != 0u) return;
   if (BATCH) atomicAdd(frame_state.mobiles, 1u);
   const uint32_t at = take_room(kListContactMobiles, 1u);

@@ -31,25 +31,29 @@ uint32_t levels_beyond(uint32_t count) {
   return wanted != 0u && count > wanted ? log_q8(count) - log_q8(wanted) : 0u;
 }
 
-// Of this frame, Q8.
-uint32_t frame_level() {
-  const uint32_t samples = BATCH ? frame_state.samples : list_count(kListSamples),
+// Of this frame, Q8: of the mock-up's samples, and of the tool's, of which it is guessed how many are inside.
+uvec2 frame_levels() {
+  const uint32_t most = 256u * kMostSurfaceLevel,
+                 samples = BATCH ? frame_state.samples : list_count(kListSamples),
                  mobiles = BATCH ? frame_state.mobiles : list_count(kListContactMobiles),
-                 by_size = max(min(levels_beyond(samples + mobiles / 16u), 256u * kMostSurfaceLevel),
-                               levels_beyond(frame_state.deep_samples / 4u));
-  return min(by_size + INPUT(coarser), 256u * kMostSampleLevel);
+                 deep = frame_state.deep_samples, cut = min(frame_state.cut_samples / 2u, samples),
+                 mockup = max(min(levels_beyond(samples + mobiles / 16u), most), levels_beyond(deep / 4u)),
+                 tool = max(mockup, min(levels_beyond(deep + cut), most));
+  return min(uvec2(mockup, tool) + INPUT(coarser), uvec2(256u * kMostSampleLevel));
 }
+uint32_t mockup_level() { return frame_levels().x; }
+uint32_t tool_level() { return frame_levels().y; }
 
-// Q30. `weights`: an extra sample's.
-uint64_t extra_weight(uint32_t weights[kMostSurfaceLevel + 1u]) {
-  const uint32_t now = frame_level(), part = now & 255u, level = min(now >> 8, kMostSurfaceLevel),
+// Q30. `weights`: an extra sample's; `now`: of its body.
+uint64_t extra_weight(uint32_t weights[kMostSurfaceLevel + 1u], uint32_t now) {
+  const uint32_t part = now & 255u, level = min(now >> 8, kMostSurfaceLevel),
                  next = min(level + 1u, kMostSurfaceLevel);
   return (uint64_t(256u - part) * (uint64_t(weights[level]) << level) +
           uint64_t(part) * (uint64_t(weights[next]) << next)) >>
          8;
 }
 
-#define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                               \
+#define SAMPLE_WEIGHT(NAME, LEVEL, LEVELS, TRIANGLES)                                                        \
   uint64_t NAME##_at(uint32_t base, uint32_t place, uint32_t level, uint32_t wanted) {                       \
     const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS[words]);   \
     if (level < taken) return 0ul;                                                                           \
@@ -57,7 +61,7 @@ uint64_t extra_weight(uint32_t weights[kMostSurfaceLevel + 1u]) {
   }                                                                                                          \
   /* Q30. `base`: the triangle's field weight. */                                                            \
   uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij) {                                                \
-    const uint32_t place = LEVELS[triangle], now = frame_level(), part = now & 255u;                         \
+    const uint32_t place = LEVELS[triangle], now = LEVEL(), part = now & 255u;                               \
     if (place == 0u || now == 0u) return uint64_t(base);                                                     \
     const uint32_t level = level_of_cell(ij);                                                                \
     return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) +                                \

@@ -215,7 +215,7 @@ struct FrameState {
                      // the end (lib/list_room.glsl: in_contact())
   uint32_t meets;    // 1: something was marked that is in CST, IMT or EST
   uint32_t cst, bst, est, cmt, bmt, imt;      // sizes of the sets
-  uint32_t deep_samples;                      // of triangles in IMT: kBindToolSamples (refined)
+  uint32_t deep_samples, cut_samples;         // of triangles in IMT, in CMT: kBindToolSamples (refined)
   uint32_t pairs, samples, statics, mobiles;  // of a batch's pose: how many it has in the lists of all poses
 };
 // Samples are rounded by less than a step, transformed corners too. Bodies that keep this distance have no

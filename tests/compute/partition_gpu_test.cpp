@@ -22,6 +22,8 @@ class Partition : public GpuTest {
   void prepare(const Mesh& mockup, double voxel_m, const Mesh& tool = solids::box(Vec3(-0.02), Vec3(0.02))) {
     GeometrySettings settings;
     settings.voxel_size_m = voxel_m;
+    settings.sample_spacing_m =
+        voxel_m / 4;  // for so small a tool they would lie closer, in tens of millions
     auto geometry = build_geometry(mockup, tool, settings);
     ASSERT_TRUE(geometry) << geometry.error().sentence;
     geometry_ = std::move(*geometry);

@@ -132,6 +132,26 @@ TEST(VoxelSize, AutoDependsOnGeometryAloneAndIsEven) {
   EXPECT_EQ(one->tool_grid.size, one->mockup_grid.size);
 }
 
+// So a coarse voxel, set to save memory, leaves the force as it is.
+TEST(VoxelSize, SamplesLieNoFurtherApartWhereVoxelsAreCoarse) {
+  const Mesh mockup = solids::sphere(0.3, 100, 50), tool = solids::sphere(0.05, 40, 20);
+  const auto usual = build_geometry(mockup, tool, {});
+  ASSERT_TRUE(usual);
+  const double voxel = usual->mockup_grid.size * usual->lattice.step_m;
+  for (const double times : {0.5, 2.0, 15.0, 20.0}) {
+    const auto built = build_geometry(mockup, tool, {.voxel_size_m = times * voxel});
+    ASSERT_TRUE(built) << times;
+    const double steps =
+        usual->lattice.step_m / built->lattice.step_m;  // of this lattice, a step of the usual
+    const std::int32_t size = built->mockup_grid.size;
+    EXPECT_NEAR(size, steps * times * usual->mockup_grid.size, 1) << times;
+    const double spacing = times < 1    ? size / 4
+                           : times < 16 ? steps * usual->sample_spacing
+                                        : std::ceil(size / 63.0);
+    EXPECT_NEAR(built->sample_spacing, spacing, steps) << times;
+  }
+}
+
 TEST(VoxelSize, SettingsBeyondTheLimitsAreRefused) {
   const Mesh mockup = solids::box(Vec3(0), Vec3(1)), tool = solids::sphere(0.05);
   const auto refused = [&](std::optional<double> voxel, std::optional<double> spacing) {

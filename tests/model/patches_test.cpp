@@ -440,6 +440,19 @@ TEST(ExtraSamples, OfOneLevelLieInTheCubesOfThoseTheyStandFor) {
   }
 }
 
+TEST(ExtraSamples, StandForFlatSidesNarrowerThanTwoSpacings) {
+  // Its long sides are 1 mm wide: area over the diagonal is that, but for a part in a thousand.
+  const auto of_sides = [](double spacing) {
+    LatticeMesh mesh = build(solids::box(Vec3(0), Vec3(0.001, 0.02, 0.03), Int3(1)));
+    weigh_for_field(static_cast<std::int32_t>(spacing / kStep), mesh);
+    return std::ranges::count_if(mesh.extra_samples, [&](const ExtraSample& extra) {
+      return std::abs(normal_of(mesh, extra.triangle).x) < 0.5;
+    });
+  };
+  EXPECT_EQ(of_sides(0.00049), 0);
+  EXPECT_GT(of_sides(0.00052), 300);  // e is no more than a spacing: 100 mm² over its square
+}
+
 /// 1 where all triangles are flagged as thin, 0 where none is.
 double thin_part(const LatticeMesh& mesh) {
   return static_cast<double>(std::ranges::count_if(
@@ -447,12 +460,12 @@ double thin_part(const LatticeMesh& mesh) {
          static_cast<double>(mesh.flags.size());
 }
 
-TEST(ThinPieces, AreNarrowerThanFourAndAHalfSpacings) {
+TEST(ThinPieces, AreNarrowerThanNineSpacings) {
   // 4 V / A = 4 · 2 · 3 · 60 / (2 · (2 · 3 + 2 · 60 + 3 · 60)) mm.
   const double width = 1440.0 / 612 * 1e-3;
   const auto marked = [&](double of_width) {
     LatticeMesh mesh = build(solids::box(Vec3(0), Vec3(0.002, 0.003, 0.06), Int3(3)));
-    mark_thin_pieces(static_cast<std::int32_t>(of_width * width / (4.5 * kStep)), mesh);
+    mark_thin_pieces(static_cast<std::int32_t>(of_width * width / (9 * kStep)), mesh);
     return thin_part(mesh);
   };
   EXPECT_EQ(marked(0.99), 0);  // corners are rounded to a micrometre

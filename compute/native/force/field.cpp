@@ -182,8 +182,8 @@ std::uint32_t PressureField::own_count(std::uint32_t mobile) const {
   if (own_begin_.empty() || tool.field_weight_q30[mobile] == 0) return 0;
   const std::uint32_t begin = own_begin_[mobile], end = own_begin_[mobile + 1],
                       place = tool.levels_of[mobile];
-  if (level_ == 0 || place == 0) return end - begin;
-  const std::uint32_t least = std::min(level_, tool.side_levels[place - 1].coarsest);
+  if (tool_level_.whole == 0 || place == 0) return end - begin;
+  const std::uint32_t least = std::min(tool_level_.whole, tool.side_levels[place - 1].coarsest);
   const auto first = own_levels_.begin() + begin;
   return static_cast<std::uint32_t>(
       std::upper_bound(first, own_levels_.begin() + end, least, std::greater{}) - first);
@@ -202,45 +202,56 @@ void PressureField::work_out_tool_samples(std::uint32_t mobile, Take&& take) con
       [&](const Int3& p, std::int64_t i, std::int64_t j) { take(p, SampleGrid::level(i, j)); });
 }
 
-void PressureField::choose_level(const FoundSets& found, std::uint32_t coarser) {
-  std::uint64_t deep = 0;  // samples of triangles in IMT: the tool's that lie deep inside
-  if (found.state.imt != 0)
-    for (const MobileResult& result : found.mobiles)
-      if ((result.state & (kMobileHit | kMobileInternal)) == kMobileInternal)
-        deep += geometry_->tool.grid_samples[result.id];
-  const std::uint64_t wanted = geometry_->contact_samples;
+/// The mock-up's samples inside the tool are counted already; the tool's inside the mock-up are guessed:
+/// those of triangles that lie deep inside, and half of those of triangles that are cut, but no more than the
+/// mock-up has in there, for of a large triangle only a corner may be inside.
+void PressureField::choose_levels(const FoundSets& found, std::uint32_t coarser) {
+  std::uint64_t deep = 0, cut = 0;  // samples of triangles in IMT and in CMT
+  for (const MobileResult& result : found.mobiles)
+    if ((result.state & kMobileHit) != 0)
+      cut += geometry_->tool.grid_samples[result.id];
+    else if ((result.state & kMobileInternal) != 0)
+      deep += geometry_->tool.grid_samples[result.id];
+  const std::uint64_t wanted = geometry_->contact_samples, counted = found.samples.size();
   const auto beyond = [&](std::uint64_t count) {
     return wanted != 0 && count > wanted ? log_q8(count) - log_q8(wanted) : 0;
   };
-  const std::uint32_t by_size = std::max(std::min(beyond(found.samples.size() + found.mobiles.size() / 16),
-                                                  256U * kSurfaceLevels),
-                                         beyond(deep / 4)),
-                      level = std::min(by_size + coarser, Ignored::kCoarsest);
-  level_ = level >> 8;
-  between_ = level & 255;
+  constexpr std::uint32_t kMostBySize = 256 * kSurfaceLevels;
+  const std::uint32_t of_mockup = std::max(std::min(beyond(counted + found.mobiles.size() / 16), kMostBySize),
+                                           beyond(deep / 4)),
+                      of_tool = std::max(of_mockup,
+                                         std::min(beyond(deep + std::min(cut / 2, counted)), kMostBySize));
+  const auto level = [&](std::uint32_t by_size) -> Level {
+    const std::uint32_t all = std::min(by_size + coarser, Ignored::kCoarsest);
+    return {all >> 8, all & 255};
+  };
+  mockup_level_ = level(of_mockup);
+  tool_level_ = level(of_tool);
 }
 
 /// Of a grid sample in this frame, Q30.
-std::uint64_t PressureField::weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const {
+std::uint64_t PressureField::weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level,
+                                       const Level& taken) {
   const std::uint32_t place = mesh.levels_of[triangle];
-  if (place == 0 || (level_ | between_) == 0) return mesh.field_weight_q30[triangle];
+  if (place == 0 || taken.all()) return mesh.field_weight_q30[triangle];
   const SideLevels& side = mesh.side_levels[place - 1];
-  const auto at = [&](std::uint32_t taken) -> std::uint64_t {
-    taken = std::min(taken, side.coarsest);
-    if (level < static_cast<int>(taken)) return 0;
-    return taken == 0 ? mesh.field_weight_q30[triangle]
-                      : ((std::uint64_t{mesh.field_weight_q30[triangle]} * side.factor_q30[taken - 1]) >> 30)
-                            << taken;
+  const auto at = [&](std::uint32_t wanted) -> std::uint64_t {
+    wanted = std::min(wanted, side.coarsest);
+    if (level < static_cast<int>(wanted)) return 0;
+    return wanted == 0
+               ? mesh.field_weight_q30[triangle]
+               : ((std::uint64_t{mesh.field_weight_q30[triangle]} * side.factor_q30[wanted - 1]) >> 30)
+                     << wanted;
   };
-  return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
+  return ((256 - taken.between) * at(taken.whole) + taken.between * at(taken.whole + 1)) >> 8;
 }
 
-std::uint64_t PressureField::weight_of(const ExtraSample& extra) const {
+std::uint64_t PressureField::weight_of(const ExtraSample& extra, const Level& taken) {
   const auto at = [&](std::uint32_t level) -> std::uint64_t {
     level = std::min<std::uint32_t>(level, kSurfaceLevels);
     return level == 0 ? extra.weight_q30 : std::uint64_t{extra.coarse_q30[level - 1]} << level;
   };
-  return ((256 - between_) * at(level_) + between_ * at(level_ + 1)) >> 8;
+  return ((256 - taken.between) * at(taken.whole) + taken.between * at(taken.whole + 1)) >> 8;
 }
 
 bool PressureField::is_ignored(std::uint32_t static_id, Lane& lane) const {
@@ -352,7 +363,7 @@ void PressureField::sum_samples(const LatticePose& pose, std::span<const FrameSa
     const double along = (coordinate + 0.5) * per_step;
     return static_cast<std::int64_t>(along) - (along < 0 ? 1 : 0);
   };
-  const bool all = (level_ | between_) == 0;
+  const bool all = mockup_level_.all();
   for (const FrameSample& sample : samples) {
     const std::uint32_t id = sample.static_id;
     const int axis = mockup.sample_axis[id];
@@ -360,7 +371,7 @@ void PressureField::sum_samples(const LatticePose& pose, std::span<const FrameSa
                           ? 0
                           : SampleGrid::level(cell(sample.point[axis == 2 ? 0 : axis + 1]),
                                               cell(sample.point[axis == 0 ? 2 : axis - 1]));
-    if (const std::uint64_t weight = weight_of(mockup, id, level); weight != 0)
+    if (const std::uint64_t weight = weight_of(mockup, id, level, mockup_level_); weight != 0)
       push_from_mockup(pose, id, sample.point, weight, carrier_of(carriers, id), lane);
   }
 }
@@ -374,10 +385,10 @@ void PressureField::sum_extras(const LatticePose& pose, ContactSets& sets,
   lane.extras.clear();
   const std::array<Int3, 2> box = sets.reach(pose);
   for (const StaticResult& result : statics)
-    mockup_extras_.for_each(result.id, level_, [&](const ExtraSample& extra) {
+    mockup_extras_.for_each(result.id, mockup_level_.whole, [&](const ExtraSample& extra) {
       const Int3& p = extra.point;
       if (glm::any(glm::lessThan(p, box[0])) || glm::any(glm::greaterThan(p, box[1]))) return;
-      const std::uint64_t weight = weight_of(extra);
+      const std::uint64_t weight = weight_of(extra, mockup_level_);
       if (weight == 0) return;
       lane.asked.push_back({extra.point, static_cast<std::uint32_t>(lane.extras.size())});
       lane.extras.push_back({result.id, weight});
@@ -432,7 +443,7 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
     int level = -1;  // of the sample before
     std::uint64_t weight = 0;
     const auto weighed = [&](const Int3& p, int of) {
-      if (of != level) weight = weight_of(own, result.id, level = of);
+      if (of != level) weight = weight_of(own, result.id, level = of, tool_level_);
       push(p, weight);
     };
     const std::uint32_t first = i == begin.mobile ? begin.sample : 0;
@@ -444,8 +455,9 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
       for (std::uint32_t k = all + first; k < all + last; ++k) weighed(own_samples_[k], own_levels_[k]);
     }
     if (first == 0)
-      tool_extras_.for_each(result.id, level_,
-                            [&](const ExtraSample& extra) { push(extra.point, weight_of(extra)); });
+      tool_extras_.for_each(result.id, tool_level_.whole, [&](const ExtraSample& extra) {
+        push(extra.point, weight_of(extra, tool_level_));
+      });
   }
 }
 
@@ -457,7 +469,7 @@ std::uint64_t PressureField::looks() const {
 
 void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundSets& found,
                         const Wanted& wanted, FrameHelper* helper, Contacts& out) {
-  choose_level(found, wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
+  choose_levels(found, wanted.ignored != nullptr ? wanted.ignored->coarser : 0);
   out.carriers.clear();
   ignored_ = wanted.ignored;
   for (Lane& lane : lanes_) {
@@ -474,7 +486,7 @@ void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundS
   // mock-up's samples, so where they are wanted these are one part.
   const auto parts_of = [&](std::size_t count) {
     if (wanted.carriers) return std::size_t{1};
-    const std::size_t size = kPart << level_;
+    const std::size_t size = kPart << mockup_level_.whole;
     return std::min((count + size - 1) / size, kMostOfABody);
   };
   const std::span<const StaticResult> statics = tool_has_inside_ && !mockup_extras_.empty()

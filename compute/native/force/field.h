@@ -95,9 +95,15 @@ class PressureField {
   bool is_ignored(std::uint32_t static_id, Lane& lane) const;
   template <class Take>
   void work_out_tool_samples(std::uint32_t mobile, Take&& take) const;
-  void choose_level(const FoundSets& found, std::uint32_t coarser);
-  std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level) const;
-  std::uint64_t weight_of(const ExtraSample& extra) const;
+  /// Of one body's samples in a frame: a level, and how far to the next, 1/256.
+  struct Level {
+    std::uint32_t whole = 0, between = 0;
+    bool all() const { return (whole | between) == 0; }
+  };
+  void choose_levels(const FoundSets& found, std::uint32_t coarser);
+  static std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level,
+                                 const Level& taken);
+  static std::uint64_t weight_of(const ExtraSample& extra, const Level& taken);
 
   const SceneGeometry* geometry_ = nullptr;
   Extras mockup_extras_, tool_extras_;
@@ -106,11 +112,10 @@ class PressureField {
   std::vector<std::uint32_t>
       own_begin_;  ///< by tool triangle, and one more; empty: the tool's samples are too many to list
   std::vector<Int3> own_samples_;  ///< of the tool, in its lattice frame; of a triangle the coarsest first
-  std::vector<std::uint8_t> own_levels_;  ///< of these
-  std::uint32_t level_ = 0,
-                between_ = 0;         ///< of this frame: the level of samples, and how far to the next, 1/256
-  const Ignored* ignored_ = nullptr;  ///< of this frame
-  std::vector<ToolPart> tool_parts_;  ///< of this frame
+  std::vector<std::uint8_t> own_levels_;         ///< of these
+  Level mockup_level_, tool_level_;              ///< of this frame
+  const Ignored* ignored_ = nullptr;             ///< of this frame
+  std::vector<ToolPart> tool_parts_;             ///< of this frame
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
 };
 
