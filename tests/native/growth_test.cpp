@@ -126,8 +126,8 @@ TEST(Growth, ASwallowedToolIsAskedAtFewOfItsSamples) {
     for (const FieldBin& bin : contacts.field.bins) out += static_cast<double>(bin.give);
     return out;
   };
-  // A level's factors give each side its area; its sum of normals may be off by a 16th of that where the level
-  // is still taken (EXACTNESS section 4).
+  // A level's factors give each side its area; its sum of normals may be off by a 16th of that where the
+  // level is still taken (EXACTNESS section 4).
   EXPECT_NEAR(area(few) / area(all), 1, 1.0 / 16);
 }
 
