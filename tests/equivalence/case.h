@@ -70,6 +70,17 @@ inline Case coarser(Case c) {
   return c;
 }
 
+/// The same where all samples count, however large a contact is.
+inline Case all_samples(Case c) {
+  c.name += "_all_samples";
+  c.make = [make = c.make](std::uint64_t seed) {
+    auto scene = make(seed);
+    if (scene) scene->geometry.contact_samples = 0;
+    return scene;
+  };
+  return c;
+}
+
 inline constexpr int kChain = 8;  ///< poses of a chain of an `ignoring` case
 
 /// All cases, in the order of their hashes.

@@ -149,6 +149,7 @@ std::vector<Case> solid_cases() {
       killer(paper(ball_on_block)),
       deep_in_block,
       killer(coarser(deep_in_block)),
+      killer(all_samples(deep_in_block)),
       killer(boxes),
       paper(boxes),
       shared(solid(
