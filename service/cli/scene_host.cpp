@@ -42,9 +42,8 @@ std::string prepared_text(const HostedScene& prepared) {
   const SceneGeometry& geometry = prepared.loaded.geometry;
   const double step_mm = 1000 * geometry.lattice.step_m;
   return fmt::format(
-      "mock-up {} triangles, tool {}, voxels of {:.3g} mm, samples {:.3g} mm apart, {} on {}; {} in {:.2f} "
-      "s, "
-      "prepared in {:.2f} s",
+      "mock-up {} triangles, tool {}, voxels of {:.3g} mm, samples {:.3g} mm apart, {} on {}; "
+      "{} in {:.2f} s, prepared in {:.2f} s",
       count_text(geometry.mockup.triangles.size()), count_text(geometry.tool.triangles.size()),
       step_mm * geometry.mockup_grid.size, step_mm * geometry.sample_spacing,
       bytes_text(prepared.backend->memory_bytes()), prepared.backend->device(),

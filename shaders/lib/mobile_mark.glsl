@@ -1,6 +1,6 @@
 // Sets a bit of a tool triangle's state; the first of kMobileSets enters it in C_m. Its samples count as deep
-// while it is in IMT, as cut once it is in CMT: V_int voxels are marked before pairs. The including file has scene, mobile_state,
-// contact_mobiles, frame_lists and frame_state.
+// while it is in IMT, as cut once it is in CMT: V_int voxels are marked before pairs. The including file has
+// scene, mobile_state, contact_mobiles, frame_lists and frame_state.
 #ifndef PALPATE_MOBILE_MARK_GLSL
 #define PALPATE_MOBILE_MARK_GLSL
 #include "shaders/lib/list_room.glsl"
