@@ -495,6 +495,20 @@ TEST(ThinPieces, AreClosedAndTellByThemselves) {
   EXPECT_EQ(thin_part(mesh), 0);
 }
 
+TEST(ThinPieces, AreNoHollows) {
+  // As narrow as a pin, but a hole in a block: what lies about it has samples enough.
+  Mesh hollow = solids::box(Vec3(-0.025), Vec3(0.025), Int3(1));
+  const auto before = static_cast<std::uint32_t>(hollow.vertices.size());
+  const Mesh pin = solids::box(Vec3(0), Vec3(0.001, 0.001, 0.02), Int3(1));
+  hollow.vertices.insert(hollow.vertices.end(), pin.vertices.begin(), pin.vertices.end());
+  for (const auto& [a, b, c] : pin.triangles)
+    hollow.triangles.push_back({a + before, c + before, b + before});
+  hollow.parts = {{"hollow", 0, static_cast<std::uint32_t>(hollow.triangles.size())}};
+  LatticeMesh mesh = build(hollow);
+  mark_thin_pieces(kSpacing, mesh);
+  EXPECT_EQ(thin_part(mesh), 0);
+}
+
 TEST(Gyration, OfABoxAboutItsMiddleAndAboutACorner) {
   // A cube's surface of side 2a about its middle: a² for the face's own axis, a²/3 for each of the others.
   const LatticeMesh cube = build(solids::box(Vec3(-0x1p-6), Vec3(0x1p-6), Int3(2, 3, 5)));

@@ -11,18 +11,10 @@
 #include "model/contact/response.h"
 #include "tests/equivalence/contacts_difference.h"
 #include "tests/equivalence/touching_poses.h"
+#include "tests/mutation/must.h"
 
 namespace palpate::mutation {
 namespace {
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().sentence);
-  return std::move(*result);
-}
-void must(const Result<void>& result) {
-  if (!result) throw std::runtime_error(result.error().sentence);
-}
 
 bool go_on(const char*, double) { return true; }
 

@@ -1,27 +1,18 @@
 #include "tests/mutation/questions.h"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "model/lattice/rotation.h"
 #include "model/lattice/screw.h"
 #include "tests/equivalence/random.h"
 #include "tests/equivalence/touching_poses.h"
+#include "tests/mutation/must.h"
 
 namespace palpate::mutation {
 namespace {
 
 constexpr std::size_t kMotions = 4;  // of a case
 constexpr int kMostTries = 12;       // of starts, the further the more: a free one is wanted
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().sentence);
-  return std::move(*result);
-}
-void must(const Result<void>& result) {
-  if (!result) throw std::runtime_error(result.error().sentence);
-}
 
 /// The furthest of ever longer ways from a time on, `side` 1 or −1, before something stops being so.
 template <class Holds>
