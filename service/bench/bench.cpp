@@ -339,7 +339,8 @@ class Benches {
         "words what breaks a limit. A scene's path is divided evenly into --frames poses.\n"
         "Poses are asked each by itself; hand_step and hand_reversals are a scene's largest step and turns "
         "for a "
-        "hand that goes along, each balance looked for from the one before.");
+        "hand that goes along, each balance looked for from the one before, with the scene's `start` as in a "
+        "run.");
     measure(*force, bench_force);
   }
 

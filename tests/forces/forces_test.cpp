@@ -112,7 +112,7 @@ TEST(ForceJudge, TellsAHandFromLonePosesWhereAWallHasTwoSides) {
   Result<ForceFigures> figures = judge_path(subject, *geometry, *backend, Profile::kRefined, kForceStiffness);
   ASSERT_TRUE(figures) << figures.error().sentence;
   EXPECT_FALSE(figures->hand_step.has_value());
-  ASSERT_TRUE(judge_hand(subject, *geometry, *backend, kForceStiffness, *figures));
+  ASSERT_TRUE(judge_hand(subject, *geometry, *backend, kForceStiffness, StartContacts::kAsIs, *figures));
   EXPECT_GE(figures->reversals, 1u);
   EXPECT_GT(figures->largest_step, kMostStep);
   EXPECT_EQ(figures->hand_reversals, 0u);
@@ -121,6 +121,35 @@ TEST(ForceJudge, TellsAHandFromLonePosesWhereAWallHasTwoSides) {
   // which is a twentieth of a step.
   EXPECT_LT(*figures->hand_step, 1.05);
   EXPECT_EQ(figures->unsettled, 0u);
+}
+
+TEST(ForceJudge, LeavesOutForAHandWhatTouchesAtTheStartUntilItHasOpened) {
+  const Mesh wall = solids::box(Vec3(-0.05, -0.05, -0.02), Vec3(0.05, 0.05, 0), Int3(20, 20, 4)),
+             cube = solids::box(Vec3(-0.005), Vec3(0.005), Int3(6, 6, 6));
+  const auto geometry = build_geometry(wall, cube, {});
+  ASSERT_TRUE(geometry);
+  const auto backend = make_native_backend();
+  ASSERT_TRUE(backend->prepare(*geometry, Plan{}, {}));
+  // Half a millimetre in the wall, and on.
+  ForceCase subject{.name = "cube in a wall", .mockup = {}, .tool = {}, .path = {}};
+  const auto go = [&](double from_mm, double to_mm) {
+    constexpr int kPoses = 20;
+    for (int i = 0; i <= kPoses; ++i)
+      subject.path.push_back(
+          {Vec3(0.001, 0.002, 0.005 + 1e-3 * (from_mm + (to_mm - from_mm) * i / kPoses)), Quat(1, 0, 0, 0)});
+  };
+  const auto hand_step = [&](StartContacts start) {
+    ForceFigures figures;
+    EXPECT_TRUE(judge_hand(subject, *geometry, *backend, kForceStiffness, start, figures));
+    return figures.hand_step.value_or(-1);
+  };
+  go(-0.5, -2);
+  EXPECT_GT(hand_step(StartContacts::kAsIs), 0.3);
+  EXPECT_EQ(hand_step(StartContacts::kIgnoreInitial), 0);
+  // Out and in again.
+  go(-2, 1);
+  go(1, -1);
+  EXPECT_GT(hand_step(StartContacts::kIgnoreInitial), 0.3);
 }
 
 }  // namespace

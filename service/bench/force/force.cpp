@@ -96,7 +96,9 @@ Result<void> bench_force(const BenchOptions& options, const Parts& parts) {
         judge_path(subject, scene.loaded.geometry, *scene.backend, profile, stiffness);
     if (!figures) return figures.error();
     if (profile == Profile::kRefined)
-      if (auto done = judge_hand(subject, scene.loaded.geometry, *scene.backend, stiffness, *figures); !done)
+      if (auto done = judge_hand(subject, scene.loaded.geometry, *scene.backend, stiffness,
+                                 scene.loaded.scene.start_contacts, *figures);
+          !done)
         return done.error();
     add_row(table, subject.name, scene.backend->name(), profile, 1, *figures);
     charts.push_back(chart_of(subject.name));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "model/lattice/rotation.h"
 #include "model/scene/geometry_build.h"
@@ -31,15 +32,24 @@ class Asking {
         stiffness_(stiffness),
         lone_(geometry, stiffness) {}
 
+  /// From here on what touches at the next pose is left out, patch by patch, until it has opened once.
+  void ignore_start() {
+    ignored_.patches.resize(geometry_.mockup.patch_count);
+    std::iota(ignored_.patches.begin(), ignored_.patches.end(), 0u);
+  }
+
   /// `going_on`: from the balance of the pose before.
   Result<Answer> at(const Pose& pose, bool going_on = false) {
     const Result<LatticePose> rounded = to_lattice(pose, geometry_);
     if (!rounded) return rounded.error();
-    if (auto done = backend_.query(*rounded, nullptr, contacts_); !done) return done.error();
+    if (auto done = backend_.query(*rounded, profile_ == Profile::kRefined ? &ignored_ : nullptr, contacts_);
+        !done)
+      return done.error();
+    if (!contacts_.truncated) ignored_.patches = contacts_.ignored_touched;
     respond(contacts_, *rounded, geometry_, profile_, stiffness_, response_);
     Answer out{response_.wrench, response_.flags, response_.contact};
     if (profile_ == Profile::kRefined) {
-      if (auto done = lone_.feel(backend_, nullptr, pose, response_, going_on); !done) return done.error();
+      if (auto done = lone_.feel(backend_, &ignored_, pose, response_, going_on); !done) return done.error();
       if (response_.felt) out.wrench = response_.felt->wrench;
       out.flags = response_.flags;
     }
@@ -52,6 +62,7 @@ class Asking {
   Profile profile_;
   double stiffness_;
   LoneQuery lone_;
+  Ignored ignored_;
   Contacts contacts_;
   ContactResponse response_;
 };
@@ -241,8 +252,9 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
 }
 
 Result<void> judge_hand(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend,
-                        double stiffness, ForceFigures& out) {
+                        double stiffness, StartContacts start, ForceFigures& out) {
   Asking asking(geometry, backend, Profile::kRefined, stiffness);
+  if (start == StartContacts::kIgnoreInitial) asking.ignore_start();
   out.hand_step = 0;
   out.hand_reversals = 0;
   const double floor = 0.01 * out.largest_n;

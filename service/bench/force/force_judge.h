@@ -5,6 +5,7 @@
 
 #include "model/collision_backend.h"
 #include "model/contact/response.h"
+#include "model/scene/scene.h"
 #include "service/bench/force/force_cases.h"
 
 namespace palpate {
@@ -43,13 +44,14 @@ inline constexpr double kMostStep = 3, kMostLoop = 0.03, kMostAntisymmetry = 0.0
 Result<ForceFigures> judge_force(const ForceCase& subject, CollisionBackend& backend, Profile profile,
                                  double voxel_scale = 1);
 
-/// The same for geometry that is prepared already. `ignored` may be null.
+/// The same for geometry that is prepared already.
 Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& geometry,
                                 CollisionBackend& backend, Profile profile, double stiffness);
 
-/// Adds `hand_step` and `hand_reversals` to the figures of a path in `refined`.
+/// Adds `hand_step` and `hand_reversals` to the figures of a path in `refined`. `start`: as for a run, what
+/// touches at the path's first pose is left out until it has opened, or not.
 Result<void> judge_hand(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend,
-                        double stiffness, ForceFigures& out);
+                        double stiffness, StartContacts start, ForceFigures& out);
 
 /// `count` poses along a path, evenly by its numbers, straight between two and turned evenly.
 std::vector<Pose> finer_path(const std::vector<Pose>& path, std::size_t count);
