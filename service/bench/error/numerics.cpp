@@ -98,7 +98,7 @@ class NumericsBench {
       return r;
     if (auto r = made("patch_aspect", "length over width of the patch", {1, 4, 16, 64, 256}, long_patch); !r)
       return r;
-    if (auto r = made("patches", "separate patches", {1, 64, 576, 2304},
+    if (auto r = made("patches", "separate patches", {1, 16, 144, 576},
                       [](double n) { return many_patches(static_cast<int>(std::lround(std::sqrt(n)))); });
         !r)
       return r;

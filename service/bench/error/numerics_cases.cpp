@@ -64,16 +64,17 @@ NumericsScene long_patch(double aspect) {
 
 NumericsScene many_patches(int count) {
   NumericsScene out;
-  const double pad = 2 * kMm, pitch = 4 * kMm, deep = 0.2 * kMm, half = count * pitch / 2;
+  // Pads so wide that they are no thin pieces, which would speak for themselves (EXACTNESS section 4).
+  const double pad = 4 * kMm, tall = 30 * kMm, pitch = 8 * kMm, deep = 0.2 * kMm, half = count * pitch / 2;
   for (int y = 0; y < count; ++y)
     for (int x = 0; x < count; ++x) {
-      const Vec3 low(x * pitch - half, y * pitch - half, -10 * kMm);
-      solids::append(out.mockup, solids::box(low, low + Vec3(pad, pad, 10 * kMm)), "");
+      const Vec3 low(x * pitch - half, y * pitch - half, -tall);
+      solids::append(out.mockup, solids::box(low, low + Vec3(pad, pad, tall)), "");
     }
   const double side = 2 * half + pitch;  // a margin that no pad reaches
   out.tool = solids::box(Vec3(-side / 2, -side / 2, 0), Vec3(side / 2, side / 2, 5 * kMm));
   out.pose = {kAside + Vec3(0, 0, -deep), Quat(1, 0, 0, 0)};
-  out.voxel = 1 * kMm, out.spacing = 0.4 * kMm;
+  out.voxel = 2 * kMm, out.spacing = 0.4 * kMm;
   out.reference_area = area_of(std::max(side, 5 * kMm));
   out.force = Vec3(
       0, 0,
