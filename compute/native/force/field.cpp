@@ -9,7 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "compute/native/processor.h"
 #include "compute/scene/exact.h"
+#include "model/lattice/sample_grid.h"
 
 namespace palpate {
 
@@ -352,27 +354,58 @@ CarrierSums* carrier_of(std::span<CarrierSums> carriers, std::uint32_t id) {
 
 }  // namespace
 
+namespace {
+
+constexpr std::size_t kAtOnce = 64;  // samples whose levels are worked out together (chosen)
+
+/// Of samples along two axes, in lattice steps, the last levels that they are of (SampleGrid::level), without
+/// a branch.
+void levels_at(std::int32_t spacing, const std::int32_t* u, const std::int32_t* v, std::int32_t* levels) {
+  // As SampleGrid::cell: half a step from the nearest integer quotient, which is far more than a double
+  // rounds.
+  const double per_step = 1.0 / spacing;
+  on_this_processor([&] {
+    for (std::size_t n = 0; n < kAtOnce; ++n) {
+      const double along_u = (u[n] + 0.5) * per_step, along_v = (v[n] + 0.5) * per_step;
+      std::int32_t i = static_cast<std::int32_t>(along_u) - (along_u < 0 ? 1 : 0),
+                   j = static_cast<std::int32_t>(along_v) - (along_v < 0 ? 1 : 0), level = 0, goes_on = 1;
+      for (int two = 0; two < kSampleLevels; two += 2) {
+        const std::int32_t block_i = i >> 1, block_j = j >> 1,
+                           off_i = (i & 1) ^ static_cast<std::int32_t>(SampleGrid::golden(block_j) >> 31),
+                           off_j = (j & 1) ^ static_cast<std::int32_t>(SampleGrid::golden(block_i) >> 31);
+        level += goes_on & ~(off_i ^ off_j);
+        goes_on &= ~(off_i | off_j);
+        level += goes_on;
+        i = block_i;
+        j = block_j;
+      }
+      levels[n] = level;
+    }
+  });
+}
+
+}  // namespace
+
 /// Of the mock-up's samples inside the tool.
 void PressureField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples,
                                 std::span<CarrierSums> carriers, Lane& lane) const {
   const LatticeMesh& mockup = geometry_->mockup;
-  // As SampleGrid::cell: half a step from the nearest integer quotient, which is far more than a double
-  // rounds.
-  const double per_step = 1.0 / geometry_->sample_spacing;
-  const auto cell = [&](std::int32_t coordinate) {
-    const double along = (coordinate + 0.5) * per_step;
-    return static_cast<std::int64_t>(along) - (along < 0 ? 1 : 0);
-  };
-  const bool all = mockup_level_.all();
-  for (const FrameSample& sample : samples) {
-    const std::uint32_t id = sample.static_id;
-    const int axis = mockup.sample_axis[id];
-    const int level = all || mockup.levels_of[id] == 0
-                          ? 0
-                          : SampleGrid::level(cell(sample.point[axis == 2 ? 0 : axis + 1]),
-                                              cell(sample.point[axis == 0 ? 2 : axis - 1]));
-    if (const std::uint64_t weight = weight_of(mockup, id, level, mockup_level_); weight != 0)
-      push_from_mockup(pose, id, sample.point, weight, carrier_of(carriers, id), lane);
+  std::array<std::int32_t, kAtOnce> u{}, v{}, levels{};
+  for (; !samples.empty(); samples = samples.subspan(std::min(kAtOnce, samples.size()))) {
+    const std::span<const FrameSample> now = samples.first(std::min(kAtOnce, samples.size()));
+    if (!mockup_level_.all()) {
+      for (std::size_t n = 0; n < now.size(); ++n) {
+        const int axis = mockup.sample_axis[now[n].static_id];
+        u[n] = now[n].point[axis == 2 ? 0 : axis + 1];
+        v[n] = now[n].point[axis == 0 ? 2 : axis - 1];
+      }
+      levels_at(geometry_->sample_spacing, u.data(), v.data(), levels.data());
+    }
+    for (std::size_t n = 0; n < now.size(); ++n) {
+      const std::uint32_t id = now[n].static_id;
+      if (const std::uint64_t weight = weight_of(mockup, id, levels[n], mockup_level_); weight != 0)
+        push_from_mockup(pose, id, now[n].point, weight, carrier_of(carriers, id), lane);
+    }
   }
 }
 
