@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "service/cli/console.h"
+
 namespace palpate {
 namespace {
 
@@ -139,7 +141,7 @@ Sums<Real> sum_samples(const Body<Real>& of, const Body<Real>& in, Real spacing)
     };
     const int nu = static_cast<int>(u1 - u0), nv = static_cast<int>(v1 - v0);
     const Real facing = n[axis] > Real(0) ? Real(1) : Real(-1);
-    for (int j = 0; j <= nv; ++j)
+    for (int j = 0; j <= nv && !interrupted(); ++j)
       for (int i = 0; i <= nu; ++i) {
         const Real u = (u0 + static_cast<Real>(i)) * spacing, v = (v0 + static_cast<Real>(j)) * spacing;
         if (side(t[0], t[1], u, v) * facing < Real(0) || side(t[1], t[2], u, v) * facing <= Real(0) ||
