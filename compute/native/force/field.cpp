@@ -437,9 +437,10 @@ void PressureField::sum_extras(const LatticePose& pose, ContactSets& sets,
 void PressureField::divide_tool(std::span<const MobileResult> mobiles) {
   const std::size_t size = std::max(kPart, own_samples_.size() / kMostOfABody);
   tool_parts_.clear();
+  tool_counts_.clear();
   std::size_t room = 0;  // of the last part
   for (std::uint32_t i = 0; i < mobiles.size(); ++i) {
-    const std::size_t count = own_count(mobiles[i].id);
+    const std::size_t count = tool_counts_.emplace_back(own_count(mobiles[i].id));
     for (std::size_t first = 0; first == 0 || first < count;) {
       if (room == 0) {
         tool_parts_.push_back({i, static_cast<std::uint32_t>(first)});
@@ -483,8 +484,7 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
     if (own_begin_.empty()) {
       if (own.field_weight_q30[result.id] != 0) work_out_tool_samples(result.id, weighed);
     } else {
-      const std::uint32_t all = own_begin_[result.id],
-                          last = i == end.mobile ? end.sample : own_count(result.id);
+      const std::uint32_t all = own_begin_[result.id], last = i == end.mobile ? end.sample : tool_counts_[i];
       for (std::uint32_t k = all + first; k < all + last; ++k) weighed(own_samples_[k], own_levels_[k]);
     }
     if (first == 0)
