@@ -1,52 +1,46 @@
 // Ties the parts together: a scene, a source of moments (device, mouse or recorded run), the picture, the
 // strips, the panel.
+import {act, type Acted} from './actions.js';
 import {read_address, write_address} from './address.js';
+import {element, write} from './dom.js';
+import {HeldScene} from './held_scene.js';
+import {listen} from './keys.js';
+import {Stillness, type Moment, type Source} from './moment.js';
+import {Paced} from './paced.js';
+import {Samples} from './samples.js';
+import {ScenePartsPanel} from './scene_parts_panel.js';
+import {ScenePicker} from './scene_picker.js';
+import {Sessions} from './sessions.js';
+import {Strips, figure} from './strips.js';
+import {Theme} from './theme.js';
+import {Wakefulness, type Next} from './wakefulness.js';
 import {take_files} from './assembly/file_drop.js';
 import {Workshop} from './assembly/workshop.js';
-import {element, write} from './dom.js';
-import {Api, ApiError} from './server/api.js';
-import {Connection} from './server/connection.js';
-
-import {listen, type Action} from './keys.js';
 import {Labels} from './draw/labels.js';
-import type {Moment} from './moment.js';
+import {DARK, LIGHT} from './draw/palette.js';
+import {Picture} from './draw/picture.js';
+import {offer_picture_options} from './draw/picture_options.js';
 import type {Drag} from './mouse/mouse_drag.js';
 import {MouseSource} from './mouse/mouse_source.js';
 import {PathPanel} from './mouse/path_panel.js';
 import {SpaceMouse} from './mouse/space_mouse.js';
-import {Banner} from './words/banner.js';
-import {PartNames} from './words/part_names.js';
-import {show_scene} from './words/scene_facts.js';
-import {StartNote} from './words/start_note.js';
-import {DARK, LIGHT} from './draw/palette.js';
-import {Picture} from './draw/picture.js';
-import {offer_picture_options} from './draw/picture_options.js';
 import {Player} from './run/player.js';
+import {Api, ApiError} from './server/api.js';
+import {Connection} from './server/connection.js';
 import type {Pose, Scene, SceneParts} from './server/protocol.js';
-import {Readout} from './words/readout.js';
-import {Samples} from './samples.js';
 import {CameraShots} from './tools/camera_shots.js';
 import {ClearanceLine} from './tools/clearance_line.js';
 import {Headset} from './tools/headset.js';
 import {Measure} from './tools/measure.js';
 import {Section} from './tools/section.js';
 import {Triad} from './tools/triad.js';
-import {ScenePartsPanel} from './scene_parts_panel.js';
-import {ScenePicker} from './scene_picker.js';
-import {Sessions} from './sessions.js';
-import {Strips, figure} from './strips.js';
+import {Banner} from './words/banner.js';
+import {PartNames} from './words/part_names.js';
+import {Readout} from './words/readout.js';
+import {show_scene} from './words/scene_facts.js';
+import {StartNote} from './words/start_note.js';
 
-type Source = 'live'|'mouse'|'run';
 const REFRESH_MS = 3000;
-const TURN = 0.1;  // rad of a key that turns the view; chosen
-const STEPS: Partial<Record<Action, [number, number, number]>> = {
-  'turn-left': [-TURN, 0, 0],
-  'turn-right': [TURN, 0, 0],
-  'turn-up': [0, TURN, 0],
-  'turn-down': [0, -TURN, 0],
-  'nearer': [0, 0, 0.1],
-  'farther': [0, 0, -0.1]
-};
 // From one change of figures and curves to the next: more often they can't be read, and to lay them out takes
 // as long as a picture, which without a GPU the engine lacks. Chosen.
 const WORDS_MS = 80, WORDS_MS_WITHOUT_GPU = 160;
@@ -61,10 +55,10 @@ const LATE: Record<Source, [string, string]> = {
   run: ['Age of result', 'ticks']
 };
 
-export class App {
+export class App implements Acted {
   private readonly api = new Api();
-  private readonly banner = new Banner();
-  private readonly picture = new Picture(this.api, element('canvas'), (error) => this.failed(error));
+  readonly banner = new Banner();
+  readonly picture = new Picture(this.api, element('canvas'), (error) => this.failed(error));
   private readonly labels = new Labels(this.picture.view);
   private readonly strips = new Strips(element('strips'));
   private readonly readout = new Readout((kind, on) => {
@@ -76,8 +70,8 @@ export class App {
   });
   private readonly picker =
       new ScenePicker(this.api, (scene) => this.opened(scene), (error) => this.failed(error));
-  private readonly player = new Player(this.api, () => this.run_changed(), (error) => this.failed(error));
-  private readonly sessions = new Sessions(
+  readonly player = new Player(this.api, () => this.run_changed(), (error) => this.failed(error));
+  readonly sessions = new Sessions(
       this.api,
       (moment) => {
         this.live_samples.add_moment(moment);
@@ -89,7 +83,7 @@ export class App {
         this.connection.doubt();
       });
   private readonly connection = new Connection(this.api, (up) => void this.link_changed(up));
-  private readonly workshop = new Workshop(this.api, this.picture, {
+  readonly workshop = new Workshop(this.api, this.picture, {
     open: async (make, name, stay) => {
       if (!stay) this.source = 'mouse';
       this.stay = stay ? this.picture.pose_of_tool() : null;
@@ -116,7 +110,7 @@ export class App {
     failed: (error) => this.failed(error),
   });
   private readonly start_note = new StartNote(this.api);
-  private readonly paths = new PathPanel((rows) => {
+  readonly paths = new PathPanel((rows) => {
     this.workshop.path = rows;
   }, () => void this.replay(), (poses) => this.api.path_page(this.picker.current!.id, poses));
   private readonly clearance =
@@ -129,35 +123,37 @@ export class App {
   private scene_parts: SceneParts = {static: [], tool: []};
   private stay: Pose|null = null;  // where the tool is to go on when the scene that is felt is made anew
   private mouse: MouseSource|null = null;
-  private holding: Promise<void>|null = null;
-  private source: Source = 'live';
+  source: Source = 'live';
   private kept = '';                       // the scene that was saved
   private readonly wish = read_address();  // as the page was called, before it is kept up to date
   private live_samples = new Samples();
   private mouse_samples = new Samples();
   private dirty = true;
-  private awake = false;
-  private rest_timer = 0;
   private mouse_rests = false;
-  private last_tick = NaN;
   private told: Moment|null = null;
-  private words_at = -Infinity;
-  private words_timer = 0;
+  private readonly held = new HeldScene(this.api, this.picker);
+  private readonly stillness = new Stillness();
+  private readonly wakefulness =
+      new Wakefulness(this.picture.view, (now) => this.tick(now), () => this.next());
+  private readonly words =
+      new Paced(this.picture.view.software ? WORDS_MS_WITHOUT_GPU : WORDS_MS, () => this.tell());
+  readonly theme: Theme;
 
   constructor() {
     this.wire_panel();
-    listen((action) => this.act(action), (...way) => {
+    listen((action) => act(action, this), (...way) => {
       if (!this.mouse) return false;
       this.picture.drag.nudge(...way);
       this.touch();
       return true;
     });
     this.wire_tools();
-    this.apply_theme(
-        localStorage.getItem('palpate.theme') ??
-        (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => {
-      if (!localStorage.getItem('palpate.theme')) this.apply_theme(event.matches ? 'dark' : 'light');
+    this.theme = new Theme((dark) => {
+      this.picture.theme(dark);
+      this.workshop.theme(dark);
+      this.clearance.theme(dark ? DARK : LIGHT);
+      this.strips.theme();
+      this.touch();
     });
     // As in theme.css: a narrow panel lies over the picture, and opens when it is asked for.
     const narrow = matchMedia('(max-width: 860px)');
@@ -184,27 +180,14 @@ export class App {
   }
 
   /** Something is to be shown anew. The page rests until then. */
-  private touch(): void {
+  touch(): void {
     this.dirty = true;
-    this.wake();
+    this.wakefulness.wake();
   }
-  private wake(): void {
-    clearTimeout(this.rest_timer);
-    if (this.awake || this.picture.view.presenting) return;
-    this.awake = true;
-    this.picture.view.before_next((now) => {
-      this.awake = false;
-      this.tick(now);
-      if (this.source === 'run' && this.player.playback?.playing) this.wake();
-      // A mouse that moves nothing is looked at ten times a second.
-      else if (this.source === 'mouse' && this.mouse) {
-        if (this.mouse_rests)
-          this.rest_timer = window.setTimeout(() => this.wake(), 100);
-        else
-          this.wake();
-      }
-      if (!this.awake) this.last_tick = NaN;
-    });
+  private next(): Next {
+    if (this.source === 'run') return this.player.playback?.playing ? 'picture' : 'rest';
+    if (this.source === 'mouse' && this.mouse) return this.mouse_rests ? 'look' : 'picture';
+    return 'rest';
   }
 
   // ---- beginning, and beginning again
@@ -317,7 +300,7 @@ export class App {
         await this.begin();
         return;
       }
-      await this.hold();
+      await this.held.hold();
       await this.choose(this.source);
       this.mouse?.hurry();
       this.say('Connected again.');
@@ -325,33 +308,6 @@ export class App {
       this.failed(error);
     }
   }
-  /**
-   * Resolves when the server holds the scene that is shown, ready. It may be another process than before:
-   * then the scene is opened again by its path. Whoever asks meanwhile waits for the same.
-   */
-  private hold(): Promise<void> {
-    return (this.holding ??= this.make_held().finally(() => {
-      this.holding = null;
-    }));
-  }
-  private async make_held(): Promise<void> {
-    await this.picker.refresh();
-    const {current, path} = this.picker;
-    if (!current) return;
-    const listed = this.picker.list.scenes.find(
-        (scene) => scene.id === current.id && scene.state !== 'failed');  // perhaps still being prepared
-    if (!listed && !path) throw new Error('The server no longer holds this scene. Open it again to go on.');
-    const scene = listed ?? (await this.api.open_scene(path));
-    // The same scene is not drawn anew; the file may have another by now.
-    if (scene.id !== current.id) {
-      await this.picker.open_path(path);
-      return;
-    }
-    const held = await this.picker.prepared(scene, () => this.picker.current === current);
-    if (held.state === 'failed') throw new Error(held.error?.detail ?? 'The scene is failed.');
-    if (!listed) await this.picker.refresh();  // the list was without it
-  }
-
   private async refresh(): Promise<void> {
     if (!this.connection.up || document.hidden) return;
     try {
@@ -410,17 +366,17 @@ export class App {
                      scene, this.picture.bodies.tool.visible ? this.picture.pose_of_tool() : null,
                      this.api.socket_address(`v1/scenes/${scene.id}/haptic`), {
                        ready: () => this.hold_for_mouse(),
-                       moved: () => this.wake(),
+                       moved: () => this.wakefulness.wake(),
                        lost: (reason) => this.mouse_lost(reason)
                      });
     this.picture.drag.hand = this.mouse?.hand ?? null;
     element('mouse-pause').textContent = 'Pause';
-    this.wake();
+    this.wakefulness.wake();
   }
   private async hold_for_mouse(): Promise<void> {
     if (!this.connection.up) throw new Error('no server');
     try {
-      await this.hold();
+      await this.held.hold();
     } catch (error) {
       this.failed(error);
       throw error;
@@ -431,7 +387,7 @@ export class App {
     if (this.connection.up)
       this.connection.doubt();  // perhaps the loop alone ended, perhaps the whole server went
   }
-  private run_changed(): void {
+  run_changed(): void {
     this.touch();
     this.remember();
     const {playback} = this.player;
@@ -447,10 +403,7 @@ export class App {
   // ---- each picture
 
   private tick(now: number): void {
-    const seconds = Number.isNaN(this.last_tick) ?
-        0 :
-        Math.min((now - this.last_tick) / 1000, 0.25);  // after a rest, or a hidden page, time does not leap
-    this.last_tick = now;
+    const seconds = this.wakefulness.seconds(now);
     let moment: Moment|null = null;
     if (this.source === 'mouse') {
       if (this.mouse) {
@@ -465,8 +418,9 @@ export class App {
         this.paths.take(moment);
         if (this.paths.recorder.recording) this.paths.show();
         this.mouse_samples.add_moment(moment);
-        this.mouse_rests = this.idle(moment) && this.picture.drag.holding === null &&
-            !this.paths.recorder.recording && !this.paths.recorder.playing;
+        this.mouse_rests = this.stillness.is_still(moment, this.picture.drag.holding) &&
+            this.picture.drag.holding === null && !this.paths.recorder.recording &&
+            !this.paths.recorder.playing;
         this.dirty ||= !this.mouse_rests;
       }
     } else if (this.source === 'run') {
@@ -488,17 +442,10 @@ export class App {
       this.clearance.want(this.picker.current.id, moment.pose, moment.contact);
     this.labels.set(moment?.frame?.contact ? moment.frame.areas : []);
     this.told = moment;
-    clearTimeout(this.words_timer);
-    const pause = this.picture.view.software ? WORDS_MS_WITHOUT_GPU : WORDS_MS;
-    const wait = pause - (performance.now() - this.words_at);
-    if (wait > 0)
-      this.words_timer = window.setTimeout(() => this.tell(), wait);
-    else
-      this.tell();
+    this.words.want();
   }
   /** The moment in figures and curves. */
   private tell(): void {
-    this.words_at = performance.now();
     this.readout.show(this.told, this.picker.current?.stages ?? []);
     this.player.show();
     this.strips.samples = this.source === 'run' ? this.player.samples :
@@ -510,18 +457,6 @@ export class App {
     this.strips.draw();
     this.show_scales();
   }
-  private last_shown = '';
-  /** Whether a mouse moment looks like the one before: then nothing is drawn. */
-  private idle(moment: Moment): boolean {
-    const text = `${moment.pose.join()} ${moment.force.join()} ${moment.frame?.tick} ${moment.note} ${
-        this.picture.drag.holding}`;
-    const same = text === this.last_shown && moment.frame === this.last_frame;
-    this.last_shown = text;
-    this.last_frame = moment.frame;
-    return same;
-  }
-  private last_frame: unknown = null;
-
   private show_scales(): void {
     const {areas, view, drawn_triangles, reduced} = this.picture;
     write(element('scales'), !this.picture.scene ? '' : [
@@ -561,14 +496,6 @@ export class App {
     this.banner.say(text, bad, stays);
   }
 
-  private apply_theme(theme: string): void {
-    document.documentElement.dataset['theme'] = theme;
-    this.picture.theme(theme === 'dark');
-    this.workshop.theme(theme === 'dark');
-    this.clearance.theme(theme === 'dark' ? DARK : LIGHT);
-    this.strips.theme();
-    this.touch();
-  }
   private wire_tools(): void {
     const {picture, workshop} = this;
     const section = new Section(picture.view, () => (workshop.building ? workshop.box() : picture.box()));
@@ -626,107 +553,19 @@ export class App {
       this.picture.drag.plain = drag.value as Drag;
     });
     element('mouse-pause').addEventListener('click', () => this.pause_mouse());
-    element('look-tool').addEventListener('click', () => this.act('tool'));
-    element('look-all').addEventListener('click', () => this.act('all'));
-    element('theme').addEventListener('click', () => this.act('theme'));
-    element('panel-button').addEventListener('click', () => this.act('panel'));
-    element('help-button').addEventListener('click', () => this.act('help'));
+    element('look-tool').addEventListener('click', () => act('tool', this));
+    element('look-all').addEventListener('click', () => act('all', this));
+    element('theme').addEventListener('click', () => act('theme', this));
+    element('panel-button').addEventListener('click', () => act('panel', this));
+    element('help-button').addEventListener('click', () => act('help', this));
     element('token').addEventListener('close', () => {
       this.api.set_token(element<HTMLInputElement>('token-value').value);
       void this.begin();
     });
   }
-  private pause_mouse(): void {
+  pause_mouse(): void {
     if (!this.mouse) return;
     this.mouse.paused = !this.mouse.paused;
     element('mouse-pause').textContent = this.mouse.paused ? 'Go on' : 'Pause';
-  }
-
-  private act(action: Action): void {
-    const {playback} = this.player;
-    switch (action) {
-      case 'play':
-        if (this.source === 'run')
-          this.player.toggle();
-        else if (this.source === 'live')
-          this.sessions.toggle();
-        else
-          this.pause_mouse();
-        break;
-      case 'back':
-      case 'forward':
-        if (this.source === 'run' && playback) {
-          playback.playing = false;
-          playback.step(action === 'back' ? -1 : 1);
-          this.run_changed();
-        }
-        break;
-      case 'record':
-        if (this.source === 'mouse' && !this.workshop.building) this.paths.toggle();
-        break;
-      case 'begin':
-        playback?.seek(0);
-        this.run_changed();
-        break;
-      case 'end':
-        playback?.seek(playback.duration);
-        this.run_changed();
-        break;
-      case 'theme': {
-        const theme = document.documentElement.dataset['theme'] === 'dark' ? 'light' : 'dark';
-        localStorage.setItem('palpate.theme', theme);
-        this.apply_theme(theme);
-        break;
-      }
-      case 'all':
-        if (this.workshop.building)
-          this.workshop.look_at_all();
-        else
-          this.picture.look_at_all();
-        break;
-      case 'undo':
-        if (this.workshop.building) this.workshop.undo();
-        break;
-      case 'redo':
-        if (this.workshop.building) this.workshop.redo();
-        break;
-      case 'tool':
-        if (this.workshop.building)
-          this.workshop.look_at_selected();
-        else
-          this.picture.follow_tool();
-        break;
-      case 'panel':
-        document.body.classList.toggle('no-panel');
-        this.touch();
-        break;
-      case 'help':
-        element<HTMLDialogElement>('help').showModal();
-        break;
-      case 'glass':
-        element('glass-mockup').click();
-        break;
-      case 'clearance':
-        element('show-clearance').click();
-        break;
-      case 'voxels': {
-        const voxels = element<HTMLSelectElement>('voxels');
-        voxels.selectedIndex = (voxels.selectedIndex + 1) % voxels.options.length;
-        voxels.dispatchEvent(new Event('change'));
-        break;
-      }
-      case 'close':
-        this.banner.hide();
-        break;
-      case 'up':
-        this.picture.view.turn_up();
-        break;
-      default:
-        if (action in STEPS)
-          this.picture.view.step(...STEPS[action]!);
-        else
-          document.querySelectorAll<HTMLButtonElement>('#legend button')[Number(action.slice(4)) - 1]
-              ?.click();
-    }
   }
 }

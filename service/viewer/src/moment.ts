@@ -1,6 +1,8 @@
 // What is shown at one instant, whoever it comes from: a device, the mouse, a recorded run.
 import type {Frame, Pose, Vec3} from './server/protocol.js';
 
+export type Source = 'live'|'mouse'|'run';
+
 export interface Moment {
   time: number;  // s
   pose: Pose;
@@ -18,4 +20,20 @@ export interface Moment {
   stage: number;  // from 1; 0: none
   asked_at?: number;  // when the server was asked for what the tool feels, ms since 1970; NaN: never
   note: string;       // "", or what holds the force back: "paused", …
+}
+
+/** Whether moments of a mouse look like the ones before: then nothing is drawn. */
+export class Stillness {
+  private text = '';
+  private frame: unknown = null;
+
+  /** `holding`: what the mouse holds. */
+  is_still(moment: Moment, holding: unknown): boolean {
+    const text =
+        `${moment.pose.join()} ${moment.force.join()} ${moment.frame?.tick} ${moment.note} ${holding}`;
+    const same = text === this.text && moment.frame === this.frame;
+    this.text = text;
+    this.frame = moment.frame;
+    return same;
+  }
 }
