@@ -26,15 +26,18 @@ struct SampleGrid {
 
   /// The last level that a cell's point is of, at most kSampleLevels. Of a block of 2 × 2 cells two on a
   /// diagonal are of the next level, and one of these of the one after that: the one where a point of a grid
-  /// twice as wide would be, moved likewise.
-  static constexpr int level(std::int64_t i, std::int64_t j) {
-    int out = 0;
-    for (; out < kSampleLevels; out += 2) {
-      const std::int64_t block_i = i >> 1, block_j = j >> 1;
-      const auto right = static_cast<std::int64_t>(golden(block_j) >> 31),
-                 up = static_cast<std::int64_t>(golden(block_i) >> 31);
-      if (((i ^ j) & 1) != (right ^ up)) return out;
-      if ((i & 1) != right) return out + 1;
+  /// twice as wide would be, moved likewise. Cells' numbers fit into 32 bits; without a branch, for a loop
+  /// over many cells.
+  static constexpr std::int32_t level(std::int64_t cell_i, std::int64_t cell_j) {
+    auto i = static_cast<std::int32_t>(cell_i), j = static_cast<std::int32_t>(cell_j);
+    std::int32_t out = 0, goes_on = 1;  // 0 or 1
+    for (int two = 0; two < kSampleLevels; two += 2) {
+      const std::int32_t block_i = i >> 1, block_j = j >> 1,
+                         off_i = (i & 1) ^ static_cast<std::int32_t>(golden(block_j) >> 31),
+                         off_j = (j & 1) ^ static_cast<std::int32_t>(golden(block_i) >> 31);
+      out += goes_on & ~(off_i ^ off_j);
+      goes_on &= ~(off_i | off_j);
+      out += goes_on;
       i = block_i;
       j = block_j;
     }

@@ -352,35 +352,21 @@ CarrierSums* carrier_of(std::span<CarrierSums> carriers, std::uint32_t id) {
   return at != carriers.end() && at->id == id ? &*at : nullptr;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::size_t kAtOnce = 64;  // samples whose levels are worked out together (chosen)
+using AtOnce = std::array<std::int32_t, kAtOnce>;
 
-/// Of samples along two axes, in lattice steps, the last levels that they are of (SampleGrid::level), without
-/// a branch.
-void levels_at(std::int32_t spacing, const std::int32_t* u, const std::int32_t* v, std::int32_t* levels) {
+/// Of samples, whose lattice coordinates along their grids' two axes are `u` and `v`, the last levels that
+/// they are of.
+void levels_at(std::int32_t spacing, const AtOnce& u, const AtOnce& v, AtOnce& levels) {
   // As SampleGrid::cell: half a step from the nearest integer quotient, which is far more than a double
   // rounds.
   const double per_step = 1.0 / spacing;
+  const auto cell = [&](std::int32_t coordinate) {
+    const double along = (coordinate + 0.5) * per_step;
+    return static_cast<std::int32_t>(along) - (along < 0 ? 1 : 0);
+  };
   on_this_processor([&] {
-    for (std::size_t n = 0; n < kAtOnce; ++n) {
-      const double along_u = (u[n] + 0.5) * per_step, along_v = (v[n] + 0.5) * per_step;
-      std::int32_t i = static_cast<std::int32_t>(along_u) - (along_u < 0 ? 1 : 0),
-                   j = static_cast<std::int32_t>(along_v) - (along_v < 0 ? 1 : 0), level = 0, goes_on = 1;
-      for (int two = 0; two < kSampleLevels; two += 2) {
-        const std::int32_t block_i = i >> 1, block_j = j >> 1,
-                           off_i = (i & 1) ^ static_cast<std::int32_t>(SampleGrid::golden(block_j) >> 31),
-                           off_j = (j & 1) ^ static_cast<std::int32_t>(SampleGrid::golden(block_i) >> 31);
-        level += goes_on & ~(off_i ^ off_j);
-        goes_on &= ~(off_i | off_j);
-        level += goes_on;
-        i = block_i;
-        j = block_j;
-      }
-      levels[n] = level;
-    }
+    for (std::size_t n = 0; n < kAtOnce; ++n) levels[n] = SampleGrid::level(cell(u[n]), cell(v[n]));
   });
 }
 
@@ -390,7 +376,7 @@ void levels_at(std::int32_t spacing, const std::int32_t* u, const std::int32_t* 
 void PressureField::sum_samples(const LatticePose& pose, std::span<const FrameSample> samples,
                                 std::span<CarrierSums> carriers, Lane& lane) const {
   const LatticeMesh& mockup = geometry_->mockup;
-  std::array<std::int32_t, kAtOnce> u{}, v{}, levels{};
+  AtOnce u{}, v{}, levels{};  // levels: 0 where all samples count
   for (; !samples.empty(); samples = samples.subspan(std::min(kAtOnce, samples.size()))) {
     const std::span<const FrameSample> now = samples.first(std::min(kAtOnce, samples.size()));
     if (!mockup_level_.all()) {
@@ -399,7 +385,7 @@ void PressureField::sum_samples(const LatticePose& pose, std::span<const FrameSa
         u[n] = now[n].point[axis == 2 ? 0 : axis + 1];
         v[n] = now[n].point[axis == 0 ? 2 : axis - 1];
       }
-      levels_at(geometry_->sample_spacing, u.data(), v.data(), levels.data());
+      levels_at(geometry_->sample_spacing, u, v, levels);
     }
     for (std::size_t n = 0; n < now.size(); ++n) {
       const std::uint32_t id = now[n].static_id;

@@ -116,7 +116,7 @@ class PressureField {
   Level mockup_level_, tool_level_;              ///< of this frame
   const Ignored* ignored_ = nullptr;             ///< of this frame
   std::vector<ToolPart> tool_parts_;             ///< of this frame
-  std::vector<std::uint32_t> tool_counts_;       ///< own_count() of its C_m
+  std::vector<std::uint32_t> tool_counts_;       ///< likewise: own_count(), by place in C_m
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
 };
 

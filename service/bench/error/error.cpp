@@ -146,7 +146,8 @@ class ErrorBench {
       ErrorApart apart{table_, charts_, facts_};
       apart.tessellation();
       apart.control();
-      if (auto done = apart.lattice_step(*engines_.front().backend, options_.cpu_clock, console_); !done)
+      if (auto done = apart.lattice_step(*engines_.front().backend, options_.cpu_clock, console_);
+          !done && !interrupted())
         return done;
     }
     facts_.more.emplace_back("left out",

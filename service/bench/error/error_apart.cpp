@@ -156,6 +156,7 @@ Result<void> ErrorApart::lattice_step(CollisionBackend& backend, bool cpu_clock,
                                     .depth -
                                 truths[i]->depth));
     }
+    if (interrupted()) return Error{ErrorCode::kInternal, "interrupted"};
     put(1, "fp32", std::ldexp(1.0, std::ilogb(far) - 23), single, 0, 0);
     put(2, "fp64", std::ldexp(1.0, std::ilogb(far) - 52), twice, 0, 0);
   }

@@ -149,6 +149,7 @@ class NumericsBench {
                             const NumericsScene& scene) {
     if (!console_.progress(name.c_str(), 0)) return Error{ErrorCode::kInternal, "interrupted"};
     const PlainAnswer single = plainly<float>(scene, scene.pose), twice = plainly<double>(scene, scene.pose);
+    if (interrupted()) return Error{ErrorCode::kInternal, "interrupted"};
     note(name, parameter, value, "fp32", judged(single.contact, single.force, scene));
     note(name, parameter, value, "fp64", judged(twice.contact, twice.force, scene));
     note(name, parameter, value, "palpate", by_palpate(scene), scene.length);
@@ -209,8 +210,10 @@ class NumericsBench {
       if (!console_.progress("stiffness_ratio", 0)) return Error{ErrorCode::kInternal, "interrupted"};
       const HungBar bar = hung_bar(slimness);
       const char *name = "stiffness_ratio", *parameter = "stiffness of the contact over the spring's";
-      note(name, parameter, bar.ratio, "fp32", hung_plainly<float>(bar.scene));
-      note(name, parameter, bar.ratio, "fp64", hung_plainly<double>(bar.scene));
+      const Outcome single = hung_plainly<float>(bar.scene), twice = hung_plainly<double>(bar.scene);
+      if (interrupted()) return Error{ErrorCode::kInternal, "interrupted"};
+      note(name, parameter, bar.ratio, "fp32", single);
+      note(name, parameter, bar.ratio, "fp64", twice);
       note(name, parameter, bar.ratio, "palpate", by_palpate(bar.scene, true), bar.scene.length);
     }
     return {};

@@ -15,7 +15,8 @@ struct PlainAnswer {
 /// vertices transformed, samples on a square grid over each triangle, inside the other body or not by
 /// the winding along a ray, its depth the distance to the nearest triangle, F = K / (2 A_ref) Σ w φ n. No
 /// lattice, no exact predicate, no tolerance. For comparison alone (`bench numerics`): brute force over all
-/// triangles, for minutes where there are many; once interrupted() it ends, and what it says means nothing.
+/// triangles, for minutes where there are many; once interrupted() it ends early, and its answer
+/// means nothing: ask interrupted() before it is used.
 template <class Real>
 PlainAnswer plain_response(const Mesh& mockup, const Mesh& tool, const Pose& pose, double spacing_m,
                            double stiffness_n_per_m, double reference_area_m2);

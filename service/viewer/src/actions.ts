@@ -1,13 +1,13 @@
 // What keys, and the buttons that do the same, do.
+import {element} from './dom.js';
 import type {Action} from './keys.js';
+import type {Source} from './moment.js';
+import type {Sessions} from './sessions.js';
+import type {Theme} from './theme.js';
+import type {Workshop} from './assembly/workshop.js';
 import type {Picture} from './draw/picture.js';
 import type {PathPanel} from './mouse/path_panel.js';
 import type {Player} from './run/player.js';
-import type {Sessions} from './sessions.js';
-import type {Source} from './moment.js';
-import type {Theme} from './theme.js';
-import type {Workshop} from './assembly/workshop.js';
-import {element} from './dom.js';
 import type {Banner} from './words/banner.js';
 
 const TURN = 0.1;  // rad of a key that turns the view; chosen
@@ -20,6 +20,7 @@ const STEPS: Partial<Record<Action, [number, number, number]>> = {
   'farther': [0, 0, -0.1]
 };
 
+/** What actions act on: the page. */
 export interface Acted {
   readonly source: Source;
   readonly picture: Picture;
@@ -33,6 +34,7 @@ export interface Acted {
   pause_mouse(): void;
   /** Another instant of a recorded run is to be shown. */
   run_changed(): void;
+  /** Something is to be shown anew. */
   touch(): void;
 }
 

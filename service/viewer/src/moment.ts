@@ -1,6 +1,7 @@
 // What is shown at one instant, whoever it comes from: a device, the mouse, a recorded run.
 import type {Frame, Pose, Vec3} from './server/protocol.js';
 
+/** Who gives moments: a session with a device, the mouse, or a recorded run. */
 export type Source = 'live'|'mouse'|'run';
 
 export interface Moment {

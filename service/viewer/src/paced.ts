@@ -4,6 +4,7 @@ export class Paced {
   private done_at = -Infinity;
   private timer: ReturnType<typeof setTimeout>|undefined;
 
+  /** `pause_ms`: at least so long from one time to the next. */
   constructor(private readonly pause_ms: number, private readonly act: () => void) {}
 
   want(): void {

@@ -2,6 +2,7 @@
 const KEPT = 'palpate.theme';
 
 export class Theme {
+  /** `changed` is called at once, and whenever it changes. */
   constructor(private readonly changed: (dark: boolean) => void) {
     const system = matchMedia('(prefers-color-scheme: dark)');
     this.apply(localStorage.getItem(KEPT) ?? (system.matches ? 'dark' : 'light'));

@@ -16,11 +16,12 @@ export class Wakefulness {
   private timer: ReturnType<typeof setTimeout>|undefined;
   private last_tick = NaN;
 
-  /** `tick`: before each picture. */
+  /** `tick` is called before each picture, `next` after it. */
   constructor(
       private readonly view: Drawing, private readonly tick: (now: number) => void,
       private readonly next: () => Next) {}
 
+  /** Another picture is wanted. */
   wake(): void {
     clearTimeout(this.timer);
     if (this.awake || this.view.presenting) return;

@@ -2,20 +2,20 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import type {Moment} from '../src/moment.js';
-import {Stillness} from '../src/moment.js';
+import {Stillness, type Moment} from '../src/moment.js';
 import {Paced} from '../src/paced.js';
 import {Wakefulness, type Next} from '../src/wakefulness.js';
+
+interface Timer {
+  at: number;  // ms
+  call: () => void;
+}
 
 /** Stands in for the clock and for timers while `body` runs; it gets what lets time go on. */
 function with_clock(body: (pass: (ms: number) => void) => void): void {
   const [now, set, clear] = [performance.now, globalThis.setTimeout, globalThis.clearTimeout];
   let time = 1000, last = 0;
-  const timers = new Map < number, {
-    at: number;
-    call: () => void
-  }
-  > ();
+  const timers = new Map<number, Timer>();
   performance.now = () => time;
   globalThis.setTimeout = ((call: () => void, ms: number) => {
                             timers.set(++last, {at: time + ms, call});
