@@ -164,6 +164,9 @@ TESTS = {
     "compute/native/broad_phase/": ["filters"],
     "compute/native/force/": ["depth_search"],
     "compute/native/narrow_phase/": ["filters", "inside_cells"],
+    "compute/native/queries/distance_lattice": ["room_field", "first_contact"],
+    "compute/native/queries/nearest_points": ["nearest_points", "turned_gaps", "first_contact"],
+    "compute/native/queries/room_": ["room_field", "touch", "first_contact"],
     "compute/native/queries/": ["turned_gaps", "touch", "first_contact"],
     "compute/scene/": ["brick_bits", "filters", "depth_search"],
 }
@@ -174,10 +177,14 @@ def test_program(judge, test):
     return pathlib.Path(judge).parent / f"mutant_{test}_test"
 
 
+def tests_of(job):
+    return next((TESTS[of] for of in TESTS if job.name.startswith(of)), [])
+
+
 def asked_of_tests(judge, job):
     """What the tests of parts say of a mutant that the cases did not catch."""
     number = job.command.split()[-1]
-    for test in next((TESTS[of] for of in TESTS if job.name.startswith(of)), []):
+    for test in tests_of(job):
         run = subprocess.run(
             ["prlimit", f"--cpu={TEST_SECONDS}", str(test_program(judge, test))],
             env=dict(os.environ, PALPATE_MUTANT=number),
@@ -285,6 +292,11 @@ def oracle_version():
     return short_hash(*[f.read_bytes() for f in files])
 
 
+def version_of_tests(job):
+    sources = [next((ROOT / "tests").glob(f"*/{test}_test.cpp")) for test in tests_of(job)]
+    return short_hash(*[source.read_bytes() for source in sources])
+
+
 def explanations():
     """Why explained survivors survive, by place()."""
     path = HERE / "survivors.csv"
@@ -361,12 +373,16 @@ def main():
     flags = [
         f"--{name}" for name in ("killers", "probes", "as-gpu") if getattr(options, name.replace("-", "_"))
     ]
-    version = oracle_version() + "".join(f" {flag[2:]}" for flag in flags)
+    oracle, named = oracle_version(), "".join(f" {flag[2:]}" for flag in flags)
+
+    def versions(job):
+        """What a survivor was asked by, with these flags and with none."""
+        of_job = f"{oracle} {version_of_tests(job)}"
+        return of_job + named, of_job
+
     for job in jobs:
         row = known.get(job.key)
-        if row and (
-            row[0] in CAUGHT or row[0] in NO_MUTANT or row[4] in (version, oracle_version()) or options.known
-        ):
+        if row and (row[0] in CAUGHT or row[0] in NO_MUTANT or row[4] in versions(job) or options.known):
             job.row = row[:4]
     waiting = [j for j in jobs if j.row is None] if not options.known else []
     print(f"{len(jobs)} mutants, {len(waiting)} to judge", flush=True)
@@ -381,7 +397,7 @@ def main():
 
     def remember(job):
         with lock:
-            known[job.key] = [*job.row, version]
+            known[job.key] = [*job.row, versions(job)[0]]
 
     def save():
         if options.cache:

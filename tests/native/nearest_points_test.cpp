@@ -1,0 +1,73 @@
+// Where two triangles come nearest, against the reference's exact distance, and whether the points named are
+// points of them.
+#include "compute/native/queries/nearest_points.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cpu_ref/distance_of_triangles.h"
+#include "cpu_ref/triangle_triangle.h"
+#include "tests/equivalence/random.h"
+
+namespace palpate::native {
+namespace {
+
+using Corners = std::array<Vec, 3>;
+
+cpu_ref::Triangle random_triangle(equivalence::Random& random, std::int32_t size, std::int32_t far) {
+  const auto point = [&](std::int32_t most) {
+    return Int3(random.between(-most, most), random.between(-most, most), random.between(-most, most));
+  };
+  for (;;) {  // none that is collapsed
+    const Int3 at = point(far);
+    const cpu_ref::Triangle out{at + point(size), at + point(size), at + point(size)};
+    const Vec n = cross(vec(out[1]) - vec(out[0]), vec(out[2]) - vec(out[0]));
+    if (dot(n, n) > 0) return out;
+  }
+}
+
+Corners corners_of(const cpu_ref::Triangle& t) { return {vec(t[0]), vec(t[1]), vec(t[2])}; }
+
+/// How far a point is from a triangle's plane, and by how much of the triangle's size it is beside it.
+void expect_on(const Vec& p, const Corners& t, double error) {
+  const Vec u = t[1] - t[0], v = t[2] - t[0], w = p - t[0], n = cross(u, v);
+  EXPECT_LE(std::abs(dot(n, w)) / length(n), error);
+  // Barycentric coordinates by Cramer's rule.
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v),
+               all = uu * vv - uv * uv;
+  const double b = (vv * wu - uv * wv) / all, c = (uu * wv - uv * wu) / all;
+  const double height = length(n) / std::sqrt(std::max({uu, vv, dot(v - u, v - u)}));  // the least of three
+  EXPECT_GE(std::min({b, c, 1 - b - c}), -error / height);
+}
+
+/// Tiny triangles on a few lattice points, of which many are parallel, at right angles or in line; and large
+/// ones far off.
+TEST(NearestPoints, AreAsFarApartAsTheReferenceSaysAndOnBoth) {
+  equivalence::Random random(3);
+  std::size_t asked = 0, faces = 0;
+  for (int round = 0; round < 60'000; ++round) {
+    const std::int32_t size = round % 2 == 0 ? 3 : 1 << random.between(3, 22);
+    const cpu_ref::Triangle s = random_triangle(random, size, 2 * size),
+                            m = random_triangle(random, size, 2 * size);
+    if (cpu_ref::triangles_intersect(s, m)) continue;
+    ++asked;
+    const NearestPoints found = nearest_points(corners_of(s), corners_of(m));
+    // Doubles: 2^-26 of what is between all corners, where that is not more than a few sizes.
+    const double error = 0x1p-26 * 8 * size, distance = std::sqrt(found.squared);
+    const std::int32_t steps = cpu_ref::distance_of(s, m).steps;
+    EXPECT_GE(distance, steps - error);
+    EXPECT_LE(distance, steps + 1 + error);
+    EXPECT_NEAR(length(found.on_m - found.on_s), distance, error);
+    expect_on(found.on_s, corners_of(s), error);
+    expect_on(found.on_m, corners_of(m), error);
+    for (std::size_t feature = 0; feature < 6; ++feature)
+      faces += nearest_points(corners_of(s), corners_of(m), feature).squared == found.squared ? 1u : 0u;
+  }
+  EXPECT_GT(asked, 30'000u);
+  EXPECT_GT(faces, 1'000u);  // most are nearest at corners and edges
+}
+
+}  // namespace
+}  // namespace palpate::native
