@@ -166,6 +166,7 @@ TESTS = {
     "compute/native/narrow_phase/": ["filters", "inside_cells"],
     "compute/native/queries/distance_lattice": ["room_field", "first_contact"],
     "compute/native/queries/nearest_points": ["nearest_points", "turned_gaps", "first_contact"],
+    "compute/native/queries/pair_gap": ["nearest_points", "first_contact"],
     "compute/native/queries/room_": ["room_field", "touch", "first_contact"],
     "compute/native/queries/": ["turned_gaps", "touch", "first_contact"],
     "compute/scene/": ["brick_bits", "filters", "depth_search"],

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compute/native/queries/pair_gap.h"
 #include "cpu_ref/distance_of_triangles.h"
 #include "cpu_ref/triangle_triangle.h"
 #include "tests/equivalence/random.h"
@@ -67,6 +68,36 @@ TEST(NearestPoints, AreAsFarApartAsTheReferenceSaysAndOnBoth) {
   }
   EXPECT_GT(asked, 30'000u);
   EXPECT_GT(faces, 1'000u);  // most are nearest at corners and edges
+}
+
+exact::Corners lattice_corners(const cpu_ref::Triangle& t) { return {t[0], t[1], t[2]}; }
+
+/// The same steps and the same witnesses to the last bit, whatever was known of the distance before: few
+/// lattice points have halves to round in plenty, large coordinates products of 256 bits.
+TEST(Gap, IsWhatTheReferenceSays) {
+  equivalence::Random random(4);
+  std::size_t asked = 0;
+  for (int round = 0; round < 40'000; ++round) {
+    const std::int32_t size = round % 2 == 0 ? 4 : 1 << random.between(3, 26);
+    const cpu_ref::Triangle s = random_triangle(random, size, 2 * size),
+                            m = random_triangle(random, size, 2 * size);
+    if (cpu_ref::triangles_intersect(s, m)) continue;
+    ++asked;
+    const cpu_ref::TriangleDistance expected = cpu_ref::distance_of(s, m);
+    const exact::Corners on_s = lattice_corners(s), on_m = lattice_corners(m);
+    for (const std::int32_t most : {INT32_MAX, expected.steps + 1, expected.steps}) {
+      const exact::Gap gap = exact::gap(on_s, on_m, most);
+      ASSERT_EQ(gap.steps, expected.steps);
+      Int3 from, to;
+      exact::witnesses(on_s, on_m, gap.feature, from, to);
+      ASSERT_EQ(from, expected.on_s) << "round " << round << ", feature " << gap.feature;
+      ASSERT_EQ(to, expected.on_m) << "round " << round << ", feature " << gap.feature;
+    }
+    if (expected.steps > 0) {
+      ASSERT_GT(exact::gap(on_s, on_m, expected.steps - 1).steps, expected.steps - 1);
+    }
+  }
+  EXPECT_GT(asked, 20'000u);
 }
 
 }  // namespace
