@@ -59,7 +59,8 @@ enum class ForceLaw : std::uint8_t { kPrinted, kCorrected };
 
 /// How the 1 kHz loop uses them (scene key `control`).
 struct ControlSettings {
-  ForceLaw law = ForceLaw::kCorrected;  ///< profile `paper` without a law of its own takes printed
+  ForceLaw law = ForceLaw::kCorrected;  ///< with the scene's profile; `paper` without a stated one: printed
+  bool law_stated = false;              ///< by the file: then it is any profile's
   std::optional<int> transitions;       ///< n; empty: auto (measured age of results)
   int virtual_delay_ticks = 3;
   double watchdog_ms = 20;

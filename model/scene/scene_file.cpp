@@ -185,8 +185,10 @@ void read_control(const SceneObject& scene_json, Profile profile, ControlSetting
   if (!scene_json.has("control")) return;
   const SceneObject body(scene_json.file(), scene_json.pointer("control"), scene_json.at("control"),
                          keys_of("control"));
-  if (const auto law = body.choice("law", {"printed", "corrected"}))
+  if (const auto law = body.choice("law", {"printed", "corrected"})) {
     control.law = *law == 0 ? ForceLaw::kPrinted : ForceLaw::kCorrected;
+    control.law_stated = true;
+  }
   if (body.has("transitions") && !body.is_auto("transitions")) {
     if (body.at("transitions").is_string())
       body.fail("transitions",

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -96,15 +97,31 @@ Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation&
   return mesh;
 }
 
-/// Adds a placed body to the mock-up; its parts get `prefix` when there are several bodies.
-void place(const Mesh& body, const Pose& placement, const std::string& prefix, Mesh& mockup) {
+/// What tells each body's parts apart: short names, of several alike the second with "#2"; none for a single
+/// body.
+std::vector<std::string> prefixes_of(const std::vector<StaticBody>& bodies) {
+  std::vector<std::string> out;
+  for (const StaticBody& body : bodies) {
+    const std::string own = prefix_of(body.source);
+    std::string name = own;
+    for (int number = 2; std::find(out.begin(), out.end(), name) != out.end(); ++number)
+      name = own + "#" + std::to_string(number);
+    out.push_back(std::move(name));
+  }
+  if (out.size() == 1) out.front().clear();
+  return out;
+}
+
+/// Adds a placed body to the mock-up; its parts get `prefix`. `own`: the body's own name.
+void place(const Mesh& body, const Pose& placement, const std::string& own, const std::string& prefix,
+           Mesh& mockup) {
   const auto vertex = static_cast<std::uint32_t>(mockup.vertices.size());
   const auto triangle = static_cast<std::uint32_t>(mockup.triangles.size());
   for (const Vec3& v : body.vertices) mockup.vertices.push_back(placement.rotation * v + placement.position);
   for (const auto& [a, b, c] : body.triangles)
     mockup.triangles.push_back({a + vertex, b + vertex, c + vertex});
   for (const MeshPart& part : body.parts) {
-    const bool whole = part.path.empty() || part.path == prefix;  // a mesh in memory is a part of its name
+    const bool whole = part.path.empty() || part.path == own;  // a mesh in memory is a part of its name
     const std::string path = prefix.empty() ? part.path : whole ? prefix : prefix + "/" + part.path;
     mockup.parts.push_back(
         {path, part.first_triangle + triangle, part.triangle_count, part.also, part.colour});
@@ -197,13 +214,14 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
   if (!tool) return tool.error();
   meshes.tool = std::move(*tool);
   if (tessellation.deflection_m == 0) tessellation.deflection_m = extent(meshes.tool) / kDeflectionsPerSide;
+  const std::vector<std::string> prefixes = prefixes_of(scene.statics);
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
     const auto body_progress = of_body(i + 1);
     if (!body_progress("import", 0)) return cancelled;
     const StaticBody& body = scene.statics[i];
     const auto mesh = mesh_of(body.source, files, tessellation, body_progress, scene.warnings);
     if (!mesh) return mesh.error();
-    place(*mesh, body.placement, scene.statics.size() > 1 ? prefix_of(body.source) : "", meshes.mockup);
+    place(*mesh, body.placement, prefix_of(body.source), prefixes[i], meshes.mockup);
   }
   warn_of_size("mock-up", meshes.mockup, scene.warnings);
   warn_of_size("tool", meshes.tool, scene.warnings);

@@ -27,6 +27,7 @@
 #include "service/cli/output_folder.h"
 #include "service/cli/path.h"
 #include "service/cli/serve.h"
+#include "service/cli/text_output.h"
 #include "service/cli/tune.h"
 
 namespace palpate {
@@ -59,7 +60,7 @@ constexpr const char* kRunFooter =
 SIGINT (Ctrl-C) or SIGTERM ends the run with zero force and complete files.
 
 With --pace realtime the loop keeps to the clock at 1 kHz and a result is as old as it happens to be. With --pace asap
-time is virtual: as fast as the machine goes, a result always control.virtual_delay_ticks old, trace.csv the same bytes every time.
+time is virtual: as fast as the machine goes, a result control.virtual_delay_ticks old when it comes, trace.csv the same bytes every time.
 The first line of the summary says whether this machine kept up, or would have.
 
 Examples:
@@ -67,9 +68,10 @@ Examples:
   palpate run scenes/contacts.json --backend cpu --duration 2)";
 
 constexpr const char* kQueryFooter =
-    R"(At a terminal it prints what touches, how deep and with which force. Elsewhere, and with --json, it prints one JSON object a pose:
+    R"(At a terminal it prints what touches, how deep and with which force. Elsewhere, with --json, --any, --clearance or --within, it prints one JSON object a pose:
 number (from 0), pose, contact, pairs, cst bst cmt bmt imt est (triangle ids), areas (id, zones, static, mobile, normal, depth m,
 point m, force N, torque N·m, flags), force, torque (about the tool's centre of mass), flags, truncated, time_us.
+force and torque are what a hand at rest there feels, through its spring. An area's are for looking at: of the pose itself, from the mock-up's samples alone, so they add up to something else.
 With --names also parts: the paths of the mock-up's and of the tool's parts that touch, as palpate info has them.
 A file of poses is CSV with the header x,y,z,qx,qy,qz,qw. A pose far away is free of contact; only one that is not finite or
 not a unit rotation is an error (exit code 3).
@@ -289,40 +291,46 @@ void add_query_command(CLI::App& app, QueryOptions& query, const Parts& parts, R
   pose->excludes(poses);
   add_backend(*query_app, query.common);
   add_method(*query_app, query.common);
-  query_app
-      ->add_option(
-          "--batch", query.batch,
-          "answer N poses together, on all cores, or as many as it takes in a submission of a device;"
-          " time_us is then a pose's share")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
-      ->type_name("N");
-  query_app->add_flag("--names", query.names, "parts: which named parts touch");
+  auto* batch =
+      query_app
+          ->add_option(
+              "--batch", query.batch,
+              "answer N poses together, on all cores, or as many as it takes in a submission of a device;"
+              " time_us is then a pose's share")
+          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
+          ->type_name("N");
+  auto* names = query_app->add_flag("--names", query.names, "parts: which named parts touch");
   query_app->add_flag("--json", query.json,
                       "one JSON object a pose at a terminal, too; elsewhere that is so anyway");
-  query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")
-      ->type_name("DIR");
-  query_app->add_flag("--overwrite", query.overwrite, "replace an export that is there already");
+  auto* geometry =
+      query_app->add_option("--export-geometry", query.export_directory, "write the judged integers there")
+          ->type_name("DIR");
+  query_app->add_flag("--overwrite", query.overwrite, "replace an export that is there already")
+      ->needs(geometry);
   auto* any = query_app->add_flag("--any", query.any,
                                   "touch or not alone, containment included: number, engine and touches");
   auto* clearance = query_app->add_flag("--clearance", query.clearance,
                                         "the exact smallest distance alone: clearance m (null: beyond the "
                                         "lattice), static and mobile triangle, their points and parts");
-  query_app
-      ->add_option_function<double>(
-          "--within",
-          [&query](const double& value) {
-            if (!(value >= 0 && value <= 100))
-              throw CLI::ValidationError("--within", fmt::format("{} is not from 0 to 100", value));
-            query.within_m = value;
-          },
-          "near-miss check: --clearance of the poses that are no further than M metres, and no others")
-      ->type_name("M");
+  auto* within =
+      query_app
+          ->add_option_function<double>(
+              "--within",
+              [&query](const double& value) {
+                if (!(value >= 0 && value <= 100))
+                  throw CLI::ValidationError("--within", fmt::format("{} is not from 0 to 100", value));
+                query.within_m = value;
+              },
+              "near-miss check: --clearance of the poses that are no further than M metres, and no others")
+          ->type_name("M");
   query_app
       ->add_option_function<double>(
           "--tolerance", number_within("--tolerance", 0, 100, query.tolerance_m),
           "with --any or --clearance: a contact no deeper than M metres does not count")
       ->type_name("M");
-  any->excludes(clearance);
+  any->excludes(clearance)->excludes(within);
+  for (CLI::Option* verdict : {any, clearance, within})  // whose lines have none of it
+    for (CLI::Option* of_frames : {batch, names, geometry}) verdict->excludes(of_frames);
   query_app->footer(kQueryFooter);
   query_app->callback([&] { outcome = query_command(query, parts); });
 }
@@ -394,7 +402,7 @@ void add_devices_command(CLI::App& app, const Parts& parts, Result<void>& outcom
   devices_app->callback([&] { outcome = devices_command(parts); });
 }
 
-void add_completions_command(CLI::App& app, std::string& shell) {
+void add_completions_command(CLI::App& app, std::string& shell, Result<void>& outcome) {
   CLI::App* completions_app = app.add_subcommand("completions", "print the completion script of a shell");
   completions_app->add_option("shell", shell, "which one")
       ->required()
@@ -403,7 +411,7 @@ void add_completions_command(CLI::App& app, std::string& shell) {
   completions_app->footer(
       "Examples:\n  source <(palpate completions bash)\n  palpate completions fish > "
       "~/.config/fish/completions/palpate.fish");
-  completions_app->callback([&] { fmt::print("{}", completion_script(app, shell)); });
+  completions_app->callback([&] { outcome = print_text(completion_script(app, shell)); });
 }
 
 void add_man_command(CLI::App& app, ManOptions& options, Result<void>& outcome) {
@@ -422,10 +430,11 @@ void add_man_command(CLI::App& app, ManOptions& options, Result<void>& outcome) 
       return;
     }
     const std::string text = manual_page(app, options.page, PALPATE_VERSION);
-    if (text.empty())
-      outcome = Error{ErrorCode::kUsage,
-                      fmt::format("'{}' is no command of palpate (see palpate --help)", options.page)};
-    fmt::print("{}", text);
+    outcome = text.empty()
+                  ? Result<void>(Error{
+                        ErrorCode::kUsage,
+                        fmt::format("'{}' is no command of palpate (see palpate --help)", options.page)})
+                  : print_text(text);
   });
 }
 
@@ -496,7 +505,7 @@ int parse_and_run(int argc, const char* const* argv, const Parts& parts) {
   add_serve_command(app, serve, parts, outcome);
   add_tune_command(app, tune, parts, outcome);
   add_bench_command(app, bench, parts, outcome);
-  add_completions_command(app, shell);
+  add_completions_command(app, shell, outcome);
   add_man_command(app, manual, outcome);
   add_quiet(app);
 

@@ -30,8 +30,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kPathFooter =
     R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
-(pose, with its fraction on the way to the next; parts), least clearance, worst depth, the parts that touch by name, and what was examined. A first contact is never late, and early
-by no more than early_m and a lattice step. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
+(pose, with its fraction on the way to the next; parts), least clearance (of a clear path at its poses; else 0, at the first contact), worst depth at the poses (null: none touches),
+the parts that touch at a pose or at a first contact between two, by name, and what was examined. A first contact is never late, and early by no more than early_m and a lattice step. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
 Exit codes: 0 the path is clear, 5 it is not, others as ever. A path of which nothing was examined is an error, never clear.
 
 Examples:
@@ -51,16 +51,22 @@ Json json_of(const LoadedScene& scene, const PathReport& report, const std::stri
   Json out;
   out["clear"] = report.clear();
   out["first_contact"] = nullptr;
+  const double first = !report.first_screw || *report.first_screw == 0
+                           ? 0.0
+                           : static_cast<double>(*report.first_screw) - 1 + report.first_time;
   if (report.first_screw)
-    out["first_contact"] = {
-        {"pose",
-         *report.first_screw == 0 ? 0.0 : static_cast<double>(*report.first_screw) - 1 + report.first_time},
-        {"at", pose_json(*report.first_pose)},
-        {"tool_part", report.first_tool},
-        {"static_part", report.first_static}};
-  out["least_clearance_m"] = nullptr;
-  if (report.closest) out["least_clearance_m"] = report.moments[*report.closest].clearance.steps * step;
-  out["closest_pose"] = report.closest ? Json(*report.closest) : Json(nullptr);
+    out["first_contact"] = {{"pose", first},
+                            {"at", pose_json(*report.first_pose)},
+                            {"tool_part", report.first_tool},
+                            {"static_part", report.first_static}};
+  out["least_clearance_m"] = out["closest_pose"] = nullptr;
+  if (!report.clear()) {  // wherever poses lie, no room is left where the tool touches
+    out["least_clearance_m"] = 0.0;
+    out["closest_pose"] = first;
+  } else if (report.closest) {
+    out["least_clearance_m"] = report.moments[*report.closest].clearance.steps * step;
+    out["closest_pose"] = *report.closest;
+  }
   out["worst_depth_m"] = report.deepest ? Json(*report.moments[*report.deepest].depth_m) : Json(nullptr);
   out["deepest_pose"] = report.deepest ? Json(*report.deepest) : Json(nullptr);
   out["touching"] = {{"static", report.static_parts}, {"tool", report.tool_parts}};

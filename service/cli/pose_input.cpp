@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 
@@ -78,6 +79,9 @@ Result<Pose> parse_pose(const std::string& text) {
 }
 
 Result<std::vector<Pose>> read_poses(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    return bad_value(fmt::format("{}: a folder is no poses file", path));
   std::ifstream in(path);
   if (!in) return bad_value(fmt::format("{}: the poses file can't be opened", path));
   return read_poses(in, path);
@@ -85,7 +89,9 @@ Result<std::vector<Pose>> read_poses(const std::string& path) {
 
 Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) {
   std::string text;
-  if (!std::getline(in, text) || trim(text) != kHeader)
+  const bool begun = static_cast<bool>(std::getline(in, text));
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (!begun || trim(text) != kHeader)
     return bad_value(
         fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, shown(trim(text)), kHeader));
 

@@ -56,7 +56,9 @@ std::string answer_text(const Pose& pose, const Contacts& contacts, const Contac
                                       vector_text(told.torque), glm::length(told.torque)));
   if (const std::string flags = flags_text(response.flags); !flags.empty()) out += line("flags", flags);
   if (response.felt && !response.areas.empty())
-    out += line("", "felt by a hand at rest there; the areas' forces are those of the pose itself");
+    out += line("",
+                "felt by a hand at rest there; the areas' forces are of the pose itself, from the mock-up's "
+                "samples alone");
   for (std::size_t i = 0; i < std::min(contacts.areas.size(), response.areas.size()); ++i) {
     const AreaResponse& area = response.areas[i];
     std::string text = fmt::format("{:.4g} mm deep, along {}", 1000 * area.depth, vector_text(area.normal));

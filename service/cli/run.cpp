@@ -231,6 +231,10 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (!recorded) return recorded;
   summary->static_parts.assign(watch.statics().begin(), watch.statics().end());
   summary->tool_parts.assign(watch.mobiles().begin(), watch.mobiles().end());
+  for (std::size_t i = 0; i < switches->size(); ++i)
+    if ((*switches)[i].tick >= static_cast<std::int64_t>(summary->ticks))
+      summary->notes.push_back(fmt::format("--switch {}: the run ended before it, after {} ticks of 1 ms",
+                                           options.switches[i], summary->ticks));
 
   const ReportFacts facts{options.asap ? "asap" : "realtime", (*prepared)->load_s, (*prepared)->prepare_s,
                           provenance_of(loaded.scene, (*prepared)->plan,
@@ -240,7 +244,6 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
   if (auto done = write_text(directory / "report.html", report_page(*summary, loaded, facts, series)); !done)
     return done;
   for (const std::string& note : summary->notes) console.note(note);
-  if (summary->stopped) console.note("stopped before the end, with zero force and complete files");
   if (summary->failure) return *summary->failure;
   fmt::print("{}{:<14} {}\n", summary_text(*summary, loaded.scene.stage_names), "files", directory.string());
   fmt::print("{:<14} {}\n", "report", (directory / "report.html").string());

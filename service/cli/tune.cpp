@@ -454,6 +454,7 @@ void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, R
   tune->callback([&] {
     catch_interrupts();
     outcome = Tune(options, parts).run();
+    if (!outcome && interrupted()) outcome = Error{ErrorCode::kInternal, "interrupted"};
   });
 }
 

@@ -72,12 +72,14 @@ void CollisionFrame::note_slow(const FrameSlot& slot) noexcept {
 }
 
 /// Goes over to another plan, if one is ready.
-void CollisionFrame::take_plan() noexcept {
+void CollisionFrame::take_plan(std::int64_t tick) noexcept {
   const PlanTarget* next = plans_ ? plans_->take(backend_) : nullptr;
   if (!next) return;
   ++plan_changes_;
   if (next->plan.profile == profile_ && next->torques == torques_) return;
   ++felt_changes_;
+  if (next->plan.profile != profile_ && profile_change_count_ < kToldChanges)
+    profile_changes_[profile_change_count_++] = {tick, next->plan.profile};
   profile_ = next->plan.profile;
   torques_ = next->torques;
 }
@@ -94,7 +96,7 @@ Result<void> CollisionFrame::solve(FrameSlot& slot, LawResult& result) noexcept 
 }
 
 Result<void> CollisionFrame::answer(FrameSlot& slot, LawResult& result) {
-  take_plan();
+  take_plan(slot.sample.tick);
   const auto start = std::chrono::steady_clock::now();  // recorded, decides nothing
   const auto lattice_pose = to_lattice(slot.sample.pose, geometry_);
   if (!lattice_pose) return lattice_pose.error();

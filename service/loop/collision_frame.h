@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "model/collision_backend.h"
 #include "model/contact/response.h"
@@ -32,6 +34,12 @@ struct FrameSlot {
   FrameRecord record() const {
     return {sample.tick, sample.pose, lattice_pose, contacts, response, total_us};
   }
+};
+
+/// From this tick's pose on a session answered in another profile.
+struct ProfileChange {
+  std::int64_t tick = 0;
+  Profile profile = Profile::kRefined;
 };
 
 /// A frame that took long, and where most of its time went.
@@ -73,12 +81,17 @@ class CollisionFrame {
   const FrameBudget& budget() const { return budget_; }
   std::size_t ignored_at_first() const { return ignored_at_first_; }  ///< patches
   std::uint64_t plan_changes() const { return plan_changes_; }
+  /// The first kToldChanges of them that changed the profile.
+  std::span<const ProfileChange> profile_changes() const {
+    return {profile_changes_.data(), profile_change_count_};
+  }
+  static constexpr std::size_t kToldChanges = 16;  ///< chosen: nobody reads more
   std::uint32_t areas_max() const { return areas_max_; }
   /// More areas than the force law keeps apart.
   std::uint64_t merged_frames() const { return merged_frames_; }
 
  private:
-  void take_plan() noexcept;
+  void take_plan(std::int64_t tick) noexcept;
   void note_slow(const FrameSlot& slot) noexcept;
   void ignore_what_has_not_opened(const Contacts& contacts);
   Result<void> answer(FrameSlot& slot, LawResult& result);
@@ -98,6 +111,8 @@ class CollisionFrame {
   std::uint64_t slow_frames_ = 0;
   SlowFrame slowest_;
   std::uint64_t plan_changes_ = 0;
+  std::array<ProfileChange, kToldChanges> profile_changes_{};
+  std::size_t profile_change_count_ = 0;
   std::uint32_t felt_changes_ = 0;
   std::uint64_t truncated_frames_ = 0, merged_frames_ = 0;
   const char* truncated_capacity_ = "";

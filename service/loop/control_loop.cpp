@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "service/loop/collision_worker.h"
 #include "service/loop/thread_share.h"
@@ -33,14 +34,25 @@ void sleep_until(std::int64_t ns) noexcept {
 }  // namespace
 
 ControlTick::ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc,
-                         const Couplings& couplings, bool field)
-    : device_(device), settings_(law), law_(law), couplings_(couplings), coupling_({}), tool_gc_(tool_gc) {
-  couple(field);
+                         const Couplings& couplings, bool field, std::optional<LawKind> other)
+    : device_(device),
+      settings_(law),
+      other_(other.value_or(law.kind)),
+      law_(law),
+      couplings_(couplings),
+      coupling_({}),
+      field_(field),
+      tool_gc_(tool_gc) {
+  take_profile(field);
 }
 
-/// Takes the springs that go with the profile. Where nothing reaches the device but by a spring, the spring
-/// keeps the force from jumping, and the law need not.
-void ControlTick::couple(bool field) noexcept {
+/// Takes the law and the springs that go with the profile. Where nothing reaches the device but by a spring,
+/// the spring keeps the force from jumping, and the law need not.
+void ControlTick::take_profile(bool field) noexcept {
+  if (field != field_ && other_ != settings_.kind) {
+    std::swap(other_, settings_.kind);
+    law_ = ForceLawState(settings_);
+  }
   field_ = field;
   coupling_ = VirtualCoupling(field ? couplings_.field : couplings_.areas, settings_.change_n_per_s);
   coupled_ = coupling_.on() && settings_.kind == LawKind::kCorrected;
@@ -67,6 +79,8 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
 }
 
 const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
+  // The gate closes on such a result (restart_fade), so nothing is lost with what the law knew.
+  if (fresh != nullptr && fresh->field != field_) take_profile(fresh->field);
   Wrench wrench = law_.step(pose_, fresh);
   if (law_.jumped()) {  // the device homed, or slipped
     device_.restart_fade();
@@ -78,7 +92,6 @@ const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
     if (fresh->change != change_)
       device_.restart_fade();  // another profile or device: nothing is as it was felt
     change_ = fresh->change;
-    if (fresh->field != field_) couple(fresh->field);
     record_.response = fresh->wrench;
     record_.contact = fresh->contact;
   }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "driver/safe_device.h"
@@ -21,10 +22,11 @@ inline constexpr std::size_t kMaxStages = 256;  ///< stages that a run can tell 
 class ControlTick {
  public:
   /// `device` outlives this. `tool_gc`: the tool's centre of mass in its own frame, m. A coupling goes with
-  /// law `corrected` alone. `field`: whether the run begins with the coupling of profile `refined` or with
-  /// that of `paper`; later on each result says which.
+  /// law `corrected` alone. `field`: whether the run begins with the coupling and the law of profile
+  /// `refined` or with those of `paper`; later on each result says which. `other`: the other one's law;
+  /// empty: the same.
   ControlTick(SafeDevice& device, const ForceLawSettings& law, const Vec3& tool_gc,
-              const Couplings& couplings = {}, bool field = true);
+              const Couplings& couplings = {}, bool field = true, std::optional<LawKind> other = {});
 
   /// Reads the device. `tick` counts 1 ms periods since the start, missed ones too. Returns where the tool
   /// is: where the device is, or, with a virtual coupling, where it hangs; that pose is the one to ask about.
@@ -48,10 +50,11 @@ class ControlTick {
   double torque_max() const { return torque_max_; }  ///< N·m, sent
 
  private:
-  void couple(bool field) noexcept;
+  void take_profile(bool field) noexcept;
 
   SafeDevice& device_;
   ForceLawSettings settings_;
+  LawKind other_;  ///< the law of the profile that is not in use
   ForceLawState law_;
   Couplings couplings_;
   VirtualCoupling coupling_;

@@ -135,7 +135,7 @@ struct Run {
               session_options.pace == Pace::kRealtime ? loaded.scene.response.budget_us : 0),
         tick(safe, law_settings(loaded.scene), loaded.geometry.tool_gc_m,
              couplings_of(loaded.scene, loaded.geometry.tool_gyration_m),
-             loaded.scene.response.profile == Profile::kRefined),
+             loaded.scene.response.profile == Profile::kRefined, other_law(loaded.scene)),
         observer(run_observer),
         estimate(watchdog_ticks(loaded.scene)),
         ticks(tick_count(safe, session_options)) {}
@@ -149,6 +149,12 @@ struct Run {
             .stiffness_n_per_m = scene.response.stiffness_n_per_m,
             .transitions = scene.control.transitions.value_or(0),
             .change_n_per_s = scene.control.change_n_per_s};
+  }
+
+  /// Of the profile that the scene doesn't begin with.
+  static LawKind other_law(const Scene& scene) {
+    if (scene.control.law_stated) return law_settings(scene).kind;
+    return scene.response.profile == Profile::kPaper ? LawKind::kCorrected : LawKind::kPrinted;
   }
 
   const Scene& scene;
@@ -352,8 +358,16 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   out.backend = backend.name();
   out.device = backend.device();
   out.haptic_device = run.device.name();
-  out.profile = run.scene.response.profile == Profile::kPaper ? "paper" : "refined";
-  out.law = run.scene.control.law == ForceLaw::kPrinted ? "printed" : "corrected";
+  const auto profile_text = [](Profile profile) { return profile == Profile::kPaper ? "paper" : "refined"; };
+  const auto law_text = [](LawKind law) { return law == LawKind::kPrinted ? "printed" : "corrected"; };
+  out.profile = profile_text(run.scene.response.profile);
+  out.law = law_text(Run::law_settings(run.scene).kind);
+  for (const ProfileChange& change : run.frame.profile_changes()) {
+    const bool back = change.profile == run.scene.response.profile;
+    out.profile_changes.push_back(
+        {change.tick, profile_text(change.profile),
+         law_text(back ? Run::law_settings(run.scene).kind : Run::other_law(run.scene))});
+  }
   out.ticks = run.tick.ticks();
   out.missed_ticks = run.timing.missed_ticks;
   out.lateness_us = percentiles(run.timing.lateness_ns, 1000);
@@ -424,6 +438,13 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   if (out.plan_changes > 0)
     note("the session went over to another plan " + std::to_string(out.plan_changes) +
          (out.plan_changes > 1 ? " times" : " time"));
+  for (const SessionSummary::Changed& change : out.profile_changes)
+    note("from tick " + std::to_string(change.tick) + " on it answered in profile " + change.profile +
+         ", law " + change.law);
+  if (out.stopped)
+    note("the run was stopped at tick " + std::to_string(out.ticks) +
+         (run.ticks == kForever ? "" : ", before its end at tick " + std::to_string(run.ticks)) +
+         ", with zero force");
   if (out.watchdog_ticks > 0)
     note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " +
          std::to_string(out.watchdog_ticks) + " ticks: the watchdog faded the force out");

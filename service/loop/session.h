@@ -94,6 +94,12 @@ struct SessionSummary {
   std::uint64_t watchdog_ticks = 0;         ///< ticks without a fresh result for longer than the watchdog
   std::uint64_t saturated_ticks = 0;        ///< ticks where a device limit shortened force or torque
   std::uint64_t plan_changes = 0;           ///< in mid-run
+  /// Profiles that the run went over to.
+  struct Changed {
+    std::int64_t tick;  ///< of the first pose answered in it
+    std::string profile, law;
+  };
+  std::vector<Changed> profile_changes;
   std::uint64_t dropped_ticks = 0,
                 dropped_frames = 0;  ///< not recorded because the recording thread fell behind
   std::vector<std::string> static_parts,

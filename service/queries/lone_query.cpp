@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
 #include <utility>
 
 #include "service/loop/law_result.h"
@@ -261,7 +263,9 @@ void LoneQuery::take(const ContactResponse& there) {
 
 void LoneQuery::finish() {
   stage_ = Stage::kDone;
-  felt_.settled = settled() || found();
+  // A spring turned by more than half a turn would pull the other way round.
+  const double turn = glm::length(Vec3(best_[3], best_[4], best_[5]));
+  felt_.settled = (settled() || found()) && turn <= std::numbers::pi;
   before_ = best_;
   felt_.wrench.force = spring_.stiffness_n_per_m * Vec3(best_[0], best_[1], best_[2]);
   felt_.wrench.torque = spring_.stiffness_nm_per_rad * Vec3(best_[3], best_[4], best_[5]);

@@ -91,9 +91,15 @@ Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backen
       out.evaluations += contact->evaluations;
       moment.undecided = contact->kind == FirstContact::Kind::kUndecided;
       if (contact->kind != FirstContact::Kind::kNone) moment.first_contact = contact->time;
-      if (moment.first_contact && !out.first_screw && contact->static_id != kNoTriangle) {
-        out.first_static = part_of(geometry.mockup_report, contact->static_id);
-        out.first_tool = part_of(geometry.tool_report, contact->mobile_id);
+      if (moment.first_contact && contact->static_id != kNoTriangle) {
+        const std::string fixed = part_of(geometry.mockup_report, contact->static_id),
+                          moved = part_of(geometry.tool_report, contact->mobile_id);
+        if (!fixed.empty()) unite(out.static_parts, {fixed});
+        if (!moved.empty()) unite(out.tool_parts, {moved});
+        if (!out.first_screw) {
+          out.first_static = fixed;
+          out.first_tool = moved;
+        }
       }
       // The screw's end is rounded once more by itself: a pose that touches is no clear one.
       if (moment.touches && !moment.first_contact) moment.first_contact = 1;

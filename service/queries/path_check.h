@@ -38,7 +38,8 @@ struct PathReport {
   std::string first_static, first_tool;  ///< parts that come together there
   std::optional<std::size_t> closest;    ///< moment with the least clearance of those that are apart
   std::optional<std::size_t> deepest;    ///< moment with the greatest depth
-  std::vector<std::string> static_parts, tool_parts;  ///< that touch at any pose
+  std::vector<std::string> static_parts,
+      tool_parts;  ///< that touch at a pose, or come together first on a screw
   std::uint64_t screws = 0, evaluations = 0;
   /// Whether the tool touches nowhere.
   bool clear() const { return !first_screw; }

@@ -51,6 +51,10 @@ std::string summary_json(const SessionSummary& summary, const Provenance* proven
   if (summary.ignored_patches_first > 0)
     json["ignored_patches"] = {{"first", summary.ignored_patches_first},
                                {"end", summary.ignored_patches_end}};
+  json["stopped"] = summary.stopped;
+  for (const SessionSummary::Changed& change : summary.profile_changes)
+    json["profile_changes"].push_back(
+        {{"tick", change.tick}, {"profile", change.profile}, {"law", change.law}});
   json["coarse_frames"] = summary.coarse_frames;
   if (summary.coarse_frames > 0) json["coarsest_share"] = summary.coarsest_share;
   json["no_direction_frames"] = summary.no_direction_frames;
@@ -101,9 +105,12 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
   line("tool", count_text(summary.tool_triangles) + " triangles");
   line("back end", fmt::format("{}, {}", summary.backend, summary.device));
   line("haptic device", summary.haptic_device);
-  line("method", fmt::format("profile {}, law {}", summary.profile, summary.law));
-  line("ticks",
-       fmt::format("{} of 1 ms, {} missed", count_text(summary.ticks), count_text(summary.missed_ticks)));
+  std::string method = fmt::format("profile {}, law {}", summary.profile, summary.law);
+  for (const SessionSummary::Changed& change : summary.profile_changes)
+    method += fmt::format("; from tick {} {}, {}", change.tick, change.profile, change.law);
+  line("method", std::move(method));
+  line("ticks", fmt::format("{} of 1 ms, {} missed{}", count_text(summary.ticks),
+                            count_text(summary.missed_ticks), summary.stopped ? "; stopped" : ""));
   if (summary.lateness_us.max > 0)
     line("lateness", fmt::format("{:.0f} µs median, {:.0f} µs p99, {:.0f} µs at most",
                                  summary.lateness_us.p50, summary.lateness_us.p99, summary.lateness_us.max));

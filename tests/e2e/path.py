@@ -63,6 +63,25 @@ def test_a_path_through_the_block_is_not_clear_though_its_poses_are():
             and report['worst_depth_m'] is None,
             report,
         )
+        expect(
+            report['least_clearance_m'] == 0
+            and report['closest_pose'] == report['first_contact']['pose']
+            and report['touching']['static'] == [report['first_contact']['static_part']]
+            and report['touching']['tool'] == [report['first_contact']['tool_part']],
+            report,
+        )
+
+
+def test_poses_as_a_spreadsheet_saves_them_are_read():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ball_over_a_block(folder)
+        path = poses(folder, 0.02, 0.012)
+        plain = palpate('path', scene, path)
+        path.write_bytes(b'\xef\xbb\xbf' + path.read_bytes().replace(b'\n', b'\r\n'))
+        marked = palpate('path', scene, path)
+        expect(marked.code == 0 and marked.out == plain.out, marked)
+        done = palpate('path', scene, folder)
+        expect(done.code == 3 and 'a folder is no poses file' in done.err, done)
 
 
 def test_a_scenes_own_path_is_taken_as_its_device_takes_it():

@@ -190,6 +190,18 @@ def test_names_tell_which_parts_touch():
     expect(free['parts'] == {'static': [], 'tool': []}, free['parts'])
 
 
+def test_bodies_of_one_mesh_are_told_apart():
+    folder = Folder()
+    folder.write('block.stl', stl(box((0.5, 0.5, 0.04), (0, 0, -0.02))))
+    body = {'mesh': 'block.stl', 'units': 'm'}
+    scene = folder.save(static=[body, {**body, 'position': [1, 0, 0]}, {**body, 'position': [2, 0, 0]}])
+    poses = ''.join(f'{x},0,0.019,0,0,0,1\n' for x in range(3))
+    folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n' + poses)
+    lines = lines_of(palpate('query', scene, '--poses', folder / 'poses.csv', '--names'))
+    names = [line['parts']['static'] for line in lines]
+    expect(names == [['block'], ['block#2'], ['block#3']], names)
+
+
 def generated(folder):
     outcome = palpate(
         'generate',

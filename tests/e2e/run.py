@@ -203,7 +203,12 @@ def test_an_interrupt_ends_a_real_time_run_with_whole_files():
         expect(outcome.code == 0, outcome)
         rows = (out / 'trace.csv').read_text()
         expect(rows.endswith('\n') and rows.count('\n') > 100, 'whole rows')
-        expect(json.loads((out / 'summary.json').read_text())['ticks'] == rows.count('\n') - 1, 'summary')
+        summary = json.loads((out / 'summary.json').read_text())
+        expect(summary['ticks'] == rows.count('\n') - 1, 'summary')
+        expect(
+            summary['stopped'] and any('was stopped at tick' in note for note in summary['notes']), summary
+        )
+        expect('was stopped at tick' in (out / 'report.html').read_text(), 'nobody takes it for a whole run')
         expect((out / 'report.html').read_text().rstrip().endswith('</html>'), 'report')
 
 
@@ -236,6 +241,13 @@ def test_a_run_goes_over_to_another_profile_and_back():
     summary = json.loads((folder / 'out/summary.json').read_text())
     expect(summary['ticks'] == 1001 and summary['missed_ticks'] == 0, summary)
     expect(any('2 times' in note for note in summary['notes']), summary['notes'])
+    expect(not summary['stopped'], summary)
+    expect(
+        [(change['profile'], change['law']) for change in summary['profile_changes']]
+        == [('paper', 'printed'), ('refined', 'corrected')],
+        summary['profile_changes'],
+    )
+    expect('; from tick' in done.out, done.out)
     frames = [json.loads(line) for line in open(folder / 'out/frames.jsonl')]
     pushes = lambda first, last: [
         frame['tick'] for frame in frames if first <= frame['tick'] < last and frame['force'][2] > 0
@@ -246,6 +258,19 @@ def test_a_run_goes_over_to_another_profile_and_back():
         f'in paper the rays from the block\'s twelve centroids all miss: {pushes(501, 801)}',
     )
     expect(any(frame['contact'] for frame in frames if 501 <= frame['tick'] < 801), 'though there is contact')
+    short = palpate(
+        'run',
+        scene,
+        '--pace',
+        'asap',
+        '--duration',
+        '0.4',
+        '--switch',
+        '0.5:paper',
+        '--out',
+        folder / 'short',
+    )
+    expect(short.code == 0 and '--switch 0.5:paper: the run ended before it' in short.err, short)
     expect_refused(
         palpate('run', scene, '--pace', 'asap', '--switch', 'soon:paper', '--out', folder / 'none'),
         3,

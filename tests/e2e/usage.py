@@ -1,4 +1,6 @@
 """Help, version and wrong usage (exit code 2)."""
+import subprocess
+
 from harness import *
 
 
@@ -76,6 +78,22 @@ def test_a_missing_scene_argument_is_wrong_usage():
 def test_query_needs_exactly_one_source_of_poses():
     expect_refused(palpate('query', 'x.json'), 2, '--pose')
     expect_refused(palpate('query', 'x.json', '--pose', '0 0 0 0 0 0 1', '--poses', 'p.csv'), 2, '--pose')
+
+
+def test_what_a_verdict_has_no_place_for_is_wrong_usage():
+    pose = ('--pose', '0 0 0 0 0 0 1')
+    for verdict in (('--any',), ('--clearance',), ('--within', '0.01')):
+        for other in (('--names',), ('--batch', '4'), ('--export-geometry', 'none')):
+            expect_refused(palpate('query', 'x.json', *pose, *verdict, *other), 2, other[0])
+    expect_refused(palpate('query', 'x.json', *pose, '--any', '--within', '0.01'), 2, '--within')
+    expect_refused(palpate('query', 'x.json', *pose, '--overwrite'), 2, '--export-geometry')
+
+
+def test_a_full_disk_is_told_by_whatever_is_printed():
+    for words in (('completions', 'bash'), ('man', 'run'), ('man',)):
+        with open('/dev/full', 'w') as full:
+            done = subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True)
+        expect(done.returncode == 1 and "standard output can't be written" in done.stderr, done)
 
 
 def test_a_flag_without_its_value_is_wrong_usage():

@@ -128,6 +128,9 @@ def test_answers_are_those_of_the_command_line_bit_by_bit(clamp, tmp_path):
     [
         (((), {}), 'a scene is a file, a dict, or tool and static'),
         ((('/nowhere.json',), {}), '/nowhere.json does not exist'),
+        ((('/nowhere.json',), {'tool': CUBE}), 'in place of a source'),
+        ((('/nowhere.json',), {'units': 'mm'}), 'in place of a source'),
+        (((), {'tool': CUBE, 'static': []}), 'static is an empty list'),
         (((), {'tool': CUBE, 'static': PLATE, 'engine': 'abacus'}), 'abacus'),
         (((), {'tool': (CUBE[0], CUBE[1] + 1), 'static': PLATE}), 'index 8'),
         (((), {'tool': (CUBE[0][:, :2], CUBE[1]), 'static': PLATE}), r'shape \(8, 2\)'),

@@ -59,10 +59,11 @@ PlanTarget target(Profile profile, bool telemetry, bool torques = true) {
 }
 
 /// A dip of a second in virtual time, with these changes.
-Ran run(const std::vector<PlanChange>& changes,
-        std::function<Result<void>(const Progress&)> on_prepare = {}) {
+Ran run(const std::vector<PlanChange>& changes, std::function<Result<void>(const Progress&)> on_prepare = {},
+        const std::function<void(Scene&)>& change = {}) {
   LoadedScene scene = half_space_scene();
   scene.scene.control.fade_in_ms = 100;
+  if (change) change(scene.scene);
   add_dip(scene, 1);
   Planned first;
   auto owned = std::make_unique<Planned>();
@@ -100,7 +101,8 @@ TEST(PlanSwitch, AViewerThatComesChangesNoTick) {
 TEST(PlanSwitch, AnotherProfileOrDeviceFadesIn) {
   const Ran still = run({});
   for (const PlanTarget& to : {target(Profile::kPaper, false), target(Profile::kRefined, false, false)}) {
-    const Ran changed = run({{501, to}});
+    // A stated law is every profile's; `corrected` never pulls.
+    const Ran changed = run({{501, to}}, {}, [](Scene& scene) { scene.control.law_stated = true; });
     ASSERT_EQ(changed.ticks.size(), 1001u);
     EXPECT_EQ(changed.summary.plan_changes, 1u);
     std::size_t drop = 0;  // the first tick that differs: the new plan's first answer has come
@@ -114,6 +116,45 @@ TEST(PlanSwitch, AnotherProfileOrDeviceFadesIn) {
     EXPECT_GT(changed.ticks[drop + 50].sent.force.z, 0.3 * deep) << "half faded in";
     for (const TickRecord& tick : changed.ticks) ASSERT_GE(tick.sent.force.z, 0);
   }
+}
+
+/// `paper` without a law of its own runs with `printed`, which knows no spring; `refined`, gone over to, must
+/// feel as if the run had begun in it. A stated law stays.
+TEST(PlanSwitch, AnotherProfileBringsItsOwnLaw) {
+  const auto ran = [](bool from_paper, bool stated) {
+    return run({{10, target(from_paper ? Profile::kRefined : Profile::kPaper, false)}}, {},
+               [=](Scene& scene) {
+                 scene.response.profile = from_paper ? Profile::kPaper : Profile::kRefined;
+                 scene.control.law = from_paper ? ForceLaw::kPrinted : ForceLaw::kCorrected;
+                 scene.control.law_stated = stated;
+               });
+  };
+  const Ran still = run({}), to_refined = ran(true, false), to_paper = ran(false, false),
+            stated = ran(true, true);
+  ASSERT_EQ(to_refined.summary.profile_changes.size(), 1u);
+  EXPECT_EQ(to_refined.summary.profile_changes[0].profile, "refined");
+  EXPECT_EQ(to_refined.summary.profile_changes[0].law, "corrected");
+  EXPECT_GE(to_refined.summary.profile_changes[0].tick, 10);
+  EXPECT_LT(to_refined.summary.profile_changes[0].tick, 20);
+  ASSERT_EQ(to_paper.summary.profile_changes.size(), 1u);
+  EXPECT_EQ(to_paper.summary.profile_changes[0].law, "printed");
+  ASSERT_EQ(stated.summary.profile_changes.size(), 1u);
+  EXPECT_EQ(stated.summary.profile_changes[0].law, "printed");
+  EXPECT_EQ(stated.summary.law, "printed");
+  std::size_t in_contact = 0;
+  double furthest = 0;
+  for (std::size_t i = 200; i < still.ticks.size(); ++i) {  // the gate has opened
+    if (still.ticks[i].sent.force.z == 0) continue;
+    ++in_contact;
+    const auto off = [&](const Ran& other) {
+      return glm::length(other.ticks[i].sent.force - still.ticks[i].sent.force);
+    };
+    // Not to the bit: how old results are is averaged from another tick on.
+    ASSERT_LT(off(to_refined), 1e-3 * still.summary.force_max_N) << i;
+    furthest = std::max(furthest, off(stated));
+  }
+  EXPECT_GT(in_contact, 200u);
+  EXPECT_GT(furthest, 0.01 * still.summary.force_max_N) << "the laws differ here";
 }
 
 TEST(PlanSwitch, APlanThatCantBePreparedChangesNothing) {

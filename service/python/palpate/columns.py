@@ -78,6 +78,8 @@ class _Columns(Mapping[str, 'NDArray[Any]']):
         names: Optional[Any] = None,
         out: Optional[Mapping[str, NDArray[Any]]] = None,
     ) -> None:
+        if isinstance(names, str):
+            names = (names,)
         chosen = (
             tuple(self._specification)
             if names is None and out is None

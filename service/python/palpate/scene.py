@@ -61,10 +61,15 @@ class Scene:
         folder: Union[str, os.PathLike[str], None] = None,
         progress: Optional[Callable[[str, float], Any]] = None,
     ) -> None:
-        if (source is None) == (tool is None or static is None):
+        meshes_given = tool is not None or static is not None or units != 'm'
+        if source is not None and meshes_given:
+            raise PalpateError(2, 'tool, static and units are in place of a source, and there is one')
+        if source is None and (tool is None or static is None):
             raise PalpateError(2, 'a scene is a file, a dict, or tool and static')
         if source is None:
             bodies = static if isinstance(static, list) else [static]
+            if not bodies:
+                raise PalpateError(2, 'static is an empty list: a scene has one mesh or more')
             source = {
                 'tool': {'mesh': tool, 'units': units},
                 'static': [{'mesh': body, 'units': units} for body in bodies],
